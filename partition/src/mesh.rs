@@ -1,0 +1,36 @@
+//! A mesh: points, cells, facets, and the physical groups that name them.
+
+pub mod gmsh;
+pub mod topology;
+
+use std::collections::BTreeMap;
+
+use crate::element::Elements;
+
+/// A mesh as a mesher made it, without orphan nodes and with every cell positively oriented.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Dimension of the cells.
+    pub dim: usize,
+    /// Coordinates [m]; unused components are zero.
+    pub points: Vec<[f64; 3]>,
+    /// The mesh file's tag of each node.
+    pub node_tags: Vec<i64>,
+    /// Cells, by node index.
+    pub cells: Elements,
+    /// The mesh file's tag of each cell.
+    pub cell_tags: Vec<i64>,
+    /// Facets that the mesh file lists (dimension `dim − 1`), by node index.
+    pub facets: Elements,
+    /// Physical groups by name.
+    pub groups: BTreeMap<String, Group>,
+}
+
+/// A physical group.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Group {
+    /// Dimension of its members.
+    pub dim: usize,
+    /// Indices of cells (`dim` that of the mesh), facets (one less) or nodes (0), ascending.
+    pub members: Vec<u32>,
+}

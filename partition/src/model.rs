@@ -1,0 +1,109 @@
+//! What a scene means on its mesh: no names to look up any more, no expression to evaluate.
+//!
+//! Loads are consistent nodal forces, supports are rows `u·d = v`, contact is `B u ≤ g`; nothing
+//! behind this point knows how they came about.
+
+use crate::error::InputError;
+use crate::mesh::Mesh;
+use crate::scene::Scene;
+
+/// Which plane state a two-dimensional scene is in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlaneState {
+    /// ε_zz = 0.
+    Strain,
+    /// σ_zz = 0.
+    Stress,
+}
+
+/// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name in the scene.
+    pub name: String,
+    /// C, symmetric positive definite, for the scene's plane state [Pa].
+    pub stiffness: [[f64; 3]; 3],
+    /// Row of σ_zz against (ε_xx, ε_yy, γ_xy) [Pa]; `None` where the user didn't give it.
+    pub out_of_plane: Option<[f64; 3]>,
+    /// Poisson's ratio of an isotropic material.
+    pub poisson: Option<f64>,
+}
+
+/// One support row: u(node)·direction = value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Support {
+    /// Node.
+    pub node: u32,
+    /// Unit vector. The rows of one node are orthonormal.
+    pub direction: [f64; 3],
+    /// Prescribed displacement along it [m].
+    pub value: f64,
+}
+
+/// One contact condition, a row of `B u ≤ g`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactCondition {
+    /// The nodes of its row and their coefficients: Σ coefficient·u(node) ≤ gap.
+    pub entries: Vec<(u32, [f64; 3])>,
+    /// g [m]; negative for an interference fit.
+    pub gap: f64,
+    /// Share of side a that belongs to it: the integral of its weight [m].
+    pub share: f64,
+    /// Undeformed position on side a [m].
+    pub position: [f64; 3],
+    /// Unit normal, outward of side a.
+    pub normal: [f64; 3],
+    /// Tag of its node on side a.
+    pub tag_a: i64,
+    /// Tag of its node on side b; −1 for an obstacle.
+    pub tag_b: i64,
+}
+
+/// A contact of the scene with its conditions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// Name in the scene.
+    pub name: String,
+    /// Its conditions, along side a.
+    pub conditions: Vec<ContactCondition>,
+}
+
+/// A scene on its mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// Title of the scene.
+    pub title: String,
+    /// Plane state.
+    pub plane: PlaneState,
+    /// Mesh.
+    pub mesh: Mesh,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Names of the scene's bodies.
+    pub bodies: Vec<String>,
+    /// Index of its material for every cell.
+    pub cell_material: Vec<u32>,
+    /// Index of its body for every cell.
+    pub cell_body: Vec<u32>,
+    /// Supports in ascending order of nodes.
+    pub supports: Vec<Support>,
+    /// Consistent nodal forces in ascending order of nodes, one entry a loaded node [N per metre
+    /// of thickness].
+    pub forces: Vec<(u32, [f64; 3])>,
+    /// Contacts in the order of the scene.
+    pub contacts: Vec<Contact>,
+    /// The partition that the scene asks for, a subdomain for every cell.
+    pub prescribed_subdomains: Option<Vec<u32>>,
+    /// What a user should know and that isn't an error.
+    pub warnings: Vec<String>,
+}
+
+impl Model {
+    /// Finds out what `scene` means on `mesh`.
+    ///
+    /// # Errors
+    /// Groups that don't exist, conditions that contradict each other, sides that don't match.
+    pub fn new(_scene: &Scene, _mesh: Mesh) -> Result<Self, InputError> {
+        Err(InputError::new("not yet"))
+    }
+}

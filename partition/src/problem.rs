@@ -1,0 +1,147 @@
+//! The problem file: what one subdomain, one group in contact and the catalog of both hold.
+//!
+//! The writer and the reader of `problem.h5` share these types; docs/problem-file.md says the
+//! same for somebody who writes one with h5py.
+
+pub mod build;
+pub mod read;
+pub mod write;
+
+use crate::element::Elements;
+use crate::model::{Material, PlaneState, Support};
+
+/// Version of the format, attribute `version` of the file.
+pub const VERSION: i64 = 1;
+
+/// A node on Γ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InterfaceNode {
+    /// Node of the subdomain.
+    pub node: u32,
+    /// Its number on Γ, equal in all subdomains that share it.
+    pub interface: u32,
+}
+
+/// One subdomain Ω^n: a piece of one body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subdomain {
+    /// Its number.
+    pub index: usize,
+    /// Index of its body among [`Catalog::bodies`].
+    pub body: usize,
+    /// Coordinates of its nodes [m].
+    pub points: Vec<[f64; 3]>,
+    /// The mesh file's tag of each node.
+    pub node_tags: Vec<i64>,
+    /// Cells, by node of the subdomain.
+    pub cells: Elements,
+    /// Index of its material for every cell.
+    pub cell_material: Vec<u32>,
+    /// Supports, by node of the subdomain.
+    pub supports: Vec<Support>,
+    /// Nodal forces, by node of the subdomain [N per metre of thickness].
+    pub forces: Vec<(u32, [f64; 3])>,
+    /// Its nodes on Γ, in ascending order of their number on Γ.
+    pub interface: Vec<InterfaceNode>,
+}
+
+/// One entry of a contact row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowEntry {
+    /// Subdomain.
+    pub subdomain: u32,
+    /// Node of that subdomain.
+    pub node: u32,
+    /// Coefficient of its displacement.
+    pub coefficient: [f64; 3],
+}
+
+/// One contact condition: Σ coefficient·u ≤ gap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactRow {
+    /// Index of its contact among [`Catalog::contacts`].
+    pub contact: u32,
+    /// Its place within that contact.
+    pub place: u32,
+    /// The row of B.
+    pub entries: Vec<RowEntry>,
+    /// g [m].
+    pub gap: f64,
+    /// Share of side a [m].
+    pub share: f64,
+    /// Undeformed position on side a [m].
+    pub position: [f64; 3],
+    /// Unit normal, outward of side a.
+    pub normal: [f64; 3],
+    /// Tag of its node on side a, −1 where there is none.
+    pub tag_a: i64,
+    /// Tag of its node on side b, −1 where there is none.
+    pub tag_b: i64,
+}
+
+/// What the catalog says of one subdomain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SubdomainSummary {
+    /// Index of its body.
+    pub body: usize,
+    /// Its group in contact; `None` for a linear subdomain.
+    pub group: Option<usize>,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Number of cells.
+    pub cells: usize,
+}
+
+/// A contact of the scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ContactSummary {
+    /// Name.
+    pub name: String,
+    /// Number of its conditions.
+    pub conditions: usize,
+}
+
+/// A body: one piece of the mesh that hangs together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Body {
+    /// Name of the scene's body, numbered where that one has several pieces.
+    pub name: String,
+}
+
+/// What every rank knows of the whole problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Catalog {
+    /// Title of the scene.
+    pub title: String,
+    /// Dimension of space, and the number of dofs of a node.
+    pub dim: usize,
+    /// Plane state.
+    pub plane: PlaneState,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Bodies.
+    pub bodies: Vec<Body>,
+    /// Contacts.
+    pub contacts: Vec<ContactSummary>,
+    /// Subdomains.
+    pub subdomains: Vec<SubdomainSummary>,
+    /// The nodes of Γ of each subdomain, by their number on Γ, ascending.
+    pub interface: Vec<Vec<u32>>,
+    /// Number of nodes on Γ.
+    pub interface_nodes: usize,
+    /// Number of conditions of each group in contact.
+    pub groups: Vec<usize>,
+    /// Warnings of the partition tool, to be repeated in the report.
+    pub warnings: Vec<String>,
+}
+
+/// A whole problem, as the partition tool holds it before it is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// Catalog.
+    pub catalog: Catalog,
+    /// Subdomains.
+    pub subdomains: Vec<Subdomain>,
+    /// Contact rows of every group.
+    pub rows: Vec<Vec<ContactRow>>,
+}
