@@ -1,1 +1,8 @@
-//! x
+//! contact-dd-mpi.
+
+pub mod comm;
+pub mod contact;
+pub mod error;
+pub mod fem;
+pub mod interface;
+pub mod schur;
