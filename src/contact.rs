@@ -3,3 +3,4 @@
 pub mod active_set;
 pub mod gap;
 pub mod pair;
+pub mod s_con;

@@ -6,3 +6,4 @@ pub mod error;
 pub mod fem;
 pub mod interface;
 pub mod schur;
+pub mod sweep;
