@@ -1,11 +1,33 @@
 //! The built-in scenes.
 
-use crate::error::InputError;
-use crate::mesh::Mesh;
+mod blocks;
+mod granite;
+mod junction;
+mod patch;
+mod pattern;
+mod plain;
+mod stack;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use self::blocks::Patch;
+use crate::error::{InputError, OutputError};
+use crate::mesh::{Mesh, gmsh};
 use crate::scene::Scene;
+use crate::whole_file;
+
+/// The built-in scenes.
+pub const EXAMPLES: &[Example] = &[
+    granite::EXAMPLE,
+    patch::EXAMPLE,
+    junction::EXAMPLE,
+    stack::EXAMPLE,
+    plain::EXAMPLE,
+];
 
 /// A built-in scene: name and what it shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Example {
     /// Name for `--example`.
     pub name: &'static str,
@@ -13,6 +35,28 @@ pub struct Example {
     pub about: &'static str,
     /// Number of subdomains where the user doesn't say.
     pub subdomains: usize,
+    /// The scene as a user would write it, with its mesh in `mesh.msh`.
+    pub scene: &'static str,
+    patches: fn() -> Vec<Patch>,
+}
+
+/// The built-in scene `name`.
+///
+/// # Errors
+/// A name that isn't known, with the nearest one that is.
+pub fn find(name: &str) -> Result<&'static Example, InputError> {
+    EXAMPLES
+        .iter()
+        .find(|example| example.name == name)
+        .ok_or_else(|| {
+            let likeness = |e: &&Example| strsim::damerau_levenshtein(e.name, name);
+            let nearest = EXAMPLES.iter().min_by_key(likeness).map_or("", |e| e.name);
+            let names: Vec<&str> = EXAMPLES.iter().map(|e| e.name).collect();
+            InputError::new(format!(
+                "no example is called `{name}`; did you mean `{nearest}`? There are {}",
+                names.join(", ")
+            ))
+        })
 }
 
 impl Example {
@@ -20,7 +64,31 @@ impl Example {
     ///
     /// # Errors
     /// A refinement too large to be made.
-    pub fn make(&self, _refine: u32) -> Result<(Scene, Mesh), InputError> {
-        Err(InputError::new("not yet"))
+    pub fn make(&self, refine: u32) -> Result<(Scene, Mesh), InputError> {
+        Ok((Scene::parse(self.scene)?, self.mesh(refine)?))
+    }
+
+    /// Makes its mesh with the mesh size halved `refine` times.
+    ///
+    /// # Errors
+    /// A refinement too large to be made.
+    pub fn mesh(&self, refine: u32) -> Result<Mesh, InputError> {
+        blocks::mesh(&(self.patches)(), refine)
+    }
+
+    /// Writes `scene.toml` and `mesh.msh` into `directory`, which is made where it isn't there,
+    /// and returns the path of the scene.
+    ///
+    /// # Errors
+    /// The files can't be written.
+    pub fn write(&self, mesh: &Mesh, directory: &Path) -> Result<PathBuf, OutputError> {
+        std::fs::create_dir_all(directory).map_err(|e| OutputError {
+            path: directory.to_path_buf(),
+            reason: e.to_string(),
+        })?;
+        gmsh::write(mesh, &directory.join("mesh.msh"))?;
+        let scene = directory.join("scene.toml");
+        whole_file::replace(&scene, |out| out.write_all(self.scene.as_bytes()))?;
+        Ok(scene)
     }
 }

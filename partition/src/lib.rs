@@ -21,3 +21,4 @@ pub mod mesh;
 pub mod model;
 pub mod problem;
 pub mod scene;
+mod whole_file;

@@ -1,6 +1,7 @@
 //! A mesh: points, cells, facets, and the physical groups that name them.
 
 pub mod gmsh;
+mod measure;
 pub mod topology;
 
 use std::collections::BTreeMap;

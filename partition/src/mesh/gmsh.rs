@@ -1,25 +1,156 @@
 //! Gmsh's MSH format, versions 4.1 and 2.2, ASCII and binary.
+//!
+//! The reader is the project's own: the crate `mshio` drops node tags wherever they have no gaps,
+//! even out of order, and knows neither names of physical groups nor parametric nodes nor 2.2.
+//!
+//! Read it so: cells are the elements of the highest dimension. Cells, facets and nodes come in
+//! ascending order of their tags, whatever their order in the file. Nodes that no cell uses are
+//! dropped, and cells outside all physical groups wherever others are in one. A physical group
+//! without a name is called by its number; a name that serves groups of several dimensions gets
+//! the dimension behind it, "7 (curve)" and "7 (surface)".
+
+mod content;
+mod cursor;
+mod element_type;
+mod import;
+mod names;
+mod version2;
+mod version4;
+mod write;
 
 use std::path::Path;
 
+use self::content::Content;
+use self::cursor::{Cursor, Encoding};
 use super::Mesh;
-use crate::error::{InputError, OutputError};
+use crate::error::InputError;
+
+pub use self::write::write;
 
 /// Reads a mesh.
 ///
 /// # Errors
-/// What is wrong with the file and where.
-pub fn read(_path: &Path) -> Result<Mesh, InputError> {
-    Err(InputError::new("not yet"))
+/// What is wrong with the file and where: the line of an ASCII file, section and byte of a binary
+/// one, tags of nodes and elements.
+pub fn read(path: &Path) -> Result<Mesh, InputError> {
+    std::fs::read(path)
+        .map_err(|e| InputError::new(format!("the mesh can't be read: {e}")))
+        .and_then(|bytes| parse(&bytes))
+        .map_err(|e| e.in_file(path))
 }
 
-/// Writes a mesh as MSH 4.1, ASCII.
+/// Reads a mesh from the bytes of an MSH file.
 ///
 /// # Errors
-/// The file can't be written.
-pub fn write(_mesh: &Mesh, path: &Path) -> Result<(), OutputError> {
-    Err(OutputError {
-        path: path.to_path_buf(),
-        reason: "not yet".into(),
-    })
+/// As [`read`].
+pub fn parse(bytes: &[u8]) -> Result<Mesh, InputError> {
+    import::mesh(contents(bytes)?)
+}
+
+/// Version of a file.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Version {
+    V2,
+    V4,
+}
+
+fn contents(bytes: &[u8]) -> Result<Content, InputError> {
+    let mut cursor = Cursor::new(bytes);
+    let mut content = Content::default();
+    let mut version = None;
+    while let Some(section) = cursor.next_section()? {
+        match (section, version) {
+            ("MeshFormat", _) => version = Some(mesh_format(&mut cursor)?),
+            ("Comments", _) => {
+                cursor.skip_section(section)?;
+                continue;
+            }
+            (_, None) => {
+                return Err(InputError::new(format!(
+                    "this isn't a Gmsh mesh: expected $MeshFormat first, found ${section}"
+                )));
+            }
+            ("PhysicalNames", _) => content.names = names::read(&mut cursor)?,
+            ("Entities", Some(Version::V4)) => version4::entities(&mut cursor, &mut content)?,
+            ("PartitionedEntities", Some(Version::V4)) => {
+                version4::partitioned_entities(&mut cursor, &mut content)?;
+            }
+            ("Nodes", Some(Version::V4)) => version4::nodes(&mut cursor, &mut content)?,
+            ("Elements", Some(Version::V4)) => version4::elements(&mut cursor, &mut content)?,
+            ("Nodes", Some(Version::V2)) => version2::nodes(&mut cursor, &mut content, false)?,
+            ("ParametricNodes", Some(Version::V2)) => {
+                version2::nodes(&mut cursor, &mut content, true)?;
+            }
+            ("Elements", Some(Version::V2)) => version2::elements(&mut cursor, &mut content)?,
+            _ => {
+                cursor.skip_section(section)?;
+                continue;
+            }
+        }
+        cursor.end_section(section)?;
+    }
+    if version.is_none() {
+        return Err(InputError::new(
+            "this isn't a Gmsh mesh: expected $MeshFormat in the first line",
+        ));
+    }
+    for (section, empty) in [
+        ("Nodes", content.nodes.is_empty()),
+        ("Elements", content.blocks.is_empty()),
+    ] {
+        if empty {
+            return Err(InputError::new(format!(
+                "the mesh has no ${}",
+                section.to_lowercase()
+            )));
+        }
+    }
+    Ok(content)
+}
+
+/// Reads the body of `$MeshFormat` and sets the cursor to its encoding.
+fn mesh_format(cursor: &mut Cursor) -> Result<Version, InputError> {
+    let line = cursor.line("version, file type and data size")?;
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let (number, file_type, data_size) = match words[..] {
+        [number, file_type, data_size] => (number, file_type, data_size),
+        _ => {
+            return Err(cursor.error(format!(
+                "expected version, file type and data size, such as `4.1 0 8`, found `{line}`"
+            )));
+        }
+    };
+    let version = match number {
+        "4.1" => Version::V4,
+        "2.2" => Version::V2,
+        _ => {
+            return Err(cursor.error(format!(
+                "MSH version {number} isn't supported; expected 4.1 or 2.2 \
+                 (`gmsh -save -format msh41 …` converts)"
+            )));
+        }
+    };
+    let size_bytes = match (data_size, version) {
+        ("8", _) => 8,
+        ("4", Version::V4) => 4,
+        _ => {
+            return Err(cursor.error(format!("expected the data size 8, found {data_size}")));
+        }
+    };
+    match file_type {
+        "0" => {}
+        "1" => {
+            let big_endian = cursor.byte_order()?;
+            cursor.set_encoding(Encoding::Binary {
+                big_endian,
+                size_bytes,
+            });
+        }
+        _ => {
+            return Err(cursor.error(format!(
+                "expected the file type 0 (ASCII) or 1 (binary), found {file_type}"
+            )));
+        }
+    }
+    Ok(version)
 }

@@ -1,0 +1,180 @@
+//! Meshes made of mapped unit squares.
+
+use std::collections::BTreeMap;
+
+use super::pattern::{Pattern, UnitSquare};
+use crate::element::ElementKind;
+use crate::error::InputError;
+use crate::mesh::{Group, Mesh};
+
+/// The largest mesh that is made.
+const MOST_CELLS: usize = 100_000_000;
+
+/// Distance at which ends of sides count as the same point, relative to the largest coordinate.
+const SAME: f64 = 1e-9;
+
+/// The image of the unit square, a piece of one body.
+pub(super) struct Patch {
+    /// Group of its cells.
+    pub(super) body: &'static str,
+    /// Where a point of the unit square lies [m]; keeps orientation.
+    pub(super) map: Box<dyn Fn([f64; 2]) -> [f64; 2]>,
+    /// How the unit square is triangulated.
+    pub(super) pattern: Pattern,
+    /// Groups of bottom, right, top and left. A side without a group is glued to the side without
+    /// a group that has the same ends; a side with a group, such as that of a contact, never is.
+    pub(super) sides: [Option<&'static str>; 4],
+}
+
+/// The bilinear map to the quadrilateral with these corners, counter-clockwise from the image of
+/// (0, 0).
+pub(super) fn quadrilateral(corners: [[f64; 2]; 4]) -> Box<dyn Fn([f64; 2]) -> [f64; 2]> {
+    let [a, b, c, d] = corners;
+    Box::new(move |[s, t]| {
+        // Exact at both ends, so that sides with the same ends get the same nodes.
+        let between = |p: f64, q: f64, w: f64| p * (1.0 - w) + q * w;
+        [0, 1].map(|i| between(between(a[i], b[i], s), between(d[i], c[i], s), t))
+    })
+}
+
+/// A patch in its mesh.
+struct Placed {
+    square: UnitSquare,
+    points: Vec<[f64; 2]>,
+    first: usize,
+}
+
+/// Meshes the patches with their triangles cut into four `refine` times.
+///
+/// # Errors
+/// A refinement too large to be made.
+pub(super) fn mesh(patches: &[Patch], refine: u32) -> Result<Mesh, InputError> {
+    let coarsest: usize = patches.iter().map(|p| p.pattern.triangles()).sum();
+    let cells = 4_usize
+        .checked_pow(refine)
+        .and_then(|n| n.checked_mul(coarsest));
+    if cells.is_none_or(|cells| cells > MOST_CELLS) {
+        return Err(InputError::new(format!(
+            "refined {refine} times the mesh has more than {MOST_CELLS} cells; expected a smaller \
+             number"
+        )));
+    }
+    let placed = place(patches, refine);
+    let node = glue(patches, &placed);
+
+    let mut mesh = Mesh {
+        dim: 2,
+        ..Mesh::default()
+    };
+    let mut number = vec![u32::MAX; node.len()];
+    let mut groups: BTreeMap<&str, Group> = BTreeMap::new();
+    for (patch, placed) in patches.iter().zip(&placed) {
+        for (local, point) in placed.points.iter().enumerate() {
+            let glued = node[placed.first + local];
+            if number[glued] == u32::MAX {
+                number[glued] = mesh.points.len() as u32;
+                mesh.points.push([point[0], point[1], 0.0]);
+            }
+        }
+        let number = |local: u32| number[node[placed.first + local as usize]];
+        for triangle in &placed.square.triangles {
+            let members = &mut group(&mut groups, patch.body, 2).members;
+            members.push(mesh.cells.len() as u32);
+            mesh.cells
+                .push(ElementKind::Triangle3, &triangle.map(number));
+        }
+        for (side, name) in placed.square.sides.iter().zip(patch.sides) {
+            let Some(name) = name else { continue };
+            for pair in side.windows(2) {
+                let members = &mut group(&mut groups, name, 1).members;
+                members.push(mesh.facets.len() as u32);
+                mesh.facets
+                    .push(ElementKind::Line2, &[number(pair[0]), number(pair[1])]);
+            }
+        }
+    }
+    mesh.node_tags = (1..=mesh.points.len() as i64).collect();
+    mesh.cell_tags = (1..=mesh.cells.len() as i64).collect();
+    mesh.groups = groups
+        .into_iter()
+        .map(|(name, group)| (name.to_string(), group))
+        .collect();
+    mesh.orient_cells()?;
+    Ok(mesh)
+}
+
+fn group<'a>(
+    groups: &'a mut BTreeMap<&'static str, Group>,
+    name: &'static str,
+    dim: usize,
+) -> &'a mut Group {
+    groups.entry(name).or_insert_with(|| Group {
+        dim,
+        members: Vec::new(),
+    })
+}
+
+fn place(patches: &[Patch], refine: u32) -> Vec<Placed> {
+    let mut first = 0;
+    let mut placed = Vec::with_capacity(patches.len());
+    for patch in patches {
+        let mut square = UnitSquare::new(patch.pattern, &patch.map);
+        for _ in 0..refine {
+            square.refine();
+        }
+        let points: Vec<[f64; 2]> = square.points.iter().map(|&p| (patch.map)(p)).collect();
+        let count = points.len();
+        placed.push(Placed {
+            square,
+            points,
+            first,
+        });
+        first += count;
+    }
+    placed
+}
+
+/// For every node of every patch the first one that it is glued to.
+fn glue(patches: &[Patch], placed: &[Placed]) -> Vec<usize> {
+    let count = placed.iter().map(|p| p.points.len()).sum();
+    let mut parent: Vec<usize> = (0..count).collect();
+    let size = placed.iter().flat_map(|p| &p.points).flatten();
+    let size = size.fold(0.0_f64, |size, x| size.max(x.abs()));
+    let same = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]) < SAME * size;
+
+    let mut open: Vec<(Vec<usize>, [[f64; 2]; 2])> = Vec::new();
+    for (patch, placed) in patches.iter().zip(placed) {
+        for (side, name) in placed.square.sides.iter().zip(patch.sides) {
+            if name.is_some() {
+                continue;
+            }
+            let mut nodes: Vec<usize> = side.iter().map(|&n| placed.first + n as usize).collect();
+            let ends = [side[0], side[side.len() - 1]].map(|n| placed.points[n as usize]);
+            let partner = open.iter().position(|(other, [a, b])| {
+                other.len() == nodes.len()
+                    && (same(*a, ends[0]) && same(*b, ends[1])
+                        || same(*a, ends[1]) && same(*b, ends[0]))
+            });
+            let Some(partner) = partner else {
+                open.push((nodes, ends));
+                continue;
+            };
+            let (other, [a, _]) = open.swap_remove(partner);
+            if !same(a, ends[0]) {
+                nodes.reverse();
+            }
+            for (a, b) in other.into_iter().zip(nodes) {
+                let (a, b) = (root(&parent, a), root(&parent, b));
+                parent[a.max(b)] = a.min(b);
+            }
+        }
+    }
+    (0..count).map(|node| root(&parent, node)).collect()
+}
+
+fn root(parent: &[usize], mut node: usize) -> usize {
+    while parent[node] != node {
+        node = parent[node];
+    }
+    node
+}

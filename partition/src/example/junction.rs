@@ -1,0 +1,91 @@
+//! Four blocks and three contacts that meet in one point.
+//!
+//! An oblique contact runs through the square; a vertical and a horizontal one start at its middle
+//! and divide what lies above it into a block on the left, one above and a wedge on the right.
+//! Under 1 MPa from the right and from above the pressure is 1 MPa on every contact, and nothing
+//! jumps: u = −p (1+ν)(1−2ν)/E · (x+5, y+5).
+
+use super::Example;
+use super::blocks::{Patch, quadrilateral};
+use super::pattern::Pattern;
+
+pub(super) const EXAMPLE: Example = Example {
+    name: "junction",
+    about: "four blocks and three contacts that meet in one point, exact answer known",
+    subdomains: 4,
+    scene: include_str!("junction.toml"),
+    patches,
+};
+
+/// Half of the square's side [m].
+const HALF: f64 = 5.0;
+
+/// Height of the oblique contact at the left side, and its depth at the right one [m].
+const RISE: f64 = 3.0;
+
+/// Cells along each contact from the middle on; even.
+const CELLS: usize = 10;
+
+const MIDDLE: [f64; 2] = [0.0, 0.0];
+
+fn patches() -> Vec<Patch> {
+    let grid = Pattern::Grid(CELLS, CELLS);
+    let block = |body, corners, sides| Patch {
+        body,
+        map: quadrilateral(corners),
+        pattern: grid,
+        sides,
+    };
+    let (west, east) = ([-HALF, RISE], [HALF, -RISE]);
+    let mut patches = vec![
+        block(
+            "base",
+            [[-HALF, -HALF], [0.0, -HALF], MIDDLE, west],
+            [Some("bottom"), None, Some("oblique lower"), Some("left")],
+        ),
+        block(
+            "base",
+            [[0.0, -HALF], [HALF, -HALF], east, MIDDLE],
+            [Some("bottom"), Some("right"), Some("oblique lower"), None],
+        ),
+        block(
+            "left block",
+            [west, MIDDLE, [0.0, HALF], [-HALF, HALF]],
+            [
+                Some("oblique upper"),
+                Some("vertical left"),
+                Some("top"),
+                Some("left"),
+            ],
+        ),
+        block(
+            "right block",
+            [MIDDLE, [HALF, 0.0], [HALF, HALF], [0.0, HALF]],
+            [
+                Some("horizontal upper"),
+                Some("right"),
+                Some("top"),
+                Some("vertical right"),
+            ],
+        ),
+    ];
+    patches.extend(wedge(east));
+    patches
+}
+
+/// The wedge, a triangle: three quadrilaterals that meet in its centre.
+fn wedge(east: [f64; 2]) -> [Patch; 3] {
+    let corners = [MIDDLE, east, [HALF, 0.0]];
+    let sides = ["oblique upper", "right", "horizontal lower"];
+    let between = |p: [f64; 2], q: [f64; 2]| [0, 1].map(|i| 0.5 * (p[i] + q[i]));
+    let centre = [0, 1].map(|i| corners.iter().map(|c| c[i]).sum::<f64>() / 3.0);
+    [0, 1, 2].map(|k| {
+        let (corner, next, last) = (corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
+        Patch {
+            body: "wedge",
+            map: quadrilateral([corner, between(corner, next), centre, between(last, corner)]),
+            pattern: Pattern::Grid(CELLS / 2, CELLS / 2),
+            sides: [Some(sides[k]), None, None, Some(sides[(k + 2) % 3])],
+        }
+    })
+}

@@ -1,0 +1,40 @@
+//! Uniform compression through an inclined contact: the patch test.
+//!
+//! Under the same pressure p from above and from the right the stress is −p I in the plane
+//! whatever the inclination, and u = −p (1+ν)(1−2ν)/E · (x, y).
+
+use super::Example;
+use super::blocks::{Patch, quadrilateral};
+use super::pattern::Pattern;
+
+pub(super) const EXAMPLE: Example = Example {
+    name: "patch",
+    about: "two blocks in uniform compression through an inclined contact, exact answer known",
+    subdomains: 4,
+    scene: include_str!("patch.toml"),
+    patches,
+};
+
+fn patches() -> Vec<Patch> {
+    let (left, right) = ([0.0, 0.8], [2.0, 1.2]);
+    let pattern = Pattern::Grid(16, 8);
+    vec![
+        Patch {
+            body: "lower",
+            map: quadrilateral([[0.0, 0.0], [2.0, 0.0], right, left]),
+            pattern,
+            sides: [
+                Some("bottom"),
+                Some("right"),
+                Some("lower face"),
+                Some("left"),
+            ],
+        },
+        Patch {
+            body: "upper",
+            map: quadrilateral([left, right, [2.0, 2.0], [0.0, 2.0]]),
+            pattern,
+            sides: [Some("upper face"), Some("right"), Some("top"), Some("left")],
+        },
+    ]
+}

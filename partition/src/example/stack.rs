@@ -1,0 +1,85 @@
+//! Three blocks on top of each other, the upper two held by contact alone: semi-coercive.
+//!
+//! All loads are vertical, so the two upper blocks are free to slide without load along it.
+
+use super::Example;
+use super::blocks::{Patch, quadrilateral};
+use super::pattern::Pattern;
+
+pub(super) const EXAMPLE: Example = Example {
+    name: "stack",
+    about: "three blocks held by contact alone under gravity and an eccentric pressure",
+    subdomains: 6,
+    scene: include_str!("stack.toml"),
+    patches,
+};
+
+/// Half of the blocks' widths, from below [m].
+const HALF_WIDTHS: [f64; 3] = [2.0, 1.5, 1.0];
+
+/// Cells per metre.
+const CELLS: f64 = 8.0;
+
+fn patches() -> Vec<Patch> {
+    let mut patches = block(
+        "lower block",
+        0,
+        "ground",
+        ["free", "lower joint below", "free"],
+    );
+    patches.extend(block(
+        "middle block",
+        1,
+        "lower joint above",
+        ["free", "upper joint below", "free"],
+    ));
+    let [.., width] = HALF_WIDTHS;
+    patches.push(rectangle(
+        "upper block",
+        [-width, width],
+        2,
+        [
+            Some("upper joint above"),
+            Some("free"),
+            Some("loaded"),
+            Some("free"),
+        ],
+    ));
+    patches
+}
+
+/// A block in three columns: the middle one is as wide as the block above.
+fn block(
+    body: &'static str,
+    level: usize,
+    bottom: &'static str,
+    top: [&'static str; 3],
+) -> Vec<Patch> {
+    let (outer, inner) = (HALF_WIDTHS[level], HALF_WIDTHS[level + 1]);
+    let columns = [[-outer, -inner], [-inner, inner], [inner, outer]];
+    columns
+        .into_iter()
+        .enumerate()
+        .map(|(i, ends)| {
+            let right = (i == 2).then_some("free");
+            let left = (i == 0).then_some("free");
+            rectangle(body, ends, level, [Some(bottom), right, Some(top[i]), left])
+        })
+        .collect()
+}
+
+fn rectangle(
+    body: &'static str,
+    [left, right]: [f64; 2],
+    level: usize,
+    sides: [Option<&'static str>; 4],
+) -> Patch {
+    let (low, high) = (level as f64, level as f64 + 1.0);
+    let columns = ((right - left) * CELLS).round() as usize;
+    Patch {
+        body,
+        map: quadrilateral([[left, low], [right, low], [right, high], [left, high]]),
+        pattern: Pattern::Grid(columns, CELLS as usize),
+        sides,
+    }
+}

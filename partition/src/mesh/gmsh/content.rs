@@ -1,0 +1,111 @@
+//! What an MSH file holds, whatever its version and encoding.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::cursor::Cursor;
+use crate::element::ElementKind;
+use crate::error::InputError;
+
+/// What an MSH file holds.
+#[derive(Default)]
+pub(super) struct Content {
+    /// Names of physical groups, by dimension and number.
+    pub(super) names: BTreeMap<(usize, i64), String>,
+    /// Physical groups of entities, by dimension and tag of the entity; version 4.1.
+    pub(super) entities: HashMap<(usize, i64), Vec<i64>>,
+    /// Nodes.
+    pub(super) nodes: Nodes,
+    /// Elements.
+    pub(super) blocks: Vec<Block>,
+}
+
+impl Content {
+    /// Appends an element to the last block if it is of its kind and groups, else to a fresh one.
+    pub(super) fn push(&mut self, kind: ElementKind, groups: &[i64], tag: i64, nodes: &[u32]) {
+        let last = self.blocks.last_mut();
+        match last.filter(|last| last.kind == kind && last.groups == groups) {
+            Some(last) => {
+                last.tags.push(tag);
+                last.nodes.extend_from_slice(nodes);
+            }
+            None => self.blocks.push(Block {
+                kind,
+                groups: groups.to_vec(),
+                tags: vec![tag],
+                nodes: nodes.to_vec(),
+            }),
+        }
+    }
+}
+
+/// Elements of one kind in the same physical groups.
+pub(super) struct Block {
+    /// Kind of all of them.
+    pub(super) kind: ElementKind,
+    /// Numbers of the physical groups, ascending, without repetition.
+    pub(super) groups: Vec<i64>,
+    /// Tag of each element.
+    pub(super) tags: Vec<i64>,
+    /// Indices of the nodes of each element, one element after the other.
+    pub(super) nodes: Vec<u32>,
+}
+
+/// Numbers of physical groups as a file lists them: a sign tells a direction, 0 no group.
+pub(super) fn groups(mut listed: Vec<i64>) -> Vec<i64> {
+    for number in &mut listed {
+        *number = number.saturating_abs();
+    }
+    listed.retain(|&number| number != 0);
+    listed.sort_unstable();
+    listed.dedup();
+    listed
+}
+
+/// The nodes of a file and where they are by tag.
+#[derive(Default)]
+pub(super) struct Nodes {
+    pub(super) tags: Vec<i64>,
+    pub(super) points: Vec<[f64; 3]>,
+    index: HashMap<i64, u32>,
+}
+
+impl Nodes {
+    pub(super) fn is_empty(&self) -> bool {
+        self.tags.is_empty()
+    }
+
+    pub(super) fn reserve(&mut self, count: usize) {
+        self.tags.reserve(count);
+        self.points.reserve(count);
+        self.index.reserve(count);
+    }
+
+    /// Appends a node.
+    pub(super) fn push(
+        &mut self,
+        cursor: &Cursor,
+        tag: i64,
+        point: [f64; 3],
+    ) -> Result<(), InputError> {
+        let Ok(index) = u32::try_from(self.tags.len()) else {
+            return Err(cursor.error("more than 4 294 967 295 nodes aren't supported"));
+        };
+        if self.index.insert(tag, index).is_some() {
+            return Err(cursor.error(format!("the node tag {tag} occurs twice")));
+        }
+        self.tags.push(tag);
+        self.points.push(point);
+        Ok(())
+    }
+
+    /// The index of the node `tag`, which `element` uses.
+    pub(super) fn find(&self, cursor: &Cursor, element: i64, tag: i64) -> Result<u32, InputError> {
+        self.index.get(&tag).copied().ok_or_else(|| {
+            let reason = match self.is_empty() {
+                true => "expected $Nodes before $Elements".into(),
+                false => format!("element {element} names node {tag}, which isn't among $Nodes"),
+            };
+            cursor.error(reason)
+        })
+    }
+}

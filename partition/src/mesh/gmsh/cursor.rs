@@ -1,0 +1,306 @@
+//! A place in the bytes of an MSH file, from which numbers are read in either encoding.
+
+use crate::error::InputError;
+
+/// How the numbers of a file are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Encoding {
+    /// As words between blanks.
+    Ascii,
+    /// As they lie in memory.
+    Binary {
+        /// Most significant byte first.
+        big_endian: bool,
+        /// Bytes of a `size_t`.
+        size_bytes: usize,
+    },
+}
+
+/// A place in the bytes of an MSH file.
+pub(super) struct Cursor<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    section: &'a str,
+    encoding: Encoding,
+}
+
+impl<'a> Cursor<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        Self {
+            bytes,
+            at: 0,
+            section: "",
+            encoding: Encoding::Ascii,
+        }
+    }
+
+    pub(super) fn encoding(&self) -> Encoding {
+        self.encoding
+    }
+
+    pub(super) fn set_encoding(&mut self, encoding: Encoding) {
+        self.encoding = encoding;
+    }
+
+    /// An error with the place: the line of an ASCII file, section and byte of a binary one.
+    pub(super) fn error(&self, message: impl std::fmt::Display) -> InputError {
+        self.error_at(self.at, message)
+    }
+
+    fn error_at(&self, at: usize, message: impl std::fmt::Display) -> InputError {
+        let section = match self.section {
+            "" => String::new(),
+            name => format!(" in ${name}"),
+        };
+        let place = match self.encoding {
+            Encoding::Ascii => {
+                let before = &self.bytes[..at.min(self.bytes.len())];
+                let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
+                format!("line {line}")
+            }
+            Encoding::Binary { .. } => format!("byte {at}"),
+        };
+        InputError::new(format!("{place}{section}: {message}"))
+    }
+
+    /// Goes to the next section and returns its name, without `$`; `None` at the end of the file.
+    pub(super) fn next_section(&mut self) -> Result<Option<&'a str>, InputError> {
+        self.section = "";
+        loop {
+            self.skip_blanks();
+            if self.at == self.bytes.len() {
+                return Ok(None);
+            }
+            let start = self.at;
+            let line = self.rest_of_line();
+            let Some(name) = line.strip_prefix(b"$") else {
+                continue;
+            };
+            let name = std::str::from_utf8(name).map(str::trim);
+            let Ok(name) = name else {
+                return Err(self.error_at(start, "expected the name of a section"));
+            };
+            self.section = name;
+            return Ok(Some(name));
+        }
+    }
+
+    /// Reads the end of the section `name`.
+    pub(super) fn end_section(&mut self, name: &str) -> Result<(), InputError> {
+        self.skip_blanks();
+        let start = self.at;
+        let line = self.rest_of_line().trim_ascii();
+        if line.strip_prefix(b"$End") == Some(name.as_bytes()) {
+            return Ok(());
+        }
+        let found = match line.is_empty() {
+            true => "the end of the file".into(),
+            false => format!("`{}`", shown(line)),
+        };
+        Err(self.error_at(start, format!("expected $End{name}, found {found}")))
+    }
+
+    /// Goes behind the end of the section `name`.
+    pub(super) fn skip_section(&mut self, name: &str) -> Result<(), InputError> {
+        let end = format!("$End{name}");
+        let rest = &self.bytes[self.at..];
+        let found = rest.windows(end.len()).position(|w| w == end.as_bytes());
+        let Some(offset) = found else {
+            return Err(self.error(format!("the file ends before {end}")));
+        };
+        self.at += offset + end.len();
+        Ok(())
+    }
+
+    /// The rest of the line as text, without what ends it.
+    pub(super) fn line(&mut self, what: &str) -> Result<&'a str, InputError> {
+        let start = self.at;
+        if start == self.bytes.len() {
+            return Err(self.ended(what));
+        }
+        let line = self.rest_of_line();
+        std::str::from_utf8(line)
+            .map(str::trim)
+            .map_err(|_| self.error_at(start, format!("expected {what} in UTF-8")))
+    }
+
+    /// Goes to the start of the next line.
+    pub(super) fn skip_line(&mut self) {
+        self.rest_of_line();
+    }
+
+    /// Reads the integer 1 by which a binary file tells its byte order; true where the most
+    /// significant byte is first.
+    pub(super) fn byte_order(&mut self) -> Result<bool, InputError> {
+        match self.take::<4>("the integer 1 that tells the byte order")? {
+            [1, 0, 0, 0] => Ok(false),
+            [0, 0, 0, 1] => Ok(true),
+            _ => Err(self.error("expected the integer 1 that tells the byte order")),
+        }
+    }
+
+    /// A C `int`, which tags of entities and physical groups are.
+    pub(super) fn int(&mut self, what: &str) -> Result<i64, InputError> {
+        match self.encoding {
+            Encoding::Ascii => self.word(what, "an integer"),
+            Encoding::Binary { big_endian, .. } => {
+                let bytes = self.take(what)?;
+                Ok(match big_endian {
+                    true => i32::from_be_bytes(bytes),
+                    false => i32::from_le_bytes(bytes),
+                }
+                .into())
+            }
+        }
+    }
+
+    /// A C `size_t`, which counts and tags of version 4.1 are.
+    pub(super) fn size(&mut self, what: &str) -> Result<i64, InputError> {
+        let start = self.at;
+        let value: u64 = match self.encoding {
+            Encoding::Ascii => self.word(what, "a whole number")?,
+            Encoding::Binary {
+                big_endian,
+                size_bytes: 4,
+            } => {
+                let bytes = self.take(what)?;
+                match big_endian {
+                    true => u32::from_be_bytes(bytes),
+                    false => u32::from_le_bytes(bytes),
+                }
+                .into()
+            }
+            Encoding::Binary { big_endian, .. } => {
+                let bytes = self.take(what)?;
+                match big_endian {
+                    true => u64::from_be_bytes(bytes),
+                    false => u64::from_le_bytes(bytes),
+                }
+            }
+        };
+        i64::try_from(value)
+            .map_err(|_| self.error_at(start, format!("{what} is too large: {value}")))
+    }
+
+    /// A finite real number.
+    pub(super) fn real(&mut self, what: &str) -> Result<f64, InputError> {
+        let start = self.at;
+        let value: f64 = match self.encoding {
+            Encoding::Ascii => self.word(what, "a number")?,
+            Encoding::Binary { big_endian, .. } => {
+                let bytes = self.take(what)?;
+                match big_endian {
+                    true => f64::from_be_bytes(bytes),
+                    false => f64::from_le_bytes(bytes),
+                }
+            }
+        };
+        if !value.is_finite() {
+            return Err(self.error_at(start, format!("{what} is {value}; expected a number")));
+        }
+        Ok(value)
+    }
+
+    /// Three coordinates.
+    pub(super) fn point(&mut self) -> Result<[f64; 3], InputError> {
+        Ok([
+            self.real("the x coordinate")?,
+            self.real("the y coordinate")?,
+            self.real("the z coordinate")?,
+        ])
+    }
+
+    /// A `size_t` that counts things of at least `values` numbers each, checked against what the
+    /// file has left.
+    pub(super) fn count(&mut self, what: &str, values: usize) -> Result<usize, InputError> {
+        let start = self.at;
+        let count = self.size(what)?;
+        self.checked(start, what, count, values)
+    }
+
+    /// The same of a C `int`.
+    pub(super) fn int_count(&mut self, what: &str, values: usize) -> Result<usize, InputError> {
+        let start = self.at;
+        let count = self.int(what)?;
+        self.checked(start, what, count, values)
+    }
+
+    /// Checks that `count` things of at least `values` numbers each fit into what is left.
+    pub(super) fn checked(
+        &self,
+        start: usize,
+        what: &str,
+        count: i64,
+        values: usize,
+    ) -> Result<usize, InputError> {
+        // The shortest number is a digit and a blank, or a C int.
+        let shortest = match self.encoding {
+            Encoding::Ascii => 2,
+            Encoding::Binary { .. } => 4,
+        };
+        let left = self.bytes.len() - self.at + 1;
+        match usize::try_from(count) {
+            Ok(count) if count.saturating_mul(shortest * values) <= left => Ok(count),
+            Ok(_) => Err(self.error_at(
+                start,
+                format!("{what} is {count}, but the file ends long before: it is truncated"),
+            )),
+            Err(_) => Err(self.error_at(start, format!("{what} is negative: {count}"))),
+        }
+    }
+
+    /// Where the cursor stands.
+    pub(super) fn position(&self) -> usize {
+        self.at
+    }
+
+    fn skip_blanks(&mut self) {
+        while self.bytes.get(self.at).is_some_and(u8::is_ascii_whitespace) {
+            self.at += 1;
+        }
+    }
+
+    fn rest_of_line(&mut self) -> &'a [u8] {
+        let rest = &self.bytes[self.at..];
+        let length = rest.iter().position(|&b| b == b'\n');
+        self.at += length.map_or(rest.len(), |n| n + 1);
+        &rest[..length.unwrap_or(rest.len())]
+    }
+
+    fn word<T: std::str::FromStr>(&mut self, what: &str, kind: &str) -> Result<T, InputError> {
+        self.skip_blanks();
+        let start = self.at;
+        let rest = &self.bytes[start..];
+        let length = rest.iter().position(u8::is_ascii_whitespace);
+        let word = &rest[..length.unwrap_or(rest.len())];
+        if word.is_empty() {
+            return Err(self.ended(what));
+        }
+        self.at += word.len();
+        let parsed = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
+        parsed.ok_or_else(|| {
+            let found = shown(word);
+            self.error_at(start, format!("expected {what}, {kind}, found `{found}`"))
+        })
+    }
+
+    fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N], InputError> {
+        let rest = &self.bytes[self.at..];
+        let Some(bytes) = rest.first_chunk::<N>() else {
+            return Err(self.ended(what));
+        };
+        self.at += N;
+        Ok(*bytes)
+    }
+
+    fn ended(&self, what: &str) -> InputError {
+        self.error(format!("the file ends where {what} was expected"))
+    }
+}
+
+/// Bytes of a file as a message shows them.
+fn shown(bytes: &[u8]) -> String {
+    const LONGEST: usize = 40;
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]);
+    text.escape_debug().collect()
+}

@@ -1,0 +1,209 @@
+//! From what a file holds to a mesh: cells, facets, groups, and only the nodes that cells use.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::content::{Block, Content, Nodes};
+use super::names;
+use crate::element::{ElementKind, Elements};
+use crate::error::InputError;
+use crate::mesh::{Group, Mesh};
+
+/// z that counts as constant, relative to the extent of the mesh.
+const PLANE: f64 = 1e-9;
+
+/// An element of a file.
+#[derive(Clone, Copy)]
+struct Listed<'a> {
+    tag: i64,
+    kind: ElementKind,
+    groups: &'a [i64],
+    nodes: &'a [u32],
+}
+
+/// The elements of one dimension, every one once, in ascending order of tags.
+struct Distinct<'a> {
+    elements: Vec<Listed<'a>>,
+    /// Elements of every physical group, ascending.
+    groups: BTreeMap<i64, Vec<u32>>,
+}
+
+/// The mesh that `content` describes.
+pub(super) fn mesh(content: Content) -> Result<Mesh, InputError> {
+    let dim = content.blocks.iter().map(|b| b.kind.dim()).max();
+    let dim = dim.unwrap_or_default();
+    if dim < ElementKind::Triangle3.dim() {
+        return Err(InputError::new(
+            "the mesh has no cells: expected triangles of 3 nodes (a file of Gmsh holds only \
+             what is in a physical group, unless Mesh.SaveAll is set)",
+        ));
+    }
+    let mut cells = listed(&content.blocks, dim);
+    if cells.iter().any(|cell| !cell.groups.is_empty()) {
+        cells.retain(|cell| !cell.groups.is_empty());
+    }
+    let cells = distinct(cells)?;
+    let mut mesh = Mesh {
+        dim,
+        ..Mesh::default()
+    };
+    let index = keep_nodes(&content.nodes, &cells, &mut mesh)?;
+    for cell in &cells.elements {
+        mesh.cells.push(cell.kind, &renumbered(cell.nodes, &index));
+        mesh.cell_tags.push(cell.tag);
+    }
+    mesh.orient_cells()?;
+
+    let mut groups: BTreeMap<(usize, i64), Vec<u32>> = BTreeMap::new();
+    for dim in [0, dim - 1, dim] {
+        let named = content.names.keys().filter(|key| key.0 == dim);
+        groups.extend(named.map(|&key| (key, Vec::new())));
+    }
+    let mut add = |dim, found: BTreeMap<i64, Vec<u32>>| {
+        for (number, members) in found {
+            groups.insert((dim, number), members);
+        }
+    };
+    add(dim, cells.groups);
+    let (facets, found) = facets(&content, dim, &index)?;
+    mesh.facets = facets;
+    add(dim - 1, found);
+    add(0, points(&content, &index));
+    mesh.groups = names::by_name(groups, &content.names)?
+        .into_iter()
+        .map(|(name, (dim, members))| (name, Group { dim, members }))
+        .collect();
+    Ok(mesh)
+}
+
+fn listed(blocks: &[Block], dim: usize) -> Vec<Listed<'_>> {
+    let mut all = Vec::new();
+    for block in blocks.iter().filter(|b| b.kind.dim() == dim) {
+        let nodes = block.nodes.chunks_exact(block.kind.nodes());
+        all.extend(block.tags.iter().zip(nodes).map(|(&tag, nodes)| Listed {
+            tag,
+            kind: block.kind,
+            groups: &block.groups,
+            nodes,
+        }));
+    }
+    all
+}
+
+/// Merges elements that are listed once for each of their groups: those with the same nodes.
+fn distinct(mut listed: Vec<Listed<'_>>) -> Result<Distinct<'_>, InputError> {
+    listed.sort_by_key(|e| e.tag);
+    let mut by_nodes: HashMap<Box<[u32]>, u32> = HashMap::with_capacity(listed.len());
+    let mut elements: Vec<Listed> = Vec::with_capacity(listed.len());
+    let mut groups: BTreeMap<i64, Vec<u32>> = BTreeMap::new();
+    for element in listed {
+        let mut key: Box<[u32]> = element.nodes.into();
+        key.sort_unstable();
+        let fresh = elements.len() as u32;
+        let place = *by_nodes.entry(key).or_insert(fresh);
+        if place == fresh {
+            if elements.last().is_some_and(|last| last.tag == element.tag) {
+                return Err(InputError::new(format!(
+                    "the element tag {} occurs twice, with different nodes",
+                    element.tag
+                )));
+            }
+            elements.push(element);
+        }
+        for &group in element.groups {
+            groups.entry(group).or_default().push(place);
+        }
+    }
+    for members in groups.values_mut() {
+        members.sort_unstable();
+        members.dedup();
+    }
+    Ok(Distinct { elements, groups })
+}
+
+/// Gives `mesh` the nodes that `cells` use, in ascending order of tags, and returns the index
+/// there of every node of the file.
+fn keep_nodes(
+    nodes: &Nodes,
+    cells: &Distinct,
+    mesh: &mut Mesh,
+) -> Result<Vec<Option<u32>>, InputError> {
+    let mut used = vec![false; nodes.tags.len()];
+    for &node in cells.elements.iter().flat_map(|cell| cell.nodes) {
+        used[node as usize] = true;
+    }
+    let mut kept: Vec<usize> = (0..used.len()).filter(|&node| used[node]).collect();
+    kept.sort_by_key(|&node| nodes.tags[node]);
+    let mut index = vec![None; used.len()];
+    for &node in &kept {
+        index[node] = Some(mesh.points.len() as u32);
+        mesh.points.push(nodes.points[node]);
+        mesh.node_tags.push(nodes.tags[node]);
+    }
+    flatten(mesh)?;
+    Ok(index)
+}
+
+/// Sets the components behind the mesh's dimension to zero.
+fn flatten(mesh: &mut Mesh) -> Result<(), InputError> {
+    let first = mesh.points[0];
+    let mut extent: f64 = 0.0;
+    for point in &mesh.points {
+        for (a, b) in point.iter().zip(first) {
+            extent = extent.max((a - b).abs());
+        }
+    }
+    for (point, tag) in mesh.points.iter_mut().zip(&mesh.node_tags) {
+        for component in mesh.dim..point.len() {
+            if (point[component] - first[component]).abs() > PLANE * extent {
+                return Err(InputError::new(format!(
+                    "node {tag} has z = {}, node {} has z = {}: a mesh of triangles has to lie in \
+                     a plane of constant z",
+                    point[component], mesh.node_tags[0], first[component]
+                )));
+            }
+            point[component] = 0.0;
+        }
+    }
+    Ok(())
+}
+
+fn renumbered(nodes: &[u32], index: &[Option<u32>]) -> Vec<u32> {
+    nodes
+        .iter()
+        .filter_map(|&node| index[node as usize])
+        .collect()
+}
+
+type Members = BTreeMap<i64, Vec<u32>>;
+
+/// The listed facets all of whose nodes belong to cells, and the groups they make.
+fn facets(
+    content: &Content,
+    dim: usize,
+    index: &[Option<u32>],
+) -> Result<(Elements, Members), InputError> {
+    let mut listed = listed(&content.blocks, dim - 1);
+    listed.retain(|facet| facet.nodes.iter().all(|&n| index[n as usize].is_some()));
+    let distinct = distinct(listed)?;
+    let mut facets = Elements::default();
+    for facet in &distinct.elements {
+        facets.push(facet.kind, &renumbered(facet.nodes, index));
+    }
+    Ok((facets, distinct.groups))
+}
+
+/// The groups of nodes, of those that belong to cells.
+fn points(content: &Content, index: &[Option<u32>]) -> Members {
+    let mut groups = Members::new();
+    for point in listed(&content.blocks, 0) {
+        for &group in point.groups {
+            let members = groups.entry(group).or_default();
+            members.extend(renumbered(point.nodes, index));
+        }
+    }
+    for members in groups.values_mut() {
+        members.sort_unstable();
+        members.dedup();
+    }
+    groups
+}
