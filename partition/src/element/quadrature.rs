@@ -62,7 +62,7 @@ fn triangle(degree: usize) -> Quadrature {
         }
         _ => {
             // The Jacobian of the collapse raises the degree in one direction by one.
-            let (points, weights) = gauss_legendre((degree + 1) / 2 + 1);
+            let (points, weights) = gauss_legendre(degree.div_ceil(2) + 1);
             for (&s, &weight_s) in points.iter().zip(&weights) {
                 for (&t, &weight_t) in points.iter().zip(&weights) {
                     let (s, t) = (0.5 * (1.0 + s), 0.5 * (1.0 + t));
@@ -87,7 +87,10 @@ fn gauss_legendre(count: usize) -> (Vec<f64>, Vec<f64>) {
             let (mut before, mut value) = (1.0, x);
             for k in 2..=count {
                 let k = k as f64;
-                (before, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * before) / k);
+                (before, value) = (
+                    value,
+                    ((2.0 * k - 1.0) * x * value - (k - 1.0) * before) / k,
+                );
             }
             slope = count as f64 * (x * value - before) / (x * x - 1.0);
             x -= value / slope;
