@@ -11,7 +11,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
 
 pub use environment::{World, phase, start};
-pub use message::Message;
+pub use message::{Message, MessageReader};
 
 use crate::error::{Failure, FailureKind};
 

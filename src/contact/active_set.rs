@@ -47,6 +47,18 @@ pub struct GapSolution {
     pub converged: bool,
 }
 
+impl GapSolution {
+    /// Every one of `m` conditions closed, before anything is known of its force.
+    pub fn bilateral(m: usize) -> Self {
+        Self {
+            gaps: vec![0.0; m],
+            forces: vec![0.0; m],
+            steps: 0,
+            converged: true,
+        }
+    }
+}
+
 impl GapProblem<'_> {
     /// Solves the problem from the conditions that are `open` at first, and leaves there which
     /// ones are open in the solution.

@@ -11,9 +11,9 @@ pub struct ContactPair {
     schur: LocalSchur,
     gaps: usize,
     load: CondensedLoad,
-    load_scale: Vec<f64>,
     gap_scale: f64,
     open: Vec<bool>,
+    contact: GapSolution,
 }
 
 /// One evaluation of S_kl.
@@ -34,22 +34,15 @@ pub struct PairResponse {
 impl ContactPair {
     /// A pair with its first `gaps` boundary unknowns in contact, bilateral at first.
     ///
-    /// `load_scale` bounds the terms of its load on B, `gap_scale` the displacements that are
-    /// prescribed in it, initial gaps among them.
-    pub fn new(
-        schur: LocalSchur,
-        gaps: usize,
-        load: CondensedLoad,
-        load_scale: Vec<f64>,
-        gap_scale: f64,
-    ) -> Self {
+    /// `gap_scale` bounds the displacements that are prescribed in it, initial gaps among them.
+    pub fn new(schur: LocalSchur, gaps: usize, load: CondensedLoad, gap_scale: f64) -> Self {
         Self {
             schur,
             gaps,
             load,
-            load_scale,
             gap_scale,
             open: vec![false; gaps],
+            contact: GapSolution::bilateral(gaps),
         }
     }
 
@@ -66,6 +59,11 @@ impl ContactPair {
     /// Which conditions were open in the last evaluation.
     pub fn open(&self) -> &[bool] {
         &self.open
+    }
+
+    /// Gaps and forces of the last evaluation.
+    pub fn contact(&self) -> &GapSolution {
+        &self.contact
     }
 
     fn traces(&self) -> usize {
@@ -97,7 +95,7 @@ impl ContactPair {
         let f = self.load.boundary();
         let s_st = self.s_gap_trace();
         let mut c = f[..self.gaps].to_vec();
-        let mut c_scale = self.load_scale[..self.gaps].to_vec();
+        let mut c_scale: Vec<f64> = c.iter().map(|f| f.abs()).collect();
         for (j, &u_j) in u.iter().enumerate() {
             for i in 0..self.gaps {
                 let term = s_st[(i, j)] * u_j;
@@ -114,12 +112,13 @@ impl ContactPair {
         };
         let before = self.open.clone();
         let contact = problem.solve(&mut self.open);
+        self.contact.clone_from(&contact);
 
         let n = self.traces();
         let s_tt = self.bilateral();
         let s_st = self.s_gap_trace();
         let mut reaction: Vec<f64> = f[self.gaps..].iter().map(|f| -f).collect();
-        let mut scale = self.load_scale[self.gaps..].to_vec();
+        let mut scale: Vec<f64> = reaction.iter().map(|f| f.abs()).collect();
         for (j, &u_j) in u.iter().enumerate() {
             for i in 0..n {
                 let term = s_tt[(i, j)] * u_j;

@@ -5,19 +5,11 @@ use std::collections::BTreeMap;
 use contact_dd_partition::model::Support;
 
 use super::block::Block;
+use super::condition::BlockCondition;
 use super::frame::{Frame, dot, support_frames};
 use crate::contact::gap::{Dependence, GapVariables, Variable};
 use crate::schur::ordering::minimum_degree;
 use crate::schur::pattern::Cliques;
-
-/// A condition of a block: Σ coefficient·u(node of the block) ≤ gap.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BlockCondition {
-    /// Nodes of the block and coefficients.
-    pub entries: Vec<(u32, [f64; 3])>,
-    /// g [m].
-    pub gap: f64,
-}
 
 /// An unknown on Γ: the node's number on Γ and the axis of its frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -242,8 +234,8 @@ impl Dofs {
     }
 }
 
-/// Frames of supported nodes, and of nodes with a condition along the first one's normal.
-fn frames(block: &Block, conditions: &[BlockCondition]) -> BTreeMap<u32, Frame> {
+/// The frames of a block's supported nodes.
+pub fn supported_frames(block: &Block) -> BTreeMap<u32, Frame> {
     let supports: Vec<Support> = block
         .members
         .iter()
@@ -255,7 +247,12 @@ fn frames(block: &Block, conditions: &[BlockCondition]) -> BTreeMap<u32, Frame> 
             })
         })
         .collect();
-    let mut frames = support_frames(&without_repetition(supports), block.dim);
+    support_frames(&without_repetition(supports), block.dim)
+}
+
+/// Frames of supported nodes, and of nodes with a condition along the first one's normal.
+fn frames(block: &Block, conditions: &[BlockCondition]) -> BTreeMap<u32, Frame> {
+    let mut frames = supported_frames(block);
     let shared: std::collections::BTreeSet<u32> =
         block.interface.iter().map(|&(node, _)| node).collect();
     for condition in conditions {

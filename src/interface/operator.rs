@@ -14,8 +14,6 @@ pub struct Contribution {
     pub s: Mat<f64>,
     /// Its condensed load.
     pub load: Vec<f64>,
-    /// Scale of the terms that the load is a sum of.
-    pub load_scale: Vec<f64>,
 }
 
 /// The interface problem S_0 U + S_CON(U) = F, (14), as the root holds it.
@@ -71,9 +69,9 @@ impl Interface {
         {
             sum.add(traces, |a, b| part.s[(a, b)]);
             let load_of_kind = if is_pair { &mut f_bilateral } else { &mut f };
-            for ((&dof, load), scale) in traces.iter().zip(&part.load).zip(&part.load_scale) {
+            for (&dof, load) in traces.iter().zip(&part.load) {
                 load_of_kind[dof as usize] += load;
-                f_scale[dof as usize] += scale;
+                f_scale[dof as usize] += load.abs();
             }
             if is_pair {
                 pair_traces.push(traces.clone());

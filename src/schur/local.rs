@@ -81,3 +81,12 @@ impl CondensedLoad {
         &self.y[self.interior..]
     }
 }
+
+/// A subdomain without contact: S_i and its condensed load.
+#[derive(Debug)]
+pub struct LinearSubdomain {
+    /// S_i.
+    pub schur: LocalSchur,
+    /// Its load.
+    pub load: CondensedLoad,
+}

@@ -1,0 +1,251 @@
+//! The certificate: the full discrete problem, checked without any Schur complement.
+
+use std::collections::HashMap;
+
+use crate::comm::{Message, MessageReader};
+use crate::fem::balance::Balance;
+use crate::fem::block::Block;
+use crate::fem::condition::BlockCondition;
+use crate::fem::dofs::supported_frames;
+use crate::fem::frame::{Frame, dot};
+use crate::output::report::Certificate;
+
+/// What a block says of its own part of the solution.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BlockCheck {
+    /// Residual on its traces, to be summed over the blocks that share them.
+    traces: Vec<f64>,
+    trace_scale: Vec<f64>,
+    /// Largest residual elsewhere, along directions that are free.
+    residual: f64,
+    scale: f64,
+    penetration: f64,
+    tension: f64,
+    largest_force: f64,
+    complementarity: f64,
+    largest_displacement: f64,
+    /// Sum of loads, contact forces and support reactions, and of their absolute values.
+    force: [f64; 3],
+    force_scale: f64,
+    moment: [f64; 3],
+    moment_scale: f64,
+    /// Displacement on the nodes that it shares.
+    shared_nodes: Vec<u32>,
+    shared_displacement: Vec<f64>,
+}
+
+impl BlockCheck {
+    /// Checks displacements `u`, node by node, and contact `forces`, one a condition.
+    pub fn new(
+        block: &Block,
+        conditions: &[BlockCondition],
+        balance: &Balance,
+        u: &[f64],
+        forces: &[f64],
+    ) -> Self {
+        let mut check = Self {
+            largest_displacement: largest(u),
+            ..Self::default()
+        };
+        check.equilibrium(block, balance);
+        check.contact(block.dim, conditions, u, forces);
+        for &(node, id) in &block.interface {
+            check.shared_nodes.push(id);
+            let start = node as usize * block.dim;
+            check
+                .shared_displacement
+                .extend_from_slice(&u[start..start + block.dim]);
+        }
+        check
+    }
+
+    fn equilibrium(&mut self, block: &Block, balance: &Balance) {
+        let dim = block.dim;
+        let frames = supported_frames(block);
+        let shared: HashMap<u32, u32> = block.interface.iter().copied().collect();
+        let vector = |values: &[f64], node: usize| {
+            let mut v = [0.0; 3];
+            v[..dim].copy_from_slice(&values[node * dim..(node + 1) * dim]);
+            v
+        };
+        let mut of_trace: HashMap<u32, Vec<(f64, f64)>> = HashMap::new();
+        for node in 0..block.nodes() {
+            let frame = frames.get(&(node as u32)).unwrap_or(&Frame::CARTESIAN);
+            let residual = vector(&balance.residual, node);
+            let scale = vector(&balance.scale, node);
+            let mut force = vector(&balance.external, node);
+            self.force_scale += force.iter().map(|f| f.abs()).sum::<f64>();
+            for axis in 0..dim {
+                let axes = &frame.axes[axis];
+                let along = dot(axes, &residual);
+                let along_scale: f64 = axes.iter().zip(&scale).map(|(a, s)| a.abs() * s).sum();
+                if frame.prescribed[axis].is_some() {
+                    for (f, a) in force.iter_mut().zip(axes) {
+                        *f -= along * a;
+                    }
+                    self.force_scale += along.abs();
+                } else if let Some(&id) = shared.get(&(node as u32)) {
+                    of_trace.entry(id).or_default().push((along, along_scale));
+                } else {
+                    self.residual = maximum(self.residual, along);
+                    self.scale = maximum(self.scale, along_scale);
+                }
+            }
+            self.add_force(&block.points[node], &force);
+        }
+        for &(_, id) in &block.interface {
+            for (residual, scale) in of_trace.remove(&id).unwrap_or_default() {
+                self.traces.push(residual);
+                self.trace_scale.push(scale);
+            }
+        }
+    }
+
+    fn add_force(&mut self, at: &[f64; 3], force: &[f64; 3]) {
+        for k in 0..3 {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            self.force[k] += force[k];
+            self.moment[k] += at[i] * force[j] - at[j] * force[i];
+            self.moment_scale += (at[i] * force[j]).abs() + (at[j] * force[i]).abs();
+        }
+    }
+
+    fn contact(&mut self, dim: usize, conditions: &[BlockCondition], u: &[f64], forces: &[f64]) {
+        for (condition, &force) in conditions.iter().zip(forces) {
+            let gap = condition.gap_left(dim, u);
+            self.penetration = maximum(self.penetration, gap.min(0.0));
+            self.tension = maximum(self.tension, force.min(0.0));
+            self.largest_force = maximum(self.largest_force, force);
+            self.complementarity = maximum(self.complementarity, gap * force);
+        }
+    }
+
+    /// As a message.
+    pub fn pack(&self) -> Message {
+        let mut message = Message::default();
+        message.integers.push(self.traces.len() as i64);
+        message.integers.push(self.shared_nodes.len() as i64);
+        message.integers.push(self.shared_displacement.len() as i64);
+        message
+            .integers
+            .extend(self.shared_nodes.iter().map(|&id| i64::from(id)));
+        message.reals.extend([
+            self.residual,
+            self.scale,
+            self.penetration,
+            self.tension,
+            self.largest_force,
+            self.complementarity,
+            self.largest_displacement,
+            self.force_scale,
+            self.moment_scale,
+        ]);
+        message.reals.extend(self.force);
+        message.reals.extend(self.moment);
+        message.reals.extend(&self.traces);
+        message.reals.extend(&self.trace_scale);
+        message.reals.extend(&self.shared_displacement);
+        message
+    }
+
+    /// From a message.
+    pub fn unpack(message: Message) -> Self {
+        let mut reader = message.read();
+        let traces = reader.count();
+        let nodes = reader.count();
+        let components = reader.count();
+        let shared_nodes = reader.integers(nodes).iter().map(|&id| id as u32).collect();
+        let vector = |reader: &mut MessageReader| [reader.real(), reader.real(), reader.real()];
+        Self {
+            shared_nodes,
+            residual: reader.real(),
+            scale: reader.real(),
+            penetration: reader.real(),
+            tension: reader.real(),
+            largest_force: reader.real(),
+            complementarity: reader.real(),
+            largest_displacement: reader.real(),
+            force_scale: reader.real(),
+            moment_scale: reader.real(),
+            force: vector(&mut reader),
+            moment: vector(&mut reader),
+            traces: reader.reals(traces),
+            trace_scale: reader.reals(traces),
+            shared_displacement: reader.reals(components),
+        }
+    }
+}
+
+/// The certificate of the whole solution; `traces[b]` are the numbers on Γ of block b's traces.
+pub fn certificate(checks: &[BlockCheck], traces: &[Vec<u32>], interface: usize) -> Certificate {
+    let mut total = BlockCheck::default();
+    let mut on_interface = vec![0.0; interface];
+    let mut interface_scale = vec![0.0; interface];
+    let mut known: HashMap<u32, Vec<f64>> = HashMap::new();
+    let mut jump = 0.0;
+    for (check, traces) in checks.iter().zip(traces) {
+        for ((&dof, r), s) in traces.iter().zip(&check.traces).zip(&check.trace_scale) {
+            on_interface[dof as usize] += r;
+            interface_scale[dof as usize] += s;
+        }
+        total.residual = maximum(total.residual, check.residual);
+        total.scale = maximum(total.scale, check.scale);
+        total.penetration = maximum(total.penetration, check.penetration);
+        total.tension = maximum(total.tension, check.tension);
+        total.largest_force = maximum(total.largest_force, check.largest_force);
+        total.complementarity = maximum(total.complementarity, check.complementarity);
+        total.largest_displacement =
+            maximum(total.largest_displacement, check.largest_displacement);
+        total.force_scale += check.force_scale;
+        total.moment_scale += check.moment_scale;
+        for k in 0..3 {
+            total.force[k] += check.force[k];
+            total.moment[k] += check.moment[k];
+        }
+        if !check.shared_nodes.is_empty() {
+            let dim = check.shared_displacement.len() / check.shared_nodes.len();
+            for (&node, u) in check
+                .shared_nodes
+                .iter()
+                .zip(check.shared_displacement.chunks(dim))
+            {
+                let first = known.entry(node).or_insert_with(|| u.to_vec());
+                for (a, b) in first.iter().zip(u) {
+                    jump = maximum(jump, a - b);
+                }
+            }
+        }
+    }
+    total.residual = maximum(total.residual, largest(&on_interface));
+    total.scale = maximum(total.scale, largest(&interface_scale));
+    let force_scale = maximum(total.scale, total.largest_force);
+    Certificate {
+        equilibrium: ratio(total.residual, total.scale),
+        penetration: ratio(total.penetration, total.largest_displacement),
+        tension: ratio(total.tension, force_scale),
+        complementarity: ratio(
+            total.complementarity,
+            total.largest_force * total.largest_displacement,
+        ),
+        force_balance: ratio(largest(&total.force), total.force_scale),
+        moment_balance: ratio(largest(&total.moment), total.moment_scale),
+        interface_jump: ratio(jump, total.largest_displacement),
+    }
+}
+
+fn ratio(a: f64, b: f64) -> f64 {
+    if a == 0.0 { 0.0 } else { a / b }
+}
+
+/// max(|a|, |b|); not a number if either isn't.
+fn maximum(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() {
+        f64::NAN
+    } else {
+        a.abs().max(b.abs())
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, &v| maximum(m, v))
+}

@@ -1,0 +1,68 @@
+//! Equilibrium of a block, node by node, checked element by element without any factor.
+
+use contact_dd_partition::model::Material;
+
+use super::assembly::nodal_forces;
+use super::block::Block;
+use super::condition::BlockCondition;
+use super::elasticity::{MAX_NODES, stiffness};
+
+/// f − K u − Bᵀλ of a block and the scale of its terms, node by node [N/m].
+#[derive(Clone, Debug)]
+pub struct Balance {
+    /// f − K u − Bᵀλ.
+    pub residual: Vec<f64>,
+    /// |f| + Σ_e |K_e||u| + |Bᵀλ|.
+    pub scale: Vec<f64>,
+    /// External forces on nodes: f − Bᵀλ.
+    pub external: Vec<f64>,
+}
+
+impl Balance {
+    /// The balance for displacements `u` and contact forces `forces`, one a condition.
+    pub fn new(
+        block: &Block,
+        conditions: &[BlockCondition],
+        materials: &[Material],
+        u: &[f64],
+        forces: &[f64],
+    ) -> Self {
+        let dim = block.dim;
+        let mut external = nodal_forces(block);
+        let mut scale: Vec<f64> = external.iter().map(|f| f.abs()).collect();
+        for (condition, &force) in conditions.iter().zip(forces) {
+            for (node, coefficient) in &condition.entries {
+                for component in 0..dim {
+                    let push = coefficient[component] * force;
+                    external[*node as usize * dim + component] -= push;
+                    scale[*node as usize * dim + component] += push.abs();
+                }
+            }
+        }
+        let mut residual = external.clone();
+        let mut points = Vec::with_capacity(MAX_NODES);
+        let mut rows = Vec::with_capacity(dim * MAX_NODES);
+        for cell in block.cells() {
+            points.clear();
+            rows.clear();
+            for node in cell.nodes() {
+                let node = node as usize;
+                points.push(block.points[node]);
+                rows.extend(dim * node..dim * (node + 1));
+            }
+            let k = stiffness(cell.kind, &points, &materials[cell.material].stiffness);
+            for (i, &row) in rows.iter().enumerate() {
+                for (j, &column) in rows.iter().enumerate() {
+                    let term = k[i][j] * u[column];
+                    residual[row] -= term;
+                    scale[row] += term.abs();
+                }
+            }
+        }
+        Self {
+            residual,
+            scale,
+            external,
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! The whole solve on one page.
+//!
+//! read → assemble → condense → S_0 at the root → sweeps → recover → certificate → write
+
+pub mod condense;
+pub mod read;
+pub mod recover;
+mod report;
+pub mod write;
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use contact_dd_partition::problem::Catalog;
+use contact_dd_partition::problem::read::ProblemFile;
+use faer::Par;
+
+use self::condense::{assemble_interface, condense_blocks};
+use self::read::{OwnedBlock, read_blocks};
+use self::recover::recover;
+use self::report::{Narrator, Totals};
+use self::write::{stresses, write_solution};
+use crate::certificate::{BlockCheck, certificate};
+use crate::comm::{Comm, Message, phase};
+use crate::contact::s_con::SCon;
+use crate::error::Failure;
+use crate::fem::balance::Balance;
+use crate::output::progress::Progress;
+use crate::output::report::PhaseSeconds;
+use crate::output::vtkhdf::{Layout, ResultFile};
+use crate::plan::Plan;
+use crate::settings::Settings;
+use crate::sweep::{SweepRecord, SweepStatus, Sweeps};
+
+/// How a run ended that didn't fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// The sweeps converged, or there was nothing to solve for.
+    Converged,
+    /// They didn't; the results are written all the same.
+    NotConverged,
+}
+
+/// Solves the problem that `settings` names and writes the results. Collective.
+///
+/// # Errors
+/// Bad input, a scene without equilibrium, or an output that can't be written; the same on all
+/// ranks.
+pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
+    let began = Instant::now();
+    let mut seconds = PhaseSeconds::default();
+    let par = match settings.threads {
+        1 => Par::Seq,
+        n => Par::rayon(usize::from(n)),
+    };
+    let narrator = Narrator::new(comm, settings);
+
+    // Every rank reads its own subdomains and pairs.
+    phase("reading");
+    let file = comm.agree(ProblemFile::open(&settings.problem).map_err(Failure::from))?;
+    let catalog = file.catalog();
+    let plan = Plan::new(catalog, comm.size());
+    let blocks = comm.agree(read_blocks(comm, &file, &plan))?;
+    narrator.problem(catalog, &plan);
+    if settings.check {
+        return Ok(Ending::Converged);
+    }
+    let mut output = comm.agree(create_output(comm, settings, catalog, &plan, &blocks))?;
+    seconds.read = began.elapsed().as_secs_f64();
+
+    // S_i of the linear subdomains, (11), and S_kl of the pairs, (12).
+    phase("factorizing");
+    let progress = Progress::factorization(blocks.len(), settings.quiet || !comm.is_root());
+    let condensed = condense_blocks(&blocks, catalog, &plan, &progress, par);
+    progress.finish();
+    let mut condensed = comm.agree(condensed)?;
+    [seconds.assemble, seconds.factorize] = condensed.seconds;
+
+    // The root assembles S_0 and F, (15), and the bilateral operator.
+    phase("assembling the interface problem");
+    let lap = Instant::now();
+    let interface = comm.agree(assemble_interface(comm, &condensed, catalog, &plan, par))?;
+    seconds.interface = lap.elapsed().as_secs_f64();
+
+    // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17).
+    phase("sweeping");
+    let lap = Instant::now();
+    let pair_owners = plan.pair_owners();
+    let mut s_con = SCon::new(comm, &pair_owners, &mut condensed.pairs);
+    let outcome = match &interface {
+        Some((_, interface)) => {
+            narrator.sweeps(interface);
+            let mut observer = |record: &SweepRecord| narrator.sweep(interface, record);
+            let solved = Sweeps::solve(interface, &mut s_con, settings.sweeps(), &mut observer);
+            s_con.stop();
+            Some(solved)
+        }
+        None => {
+            s_con.serve();
+            None
+        }
+    };
+    seconds.sweeps = lap.elapsed().as_secs_f64();
+
+    // Back-substitution, and the check of the full discrete problem.
+    phase("recovering");
+    let lap = Instant::now();
+    let root = outcome.as_ref().zip(interface.as_ref());
+    let trace_of_root = root.map(|((o, _), (numbering, _))| (&o.u[..], &numbering.traces[..]));
+    let solutions = recover(comm, &condensed, &plan, trace_of_root);
+    let mut checks = Vec::new();
+    comm.gather(
+        &plan.owners(),
+        |b| {
+            let (owned, solution) = (&blocks[&b], &solutions[&b]);
+            let (u, forces) = (&solution.u, &solution.forces);
+            let conditions = &owned.conditions;
+            let balance = Balance::new(&owned.block, conditions, &catalog.materials, u, forces);
+            BlockCheck::new(&owned.block, conditions, &balance, u, forces).pack()
+        },
+        |_, message| checks.push(BlockCheck::unpack(message)),
+    );
+    let stress = stresses(comm, &blocks, &solutions, catalog, &plan);
+    seconds.recover = lap.elapsed().as_secs_f64();
+
+    // Results travel to the root subdomain by subdomain and are written as they arrive.
+    phase("writing");
+    let lap = Instant::now();
+    let written = write_solution(comm, &blocks, &solutions, &stress, &plan, output.as_mut());
+    comm.agree(written.map_err(Failure::from))?;
+    seconds.write = lap.elapsed().as_secs_f64();
+    seconds.total = began.elapsed().as_secs_f64();
+
+    let ranks = report::collect(comm, &seconds, &plan);
+    let finished = match (root, output) {
+        (Some(((outcome, totals), (numbering, interface))), Some(output)) => {
+            let totals = Totals {
+                catalog,
+                plan: &plan,
+                outcome,
+                con: *totals,
+                interface_dofs: interface.len,
+                certificate: certificate(&checks, &numbering.traces, interface.len),
+                ranks,
+                warnings: Vec::new(),
+            };
+            narrator.finish(&totals, output)
+        }
+        _ => Ok(()),
+    };
+    comm.agree(finished)?;
+    let mut converged = Message {
+        integers: vec![i64::from(
+            outcome.is_none_or(|(o, _)| o.status == SweepStatus::Converged),
+        )],
+        reals: Vec::new(),
+    };
+    comm.broadcast(&mut converged);
+    Ok(match converged.read().integer() {
+        0 => Ending::NotConverged,
+        _ => Ending::Converged,
+    })
+}
+
+/// Makes the result file, so that a place where it can't be is found before the work. Collective;
+/// the root has the file.
+fn create_output(
+    comm: &Comm,
+    settings: &Settings,
+    catalog: &Catalog,
+    plan: &Plan,
+    blocks: &BTreeMap<usize, OwnedBlock>,
+) -> Result<Option<ResultFile>, Failure> {
+    let owners: Vec<usize> = plan
+        .block_of
+        .iter()
+        .map(|&b| plan.blocks[b].owner)
+        .collect();
+    let mut connectivity = Vec::new();
+    comm.gather(
+        &owners,
+        |s| {
+            let block = &blocks[&plan.block_of[s]].block;
+            let cells = block.member(s).map(|m| &block.members[m].cells);
+            Message {
+                integers: vec![cells.map_or(0, |c| c.connectivity().len() as i64)],
+                reals: Vec::new(),
+            }
+        },
+        |_, message| connectivity.push(message.read().count()),
+    );
+    if !comm.is_root() {
+        return Ok(None);
+    }
+    let layout = Layout::new(catalog, &connectivity);
+    Ok(Some(ResultFile::create(&settings.result_path(), &layout)?))
+}

@@ -1,0 +1,207 @@
+//! Assembling and condensing the blocks of this rank, and bringing them together at the root.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use contact_dd_partition::problem::Catalog;
+use faer::{Mat, Par};
+
+use super::read::OwnedBlock;
+use crate::comm::{Comm, Message};
+use crate::contact::gap::Dependence;
+use crate::contact::pair::ContactPair;
+use crate::error::Failure;
+use crate::fem::assembly::assemble;
+use crate::fem::dofs::{DofError, Dofs, TraceDof};
+use crate::interface::numbering::Numbering;
+use crate::interface::operator::{Contribution, Interface};
+use crate::output::progress::Progress;
+use crate::plan::Plan;
+use crate::schur::factor::FactorError;
+use crate::schur::local::{CondensedLoad, LinearSubdomain, LocalSchur};
+
+/// The condensed blocks of this rank.
+#[derive(Debug, Default)]
+pub struct CondensedBlocks {
+    /// The unknowns of every block.
+    pub dofs: BTreeMap<usize, Dofs>,
+    /// T: the subdomains without contact, by block.
+    pub linear: BTreeMap<usize, LinearSubdomain>,
+    /// ϑ: the pairs in contact, by their place among all pairs.
+    pub pairs: BTreeMap<usize, ContactPair>,
+    /// Time for assembling and for factorizing [s].
+    pub seconds: [f64; 2],
+}
+
+/// Assembles, factorizes and condenses this rank's blocks.
+///
+/// # Errors
+/// A block that can move although its boundary is held, or conditions that depend on each other.
+pub fn condense_blocks(
+    blocks: &BTreeMap<usize, OwnedBlock>,
+    catalog: &Catalog,
+    plan: &Plan,
+    progress: &Progress,
+    par: Par,
+) -> Result<CondensedBlocks, Failure> {
+    let mut condensed = CondensedBlocks::default();
+    for (&number, owned) in blocks {
+        let began = Instant::now();
+        let OwnedBlock {
+            block, conditions, ..
+        } = owned;
+        let dofs =
+            Dofs::new(block, conditions).map_err(|error| dof_failure(error, owned, catalog))?;
+        let system =
+            assemble(block, &dofs, &catalog.materials).ok_or_else(|| size(plan, number))?;
+        let assembled = Instant::now();
+        let schur = LocalSchur::new(&system, dofs.interior, par).map_err(|error| match error {
+            FactorError::Size => size(plan, number),
+            FactorError::Pivot(unknown) => moves(owned, &dofs, unknown, catalog),
+        })?;
+        let load = schur.condense(system.load);
+        match plan.pair_of(number) {
+            Some(pair) => {
+                let gap_scale = gap_scale(owned);
+                let pair_of_block = ContactPair::new(schur, dofs.gaps, load, gap_scale);
+                condensed.pairs.insert(pair, pair_of_block);
+            }
+            None => {
+                condensed
+                    .linear
+                    .insert(number, LinearSubdomain { schur, load });
+            }
+        }
+        condensed.dofs.insert(number, dofs);
+        condensed.seconds[0] += (assembled - began).as_secs_f64();
+        condensed.seconds[1] += assembled.elapsed().as_secs_f64();
+        progress.advance();
+    }
+    Ok(condensed)
+}
+
+/// The largest displacement that is prescribed in a block, initial gaps among them [m].
+fn gap_scale(owned: &OwnedBlock) -> f64 {
+    let prescribed = owned
+        .block
+        .members
+        .iter()
+        .flat_map(|m| m.supports.iter().map(|s| s.value.abs()));
+    let gaps = owned.conditions.iter().map(|c| c.gap.abs());
+    prescribed.chain(gaps).fold(0.0, f64::max)
+}
+
+fn size(plan: &Plan, number: usize) -> Failure {
+    Failure::internal(format!(
+        "subdomain {}: its factor needs more memory than there is; expected more, smaller \
+         subdomains",
+        plan.blocks[number].subdomains[0]
+    ))
+}
+
+fn dof_failure(error: DofError, owned: &OwnedBlock, catalog: &Catalog) -> Failure {
+    let DofError::Condition(j, why) = error else {
+        return Failure::internal("a subdomain has more than 2^32 unknowns");
+    };
+    let row = &owned.rows[j];
+    let contact = &catalog.contacts[row.contact as usize].name;
+    let what = match why {
+        Dependence::OnOthers => "follows from other conditions",
+        Dependence::Prescribed => "is prescribed on both sides",
+    };
+    Failure::input(format!(
+        "contact '{contact}': the condition between nodes {} and {} {what}; expected conditions \
+         that are independent of each other and of the supports",
+        row.tag_a, row.tag_b
+    ))
+}
+
+fn moves(owned: &OwnedBlock, dofs: &Dofs, unknown: usize, catalog: &Catalog) -> Failure {
+    let block = &owned.block;
+    let node = (0..block.nodes() as u32).find(|&node| {
+        (0..block.dim).any(|c| {
+            dofs.terms(node, c)
+                .iter()
+                .any(|&(dof, _)| dof as usize == unknown)
+        })
+    });
+    let body = &catalog.bodies[block.members[0].body].name;
+    let tag = node.map_or(-1, |node| block.tags[node as usize]);
+    Failure::ill_posed(format!(
+        "body '{body}': subdomain {} can move although its boundary is held (found at node {tag}); \
+         expected supports or contact that hold it",
+        block.members[0].index
+    ))
+}
+
+/// Numbers Γ and assembles S_0, F and the bilateral operator on the root. Collective; the other
+/// ranks get nothing.
+///
+/// # Errors
+/// Supports that differ between subdomains, or a singular bilateral problem.
+pub fn assemble_interface(
+    comm: &Comm,
+    blocks: &CondensedBlocks,
+    catalog: &Catalog,
+    plan: &Plan,
+    par: Par,
+) -> Result<Option<(Numbering, Interface)>, Failure> {
+    let owners = plan.owners();
+    let mut traces: Vec<Vec<TraceDof>> = Vec::new();
+    let mut contributions: Vec<Contribution> = Vec::new();
+    comm.gather(
+        &owners,
+        |b| pack(blocks, plan, b),
+        |_, message| {
+            let (list, contribution) = unpack(message);
+            traces.push(list);
+            contributions.push(contribution);
+        },
+    );
+    if !comm.is_root() {
+        return Ok(None);
+    }
+    let nodes: Vec<Vec<u32>> = (0..plan.blocks.len())
+        .map(|b| plan.shared_nodes(catalog, b))
+        .collect();
+    let numbering = Numbering::new(&traces, &nodes)?;
+    let is_pair: Vec<bool> = plan.blocks.iter().map(|b| b.group.is_some()).collect();
+    let interface = Interface::new(&numbering, contributions, &is_pair, par)?;
+    Ok(Some((numbering, interface)))
+}
+
+fn pack(blocks: &CondensedBlocks, plan: &Plan, b: usize) -> Message {
+    let mut message = Message::default();
+    let Some(dofs) = blocks.dofs.get(&b) else {
+        return message;
+    };
+    message.integers.push(dofs.traces.len() as i64);
+    for dof in &dofs.traces {
+        message
+            .integers
+            .extend([i64::from(dof.node), i64::from(dof.axis)]);
+    }
+    let pair = plan.pair_of(b).and_then(|p| blocks.pairs.get(&p));
+    if let Some(pair) = pair {
+        message.push_lower(pair.bilateral());
+        message.reals.extend(pair.bilateral_load());
+    } else if let Some(LinearSubdomain { schur, load }) = blocks.linear.get(&b) {
+        message.push_lower(schur.s.as_ref());
+        message.reals.extend(CondensedLoad::boundary(load));
+    }
+    message
+}
+
+fn unpack(message: Message) -> (Vec<TraceDof>, Contribution) {
+    let mut reader = message.read();
+    let n = reader.count();
+    let traces = (0..n)
+        .map(|_| TraceDof {
+            node: reader.integer() as u32,
+            axis: reader.integer() as u32,
+        })
+        .collect();
+    let s: Mat<f64> = reader.lower(n);
+    let load = reader.reals(n);
+    (traces, Contribution { s, load })
+}

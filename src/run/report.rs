@@ -1,0 +1,255 @@
+//! What a run says of itself: on the terminal, in the report, in the result file.
+
+use std::io::stdout;
+
+use contact_dd_partition::problem::Catalog;
+
+use crate::comm::{Comm, Message};
+use crate::contact::s_con::ConTotals;
+use crate::error::Failure;
+use crate::interface::operator::Interface;
+use crate::output::memory::peak_memory_bytes;
+use crate::output::report::{Certificate, PhaseSeconds, RankReport, Report, Status, write_report};
+use crate::output::result::ConvergenceRow;
+use crate::output::terminal::{self, Summary, SweepLine};
+use crate::output::vtkhdf::ResultFile;
+use crate::plan::Plan;
+use crate::settings::Settings;
+use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
+
+/// Prints on the root what a user wants to follow, and nothing elsewhere.
+pub struct Narrator<'a> {
+    comm: &'a Comm,
+    settings: &'a Settings,
+}
+
+/// Everything the report is made of. On the root.
+pub struct Totals<'a> {
+    /// The problem.
+    pub catalog: &'a Catalog,
+    /// Who owned what.
+    pub plan: &'a Plan,
+    /// What the sweeps found.
+    pub outcome: &'a SweepOutcome,
+    /// The last evaluation of S_CON.
+    pub con: ConTotals,
+    /// Number of unknowns on Γ.
+    pub interface_dofs: usize,
+    /// The certificate.
+    pub certificate: Certificate,
+    /// Every rank's times.
+    pub ranks: Vec<RankReport>,
+    /// What the ranks noticed on the way.
+    pub warnings: Vec<String>,
+}
+
+impl<'a> Narrator<'a> {
+    /// Speaks on the root unless `settings` ask for quiet.
+    pub fn new(comm: &'a Comm, settings: &'a Settings) -> Self {
+        Self { comm, settings }
+    }
+
+    fn speaks(&self) -> bool {
+        self.comm.is_root() && !self.settings.quiet
+    }
+
+    /// What is to be solved, and how.
+    pub fn problem(&self, catalog: &Catalog, plan: &Plan) {
+        if !self.speaks() {
+            return;
+        }
+        let summary = Summary {
+            problem: &self.settings.problem,
+            title: &catalog.title,
+            dofs: dofs(catalog),
+            interface_dofs: catalog.dim * plan.sharing.iter().filter(|&&n| n > 1).count(),
+            subdomains: catalog.subdomains.len(),
+            contact_pairs: plan.pairs.len(),
+            contact_conditions: conditions(catalog),
+            ranks: self.comm.size(),
+            threads: usize::from(self.settings.threads),
+        };
+        // A closed pipe is no reason to stop a run that writes its results to a file.
+        let _ = terminal::summary(&mut stdout(), &summary);
+        if !self.settings.check {
+            let _ = terminal::settings(&mut stdout(), &self.settings.resolved());
+        }
+    }
+
+    /// The head of the table of sweeps, if there are going to be any.
+    pub fn sweeps(&self, interface: &Interface) {
+        if self.speaks() && !interface.pair_traces.is_empty() {
+            let _ = terminal::sweep_header(&mut stdout());
+        }
+    }
+
+    /// One sweep.
+    pub fn sweep(&self, interface: &Interface, record: &SweepRecord) {
+        if self.speaks() && !interface.pair_traces.is_empty() {
+            let line = SweepLine {
+                sweep: record.sweep,
+                residual: record.residual,
+                active: record.active,
+                changed: (record.sweep > 0).then_some(record.changed),
+                seconds: record.seconds,
+            };
+            let _ = terminal::sweep(&mut stdout(), &line);
+        }
+    }
+
+    /// Writes the report and finishes the result file. On the root.
+    ///
+    /// # Errors
+    /// One of them can't be written.
+    pub fn finish(&self, totals: &Totals<'_>, mut file: ResultFile) -> Result<(), Failure> {
+        let report = report(totals, self.settings, self.comm.size());
+        let rows: Vec<ConvergenceRow> = totals
+            .outcome
+            .records
+            .iter()
+            .map(|r| ConvergenceRow {
+                residual: r.residual,
+                active: r.active,
+                seconds: r.seconds,
+            })
+            .collect();
+        file.write_convergence(&rows)?;
+        file.finish(&report.to_json())?;
+        if let Some(path) = &self.settings.report {
+            write_report(path, &report)?;
+        }
+        if self.speaks() {
+            let reason = reason(totals);
+            let result = self.settings.result_path();
+            let _ = terminal::closing(&mut stdout(), &reason, &report, &result);
+        } else {
+            for warning in &report.warnings {
+                eprintln!("warning: {warning}");
+            }
+        }
+        if let SweepStatus::NotConverged(why) = &totals.outcome.status {
+            eprintln!("error: not converged: {why}");
+        }
+        Ok(())
+    }
+}
+
+/// Brings every rank's times and memory to the root. Collective.
+pub fn collect(comm: &Comm, seconds: &PhaseSeconds, plan: &Plan) -> Vec<RankReport> {
+    let owned = plan
+        .blocks
+        .iter()
+        .filter(|b| b.owner == comm.rank())
+        .map(|b| b.subdomains.len() as i64)
+        .sum();
+    let mut message = Message {
+        integers: vec![peak_memory_bytes() as i64, owned],
+        reals: vec![seconds.total],
+    };
+    message
+        .reals
+        .extend(seconds.phases().iter().map(|(_, s)| s));
+    comm.collect(message)
+        .into_iter()
+        .map(|message| {
+            let mut reader = message.read();
+            RankReport {
+                peak_memory_bytes: reader.integer() as u64,
+                subdomains: reader.count(),
+                seconds: PhaseSeconds {
+                    total: reader.real(),
+                    read: reader.real(),
+                    assemble: reader.real(),
+                    factorize: reader.real(),
+                    interface: reader.real(),
+                    sweeps: reader.real(),
+                    recover: reader.real(),
+                    write: reader.real(),
+                },
+            }
+        })
+        .collect()
+}
+
+fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
+    let Totals {
+        catalog,
+        plan,
+        outcome,
+        con,
+        ..
+    } = totals;
+    let seconds: Vec<PhaseSeconds> = totals.ranks.iter().map(|r| r.seconds).collect();
+    let mut warnings = catalog.warnings.clone();
+    warnings.extend(totals.warnings.iter().cloned());
+    warnings.extend(outcome.notes.iter().cloned());
+    Report {
+        status: match outcome.status {
+            SweepStatus::Converged => Status::Converged,
+            SweepStatus::NotConverged(_) => Status::NotConverged,
+        },
+        method: settings.method.name().into(),
+        sweeps: outcome.records.len().saturating_sub(1),
+        interface_residual: outcome.records.last().map_or(0.0, |r| r.residual),
+        dofs: dofs(catalog),
+        interface_dofs: totals.interface_dofs,
+        contact_conditions: conditions(catalog),
+        active_contacts: con.active,
+        subdomains: catalog.subdomains.len(),
+        contact_pairs: plan.pairs.len(),
+        ranks,
+        threads: usize::from(settings.threads),
+        certificate: totals.certificate,
+        seconds: PhaseSeconds::slowest(&seconds),
+        peak_memory_bytes: totals.ranks.iter().map(|r| r.peak_memory_bytes).sum(),
+        per_rank: totals.ranks.clone(),
+        skipped: skipped(totals),
+        warnings,
+        version: env!("CARGO_PKG_VERSION").into(),
+    }
+}
+
+/// What the scene didn't need.
+fn skipped(totals: &Totals<'_>) -> Vec<String> {
+    let mut skipped = Vec::new();
+    if totals.plan.pairs.is_empty() {
+        skipped.push("sweeps: no contact, the interface problem is linear".into());
+    }
+    if totals.interface_dofs == 0 {
+        skipped.push("interface solve: no subdomain shares a node with another".into());
+    }
+    let idle = totals.ranks.iter().filter(|r| r.subdomains == 0).count();
+    if idle > 0 {
+        skipped.push(format!(
+            "{idle} ranks had nothing to do: more ranks than blocks"
+        ));
+    }
+    skipped
+}
+
+fn reason(totals: &Totals<'_>) -> String {
+    let sweeps = totals.outcome.records.len().saturating_sub(1);
+    match &totals.outcome.status {
+        SweepStatus::Converged if totals.plan.pairs.is_empty() => {
+            "solved: the scene is linear".into()
+        }
+        SweepStatus::Converged => format!(
+            "converged after {sweeps} sweeps: the residual is below the tolerance and no contact \
+             changes any more; {} of {} conditions are closed",
+            totals.con.active,
+            conditions(totals.catalog)
+        ),
+        SweepStatus::NotConverged(why) => format!("not converged: {why}"),
+    }
+}
+
+/// Number of dofs, those of shared nodes counted once.
+fn dofs(catalog: &Catalog) -> usize {
+    let nodes: usize = catalog.subdomains.iter().map(|s| s.nodes).sum();
+    let copies: usize = catalog.interface.iter().map(Vec::len).sum();
+    catalog.dim * (nodes - copies + catalog.interface_nodes)
+}
+
+fn conditions(catalog: &Catalog) -> usize {
+    catalog.contacts.iter().map(|c| c.conditions).sum()
+}

@@ -1,0 +1,93 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+
+use crate::output::default_result_path;
+use crate::sweep::{Method, SweepSettings};
+
+/// Solves unilateral contact problems by domain decomposition after J. Daněk.
+#[derive(Clone, Debug, Parser)]
+#[command(
+    version,
+    after_help = "Examples:\n  contact-dd-partition --example granite -n 8 -o granite.h5\n  \
+                  mpirun -n 2 contact-dd-mpi granite.h5\n  \
+                  mpirun -n 4 contact-dd-mpi problem.h5 -o out.vtkhdf --report report.json\n  \
+                  contact-dd-mpi --check problem.h5\n\n\
+                  Exit codes: 0 converged, 2 bad input, 3 not converged (results are written), \
+                  4 a body can move freely, 5 the output can't be written, 1 anything else."
+)]
+pub struct Settings {
+    /// Problem file, made by contact-dd-partition.
+    pub problem: PathBuf,
+    /// Result file [default: the problem's name with the extension vtkhdf].
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write the report as JSON, too.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
+    /// How the interface problem is solved.
+    #[arg(long, value_enum, default_value_t = Method::Newton)]
+    pub method: Method,
+    /// Residual of the interface problem, relative to the terms it is a sum of, at which sweeps end.
+    #[arg(long, default_value_t = 1e-10, value_parser = positive)]
+    pub tolerance: f64,
+    /// Most sweeps [default: depends on the method].
+    #[arg(long, value_name = "N")]
+    pub max_sweeps: Option<usize>,
+    /// Relaxation of picard [default: found automatically; 1 is the paper's (18) to the letter].
+    #[arg(long, value_name = "THETA", value_parser = positive)]
+    pub relaxation: Option<f64>,
+    /// Threads of each rank.
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: u16,
+    /// Validate the problem file and say what the scene holds, without solving.
+    #[arg(long)]
+    pub check: bool,
+    /// Print nothing but warnings and errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+impl Settings {
+    /// The result file.
+    pub fn result_path(&self) -> PathBuf {
+        self.output
+            .clone()
+            .unwrap_or_else(|| default_result_path(&self.problem))
+    }
+
+    /// What the sweeps need to know.
+    pub fn sweeps(&self) -> SweepSettings {
+        SweepSettings {
+            method: self.method,
+            tolerance: self.tolerance,
+            max_sweeps: self.max_sweeps,
+            relaxation: self.relaxation,
+        }
+    }
+
+    /// The settings as they were resolved, by name.
+    pub fn resolved(&self) -> Vec<(&'static str, String)> {
+        let mut list = vec![
+            ("method", self.method.name().to_string()),
+            ("tolerance", format!("{:e}", self.tolerance)),
+        ];
+        if let Some(n) = self.max_sweeps {
+            list.push(("sweeps", format!("at most {n}")));
+        }
+        if let Some(theta) = self.relaxation {
+            list.push(("relaxation", theta.to_string()));
+        }
+        list.push(("result", self.result_path().display().to_string()));
+        list
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
+        _ => Err("expected a positive number".into()),
+    }
+}
