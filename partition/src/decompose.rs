@@ -1,5 +1,7 @@
 //! Contact-aware partition: METIS on a graph in which Γ can't meet Γ_c.
 
+pub(crate) mod disjoint_sets;
+
 use crate::error::InputError;
 use crate::model::Model;
 

@@ -1,4 +1,8 @@
-//! Reference elements: shape functions, facets and the names other formats have for them.
+//! Reference elements: their nodes and facets, shape functions, quadrature, and geometry.
+
+pub mod geometry;
+pub mod quadrature;
+pub mod shape;
 
 use crate::error::InputError;
 

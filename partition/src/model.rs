@@ -8,7 +8,8 @@ use crate::mesh::Mesh;
 use crate::scene::Scene;
 
 /// Which plane state a two-dimensional scene is in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum PlaneState {
     /// ε_zz = 0.
     Strain,

@@ -4,7 +4,11 @@
 //! same for somebody who writes one with h5py.
 
 pub mod build;
+mod dataset;
+mod interface;
+mod measure;
 pub mod read;
+pub mod summary;
 pub mod write;
 
 use crate::element::Elements;
@@ -12,6 +16,15 @@ use crate::model::{Material, PlaneState, Support};
 
 /// Version of the format, attribute `version` of the file.
 pub const VERSION: i64 = 1;
+
+/// Attribute `format` of the file.
+pub const FORMAT: &str = "contact-dd-mpi problem";
+
+/// How far a unit vector's length may be from 1, and two orthogonal ones' product from 0.
+const UNIT_TOLERANCE: f64 = 1e-10;
+
+/// How far a stiffness may be from its transpose, relative to its largest entry.
+const SYMMETRY_TOLERANCE: f64 = 1e-10;
 
 /// A node on Γ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

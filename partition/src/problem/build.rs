@@ -1,16 +1,241 @@
 //! Cuts a model along a decomposition.
 
-use super::Problem;
+mod bodies;
+mod groups;
+
+use self::bodies::Bodies;
+use self::groups::Groups;
+use super::{
+    Body, Catalog, ContactRow, ContactSummary, InterfaceNode, Problem, RowEntry, Subdomain,
+    SubdomainSummary,
+};
 use crate::decompose::Decomposition;
+use crate::element::Elements;
 use crate::error::InputError;
 use crate::model::Model;
 
 impl Problem {
     /// Gives every subdomain its slice of `model`.
     ///
+    /// Nodes keep the mesh's order within a subdomain, and on Γ. The force at a shared node goes
+    /// to the lowest of its subdomains, its supports to all of them. Subdomains that share a node
+    /// with a contact condition, or that a condition links, are one group.
+    ///
     /// # Errors
-    /// A partition of the user's that can't be.
-    pub fn new(_model: &Model, _decomposition: &Decomposition) -> Result<Self, InputError> {
-        Err(InputError::new("not yet"))
+    /// A decomposition that doesn't belong to the model, or a subdomain that lies in two bodies.
+    pub fn new(model: &Model, decomposition: &Decomposition) -> Result<Self, InputError> {
+        let owners = Owners::new(model, decomposition)?;
+        let bodies = Bodies::new(model);
+        let groups = Groups::new(model, &owners)?;
+        let subdomains = cut(model, decomposition, &owners, &bodies)?;
+        let rows = gather_rows(model, &owners, &groups);
+        let mut warnings = model.warnings.clone();
+        warnings.extend(groups.warning.clone());
+        let catalog = Catalog {
+            title: model.title.clone(),
+            dim: model.mesh.dim,
+            plane: model.plane,
+            materials: model.materials.clone(),
+            bodies: bodies.names.into_iter().map(|name| Body { name }).collect(),
+            contacts: model
+                .contacts
+                .iter()
+                .map(|contact| ContactSummary {
+                    name: contact.name.clone(),
+                    conditions: contact.conditions.len(),
+                })
+                .collect(),
+            subdomains: subdomains
+                .iter()
+                .map(|s| SubdomainSummary {
+                    body: s.body,
+                    group: groups.of[s.index],
+                    nodes: s.points.len(),
+                    cells: s.cells.len(),
+                })
+                .collect(),
+            interface: subdomains
+                .iter()
+                .map(|s| s.interface.iter().map(|on| on.interface).collect())
+                .collect(),
+            interface_nodes: owners.interface_nodes,
+            groups: rows.iter().map(Vec::len).collect(),
+            warnings,
+        };
+        Ok(Self {
+            catalog,
+            subdomains,
+            rows,
+        })
     }
+}
+
+/// Which subdomains have which nodes.
+struct Owners {
+    count: usize,
+    /// For every node its subdomains, ascending, with its local number.
+    of: Vec<Vec<(u32, u32)>>,
+    /// For every node its number on Γ.
+    interface: Vec<Option<u32>>,
+    interface_nodes: usize,
+}
+
+impl Owners {
+    fn new(model: &Model, decomposition: &Decomposition) -> Result<Self, InputError> {
+        let Decomposition { count, subdomain } = decomposition;
+        if subdomain.len() != model.mesh.cells.len() {
+            return Err(InputError::new(format!(
+                "the partition names a subdomain for {} cells; expected {}",
+                subdomain.len(),
+                model.mesh.cells.len()
+            )));
+        }
+        let mut of: Vec<Vec<(u32, u32)>> = vec![Vec::new(); model.mesh.points.len()];
+        for ((_, nodes), &s) in model.mesh.cells.iter().zip(subdomain) {
+            if s as usize >= *count {
+                return Err(InputError::new(format!(
+                    "the partition has {count} subdomains but names number {s}"
+                )));
+            }
+            for &node in nodes {
+                let list = &mut of[node as usize];
+                if let Err(place) = list.binary_search_by_key(&s, |&(owner, _)| owner) {
+                    list.insert(place, (s, 0));
+                }
+            }
+        }
+        let mut sizes = vec![0u32; *count];
+        let mut interface = vec![None; of.len()];
+        let mut interface_nodes = 0;
+        for (node, list) in of.iter_mut().enumerate() {
+            if list.len() > 1 {
+                interface[node] = Some(interface_nodes);
+                interface_nodes += 1;
+            }
+            for (owner, local) in list {
+                let size = &mut sizes[*owner as usize];
+                *local = *size;
+                *size += 1;
+            }
+        }
+        if let Some(empty) = sizes.iter().position(|&size| size == 0) {
+            return Err(InputError::new(format!("subdomain {empty} has no cells")));
+        }
+        Ok(Self {
+            count: *count,
+            of,
+            interface,
+            interface_nodes: interface_nodes as usize,
+        })
+    }
+
+    /// Local number of a node in a subdomain that has it.
+    fn local(&self, node: u32, subdomain: u32) -> u32 {
+        let list = &self.of[node as usize];
+        list.iter()
+            .find(|&&(owner, _)| owner == subdomain)
+            .map_or(u32::MAX, |&(_, local)| local)
+    }
+}
+
+fn cut(
+    model: &Model,
+    decomposition: &Decomposition,
+    owners: &Owners,
+    bodies: &Bodies,
+) -> Result<Vec<Subdomain>, InputError> {
+    let mesh = &model.mesh;
+    let mut subdomains: Vec<Subdomain> = (0..owners.count)
+        .map(|index| Subdomain {
+            index,
+            body: usize::MAX,
+            points: Vec::new(),
+            node_tags: Vec::new(),
+            cells: Elements::default(),
+            cell_material: Vec::new(),
+            supports: Vec::new(),
+            forces: Vec::new(),
+            interface: Vec::new(),
+        })
+        .collect();
+    for (node, list) in owners.of.iter().enumerate() {
+        for &(owner, local) in list {
+            let subdomain = &mut subdomains[owner as usize];
+            subdomain.points.push(mesh.points[node]);
+            subdomain.node_tags.push(mesh.node_tags[node]);
+            if let Some(interface) = owners.interface[node] {
+                subdomain.interface.push(InterfaceNode {
+                    node: local,
+                    interface,
+                });
+            }
+        }
+    }
+    let mut local = Vec::new();
+    for (cell, (kind, nodes)) in mesh.cells.iter().enumerate() {
+        let index = decomposition.subdomain[cell];
+        let subdomain = &mut subdomains[index as usize];
+        let body = bodies.of_cell[cell];
+        if subdomain.body == usize::MAX {
+            subdomain.body = body;
+        } else if subdomain.body != body {
+            return Err(InputError::new(format!(
+                "subdomain {index} lies in two bodies that don't hang together, \"{}\" and \"{}\" (element {}); expected a subdomain of one body",
+                bodies.names[subdomain.body], bodies.names[body], mesh.cell_tags[cell]
+            )));
+        }
+        local.clear();
+        local.extend(nodes.iter().map(|&node| owners.local(node, index)));
+        subdomain.cells.push(kind, &local);
+        subdomain.cell_material.push(model.cell_material[cell]);
+    }
+    for support in &model.supports {
+        for &(owner, node) in &owners.of[support.node as usize] {
+            let supports = &mut subdomains[owner as usize].supports;
+            supports.push(crate::model::Support { node, ..*support });
+        }
+    }
+    for &(node, force) in &model.forces {
+        if let Some(&(owner, node)) = owners.of[node as usize].first() {
+            subdomains[owner as usize].forces.push((node, force));
+        }
+    }
+    Ok(subdomains)
+}
+
+/// The rows of every group, in the order of the scene's contacts.
+fn gather_rows(model: &Model, owners: &Owners, groups: &Groups) -> Vec<Vec<ContactRow>> {
+    let mut rows = vec![Vec::new(); groups.count];
+    for (contact, all) in model.contacts.iter().enumerate() {
+        for (place, condition) in all.conditions.iter().enumerate() {
+            let entries: Vec<RowEntry> = condition
+                .entries
+                .iter()
+                .filter_map(|&(node, coefficient)| {
+                    let &(subdomain, node) = owners.of[node as usize].first()?;
+                    Some(RowEntry {
+                        subdomain,
+                        node,
+                        coefficient,
+                    })
+                })
+                .collect();
+            let group = entries
+                .first()
+                .and_then(|entry| groups.of[entry.subdomain as usize]);
+            let Some(group) = group else { continue };
+            rows[group].push(ContactRow {
+                contact: contact as u32,
+                place: place as u32,
+                entries,
+                gap: condition.gap,
+                share: condition.share,
+                position: condition.position,
+                normal: condition.normal,
+                tag_a: condition.tag_a,
+                tag_b: condition.tag_b,
+            });
+        }
+    }
+    rows
 }

@@ -1,19 +1,270 @@
 //! Writes `problem.h5`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::Problem;
+use hdf5::H5Type;
+use hdf5::types::{FixedAscii, VarLenUnicode};
+
+use super::{ContactRow, FORMAT, Problem, Subdomain, VERSION};
 use crate::error::OutputError;
+use crate::model::PlaneState;
+
+/// Version of VTKHDF's layout.
+const VTKHDF_VERSION: [i64; 2] = [2, 0];
+
+/// VTKHDF's type of dataset. ParaView compares all of the attribute's bytes, so it has exactly as
+/// many as the word.
+const VTKHDF_TYPE: &str = "UnstructuredGrid";
 
 impl Problem {
     /// Writes the problem under a temporary name and renames it when it is whole.
     ///
     /// # Errors
-    /// The file can't be written.
+    /// The file can't be written; what was there before is untouched.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
-        Err(OutputError {
+        self.write_renamed(path).map_err(|reason| OutputError {
             path: path.to_path_buf(),
-            reason: "not yet".into(),
+            reason,
         })
     }
+
+    fn write_renamed(&self, path: &Path) -> Result<(), String> {
+        let folder = match path.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
+            _ => PathBuf::from("."),
+        };
+        if path.is_dir() {
+            return Err("it is a folder".into());
+        }
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".contact-dd-").suffix(".h5.part");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // The system takes the user's umask off.
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        let temporary = builder
+            .tempfile_in(folder)
+            .map_err(|reason| reason.to_string())?;
+        hdf5::silence_errors(true);
+        self.write_all(temporary.path())
+            .map_err(|reason| reason.to_string())?;
+        temporary
+            .persist(path)
+            .map_err(|reason| reason.to_string())?;
+        Ok(())
+    }
+
+    fn write_all(&self, path: &Path) -> hdf5::Result<()> {
+        let file = hdf5::File::with_options()
+            .with_fapl(|access| access.file_locking(false))
+            .create(path)?;
+        self.write_catalog(&file)?;
+        self.write_mesh(&file)?;
+        self.write_conditions(&file)?;
+        self.write_contacts(&file)?;
+        file.flush()?;
+        file.close()
+    }
+
+    fn write_catalog(&self, file: &hdf5::File) -> hdf5::Result<()> {
+        let catalog = &self.catalog;
+        text(file, "format", FORMAT)?;
+        file.new_attr::<i64>()
+            .create("version")?
+            .write_scalar(&VERSION)?;
+        text(file, "title", &catalog.title)?;
+        file.new_attr::<i64>()
+            .create("dimension")?
+            .write_scalar(&(catalog.dim as i64))?;
+        let plane = match catalog.plane {
+            PlaneState::Strain => "strain",
+            PlaneState::Stress => "stress",
+        };
+        text(file, "plane", plane)?;
+
+        let materials = Section::new(file, "materials")?;
+        let all = &catalog.materials;
+        materials.strings("name", all.iter().map(|m| m.name.as_str()))?;
+        let stiffness: Vec<f64> = all.iter().flat_map(|m| m.stiffness).flatten().collect();
+        materials.put("stiffness", &[all.len(), 3, 3], &stiffness)?;
+        let rows: Vec<f64> = all
+            .iter()
+            .flat_map(|m| m.out_of_plane.unwrap_or([f64::NAN; 3]))
+            .collect();
+        materials.put("out_of_plane", &[all.len(), 3], &rows)?;
+        materials.column("poisson", all.iter().map(|m| m.poisson.unwrap_or(f64::NAN)))?;
+
+        let bodies = Section::new(file, "bodies")?;
+        bodies.strings("name", catalog.bodies.iter().map(|b| b.name.as_str()))?;
+        let subdomains = Section::new(file, "subdomains")?;
+        let all = &catalog.subdomains;
+        subdomains.column("body", all.iter().map(|s| s.body as i64))?;
+        let group = |group: Option<usize>| group.map_or(-1, |g| g as i64);
+        subdomains.column("group", all.iter().map(|s| group(s.group)))?;
+        if !catalog.warnings.is_empty() {
+            let root = Section::root(file)?;
+            root.strings("warnings", catalog.warnings.iter().map(String::as_str))?;
+        }
+        Ok(())
+    }
+
+    fn write_mesh(&self, file: &hdf5::File) -> hdf5::Result<()> {
+        let all = &self.subdomains;
+        let grid = Section::new(file, "VTKHDF")?;
+        grid.group
+            .new_attr::<i64>()
+            .shape(2)
+            .create("Version")?
+            .write_raw(&VTKHDF_VERSION)?;
+        let kind = FixedAscii::<{ VTKHDF_TYPE.len() }>::from_ascii(VTKHDF_TYPE)
+            .map_err(|reason| hdf5::Error::Internal(reason.to_string()))?;
+        grid.group
+            .new_attr::<FixedAscii<{ VTKHDF_TYPE.len() }>>()
+            .create("Type")?
+            .write_scalar(&kind)?;
+        grid.column("NumberOfPoints", all.iter().map(|s| s.points.len() as i64))?;
+        grid.column("NumberOfCells", all.iter().map(|s| s.cells.len() as i64))?;
+        grid.column(
+            "NumberOfConnectivityIds",
+            all.iter().map(|s| s.cells.connectivity().len() as i64),
+        )?;
+        grid.vectors("Points", 3, all.iter().flat_map(|s| &s.points))?;
+        let connectivity = all.iter().flat_map(|s| s.cells.connectivity());
+        grid.column("Connectivity", connectivity.map(|&node| i64::from(node)))?;
+        let offsets = all.iter().flat_map(|s| s.cells.offsets());
+        grid.column("Offsets", offsets.map(|&offset| offset as i64))?;
+        let kinds = all.iter().flat_map(|s| s.cells.iter());
+        grid.column("Types", kinds.map(|(kind, _)| kind.vtk()))?;
+        let points = Section::new(file, "VTKHDF/PointData")?;
+        let tags = all.iter().flat_map(|s| &s.node_tags);
+        points.column("GlobalNodeId", tags.copied())?;
+        let cells = Section::new(file, "VTKHDF/CellData")?;
+        let numbers = all
+            .iter()
+            .flat_map(|s| std::iter::repeat_n(s.index as i64, s.cells.len()));
+        cells.column("Subdomain", numbers)?;
+        let materials = all.iter().flat_map(|s| &s.cell_material);
+        cells.column("Material", materials.map(|&m| i64::from(m)))
+    }
+
+    fn write_conditions(&self, file: &hdf5::File) -> hdf5::Result<()> {
+        let dim = self.catalog.dim;
+        let all = &self.subdomains;
+        let interface = Section::new(file, "interface")?;
+        interface.offsets("offset", all.iter().map(|s| s.interface.len()))?;
+        let nodes = || all.iter().flat_map(|s: &Subdomain| &s.interface);
+        interface.column("node", nodes().map(|n| i64::from(n.node)))?;
+        interface.column("interface", nodes().map(|n| i64::from(n.interface)))?;
+
+        let support = Section::new(file, "support")?;
+        support.offsets("offset", all.iter().map(|s| s.supports.len()))?;
+        let rows = || all.iter().flat_map(|s: &Subdomain| &s.supports);
+        support.column("node", rows().map(|s| i64::from(s.node)))?;
+        support.vectors("direction", dim, rows().map(|s| &s.direction))?;
+        support.column("value", rows().map(|s| s.value))?;
+
+        let force = Section::new(file, "force")?;
+        force.offsets("offset", all.iter().map(|s| s.forces.len()))?;
+        let rows = || all.iter().flat_map(|s: &Subdomain| &s.forces);
+        force.column("node", rows().map(|&(node, _)| i64::from(node)))?;
+        force.vectors("value", dim, rows().map(|(_, value)| value))
+    }
+
+    fn write_contacts(&self, file: &hdf5::File) -> hdf5::Result<()> {
+        if self.catalog.contacts.is_empty() {
+            return Ok(());
+        }
+        let dim = self.catalog.dim;
+        let contact = Section::new(file, "contact")?;
+        contact.strings(
+            "name",
+            self.catalog.contacts.iter().map(|c| c.name.as_str()),
+        )?;
+        contact.offsets("group_offset", self.rows.iter().map(Vec::len))?;
+        let rows = || self.rows.iter().flatten();
+        contact.column("contact", rows().map(|r| i64::from(r.contact)))?;
+        contact.column("place", rows().map(|r| i64::from(r.place)))?;
+        contact.column("gap", rows().map(|r| r.gap))?;
+        contact.column("share", rows().map(|r| r.share))?;
+        contact.vectors("position", dim, rows().map(|r| &r.position))?;
+        contact.vectors("normal", dim, rows().map(|r| &r.normal))?;
+        contact.column("node_a", rows().map(|r| r.tag_a))?;
+        contact.column("node_b", rows().map(|r| r.tag_b))?;
+        contact.offsets("entry_offset", rows().map(|r| r.entries.len()))?;
+        let entries = || rows().flat_map(|r: &ContactRow| &r.entries);
+        contact.column("entry_subdomain", entries().map(|e| i64::from(e.subdomain)))?;
+        contact.column("entry_node", entries().map(|e| i64::from(e.node)))?;
+        contact.vectors("entry_coefficient", dim, entries().map(|e| &e.coefficient))
+    }
+}
+
+/// A group of datasets.
+struct Section {
+    group: hdf5::Group,
+}
+
+impl Section {
+    fn new(file: &hdf5::File, name: &str) -> hdf5::Result<Self> {
+        Ok(Self {
+            group: file.create_group(name)?,
+        })
+    }
+
+    fn root(file: &hdf5::File) -> hdf5::Result<Self> {
+        Ok(Self {
+            group: file.group("/")?,
+        })
+    }
+
+    fn put<T: H5Type>(&self, name: &str, shape: &[usize], data: &[T]) -> hdf5::Result<()> {
+        let dataset = self.group.new_dataset::<T>().shape(shape).create(name)?;
+        if data.is_empty() {
+            return Ok(());
+        }
+        dataset.write_raw(data)
+    }
+
+    fn column<T: H5Type>(&self, name: &str, values: impl Iterator<Item = T>) -> hdf5::Result<()> {
+        let values: Vec<T> = values.collect();
+        self.put(name, &[values.len()], &values)
+    }
+
+    fn vectors<'a>(
+        &self,
+        name: &str,
+        width: usize,
+        vectors: impl Iterator<Item = &'a [f64; 3]>,
+    ) -> hdf5::Result<()> {
+        let values: Vec<f64> = vectors.flat_map(|v| &v[..width]).copied().collect();
+        self.put(name, &[values.len() / width, width], &values)
+    }
+
+    fn offsets(&self, name: &str, counts: impl Iterator<Item = usize>) -> hdf5::Result<()> {
+        let mut end = 0i64;
+        let ends = counts.map(|count| {
+            end += count as i64;
+            end
+        });
+        self.column(name, std::iter::once(0).chain(ends))
+    }
+
+    fn strings<'a>(&self, name: &str, strings: impl Iterator<Item = &'a str>) -> hdf5::Result<()> {
+        let strings = strings.map(variable).collect::<hdf5::Result<Vec<_>>>()?;
+        self.put(name, &[strings.len()], &strings)
+    }
+}
+
+fn text(file: &hdf5::File, name: &str, value: &str) -> hdf5::Result<()> {
+    file.new_attr::<VarLenUnicode>()
+        .create(name)?
+        .write_scalar(&variable(value)?)
+}
+
+/// HDF5's strings end at the first NUL.
+fn variable(text: &str) -> hdf5::Result<VarLenUnicode> {
+    text.replace('\0', "\u{fffd}")
+        .parse()
+        .map_err(|reason: hdf5::types::StringError| hdf5::Error::Internal(reason.to_string()))
 }

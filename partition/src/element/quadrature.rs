@@ -1,0 +1,156 @@
+//! Quadrature rules on the reference elements.
+
+use std::f64::consts::PI;
+
+use super::ElementKind;
+
+/// A quadrature rule: ∫ f dξ ≈ Σ weights·f(points) over a reference element.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quadrature {
+    /// Reference coordinates.
+    pub points: Vec<[f64; 3]>,
+    /// Weights, all positive; their sum is the measure of the reference element.
+    pub weights: Vec<f64>,
+}
+
+impl ElementKind {
+    /// A rule that is exact for polynomials up to `degree`.
+    pub fn quadrature(self, degree: usize) -> Quadrature {
+        match self {
+            Self::Point1 => Quadrature {
+                points: vec![[0.0; 3]],
+                weights: vec![1.0],
+            },
+            Self::Line2 => {
+                let (points, weights) = gauss_legendre(degree / 2 + 1);
+                Quadrature {
+                    points: points.into_iter().map(|x| [x, 0.0, 0.0]).collect(),
+                    weights,
+                }
+            }
+            Self::Triangle3 => triangle(degree),
+        }
+    }
+}
+
+/// The symmetric rules of one, three and seven points (Radon's), and products of Gauss-Legendre
+/// on the collapsed square for higher degrees.
+fn triangle(degree: usize) -> Quadrature {
+    let mut rule = Quadrature {
+        points: Vec::new(),
+        weights: Vec::new(),
+    };
+    let mut orbit = |a: f64, weight: f64| {
+        let b = 1.0 - 2.0 * a;
+        for point in [[a, a, 0.0], [b, a, 0.0], [a, b, 0.0]] {
+            rule.points.push(point);
+            rule.weights.push(weight);
+        }
+    };
+    match degree {
+        0 | 1 => {
+            rule.points.push([1.0 / 3.0, 1.0 / 3.0, 0.0]);
+            rule.weights.push(0.5);
+        }
+        2 => orbit(1.0 / 6.0, 1.0 / 6.0),
+        3..=5 => {
+            let root = 15_f64.sqrt();
+            orbit((6.0 - root) / 21.0, (155.0 - root) / 2400.0);
+            orbit((6.0 + root) / 21.0, (155.0 + root) / 2400.0);
+            rule.points.push([1.0 / 3.0, 1.0 / 3.0, 0.0]);
+            rule.weights.push(9.0 / 80.0);
+        }
+        _ => {
+            // The Jacobian of the collapse raises the degree in one direction by one.
+            let (points, weights) = gauss_legendre(degree.div_ceil(2) + 1);
+            for (&s, &weight_s) in points.iter().zip(&weights) {
+                for (&t, &weight_t) in points.iter().zip(&weights) {
+                    let (s, t) = (0.5 * (1.0 + s), 0.5 * (1.0 + t));
+                    rule.points.push([s, t * (1.0 - s), 0.0]);
+                    rule.weights.push(0.25 * weight_s * weight_t * (1.0 - s));
+                }
+            }
+        }
+    }
+    rule
+}
+
+/// Points and weights of Gauss and Legendre on [−1, 1], exact to degree 2·`count` − 1: the roots
+/// of the Legendre polynomial by Newton's method.
+fn gauss_legendre(count: usize) -> (Vec<f64>, Vec<f64>) {
+    let mut points = vec![0.0; count];
+    let mut weights = vec![0.0; count];
+    for i in 0..count.div_ceil(2) {
+        let mut x = (PI * (i as f64 + 0.75) / (count as f64 + 0.5)).cos();
+        let mut slope = 1.0;
+        for _ in 0..8 {
+            let (mut before, mut value) = (1.0, x);
+            for k in 2..=count {
+                let k = k as f64;
+                (before, value) = (
+                    value,
+                    ((2.0 * k - 1.0) * x * value - (k - 1.0) * before) / k,
+                );
+            }
+            slope = count as f64 * (x * value - before) / (x * x - 1.0);
+            x -= value / slope;
+        }
+        if 2 * i + 1 == count {
+            x = 0.0;
+        }
+        let weight = 2.0 / ((1.0 - x * x) * slope * slope);
+        (points[i], points[count - 1 - i]) = (-x, x);
+        (weights[i], weights[count - 1 - i]) = (weight, weight);
+    }
+    (points, weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn factorial(n: usize) -> f64 {
+        (1..=n).map(|i| i as f64).product()
+    }
+
+    #[test]
+    fn line_rules_are_exact_to_their_degree() {
+        for degree in 0..=12 {
+            let rule = ElementKind::Line2.quadrature(degree);
+            for power in 0..=degree {
+                let exact = if power % 2 == 0 {
+                    2.0 / (power as f64 + 1.0)
+                } else {
+                    0.0
+                };
+                let sum: f64 = rule
+                    .points
+                    .iter()
+                    .zip(&rule.weights)
+                    .map(|(x, w)| w * x[0].powi(power as i32))
+                    .sum();
+                assert!((sum - exact).abs() < 1e-14, "degree {degree}, x^{power}");
+            }
+        }
+    }
+
+    #[test]
+    fn triangle_rules_are_exact_to_their_degree() {
+        for degree in 0..=9 {
+            let rule = ElementKind::Triangle3.quadrature(degree);
+            assert!(rule.weights.iter().all(|&w| w > 0.0));
+            for p in 0..=degree {
+                for q in 0..=degree - p {
+                    let exact = factorial(p) * factorial(q) / factorial(p + q + 2);
+                    let sum: f64 = rule
+                        .points
+                        .iter()
+                        .zip(&rule.weights)
+                        .map(|(x, w)| w * x[0].powi(p as i32) * x[1].powi(q as i32))
+                        .sum();
+                    assert!((sum - exact).abs() < 1e-15, "degree {degree}, x^{p} y^{q}");
+                }
+            }
+        }
+    }
+}

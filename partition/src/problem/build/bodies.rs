@@ -1,0 +1,71 @@
+//! Bodies: what hangs together through shared nodes.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::decompose::disjoint_sets::DisjointSets;
+use crate::model::Model;
+
+/// The bodies of a mesh, in the order of their first cell.
+pub(super) struct Bodies {
+    /// Name of every body.
+    pub names: Vec<String>,
+    /// Body of every cell.
+    pub of_cell: Vec<usize>,
+}
+
+impl Bodies {
+    /// Finds the bodies and names each after the scene's body: those of a piece that holds several
+    /// are joined by "+", the pieces of one that falls apart are numbered "#1", "#2" ...
+    pub fn new(model: &Model) -> Self {
+        let cells = &model.mesh.cells;
+        let mut sets = DisjointSets::new(model.mesh.points.len());
+        for (_, nodes) in cells.iter() {
+            for pair in nodes.windows(2) {
+                sets.unite(pair[0], pair[1]);
+            }
+        }
+        let mut body_of_root = BTreeMap::new();
+        let mut of_cell = Vec::with_capacity(cells.len());
+        let mut scene_bodies: Vec<BTreeSet<u32>> = Vec::new();
+        for (cell, (_, nodes)) in cells.iter().enumerate() {
+            let next = body_of_root.len();
+            let body = *body_of_root.entry(sets.find(nodes[0])).or_insert(next);
+            if body == next {
+                scene_bodies.push(BTreeSet::new());
+            }
+            scene_bodies[body].insert(model.cell_body[cell]);
+            of_cell.push(body);
+        }
+        Self {
+            names: numbered(scene_bodies.iter().map(|set| {
+                let names: Vec<&str> = set
+                    .iter()
+                    .map(|&b| model.bodies[b as usize].as_str())
+                    .collect();
+                names.join("+")
+            })),
+            of_cell,
+        }
+    }
+}
+
+/// Numbers the names that occur more than once.
+fn numbered(names: impl Iterator<Item = String>) -> Vec<String> {
+    let names: Vec<String> = names.collect();
+    let mut total: BTreeMap<&str, usize> = BTreeMap::new();
+    for name in &names {
+        *total.entry(name).or_default() += 1;
+    }
+    let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
+    names
+        .iter()
+        .map(|name| {
+            let number = seen.entry(name).or_default();
+            *number += 1;
+            match total[name.as_str()] {
+                1 => name.clone(),
+                _ => format!("{name} #{number}"),
+            }
+        })
+        .collect()
+}

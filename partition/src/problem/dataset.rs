@@ -1,0 +1,305 @@
+//! A dataset that knows its name: reads slices and says what is wrong with them, and where.
+
+use std::ops::Range;
+
+use hdf5::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenUnicode};
+
+use crate::error::InputError;
+
+/// Longest fixed-length string that is read [bytes].
+const LONGEST_FIXED: usize = 1024;
+
+/// The best compression that HDF5's deflate reaches; a dataset that declares more isn't there.
+const LARGEST_RATIO: u64 = 1100;
+
+/// An open dataset.
+pub(super) struct Dataset {
+    name: &'static str,
+    inner: hdf5::Dataset,
+    shape: Vec<usize>,
+}
+
+impl Dataset {
+    /// Opens the dataset called `name` and makes sure that its data are in the file.
+    pub fn open(file: &hdf5::File, name: &'static str) -> Result<Self, InputError> {
+        let inner = file
+            .dataset(name)
+            .map_err(|_| InputError::new(format!("dataset {name} is missing")))?;
+        let shape = inner.shape();
+        let dataset = Self { name, inner, shape };
+        dataset.check_storage(file.size())?;
+        Ok(dataset)
+    }
+
+    /// Opens a dataset with one row of a single number for each of `rows`, if that is known.
+    pub fn column(
+        file: &hdf5::File,
+        name: &'static str,
+        rows: Option<usize>,
+    ) -> Result<Self, InputError> {
+        Self::open(file, name)?.shaped(rows, &[])
+    }
+
+    /// Opens a dataset with a vector of `width` numbers in each of `rows` rows.
+    pub fn table(
+        file: &hdf5::File,
+        name: &'static str,
+        rows: Option<usize>,
+        width: usize,
+    ) -> Result<Self, InputError> {
+        Self::open(file, name)?.shaped(rows, &[width])
+    }
+
+    /// Checks the shape: `rows` (any number if `None`) times `row`.
+    pub fn shaped(self, rows: Option<usize>, row: &[usize]) -> Result<Self, InputError> {
+        let fits = self.shape.len() == 1 + row.len()
+            && self.shape[1..] == *row
+            && rows.is_none_or(|rows| self.shape[0] == rows);
+        // h5py writes `data=[]` with shape (0,) whatever the width of a row.
+        let empty = self.shape == [0] && rows.is_none_or(|rows| rows == 0);
+        if fits || empty {
+            return Ok(self);
+        }
+        let rows = rows.map_or("any".to_owned(), |rows| rows.to_string());
+        let expected: Vec<String> = std::iter::once(rows)
+            .chain(row.iter().map(ToString::to_string))
+            .collect();
+        Err(self.error(&format!(
+            "has shape {:?}; expected [{}]",
+            self.shape,
+            expected.join(", ")
+        )))
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.shape.first().copied().unwrap_or(0)
+    }
+
+    /// An error about the whole dataset.
+    pub fn error(&self, what: &str) -> InputError {
+        InputError::new(format!("dataset {}: {what}", self.name))
+    }
+
+    /// An error about one row.
+    pub fn row_error(&self, row: usize, what: &str) -> InputError {
+        InputError::new(format!("dataset {}, row {row}: {what}", self.name))
+    }
+
+    /// Reads integers of any width.
+    pub fn integers(&self, rows: Range<usize>) -> Result<Vec<i64>, InputError> {
+        match self.descriptor()? {
+            TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_) => self.slice(rows),
+            other => Err(self.error(&format!("holds {other}; expected integers"))),
+        }
+    }
+
+    /// Reads all integers.
+    pub fn all_integers(&self) -> Result<Vec<i64>, InputError> {
+        self.integers(0..self.rows())
+    }
+
+    /// Reads integers that are `what` below `count`.
+    pub fn indices(
+        &self,
+        rows: Range<usize>,
+        count: usize,
+        what: &str,
+    ) -> Result<Vec<u32>, InputError> {
+        let start = rows.start;
+        self.integers(rows)?
+            .into_iter()
+            .enumerate()
+            .map(|(row, value)| {
+                u32::try_from(value)
+                    .ok()
+                    .filter(|&index| (index as usize) < count)
+                    .ok_or_else(|| {
+                        let expected = match count {
+                            0 => "there is none".to_owned(),
+                            _ => format!("expected 0 to {}", count - 1),
+                        };
+                        self.row_error(start + row, &format!("{value} is no {what}; {expected}"))
+                    })
+            })
+            .collect()
+    }
+
+    /// Reads a table of offsets that rises from 0 to `end`.
+    pub fn offsets(&self, end: usize) -> Result<Vec<usize>, InputError> {
+        let values = self.all_integers()?;
+        let mut offsets = Vec::with_capacity(values.len());
+        for (row, &value) in values.iter().enumerate() {
+            let least = offsets.last().copied().unwrap_or(0);
+            match usize::try_from(value) {
+                Ok(offset) if (least..=end).contains(&offset) => offsets.push(offset),
+                _ => {
+                    return Err(self.row_error(
+                        row,
+                        &format!("offset {value}; expected one of {least} to {end}"),
+                    ));
+                }
+            }
+        }
+        match (offsets.first(), offsets.last()) {
+            (Some(&0), Some(&last)) if last == end => Ok(offsets),
+            _ => Err(self.error(&format!(
+                "expected offsets that start at 0 and end at {end}"
+            ))),
+        }
+    }
+
+    /// Reads finite numbers of any width, `width` a row.
+    pub fn floats(&self, rows: Range<usize>) -> Result<Vec<f64>, InputError> {
+        let start = rows.start;
+        let count = rows.len();
+        let values = self.any_floats(rows)?;
+        let width = values.len().checked_div(count).unwrap_or(1).max(1);
+        match values.iter().position(|value| !value.is_finite()) {
+            Some(at) => Err(self.row_error(
+                start + at / width,
+                &format!("{}; expected a finite number", values[at]),
+            )),
+            None => Ok(values),
+        }
+    }
+
+    /// Reads numbers that may be NaN.
+    pub fn any_floats(&self, rows: Range<usize>) -> Result<Vec<f64>, InputError> {
+        match self.descriptor()? {
+            TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_) | TypeDescriptor::Float(_) => {
+                self.slice(rows)
+            }
+            other => Err(self.error(&format!("holds {other}; expected numbers"))),
+        }
+    }
+
+    /// Reads vectors of `width` finite components; the others are zero.
+    pub fn vectors(&self, rows: Range<usize>, width: usize) -> Result<Vec<[f64; 3]>, InputError> {
+        let values = self.floats(rows)?;
+        Ok(values
+            .chunks_exact(width)
+            .map(|row| {
+                let mut vector = [0.0; 3];
+                vector[..width].copy_from_slice(row);
+                vector
+            })
+            .collect())
+    }
+
+    /// Reads unit vectors of `width` components.
+    pub fn unit_vectors(
+        &self,
+        rows: Range<usize>,
+        width: usize,
+    ) -> Result<Vec<[f64; 3]>, InputError> {
+        let start = rows.start;
+        let vectors = self.vectors(rows, width)?;
+        for (row, vector) in vectors.iter().enumerate() {
+            let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if (length - 1.0).abs() > super::UNIT_TOLERANCE {
+                return Err(self.row_error(
+                    start + row,
+                    &format!("the vector has length {length}; expected 1"),
+                ));
+            }
+        }
+        Ok(vectors)
+    }
+
+    /// Reads all strings, of variable or fixed length.
+    pub fn strings(&self) -> Result<Vec<String>, InputError> {
+        read_strings(&self.inner).map_err(|reason| self.error(&reason))
+    }
+
+    /// Reads all strings, of which there has to be one at least.
+    pub fn names(&self) -> Result<Vec<String>, InputError> {
+        match self.strings()? {
+            names if names.is_empty() => Err(self.error("is empty; expected at least one name")),
+            names => Ok(names),
+        }
+    }
+
+    fn descriptor(&self) -> Result<TypeDescriptor, InputError> {
+        self.inner
+            .dtype()
+            .and_then(|dtype| dtype.to_descriptor())
+            .map_err(|reason| self.error(&format!("has a type that can't be read: {reason}")))
+    }
+
+    fn slice<T: hdf5::H5Type>(&self, rows: Range<usize>) -> Result<Vec<T>, InputError> {
+        if rows.is_empty() {
+            return Ok(Vec::new());
+        }
+        let data = if rows == (0..self.rows()) {
+            self.inner.read_raw()
+        } else if self.shape.len() == 1 {
+            self.inner
+                .read_slice_1d::<T, _>(rows)
+                .map(|array| array.into_raw_vec_and_offset().0)
+        } else {
+            self.inner
+                .read_slice_2d::<T, _>((rows, ..))
+                .map(|array| array.into_raw_vec_and_offset().0)
+        };
+        data.map_err(|reason| self.error(&format!("can't be read: {reason}")))
+    }
+
+    /// No allocation may follow a shape that the file doesn't fill.
+    fn check_storage(&self, file_size: u64) -> Result<(), InputError> {
+        let element = self.inner.dtype().map_or(0, |dtype| dtype.size());
+        let declared = self
+            .shape
+            .iter()
+            .try_fold(element as u64, |size, &n| size.checked_mul(n as u64));
+        let stored = self.inner.storage_size();
+        let holds = match self.inner.filters().is_empty() {
+            true => stored,
+            false => stored.saturating_mul(LARGEST_RATIO),
+        };
+        match declared {
+            Some(declared) if declared <= holds && stored <= file_size => Ok(()),
+            _ => Err(self.error(&format!(
+                "has shape {:?}, but the file holds only {} bytes of it",
+                self.shape,
+                stored.min(file_size)
+            ))),
+        }
+    }
+}
+
+/// Reads the strings of a dataset or attribute.
+pub(super) fn read_strings(container: &hdf5::Container) -> Result<Vec<String>, String> {
+    let text = |bytes: &[u8]| {
+        String::from_utf8(bytes.to_vec()).map_err(|_| "holds a string that isn't UTF-8".to_owned())
+    };
+    let failed = |reason: hdf5::Error| format!("can't be read: {reason}");
+    if container.size() == 0 {
+        return Ok(Vec::new());
+    }
+    let descriptor = container
+        .dtype()
+        .and_then(|dtype| dtype.to_descriptor())
+        .map_err(failed)?;
+    match descriptor {
+        TypeDescriptor::VarLenUnicode => {
+            let raw = container.read_raw::<VarLenUnicode>().map_err(failed)?;
+            raw.iter().map(|s| text(s.as_bytes())).collect()
+        }
+        TypeDescriptor::VarLenAscii => {
+            let raw = container.read_raw::<VarLenAscii>().map_err(failed)?;
+            raw.iter().map(|s| text(s.as_bytes())).collect()
+        }
+        TypeDescriptor::FixedUnicode(size) if size <= LONGEST_FIXED => {
+            let raw = container.read_raw::<FixedUnicode<LONGEST_FIXED>>();
+            let raw = raw.map_err(failed)?;
+            raw.iter().map(|s| text(s.as_bytes())).collect()
+        }
+        TypeDescriptor::FixedAscii(size) if size <= LONGEST_FIXED => {
+            let raw = container.read_raw::<FixedAscii<LONGEST_FIXED>>();
+            let raw = raw.map_err(failed)?;
+            raw.iter().map(|s| text(s.as_bytes())).collect()
+        }
+        other => Err(format!("holds {other}; expected strings")),
+    }
+}

@@ -1,0 +1,98 @@
+//! The attributes of the file.
+
+use crate::error::InputError;
+use crate::model::PlaneState;
+use crate::problem::dataset::read_strings;
+use crate::problem::{FORMAT, VERSION};
+
+/// What the attributes of the file say.
+pub(super) struct Header {
+    pub title: String,
+    pub dim: usize,
+    pub plane: PlaneState,
+}
+
+impl Header {
+    /// Reads the attributes; a title may be absent.
+    pub fn read(file: &hdf5::File) -> Result<Self, InputError> {
+        read_format(file)?;
+        Ok(Self {
+            dim: read_dimension(file)?,
+            title: match file.attr("title") {
+                Ok(_) => text(file, "title")?,
+                Err(_) => String::new(),
+            },
+            plane: match text(file, "plane")?.as_str() {
+                "strain" => PlaneState::Strain,
+                "stress" => PlaneState::Stress,
+                other => {
+                    return Err(InputError::new(format!(
+                        "attribute plane is \"{other}\"; expected \"strain\" or \"stress\""
+                    )));
+                }
+            },
+        })
+    }
+}
+
+fn read_format(file: &hdf5::File) -> Result<(), InputError> {
+    let format = text(file, "format").map_err(|_| {
+        InputError::new(format!(
+            "isn't a problem file: expected the attribute format = \"{FORMAT}\""
+        ))
+    })?;
+    if format != FORMAT {
+        return Err(InputError::new(format!(
+            "attribute format is \"{format}\"; expected \"{FORMAT}\""
+        )));
+    }
+    match integer(file, "version")? {
+        VERSION => Ok(()),
+        other => Err(InputError::new(format!(
+            "has version {other} of the format; expected {VERSION}"
+        ))),
+    }
+}
+
+fn read_dimension(file: &hdf5::File) -> Result<usize, InputError> {
+    match integer(file, "dimension")? {
+        2 => Ok(2),
+        other => Err(InputError::new(format!(
+            "attribute dimension is {other}; expected 2"
+        ))),
+    }
+}
+
+fn attribute(file: &hdf5::File, name: &str) -> Result<hdf5::Attribute, InputError> {
+    let attribute = file
+        .attr(name)
+        .map_err(|_| InputError::new(format!("attribute {name} is missing")))?;
+    match attribute.size() {
+        1 => Ok(attribute),
+        size => Err(InputError::new(format!(
+            "attribute {name} holds {size} values; expected one"
+        ))),
+    }
+}
+
+fn text(file: &hdf5::File, name: &str) -> Result<String, InputError> {
+    let mut strings = read_strings(&*attribute(file, name)?)
+        .map_err(|reason| InputError::new(format!("attribute {name} {reason}")))?;
+    Ok(strings.pop().unwrap_or_default())
+}
+
+fn integer(file: &hdf5::File, name: &str) -> Result<i64, InputError> {
+    use hdf5::types::TypeDescriptor::{Integer, Unsigned};
+    let attribute = attribute(file, name)?;
+    let is_integer = attribute
+        .dtype()
+        .and_then(|dtype| dtype.to_descriptor())
+        .is_ok_and(|dtype| matches!(dtype, Integer(_) | Unsigned(_)));
+    let value = attribute
+        .read_raw::<i64>()
+        .ok()
+        .and_then(|v| v.first().copied());
+    value
+        .filter(|_| is_integer)
+        .ok_or_else(|| InputError::new(format!("attribute {name} isn't an integer")))
+}

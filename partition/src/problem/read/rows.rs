@@ -1,0 +1,152 @@
+//! The contact rows of one group.
+
+use std::collections::{HashMap, HashSet};
+
+use super::ProblemFile;
+use super::subdomain::slice;
+use crate::error::InputError;
+use crate::problem::{ContactRow, RowEntry};
+
+impl ProblemFile {
+    pub(super) fn read_rows(&self, group: usize) -> Result<Vec<ContactRow>, InputError> {
+        if group >= self.catalog.groups.len() {
+            return Err(InputError::new(format!("there is no group {group}")));
+        }
+        let dim = self.catalog.dim;
+        let rows = slice(&self.offsets.groups, group);
+        let total = self.column("/contact/contact")?.rows();
+        let column = |name| self.column(name)?.shaped(Some(total), &[]);
+        let table = |name| self.table(name, dim)?.shaped(Some(total), &[dim]);
+        let contact = column("/contact/contact")?.integers(rows.clone())?;
+        let place = column("/contact/place")?.integers(rows.clone())?;
+        let gap = column("/contact/gap")?.floats(rows.clone())?;
+        let shares = column("/contact/share")?;
+        let share = shares.floats(rows.clone())?;
+        if let Some(at) = share.iter().position(|&s| s < 0.0) {
+            return Err(shares.row_error(
+                rows.start + at,
+                &format!("{}; expected a share of 0 or more", share[at]),
+            ));
+        }
+        let position = table("/contact/position")?.vectors(rows.clone(), dim)?;
+        let normal = table("/contact/normal")?.unit_vectors(rows.clone(), dim)?;
+        let tag_a = column("/contact/node_a")?.integers(rows.clone())?;
+        let tag_b = column("/contact/node_b")?.integers(rows.clone())?;
+        let entries = self.read_entries(group)?;
+        Ok(entries
+            .into_iter()
+            .enumerate()
+            .map(|(i, entries)| ContactRow {
+                // Checked when the file was opened: an index of a contact, and one of its places.
+                contact: contact[i] as u32,
+                place: place[i] as u32,
+                entries,
+                gap: gap[i],
+                share: share[i],
+                position: position[i],
+                normal: normal[i],
+                tag_a: tag_a[i],
+                tag_b: tag_b[i],
+            })
+            .collect())
+    }
+
+    /// The entries of each row of a group.
+    fn read_entries(&self, group: usize) -> Result<Vec<Vec<RowEntry>>, InputError> {
+        let dim = self.catalog.dim;
+        let rows = slice(&self.offsets.groups, group);
+        let subdomain = self.column("/contact/entry_subdomain")?;
+        let total = subdomain.rows();
+        let offset = self
+            .column("/contact/entry_offset")?
+            .shaped(self.offsets.groups.last().map(|m| m + 1), &[])?;
+        let offsets = offset.offsets(total)?;
+        let node = self
+            .column("/contact/entry_node")?
+            .shaped(Some(total), &[])?;
+        let coefficient = self
+            .table("/contact/entry_coefficient", dim)?
+            .shaped(Some(total), &[dim])?;
+        let span = offsets[rows.start]..offsets[rows.end];
+        let subdomains =
+            subdomain.indices(span.clone(), self.catalog.subdomains.len(), "subdomain")?;
+        let nodes = node.integers(span.clone())?;
+        let coefficients = coefficient.vectors(span.clone(), dim)?;
+        let foreign = self.foreign_nodes(group)?;
+        let mut entries = Vec::with_capacity(rows.len());
+        for row in rows {
+            let mut list = Vec::with_capacity(offsets[row + 1] - offsets[row]);
+            for at in offsets[row]..offsets[row + 1] {
+                let i = at - span.start;
+                let summary = &self.catalog.subdomains[subdomains[i] as usize];
+                if summary.group != Some(group) {
+                    return Err(subdomain.row_error(
+                        at,
+                        &format!("subdomain {} isn't in group {group}", subdomains[i]),
+                    ));
+                }
+                let number = u32::try_from(nodes[i])
+                    .ok()
+                    .filter(|&n| (n as usize) < summary.nodes)
+                    .ok_or_else(|| {
+                        node.row_error(
+                            at,
+                            &format!(
+                                "{} is no node of subdomain {}; expected 0 to {}",
+                                nodes[i],
+                                subdomains[i],
+                                summary.nodes - 1
+                            ),
+                        )
+                    })?;
+                if foreign.contains(&(subdomains[i], number)) {
+                    return Err(node.row_error(
+                        at,
+                        &format!(
+                            "a subdomain outside group {group} shares the node; expected all that share it in one group"
+                        ),
+                    ));
+                }
+                list.push(RowEntry {
+                    subdomain: subdomains[i],
+                    node: number,
+                    coefficient: coefficients[i],
+                });
+            }
+            if list.iter().all(|e| e.coefficient == [0.0; 3]) {
+                return Err(offset.row_error(row, "expected a row that isn't zero"));
+            }
+            entries.push(list);
+        }
+        Ok(entries)
+    }
+
+    /// Nodes of a group (subdomain, node) that a subdomain outside it shares.
+    fn foreign_nodes(&self, group: usize) -> Result<HashSet<(u32, u32)>, InputError> {
+        let catalog = &self.catalog;
+        let members: Vec<usize> = (0..catalog.subdomains.len())
+            .filter(|&i| catalog.subdomains[i].group == Some(group))
+            .collect();
+        let mut outside: HashMap<u32, bool> = members
+            .iter()
+            .flat_map(|&i| &catalog.interface[i])
+            .map(|&number| (number, false))
+            .collect();
+        for (i, list) in catalog.interface.iter().enumerate() {
+            if catalog.subdomains[i].group != Some(group) {
+                for number in list {
+                    outside.entry(*number).and_modify(|o| *o = true);
+                }
+            }
+        }
+        let mut foreign = HashSet::new();
+        for &i in &members {
+            for on in self.read_interface(i, catalog.subdomains[i].nodes)? {
+                if outside.get(&on.interface) == Some(&true) {
+                    foreign.insert((i as u32, on.node));
+                }
+            }
+        }
+        Ok(foreign)
+    }
+}

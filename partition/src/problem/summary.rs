@@ -1,0 +1,141 @@
+//! What is worth knowing about a decomposition.
+
+use std::collections::HashMap;
+use std::fmt;
+
+use super::Problem;
+
+/// A group of subdomains in contact.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GroupSummary {
+    /// Its subdomains, ascending.
+    pub subdomains: Vec<usize>,
+    /// Number of contact conditions.
+    pub conditions: usize,
+}
+
+/// Sizes and balance of a problem; its `Display` is what the partition tool prints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Number of dofs, shared ones counted once.
+    pub dofs: usize,
+    /// Number of cells.
+    pub cells: usize,
+    /// Number of bodies.
+    pub bodies: usize,
+    /// Number of subdomains.
+    pub subdomains: usize,
+    /// Number of subdomains without contact.
+    pub linear_subdomains: usize,
+    /// Cells of the largest subdomain over the mean.
+    pub imbalance: f64,
+    /// Number of nodes on Γ.
+    pub interface_nodes: usize,
+    /// Number of facets on Γ.
+    pub cut_facets: usize,
+    /// Number of contact conditions.
+    pub contact_conditions: usize,
+    /// Groups in contact.
+    pub groups: Vec<GroupSummary>,
+}
+
+impl Problem {
+    /// Sizes and balance.
+    pub fn summary(&self) -> Summary {
+        let catalog = &self.catalog;
+        let count = catalog.subdomains.len();
+        let cells: usize = catalog.subdomains.iter().map(|s| s.cells).sum();
+        let largest = catalog.subdomains.iter().map(|s| s.cells).max();
+        let copies: usize = catalog.subdomains.iter().map(|s| s.nodes).sum();
+        let shared: usize = catalog.interface.iter().map(Vec::len).sum();
+        Summary {
+            dofs: catalog.dim * (copies - shared + catalog.interface_nodes),
+            cells,
+            bodies: catalog.bodies.len(),
+            subdomains: count,
+            linear_subdomains: catalog
+                .subdomains
+                .iter()
+                .filter(|s| s.group.is_none())
+                .count(),
+            imbalance: largest.unwrap_or(0) as f64 * count as f64 / cells.max(1) as f64,
+            interface_nodes: catalog.interface_nodes,
+            cut_facets: self.cut_facets(),
+            contact_conditions: catalog.groups.iter().sum(),
+            groups: catalog
+                .groups
+                .iter()
+                .enumerate()
+                .map(|(group, &conditions)| GroupSummary {
+                    subdomains: (0..count)
+                        .filter(|&s| catalog.subdomains[s].group == Some(group))
+                        .collect(),
+                    conditions,
+                })
+                .collect(),
+        }
+    }
+
+    /// Facets that cells of two subdomains share.
+    fn cut_facets(&self) -> usize {
+        let mut seen: HashMap<Vec<u32>, usize> = HashMap::new();
+        for subdomain in &self.subdomains {
+            let interface: HashMap<u32, u32> = subdomain
+                .interface
+                .iter()
+                .map(|on| (on.node, on.interface))
+                .collect();
+            for (kind, nodes) in subdomain.cells.iter() {
+                for (_, local) in kind.facets() {
+                    let on: Option<Vec<u32>> = local
+                        .iter()
+                        .map(|&i| interface.get(&nodes[i]).copied())
+                        .collect();
+                    if let Some(mut key) = on {
+                        key.sort_unstable();
+                        // A facet inside a subdomain has both ends on Γ where that one is thin.
+                        seen.entry(key)
+                            .and_modify(|of| {
+                                if *of != subdomain.index {
+                                    *of = usize::MAX;
+                                }
+                            })
+                            .or_insert(subdomain.index);
+                    }
+                }
+            }
+        }
+        seen.values().filter(|&&of| of == usize::MAX).count()
+    }
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{} dofs, {} cells, bodies: {}",
+            self.dofs, self.cells, self.bodies
+        )?;
+        writeln!(
+            f,
+            "{} subdomains ({} without contact), largest / mean {:.2}",
+            self.subdomains, self.linear_subdomains, self.imbalance
+        )?;
+        writeln!(
+            f,
+            "interface: {} nodes, {} facets cut",
+            self.interface_nodes, self.cut_facets
+        )?;
+        write!(f, "contact conditions: {}", self.contact_conditions)?;
+        for (number, group) in self.groups.iter().enumerate() {
+            let members: Vec<String> = group.subdomains.iter().map(ToString::to_string).collect();
+            write!(
+                f,
+                "\n  group {number}: subdomains {}, {} conditions",
+                members.join(" + "),
+                group.conditions
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,339 @@
+//! Bodies, supports, loads and contacts as a scene gives them.
+
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, SeqAccess, Visitor};
+
+use super::number::{Constant, ConstantVector, Number, Vector};
+
+/// Names of physical groups: one, or a list without repetition.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Names(Vec<String>);
+
+impl Names {
+    /// The names in the order in which they were given.
+    pub fn iter(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().map(String::as_str)
+    }
+}
+
+impl std::fmt::Display for Names {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        for (i, name) in self.iter().enumerate() {
+            write!(f, "{}'{name}'", if i == 0 { "" } else { ", " })?;
+        }
+        Ok(())
+    }
+}
+
+impl<'de> Deserialize<'de> for Names {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NamesVisitor;
+        impl<'de> Visitor<'de> for NamesVisitor {
+            type Value = Names;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("the name of a physical group or a list of names")
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<Names, E> {
+                Ok(Names(vec![name.to_owned()]))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Names, A::Error> {
+                let mut names = Vec::new();
+                while let Some(name) = list.next_element::<String>()? {
+                    if names.contains(&name) {
+                        return Err(A::Error::custom(format!("'{name}' stands here twice")));
+                    }
+                    names.push(name);
+                }
+                if names.is_empty() {
+                    return Err(A::Error::custom("an empty list; expected names of groups"));
+                }
+                Ok(Names(names))
+            }
+        }
+        deserializer.deserialize_any(NamesVisitor)
+    }
+}
+
+/// A body: groups of cells of one material.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table of material and body_force")]
+pub struct Body {
+    /// Name of its material.
+    pub material: String,
+    /// Force per volume [N/m³].
+    pub body_force: Option<Vector>,
+}
+
+/// Γ_u: prescribed displacements. A component left out is free.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "DisplacementKeys")]
+pub struct Displacement {
+    /// Where.
+    pub on: Names,
+    /// u_x, u_y, u_z [m].
+    pub components: [Option<Number>; 3],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table of on, x and y")]
+struct DisplacementKeys {
+    on: Names,
+    x: Option<Number>,
+    y: Option<Number>,
+    z: Option<Number>,
+}
+
+impl TryFrom<DisplacementKeys> for Displacement {
+    type Error = &'static str;
+
+    fn try_from(keys: DisplacementKeys) -> Result<Self, Self::Error> {
+        let components = [keys.x, keys.y, keys.z];
+        if components.iter().all(Option::is_none) {
+            return Err("it prescribes nothing; expected at least one of 'x' and 'y'");
+        }
+        Ok(Self {
+            on: keys.on,
+            components,
+        })
+    }
+}
+
+/// Γ_o: u·n = 0.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table of on")]
+pub struct Bilateral {
+    /// Where.
+    pub on: Names,
+}
+
+/// Γ_τ: a force per area.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table of on and value")]
+pub struct Traction {
+    /// Where.
+    pub on: Names,
+    /// τ [N/m²].
+    pub value: Vector,
+}
+
+/// Γ_τ: a force per area along the normal.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table of on and value")]
+pub struct Pressure {
+    /// Where.
+    pub on: Names,
+    /// Pressure, positive where it pushes into the body [N/m²].
+    pub value: Number,
+}
+
+/// Γ_c: two sides that may touch, or one side and a rigid obstacle.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "ContactKeys")]
+pub struct Contact {
+    /// Its name, that of a group in the result file.
+    pub name: String,
+    /// Side a.
+    pub side_a: Names,
+    /// What side a may touch.
+    pub partner: Partner,
+    /// The gap in place of the geometric one [m].
+    pub gap: Option<Number>,
+}
+
+/// What the side a of a contact may touch.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Partner {
+    /// Side b.
+    Side(Names),
+    /// A rigid obstacle.
+    Obstacle(Obstacle),
+}
+
+#[derive(Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table of name, sides, gap and obstacle"
+)]
+struct ContactKeys {
+    name: ContactName,
+    sides: Vec<Names>,
+    gap: Option<Number>,
+    obstacle: Option<Obstacle>,
+}
+
+impl TryFrom<ContactKeys> for Contact {
+    type Error = String;
+
+    fn try_from(keys: ContactKeys) -> Result<Self, String> {
+        let count = keys.sides.len();
+        let mut sides = keys.sides.into_iter();
+        let (side_a, partner) = match (sides.next(), sides.next(), sides.next(), keys.obstacle) {
+            (Some(a), Some(b), None, None) => {
+                if let Some(name) = a.iter().find(|name| b.iter().any(|other| other == *name)) {
+                    return Err(format!("'{name}' is on both 'sides'"));
+                }
+                (a, Partner::Side(b))
+            }
+            (Some(a), None, None, Some(obstacle)) => (a, Partner::Obstacle(obstacle)),
+            (_, _, _, None) => {
+                return Err(format!(
+                    "'sides' has {count} entries; expected 2 (or 1 and an 'obstacle')"
+                ));
+            }
+            (_, _, _, Some(_)) => {
+                return Err(format!(
+                    "'sides' has {count} entries; expected 1 beside an 'obstacle'"
+                ));
+            }
+        };
+        Ok(Self {
+            name: keys.name.0,
+            side_a,
+            partner,
+            gap: keys.gap,
+        })
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(try_from = "String")]
+struct ContactName(String);
+
+impl TryFrom<String> for ContactName {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        let reason = if name.trim().is_empty() {
+            "is empty"
+        } else if name.contains('/') {
+            "holds a '/'"
+        } else if name == "." || name == ".." {
+            "means a place in a path"
+        } else if name.chars().any(char::is_control) {
+            "holds a control character"
+        } else if name.len() > 255 {
+            "is longer than 255 bytes"
+        } else {
+            return Ok(Self(name));
+        };
+        Err(format!(
+            "'{}' {reason}; a contact's name is that of a group in the result file",
+            name.escape_debug()
+        ))
+    }
+}
+
+/// A rigid obstacle.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "ObstacleKeys")]
+pub enum Obstacle {
+    /// All that lies behind a straight wall.
+    HalfPlane {
+        /// A point on the wall [m].
+        point: ConstantVector,
+        /// Direction out of the obstacle towards the body, of any length but zero.
+        normal: ConstantVector,
+    },
+    /// A circle.
+    Circle {
+        /// Centre [m].
+        center: ConstantVector,
+        /// Radius [m].
+        radius: f64,
+        /// Whether it keeps bodies inside, not outside.
+        inside: bool,
+    },
+}
+
+#[derive(Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table of point and normal, or of center and radius"
+)]
+struct ObstacleKeys {
+    point: Option<ConstantVector>,
+    normal: Option<Direction>,
+    center: Option<ConstantVector>,
+    radius: Option<Radius>,
+    inside: Option<bool>,
+}
+
+impl TryFrom<ObstacleKeys> for Obstacle {
+    type Error = &'static str;
+
+    fn try_from(keys: ObstacleKeys) -> Result<Self, Self::Error> {
+        match keys {
+            ObstacleKeys {
+                point: Some(point),
+                normal: Some(Direction(normal)),
+                center: None,
+                radius: None,
+                inside: None,
+            } => {
+                if point.dim == normal.dim {
+                    Ok(Self::HalfPlane { point, normal })
+                } else {
+                    Err("'point' and 'normal' have different numbers of components")
+                }
+            }
+            ObstacleKeys {
+                point: None,
+                normal: None,
+                center: Some(center),
+                radius: Some(Radius(radius)),
+                inside,
+            } => Ok(Self::Circle {
+                center,
+                radius,
+                inside: inside.unwrap_or(false),
+            }),
+            _ => Err("expected 'point' and 'normal' (a straight wall), \
+                      or 'center', 'radius' and perhaps 'inside' (a circle)"),
+        }
+    }
+}
+
+impl Obstacle {
+    /// Number of components of its vectors.
+    pub fn dim(&self) -> usize {
+        match self {
+            Self::HalfPlane { point, .. } => point.dim,
+            Self::Circle { center, .. } => center.dim,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(try_from = "ConstantVector")]
+struct Direction(ConstantVector);
+
+impl TryFrom<ConstantVector> for Direction {
+    type Error = &'static str;
+
+    fn try_from(vector: ConstantVector) -> Result<Self, Self::Error> {
+        if vector.value == [0.0; 3] {
+            Err("the zero vector has no direction")
+        } else {
+            Ok(Self(vector))
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(try_from = "Constant")]
+struct Radius(f64);
+
+impl TryFrom<Constant> for Radius {
+    type Error = String;
+
+    fn try_from(Constant(value): Constant) -> Result<Self, String> {
+        if value > 0.0 {
+            Ok(Self(value))
+        } else {
+            Err(format!("the radius is {value}; expected more than 0"))
+        }
+    }
+}

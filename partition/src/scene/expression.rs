@@ -1,0 +1,395 @@
+//! Expressions of x, y and z, with the precedence of mathematics: −x^2 is −(x²), 2^3^2 is 2^9.
+
+use super::suggest::nearest;
+
+/// Longest text and deepest nesting of an expression, so that no text can exhaust the stack.
+const LONGEST: usize = 4096;
+const DEEPEST: usize = 64;
+
+const VARIABLES: [&str; 3] = ["x", "y", "z"];
+const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("PI", std::f64::consts::PI)];
+type Unary = fn(f64) -> f64;
+type Binary = fn(f64, f64) -> f64;
+
+const UNARY: [(&str, Unary); 16] = [
+    ("sin", f64::sin),
+    ("cos", f64::cos),
+    ("tan", f64::tan),
+    ("asin", f64::asin),
+    ("acos", f64::acos),
+    ("atan", f64::atan),
+    ("sinh", f64::sinh),
+    ("cosh", f64::cosh),
+    ("tanh", f64::tanh),
+    ("exp", f64::exp),
+    ("ln", f64::ln),
+    ("log10", f64::log10),
+    ("sqrt", f64::sqrt),
+    ("cbrt", f64::cbrt),
+    ("abs", f64::abs),
+    ("sign", sign),
+];
+const BINARY: [(&str, Binary); 4] = [
+    ("min", f64::min),
+    ("max", f64::max),
+    ("atan2", f64::atan2),
+    ("hypot", f64::hypot),
+];
+
+/// −1, 0 or 1.
+fn sign(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { x.signum() }
+}
+
+/// One step of an expression in postfix order.
+#[derive(Clone, Copy, Debug)]
+enum Step {
+    Number(f64),
+    Variable(usize),
+    Unary(Unary),
+    Binary(Binary),
+}
+
+/// An expression of x, y and z.
+#[derive(Clone, Debug)]
+pub struct Expression {
+    text: String,
+    steps: Vec<Step>,
+    variables: [bool; 3],
+}
+
+impl PartialEq for Expression {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+impl Expression {
+    /// Parses `text`: numbers, `x`, `y`, `z`, `pi`, `+ - * / ^` (or `**`), parentheses, and the
+    /// functions sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, ln, log10, sqrt, cbrt,
+    /// abs, sign, min, max, atan2, hypot.
+    ///
+    /// # Errors
+    /// What can't be read, and at which of its characters.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let mut parser = Parser {
+            text,
+            at: 0,
+            depth: 0,
+            expression: Self {
+                text: text.to_owned(),
+                steps: Vec::new(),
+                variables: [false; 3],
+            },
+        };
+        parser.whole().map_err(|reason| {
+            let shown: String = text.chars().take(60).collect();
+            let place = text[..parser.at].chars().count() + 1;
+            format!("expression '{shown}', character {place}: {reason}")
+        })?;
+        Ok(parser.expression)
+    }
+
+    /// Its value at a point; not finite where it isn't defined.
+    pub fn value(&self, at: [f64; 3]) -> f64 {
+        // A nesting level holds at most an operand of each of the four precedences.
+        let mut stack = [0.0; 4 * DEEPEST];
+        let mut top = 0;
+        for step in &self.steps {
+            match *step {
+                Step::Number(value) => {
+                    stack[top] = value;
+                    top += 1;
+                }
+                Step::Variable(axis) => {
+                    stack[top] = at[axis];
+                    top += 1;
+                }
+                Step::Unary(apply) => stack[top - 1] = apply(stack[top - 1]),
+                Step::Binary(apply) => {
+                    top -= 1;
+                    stack[top - 1] = apply(stack[top - 1], stack[top]);
+                }
+            }
+        }
+        stack[0]
+    }
+
+    /// The text it was parsed from.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether it depends on the coordinate `axis`.
+    pub fn depends_on(&self, axis: usize) -> bool {
+        self.variables[axis]
+    }
+}
+
+/// Recursive descent through an expression.
+struct Parser<'a> {
+    text: &'a str,
+    at: usize,
+    depth: usize,
+    expression: Expression,
+}
+
+impl Parser<'_> {
+    fn whole(&mut self) -> Result<(), String> {
+        if self.text.len() > LONGEST {
+            return Err(format!("an expression has at most {LONGEST} characters"));
+        }
+        self.sum()?;
+        match self.peek() {
+            None => Ok(()),
+            Some(found) => Err(format!("expected an operator, found '{found}'")),
+        }
+    }
+
+    /// The next character that isn't white space.
+    fn peek(&mut self) -> Option<char> {
+        let rest = &self.text[self.at..];
+        self.at += rest.len() - rest.trim_start().len();
+        self.text[self.at..].chars().next()
+    }
+
+    fn take(&mut self, symbol: &str) -> bool {
+        self.peek();
+        let found = self.text[self.at..].starts_with(symbol);
+        if found {
+            self.at += symbol.len();
+        }
+        found
+    }
+
+    fn expect(&mut self, symbol: char) -> Result<(), String> {
+        match self.peek() {
+            Some(found) if found == symbol => {
+                self.at += symbol.len_utf8();
+                Ok(())
+            }
+            Some(found) => Err(format!("expected '{symbol}', found '{found}'")),
+            None => Err(format!("expected '{symbol}', found the end")),
+        }
+    }
+
+    fn push(&mut self, step: Step) {
+        self.expression.steps.push(step);
+    }
+
+    fn sum(&mut self) -> Result<(), String> {
+        self.product()?;
+        loop {
+            if self.take("+") {
+                self.product()?;
+                self.push(Step::Binary(|a, b| a + b));
+            } else if self.take("-") {
+                self.product()?;
+                self.push(Step::Binary(|a, b| a - b));
+            } else {
+                return Ok(());
+            }
+        }
+    }
+
+    fn product(&mut self) -> Result<(), String> {
+        self.signed()?;
+        loop {
+            if self.take("*") {
+                self.signed()?;
+                self.push(Step::Binary(|a, b| a * b));
+            } else if self.take("/") {
+                self.signed()?;
+                self.push(Step::Binary(|a, b| a / b));
+            } else {
+                return Ok(());
+            }
+        }
+    }
+
+    fn signed(&mut self) -> Result<(), String> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err(format!("nested deeper than {DEEPEST} levels"));
+        }
+        if self.take("-") {
+            self.signed()?;
+            self.push(Step::Unary(|a| -a));
+        } else if self.take("+") {
+            self.signed()?;
+        } else {
+            self.power()?;
+        }
+        self.depth -= 1;
+        Ok(())
+    }
+
+    fn power(&mut self) -> Result<(), String> {
+        self.atom()?;
+        if self.take("^") || self.take("**") {
+            self.signed()?;
+            self.push(Step::Binary(f64::powf));
+        }
+        Ok(())
+    }
+
+    fn atom(&mut self) -> Result<(), String> {
+        match self.peek() {
+            Some('(') => {
+                self.expect('(')?;
+                self.sum()?;
+                self.expect(')')
+            }
+            Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
+            Some(c) if c.is_alphabetic() || c == '_' => self.word(),
+            Some(found) => Err(format!("expected a number, x, y or z, found '{found}'")),
+            None => Err("expected a number, x, y or z, found the end".into()),
+        }
+    }
+
+    fn number(&mut self) -> Result<(), String> {
+        let rest = &self.text.as_bytes()[self.at..];
+        let digits = |from: usize| {
+            rest[from..]
+                .iter()
+                .take_while(|c| c.is_ascii_digit())
+                .count()
+        };
+        let mut end = digits(0);
+        if rest.get(end) == Some(&b'.') {
+            end += 1 + digits(end + 1);
+        }
+        if matches!(rest.get(end), Some(b'e' | b'E')) {
+            let sign = usize::from(matches!(rest.get(end + 1), Some(b'+' | b'-')));
+            end += 1 + sign + digits(end + 1 + sign);
+        }
+        let text = &self.text[self.at..self.at + end];
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => {
+                self.at += end;
+                self.push(Step::Number(value));
+                Ok(())
+            }
+            Ok(_) => Err(format!("'{text}' is too large for a number")),
+            Err(_) => Err(format!("'{text}' isn't a number")),
+        }
+    }
+
+    fn word(&mut self) -> Result<(), String> {
+        let rest = &self.text[self.at..];
+        let end = rest
+            .find(|c: char| !c.is_alphanumeric() && c != '_')
+            .unwrap_or(rest.len());
+        let (word, start) = (&rest[..end], self.at);
+        self.at += end;
+        if let Some(axis) = VARIABLES.iter().position(|&name| name == word) {
+            self.expression.variables[axis] = true;
+            self.push(Step::Variable(axis));
+        } else if let Some(&(_, value)) = CONSTANTS.iter().find(|c| c.0 == word) {
+            self.push(Step::Number(value));
+        } else if let Some(&(_, apply)) = UNARY.iter().find(|f| f.0 == word) {
+            self.expect('(')?;
+            self.sum()?;
+            self.expect(')')?;
+            self.push(Step::Unary(apply));
+        } else if let Some(&(_, apply)) = BINARY.iter().find(|f| f.0 == word) {
+            self.expect('(')?;
+            self.sum()?;
+            self.expect(',')?;
+            self.sum()?;
+            self.expect(')')?;
+            self.push(Step::Binary(apply));
+        } else {
+            self.at = start;
+            let names = VARIABLES
+                .into_iter()
+                .chain(CONSTANTS.map(|c| c.0))
+                .chain(UNARY.map(|f| f.0))
+                .chain(BINARY.map(|f| f.0));
+            return Err(format!(
+                "'{word}' isn't known; did you mean '{}'? The variables are x, y and z",
+                nearest(word, names).unwrap_or("x")
+            ));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(text: &str) -> f64 {
+        Expression::parse(text).unwrap().value([3.0, 5.0, 7.0])
+    }
+
+    #[test]
+    fn operators_bind_as_in_mathematics() {
+        for (text, expected) in [
+            ("-x^2", -9.0),
+            ("2*-x^2", -18.0),
+            ("2^3^2", 512.0),
+            ("2**-1", 0.5),
+            ("8-3-2", 3.0),
+            ("10/2/5", 1.0),
+            ("1+2*y", 11.0),
+            ("-(1 - z)*x", 18.0),
+            ("--x", 3.0),
+            ("-sin(pi/2)^2", -1.0),
+        ] {
+            assert_eq!(value(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_read_in_every_usual_notation() {
+        for (text, expected) in [
+            ("1e6", 1e6),
+            ("-1e6*(1-x^2)", 8e6),
+            ("1.5E+3", 1500.0),
+            ("2.e-1", 0.2),
+            (".5", 0.5),
+            ("0.7e7", 0.7e7),
+        ] {
+            assert_eq!(value(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn functions_are_those_of_the_standard_library() {
+        assert_eq!(value("max(x, y) + hypot(3, 4)"), 10.0);
+        assert_eq!(value("exp(-x^2)"), (-9.0_f64).exp());
+        assert_eq!(value("abs(x - y)*sign(0)"), 0.0);
+        assert_eq!(value("atan2(x, sqrt(y))"), 3.0_f64.atan2(5.0_f64.sqrt()));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_character() {
+        for (text, expected) in [
+            ("1 + r", "character 5: 'r' isn't known"),
+            ("sine(x)", "did you mean 'sin'"),
+            ("2x", "character 2: expected an operator"),
+            ("(1", "expected ')', found the end"),
+            ("", "found the end"),
+            ("x-", "found the end"),
+            ("1e", "isn't a number"),
+            ("1e999", "too large"),
+            ("é", "isn't known"),
+            ("min(1)", "expected ','"),
+            ("1,5", "expected an operator, found ','"),
+        ] {
+            let message = Expression::parse(text).unwrap_err();
+            assert!(message.contains(expected), "{text}: {message}");
+        }
+    }
+
+    #[test]
+    fn no_text_exhausts_the_stack() {
+        assert!(Expression::parse(&"(".repeat(4000)).is_err());
+        assert!(Expression::parse(&"-".repeat(4000)).is_err());
+        assert!(Expression::parse(&"1^".repeat(2000)).is_err());
+        let deepest = format!("{}x{}", "x+x*x^(".repeat(31), ")".repeat(31));
+        assert!(Expression::parse(&deepest).unwrap().value([1.0; 3]) > 0.0);
+        assert_eq!(value(&format!("0{}", "+1".repeat(2000))), 2000.0);
+    }
+}

@@ -1,0 +1,165 @@
+//! Numbers of a scene: constants, and expressions of the place.
+
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, Visitor};
+
+use super::expression::Expression;
+
+/// A finite number, or an expression of x, y and z.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Number {
+    /// The same everywhere.
+    Constant(f64),
+    /// Depends on the place.
+    Varying(Expression),
+}
+
+impl Number {
+    /// Its value at a point [m].
+    ///
+    /// # Errors
+    /// An expression that isn't finite there.
+    pub fn at(&self, point: [f64; 3]) -> Result<f64, String> {
+        match self {
+            Self::Constant(value) => Ok(*value),
+            Self::Varying(expression) => {
+                let value = expression.value(point);
+                if value.is_finite() {
+                    Ok(value)
+                } else {
+                    let [x, y, z] = point;
+                    let text = expression.text();
+                    Err(format!("'{text}' is {value} at x = {x}, y = {y}, z = {z}"))
+                }
+            }
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Number {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumberVisitor;
+        impl Visitor<'_> for NumberVisitor {
+            type Value = Number;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("a number or an expression of x, y and z in quotes")
+            }
+
+            fn visit_i64<E: Error>(self, value: i64) -> Result<Number, E> {
+                Ok(Number::Constant(value as f64))
+            }
+
+            fn visit_u64<E: Error>(self, value: u64) -> Result<Number, E> {
+                Ok(Number::Constant(value as f64))
+            }
+
+            fn visit_f64<E: Error>(self, value: f64) -> Result<Number, E> {
+                if value.is_finite() {
+                    Ok(Number::Constant(value))
+                } else {
+                    Err(E::custom(format!("{value} isn't a finite number")))
+                }
+            }
+
+            fn visit_str<E: Error>(self, text: &str) -> Result<Number, E> {
+                let expression = Expression::parse(text).map_err(E::custom)?;
+                if (0..3).any(|axis| expression.depends_on(axis)) {
+                    return Ok(Number::Varying(expression));
+                }
+                let number = Number::Varying(expression);
+                number.at([0.0; 3]).map(Number::Constant).map_err(E::custom)
+            }
+        }
+        deserializer.deserialize_any(NumberVisitor)
+    }
+}
+
+/// A finite number that is the same everywhere; an expression without x, y and z will do.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "Number")]
+pub struct Constant(pub f64);
+
+impl TryFrom<Number> for Constant {
+    type Error = String;
+
+    fn try_from(number: Number) -> Result<Self, String> {
+        match number {
+            Number::Constant(value) => Ok(Self(value)),
+            Number::Varying(expression) => Err(format!(
+                "'{}' depends on the place; expected a constant",
+                expression.text()
+            )),
+        }
+    }
+}
+
+/// A vector of two or three numbers.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "Vec<Number>")]
+pub struct Vector(Vec<Number>);
+
+impl TryFrom<Vec<Number>> for Vector {
+    type Error = String;
+
+    fn try_from(components: Vec<Number>) -> Result<Self, String> {
+        match components.len() {
+            2 | 3 => Ok(Self(components)),
+            count => Err(format!(
+                "a vector of {count} components; expected one for each direction of space"
+            )),
+        }
+    }
+}
+
+impl Vector {
+    /// Number of its components.
+    pub fn dim(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Its value at a point [m], with zero for a third component that it hasn't.
+    ///
+    /// # Errors
+    /// An expression that isn't finite there.
+    pub fn at(&self, point: [f64; 3]) -> Result<[f64; 3], String> {
+        let mut value = [0.0; 3];
+        for (component, number) in value.iter_mut().zip(&self.0) {
+            *component = number.at(point)?;
+        }
+        Ok(value)
+    }
+
+    /// Whether it is the same everywhere.
+    pub fn is_constant(&self) -> bool {
+        self.0.iter().all(|n| matches!(n, Number::Constant(_)))
+    }
+
+    /// Its components.
+    pub fn components(&self) -> &[Number] {
+        &self.0
+    }
+}
+
+/// A vector that is the same everywhere.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "Vector")]
+pub struct ConstantVector {
+    /// Number of its components.
+    pub dim: usize,
+    /// Its value, with zero for a third component that it hasn't.
+    pub value: [f64; 3],
+}
+
+impl TryFrom<Vector> for ConstantVector {
+    type Error = String;
+
+    fn try_from(vector: Vector) -> Result<Self, String> {
+        let dim = vector.dim();
+        let mut value = [0.0; 3];
+        for (component, number) in value.iter_mut().zip(vector.0) {
+            *component = Constant::try_from(number)?.0;
+        }
+        Ok(Self { dim, value })
+    }
+}

@@ -1,0 +1,173 @@
+//! Where in the text of a scene something stands: line and key.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Deserializer};
+use toml::de::{DeTable, DeValue, Error};
+
+use super::suggest::nearest;
+use crate::error::InputError;
+
+/// One step from a table or an array to what it holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Step {
+    Key(String),
+    Index(usize),
+}
+
+impl From<&str> for Step {
+    fn from(key: &str) -> Self {
+        Self::Key(key.to_owned())
+    }
+}
+
+impl From<usize> for Step {
+    fn from(index: usize) -> Self {
+        Self::Index(index)
+    }
+}
+
+/// An error at the key that `path` leads to.
+pub(super) fn error_at(text: &str, path: &[Step], message: &str) -> InputError {
+    let found = entries(text)
+        .into_iter()
+        .find(|entry| entry.path == path)
+        .map(|entry| entry.key.unwrap_or(entry.value).start);
+    compose(text, found, path, message)
+}
+
+/// What `toml` or `serde` found, with line and key.
+pub(super) fn located(text: &str, error: &Error) -> InputError {
+    let start = error.span().map(|span| span.start);
+    let path = start
+        .and_then(|start| {
+            entries(text)
+                .into_iter()
+                .filter_map(|entry| {
+                    let at_key = entry.key.as_ref().is_some_and(|key| key.contains(&start));
+                    let depth = entry.path.len();
+                    (at_key || entry.value.contains(&start)).then_some(((at_key, depth), entry))
+                })
+                .max_by_key(|(rank, _)| *rank)
+        })
+        .map(|(_, entry)| entry.path)
+        .unwrap_or_default();
+    compose(text, start, &path, &reworded(error.message()))
+}
+
+/// Reads an array of tables so that what is wrong in one is located there: `toml` gives an error
+/// without a place that of the innermost newtype around it.
+pub(super) fn list<'de, D, T>(deserializer: D) -> Result<Vec<T>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    #[derive(Deserialize)]
+    struct Item<T>(T);
+    let items = Vec::<Item<T>>::deserialize(deserializer)?;
+    Ok(items.into_iter().map(|item| item.0).collect())
+}
+
+fn compose(text: &str, start: Option<usize>, path: &[Step], message: &str) -> InputError {
+    let mut place = String::new();
+    if let Some(start) = start.and_then(|start| text.get(..start)) {
+        place = format!("line {}: ", start.matches('\n').count() + 1);
+    }
+    if !path.is_empty() {
+        place = format!("{place}{}: ", shown(path));
+    }
+    InputError::new(format!("{place}{message}"))
+}
+
+/// A path as in `contact[2].sides`, counted from 1.
+fn shown(path: &[Step]) -> String {
+    let mut text = String::new();
+    for step in path {
+        match step {
+            Step::Key(key) => {
+                if !text.is_empty() {
+                    text.push('.');
+                }
+                let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+                if !key.is_empty() && key.chars().all(bare) {
+                    text.push_str(key);
+                } else {
+                    text.push_str(&format!("{key:?}"));
+                }
+            }
+            Step::Index(index) => text.push_str(&format!("[{}]", index + 1)),
+        }
+    }
+    text
+}
+
+/// Serde's words for keys that aren't known, with the nearest that is.
+fn reworded(message: &str) -> String {
+    let word = if message.starts_with("unknown field") {
+        "key"
+    } else if message.starts_with("unknown variant") {
+        "value"
+    } else if let Some(key) = message.strip_prefix("missing field ") {
+        return format!("the key {} is missing", key.replace('`', "'"));
+    } else {
+        return message.replace('`', "'");
+    };
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let Some((found, known)) = quoted.split_first() else {
+        return message.to_owned();
+    };
+    match nearest(found, known.iter().copied()) {
+        Some(near) => format!(
+            "unknown {word} '{found}'; did you mean '{near}'? Known here: {}",
+            known.join(", ")
+        ),
+        None => format!("unknown {word} '{found}'"),
+    }
+}
+
+/// A value of the text: how to get there, its key and its own place.
+struct Entry {
+    path: Vec<Step>,
+    key: Option<Range<usize>>,
+    value: Range<usize>,
+}
+
+fn entries(text: &str) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    if let Ok(table) = DeTable::parse(text) {
+        collect_table(table.get_ref(), &mut Vec::new(), &mut entries);
+    }
+    entries
+}
+
+fn collect_table(table: &DeTable, path: &mut Vec<Step>, entries: &mut Vec<Entry>) {
+    for (key, value) in table {
+        path.push(Step::Key(key.get_ref().to_string()));
+        entries.push(Entry {
+            path: path.clone(),
+            key: Some(key.span()),
+            value: value.span(),
+        });
+        collect(value.get_ref(), path, entries);
+        path.pop();
+    }
+}
+
+fn collect(value: &DeValue, path: &mut Vec<Step>, entries: &mut Vec<Entry>) {
+    match value {
+        DeValue::Table(table) => collect_table(table, path, entries),
+        DeValue::Array(array) => {
+            for (index, item) in array.iter().enumerate() {
+                path.push(Step::Index(index));
+                entries.push(Entry {
+                    path: path.clone(),
+                    key: None,
+                    value: item.span(),
+                });
+                collect(item.get_ref(), path, entries);
+                path.pop();
+            }
+        }
+        _ => {}
+    }
+}

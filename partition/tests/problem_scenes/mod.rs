@@ -1,0 +1,232 @@
+//! Small models made by hand: blocks of triangles, on top of each other or cracked.
+#![allow(dead_code)]
+
+use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
+
+use contact_dd_partition::element::{ElementKind, Elements};
+use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::model::{
+    Contact, ContactCondition, Material, Model, PlaneState, Support,
+};
+
+/// A model under construction on the lattice of whole numbers; nodes are told apart by their
+/// place and a layer, so that two sides of a contact can lie on each other.
+#[derive(Default)]
+pub struct Builder {
+    nodes: HashMap<(usize, usize, usize), u32>,
+    points: Vec<[f64; 3]>,
+    cells: Elements,
+    cell_body: Vec<u32>,
+    contacts: Vec<Contact>,
+}
+
+impl Builder {
+    fn node(&mut self, at: (usize, usize, usize)) -> u32 {
+        let points = &mut self.points;
+        *self.nodes.entry(at).or_insert_with(|| {
+            points.push([at.0 as f64, at.1 as f64, 0.0]);
+            points.len() as u32 - 1
+        })
+    }
+
+    /// Adds a square of two triangles; `layer` tells the layer of each of its nodes.
+    fn square(&mut self, i: usize, j: usize, body: u32, layer: impl Fn(usize, usize) -> usize) {
+        let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+        let [a, b, c, d] = corners.map(|(x, y)| self.node((x, y, layer(x, y))));
+        let triangles = match (i + j) % 2 {
+            0 => [[a, b, c], [a, c, d]],
+            _ => [[a, b, d], [b, c, d]],
+        };
+        for nodes in triangles {
+            self.cells.push(ElementKind::Triangle3, &nodes);
+            self.cell_body.push(body);
+        }
+    }
+
+    /// Adds a contact along `y` between the layers below and above.
+    fn contact(&mut self, name: &str, xs: Range<usize>, y: usize, below: usize, above: usize) {
+        let conditions = xs
+            .map(|x| {
+                let (a, b) = (self.nodes[&(x, y, below)], self.nodes[&(x, y, above)]);
+                assert_ne!(a, b);
+                ContactCondition {
+                    entries: vec![(a, [0.0, 1.0, 0.0]), (b, [0.0, -1.0, 0.0])],
+                    gap: 1e-3 * x as f64,
+                    share: 1.0,
+                    position: self.points[a as usize],
+                    normal: [0.0, 1.0, 0.0],
+                    tag_a: tag(a),
+                    tag_b: tag(b),
+                }
+            })
+            .collect();
+        self.contacts.push(Contact {
+            name: name.into(),
+            conditions,
+        });
+    }
+
+    fn model(self) -> Model {
+        let bodies = self.cell_body.iter().max().map_or(0, |b| b + 1);
+        let bottom: Vec<u32> = (0..self.points.len() as u32)
+            .filter(|&n| self.points[n as usize][1] == 0.0)
+            .collect();
+        let top = self.points.iter().map(|p| p[1]).fold(0.0, f64::max);
+        Model {
+            title: "Löwe & Söhne".into(),
+            plane: PlaneState::Strain,
+            materials: vec![
+                material("steel", Some([0.3, 0.3, 0.0]), Some(0.3)),
+                material("wood", None, None),
+            ],
+            bodies: (0..bodies).map(|b| format!("block {b}")).collect(),
+            cell_material: self.cell_body.iter().map(|b| b % 2).collect(),
+            supports: bottom
+                .iter()
+                .flat_map(|&node| {
+                    [[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0]].map(|direction| Support {
+                        node,
+                        direction,
+                        value: f64::from(node),
+                    })
+                })
+                .collect(),
+            forces: (0..self.points.len() as u32)
+                .filter(|&n| self.points[n as usize][1] == top)
+                .map(|n| (n, [0.5, -1.0, 0.0]))
+                .collect(),
+            mesh: Mesh {
+                dim: 2,
+                node_tags: (0..self.points.len() as u32).map(tag).collect(),
+                points: self.points,
+                cell_tags: (0..self.cells.len() as i64).map(|c| 1000 + c).collect(),
+                cells: self.cells,
+                facets: Elements::default(),
+                groups: BTreeMap::new(),
+            },
+            cell_body: self.cell_body,
+            contacts: self.contacts,
+            prescribed_subdomains: None,
+            warnings: vec!["something".into()],
+        }
+    }
+}
+
+fn tag(node: u32) -> i64 {
+    7 + 3 * i64::from(node)
+}
+
+fn material(name: &str, out_of_plane: Option<[f64; 3]>, poisson: Option<f64>) -> Material {
+    Material {
+        name: name.into(),
+        stiffness: [[2.0, 0.5, 0.0], [0.5, 2.0, 0.1], [0.0, 0.1, 1.0]],
+        out_of_plane,
+        poisson,
+    }
+}
+
+/// `count` blocks of `nx` times `ny` squares on top of each other, in contact.
+pub fn stacked(count: usize, nx: usize, ny: usize) -> Model {
+    let mut builder = Builder::default();
+    for block in 0..count {
+        for j in 0..ny {
+            for i in 0..nx {
+                builder.square(i, block * ny + j, block as u32, |_, _| block);
+            }
+        }
+    }
+    for block in 1..count {
+        let name = format!("joint {block}");
+        builder.contact(&name, 0..nx + 1, block * ny, block - 1, block);
+    }
+    builder.model()
+}
+
+/// One block of `n` times `n` squares with cracks along its middle, each through the given
+/// columns; the nodes at the ends of a crack inside the block are tips.
+pub fn cracked(n: usize, cracks: &[Range<usize>]) -> Model {
+    let mut builder = Builder::default();
+    let middle = n / 2;
+    let open = |crack: &Range<usize>| {
+        let start = if crack.start == 0 { 0 } else { crack.start + 1 };
+        let end = if crack.end == n { n + 1 } else { crack.end };
+        start..end
+    };
+    for j in 0..n {
+        for i in 0..n {
+            builder.square(i, j, 0, |x, y| {
+                let above = y == middle && j == middle;
+                usize::from(above && cracks.iter().any(|c| open(c).contains(&x)))
+            });
+        }
+    }
+    for (number, crack) in cracks.iter().enumerate() {
+        builder.contact(&format!("crack {number}"), open(crack), middle, 0, 1);
+    }
+    builder.model()
+}
+
+/// The same model with nodes and cells in another order, and the points moved a little.
+pub fn shuffled(model: &Model, seed: u64) -> Model {
+    let mut state = seed;
+    let mut random = move || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 33) as usize
+    };
+    let mut permutation = |n: usize| {
+        let mut order: Vec<usize> = (0..n).collect();
+        for i in (1..n).rev() {
+            order.swap(i, random() % (i + 1));
+        }
+        order
+    };
+    let mesh = &model.mesh;
+    let nodes = permutation(mesh.points.len());
+    let cells = permutation(mesh.cells.len());
+    let mut place = vec![0u32; nodes.len()];
+    for (new, &old) in nodes.iter().enumerate() {
+        place[old] = new as u32;
+    }
+    let mut out = model.clone();
+    out.mesh.points = nodes
+        .iter()
+        .map(|&n| {
+            let [x, y, z] = mesh.points[n];
+            [x + 0.1 * (3.0 * y).sin(), y + 0.1 * (2.0 * x).cos(), z]
+        })
+        .collect();
+    out.mesh.node_tags = nodes.iter().map(|&n| mesh.node_tags[n]).collect();
+    out.mesh.cell_tags = cells.iter().map(|&c| mesh.cell_tags[c]).collect();
+    out.mesh.cells = Elements::default();
+    for &c in &cells {
+        let moved: Vec<u32> = mesh
+            .cells
+            .nodes_of(c)
+            .iter()
+            .map(|&n| place[n as usize])
+            .collect();
+        out.mesh.cells.push(mesh.cells.kind(c), &moved);
+    }
+    out.cell_body = cells.iter().map(|&c| model.cell_body[c]).collect();
+    out.cell_material = cells.iter().map(|&c| model.cell_material[c]).collect();
+    for support in &mut out.supports {
+        support.node = place[support.node as usize];
+    }
+    out.supports.sort_by_key(|s| s.node);
+    for force in &mut out.forces {
+        force.0 = place[force.0 as usize];
+    }
+    out.forces.sort_by_key(|f| f.0);
+    for entry in out
+        .contacts
+        .iter_mut()
+        .flat_map(|c| &mut c.conditions)
+        .flat_map(|c| &mut c.entries)
+    {
+        entry.0 = place[entry.0 as usize];
+    }
+    out
+}

@@ -1,0 +1,379 @@
+//! Reading scene.toml: every key of it, and what is said about wrong ones.
+
+use contact_dd_partition::model::PlaneState;
+use contact_dd_partition::scene::Scene;
+use contact_dd_partition::scene::condition::{Obstacle, Partner};
+use contact_dd_partition::scene::material::Elasticity;
+use contact_dd_partition::scene::number::Number;
+
+const WHOLE: &str = r#"title = "Loaded granite block with cracks"
+mesh  = "block.msh"
+plane = "strain"
+subdomains = ["s1", "s2"]
+
+[materials.granite]
+young = 5.2e9
+poisson = 0.18
+[materials.wood]
+stiffness = [[10, 2, 0], [2, 5, 0], [0, 0, "1+1"]]
+out_of_plane = [1.0, 2.0, 0]
+
+[bodies.block]
+material = "granite"
+body_force = [0.0, -25e3]
+[bodies."left block"]
+material = "wood"
+
+[[displacement]]
+on = "bottom"
+x = 0.0
+y = "1e-3*x"
+[[bilateral]]
+on = ["axis", "side"]
+[[traction]]
+on = "top"
+value = ["0", "-1e6*(1-x^2)"]
+[[pressure]]
+on = "right"
+value = 0.6e7
+[[contact]]
+name = "left crack"
+sides = ["left crack lower", ["left crack upper", "more"]]
+gap = 0.0
+[[contact]]
+name = "table"
+sides = ["base"]
+obstacle = { point = [0.0, 0.0], normal = [0.0, 2.0] }
+[[contact]]
+name = "ring"
+sides = ["rim"]
+obstacle = { center = [0, 0], radius = "2*pi", inside = true }
+"#;
+
+#[test]
+fn every_key_is_read() {
+    let scene = Scene::parse(WHOLE).unwrap();
+    assert_eq!(scene.title, "Loaded granite block with cracks");
+    assert_eq!(scene.mesh.to_str(), Some("block.msh"));
+    assert_eq!(scene.plane, Some(PlaneState::Strain));
+    let subdomains = scene.subdomains.unwrap();
+    assert_eq!(subdomains.iter().collect::<Vec<_>>(), ["s1", "s2"]);
+    assert_eq!(
+        scene.materials["granite"],
+        Elasticity::Isotropic {
+            young: 5.2e9,
+            poisson: 0.18
+        }
+    );
+    assert_eq!(
+        scene.materials["wood"],
+        Elasticity::Anisotropic {
+            stiffness: [[10.0, 2.0, 0.0], [2.0, 5.0, 0.0], [0.0, 0.0, 2.0]],
+            out_of_plane: Some([1.0, 2.0, 0.0]),
+        }
+    );
+    let force = scene.bodies["block"].body_force.clone().unwrap();
+    assert_eq!(force.at([0.0; 3]), Ok([0.0, -25e3, 0.0]));
+    assert_eq!(scene.bodies["left block"].body_force, None);
+    let displacement = &scene.displacement[0].components;
+    assert_eq!(displacement[0], Some(Number::Constant(0.0)));
+    assert_eq!(
+        displacement[1].as_ref().unwrap().at([2.0, 0.0, 0.0]),
+        Ok(2e-3)
+    );
+    assert_eq!(displacement[2], None);
+    assert_eq!(scene.bilateral[0].on.to_string(), "'axis', 'side'");
+    assert_eq!(
+        scene.traction[0].value.at([0.5, 9.0, 0.0]),
+        Ok([0.0, -0.75e6, 0.0])
+    );
+    assert_eq!(scene.pressure[0].value, Number::Constant(0.6e7));
+    let [crack, table, ring] = scene.contact.as_slice() else {
+        panic!("three contacts");
+    };
+    assert_eq!(crack.name, "left crack");
+    assert_eq!(crack.gap, Some(Number::Constant(0.0)));
+    assert!(matches!(&crack.partner, Partner::Side(b)
+        if b.to_string() == "'left crack upper', 'more'"));
+    assert_eq!(table.gap, None);
+    assert!(matches!(&table.partner,
+        Partner::Obstacle(Obstacle::HalfPlane { point, normal })
+            if point.value == [0.0; 3] && normal.value == [0.0, 2.0, 0.0]));
+    assert!(matches!(&ring.partner,
+        Partner::Obstacle(Obstacle::Circle { radius, inside: true, .. })
+            if *radius == 2.0 * std::f64::consts::PI));
+}
+
+#[test]
+fn a_scene_needs_no_more_than_mesh_material_and_body() {
+    let scene = Scene::parse(
+        "mesh = 'a.msh'\nplane = 'stress'\nmaterials.m = {young = 1, poisson = 0}\nbodies.b.material = 'm'",
+    )
+    .unwrap();
+    assert_eq!(scene.plane, Some(PlaneState::Stress));
+    assert!(scene.contact.is_empty() && scene.subdomains.is_none());
+}
+
+#[test]
+fn the_mesh_lies_beside_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, WHOLE).unwrap();
+    let scene = Scene::read(&path).unwrap();
+    assert_eq!(scene.mesh, folder.path().join("block.msh"));
+    std::fs::write(&path, WHOLE.replace("block.msh", "/meshes/block.msh")).unwrap();
+    let scene = Scene::read(&path).unwrap();
+    assert_eq!(scene.mesh.to_str(), Some("/meshes/block.msh"));
+}
+
+#[test]
+fn files_that_are_no_scene_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    let said = |path: &std::path::Path| Scene::read(path).unwrap_err().to_string();
+    assert!(said(&path).contains("scene.toml: can't be read"));
+    assert!(said(folder.path()).contains("can't be read"));
+    std::fs::write(&path, b"title = 'a'\nmesh = '\xff'").unwrap();
+    assert!(said(&path).contains("scene.toml: line 2: isn't UTF-8"));
+    std::fs::write(&path, "mesh = 1").unwrap();
+    assert!(said(&path).contains("scene.toml: line 1: mesh: "));
+}
+
+/// What is said when `from` in the whole scene is replaced by `to`, with the start of the message.
+fn said(from: &str, to: &str) -> String {
+    assert!(WHOLE.contains(from), "{from}");
+    match Scene::parse(&WHOLE.replacen(from, to, 1)) {
+        Ok(_) => format!("nothing about {to}"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn unknown_keys_are_named_with_line_and_nearest_known_key() {
+    for (from, to, place, near) in [
+        ("title", "titel", "line 1: ", "'title'"),
+        ("[[pressure]]", "[[presure]]", "line 28: ", "'pressure'"),
+        ("young =", "yuong =", "line 7: materials.granite", "'young'"),
+        (
+            "out_of_plane",
+            "outofplane",
+            "line 11: materials.wood",
+            "'out_of_plane'",
+        ),
+        (
+            "body_force",
+            "force",
+            "line 15: bodies.block",
+            "'body_force'",
+        ),
+        ("y = \"1e", "Y = \"1e", "line 22: displacement[1]", "'y'"),
+        ("gap", "gaps", "line 34: contact[1]", "'gap'"),
+        (
+            "normal",
+            "norml",
+            "line 38: contact[2].obstacle",
+            "'normal'",
+        ),
+        ("\"strain\"", "\"strian\"", "line 3: plane", "'strain'"),
+        (
+            "= \"granite\"",
+            "= \"granit\"",
+            "line 14: bodies.block.material",
+            "'granite'",
+        ),
+    ] {
+        let message = said(from, to);
+        assert!(message.starts_with(place), "{message}");
+        assert!(
+            message.contains(&format!("did you mean {near}")),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn values_that_cannot_be_are_refused_at_their_line_and_key() {
+    for (from, to, expected) in [
+        (
+            "5.2e9",
+            "0.0",
+            "line 7: materials.granite.young: Young's modulus is 0",
+        ),
+        ("5.2e9", "-1", "line 7: materials.granite.young"),
+        (
+            "5.2e9",
+            "nan",
+            "line 7: materials.granite.young: NaN isn't a finite number",
+        ),
+        (
+            "5.2e9",
+            "\"1e9*x\"",
+            "line 7: materials.granite.young: '1e9*x' depends on the place",
+        ),
+        (
+            "0.18",
+            "0.5",
+            "line 8: materials.granite.poisson: Poisson's ratio is 0.5",
+        ),
+        ("0.18", "-1.0", "line 8: materials.granite.poisson"),
+        (
+            "poisson = 0.18",
+            "",
+            "line 6: materials.granite: the key 'poisson' is missing",
+        ),
+        (
+            "young = 5.2e9\npoisson = 0.18",
+            "",
+            "materials.granite: keys are missing",
+        ),
+        (
+            "poisson = 0.18",
+            "stiffness = [[1,0,0],[0,1,0],[0,0,1]]",
+            "materials.granite: a material has either",
+        ),
+        (
+            "poisson = 0.18",
+            "poisson = 0.1\nout_of_plane = [0,0,0]",
+            "'out_of_plane' belongs to 'stiffness'",
+        ),
+        (
+            "[2, 5, 0]",
+            "[3, 5, 0]",
+            "line 10: materials.wood.stiffness: the stiffness isn't symmetric",
+        ),
+        (
+            "[10, 2, 0]",
+            "[0.5, 2, 0]",
+            "line 10: materials.wood.stiffness: the stiffness isn't positive definite",
+        ),
+        ("[10, 2, 0], ", "", "line 10: materials.wood.stiffness"),
+        (
+            "-25e3",
+            "inf",
+            "line 15: bodies.block.body_force[2]: inf isn't a finite number",
+        ),
+        (
+            "-25e3]",
+            "-25e3, 0]",
+            "line 15: bodies.block.body_force: a plane scene",
+        ),
+        (
+            "-25e3]",
+            "1, 2, 3]",
+            "line 15: bodies.block.body_force: a vector of 4",
+        ),
+        (
+            "x = 0.0\n",
+            "z = 0.0\n",
+            "line 21: displacement[1].z: a plane scene has no 'z'",
+        ),
+        (
+            "x = 0.0\ny = \"1e-3*x\"\n",
+            "",
+            "displacement[1]: it prescribes nothing",
+        ),
+        (
+            "1e-3*x",
+            "1e-3*r",
+            "line 22: displacement[1].y: expression '1e-3*r', character 6: 'r' isn't known",
+        ),
+        ("1e-3*x", "1/0", "line 22: displacement[1].y: '1/0' is inf"),
+        (
+            "on = \"bottom\"",
+            "",
+            "displacement[1]: the key 'on' is missing",
+        ),
+        (
+            "[\"axis\", \"side\"]",
+            "[]",
+            "line 24: bilateral[1].on: an empty list",
+        ),
+        (
+            "[\"axis\", \"side\"]",
+            "['a', 'a']",
+            "line 24: bilateral[1].on: 'a' stands here twice",
+        ),
+        (
+            "[\"axis\", \"side\"]",
+            "7",
+            "line 24: bilateral[1].on: invalid type: integer '7', expected the name",
+        ),
+        (
+            "0.6e7",
+            "true",
+            "line 30: pressure[1].value: invalid type: boolean",
+        ),
+        (
+            "name = \"left crack\"",
+            "name = \"a/b\"",
+            "line 32: contact[1].name: 'a/b' holds a '/'",
+        ),
+        (
+            "name = \"left crack\"",
+            "name = \"\"",
+            "line 32: contact[1].name: '' is empty",
+        ),
+        (
+            "name = \"left crack\"",
+            "name = \".\"",
+            "line 32: contact[1].name: '.' means",
+        ),
+        (
+            "name = \"left crack\"",
+            "",
+            "contact[1]: the key 'name' is missing",
+        ),
+        (
+            "name = \"table\"",
+            "name = \"left crack\"",
+            "line 36: contact[2].name: contact[1] has the name 'left crack' already",
+        ),
+        (
+            "[\"base\"]",
+            "[\"base\", \"top\"]",
+            "contact[2]: 'sides' has 2 entries; expected 1",
+        ),
+        ("[\"base\"]", "[]", "contact[2]: 'sides' has 0 entries"),
+        (
+            "obstacle = { point = [0.0, 0.0], normal = [0.0, 2.0] }",
+            "",
+            "contact[2]: 'sides' has 1 entries; expected 2",
+        ),
+        (
+            "\"more\"",
+            "\"left crack lower\"",
+            "contact[1]: 'left crack lower' is on both 'sides'",
+        ),
+        ("gap = 0.0", "gap = nan", "line 34: contact[1].gap: NaN"),
+        (
+            "normal = [0.0, 2.0]",
+            "normal = [0.0, 0]",
+            "line 38: contact[2].obstacle.normal: the zero vector",
+        ),
+        (
+            ", normal = [0.0, 2.0]",
+            "",
+            "line 38: contact[2].obstacle: expected 'point' and 'normal'",
+        ),
+        (
+            "\"2*pi\"",
+            "0",
+            "line 42: contact[3].obstacle.radius: the radius is 0",
+        ),
+        ("mesh  = \"block.msh\"", "", "the key 'mesh' is missing"),
+        (
+            "mesh  = \"block.msh\"",
+            "mesh = ''",
+            "line 2: mesh: expected the name of a file",
+        ),
+        (
+            "young = 5.2e9",
+            "young = 5.2e9\nyoung = 1",
+            "line 8: duplicate key",
+        ),
+        ("[[traction]]", "[[traction]", "line 25: "),
+    ] {
+        let message = said(from, to);
+        assert!(message.contains(expected), "{to}: {message}");
+    }
+}

@@ -1,0 +1,120 @@
+//! What travels: a list of integers and a list of reals.
+
+use faer::{Mat, MatRef};
+
+/// A message.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Message {
+    /// Integers.
+    pub integers: Vec<i64>,
+    /// Reals.
+    pub reals: Vec<f64>,
+}
+
+impl Message {
+    /// Appends the lower triangle of a symmetric matrix, column after column.
+    ///
+    /// faer pads its columns, so that a matrix can't be sent as it lies in memory.
+    pub fn push_lower(&mut self, matrix: MatRef<'_, f64>) {
+        for j in 0..matrix.ncols() {
+            for i in j..matrix.nrows() {
+                self.reals.push(matrix[(i, j)]);
+            }
+        }
+    }
+
+    /// Appends a matrix, column after column.
+    pub fn push_matrix(&mut self, matrix: MatRef<'_, f64>) {
+        for j in 0..matrix.ncols() {
+            for i in 0..matrix.nrows() {
+                self.reals.push(matrix[(i, j)]);
+            }
+        }
+    }
+}
+
+/// Reads a message in the order in which it was filled. The sender and the reader are the same
+/// program, so what is read is there; a list that is too short yields zeros.
+#[derive(Debug)]
+pub struct MessageReader {
+    integers: std::vec::IntoIter<i64>,
+    reals: std::vec::IntoIter<f64>,
+}
+
+impl Message {
+    /// Starts to read.
+    pub fn read(self) -> MessageReader {
+        MessageReader {
+            integers: self.integers.into_iter(),
+            reals: self.reals.into_iter(),
+        }
+    }
+}
+
+impl MessageReader {
+    /// The next integer.
+    pub fn integer(&mut self) -> i64 {
+        self.integers.next().unwrap_or_default()
+    }
+
+    /// The next integer, which is a count.
+    pub fn count(&mut self) -> usize {
+        self.integer() as usize
+    }
+
+    /// The next `n` integers.
+    pub fn integers(&mut self, n: usize) -> Vec<i64> {
+        self.integers.by_ref().take(n).collect()
+    }
+
+    /// The next real.
+    pub fn real(&mut self) -> f64 {
+        self.reals.next().unwrap_or_default()
+    }
+
+    /// The next `n` reals.
+    pub fn reals(&mut self, n: usize) -> Vec<f64> {
+        self.reals.by_ref().take(n).collect()
+    }
+
+    /// The next symmetric matrix of size `n`, sent as its lower triangle.
+    pub fn lower(&mut self, n: usize) -> Mat<f64> {
+        let mut matrix = Mat::zeros(n, n);
+        for j in 0..n {
+            for i in j..n {
+                let value = self.real();
+                matrix[(i, j)] = value;
+                matrix[(j, i)] = value;
+            }
+        }
+        matrix
+    }
+
+    /// The next matrix.
+    pub fn matrix(&mut self, rows: usize, columns: usize) -> Mat<f64> {
+        let mut matrix = Mat::zeros(rows, columns);
+        for j in 0..columns {
+            for i in 0..rows {
+                matrix[(i, j)] = self.real();
+            }
+        }
+        matrix
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn matrices_arrive_as_they_were_sent() {
+        let full = Mat::from_fn(3, 5, |i, j| (10 * i + j) as f64);
+        let symmetric = Mat::from_fn(4, 4, |i, j| (i * j + i + j) as f64);
+        let mut message = Message::default();
+        message.push_matrix(full.as_ref());
+        message.push_lower(symmetric.as_ref());
+        let mut reader = message.read();
+        assert_eq!(reader.matrix(3, 5), full);
+        assert_eq!(reader.lower(4), symmetric);
+    }
+}

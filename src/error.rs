@@ -1,0 +1,87 @@
+//! How a run can fail, and the exit code that says so.
+
+use std::process::ExitCode;
+
+use contact_dd_partition::error::{InputError, OutputError};
+
+/// What a failed run ends with; the same on all ranks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum FailureKind {
+    /// Anything that has no code of its own.
+    Internal = 1,
+    /// Bad usage or bad input.
+    Input = 2,
+    /// The scene has no equilibrium: a free rigid motion with load along it.
+    IllPosed = 4,
+    /// The output can't be written.
+    Output = 5,
+}
+
+impl FailureKind {
+    /// The kind that a code received from another rank stands for.
+    pub fn from_code(code: i64) -> Self {
+        match code {
+            2 => Self::Input,
+            4 => Self::IllPosed,
+            5 => Self::Output,
+            _ => Self::Internal,
+        }
+    }
+}
+
+/// A failed run: one message, one exit code.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct Failure {
+    /// What it ends with.
+    pub kind: FailureKind,
+    /// Where, and what was expected.
+    pub message: String,
+}
+
+impl Failure {
+    /// A failure without an exit code of its own.
+    pub fn internal(message: impl Into<String>) -> Self {
+        Self {
+            kind: FailureKind::Internal,
+            message: message.into(),
+        }
+    }
+
+    /// Bad usage or bad input.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self {
+            kind: FailureKind::Input,
+            message: message.into(),
+        }
+    }
+
+    /// A scene without equilibrium.
+    pub fn ill_posed(message: impl Into<String>) -> Self {
+        Self {
+            kind: FailureKind::IllPosed,
+            message: message.into(),
+        }
+    }
+
+    /// The process's exit code.
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(self.kind as u8)
+    }
+}
+
+impl From<InputError> for Failure {
+    fn from(error: InputError) -> Self {
+        Self::input(error.to_string())
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        Self {
+            kind: FailureKind::Output,
+            message: error.to_string(),
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Node frames: the axes along which a node is held, pushed, or free.
+
+use std::collections::BTreeMap;
+
+use contact_dd_partition::model::Support;
+
+/// An orthonormal frame of a node. Its displacement is u = Σ_k axes[k]·v_k.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Axes; the first `dim` count.
+    pub axes: [[f64; 3]; 3],
+    /// Prescribed displacement along each axis; `None` where it is free.
+    pub prescribed: [Option<f64>; 3],
+}
+
+impl Frame {
+    /// The frame of the coordinates, free.
+    pub const CARTESIAN: Self = Self {
+        axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        prescribed: [None; 3],
+    };
+
+    /// A free frame whose first axes are `directions`, orthonormal.
+    pub fn along(directions: &[[f64; 3]], dim: usize) -> Self {
+        let mut frame = Self::CARTESIAN;
+        let mut filled = 0;
+        for &direction in directions.iter().take(dim) {
+            frame.axes[filled] = direction;
+            filled += 1;
+        }
+        while filled < dim {
+            frame.axes[filled] = frame.completion(filled, dim);
+            filled += 1;
+        }
+        frame
+    }
+
+    /// A unit vector normal to the first `filled` axes: the coordinate axis that is least
+    /// represented by them, made orthogonal.
+    fn completion(&self, filled: usize, dim: usize) -> [f64; 3] {
+        let share = |e: usize| -> f64 { self.axes[..filled].iter().map(|a| a[e] * a[e]).sum() };
+        let mut least = 0;
+        for e in 1..dim {
+            if share(e) < share(least) {
+                least = e;
+            }
+        }
+        let mut axis = [0.0; 3];
+        axis[least] = 1.0;
+        // Twice is enough: the second pass takes off what round-off left of the first.
+        for _ in 0..2 {
+            for a in &self.axes[..filled] {
+                let along = dot(a, &axis);
+                for (x, a) in axis.iter_mut().zip(a) {
+                    *x -= along * a;
+                }
+            }
+        }
+        let norm = dot(&axis, &axis).sqrt();
+        axis.map(|x| x / norm)
+    }
+}
+
+/// a·b.
+pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The frames of all nodes with supports; rows of one node are orthonormal.
+pub fn support_frames(supports: &[Support], dim: usize) -> BTreeMap<u32, Frame> {
+    let mut rows: BTreeMap<u32, Vec<&Support>> = BTreeMap::new();
+    for support in supports {
+        rows.entry(support.node).or_default().push(support);
+    }
+    rows.into_iter()
+        .map(|(node, rows)| {
+            let directions: Vec<[f64; 3]> = rows.iter().map(|s| s.direction).collect();
+            let mut frame = Frame::along(&directions, dim);
+            for (k, support) in rows.iter().enumerate() {
+                frame.prescribed[k] = Some(support.value);
+            }
+            (node, frame)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_is_orthonormal_whatever_its_first_axis() {
+        for k in 0..40 {
+            let phi = 0.17 * k as f64;
+            let d = [phi.cos() * 0.6, phi.sin() * 0.6, 0.8];
+            let frame = Frame::along(&[d], 3);
+            for a in 0..3 {
+                for b in 0..3 {
+                    let exact = if a == b { 1.0 } else { 0.0 };
+                    assert!((dot(&frame.axes[a], &frame.axes[b]) - exact).abs() < 1e-15);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn two_supports_hold_a_plane_node() {
+        let support = |direction, value| Support {
+            node: 4,
+            direction,
+            value,
+        };
+        let frames = support_frames(
+            &[support([0.0, 1.0, 0.0], 2.0), support([1.0, 0.0, 0.0], 1.0)],
+            2,
+        );
+        assert_eq!(frames[&4].prescribed[..2], [Some(2.0), Some(1.0)]);
+    }
+}

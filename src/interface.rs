@@ -1,0 +1,4 @@
+//! The interface problem on Γ: its numbering, S_0, and the solve at the root.
+
+pub mod numbering;
+pub mod operator;

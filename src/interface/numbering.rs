@@ -1,0 +1,177 @@
+//! The unknowns on Γ, in the order in which the root eliminates them.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use crate::error::Failure;
+use crate::fem::dofs::TraceDof;
+use crate::schur::pattern::Cliques;
+
+/// The numbering of the interface's unknowns.
+#[derive(Clone, Debug, Default)]
+pub struct Numbering {
+    /// Number of unknowns.
+    pub len: usize,
+    /// For every block the numbers of its traces.
+    pub traces: Vec<Vec<u32>>,
+}
+
+impl Numbering {
+    /// Numbers the traces of all blocks; `nodes[b]` are the nodes of Γ that block b shares with
+    /// others.
+    ///
+    /// # Errors
+    /// Two blocks disagree on which components of a shared node are free.
+    pub fn new(traces: &[Vec<TraceDof>], nodes: &[Vec<u32>]) -> Result<Self, Failure> {
+        check_agreement(traces, nodes)?;
+        let mut blocks_of: BTreeMap<TraceDof, Vec<u32>> = BTreeMap::new();
+        for (b, list) in traces.iter().enumerate() {
+            for &dof in list {
+                blocks_of.entry(dof).or_default().push(b as u32);
+            }
+        }
+        let faces = Faces::new(&blocks_of, traces.len());
+        let mut number: HashMap<TraceDof, u32> = HashMap::with_capacity(blocks_of.len());
+        for face in faces.elimination_order() {
+            for &dof in &faces.dofs[face] {
+                number.insert(dof, number.len() as u32);
+            }
+        }
+        Ok(Self {
+            len: number.len(),
+            traces: traces
+                .iter()
+                .map(|list| list.iter().map(|dof| number[dof]).collect())
+                .collect(),
+        })
+    }
+
+    /// The blocks' traces as cliques.
+    pub fn cliques(&self, blocks: impl IntoIterator<Item = usize>) -> Cliques {
+        let mut cliques = Cliques::default();
+        for b in blocks {
+            cliques.push(self.traces[b].iter().copied());
+        }
+        cliques
+    }
+}
+
+/// The same node must be free along the same axes in all blocks.
+fn check_agreement(traces: &[Vec<TraceDof>], nodes: &[Vec<u32>]) -> Result<(), Failure> {
+    let mut known: HashMap<u32, u32> = HashMap::new();
+    for (list, nodes) in traces.iter().zip(nodes) {
+        let mut free: HashMap<u32, u32> = HashMap::new();
+        for dof in list {
+            *free.entry(dof.node).or_default() |= 1 << dof.axis;
+        }
+        for node in nodes {
+            let mask = free.get(node).copied().unwrap_or(0);
+            if *known.entry(*node).or_insert(mask) != mask {
+                return Err(Failure::input(format!(
+                    "/support: the subdomains that share node {node} of /interface/interface \
+                     hold it in different ways; expected the same supports in all of them"
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Pieces of Γ whose unknowns belong to the same blocks: what the root eliminates at once.
+struct Faces {
+    blocks: Vec<Vec<u32>>,
+    dofs: Vec<Vec<TraceDof>>,
+    of_block: Vec<Vec<usize>>,
+}
+
+impl Faces {
+    fn new(blocks_of: &BTreeMap<TraceDof, Vec<u32>>, block_count: usize) -> Self {
+        let mut faces: BTreeMap<&[u32], Vec<TraceDof>> = BTreeMap::new();
+        for (&dof, blocks) in blocks_of {
+            faces.entry(blocks).or_default().push(dof);
+        }
+        let mut of_block = vec![Vec::new(); block_count];
+        for (face, blocks) in faces.keys().enumerate() {
+            for &b in *blocks {
+                of_block[b as usize].push(face);
+            }
+        }
+        Self {
+            blocks: faces.keys().map(|blocks| blocks.to_vec()).collect(),
+            dofs: faces.into_values().collect(),
+            of_block,
+        }
+    }
+
+    /// Minimum degree on faces, each counted with its number of unknowns.
+    fn elimination_order(&self) -> Vec<usize> {
+        let n = self.dofs.len();
+        let mut neighbours: Vec<BTreeSet<usize>> = self
+            .blocks
+            .iter()
+            .enumerate()
+            .map(|(face, blocks)| {
+                let mut list: BTreeSet<usize> = blocks
+                    .iter()
+                    .flat_map(|&b| self.of_block[b as usize].iter().copied())
+                    .collect();
+                list.remove(&face);
+                list
+            })
+            .collect();
+        let degree =
+            |list: &BTreeSet<usize>| list.iter().map(|&f| self.dofs[f].len()).sum::<usize>();
+        let mut queue: BTreeSet<(usize, usize)> =
+            (0..n).map(|f| (degree(&neighbours[f]), f)).collect();
+        let mut order = Vec::with_capacity(n);
+        while let Some((_, face)) = queue.pop_first() {
+            order.push(face);
+            let clique = std::mem::take(&mut neighbours[face]);
+            for &f in &clique {
+                queue.remove(&(degree(&neighbours[f]), f));
+                // `face` still counts in the old degree, which is why it leaves only now.
+                neighbours[f].remove(&face);
+                neighbours[f].extend(clique.iter().copied().filter(|&g| g != f));
+            }
+            for &f in &clique {
+                queue.insert((degree(&neighbours[f]), f));
+            }
+        }
+        order
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn traces(nodes: &[u32]) -> Vec<TraceDof> {
+        nodes
+            .iter()
+            .flat_map(|&node| (0..2).map(move |axis| TraceDof { node, axis }))
+            .collect()
+    }
+
+    #[test]
+    fn every_trace_gets_one_number_whichever_block_asks() {
+        let nodes = vec![vec![0, 1, 2], vec![2, 3, 4], vec![0, 4, 5, 1], vec![3, 5]];
+        let lists: Vec<_> = nodes.iter().map(|n| traces(n)).collect();
+        let numbering = Numbering::new(&lists, &nodes).unwrap();
+        let mut seen: BTreeMap<TraceDof, u32> = BTreeMap::new();
+        for (list, numbers) in lists.iter().zip(&numbering.traces) {
+            for (&dof, &number) in list.iter().zip(numbers) {
+                assert_eq!(*seen.entry(dof).or_insert(number), number);
+            }
+        }
+        let mut numbers: Vec<u32> = seen.into_values().collect();
+        numbers.sort_unstable();
+        assert_eq!(numbers, (0..12).collect::<Vec<u32>>());
+    }
+
+    #[test]
+    fn blocks_that_hold_a_shared_node_differently_are_told_so() {
+        let mut lists = vec![traces(&[7]), traces(&[7])];
+        lists[1].pop();
+        let error = Numbering::new(&lists, &[vec![7], vec![7]]).unwrap_err();
+        assert!(error.message.contains("node 7"));
+    }
+}

@@ -1,0 +1,173 @@
+//! S_0, the bilateral operator S_0 + S_CON', and the solve at the root.
+
+use faer::{Mat, MatRef, Par};
+
+use super::numbering::Numbering;
+use crate::error::Failure;
+use crate::schur::factor::BoundaryLastCholesky;
+use crate::schur::pattern::{LowerPattern, SparseSymmetric};
+
+/// What a block contributes to the interface problem.
+#[derive(Clone, Debug)]
+pub struct Contribution {
+    /// Its Schur complement on its traces, with every contact closed.
+    pub s: Mat<f64>,
+    /// Its condensed load.
+    pub load: Vec<f64>,
+    /// Scale of the terms that the load is a sum of.
+    pub load_scale: Vec<f64>,
+}
+
+/// The interface problem S_0 U + S_CON(U) = F, (14), as the root holds it.
+#[derive(Debug)]
+pub struct Interface {
+    /// Number of unknowns on Γ.
+    pub len: usize,
+    /// The traces of every pair.
+    pub pair_traces: Vec<Vec<u32>>,
+    /// S_0 = Σ R_iᵀ S_i R_i over the linear subdomains, (15).
+    s_0: SparseSymmetric,
+    /// F of the linear subdomains.
+    f: Vec<f64>,
+    f_scale: Vec<f64>,
+    /// S_ΓΓ of every pair.
+    bilateral: Vec<Mat<f64>>,
+    /// F of the pairs with every contact closed.
+    f_bilateral: Vec<f64>,
+    factor: BoundaryLastCholesky,
+    par: Par,
+}
+
+impl Interface {
+    /// Assembles S_0, F and the bilateral operator from all blocks, in their order, and factorizes
+    /// the latter. `pair[b]` tells whether block b is a pair.
+    ///
+    /// # Errors
+    /// The bilateral problem is singular.
+    pub fn new(
+        numbering: &Numbering,
+        contributions: Vec<Contribution>,
+        pair: &[bool],
+        par: Par,
+    ) -> Result<Self, Failure> {
+        let n = numbering.len;
+        let blocks = 0..pair.len();
+        let linear = numbering.cliques(blocks.clone().filter(|&b| !pair[b]));
+        let all = numbering.cliques(blocks);
+        let too_large = || {
+            Failure::internal(format!(
+                "the interface problem of {n} unknowns has more than 2^32 entries: \
+                 use fewer subdomains"
+            ))
+        };
+        let mut s_0 = SparseSymmetric::zeros(LowerPattern::new(n, &linear).ok_or_else(too_large)?);
+        let mut sum = SparseSymmetric::zeros(LowerPattern::new(n, &all).ok_or_else(too_large)?);
+        let mut pair_traces = Vec::new();
+        let mut bilateral = Vec::new();
+        let mut f = vec![0.0; n];
+        let mut f_bilateral = vec![0.0; n];
+        let mut f_scale = vec![0.0; n];
+        for ((part, traces), &is_pair) in contributions.into_iter().zip(&numbering.traces).zip(pair)
+        {
+            sum.add(traces, |a, b| part.s[(a, b)]);
+            let load_of_kind = if is_pair { &mut f_bilateral } else { &mut f };
+            for ((&dof, load), scale) in traces.iter().zip(&part.load).zip(&part.load_scale) {
+                load_of_kind[dof as usize] += load;
+                f_scale[dof as usize] += scale;
+            }
+            if is_pair {
+                pair_traces.push(traces.clone());
+                bilateral.push(part.s);
+            } else {
+                s_0.add(traces, |a, b| part.s[(a, b)]);
+            }
+        }
+        let factor = BoundaryLastCholesky::new(sum, n, &[], par).map_err(|error| {
+            Failure::ill_posed(format!(
+                "the interface problem can't be solved even with every contact closed ({error}): \
+                 some part of the scene is held neither by supports nor by contact"
+            ))
+        })?;
+        Ok(Self {
+            len: n,
+            pair_traces,
+            s_0,
+            f,
+            f_scale,
+            bilateral,
+            f_bilateral,
+            factor,
+            par,
+        })
+    }
+
+    /// The smallest pivot of the bilateral operator relative to its diagonal.
+    pub fn smallest_pivot(&self) -> f64 {
+        self.factor.smallest_pivot()
+    }
+
+    /// U^0: the solution of the bilateral problem (16)-(17).
+    pub fn bilateral_start(&self) -> Vec<f64> {
+        let mut u: Vec<f64> = self
+            .f
+            .iter()
+            .zip(&self.f_bilateral)
+            .map(|(a, b)| a + b)
+            .collect();
+        self.solve_bilateral(&mut u);
+        u
+    }
+
+    /// x ← (S_0 + S_CON' of the bilateral problem)⁻¹ x.
+    pub fn solve_bilateral(&self, x: &mut [f64]) {
+        self.factor.forward(x);
+        self.factor.backward(x);
+    }
+
+    /// y ← y + S_0 x.
+    pub fn add_s_0(&self, x: &[f64], y: &mut [f64]) {
+        self.s_0.multiply_add(x, y);
+    }
+
+    /// y ← y + S_ΓΓ x of pair p, over the pair's own traces.
+    pub fn add_pair_bilateral(&self, p: usize, x: &[f64], y: &mut [f64]) {
+        multiply_add(self.bilateral[p].as_ref(), x, y);
+    }
+
+    /// F − S_0 U and the scale of its terms.
+    pub fn linear_residual(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let mut su = vec![0.0; self.len];
+        self.s_0.multiply_add(u, &mut su);
+        let mut scale = self.f_scale.clone();
+        self.s_0.multiply_add_absolute(u, &mut scale);
+        let r = self.f.iter().zip(&su).map(|(f, su)| f - su).collect();
+        (r, scale)
+    }
+
+    /// The factor of S_0 alone; `None` where S_0 is singular.
+    pub fn factor_s_0(&self) -> Option<BoundaryLastCholesky> {
+        let factor = BoundaryLastCholesky::new(self.s_0.clone(), self.len, &[], self.par).ok()?;
+        (factor.smallest_pivot() > 1e-12).then_some(factor)
+    }
+
+    /// The entries of `u` on the traces of pair p.
+    pub fn restrict(&self, p: usize, u: &[f64]) -> Vec<f64> {
+        self.pair_traces[p].iter().map(|&i| u[i as usize]).collect()
+    }
+
+    /// y ← y + R_pᵀ x.
+    pub fn extend(&self, p: usize, x: &[f64], y: &mut [f64]) {
+        for (&i, x) in self.pair_traces[p].iter().zip(x) {
+            y[i as usize] += x;
+        }
+    }
+}
+
+/// y ← y + A x.
+pub fn multiply_add(a: MatRef<'_, f64>, x: &[f64], y: &mut [f64]) {
+    for (j, &x_j) in x.iter().enumerate() {
+        for (i, y_i) in y.iter_mut().enumerate() {
+            *y_i += a[(i, j)] * x_j;
+        }
+    }
+}

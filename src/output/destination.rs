@@ -1,0 +1,165 @@
+//! A file that appears under its name only when it is whole.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use contact_dd_partition::error::OutputError;
+use tempfile::TempPath;
+
+/// A name for a file and, in the same folder, the temporary file that will take it.
+///
+/// Dropped without [`commit`](Self::commit), the temporary file goes and what stood under the name
+/// stays.
+#[derive(Debug)]
+pub(super) struct Destination {
+    path: PathBuf,
+    target: PathBuf,
+    temporary: TempPath,
+}
+
+impl Destination {
+    /// Makes the temporary file for `path`.
+    ///
+    /// # Errors
+    /// A folder that doesn't exist or can't be written, a name that something other than a
+    /// writable file has.
+    pub(super) fn new(path: &Path) -> Result<Self, OutputError> {
+        // A link is followed: what it points to is replaced, not the link.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        if let Ok(metadata) = fs::metadata(&target) {
+            if !metadata.is_file() {
+                return Err(failure(path, "something that isn't a file has this name"));
+            }
+            if metadata.permissions().readonly() {
+                return Err(failure(path, "the file that is there is write-protected"));
+            }
+        }
+        let Some(name) = target.file_name() else {
+            return Err(failure(path, "this names a folder; expected a file name"));
+        };
+        let folder = folder_of(&target);
+        if !folder.is_dir() {
+            let reason = format!("there is no folder '{}'", folder.display());
+            return Err(failure(path, reason));
+        }
+        let mut prefix = std::ffi::OsString::from(".");
+        prefix.push(name);
+        prefix.push(".");
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(&prefix).suffix(".part");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // The umask has its say: the same permissions as any file that the user makes.
+            builder.permissions(fs::Permissions::from_mode(0o666));
+        }
+        let temporary = builder
+            .tempfile_in(folder)
+            .map_err(|error| failure(path, plain_words(&error)))?
+            .into_temp_path();
+        Ok(Self {
+            path: path.to_path_buf(),
+            target,
+            temporary,
+        })
+    }
+
+    /// The file to write to.
+    pub(super) fn temporary(&self) -> &Path {
+        &self.temporary
+    }
+
+    /// An error that names the file.
+    pub(super) fn failure(&self, reason: impl ToString) -> OutputError {
+        failure(&self.path, reason)
+    }
+
+    /// Brings the temporary file to the disk and gives it its name.
+    ///
+    /// # Errors
+    /// What the system said.
+    pub(super) fn commit(self) -> Result<(), OutputError> {
+        let sync = |file: &Path| File::open(file).and_then(|file| file.sync_all());
+        sync(&self.temporary).map_err(|error| failure(&self.path, plain_words(&error)))?;
+        self.temporary
+            .persist(&self.target)
+            .map_err(|error| failure(&self.path, plain_words(&error.error)))?;
+        // The file has its name; a file system that can't sync folders doesn't make that untrue.
+        let _ = sync(folder_of(&self.target));
+        Ok(())
+    }
+}
+
+/// An error for `path`.
+pub(super) fn failure(path: &Path, reason: impl ToString) -> OutputError {
+    OutputError {
+        path: path.to_path_buf(),
+        reason: reason.to_string(),
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// The system's words without the path of the temporary file, which means nothing to the user.
+fn plain_words(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::PermissionDenied => "no permission to write into its folder".into(),
+        io::ErrorKind::ReadOnlyFilesystem => "its file system is read-only".into(),
+        io::ErrorKind::StorageFull => "its file system is full".into(),
+        _ => error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_keeps_its_content_until_the_other_one_is_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("result");
+        fs::write(&path, "before").unwrap();
+
+        let dropped = Destination::new(&path).unwrap();
+        fs::write(dropped.temporary(), "half").unwrap();
+        drop(dropped);
+        assert_eq!(fs::read_to_string(&path).unwrap(), "before");
+
+        let whole = Destination::new(&path).unwrap();
+        fs::write(whole.temporary(), "after").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "before");
+        whole.commit().unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "after");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, "before").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        let destination = Destination::new(&link).unwrap();
+        fs::write(destination.temporary(), "after").unwrap();
+        destination.commit().unwrap();
+        assert_eq!(fs::read_to_string(&file).unwrap(), "after");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    }
+
+    #[test]
+    fn what_is_no_file_is_refused_before_anything_is_computed() {
+        let folder = tempfile::tempdir().unwrap();
+        let refused = |path: &Path| Destination::new(path).unwrap_err().to_string();
+        assert!(refused(folder.path()).contains("isn't a file"));
+        assert!(refused(&folder.path().join("no/result")).contains("there is no folder"));
+        assert!(refused(Path::new("/dev/null")).contains("isn't a file"));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,300 @@
+//! The report: what a run was, in JSON.
+
+use std::fs;
+use std::path::Path;
+
+use contact_dd_partition::error::OutputError;
+use serde::Serialize;
+
+use super::destination::{Destination, failure};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// The tolerance is met and the active set stays.
+    Converged,
+    /// It isn't.
+    NotConverged,
+}
+
+/// Checks of the full discrete problem, all relative to the scale of what they check.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Certificate {
+    /// ‖K u − f + Bᵀλ‖∞ / ‖|K||u| + |f| + |Bᵀλ|‖∞.
+    pub equilibrium: f64,
+    /// Largest penetration over the largest displacement.
+    pub penetration: f64,
+    /// Largest tension in a contact over the load scale.
+    pub tension: f64,
+    /// Largest product of contact force and gap over the product of their scales.
+    pub complementarity: f64,
+    /// Sum of loads and reactions over the load scale.
+    pub force_balance: f64,
+    /// Sum of their moments over the load scale times the size of the scene.
+    pub moment_balance: f64,
+    /// Largest jump of the displacement across Γ over the largest displacement.
+    pub interface_jump: f64,
+}
+
+/// Time that each phase of a run took [s].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PhaseSeconds {
+    /// From start to end.
+    pub total: f64,
+    /// Reading the problem.
+    pub read: f64,
+    /// Assembling K and f.
+    pub assemble: f64,
+    /// Factorizing the subdomains and condensing them on Γ.
+    pub factorize: f64,
+    /// Assembling and factorizing the interface problem, and the bilateral start.
+    pub interface: f64,
+    /// All sweeps.
+    pub sweeps: f64,
+    /// Back-substitution, stresses and the certificate.
+    pub recover: f64,
+    /// Writing the results.
+    pub write: f64,
+}
+
+impl PhaseSeconds {
+    /// The phases by name, in the order of a run, without the total.
+    pub fn phases(&self) -> [(&'static str, f64); 7] {
+        [
+            ("read", self.read),
+            ("assemble", self.assemble),
+            ("factorize", self.factorize),
+            ("interface", self.interface),
+            ("sweeps", self.sweeps),
+            ("recover", self.recover),
+            ("write", self.write),
+        ]
+    }
+
+    /// For every phase, the time of the rank that was slowest in it.
+    pub fn slowest(ranks: &[Self]) -> Self {
+        let worst = |of: fn(&Self) -> f64| ranks.iter().map(of).fold(0.0, f64::max);
+        Self {
+            total: worst(|seconds| seconds.total),
+            read: worst(|seconds| seconds.read),
+            assemble: worst(|seconds| seconds.assemble),
+            factorize: worst(|seconds| seconds.factorize),
+            interface: worst(|seconds| seconds.interface),
+            sweeps: worst(|seconds| seconds.sweeps),
+            recover: worst(|seconds| seconds.recover),
+            write: worst(|seconds| seconds.write),
+        }
+    }
+}
+
+/// What one rank had to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct RankReport {
+    /// Its time in each phase.
+    #[serde(flatten)]
+    pub seconds: PhaseSeconds,
+    /// Its peak resident memory [bytes].
+    pub peak_memory_bytes: u64,
+    /// Number of subdomains that it owns.
+    pub subdomains: usize,
+}
+
+/// The report. A number that isn't finite is `null` in its JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// How the run ended.
+    pub status: Status,
+    /// `newton`, `anderson` or `picard`.
+    pub method: String,
+    /// Number of sweeps after the bilateral start.
+    pub sweeps: usize,
+    /// Relative residual of the interface problem at the end.
+    pub interface_residual: f64,
+    /// Number of degrees of freedom.
+    pub dofs: usize,
+    /// Number of degrees of freedom on Γ.
+    pub interface_dofs: usize,
+    /// Number of contact conditions.
+    pub contact_conditions: usize,
+    /// Number of those that are closed.
+    pub active_contacts: usize,
+    /// Number of subdomains.
+    pub subdomains: usize,
+    /// Number of pairs, or groups, in contact.
+    pub contact_pairs: usize,
+    /// Number of ranks.
+    pub ranks: usize,
+    /// Number of threads of each rank.
+    pub threads: usize,
+    /// Checks of the solution.
+    pub certificate: Certificate,
+    /// Time of each phase, that of the slowest rank.
+    pub seconds: PhaseSeconds,
+    /// What each rank had to do.
+    pub per_rank: Vec<RankReport>,
+    /// Sum of the ranks' peak resident memory [bytes].
+    pub peak_memory_bytes: u64,
+    /// What the scene didn't need, in words.
+    pub skipped: Vec<String>,
+    /// What the user should know, in words.
+    pub warnings: Vec<String>,
+    /// Version of the program.
+    pub version: String,
+}
+
+impl Report {
+    /// The report as JSON.
+    pub fn to_json(&self) -> String {
+        // It holds neither maps nor anything else that JSON couldn't.
+        serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+}
+
+/// Writes `report` under a temporary name and renames it when it is whole. Into what isn't a file,
+/// a terminal or a pipe, it is written as it comes.
+///
+/// # Errors
+/// The file can't be written.
+pub fn write_report(path: &Path, report: &Report) -> Result<(), OutputError> {
+    let text = report.to_json() + "\n";
+    let stream = fs::metadata(path).is_ok_and(|at| !at.is_file() && !at.is_dir());
+    if stream {
+        return fs::write(path, text).map_err(|error| failure(path, error));
+    }
+    let destination = Destination::new(path)?;
+    fs::write(destination.temporary(), text).map_err(|error| destination.failure(error))?;
+    destination.commit()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn report() -> Report {
+        Report {
+            status: Status::NotConverged,
+            method: "newton".into(),
+            sweeps: 3,
+            interface_residual: f64::INFINITY,
+            dofs: 10,
+            interface_dofs: 4,
+            contact_conditions: 2,
+            active_contacts: 1,
+            subdomains: 2,
+            contact_pairs: 1,
+            ranks: 1,
+            threads: 1,
+            certificate: Certificate {
+                equilibrium: f64::NAN,
+                ..Certificate::default()
+            },
+            seconds: PhaseSeconds::default(),
+            per_rank: vec![RankReport::default()],
+            peak_memory_bytes: 1,
+            skipped: Vec::new(),
+            warnings: vec!["a \"quoted\"\nwarning".into()],
+            version: "0.1.0".into(),
+        }
+    }
+
+    fn keys(value: &Value) -> Vec<&str> {
+        value
+            .as_object()
+            .unwrap()
+            .keys()
+            .map(String::as_str)
+            .collect()
+    }
+
+    #[test]
+    fn its_json_has_the_documented_names() {
+        let value: Value = serde_json::from_str(&report().to_json()).unwrap();
+        let phases = [
+            "assemble",
+            "factorize",
+            "interface",
+            "read",
+            "recover",
+            "sweeps",
+            "total",
+            "write",
+        ];
+        assert_eq!(keys(&value["seconds"]), phases);
+        let mut of_rank = phases.to_vec();
+        of_rank.extend(["peak_memory_bytes", "subdomains"]);
+        of_rank.sort_unstable();
+        assert_eq!(keys(&value["per_rank"][0]), of_rank);
+        assert_eq!(
+            keys(&value["certificate"]),
+            [
+                "complementarity",
+                "equilibrium",
+                "force_balance",
+                "interface_jump",
+                "moment_balance",
+                "penetration",
+                "tension",
+            ]
+        );
+        assert_eq!(
+            keys(&value),
+            [
+                "active_contacts",
+                "certificate",
+                "contact_conditions",
+                "contact_pairs",
+                "dofs",
+                "interface_dofs",
+                "interface_residual",
+                "method",
+                "peak_memory_bytes",
+                "per_rank",
+                "ranks",
+                "seconds",
+                "skipped",
+                "status",
+                "subdomains",
+                "sweeps",
+                "threads",
+                "version",
+                "warnings",
+            ]
+        );
+        assert_eq!(value["status"], "not_converged");
+        assert_eq!(value["warnings"], json!(["a \"quoted\"\nwarning"]));
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_are_null() {
+        let value: Value = serde_json::from_str(&report().to_json()).unwrap();
+        assert_eq!(value["interface_residual"], Value::Null);
+        assert_eq!(value["certificate"]["equilibrium"], Value::Null);
+    }
+
+    #[test]
+    fn each_phase_is_that_of_the_rank_slowest_in_it() {
+        let ranks = [(1.0, 5.0), (2.0, 4.0)].map(|(read, write)| PhaseSeconds {
+            read,
+            write,
+            ..PhaseSeconds::default()
+        });
+        let slowest = PhaseSeconds::slowest(&ranks);
+        assert_eq!((slowest.read, slowest.write), (2.0, 5.0));
+    }
+
+    #[test]
+    fn a_written_report_is_the_report() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("report.json");
+        write_report(&path, &report()).unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        assert_eq!(text, report().to_json() + "\n");
+        write_report(Path::new("/dev/null"), &report()).unwrap();
+        let error = write_report(folder.path(), &report())
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("isn't a file"), "{error}");
+    }
+}

@@ -1,0 +1,316 @@
+//! What the root rank prints: plain lines of fixed columns, the same on a terminal and in a log.
+//!
+//! Every function writes whole lines to `out`; whether to print at all is the caller's business.
+
+use std::io::{Result, Write};
+use std::path::Path;
+
+use super::report::{Certificate, PhaseSeconds, RankReport, Report};
+
+/// What is to be solved, and on what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Summary<'a> {
+    /// The problem file.
+    pub problem: &'a Path,
+    /// Title of the scene.
+    pub title: &'a str,
+    /// Number of degrees of freedom.
+    pub dofs: usize,
+    /// Number of those on Γ.
+    pub interface_dofs: usize,
+    /// Number of subdomains.
+    pub subdomains: usize,
+    /// Number of pairs, or groups, in contact.
+    pub contact_pairs: usize,
+    /// Number of contact conditions.
+    pub contact_conditions: usize,
+    /// Number of ranks.
+    pub ranks: usize,
+    /// Number of threads of each rank.
+    pub threads: usize,
+}
+
+/// One line of the table of sweeps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SweepLine {
+    /// Number of the sweep; 0 is the bilateral start.
+    pub sweep: usize,
+    /// Relative residual of the interface problem.
+    pub residual: f64,
+    /// Number of closed contact conditions.
+    pub active: usize,
+    /// Number of conditions that opened or closed in this sweep; the start has none.
+    pub changed: Option<usize>,
+    /// Time that the sweep took [s].
+    pub seconds: f64,
+}
+
+/// Prints the problem.
+///
+/// # Errors
+/// `out` can't be written.
+pub fn summary(out: &mut impl Write, summary: &Summary) -> Result<()> {
+    let Summary {
+        problem,
+        title,
+        dofs,
+        interface_dofs,
+        subdomains,
+        contact_pairs,
+        contact_conditions,
+        ranks,
+        threads,
+    } = summary;
+    writeln!(out, "contact-dd-mpi {}", env!("CARGO_PKG_VERSION"))?;
+    writeln!(out)?;
+    if !title.is_empty() {
+        writeln!(out, "{title}")?;
+    }
+    entry(out, "problem", problem.display())?;
+    entry(
+        out,
+        "dofs",
+        format!("{dofs}, {interface_dofs} of them on the interface"),
+    )?;
+    entry(out, "subdomains", subdomains)?;
+    if *contact_conditions == 0 {
+        entry(out, "contact", "none")?;
+    } else {
+        let pairs = counted(*contact_pairs, "pair");
+        let conditions = counted(*contact_conditions, "condition");
+        entry(out, "contact", format!("{conditions} in {pairs}"))?;
+    }
+    let threads = counted(*threads, "thread");
+    entry(out, "ranks", format!("{ranks} with {threads} each"))
+}
+
+/// Prints the settings as they were resolved, by name.
+///
+/// # Errors
+/// `out` can't be written.
+pub fn settings(out: &mut impl Write, settings: &[(&str, String)]) -> Result<()> {
+    writeln!(out)?;
+    for (name, value) in settings {
+        entry(out, name, value)?;
+    }
+    Ok(())
+}
+
+/// Prints the head of the table of sweeps.
+///
+/// # Errors
+/// `out` can't be written.
+pub fn sweep_header(out: &mut impl Write) -> Result<()> {
+    writeln!(out)?;
+    writeln!(
+        out,
+        "{:>5}  {:>10}  {:>8}  {:>8}  {:>10}",
+        "sweep", "residual", "active", "changed", "seconds"
+    )
+}
+
+/// Prints one line of the table of sweeps.
+///
+/// # Errors
+/// `out` can't be written.
+pub fn sweep(out: &mut impl Write, line: &SweepLine) -> Result<()> {
+    let changed = line.changed.map_or("-".into(), |count| count.to_string());
+    writeln!(
+        out,
+        "{:>5}  {:>10.3e}  {:>8}  {:>8}  {:>10.4}",
+        line.sweep, line.residual, line.active, changed, line.seconds
+    )
+}
+
+/// Prints all that follows the sweeps: why they ended (`reason`, in words), the certificate, the
+/// timing table, what was skipped, warnings, and where the results are.
+///
+/// # Errors
+/// `out` can't be written.
+pub fn closing(out: &mut impl Write, reason: &str, report: &Report, result: &Path) -> Result<()> {
+    writeln!(out)?;
+    writeln!(out, "{reason}")?;
+    writeln!(out)?;
+    certificate(out, &report.certificate)?;
+    writeln!(out)?;
+    timing(out, &report.per_rank)?;
+    writeln!(out)?;
+    for skipped in &report.skipped {
+        writeln!(out, "skipped: {skipped}")?;
+    }
+    for warning in &report.warnings {
+        writeln!(out, "warning: {warning}")?;
+    }
+    writeln!(out, "results: {}", result.display())
+}
+
+/// Prints the certificate.
+///
+/// # Errors
+/// `out` can't be written.
+pub fn certificate(out: &mut impl Write, certificate: &Certificate) -> Result<()> {
+    let Certificate {
+        equilibrium,
+        penetration,
+        tension,
+        complementarity,
+        force_balance,
+        moment_balance,
+        interface_jump,
+    } = certificate;
+    writeln!(
+        out,
+        "certificate  equilibrium {equilibrium:.1e}  penetration {penetration:.1e}  \
+         tension {tension:.1e}  complementarity {complementarity:.1e}"
+    )?;
+    writeln!(
+        out,
+        "             force balance {force_balance:.1e}  moment balance {moment_balance:.1e}  \
+         interface jump {interface_jump:.1e}"
+    )
+}
+
+/// Prints the time that each phase took over the ranks, and its share of the mean total.
+///
+/// # Errors
+/// `out` can't be written.
+pub fn timing(out: &mut impl Write, ranks: &[RankReport]) -> Result<()> {
+    let seconds: Vec<PhaseSeconds> = ranks.iter().map(|rank| rank.seconds).collect();
+    let totals: Vec<f64> = seconds.iter().map(|rank| rank.total).collect();
+    let total = Spread::of(&totals);
+    writeln!(
+        out,
+        "{:<10}  {:>10}  {:>10}  {:>10}  {:>7}",
+        "seconds", "min", "mean", "max", "share"
+    )?;
+    for (p, (name, _)) in PhaseSeconds::default().phases().into_iter().enumerate() {
+        let phase: Vec<f64> = seconds.iter().map(|rank| rank.phases()[p].1).collect();
+        Spread::of(&phase).print(out, name, total.mean)?;
+    }
+    total.print(out, "total", total.mean)?;
+    let memory = ranks.iter().map(|rank| rank.peak_memory_bytes);
+    let mebibytes = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+    writeln!(
+        out,
+        "memory      {:.0} MiB on all ranks, {:.0} MiB on the largest",
+        mebibytes(memory.clone().sum()),
+        mebibytes(memory.max().unwrap_or(0)),
+    )
+}
+
+/// Least, mean and largest of a time over the ranks.
+struct Spread {
+    min: f64,
+    mean: f64,
+    max: f64,
+}
+
+impl Spread {
+    fn of(values: &[f64]) -> Self {
+        let count = values.len().max(1) as f64;
+        let max = values.iter().copied().fold(0.0, f64::max);
+        Self {
+            min: values.iter().copied().fold(max, f64::min),
+            mean: values.iter().sum::<f64>() / count,
+            max,
+        }
+    }
+
+    fn print(&self, out: &mut impl Write, name: &str, whole: f64) -> Result<()> {
+        let Self { min, mean, max } = self;
+        let share = if whole > 0.0 {
+            100.0 * mean / whole
+        } else {
+            0.0
+        };
+        writeln!(
+            out,
+            "{name:<10}  {min:>10.4}  {mean:>10.4}  {max:>10.4}  {share:>5.1} %"
+        )
+    }
+}
+
+fn entry(out: &mut impl Write, name: &str, value: impl std::fmt::Display) -> Result<()> {
+    writeln!(out, "  {name:<12} {value}")
+}
+
+fn counted(count: usize, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn printed(print: impl FnOnce(&mut Vec<u8>) -> Result<()>) -> String {
+        let mut out = Vec::new();
+        print(&mut out).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn sweeps_stand_in_the_columns_of_their_header() {
+        let ends = |line: &str| {
+            let mut ends = Vec::new();
+            for (i, c) in line.char_indices() {
+                let next = line[i + c.len_utf8()..].chars().next().unwrap_or(' ');
+                if c != ' ' && next == ' ' {
+                    ends.push(i);
+                }
+            }
+            ends
+        };
+        let header = printed(|out| sweep_header(out));
+        let header = ends(header.trim_end_matches('\n').lines().last().unwrap());
+        for (sweep_number, residual, active, changed) in [
+            (0, 1.0, 48, None),
+            (12, 3.2e-117, 1_234_567, Some(7)),
+            (99_999, f64::NAN, 0, Some(12_345_678)),
+        ] {
+            let line = SweepLine {
+                sweep: sweep_number,
+                residual,
+                active,
+                changed,
+                seconds: 1234.56789,
+            };
+            let line = printed(|out| sweep(out, &line));
+            assert_eq!(ends(line.trim_end_matches('\n')), header, "{line}");
+        }
+    }
+
+    #[test]
+    fn the_timing_table_spans_from_the_fastest_to_the_slowest_rank() {
+        let rank = |factorize: f64| RankReport {
+            seconds: PhaseSeconds {
+                total: 8.0,
+                factorize,
+                ..PhaseSeconds::default()
+            },
+            peak_memory_bytes: 3 << 20,
+            subdomains: 1,
+        };
+        let table = printed(|out| timing(out, &[rank(1.0), rank(2.0), rank(6.0)]));
+        let row = |name| {
+            let row = table.lines().find(|line| line.starts_with(name)).unwrap();
+            row.split_whitespace().skip(1).collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(row("factorize"), "1.0000 3.0000 6.0000 37.5 %");
+        assert_eq!(row("total"), "8.0000 8.0000 8.0000 100.0 %");
+        assert!(row("memory").starts_with("9 MiB on all ranks, 3 MiB"));
+    }
+
+    #[test]
+    fn no_rank_and_no_time_print_no_nonsense() {
+        let table =
+            printed(|out| timing(out, &[])) + &printed(|out| timing(out, &[RankReport::default()]));
+        assert!(!table.contains("NaN") && !table.contains("inf"), "{table}");
+    }
+
+    #[test]
+    fn one_of_a_thing_is_singular() {
+        assert_eq!(counted(1, "pair"), "1 pair");
+        assert_eq!(counted(2, "pair"), "2 pairs");
+    }
+}

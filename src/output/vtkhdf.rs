@@ -1,0 +1,168 @@
+//! The result file: `/VTKHDF`, `/contact`, `/convergence` and the attribute `report`.
+//!
+//! Every subdomain and every contact condition has its place from the start, so each is written
+//! when it arrives, in any order, and nothing else of its kind is in memory.
+
+mod column;
+mod contact_table;
+mod grid;
+
+use std::path::Path;
+
+use contact_dd_partition::error::OutputError;
+use contact_dd_partition::problem::{Catalog, ContactSummary, SubdomainSummary};
+use hdf5::File;
+use hdf5::types::VarLenUnicode;
+
+use self::contact_table::ContactTables;
+use self::grid::Grid;
+use super::destination::Destination;
+use super::result::{ContactResult, ConvergenceRow, SubdomainResult};
+
+/// How much room a subdomain takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PartitionSize {
+    /// Number of nodes.
+    pub points: usize,
+    /// Number of cells.
+    pub cells: usize,
+    /// Sum of the number of nodes over all cells.
+    pub connectivity: usize,
+}
+
+/// How much room everything takes.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Layout {
+    /// One entry a subdomain.
+    pub partitions: Vec<PartitionSize>,
+    /// One entry a contact.
+    pub contacts: Vec<ContactSummary>,
+}
+
+impl Layout {
+    /// The layout for `catalog`; `connectivity` has, for every subdomain, the sum of the number of
+    /// nodes over its cells.
+    pub fn new(catalog: &Catalog, connectivity: &[usize]) -> Self {
+        let size = |(subdomain, &connectivity): (&SubdomainSummary, &usize)| PartitionSize {
+            points: subdomain.nodes,
+            cells: subdomain.cells,
+            connectivity,
+        };
+        Self {
+            partitions: catalog
+                .subdomains
+                .iter()
+                .zip(connectivity)
+                .map(size)
+                .collect(),
+            contacts: catalog.contacts.clone(),
+        }
+    }
+}
+
+/// A result file that is being written, under a temporary name in the folder of the final one.
+///
+/// Dropped without [`finish`](Self::finish) it leaves nothing behind, and what stood under the
+/// final name stays.
+#[derive(Debug)]
+pub struct ResultFile {
+    grid: Grid,
+    contacts: ContactTables,
+    // Closed before `destination` removes or renames it: fields are dropped in this order.
+    file: File,
+    destination: Destination,
+}
+
+impl ResultFile {
+    /// Makes the file and everything in it that doesn't depend on the solution.
+    ///
+    /// # Errors
+    /// The file can't be made: no such folder, no permission, a name that something else has.
+    pub fn create(path: &Path, layout: &Layout) -> Result<Self, OutputError> {
+        let destination = Destination::new(path)?;
+        let make = || {
+            let file = File::with_options()
+                // A temporary file has no other reader, and not every file system can lock.
+                .with_fapl(|access| access.file_locking(false))
+                .create(destination.temporary())?;
+            let grid = Grid::create(&file, &layout.partitions)?;
+            let contacts = ContactTables::create(&file, &layout.contacts)?;
+            Ok((file, grid, contacts))
+        };
+        match make() {
+            Ok((file, grid, contacts)) => Ok(Self {
+                grid,
+                contacts,
+                file,
+                destination,
+            }),
+            Err(error) => Err(failure(&destination, &error)),
+        }
+    }
+
+    /// Writes what belongs to one subdomain.
+    ///
+    /// # Errors
+    /// The file can't be written, or `result` doesn't have the sizes of the layout.
+    pub fn write_subdomain(&mut self, result: &SubdomainResult) -> Result<(), OutputError> {
+        self.grid
+            .write(result)
+            .map_err(|error| failure(&self.destination, &error))
+    }
+
+    /// Writes contact conditions, each at its place in the table of its contact.
+    ///
+    /// # Errors
+    /// The file can't be written, or a row has no place in the layout.
+    pub fn write_contacts(&mut self, rows: &[ContactResult]) -> Result<(), OutputError> {
+        self.contacts
+            .write(rows)
+            .map_err(|error| failure(&self.destination, &error))
+    }
+
+    /// Writes `/convergence`: a row for the bilateral start and one for every sweep. Called once.
+    ///
+    /// # Errors
+    /// The file can't be written.
+    pub fn write_convergence(&mut self, rows: &[ConvergenceRow]) -> Result<(), OutputError> {
+        let write = || {
+            let group = self.file.create_group("convergence")?;
+            column::whole(&group, "residual", rows.iter().map(|row| row.residual))?;
+            column::whole(&group, "active", rows.iter().map(|row| row.active as i64))?;
+            column::whole(&group, "seconds", rows.iter().map(|row| row.seconds))
+        };
+        write().map_err(|error: hdf5::Error| failure(&self.destination, &error))
+    }
+
+    /// Adds the report, brings the file to the disk and gives it its name.
+    ///
+    /// # Errors
+    /// The file can't be written, or a subdomain or a contact condition is missing.
+    pub fn finish(self, report_json: &str) -> Result<(), OutputError> {
+        let Self {
+            grid,
+            contacts,
+            file,
+            destination,
+        } = self;
+        let write = move || {
+            grid.finish()?;
+            contacts.finish()?;
+            // Of variable length: an attribute of fixed length ends at 64 KiB.
+            let report: VarLenUnicode = report_json
+                .parse()
+                .map_err(|error| hdf5::Error::from(format!("report: {error}")))?;
+            file.new_attr::<VarLenUnicode>()
+                .create("report")?
+                .write_scalar(&report)?;
+            file.flush()?;
+            file.close()
+        };
+        write().map_err(|error| failure(&destination, &error))?;
+        destination.commit()
+    }
+}
+
+fn failure(destination: &Destination, error: &hdf5::Error) -> OutputError {
+    destination.failure(error)
+}

@@ -1,0 +1,51 @@
+//! One dataset: an array with a row for each node, cell or condition.
+
+use hdf5::{Group, H5Type, Result};
+use ndarray::{ArrayView1, ArrayView2};
+
+/// A column of `rows` rows to be filled later.
+pub(super) fn empty<T: H5Type>(group: &Group, name: &str, rows: usize) -> Result<()> {
+    group.new_dataset::<T>().shape(rows).create(name)?;
+    Ok(())
+}
+
+/// A table of `rows` rows of `width` numbers to be filled later.
+pub(super) fn empty_table<T: H5Type>(
+    group: &Group,
+    name: &str,
+    rows: usize,
+    width: usize,
+) -> Result<()> {
+    group.new_dataset::<T>().shape((rows, width)).create(name)?;
+    Ok(())
+}
+
+/// A column that is filled at once.
+pub(super) fn whole<T: H5Type>(
+    group: &Group,
+    name: &str,
+    values: impl Iterator<Item = T>,
+) -> Result<()> {
+    let values: Vec<T> = values.collect();
+    empty::<T>(group, name, values.len())?;
+    fill(group, name, 0, &values)
+}
+
+/// Fills a column from row `start` on.
+pub(super) fn fill<T: H5Type>(group: &Group, name: &str, start: usize, values: &[T]) -> Result<()> {
+    group
+        .dataset(name)?
+        .write_slice(ArrayView1::from(values), start..start + values.len())
+}
+
+/// Fills a table from row `start` on.
+pub(super) fn fill_table<T: H5Type, const N: usize>(
+    group: &Group,
+    name: &str,
+    start: usize,
+    rows: &[[T; N]],
+) -> Result<()> {
+    group
+        .dataset(name)?
+        .write_slice(ArrayView2::from(rows), (start..start + rows.len(), ..))
+}

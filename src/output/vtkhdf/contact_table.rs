@@ -1,0 +1,114 @@
+//! `/contact/<name>/`: one row for each contact condition.
+
+use contact_dd_partition::problem::ContactSummary;
+use hdf5::{File, Group, Result};
+
+use super::super::result::ContactResult;
+use super::column;
+
+/// The table of every contact, and how many of its rows have been written.
+#[derive(Debug)]
+pub(super) struct ContactTables {
+    tables: Vec<Table>,
+}
+
+#[derive(Debug)]
+struct Table {
+    name: String,
+    group: Group,
+    written: Vec<bool>,
+}
+
+impl ContactTables {
+    /// Makes all tables in their final sizes.
+    pub(super) fn create(file: &File, contacts: &[ContactSummary]) -> Result<Self> {
+        let parent = file.create_group("contact")?;
+        let tables = contacts
+            .iter()
+            .map(|contact| Table::create(&parent, contact))
+            .collect::<Result<_>>()?;
+        Ok(Self { tables })
+    }
+
+    /// Writes `rows`, which may belong to several contacts.
+    pub(super) fn write(&mut self, rows: &[ContactResult]) -> Result<()> {
+        let mut rows = rows.to_vec();
+        rows.sort_by_key(|row| (row.contact, row.place));
+        let neighbours =
+            |a: &ContactResult, b: &ContactResult| (a.contact, a.place + 1) == (b.contact, b.place);
+        for run in rows.chunk_by(neighbours) {
+            let contact = run[0].contact;
+            let Some(table) = self.tables.get_mut(contact) else {
+                let count = self.tables.len();
+                return Err(format!("contact {contact} of {count} has no place").into());
+            };
+            table.write(run)?;
+        }
+        Ok(())
+    }
+
+    /// Checks that every row was written.
+    pub(super) fn finish(self) -> Result<()> {
+        for Table { name, written, .. } in &self.tables {
+            if let Some(place) = written.iter().position(|&written| !written) {
+                return Err(format!("contact '{name}': condition {place} is missing").into());
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Table {
+    fn create(parent: &Group, contact: &ContactSummary) -> Result<Self> {
+        let (name, rows) = (&contact.name, contact.conditions);
+        let group = parent
+            .create_group(name)
+            .map_err(|error| format!("contact '{name}': {error}"))?;
+        for name in ["node_a", "node_b"] {
+            column::empty::<i64>(&group, name, rows)?;
+        }
+        for name in ["position", "normal"] {
+            column::empty_table::<f64>(&group, name, rows, 3)?;
+        }
+        for name in ["gap", "force", "pressure"] {
+            column::empty::<f64>(&group, name, rows)?;
+        }
+        column::empty::<u8>(&group, "status", rows)?;
+        Ok(Self {
+            name: name.clone(),
+            group,
+            written: vec![false; rows],
+        })
+    }
+
+    /// Writes rows whose places follow each other.
+    fn write(&mut self, run: &[ContactResult]) -> Result<()> {
+        let start = run[0].place;
+        let Some(written) = self.written.get_mut(start..start + run.len()) else {
+            let (name, last) = (&self.name, run[run.len() - 1].place);
+            let rows = self.written.len();
+            return Err(format!("contact '{name}' has {rows} conditions, none at {last}").into());
+        };
+        let group = &self.group;
+        let column = |name, of: fn(&ContactResult) -> f64| {
+            column::fill(group, name, start, &run.iter().map(of).collect::<Vec<_>>())
+        };
+        let tags = |name, of: fn(&ContactResult) -> i64| {
+            column::fill(group, name, start, &run.iter().map(of).collect::<Vec<_>>())
+        };
+        let vectors = |name, of: fn(&ContactResult) -> [f64; 3]| {
+            column::fill_table(group, name, start, &run.iter().map(of).collect::<Vec<_>>())
+        };
+        tags("node_a", |row| row.tag_a)?;
+        tags("node_b", |row| row.tag_b)?;
+        vectors("position", |row| row.position)?;
+        vectors("normal", |row| row.normal)?;
+        column("gap", |row| row.gap)?;
+        column("force", |row| row.force)?;
+        column("pressure", |row| row.pressure)?;
+        let status: Vec<u8> = run.iter().map(|row| u8::from(row.closed)).collect();
+        column::fill(group, "status", start, &status)?;
+        written.fill(true);
+        Ok(())
+    }
+}

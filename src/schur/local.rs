@@ -1,0 +1,83 @@
+//! A block condensed onto its boundary: S_i of a linear subdomain, S_kl of a pair in contact.
+
+use faer::{Mat, Par};
+
+use super::factor::{BoundaryLastCholesky, FactorError};
+use crate::fem::assembly::BlockSystem;
+
+/// S = K_BB − K_BI K_II⁻¹ K_IB with everything that condensing and recovering a load needs, (11).
+///
+/// B holds the gaps first, then the traces on Γ.
+#[derive(Debug)]
+pub struct LocalSchur {
+    factor: BoundaryLastCholesky,
+    interior: usize,
+    /// S, both triangles [Pa].
+    pub s: Mat<f64>,
+}
+
+impl LocalSchur {
+    /// Factorizes a block's stiffness, whose first `interior` unknowns are I.
+    ///
+    /// # Errors
+    /// K_II isn't positive definite: the block can move with its boundary held.
+    pub fn new(system: &BlockSystem, interior: usize, par: Par) -> Result<Self, FactorError> {
+        let stiffness = &system.stiffness;
+        // S_BB of a floating block is singular; a shift of K_BB by its own diagonal keeps the
+        // factorization regular and costs no accuracy that K_BB itself has.
+        let shift: Vec<f64> = stiffness.diagonal()[interior..].to_vec();
+        let factor = BoundaryLastCholesky::new(stiffness.clone(), interior, &shift, par)?;
+        let s = factor.schur_complement(&shift, par);
+        Ok(Self {
+            factor,
+            interior,
+            s,
+        })
+    }
+
+    /// Size of B.
+    pub fn boundary(&self) -> usize {
+        self.s.nrows()
+    }
+
+    /// Number of entries of the factor.
+    pub fn entries(&self) -> usize {
+        self.factor.entries()
+    }
+
+    /// The smallest pivot of K_II relative to its diagonal.
+    pub fn smallest_pivot(&self) -> f64 {
+        self.factor.smallest_pivot()
+    }
+
+    /// Condenses a load: y_I = L_II⁻¹ f_I, y_B = f_B − K_BI K_II⁻¹ f_I.
+    pub fn condense(&self, mut load: Vec<f64>) -> CondensedLoad {
+        self.factor.forward(&mut load);
+        CondensedLoad {
+            y: load,
+            interior: self.interior,
+        }
+    }
+
+    /// The unknowns of the whole block for the unknowns `x_b` on its boundary.
+    pub fn recover(&self, load: &CondensedLoad, x_b: &[f64]) -> Vec<f64> {
+        let mut x = load.y.clone();
+        x[self.interior..].copy_from_slice(x_b);
+        self.factor.backward(&mut x);
+        x
+    }
+}
+
+/// A load condensed onto B, with the part that stays behind on I.
+#[derive(Clone, Debug)]
+pub struct CondensedLoad {
+    y: Vec<f64>,
+    interior: usize,
+}
+
+impl CondensedLoad {
+    /// The load on B.
+    pub fn boundary(&self) -> &[f64] {
+        &self.y[self.interior..]
+    }
+}

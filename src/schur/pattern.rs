@@ -1,0 +1,223 @@
+//! The pattern of a symmetric sparse matrix that is a sum of small dense ones.
+
+/// Lists of unknowns, one list for every dense matrix that is scattered: the unknowns of an
+/// element, or the traces of a subdomain.
+#[derive(Clone, Debug)]
+pub struct Cliques {
+    offsets: Vec<usize>,
+    members: Vec<u32>,
+}
+
+impl Default for Cliques {
+    fn default() -> Self {
+        Self {
+            offsets: vec![0],
+            members: Vec::new(),
+        }
+    }
+}
+
+impl Cliques {
+    /// Appends a list.
+    pub fn push(&mut self, members: impl IntoIterator<Item = u32>) {
+        self.members.extend(members);
+        self.offsets.push(self.members.len());
+    }
+
+    /// Number of lists.
+    pub fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// Whether there is no list.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// List `c`.
+    pub fn get(&self, c: usize) -> &[u32] {
+        &self.members[self.offsets[c]..self.offsets[c + 1]]
+    }
+
+    /// The same lists with every unknown renamed.
+    #[must_use]
+    pub fn renamed(&self, name: impl Fn(u32) -> u32) -> Self {
+        Self {
+            offsets: self.offsets.clone(),
+            members: self.members.iter().map(|&i| name(i)).collect(),
+        }
+    }
+
+    /// For each of `n` unknowns the lists that hold it, as offsets and list numbers.
+    fn transposed(&self, n: usize) -> (Vec<usize>, Vec<u32>) {
+        let mut offsets = vec![0; n + 1];
+        for &i in &self.members {
+            offsets[i as usize + 1] += 1;
+        }
+        for i in 0..n {
+            offsets[i + 1] += offsets[i];
+        }
+        let mut next = offsets.clone();
+        let mut lists = vec![0; self.members.len()];
+        for c in 0..self.len() {
+            for &i in self.get(c) {
+                lists[next[i as usize]] = c as u32;
+                next[i as usize] += 1;
+            }
+        }
+        (offsets, lists)
+    }
+}
+
+/// The pattern of the lower triangle by columns: rows ascending, the diagonal first.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LowerPattern {
+    pub(super) columns: Vec<u32>,
+    pub(super) rows: Vec<u32>,
+}
+
+impl LowerPattern {
+    /// The pattern of a sum of dense matrices over the `cliques` of `n` unknowns.
+    ///
+    /// Returns `None` where it has more than 2³² entries.
+    pub fn new(n: usize, cliques: &Cliques) -> Option<Self> {
+        let (offsets, lists) = cliques.transposed(n);
+        let mut columns = Vec::with_capacity(n + 1);
+        let mut rows: Vec<u32> = Vec::new();
+        let mut seen = vec![u32::MAX; n];
+        columns.push(0);
+        for j in 0..n as u32 {
+            let start = rows.len();
+            rows.push(j);
+            seen[j as usize] = j;
+            for &c in &lists[offsets[j as usize]..offsets[j as usize + 1]] {
+                for &i in cliques.get(c as usize) {
+                    if i > j && seen[i as usize] != j {
+                        seen[i as usize] = j;
+                        rows.push(i);
+                    }
+                }
+            }
+            rows[start + 1..].sort_unstable();
+            columns.push(u32::try_from(rows.len()).ok()?);
+        }
+        Some(Self { columns, rows })
+    }
+
+    /// Number of unknowns.
+    pub fn n(&self) -> usize {
+        self.columns.len() - 1
+    }
+
+    /// Number of entries.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether it has no entry.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The places of column `j` among all entries.
+    pub fn column(&self, j: usize) -> std::ops::Range<usize> {
+        self.columns[j] as usize..self.columns[j + 1] as usize
+    }
+
+    /// The rows of column `j`, ascending from the diagonal.
+    pub fn rows_of(&self, j: usize) -> &[u32] {
+        &self.rows[self.column(j)]
+    }
+
+    /// The pattern of the transpose: the upper triangle by columns.
+    pub(super) fn upper(&self) -> (Vec<u32>, Vec<u32>) {
+        let n = self.n();
+        let mut columns = vec![0u32; n + 1];
+        for &i in &self.rows {
+            columns[i as usize + 1] += 1;
+        }
+        for i in 0..n {
+            columns[i + 1] += columns[i];
+        }
+        let mut next = columns.clone();
+        let mut rows = vec![0u32; self.rows.len()];
+        for j in 0..n {
+            for &i in self.rows_of(j) {
+                rows[next[i as usize] as usize] = j as u32;
+                next[i as usize] += 1;
+            }
+        }
+        (columns, rows)
+    }
+}
+
+/// A symmetric sparse matrix, its lower triangle by columns.
+#[derive(Clone, Debug)]
+pub struct SparseSymmetric {
+    /// Pattern.
+    pub pattern: LowerPattern,
+    /// Values in the order of the pattern.
+    pub values: Vec<f64>,
+}
+
+impl SparseSymmetric {
+    /// A zero matrix.
+    pub fn zeros(pattern: LowerPattern) -> Self {
+        let values = vec![0.0; pattern.len()];
+        Self { pattern, values }
+    }
+
+    /// Adds a dense symmetric matrix over the unknowns `dofs`; `entry(a, b)` is asked once for
+    /// every pair with `dofs[a] ≥ dofs[b]`. All pairs lie in the pattern.
+    pub fn add(&mut self, dofs: &[u32], entry: impl Fn(usize, usize) -> f64) {
+        for (b, &j) in dofs.iter().enumerate() {
+            let range = self.pattern.column(j as usize);
+            let rows = &self.pattern.rows[range.clone()];
+            for (a, &i) in dofs.iter().enumerate() {
+                if i < j {
+                    continue;
+                }
+                if let Ok(place) = rows.binary_search(&i) {
+                    self.values[range.start + place] += entry(a, b);
+                }
+            }
+        }
+    }
+
+    /// y ← y + A x.
+    pub fn multiply_add(&self, x: &[f64], y: &mut [f64]) {
+        for j in 0..self.pattern.n() {
+            let range = self.pattern.column(j);
+            let mut sum = self.values[range.start] * x[j];
+            for place in range.start + 1..range.end {
+                let i = self.pattern.rows[place] as usize;
+                let a = self.values[place];
+                y[i] += a * x[j];
+                sum += a * x[i];
+            }
+            y[j] += sum;
+        }
+    }
+
+    /// y ← y + |A| |x|.
+    pub fn multiply_add_absolute(&self, x: &[f64], y: &mut [f64]) {
+        for j in 0..self.pattern.n() {
+            let range = self.pattern.column(j);
+            let mut sum = (self.values[range.start] * x[j]).abs();
+            for place in range.start + 1..range.end {
+                let i = self.pattern.rows[place] as usize;
+                let a = self.values[place].abs();
+                y[i] += a * x[j].abs();
+                sum += a * x[i].abs();
+            }
+            y[j] += sum;
+        }
+    }
+
+    /// The diagonal.
+    pub fn diagonal(&self) -> Vec<f64> {
+        (0..self.pattern.n())
+            .map(|j| self.values[self.pattern.column(j).start])
+            .collect()
+    }
+}

@@ -1,0 +1,220 @@
+//! Sweeps: how U is found on Γ, started from the bilateral problem (16)-(17).
+//!
+//! All methods share the residual r(U) = F − S_0 U − S_CON(U) and differ in what is inverted:
+//! M δ = r with M = S_0 ([`picard`], the paper's (18)), S_0 + S_CON' of the bilateral problem
+//! ([`anderson`]), or S_0 + S_CON'(U) ([`newton`]).
+
+pub mod anderson;
+pub mod newton;
+pub mod picard;
+
+use std::time::Instant;
+
+use crate::contact::s_con::{ConState, ConTotals, SCon};
+use crate::interface::operator::Interface;
+
+/// Residual that is round-off and nothing else.
+const ROUND_OFF: f64 = 1e-14;
+
+/// How U is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Method {
+    /// Semismooth Newton: S_0 + S_CON'(U) is inverted.
+    Newton,
+    /// Accelerated chord: S_0 + S_CON' of the bilateral problem is inverted.
+    Anderson,
+    /// The paper's successive approximations (18): S_0 is inverted.
+    Picard,
+}
+
+impl Method {
+    /// Its name on the command line and in the report.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Newton => "newton",
+            Self::Anderson => "anderson",
+            Self::Picard => "picard",
+        }
+    }
+}
+
+/// What a user sets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SweepSettings {
+    /// Method.
+    pub method: Method,
+    /// Residual, relative to the terms that it is a sum of, at which sweeps end.
+    pub tolerance: f64,
+    /// Most sweeps; `None` for the method's own limit.
+    pub max_sweeps: Option<usize>,
+    /// θ of `picard`; `None` to find one.
+    pub relaxation: Option<f64>,
+}
+
+/// One line of the convergence history; line 0 is the bilateral start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SweepRecord {
+    /// Number of the sweep.
+    pub sweep: usize,
+    /// ‖r‖∞ relative to the terms that r is a sum of.
+    pub residual: f64,
+    /// Closed conditions.
+    pub active: usize,
+    /// Conditions that opened or closed in it.
+    pub changed: usize,
+    /// Since the sweeps began [s].
+    pub seconds: f64,
+}
+
+/// Why sweeps ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SweepStatus {
+    /// The residual is below the tolerance and no contact changes any more.
+    Converged,
+    /// They stopped short of that, for this reason.
+    NotConverged(String),
+}
+
+/// What the sweeps found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepOutcome {
+    /// U.
+    pub u: Vec<f64>,
+    /// Why they ended.
+    pub status: SweepStatus,
+    /// History.
+    pub records: Vec<SweepRecord>,
+    /// What a user should know.
+    pub notes: Vec<String>,
+}
+
+/// The state of the sweeps on the root.
+pub struct Sweeps<'a, 'c> {
+    interface: &'a Interface,
+    s_con: &'a mut SCon<'c>,
+    state: ConState,
+    settings: SweepSettings,
+    began: Instant,
+    records: Vec<SweepRecord>,
+    notes: Vec<String>,
+    observer: &'a mut dyn FnMut(&SweepRecord),
+}
+
+/// r(U) = F − S_0 U − S_CON(U).
+#[derive(Clone, Debug)]
+struct Residual {
+    r: Vec<f64>,
+    relative: f64,
+    totals: ConTotals,
+}
+
+impl<'a, 'c> Sweeps<'a, 'c> {
+    /// Solves S_0 U + S_CON(U) = F, (14), from the bilateral start. On the root, while the other
+    /// ranks serve S_CON; `observer` sees every sweep.
+    pub fn solve(
+        interface: &'a Interface,
+        s_con: &'a mut SCon<'c>,
+        settings: SweepSettings,
+        observer: &'a mut dyn FnMut(&SweepRecord),
+    ) -> (SweepOutcome, ConTotals) {
+        let mut sweeps = Self {
+            interface,
+            s_con,
+            state: ConState::default(),
+            settings,
+            began: Instant::now(),
+            records: Vec::new(),
+            notes: Vec::new(),
+            observer,
+        };
+        let mut u = interface.bilateral_start();
+        let residual = sweeps.residual(&u);
+        sweeps.record(&residual);
+        let status = match settings.method {
+            Method::Newton => sweeps.newton(&mut u, residual),
+            Method::Anderson => sweeps.anderson(&mut u, residual),
+            Method::Picard => sweeps.picard(&mut u, residual),
+        };
+        // The pairs keep the gaps and forces of their last evaluation: it has to be this U.
+        let totals = sweeps.residual(&u).totals;
+        let outcome = SweepOutcome {
+            u,
+            status,
+            records: sweeps.records,
+            notes: sweeps.notes,
+        };
+        (outcome, totals)
+    }
+
+    fn residual(&mut self, u: &[f64]) -> Residual {
+        let derivative = self.settings.method != Method::Anderson;
+        let totals = self
+            .s_con
+            .evaluate(self.interface, u, derivative, &mut self.state);
+        let (mut r, mut scale) = self.interface.linear_residual(u);
+        self.state.subtract(self.interface, &mut r, &mut scale);
+        let (r_max, scale_max) = (maximum(&r), maximum(&scale));
+        Residual {
+            r,
+            relative: if r_max == 0.0 { 0.0 } else { r_max / scale_max },
+            totals,
+        }
+    }
+
+    fn record(&mut self, residual: &Residual) {
+        let record = SweepRecord {
+            sweep: self.records.len(),
+            residual: residual.relative,
+            active: residual.totals.active,
+            changed: residual.totals.changed,
+            seconds: self.began.elapsed().as_secs_f64(),
+        };
+        self.records.push(record);
+        (self.observer)(&record);
+    }
+
+    /// Whether the residual is small and the active set settled. A residual at round-off needs no
+    /// settled set: what still flips carries neither gap nor force.
+    fn is_converged(&self, residual: &Residual) -> bool {
+        residual.totals.failed_pairs == 0
+            && residual.relative <= self.settings.tolerance
+            && (residual.totals.changed == 0 || residual.relative <= ROUND_OFF)
+    }
+
+    fn sweeps_done(&self) -> usize {
+        self.records.len() - 1
+    }
+
+    fn gave_up(&self, residual: &Residual, why: &str) -> SweepStatus {
+        let failed = match residual.totals.failed_pairs {
+            0 => String::new(),
+            n => format!("; the small problem of {n} pairs didn't converge"),
+        };
+        SweepStatus::NotConverged(format!(
+            "{why} after {} sweeps at a residual of {:.1e}{failed}",
+            self.sweeps_done(),
+            residual.relative
+        ))
+    }
+}
+
+/// ‖x‖∞; not a number where x has one.
+fn maximum(x: &[f64]) -> f64 {
+    x.iter().fold(
+        0.0,
+        |m: f64, x| {
+            if x.is_nan() { f64::NAN } else { m.max(x.abs()) }
+        },
+    )
+}
+
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+/// y ← y + a x.
+fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += a * x;
+    }
+}

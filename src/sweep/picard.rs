@@ -1,0 +1,95 @@
+//! The paper's successive approximations: S_0 U^k = F − S_CON U^(k−1), (18), with relaxation.
+//!
+//! They converge where ρ(S_0⁻¹ S_CON') < 1, which the paper leaves open and which equal
+//! stiffness on both sides of Γ doesn't give; relaxed, U ← U + θ S_0⁻¹ r converges for
+//! θ < 2 / (1 + λ), λ the largest eigenvalue of S_0⁻¹ S_CON', wherever S_0 is regular.
+
+use super::{Residual, SweepStatus, Sweeps, axpy, dot, maximum};
+use crate::schur::factor::BoundaryLastCholesky;
+
+/// Sweeps before it gives up.
+const MAX_SWEEPS: usize = 2000;
+/// Steps of the power iteration.
+const POWER_STEPS: usize = 60;
+/// Growth of U over the bilateral start at which it diverges.
+const DIVERGED: f64 = 1e8;
+
+impl Sweeps<'_, '_> {
+    pub(super) fn picard(&mut self, u: &mut Vec<f64>, mut residual: Residual) -> SweepStatus {
+        if self.is_converged(&residual) {
+            return SweepStatus::Converged;
+        }
+        let Some(s_0) = self.interface.factor_s_0() else {
+            return SweepStatus::NotConverged(
+                "S_0 is singular: a part of the interface belongs to contact subdomains alone, or \
+                 a linear subdomain floats, so that (18) isn't defined for this partition; use \
+                 --method newton or --method anderson"
+                    .into(),
+            );
+        };
+        let rho = self.spectral_radius(&s_0);
+        let theta = self.settings.relaxation.unwrap_or(2.0 / (2.0 + rho));
+        let verdict = if rho < 1.0 {
+            "(18) as printed converges here"
+        } else {
+            "(18) as printed diverges here"
+        };
+        self.notes.push(format!(
+            "picard: the spectral radius of S_0^-1 S_CON' is about {rho:.3}, so that {verdict}; \
+             relaxation {theta:.4}"
+        ));
+        let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
+        let first = residual.relative;
+        let start = maximum(u).max(f64::MIN_POSITIVE);
+        while !self.is_converged(&residual) {
+            let diverged = !residual.relative.is_finite() || maximum(u) > DIVERGED * start;
+            if diverged || self.sweeps_done() >= limit {
+                let why = if diverged {
+                    format!(
+                        "(18) with relaxation {theta:.4} diverges: the spectral radius of \
+                         S_0^-1 S_CON' is about {rho:.3}; use --method newton; stopped"
+                    )
+                } else {
+                    format!(
+                        "picard with relaxation {theta:.4} isn't there (it began at a residual of \
+                         {first:.1e}; use --method newton); stopped"
+                    )
+                };
+                return self.gave_up(&residual, &why);
+            }
+            let mut step = residual.r.clone();
+            s_0.forward(&mut step);
+            s_0.backward(&mut step);
+            axpy(theta, &step, u);
+            residual = self.residual(u);
+            self.record(&residual);
+        }
+        SweepStatus::Converged
+    }
+
+    /// ρ(S_0⁻¹ S_CON') at the active sets of the last evaluation, by power iteration from a vector
+    /// that no symmetry of a scene can be orthogonal to.
+    fn spectral_radius(&self, s_0: &BoundaryLastCholesky) -> f64 {
+        let n = self.interface.len;
+        let mut x: Vec<f64> = (0..n)
+            .map(|i| 1.0 + (i as f64 * 0.754_877_666).fract())
+            .collect();
+        let mut rho = 0.0;
+        for _ in 0..POWER_STEPS {
+            let norm = dot(&x, &x).sqrt();
+            if norm == 0.0 {
+                return 0.0;
+            }
+            for x in &mut x {
+                *x /= norm;
+            }
+            let mut y = vec![0.0; n];
+            self.state.add_derivative(self.interface, &x, &mut y);
+            s_0.forward(&mut y);
+            s_0.backward(&mut y);
+            rho = dot(&y, &y).sqrt();
+            x = y;
+        }
+        rho
+    }
+}
