@@ -112,8 +112,7 @@ struct Source {
 fn read(args: &Args) -> Result<Option<Source>, Failure> {
     if let Some(path) = &args.scene {
         let scene = Scene::read(path)?;
-        // Joining keeps an absolute path of the mesh as it is.
-        let mesh = gmsh::read(&path.parent().unwrap_or(Path::new("")).join(&scene.mesh))?;
+        let mesh = gmsh::read(&scene.mesh)?;
         let stem = path.file_stem().unwrap_or(path.as_os_str());
         return Ok(Some(Source {
             scene,

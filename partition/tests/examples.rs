@@ -9,6 +9,7 @@ use std::process::{Command, Output};
 use contact_dd_partition::example::{self, EXAMPLES};
 use contact_dd_partition::mesh::topology::Topology;
 use contact_dd_partition::mesh::{Mesh, gmsh};
+use contact_dd_partition::scene::Scene;
 
 fn mesh_of(name: &str, refine: u32) -> Mesh {
     example::find(name).unwrap().mesh(refine).unwrap()
@@ -212,7 +213,9 @@ fn meshes_are_read_back_from_their_files_bit_by_bit() {
     for example in EXAMPLES {
         let mesh = example.mesh(0).unwrap();
         let scene = example.write(&mesh, dir.path()).unwrap();
-        assert_eq!(std::fs::read_to_string(scene).unwrap(), example.scene);
+        assert_eq!(std::fs::read_to_string(&scene).unwrap(), example.scene);
+        let (made, _) = example.make(0).unwrap();
+        assert_eq!(made.title, Scene::read(&scene).unwrap().title);
         assert_eq!(gmsh::read(&dir.path().join("mesh.msh")).unwrap(), mesh);
     }
 }
@@ -292,9 +295,13 @@ fn the_program_lists_every_example() {
 fn bad_usage_ends_with_2_and_unwritable_output_with_5_and_one_line() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("file"), "").unwrap();
-    let cases: [(&[&str], i32, &str); 4] = [
+    std::fs::create_dir(dir.path().join("dir")).unwrap();
+    let scene = example::find("patch").unwrap().scene;
+    std::fs::write(dir.path().join("dir/scene.toml"), scene).unwrap();
+    let cases: [(&[&str], i32, &str); 5] = [
         (&["--example", "granit"], 2, "did you mean `granite`?"),
         (&["no-such-scene.toml"], 2, "no-such-scene.toml"),
+        (&["dir/scene.toml"], 2, "error: dir/mesh.msh: "),
         (
             &["--example", "patch", "--refine", "40"],
             2,
