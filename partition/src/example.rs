@@ -8,7 +8,6 @@ mod pattern;
 mod plain;
 mod stack;
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use self::blocks::Patch;

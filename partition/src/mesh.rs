@@ -13,7 +13,7 @@ use crate::element::Elements;
 pub struct Mesh {
     /// Dimension of the cells.
     pub dim: usize,
-    /// Coordinates [m]; unused components are zero.
+    /// Coordinates in metres; unused components are zero.
     pub points: Vec<[f64; 3]>,
     /// The mesh file's tag of each node.
     pub node_tags: Vec<i64>,

@@ -24,34 +24,32 @@ const HALF: f64 = 0.05;
 const GRADING: f64 = 6.0;
 
 fn patches() -> Vec<Patch> {
+    let pattern = Pattern::Grid(24, 12);
     vec![
-        sector(
-            0.0,
-            [[HALF, 0.0], [HALF, HALF]],
-            [Some("horizontal axis"), Some("right"), None, Some("hole")],
-        ),
-        sector(
-            FRAC_PI_4,
-            [[HALF, HALF], [0.0, HALF]],
-            [None, Some("top"), Some("vertical axis"), Some("hole")],
-        ),
+        Patch {
+            body: "plate",
+            map: Box::new(eighth),
+            pattern,
+            sides: [Some("horizontal axis"), Some("right"), None, Some("hole")],
+        },
+        // The mirror image, exact to the last bit, so that the axis lies where it should.
+        Patch {
+            body: "plate",
+            map: Box::new(|[s, t]| {
+                let [x, y] = eighth([s, 1.0 - t]);
+                [y, x]
+            }),
+            pattern,
+            sides: [None, Some("top"), Some("vertical axis"), Some("hole")],
+        },
     ]
 }
 
-/// An eighth of the plate from `angle` on, between the hole and a straight outer side.
-fn sector(angle: f64, outer: [[f64; 2]; 2], sides: [Option<&'static str>; 4]) -> Patch {
-    Patch {
-        body: "plate",
-        map: Box::new(move |[s, t]| {
-            let along = (GRADING.powf(s) - 1.0) / (GRADING - 1.0);
-            let (sin, cos) = (angle + FRAC_PI_4 * t).sin_cos();
-            let inner = [RADIUS * cos, RADIUS * sin];
-            [0, 1].map(|i| {
-                let outer = outer[0][i] * (1.0 - t) + outer[1][i] * t;
-                inner[i] * (1.0 - along) + outer * along
-            })
-        }),
-        pattern: Pattern::Grid(24, 12),
-        sides,
-    }
+/// An eighth of the plate, from the hole (s = 0) to the right side (s = 1), from the horizontal
+/// axis (t = 0) to the diagonal (t = 1).
+fn eighth([s, t]: [f64; 2]) -> [f64; 2] {
+    let along = (GRADING.powf(s) - 1.0) / (GRADING - 1.0);
+    let (sin, cos) = (FRAC_PI_4 * t).sin_cos();
+    let (inner, outer) = ([RADIUS * cos, RADIUS * sin], [HALF, HALF * t]);
+    [0, 1].map(|i| inner[i] * (1.0 - along) + outer[i] * along)
 }

@@ -21,49 +21,33 @@ const HALF_WIDTHS: [f64; 3] = [2.0, 1.5, 1.0];
 const CELLS: f64 = 8.0;
 
 fn patches() -> Vec<Patch> {
-    let mut patches = block(
-        "lower block",
-        0,
-        "ground",
-        ["free", "lower joint below", "free"],
-    );
+    let mut patches = block("lower block", 0, "ground", "lower joint below");
     patches.extend(block(
         "middle block",
         1,
         "lower joint above",
-        ["free", "upper joint below", "free"],
+        "upper joint below",
     ));
     let [.., width] = HALF_WIDTHS;
     patches.push(rectangle(
         "upper block",
         [-width, width],
         2,
-        [
-            Some("upper joint above"),
-            Some("free"),
-            Some("loaded"),
-            Some("free"),
-        ],
+        [Some("upper joint above"), None, Some("loaded"), None],
     ));
     patches
 }
 
 /// A block in three columns: the middle one is as wide as the block above.
-fn block(
-    body: &'static str,
-    level: usize,
-    bottom: &'static str,
-    top: [&'static str; 3],
-) -> Vec<Patch> {
+fn block(body: &'static str, level: usize, bottom: &'static str, top: &'static str) -> Vec<Patch> {
     let (outer, inner) = (HALF_WIDTHS[level], HALF_WIDTHS[level + 1]);
     let columns = [[-outer, -inner], [-inner, inner], [inner, outer]];
     columns
         .into_iter()
         .enumerate()
         .map(|(i, ends)| {
-            let right = (i == 2).then_some("free");
-            let left = (i == 0).then_some("free");
-            rectangle(body, ends, level, [Some(bottom), right, Some(top[i]), left])
+            let top = (i == 1).then_some(top);
+            rectangle(body, ends, level, [Some(bottom), None, top, None])
         })
         .collect()
 }

@@ -8,7 +8,7 @@ use crate::error::InputError;
 const FLAT: f64 = 1e-13;
 
 impl Mesh {
-    /// Signed measure of a cell [m²]: negative where its nodes run clockwise.
+    /// Signed measure of a cell, in m²: negative where its nodes run clockwise.
     pub fn measure(&self, cell: usize) -> f64 {
         let nodes = self.cells.nodes_of(cell);
         match self.cells.kind(cell) {
@@ -28,8 +28,7 @@ impl Mesh {
         for cell in 0..self.cells.len() {
             let measure = self.measure(cell);
             let size = self.longest_edge(cell).powi(self.dim as i32);
-            // Written so that a measure that isn't a number fails too.
-            if !(measure.abs() > FLAT * size) {
+            if measure.is_nan() || measure.abs() <= FLAT * size {
                 return Err(InputError::new(format!(
                     "element {} has no area: its nodes {} lie on one line",
                     self.cell_tags[cell],

@@ -20,6 +20,8 @@ pub(super) enum Encoding {
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
+    /// Where the number or line that was read last starts.
+    last: usize,
     section: &'a str,
     encoding: Encoding,
 }
@@ -29,6 +31,7 @@ impl<'a> Cursor<'a> {
         Self {
             bytes,
             at: 0,
+            last: 0,
             section: "",
             encoding: Encoding::Ascii,
         }
@@ -42,9 +45,9 @@ impl<'a> Cursor<'a> {
         self.encoding = encoding;
     }
 
-    /// An error with the place: the line of an ASCII file, section and byte of a binary one.
+    /// An error at what was read last: the line of an ASCII file, section and byte of a binary one.
     pub(super) fn error(&self, message: impl std::fmt::Display) -> InputError {
-        self.error_at(self.at, message)
+        self.error_at(self.last, message)
     }
 
     fn error_at(&self, at: usize, message: impl std::fmt::Display) -> InputError {
@@ -71,14 +74,13 @@ impl<'a> Cursor<'a> {
             if self.at == self.bytes.len() {
                 return Ok(None);
             }
-            let start = self.at;
             let line = self.rest_of_line();
             let Some(name) = line.strip_prefix(b"$") else {
                 continue;
             };
             let name = std::str::from_utf8(name).map(str::trim);
             let Ok(name) = name else {
-                return Err(self.error_at(start, "expected the name of a section"));
+                return Err(self.error("expected the name of a section"));
             };
             self.section = name;
             return Ok(Some(name));
@@ -88,7 +90,6 @@ impl<'a> Cursor<'a> {
     /// Reads the end of the section `name`.
     pub(super) fn end_section(&mut self, name: &str) -> Result<(), InputError> {
         self.skip_blanks();
-        let start = self.at;
         let line = self.rest_of_line().trim_ascii();
         if line.strip_prefix(b"$End") == Some(name.as_bytes()) {
             return Ok(());
@@ -97,7 +98,7 @@ impl<'a> Cursor<'a> {
             true => "the end of the file".into(),
             false => format!("`{}`", shown(line)),
         };
-        Err(self.error_at(start, format!("expected $End{name}, found {found}")))
+        Err(self.error(format!("expected $End{name}, found {found}")))
     }
 
     /// Goes behind the end of the section `name`.
@@ -114,14 +115,13 @@ impl<'a> Cursor<'a> {
 
     /// The rest of the line as text, without what ends it.
     pub(super) fn line(&mut self, what: &str) -> Result<&'a str, InputError> {
-        let start = self.at;
-        if start == self.bytes.len() {
+        if self.at == self.bytes.len() {
             return Err(self.ended(what));
         }
         let line = self.rest_of_line();
         std::str::from_utf8(line)
             .map(str::trim)
-            .map_err(|_| self.error_at(start, format!("expected {what} in UTF-8")))
+            .map_err(|_| self.error(format!("expected {what} in UTF-8")))
     }
 
     /// Goes to the start of the next line.
@@ -156,7 +156,6 @@ impl<'a> Cursor<'a> {
 
     /// A C `size_t`, which counts and tags of version 4.1 are.
     pub(super) fn size(&mut self, what: &str) -> Result<i64, InputError> {
-        let start = self.at;
         let value: u64 = match self.encoding {
             Encoding::Ascii => self.word(what, "a whole number")?,
             Encoding::Binary {
@@ -178,13 +177,11 @@ impl<'a> Cursor<'a> {
                 }
             }
         };
-        i64::try_from(value)
-            .map_err(|_| self.error_at(start, format!("{what} is too large: {value}")))
+        i64::try_from(value).map_err(|_| self.error(format!("{what} is too large: {value}")))
     }
 
     /// A finite real number.
     pub(super) fn real(&mut self, what: &str) -> Result<f64, InputError> {
-        let start = self.at;
         let value: f64 = match self.encoding {
             Encoding::Ascii => self.word(what, "a number")?,
             Encoding::Binary { big_endian, .. } => {
@@ -196,7 +193,7 @@ impl<'a> Cursor<'a> {
             }
         };
         if !value.is_finite() {
-            return Err(self.error_at(start, format!("{what} is {value}; expected a number")));
+            return Err(self.error(format!("{what} is {value}; expected a number")));
         }
         Ok(value)
     }
@@ -213,22 +210,19 @@ impl<'a> Cursor<'a> {
     /// A `size_t` that counts things of at least `values` numbers each, checked against what the
     /// file has left.
     pub(super) fn count(&mut self, what: &str, values: usize) -> Result<usize, InputError> {
-        let start = self.at;
         let count = self.size(what)?;
-        self.checked(start, what, count, values)
+        self.checked(what, count, values)
     }
 
     /// The same of a C `int`.
     pub(super) fn int_count(&mut self, what: &str, values: usize) -> Result<usize, InputError> {
-        let start = self.at;
         let count = self.int(what)?;
-        self.checked(start, what, count, values)
+        self.checked(what, count, values)
     }
 
     /// Checks that `count` things of at least `values` numbers each fit into what is left.
     pub(super) fn checked(
         &self,
-        start: usize,
         what: &str,
         count: i64,
         values: usize,
@@ -241,17 +235,11 @@ impl<'a> Cursor<'a> {
         let left = self.bytes.len() - self.at + 1;
         match usize::try_from(count) {
             Ok(count) if count.saturating_mul(shortest * values) <= left => Ok(count),
-            Ok(_) => Err(self.error_at(
-                start,
-                format!("{what} is {count}, but the file ends long before: it is truncated"),
-            )),
-            Err(_) => Err(self.error_at(start, format!("{what} is negative: {count}"))),
+            Ok(_) => Err(self.error(format!(
+                "{what} is {count}, but the file ends long before: it is truncated"
+            ))),
+            Err(_) => Err(self.error(format!("{what} is negative: {count}"))),
         }
-    }
-
-    /// Where the cursor stands.
-    pub(super) fn position(&self) -> usize {
-        self.at
     }
 
     fn skip_blanks(&mut self) {
@@ -263,6 +251,7 @@ impl<'a> Cursor<'a> {
     fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
         let length = rest.iter().position(|&b| b == b'\n');
+        self.last = self.at;
         self.at += length.map_or(rest.len(), |n| n + 1);
         &rest[..length.unwrap_or(rest.len())]
     }
@@ -276,11 +265,12 @@ impl<'a> Cursor<'a> {
         if word.is_empty() {
             return Err(self.ended(what));
         }
+        self.last = start;
         self.at += word.len();
         let parsed = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
         parsed.ok_or_else(|| {
             let found = shown(word);
-            self.error_at(start, format!("expected {what}, {kind}, found `{found}`"))
+            self.error(format!("expected {what}, {kind}, found `{found}`"))
         })
     }
 
@@ -289,12 +279,13 @@ impl<'a> Cursor<'a> {
         let Some(bytes) = rest.first_chunk::<N>() else {
             return Err(self.ended(what));
         };
+        self.last = self.at;
         self.at += N;
         Ok(*bytes)
     }
 
     fn ended(&self, what: &str) -> InputError {
-        self.error(format!("the file ends where {what} was expected"))
+        self.error_at(self.at, format!("the file ends where {what} was expected"))
     }
 }
 

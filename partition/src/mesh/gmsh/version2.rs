@@ -116,10 +116,9 @@ fn element(
 
 /// Reads a count, which is a line of text in binary files too.
 fn count_line(cursor: &mut Cursor, what: &str, values: usize) -> Result<usize, InputError> {
-    let start = cursor.position();
     let line = cursor.line(what)?;
     match line.parse() {
-        Ok(count) => cursor.checked(start, what, count, values),
+        Ok(count) => cursor.checked(what, count, values),
         Err(_) => Err(cursor.error(format!("expected {what}, found `{line}`"))),
     }
 }

@@ -198,7 +198,7 @@ fn gathered<'a>(
     dim: usize,
     elements: impl Iterator<Item = (i64, ElementKind, &'a [u32], Vec<usize>)>,
 ) -> Vec<Entity> {
-    let mut by_groups: BTreeMap<(Vec<usize>, ElementKind), Vec<(i64, Vec<u32>)>> = BTreeMap::new();
+    let mut by_groups: BTreeMap<_, Vec<_>> = BTreeMap::new();
     for (tag, kind, nodes, groups) in elements {
         let entity = by_groups.entry((groups, kind)).or_default();
         entity.push((tag, nodes.to_vec()));

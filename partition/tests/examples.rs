@@ -1,0 +1,333 @@
+//! The meshes of the built-in scenes, and the program that makes them.
+
+#![expect(clippy::unwrap_used, reason = "what fails here fails the test")]
+
+use std::collections::{BTreeSet, HashMap};
+use std::path::Path;
+use std::process::{Command, Output};
+
+use contact_dd_partition::example::{self, EXAMPLES};
+use contact_dd_partition::mesh::topology::Topology;
+use contact_dd_partition::mesh::{Mesh, gmsh};
+use contact_dd_partition::scene::Scene;
+
+fn mesh_of(name: &str, refine: u32) -> Mesh {
+    example::find(name).unwrap().mesh(refine).unwrap()
+}
+
+fn area(mesh: &Mesh) -> f64 {
+    (0..mesh.cells.len()).map(|cell| mesh.measure(cell)).sum()
+}
+
+/// The nodes of a side.
+fn nodes_of(mesh: &Mesh, side: &str) -> BTreeSet<u32> {
+    let group = &mesh.groups[side];
+    assert_eq!(group.dim, 1, "{side}");
+    let facets = group.members.iter();
+    facets
+        .flat_map(|&facet| mesh.facets.nodes_of(facet as usize).to_vec())
+        .collect()
+}
+
+fn length(mesh: &Mesh, side: &str) -> f64 {
+    let facets = mesh.groups[side].members.iter();
+    facets
+        .map(|&facet| {
+            let [a, b] =
+                [0, 1].map(|i| mesh.points[mesh.facets.nodes_of(facet as usize)[i] as usize]);
+            (a[0] - b[0]).hypot(a[1] - b[1])
+        })
+        .sum()
+}
+
+/// A point on a grid fine enough to tell nodes apart and coarse enough to bear rounding.
+fn key(point: [f64; 3]) -> [i64; 2] {
+    [0, 1].map(|i| (point[i] * 1e9).round() as i64)
+}
+
+#[test]
+fn every_mesh_covers_its_scene_exactly_at_every_refinement() {
+    for (name, exact) in [
+        ("granite", 100.0),
+        ("patch", 4.0),
+        ("junction", 100.0),
+        ("stack", 9.0),
+    ] {
+        for refine in 0..2 {
+            let area = area(&mesh_of(name, refine));
+            assert!((area / exact - 1.0).abs() < 1e-12, "{name}: {area}");
+        }
+    }
+}
+
+#[test]
+fn refinement_follows_the_curved_side_of_the_plate_with_second_order() {
+    let exact = 0.05_f64.powi(2) - std::f64::consts::PI * 0.01_f64.powi(2) / 4.0;
+    let errors = [0, 1, 2].map(|refine| area(&mesh_of("plain", refine)) - exact);
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((order - 2.0).abs() < 0.05, "order {order}");
+    }
+}
+
+#[test]
+fn refinement_cuts_every_cell_into_four_and_every_facet_into_two() {
+    for example in EXAMPLES {
+        let (coarse, fine) = (example.mesh(0).unwrap(), example.mesh(1).unwrap());
+        assert_eq!(fine.cells.len(), 4 * coarse.cells.len());
+        assert_eq!(fine.facets.len(), 2 * coarse.facets.len());
+        assert!(fine.groups.keys().eq(coarse.groups.keys()));
+    }
+    assert!(example::find("granite").unwrap().mesh(30).is_err());
+}
+
+#[test]
+fn meshes_are_conforming_and_their_sides_lie_on_the_boundary() {
+    for example in EXAMPLES {
+        let mesh = example.mesh(0).unwrap();
+        let topology = Topology::new(&mesh);
+        for (_, facet) in mesh.facets.iter() {
+            assert_eq!(topology.cells_at(facet).len(), 1, "{}", example.name);
+        }
+        let mut boundary = 0.0;
+        for (kind, nodes) in mesh.cells.iter() {
+            for (_, local) in kind.facets() {
+                let facet: Vec<u32> = local.iter().map(|&i| nodes[i]).collect();
+                let cells = topology.cells_at(&facet);
+                assert!(cells.len() <= 2, "{}", example.name);
+                if cells.len() == 1 {
+                    let [a, b] = [0, 1].map(|i| mesh.points[facet[i] as usize]);
+                    boundary += (a[0] - b[0]).hypot(a[1] - b[1]);
+                }
+            }
+        }
+        // Both sides of every contact, beside the outline.
+        let exact = match example.name {
+            "granite" => 40.0 + 4.0 * 11.25_f64.sqrt(),
+            "patch" => 8.0 + 2.0 * 2.0_f64.hypot(0.4),
+            "junction" => 40.0 + 2.0 * (10.0_f64.hypot(6.0) + 5.0 + 5.0),
+            "stack" => 2.0 * (4.0 + 3.0 + 2.0 + 3.0),
+            _ => continue,
+        };
+        assert!((boundary / exact - 1.0).abs() < 1e-12, "{}", example.name);
+    }
+}
+
+#[test]
+fn sides_of_a_contact_have_matching_nodes_and_share_none_but_crack_tips() {
+    for (name, a, b, conditions, tips) in [
+        ("granite", "left crack lower", "left crack upper", 24, 1),
+        ("granite", "right crack lower", "right crack upper", 24, 1),
+        ("patch", "lower face", "upper face", 17, 0),
+        ("junction", "oblique upper", "oblique lower", 21, 0),
+        ("junction", "vertical right", "vertical left", 11, 0),
+        ("junction", "horizontal upper", "horizontal lower", 11, 0),
+        ("stack", "lower joint above", "lower joint below", 25, 0),
+        ("stack", "upper joint above", "upper joint below", 17, 0),
+    ] {
+        let mesh = mesh_of(name, 0);
+        let (a, b) = (nodes_of(&mesh, a), nodes_of(&mesh, b));
+        let places = |side: &BTreeSet<u32>| -> BTreeSet<[i64; 2]> {
+            side.iter().map(|&n| key(mesh.points[n as usize])).collect()
+        };
+        assert_eq!(places(&a), places(&b), "{name}");
+        assert_eq!(places(&b).len(), conditions + tips, "{name}");
+        assert_eq!(
+            b.len(),
+            conditions + tips,
+            "{name}: side b has one node a place"
+        );
+        assert_eq!(a.intersection(&b).count(), tips, "{name}");
+    }
+}
+
+#[test]
+fn bodies_hang_together_and_are_never_glued() {
+    for (name, bodies) in [
+        ("granite", 1),
+        ("patch", 2),
+        ("junction", 4),
+        ("stack", 3),
+        ("plain", 1),
+    ] {
+        let mesh = mesh_of(name, 0);
+        let pieces: BTreeSet<u32> = Topology::new(&mesh).pieces().into_iter().collect();
+        assert_eq!(pieces.len(), bodies, "{name}");
+        let groups = mesh.groups.values().filter(|g| g.dim == 2);
+        assert_eq!(groups.count(), bodies, "{name}");
+    }
+}
+
+#[test]
+fn the_granite_block_is_the_papers_and_its_own_mirror_image() {
+    let mesh = mesh_of("granite", 0);
+    assert_eq!(mesh.cells.len(), 4880);
+    for (side, exact) in [
+        ("bottom", 10.0),
+        ("lower right", 6.5),
+        ("upper right", 3.5),
+        ("top", 10.0),
+        ("upper left", 3.5),
+        ("lower left", 6.5),
+        ("left crack lower", 11.25_f64.sqrt()),
+        ("right crack upper", 11.25_f64.sqrt()),
+    ] {
+        assert!((length(&mesh, side) - exact).abs() < 1e-12, "{side}");
+    }
+    let triangle = |cell: usize, mirror: bool| {
+        let nodes = mesh.cells.nodes_of(cell).iter();
+        let mut corners: Vec<[i64; 2]> = nodes
+            .map(|&n| {
+                let [x, y, z] = mesh.points[n as usize];
+                key([if mirror { 10.0 - x } else { x }, y, z])
+            })
+            .collect();
+        corners.sort_unstable();
+        corners
+    };
+    let all = |mirror| -> BTreeSet<_> { (0..4880).map(|c| triangle(c, mirror)).collect() };
+    assert_eq!(all(false), all(true));
+}
+
+#[test]
+fn cells_are_well_shaped() {
+    for example in EXAMPLES {
+        let mesh = example.mesh(0).unwrap();
+        let mut worst = f64::INFINITY;
+        for (_, nodes) in mesh.cells.iter() {
+            let p: Vec<[f64; 3]> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
+            for i in 0..3 {
+                let [a, b, c] = [i, (i + 1) % 3, (i + 2) % 3].map(|k| p[k]);
+                let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+                let angle = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
+                worst = worst.min(angle.to_degrees());
+            }
+        }
+        assert!(worst > 18.0, "{}: smallest angle {worst}°", example.name);
+    }
+}
+
+#[test]
+fn meshes_are_read_back_from_their_files_bit_by_bit() {
+    let dir = tempfile::tempdir().unwrap();
+    for example in EXAMPLES {
+        let mesh = example.mesh(0).unwrap();
+        let scene = example.write(&mesh, dir.path()).unwrap();
+        assert_eq!(std::fs::read_to_string(&scene).unwrap(), example.scene);
+        let (made, _) = example.make(0).unwrap();
+        assert_eq!(made.title, Scene::read(&scene).unwrap().title);
+        assert_eq!(gmsh::read(&dir.path().join("mesh.msh")).unwrap(), mesh);
+    }
+}
+
+#[test]
+fn scenes_name_groups_that_their_meshes_have() {
+    for example in EXAMPLES {
+        let scene: toml::Table = example.scene.parse().unwrap();
+        let mesh = example.mesh(0).unwrap();
+        let mut dims: HashMap<&str, usize> = HashMap::new();
+        for (key, value) in &scene {
+            match value {
+                toml::Value::Table(table) if key == "bodies" => {
+                    dims.extend(table.keys().map(|body| (body.as_str(), 2)));
+                }
+                toml::Value::Array(entries) => {
+                    for entry in entries {
+                        let on = entry.get("on").into_iter();
+                        let sides = entry.get("sides").and_then(|s| s.as_array());
+                        let names = on.chain(sides.into_iter().flatten());
+                        dims.extend(names.map(|name| (name.as_str().unwrap(), 1)));
+                    }
+                }
+                _ => {}
+            }
+        }
+        assert!(dims.len() > 2, "{}", example.name);
+        for (name, dim) in dims {
+            let group = mesh.groups.get(name);
+            let group = group.unwrap_or_else(|| panic!("{}: no {name}", example.name));
+            assert_eq!(group.dim, dim, "{}: {name}", example.name);
+            assert!(!group.members.is_empty());
+        }
+    }
+}
+
+fn program(args: &[&str], dir: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_contact-dd-partition"))
+        .args(args)
+        .current_dir(dir)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn the_program_writes_a_scene_to_start_from() {
+    let dir = tempfile::tempdir().unwrap();
+    let args = [
+        "--example",
+        "patch",
+        "--refine",
+        "1",
+        "--write-scene",
+        "a/b",
+    ];
+    let output = program(&args, dir.path());
+    assert!(output.status.success(), "{output:?}");
+    let mesh = gmsh::read(&dir.path().join("a/b/mesh.msh")).unwrap();
+    assert_eq!(mesh, mesh_of("patch", 1));
+    assert_eq!(
+        std::fs::read_dir(dir.path().join("a/b")).unwrap().count(),
+        2
+    );
+}
+
+#[test]
+fn the_program_lists_every_example() {
+    let output = program(&["--list-examples"], Path::new("."));
+    let list = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(list.lines().count(), EXAMPLES.len());
+    for example in EXAMPLES {
+        assert!(list.contains(example.name) && list.contains(example.about));
+    }
+}
+
+#[test]
+fn bad_usage_ends_with_2_and_unwritable_output_with_5_and_one_line() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("file"), "").unwrap();
+    std::fs::create_dir(dir.path().join("dir")).unwrap();
+    let scene = example::find("patch").unwrap().scene;
+    std::fs::write(dir.path().join("dir/scene.toml"), scene).unwrap();
+    let cases: [(&[&str], i32, &str); 5] = [
+        (&["--example", "granit"], 2, "did you mean `granite`?"),
+        (&["no-such-scene.toml"], 2, "no-such-scene.toml"),
+        (&["dir/scene.toml"], 2, "error: dir/mesh.msh: "),
+        (
+            &["--example", "patch", "--refine", "40"],
+            2,
+            "refined 40 times",
+        ),
+        (
+            &["--example", "patch", "--write-scene", "file/x"],
+            5,
+            "file/x",
+        ),
+    ];
+    for (args, code, expected) in cases {
+        let output = program(args, dir.path());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
+        assert!(
+            said.starts_with("error: ") && said.contains(expected),
+            "{said}"
+        );
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
+    for args in [
+        &["--refine", "1"][..],
+        &["--example", "patch", "--frobnicate"],
+        &[],
+    ] {
+        assert_eq!(program(args, dir.path()).status.code(), Some(2), "{args:?}");
+    }
+}
