@@ -3,8 +3,19 @@
 //! Loads are consistent nodal forces, supports are rows `u·d = v`, contact is `B u ≤ g`; nothing
 //! behind this point knows how they came about.
 
+mod bodies;
+mod contact;
+mod groups;
+mod loads;
+mod obstacle;
+mod partition;
+mod sight;
+mod supports;
+mod surface;
+
 use crate::error::InputError;
 use crate::mesh::Mesh;
+use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 
 /// Which plane state a two-dimensional scene is in.
@@ -104,7 +115,46 @@ impl Model {
     ///
     /// # Errors
     /// Groups that don't exist, conditions that contradict each other, sides that don't match.
-    pub fn new(_scene: &Scene, _mesh: Mesh) -> Result<Self, InputError> {
-        Err(InputError::new("not yet"))
+    pub fn new(scene: &Scene, mesh: Mesh) -> Result<Self, InputError> {
+        let plane = plane_state(scene, &mesh)?;
+        let mut warnings = Vec::new();
+        let bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
+        let topology = Topology::new(&bodies.mesh);
+        let supports = supports::supports(scene, &bodies.mesh, &topology)?;
+        let forces = loads::forces(scene, &bodies, &topology)?;
+        let sides = contact::Contacts::new(&bodies.mesh, &topology, &supports);
+        let contacts = (scene.contact.iter())
+            .map(|keys| sides.contact(keys, &mut warnings))
+            .collect::<Result<_, _>>()?;
+        let prescribed_subdomains = (scene.subdomains.as_ref())
+            .map(|names| partition::prescribed(&bodies.mesh, names))
+            .transpose()?;
+        Ok(Self {
+            title: scene.title.clone(),
+            plane,
+            materials: bodies::materials(scene, plane),
+            bodies: scene.bodies.keys().cloned().collect(),
+            cell_material: bodies.cell_material,
+            cell_body: bodies.cell_body,
+            mesh: bodies.mesh,
+            supports,
+            forces,
+            contacts,
+            prescribed_subdomains,
+            warnings,
+        })
     }
+}
+
+/// The plane state, of a scene whose mesh lies in the plane.
+fn plane_state(scene: &Scene, mesh: &Mesh) -> Result<PlaneState, InputError> {
+    if mesh.dim != 2 {
+        return Err(InputError::new(format!(
+            "the mesh has {} dimensions; expected 2",
+            mesh.dim
+        )));
+    }
+    scene.plane.ok_or_else(|| {
+        InputError::new("the key 'plane' is missing: the mesh has 2 dimensions; expected plane = \"strain\" or \"stress\"")
+    })
 }

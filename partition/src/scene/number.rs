@@ -134,11 +134,6 @@ impl Vector {
     pub fn is_constant(&self) -> bool {
         self.0.iter().all(|n| matches!(n, Number::Constant(_)))
     }
-
-    /// Its components.
-    pub fn components(&self) -> &[Number] {
-        &self.0
-    }
 }
 
 /// A vector that is the same everywhere.

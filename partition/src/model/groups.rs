@@ -1,0 +1,117 @@
+//! Physical groups by the names that a scene calls them.
+
+use std::collections::BTreeSet;
+
+use crate::error::InputError;
+use crate::mesh::{Group, Mesh};
+use crate::scene::condition::Names;
+use crate::scene::suggest::nearest;
+
+/// What a group has to consist of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Members {
+    Cells,
+    Facets,
+    Any,
+}
+
+impl Members {
+    fn fit(self, group: &Group, mesh: &Mesh) -> bool {
+        match self {
+            Self::Cells => group.dim == mesh.dim,
+            Self::Facets => group.dim + 1 == mesh.dim,
+            Self::Any => true,
+        }
+    }
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Cells => "cells",
+            Self::Facets => "facets",
+            Self::Any => "cells, facets or points",
+        }
+    }
+}
+
+/// The cells of the groups `names`, ascending. `what` names the key of the scene.
+pub(super) fn cells(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>, InputError> {
+    union(mesh, names, Members::Cells, what)
+}
+
+/// The facets of the groups `names`, ascending.
+pub(super) fn facets(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>, InputError> {
+    union(mesh, names, Members::Facets, what)
+}
+
+/// The nodes of the groups `names`, of whatever they consist, ascending.
+pub(super) fn nodes(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>, InputError> {
+    let mut nodes = BTreeSet::new();
+    for name in names.iter() {
+        let group = find(mesh, name, Members::Any, what)?;
+        for &member in &group.members {
+            if group.dim == mesh.dim {
+                nodes.extend(mesh.cells.nodes_of(member as usize));
+            } else if group.dim + 1 == mesh.dim {
+                nodes.extend(mesh.facets.nodes_of(member as usize));
+            } else {
+                nodes.insert(member);
+            }
+        }
+    }
+    Ok(nodes.into_iter().collect())
+}
+
+/// The group of cells `name`.
+pub(super) fn cell_group<'a>(
+    mesh: &'a Mesh,
+    name: &str,
+    what: &str,
+) -> Result<&'a Group, InputError> {
+    find(mesh, name, Members::Cells, what)
+}
+
+fn union(mesh: &Mesh, names: &Names, members: Members, what: &str) -> Result<Vec<u32>, InputError> {
+    let mut union = BTreeSet::new();
+    for name in names.iter() {
+        union.extend(&find(mesh, name, members, what)?.members);
+    }
+    Ok(union.into_iter().collect())
+}
+
+fn find<'a>(
+    mesh: &'a Mesh,
+    name: &str,
+    members: Members,
+    what: &str,
+) -> Result<&'a Group, InputError> {
+    let word = members.word();
+    let fitting: Vec<&str> = mesh
+        .groups
+        .iter()
+        .filter(|(_, group)| members.fit(group, mesh))
+        .map(|(name, _)| name.as_str())
+        .collect();
+    let list = if fitting.is_empty() {
+        format!("the mesh has no group of {word}")
+    } else {
+        format!("groups of {word}: {}", fitting.join(", "))
+    };
+    match mesh.groups.get(name) {
+        Some(group) if !members.fit(group, mesh) => Err(InputError::new(format!(
+            "{what}: '{name}' is a group of dimension {}; expected one of {word} ({list})",
+            group.dim
+        ))),
+        Some(group) if group.members.is_empty() => Err(InputError::new(format!(
+            "{what}: the group '{name}' is empty"
+        ))),
+        Some(group) => Ok(group),
+        None => {
+            let hint = nearest(name, fitting.iter().copied())
+                .map(|near| format!("; did you mean '{near}'?"))
+                .unwrap_or_default();
+            Err(InputError::new(format!(
+                "{what}: the mesh has no physical group '{name}'{hint} ({list})"
+            )))
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Γ_τ and body forces as consistent nodal forces.
+
+use std::collections::BTreeMap;
+
+use super::bodies::Bodies;
+use super::groups;
+use super::surface::Surface;
+use crate::element::geometry::{advance, length};
+use crate::error::InputError;
+use crate::mesh::topology::Topology;
+use crate::scene::Scene;
+use crate::scene::number::Vector;
+
+/// Degree of exactness on facets; a cubic load times a linear shape function needs 4.
+const FACET_DEGREE: usize = 9;
+/// The same in cells.
+const CELL_DEGREE: usize = 5;
+
+/// The nodal forces of a scene, ascending by node, without those that are zero.
+pub(super) fn forces(
+    scene: &Scene,
+    bodies: &Bodies,
+    topology: &Topology,
+) -> Result<Vec<(u32, [f64; 3])>, InputError> {
+    let mesh = &bodies.mesh;
+    let mut forces = vec![[0.0; 3]; mesh.points.len()];
+    for (body, (name, keys)) in scene.bodies.iter().enumerate() {
+        let Some(force) = &keys.body_force else {
+            continue;
+        };
+        let what = format!("bodies.{name}.body_force");
+        expect_dim(force, mesh.dim, &what)?;
+        body_force(bodies, body as u32, force, &mut forces)
+            .map_err(|reason| InputError::new(format!("{what}: {reason}")))?;
+    }
+    for (index, traction) in scene.traction.iter().enumerate() {
+        let what = format!("traction[{}] on {}", index + 1, traction.on);
+        expect_dim(&traction.value, mesh.dim, &what)?;
+        let facets = groups::facets(mesh, &traction.on, &what)?;
+        let surface = Surface::new(mesh, topology, &facets, &what)?;
+        surface_load(&surface, &mut forces, |x, area| {
+            let traction = traction.value.at(x)?;
+            Ok(traction.map(|c| c * length(area)))
+        })
+        .map_err(|reason| InputError::new(format!("{what}: {reason}")))?;
+    }
+    for (index, pressure) in scene.pressure.iter().enumerate() {
+        let what = format!("pressure[{}] on {}", index + 1, pressure.on);
+        let facets = groups::facets(mesh, &pressure.on, &what)?;
+        let surface = Surface::new(mesh, topology, &facets, &what)?;
+        surface_load(&surface, &mut forces, |x, area| {
+            let pressure = pressure.value.at(x)?;
+            Ok(area.map(|c| -pressure * c))
+        })
+        .map_err(|reason| InputError::new(format!("{what}: {reason}")))?;
+    }
+    Ok((0_u32..)
+        .zip(forces)
+        .filter(|(_, force)| *force != [0.0; 3])
+        .collect())
+}
+
+fn expect_dim(vector: &Vector, dim: usize, what: &str) -> Result<(), InputError> {
+    if vector.dim() == dim {
+        return Ok(());
+    }
+    Err(InputError::new(format!(
+        "{what}: a vector of {} components; the mesh has {dim} dimensions",
+        vector.dim()
+    )))
+}
+
+/// Adds ∫ N_i b dx over the cells of a body.
+fn body_force(
+    bodies: &Bodies,
+    body: u32,
+    force: &Vector,
+    forces: &mut [[f64; 3]],
+) -> Result<(), String> {
+    let mesh = &bodies.mesh;
+    let degree = if force.is_constant() { 1 } else { CELL_DEGREE };
+    let mut rules = BTreeMap::new();
+    for (cell, (kind, nodes)) in mesh.cells.iter().enumerate() {
+        if bodies.cell_body[cell] != body {
+            continue;
+        }
+        let (rule, shapes) = rules.entry(kind).or_insert_with(|| {
+            let rule = kind.quadrature(degree);
+            let shapes: Vec<_> = rule.points.iter().map(|&xi| kind.shape(xi)).collect();
+            (rule, shapes)
+        });
+        let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
+        for ((&xi, &weight), shape) in rule.points.iter().zip(&rule.weights).zip(shapes.iter()) {
+            let x = (shape.iter().zip(&at)).fold([0.0; 3], |sum, (&n, &p)| advance(sum, n, p));
+            let load = force.at(x)?;
+            let weight = weight * kind.jacobian(&at, xi);
+            for (&node, value) in nodes.iter().zip(shape) {
+                let sum = &mut forces[node as usize];
+                *sum = advance(*sum, weight * value, load);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Adds ∫ N_i τ dS, with τ dS from the place and n dS.
+fn surface_load(
+    surface: &Surface,
+    forces: &mut [[f64; 3]],
+    load: impl Fn([f64; 3], [f64; 3]) -> Result<[f64; 3], String>,
+) -> Result<(), String> {
+    for facet in &surface.facets {
+        let rule = facet.kind.quadrature(FACET_DEGREE);
+        for (&xi, &weight) in rule.points.iter().zip(&rule.weights) {
+            let x = facet.kind.position(&facet.at, xi);
+            let load = load(x, facet.kind.area_vector(&facet.at, xi))?;
+            for (&node, value) in facet.nodes.iter().zip(facet.kind.shape(xi)) {
+                let sum = &mut forces[node as usize];
+                *sum = advance(*sum, weight * value, load);
+            }
+        }
+    }
+    Ok(())
+}

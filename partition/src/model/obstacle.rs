@@ -1,0 +1,70 @@
+//! Contact with a rigid obstacle: rows of one node.
+
+use super::ContactCondition;
+use super::contact::SideNode;
+use crate::element::geometry::{difference, dot, length};
+use crate::mesh::Mesh;
+use crate::scene::condition::Obstacle;
+
+/// A condition for every node of a side: its signed distance, linearized at the nearest point of
+/// the obstacle, stays ≥ 0.
+pub(super) fn conditions(
+    mesh: &Mesh,
+    obstacle: &Obstacle,
+    nodes: Vec<SideNode>,
+) -> Result<Vec<ContactCondition>, String> {
+    if obstacle.dim() != mesh.dim {
+        return Err(format!(
+            "the obstacle's vectors have {} components; the mesh has {} dimensions",
+            obstacle.dim(),
+            mesh.dim
+        ));
+    }
+    let condition = |a: SideNode| {
+        let tag = mesh.node_tags[a.node as usize];
+        let Some((distance, out)) = distance(obstacle, a.position) else {
+            return Err(format!(
+                "node {tag} lies in the circle's centre, where no point of it is nearest"
+            ));
+        };
+        let normal = out.map(|c| -c);
+        Ok(ContactCondition {
+            entries: vec![(a.node, normal)],
+            gap: distance,
+            share: a.share,
+            position: a.position,
+            normal,
+            tag_a: tag,
+            tag_b: -1,
+        })
+    };
+    nodes.into_iter().map(condition).collect()
+}
+
+/// Signed distance of a point to an obstacle, positive outside of its material, and the
+/// obstacle's normal at its point nearest to it, out of its material.
+fn distance(obstacle: &Obstacle, at: [f64; 3]) -> Option<(f64, [f64; 3])> {
+    match obstacle {
+        Obstacle::HalfPlane { point, normal } => {
+            // Scaled first, so that no square under- or overflows.
+            let largest = normal.value.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+            let scaled = normal.value.map(|c| c / largest);
+            let normal = scaled.map(|c| c / length(scaled));
+            Some((dot(difference(at, point.value), normal), normal))
+        }
+        Obstacle::Circle {
+            center,
+            radius,
+            inside,
+        } => {
+            let arm = difference(at, center.value);
+            let far = length(arm);
+            let out = (far > 0.0).then(|| arm.map(|c| c / far))?;
+            Some(if *inside {
+                (radius - far, out.map(|c| -c))
+            } else {
+                (far - radius, out)
+            })
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! What a straight line meets of a surface.
+
+use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
+
+use super::surface::Surface;
+use crate::element::geometry::{advance, difference, dot, length};
+
+/// Distance from a line up to which a node lies on it, relative to the length of the facet that
+/// the node belongs to. Averaged normals of neighbouring facets of different lengths, and that of
+/// the last facet at the end of a curve, miss the partner by the gap times a small angle.
+const ASIDE: f64 = 1e-2;
+/// Cosine of the angle between a line and the inward normal of a facet that it meets face to face.
+const FACING: f64 = 0.1;
+
+/// A surface that lines are sent at.
+pub(super) struct Target<'a> {
+    surface: &'a Surface,
+    tree: RTree<Leaf>,
+}
+
+/// What a line meets first.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Met {
+    /// Nodes, more than one where several lie in one place, and their common distance.
+    Nodes(Vec<u32>, f64),
+    /// The inside of a facet.
+    Facet(usize),
+    /// Nothing, though facets that face the same way as the line may lie on it.
+    Nothing {
+        /// Whether there are such facets.
+        averted: bool,
+    },
+}
+
+struct Leaf {
+    facet: usize,
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl RTreeObject for Leaf {
+    type Envelope = AABB<[f64; 3]>;
+
+    fn envelope(&self) -> Self::Envelope {
+        AABB::from_corners(self.low, self.high)
+    }
+}
+
+/// The line through a point along a unit vector, in both directions.
+struct Line {
+    start: [f64; 3],
+    direction: [f64; 3],
+}
+
+impl SelectionFunction<Leaf> for Line {
+    fn should_unpack_parent(&self, envelope: &AABB<[f64; 3]>) -> bool {
+        self.meets(envelope.lower(), envelope.upper())
+    }
+
+    fn should_unpack_leaf(&self, leaf: &Leaf) -> bool {
+        self.meets(leaf.low, leaf.high)
+    }
+}
+
+impl Line {
+    /// Whether the line goes through a box: the ranges in which it lies between the opposite
+    /// faces have something in common.
+    fn meets(&self, low: [f64; 3], high: [f64; 3]) -> bool {
+        let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+        for axis in 0..3 {
+            let (start, slope) = (self.start[axis], self.direction[axis]);
+            if slope == 0.0 {
+                if start < low[axis] || start > high[axis] {
+                    return false;
+                }
+                continue;
+            }
+            let (a, b) = ((low[axis] - start) / slope, (high[axis] - start) / slope);
+            from = from.max(a.min(b));
+            to = to.min(a.max(b));
+        }
+        from <= to
+    }
+}
+
+impl<'a> Target<'a> {
+    /// Makes a surface ready to be searched: O(n log n) for n facets.
+    pub fn new(surface: &'a Surface) -> Self {
+        let leaf = |(facet, f): (usize, &super::surface::SurfaceFacet)| {
+            let margin = ASIDE * f.size();
+            let bound = |pick: fn(f64, f64) -> f64, margin: f64| {
+                let first = f.at[0];
+                f.at.iter()
+                    .fold(first, |bound, p| {
+                        [0, 1, 2].map(|axis| pick(bound[axis], p[axis]))
+                    })
+                    .map(|c| c + margin)
+            };
+            Leaf {
+                facet,
+                low: bound(f64::min, -margin),
+                high: bound(f64::max, margin),
+            }
+        };
+        let leaves = surface.facets.iter().enumerate().map(leaf).collect();
+        Self {
+            surface,
+            tree: RTree::bulk_load(leaves),
+        }
+    }
+
+    /// What the line from `start` along the unit vector `direction` meets first, either way but
+    /// no more than `behind` backwards, of what faces it; nodes for which `passes` holds are
+    /// passed by. O(log n) for a surface that isn't parallel to the line.
+    pub fn met(
+        &self,
+        start: [f64; 3],
+        direction: [f64; 3],
+        behind: f64,
+        passes: impl Fn(u32) -> bool,
+    ) -> Met {
+        let line = Line { start, direction };
+        let mut nodes: Vec<(u32, f64, f64)> = Vec::new();
+        let mut crossed: Option<(usize, f64)> = None;
+        let mut averted = false;
+        for leaf in self.tree.locate_with_selection_function(line) {
+            let facet = &self.surface.facets[leaf.facet];
+            let slack = ASIDE * facet.size();
+            let faces = dot(facet.normal, direction) <= -FACING;
+            let mut at_node = false;
+            for (&node, &at) in facet.nodes.iter().zip(&facet.at) {
+                let way = difference(at, start);
+                let ahead = dot(way, direction);
+                if length(advance(way, -ahead, direction)) > slack {
+                    continue;
+                }
+                at_node = true;
+                if passes(node) || ahead < -behind {
+                    continue;
+                }
+                averted |= !faces;
+                if faces && !nodes.iter().any(|(other, ..)| *other == node) {
+                    nodes.push((node, ahead, slack));
+                }
+            }
+            if at_node {
+                continue;
+            }
+            let Some(ahead) = facet.kind.crossing(&facet.at, start, direction) else {
+                continue;
+            };
+            if ahead < -behind {
+                continue;
+            }
+            averted |= !faces;
+            if faces && crossed.is_none_or(|(_, other)| ahead.abs() < other.abs()) {
+                crossed = Some((leaf.facet, ahead));
+            }
+        }
+        let nearest = nodes
+            .iter()
+            .copied()
+            .min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        match (nearest, crossed) {
+            (Some((_, ahead, slack)), crossed)
+                if crossed.is_none_or(|(_, other)| ahead.abs() <= other.abs() + slack) =>
+            {
+                let mut together: Vec<u32> = (nodes.iter())
+                    .filter(|node| (node.1 - ahead).abs() <= slack)
+                    .map(|node| node.0)
+                    .collect();
+                together.sort_unstable();
+                Met::Nodes(together, ahead)
+            }
+            (_, Some((facet, _))) => Met::Facet(facet),
+            _ => Met::Nothing { averted },
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Γ_u and Γ_o: what is prescribed at each node, as orthonormal rows.
+
+use std::collections::BTreeMap;
+
+use super::surface::Surface;
+use super::{Support, groups};
+use crate::element::geometry::{advance, dot, length};
+use crate::error::InputError;
+use crate::mesh::Mesh;
+use crate::mesh::topology::Topology;
+use crate::scene::Scene;
+
+/// Relative difference up to which two prescribed values of one component agree.
+const AGREE: f64 = 1e-12;
+/// Sine of the angle up to which a direction counts as prescribed already.
+pub(super) const PARALLEL: f64 = 1e-6;
+/// Cosine of 40°: facets of one bilateral condition that differ by more are a corner, where both
+/// directions hold.
+const CORNER: f64 = 0.766_044_443_118_978;
+
+/// A direction that a condition prescribes at a node.
+struct Row<'a> {
+    direction: [f64; 3],
+    value: f64,
+    condition: &'a str,
+}
+
+/// The supports of a scene, ascending by node, the rows of one node orthonormal.
+pub(super) fn supports(
+    scene: &Scene,
+    mesh: &Mesh,
+    topology: &Topology,
+) -> Result<Vec<Support>, InputError> {
+    let label = |key: &str, index: usize, on: &dyn std::fmt::Display| {
+        format!("{key}[{}] on {on}", index + 1)
+    };
+    let (displacement, bilateral) = (&scene.displacement, &scene.bilateral);
+    let displacement_labels: Vec<String> = (displacement.iter().enumerate())
+        .map(|(i, condition)| label("displacement", i, &condition.on))
+        .collect();
+    let bilateral_labels: Vec<String> = (bilateral.iter().enumerate())
+        .map(|(i, condition)| label("bilateral", i, &condition.on))
+        .collect();
+    let mut rows: BTreeMap<u32, Vec<Row>> = BTreeMap::new();
+    for (condition, label) in displacement.iter().zip(&displacement_labels) {
+        for node in groups::nodes(mesh, &condition.on, label)? {
+            for (axis, number) in condition.components.iter().enumerate() {
+                let Some(number) = number else { continue };
+                let value = number
+                    .at(mesh.points[node as usize])
+                    .map_err(|reason| InputError::new(format!("{label}: {reason}")))?;
+                let mut direction = [0.0; 3];
+                direction[axis] = 1.0;
+                rows.entry(node).or_default().push(Row {
+                    direction,
+                    value,
+                    condition: label,
+                });
+            }
+        }
+    }
+    for (condition, label) in bilateral.iter().zip(&bilateral_labels) {
+        let facets = groups::facets(mesh, &condition.on, label)?;
+        let surface = Surface::new(mesh, topology, &facets, label)?;
+        for (node, facets) in surface.around() {
+            for direction in corner_normals(&surface, facets) {
+                rows.entry(node).or_default().push(Row {
+                    direction,
+                    value: 0.0,
+                    condition: label,
+                });
+            }
+        }
+    }
+    let mut supports = Vec::new();
+    for (node, rows) in rows {
+        orthonormal(node, mesh, &rows, &mut supports)?;
+    }
+    Ok(supports)
+}
+
+/// The normals of the facets around a node: averages, weighted by measure, of those that differ
+/// by no more than a corner.
+fn corner_normals(surface: &Surface, mut facets: Vec<usize>) -> Vec<[f64; 3]> {
+    let measure = |f: &usize| surface.facets[*f].measure;
+    facets.sort_by(|a, b| measure(b).total_cmp(&measure(a)));
+    let mut sums: Vec<[f64; 3]> = Vec::new();
+    for facet in facets.iter().map(|&f| &surface.facets[f]) {
+        let same = |sum: &&mut [f64; 3]| dot(**sum, facet.normal) >= CORNER * length(**sum);
+        match sums.iter_mut().find(same) {
+            Some(sum) => *sum = advance(*sum, facet.measure, facet.normal),
+            None => sums.push(facet.normal.map(|c| c * facet.measure)),
+        }
+    }
+    sums.into_iter()
+        .map(|sum| sum.map(|c| c / length(sum)))
+        .collect()
+}
+
+/// Appends the orthonormal rows that say the same as `rows`: what one adds to those before it.
+fn orthonormal(
+    node: u32,
+    mesh: &Mesh,
+    rows: &[Row],
+    supports: &mut Vec<Support>,
+) -> Result<(), InputError> {
+    let start = supports.len();
+    let scale = rows.iter().map(|row| row.value.abs()).fold(0.0, f64::max);
+    for (index, row) in rows.iter().enumerate() {
+        let (mut direction, mut value) = (row.direction, row.value);
+        // Twice is enough for orthogonality to rounding.
+        for _ in 0..2 {
+            for before in &supports[start..] {
+                let overlap = dot(direction, before.direction);
+                direction = advance(direction, -overlap, before.direction);
+                value -= overlap * before.value;
+            }
+        }
+        let left = length(direction);
+        if left > PARALLEL {
+            supports.push(Support {
+                node,
+                direction: direction.map(|c| c / left),
+                value: value / left,
+            });
+            continue;
+        }
+        let exact = rows[..index]
+            .iter()
+            .find(|other| other.direction == row.direction);
+        let agreed = if exact.is_some() { AGREE } else { PARALLEL };
+        if value.abs() > agreed * scale {
+            let others = match exact {
+                Some(other) => format!("{} says {}", other.condition, other.value),
+                None => {
+                    let names: Vec<&str> = rows[..index].iter().map(|r| r.condition).collect();
+                    format!("{} say otherwise", names.join(" and "))
+                }
+            };
+            let [x, y, z] = row.direction;
+            return Err(InputError::new(format!(
+                "node {}: {} says {} for the displacement along ({x}, {y}, {z}), {others}; \
+                 expected conditions that agree",
+                mesh.node_tags[node as usize], row.condition, row.value
+            )));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,200 @@
+//! A piece of the boundary: its facets with their outward normals.
+
+use std::collections::{HashMap, HashSet};
+
+use super::bodies::tags_of;
+use crate::element::ElementKind;
+use crate::element::geometry::{advance, length};
+use crate::error::InputError;
+use crate::mesh::Mesh;
+use crate::mesh::topology::Topology;
+
+/// A facet of the boundary.
+#[derive(Clone, Debug)]
+pub(super) struct SurfaceFacet {
+    pub kind: ElementKind,
+    /// Nodes in the order in which the cell lies to their left.
+    pub nodes: Vec<u32>,
+    /// Coordinates of the nodes [m].
+    pub at: Vec<[f64; 3]>,
+    /// Unit outward normal in its middle.
+    pub normal: [f64; 3],
+    /// Length or area.
+    pub measure: f64,
+}
+
+impl SurfaceFacet {
+    /// Its diameter, by the order of magnitude [m].
+    pub fn size(&self) -> f64 {
+        match self.kind.dim() {
+            0 => 0.0,
+            1 => self.measure,
+            _ => self.measure.sqrt(),
+        }
+    }
+}
+
+/// What the facets around a node say of the surface there.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SurfaceNode {
+    /// Σ measure·normal of the facets around it.
+    pub area: [f64; 3],
+    /// Σ measure of the facets around it.
+    pub measure: f64,
+    /// ∫ of its shape function over the surface.
+    pub share: f64,
+}
+
+impl SurfaceNode {
+    /// The average of the facets' outward normals weighted by their measure, normalized. `None`
+    /// where they cancel.
+    pub fn normal(&self) -> Option<[f64; 3]> {
+        let size = length(self.area);
+        (size > 1e-6 * self.measure).then(|| self.area.map(|c| c / size))
+    }
+}
+
+/// A piece of the boundary.
+#[derive(Clone, Debug)]
+pub(super) struct Surface {
+    pub facets: Vec<SurfaceFacet>,
+}
+
+impl Surface {
+    /// The surface of `facets` of the mesh, each of exactly one cell. `what` names the key.
+    pub fn new(
+        mesh: &Mesh,
+        topology: &Topology,
+        facets: &[u32],
+        what: &str,
+    ) -> Result<Self, InputError> {
+        let facet_of = |&facet: &u32| {
+            let listed = mesh.facets.nodes_of(facet as usize);
+            let refused = |reason: &str| {
+                let tags = tags_of(mesh, listed);
+                InputError::new(format!("{what}: the facet of nodes {tags} {reason}"))
+            };
+            let cell_facet = match topology.cells_at(listed) {
+                [one] => one,
+                [] => return Err(refused("belongs to no cell of a body")),
+                [_, _] => {
+                    return Err(refused(
+                        "lies between two cells; expected one on the boundary \
+                         (nodes on a crack or between bodies have to be there twice)",
+                    ));
+                }
+                _ => return Err(refused("belongs to more than two cells")),
+            };
+            let cell = mesh.cells.nodes_of(cell_facet.cell as usize);
+            let kind = mesh.cells.kind(cell_facet.cell as usize);
+            let (kind, local) = kind.facets()[cell_facet.facet as usize];
+            let nodes: Vec<u32> = local.iter().map(|&i| cell[i]).collect();
+            let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
+            let area = integrate(kind, |xi| kind.area_vector(&at, xi));
+            let measure = length(area);
+            Ok(SurfaceFacet {
+                kind,
+                nodes,
+                normal: area.map(|c| c / measure),
+                measure,
+                at,
+            })
+        };
+        let facets = facets.iter().map(facet_of).collect::<Result<_, _>>()?;
+        Ok(Self { facets })
+    }
+
+    /// Its nodes with their normals and shares.
+    pub fn nodes(&self) -> HashMap<u32, SurfaceNode> {
+        let mut nodes: HashMap<u32, SurfaceNode> = HashMap::new();
+        for facet in &self.facets {
+            for (i, &node) in facet.nodes.iter().enumerate() {
+                let share = integrate(facet.kind, |xi| {
+                    let weight = facet.kind.shape(xi)[i];
+                    [
+                        weight * length(facet.kind.area_vector(&facet.at, xi)),
+                        0.0,
+                        0.0,
+                    ]
+                });
+                let sum = nodes.entry(node).or_default();
+                sum.area = advance(sum.area, facet.measure, facet.normal);
+                sum.measure += facet.measure;
+                sum.share += share[0];
+            }
+        }
+        nodes
+    }
+
+    /// The facets around each node.
+    pub fn around(&self) -> HashMap<u32, Vec<usize>> {
+        let mut around: HashMap<u32, Vec<usize>> = HashMap::new();
+        for (index, facet) in self.facets.iter().enumerate() {
+            for &node in &facet.nodes {
+                around.entry(node).or_default().push(index);
+            }
+        }
+        around
+    }
+
+    /// Its nodes one after the other: lines are followed from end to end with the body to the
+    /// left, closed ones from their point of least coordinates; pieces in the order of where they
+    /// start. Numbers of nodes play no part.
+    pub fn in_order(&self) -> Vec<u32> {
+        let mut facets: Vec<usize> = (0..self.facets.len()).collect();
+        let start = |&f: &usize| self.facets[f].at[0];
+        facets.sort_by(|a, b| compare(start(a), start(b)));
+        let mut leaving: HashMap<u32, Vec<usize>> = HashMap::new();
+        let mut entered: HashMap<u32, usize> = HashMap::new();
+        for &f in facets.iter().rev() {
+            let nodes = &self.facets[f].nodes;
+            leaving.entry(nodes[0]).or_default().push(f);
+            for &node in &nodes[1..] {
+                *entered.entry(node).or_default() += 1;
+            }
+        }
+        let is_end = |&&f: &&usize| !entered.contains_key(&self.facets[f].nodes[0]);
+        let ends = facets.iter().filter(is_end);
+        let mut done = vec![false; facets.len()];
+        let mut seen = HashSet::new();
+        let mut order = Vec::new();
+        for &first in ends.chain(&facets) {
+            let mut next = Some(first);
+            while let Some(f) = next.filter(|&f| !done[f]) {
+                done[f] = true;
+                let nodes = &self.facets[f].nodes;
+                order.extend(nodes.iter().copied().filter(|&node| seen.insert(node)));
+                next = nodes
+                    .last()
+                    .and_then(|last| leaving.get(last))
+                    .and_then(|candidates| candidates.iter().rev().copied().find(|&f| !done[f]));
+            }
+        }
+        order
+    }
+
+    /// The largest extent of its bounding box [m].
+    pub fn extent(&self) -> f64 {
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        for point in self.facets.iter().flat_map(|facet| &facet.at) {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(point[axis]);
+                high[axis] = high[axis].max(point[axis]);
+            }
+        }
+        (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max)
+    }
+}
+
+fn integrate(kind: ElementKind, integrand: impl Fn([f64; 3]) -> [f64; 3]) -> [f64; 3] {
+    let rule = kind.quadrature(2);
+    (rule.points.iter().zip(&rule.weights))
+        .fold([0.0; 3], |sum, (&xi, &w)| advance(sum, w, integrand(xi)))
+}
+
+fn compare(a: [f64; 3], b: [f64; 3]) -> std::cmp::Ordering {
+    (0..3).fold(std::cmp::Ordering::Equal, |order, i| {
+        order.then(a[i].total_cmp(&b[i]))
+    })
+}
