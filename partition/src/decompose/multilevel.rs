@@ -3,7 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use metis::Idx;
-use metis::option::{Contig, NCuts, Seed, UFactor};
+use metis::option::{Contig, Seed, UFactor};
 
 use super::graph::Graph;
 
@@ -44,7 +44,6 @@ pub(super) fn partition(
         .set_vwgt(&vertex_weights)
         .set_adjwgt(&edge_weights)
         .set_option(Seed(index(seed as usize)?))
-        .set_option(NCuts(2))
         .set_option(UFactor(40));
     let mut part = vec![0; n];
     let guard = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);

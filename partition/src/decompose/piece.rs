@@ -12,7 +12,7 @@ const LAYERS: [f64; 3] = [0.5, 0.65, 0.4];
 const SEEDS: u32 = 4;
 
 /// Atoms times tries that may be spent; large meshes need fewer tries.
-const BUDGET: usize = 2_000_000;
+const BUDGET: usize = 1_000_000;
 
 /// METIS isn't asked for parts of fewer atoms than these.
 const FEWEST_ATOMS: usize = 8;
@@ -23,16 +23,15 @@ pub(super) fn split(graph: &Graph, count: usize) -> Vec<u32> {
     if count == 1 {
         return vec![0; graph.len()];
     }
-    let tries = (BUDGET / graph.len()).clamp(2, LAYERS.len() * SEEDS as usize);
+    let multilevel = graph.len() >= FEWEST_ATOMS * count;
+    let seeds = if multilevel { SEEDS } else { 1 };
+    let tries = (BUDGET / graph.len()).clamp(2, LAYERS.len() * seeds as usize);
     let mut best: Option<(Score, Vec<u32>)> = None;
     for number in 0..tries {
-        let layer = LAYERS[number % LAYERS.len()];
-        let weights = weights(graph, count, layer);
-        let parts = match graph.len() >= FEWEST_ATOMS * count {
-            true => {
-                let seed = (number / LAYERS.len()) as u32;
-                multilevel::partition(graph, &weights, count, seed)
-            }
+        let weights = weights(graph, count, LAYERS[number % LAYERS.len()]);
+        let seed = (number / LAYERS.len()) as u32;
+        let parts = match multilevel {
+            true => multilevel::partition(graph, &weights, count, seed),
             false => None,
         };
         let parts = parts.unwrap_or_else(|| vec![0; graph.len()]);
