@@ -1,5 +1,8 @@
 //! Small models made by hand: blocks of triangles, on top of each other or cracked.
-#![allow(dead_code)]
+#![allow(
+    dead_code,
+    reason = "each test binary uses its own part of these scenes"
+)]
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -143,14 +146,14 @@ pub fn stacked(count: usize, nx: usize, ny: usize) -> Model {
     builder.model()
 }
 
-/// One block of `n` times `n` squares with cracks along its middle, each through the given
+/// One block of `n` times `n` squares with cracks along its middle, each between two
 /// columns; the nodes at the ends of a crack inside the block are tips.
-pub fn cracked(n: usize, cracks: &[Range<usize>]) -> Model {
+pub fn cracked(n: usize, cracks: &[(usize, usize)]) -> Model {
     let mut builder = Builder::default();
     let middle = n / 2;
-    let open = |crack: &Range<usize>| {
-        let start = if crack.start == 0 { 0 } else { crack.start + 1 };
-        let end = if crack.end == n { n + 1 } else { crack.end };
+    let open = |&(from, to): &(usize, usize)| {
+        let start = if from == 0 { 0 } else { from + 1 };
+        let end = if to == n { n + 1 } else { to };
         start..end
     };
     for j in 0..n {

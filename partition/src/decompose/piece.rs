@@ -1,0 +1,90 @@
+//! The partition of one piece.
+
+use super::graph::Graph;
+use super::multilevel;
+use super::regions::Regions;
+
+/// What a cluster weighs beside its cells, in shares of a subdomain's mean weight: the layers in
+/// contact become thinner and their subdomains cheaper, as all of a pair is factorized together.
+const LAYERS: [f64; 3] = [0.5, 0.65, 0.4];
+
+/// Number of seeds tried with each.
+const SEEDS: u32 = 4;
+
+/// Atoms times tries that may be spent; large meshes need fewer tries.
+const BUDGET: usize = 1_000_000;
+
+/// METIS isn't asked for parts of fewer atoms than these.
+const FEWEST_ATOMS: usize = 8;
+
+/// Splits a piece into exactly `count` connected parts; `count` is at least one and at most the
+/// number of atoms. Returns the part of every atom.
+pub(super) fn split(graph: &Graph, count: usize) -> Vec<u32> {
+    if count == 1 {
+        return vec![0; graph.len()];
+    }
+    let multilevel = graph.len() >= FEWEST_ATOMS * count;
+    let seeds = if multilevel { SEEDS } else { 1 };
+    let tries = (BUDGET / graph.len()).clamp(2, LAYERS.len() * seeds as usize);
+    let mut best: Option<(Score, Vec<u32>)> = None;
+    for number in 0..tries {
+        let weights = weights(graph, count, LAYERS[number % LAYERS.len()]);
+        let seed = (number / LAYERS.len()) as u32;
+        let parts = match multilevel {
+            true => multilevel::partition(graph, &weights, count, seed),
+            false => None,
+        };
+        let parts = parts.unwrap_or_else(|| vec![0; graph.len()]);
+        let mut regions = Regions::of_parts(graph, &weights, &parts);
+        regions.adjust(count);
+        let score = Score::new(graph, &regions);
+        if best.as_ref().is_none_or(|(least, _)| score < *least) {
+            best = Some((score, regions.parts()));
+        }
+    }
+    best.map_or_else(Vec::new, |(_, parts)| parts)
+}
+
+/// The cells of every atom, and what a cluster weighs beside them.
+fn weights(graph: &Graph, count: usize, layer: f64) -> Vec<u64> {
+    let extra = (layer * graph.size() as f64 / count as f64).round() as u64;
+    (0..graph.len() as u32)
+        .map(|atom| {
+            let cluster = if graph.is_cluster(atom) { extra } else { 0 };
+            u64::from(graph.cells[atom as usize]) + cluster
+        })
+        .collect()
+}
+
+/// How bad a partition is; clusters that share a part count first.
+#[derive(PartialEq, PartialOrd)]
+struct Score {
+    crowded: usize,
+    cost: f64,
+}
+
+impl Score {
+    /// Cost: the largest part's over the mean, where a part in contact counts one half more, plus
+    /// the cut against that of squares.
+    fn new(graph: &Graph, regions: &Regions) -> Self {
+        let count = regions.members().len();
+        let mut crowded = 0;
+        let mut largest = 0.0f64;
+        for (region, members) in regions.members().iter().enumerate() {
+            let clusters = regions.clusters(region);
+            crowded += clusters.saturating_sub(1);
+            let cells: u64 = members
+                .iter()
+                .map(|&a| u64::from(graph.cells[a as usize]))
+                .sum();
+            let share = if clusters > 0 { 1.5 } else { 1.0 };
+            largest = largest.max(share * cells as f64);
+        }
+        let size = graph.size() as f64;
+        let squares = 4.0 * (size * count as f64).sqrt();
+        Self {
+            crowded,
+            cost: largest * count as f64 / size + 0.5 * regions.cut() as f64 / squares,
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! Laws of the contact-aware partition.
+
+#![allow(clippy::unwrap_used, reason = "a failing step is a failing test")]
+
+mod problem_scenes;
+
+use std::collections::BTreeSet;
+
+use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::mesh::topology::Topology;
+use contact_dd_partition::model::Model;
+use contact_dd_partition::problem::Problem;
+use problem_scenes::{cracked, shuffled, stacked};
+
+fn scenes() -> Vec<Model> {
+    vec![
+        stacked(2, 10, 6),
+        cracked(12, &[(0, 4), (8, 12)]),
+        stacked(1, 9, 9),
+        stacked(3, 8, 5),
+        cracked(14, &[(0, 5)]),
+        cracked(15, &[(4, 10)]),
+        shuffled(&stacked(3, 8, 5), 11),
+        shuffled(&cracked(12, &[(0, 4), (8, 12)]), 12),
+    ]
+}
+
+fn subdomains_of_node(model: &Model, decomposition: &Decomposition) -> Vec<BTreeSet<u32>> {
+    let mut sets = vec![BTreeSet::new(); model.mesh.points.len()];
+    for (cell, &subdomain) in decomposition.subdomain.iter().enumerate() {
+        for &node in model.mesh.cells.nodes_of(cell) {
+            sets[node as usize].insert(subdomain);
+        }
+    }
+    sets
+}
+
+fn components(model: &Model, decomposition: &Decomposition) -> usize {
+    let topology = Topology::new(&model.mesh);
+    let mut seen = vec![false; model.mesh.cells.len()];
+    let mut count = 0;
+    for start in 0..seen.len() {
+        if std::mem::replace(&mut seen[start], true) {
+            continue;
+        }
+        count += 1;
+        let mut stack = vec![start];
+        while let Some(cell) = stack.pop() {
+            for &next in topology.neighbours(cell) {
+                let next = next as usize;
+                let same = decomposition.subdomain[next] == decomposition.subdomain[cell];
+                if same && !std::mem::replace(&mut seen[next], true) {
+                    stack.push(next);
+                }
+            }
+        }
+    }
+    count
+}
+
+/// The range of counts that an error names.
+fn range(model: &Model) -> (usize, usize) {
+    let message = Decomposition::new(model, Some(1_000_000))
+        .unwrap_err()
+        .to_string();
+    let numbers: Vec<usize> = message
+        .split(|c: char| !c.is_ascii_digit())
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    assert_eq!(numbers[0], 1_000_000);
+    (numbers[1], numbers[2])
+}
+
+/// All small counts for the first two scenes, some for the others, and the largest.
+fn counts(scene: usize, (least, most): (usize, usize)) -> Vec<usize> {
+    let step = if scene < 2 { 1 } else { 13 };
+    let mut counts: Vec<usize> = (least..=60).step_by(step).collect();
+    counts.extend([most - 1, most]);
+    counts
+}
+
+#[test]
+fn every_count_gives_as_many_connected_subdomains() {
+    for (scene, model) in scenes().iter().enumerate() {
+        for count in counts(scene, range(model)) {
+            let decomposition = Decomposition::new(model, Some(count)).unwrap();
+            let numbers: BTreeSet<u32> = decomposition.subdomain.iter().copied().collect();
+            assert_eq!(decomposition.count, count);
+            assert_eq!(numbers, (0..count as u32).collect());
+            assert_eq!(components(model, &decomposition), count);
+        }
+    }
+}
+
+#[test]
+fn no_node_with_a_contact_condition_lies_on_the_interface() {
+    for (scene, model) in scenes().iter().enumerate() {
+        for count in counts(scene, range(model)) {
+            let decomposition = Decomposition::new(model, Some(count)).unwrap();
+            let sets = subdomains_of_node(model, &decomposition);
+            for condition in model.contacts.iter().flat_map(|c| &c.conditions) {
+                for &(node, _) in &condition.entries {
+                    assert_eq!(sets[node as usize].len(), 1, "{count} subdomains");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn contacts_lie_within_pairs_wherever_the_count_allows() {
+    // Sides of contacts, so many subdomains are needed.
+    for (model, sides) in [
+        (stacked(2, 10, 6), 2),
+        (stacked(3, 8, 5), 4),
+        (shuffled(&stacked(4, 8, 6), 3), 6),
+        (cracked(16, &[(0, 5), (11, 16)]), 4),
+        (shuffled(&cracked(16, &[(0, 5), (11, 16)]), 4), 4),
+    ] {
+        for count in (sides..40).step_by(5) {
+            let decomposition = Decomposition::new(&model, Some(count)).unwrap();
+            let summary = Problem::new(&model, &decomposition).unwrap().summary();
+            assert_eq!(summary.groups.len(), model.contacts.len());
+            for group in &summary.groups {
+                assert_eq!(group.subdomains.len(), 2, "{count} subdomains");
+            }
+            assert_eq!(summary.linear_subdomains, count - sides);
+        }
+    }
+}
+
+#[test]
+fn equal_models_have_equal_partitions() {
+    for model in scenes() {
+        let once = Decomposition::new(&model, Some(9)).unwrap();
+        assert_eq!(once, Decomposition::new(&model, Some(9)).unwrap());
+        let default = Decomposition::new(&model, None).unwrap();
+        assert_eq!(default, Decomposition::new(&model, None).unwrap());
+    }
+}
+
+#[test]
+fn a_partition_is_balanced() {
+    for model in [
+        stacked(1, 30, 30),
+        stacked(2, 30, 20),
+        cracked(40, &[(0, 12), (28, 40)]),
+        shuffled(&cracked(40, &[(0, 12), (28, 40)]), 8),
+    ] {
+        for count in [4, 8, 12, 16] {
+            let decomposition = Decomposition::new(&model, Some(count)).unwrap();
+            let summary = Problem::new(&model, &decomposition).unwrap().summary();
+            assert!(summary.imbalance < 1.7, "{count}: {summary}");
+        }
+    }
+}
+
+#[test]
+fn a_count_out_of_range_is_an_error_that_names_the_range() {
+    let model = stacked(3, 4, 4);
+    for count in [0, 1, 2] {
+        let message = Decomposition::new(&model, Some(count))
+            .unwrap_err()
+            .to_string();
+        assert!(message.contains("expected 3 "), "{message}");
+    }
+    let single = stacked(1, 2, 2);
+    assert_eq!(range(&single), (1, 8));
+}
+
+#[test]
+fn without_a_count_small_scenes_have_every_side_apart() {
+    let of = |model: &Model| Decomposition::new(model, None).unwrap().count;
+    assert_eq!(of(&stacked(1, 9, 9)), 1);
+    assert_eq!(of(&stacked(2, 9, 9)), 6);
+    assert_eq!(of(&cracked(16, &[(0, 5), (11, 16)])), 8);
+    assert_eq!(of(&stacked(1, 1, 1)), 1);
+}
+
+#[test]
+fn a_prescribed_partition_is_taken_as_it_is() {
+    let mut model = stacked(2, 6, 3);
+    let halves: Vec<u32> = model.cell_body.iter().map(|b| 1 - b).collect();
+    model.prescribed_subdomains = Some(halves.clone());
+    for count in [None, Some(2)] {
+        let decomposition = Decomposition::new(&model, count).unwrap();
+        assert_eq!(decomposition.subdomain, halves);
+    }
+    let message = Decomposition::new(&model, Some(3)).unwrap_err().to_string();
+    assert!(message.contains("expected 2"), "{message}");
+
+    let mut across = halves.clone();
+    across[0] = 0;
+    model.prescribed_subdomains = Some(across);
+    let message = Decomposition::new(&model, None).unwrap_err().to_string();
+    assert!(message.contains("different pieces"), "{message}");
+
+    let mut gap = halves;
+    gap[0] = 3;
+    model.prescribed_subdomains = Some(gap);
+    let message = Decomposition::new(&model, None).unwrap_err().to_string();
+    assert!(message.contains("subdomain 2 has no cells"), "{message}");
+}

@@ -1,0 +1,333 @@
+//! Every defect of a problem file is an error that names the file, the dataset and the row.
+
+#![allow(clippy::unwrap_used, reason = "a failing step is a failing test")]
+
+mod problem_scenes;
+
+use std::path::Path;
+
+use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::problem::Problem;
+use contact_dd_partition::problem::read::ProblemFile;
+use problem_scenes::stacked;
+
+fn problem() -> Problem {
+    let model = stacked(2, 4, 3);
+    let decomposition = Decomposition::new(&model, Some(4)).unwrap();
+    Problem::new(&model, &decomposition).unwrap()
+}
+
+fn write(path: &Path) {
+    problem().write(path).unwrap();
+}
+
+/// Overwrites entry `at` of a dataset (counted through all dimensions).
+fn set<T: hdf5::H5Type + Clone>(file: &hdf5::File, name: &str, at: usize, value: T) {
+    let dataset = file.dataset(name).unwrap();
+    let mut data = dataset.read_raw::<T>().unwrap();
+    data[at] = value;
+    dataset.write_raw(&data).unwrap();
+}
+
+/// Replaces a dataset by one of another shape or type.
+fn replace<T: hdf5::H5Type>(file: &hdf5::File, name: &str, shape: &[usize], data: &[T]) {
+    file.unlink(name).unwrap();
+    let dataset = file.new_dataset::<T>().shape(shape).create(name).unwrap();
+    dataset.write_raw(data).unwrap();
+}
+
+type Defect = (&'static str, fn(&hdf5::File), &'static [&'static str]);
+
+#[test]
+fn every_defect_is_named() {
+    let defects: &[Defect] = &[
+        (
+            "no format",
+            |f| f.delete_attr("format").unwrap(),
+            &["format"],
+        ),
+        (
+            "another version",
+            |f| f.attr("version").unwrap().write_scalar(&9i64).unwrap(),
+            &["version 9", "expected 1"],
+        ),
+        (
+            "three dimensions",
+            |f| f.attr("dimension").unwrap().write_scalar(&3i64).unwrap(),
+            &["dimension is 3", "expected 2"],
+        ),
+        (
+            "missing points",
+            |f| f.unlink("/VTKHDF/Points").unwrap(),
+            &["/VTKHDF/Points is missing"],
+        ),
+        (
+            "flat points",
+            |f| replace(f, "/VTKHDF/Points", &[2, 2], &[0.0; 4]),
+            &["/VTKHDF/Points", "[2, 2]", "[any, 3]"],
+        ),
+        (
+            "point that isn't finite",
+            |f| set(f, "/VTKHDF/Points", 3, f64::NAN),
+            &["/VTKHDF/Points, row 1", "finite"],
+        ),
+        (
+            "point beside the plane",
+            |f| set(f, "/VTKHDF/Points", 5, 1.0),
+            &["/VTKHDF/Points, row 1", "expected 0"],
+        ),
+        (
+            "sizes that don't add up",
+            |f| set(f, "/VTKHDF/NumberOfPoints", 3, 1i64),
+            &["/VTKHDF/NumberOfPoints", "/VTKHDF/Points"],
+        ),
+        (
+            "a size beyond all measure",
+            |f| set(f, "/VTKHDF/NumberOfCells", 0, i64::MAX),
+            &["/VTKHDF/NumberOfCells, row 0"],
+        ),
+        (
+            "cell type",
+            |f| set(f, "/VTKHDF/Types", 2, 9u8),
+            &["/VTKHDF/Types, row 2", "type 9", "expected 5"],
+        ),
+        (
+            "node of a cell",
+            |f| set(f, "/VTKHDF/Connectivity", 4, 999i64),
+            &["/VTKHDF/Connectivity, row 4", "999"],
+        ),
+        (
+            "offset of a cell",
+            |f| set(f, "/VTKHDF/Offsets", 1, 4i64),
+            &["/VTKHDF/Offsets", "expected 0 to 3"],
+        ),
+        (
+            "cell turned over",
+            |f| {
+                let nodes: Vec<i64> = f
+                    .dataset("/VTKHDF/Connectivity")
+                    .unwrap()
+                    .read_raw()
+                    .unwrap();
+                set(f, "/VTKHDF/Connectivity", 0, nodes[1]);
+                set(f, "/VTKHDF/Connectivity", 1, nodes[0]);
+            },
+            &["/VTKHDF/Connectivity, row 0", "counter-clockwise"],
+        ),
+        (
+            "tag that occurs twice",
+            |f| {
+                let name = "/VTKHDF/PointData/GlobalNodeId";
+                let tags: Vec<i64> = f.dataset(name).unwrap().read_raw().unwrap();
+                set(f, name, 1, tags[0]);
+            },
+            &["GlobalNodeId, row 1"],
+        ),
+        (
+            "material of a cell",
+            |f| set(f, "/VTKHDF/CellData/Material", 0, 7i64),
+            &["/VTKHDF/CellData/Material, row 0", "expected 0 to 1"],
+        ),
+        (
+            "stiffness that isn't symmetric",
+            |f| set(f, "/materials/stiffness", 1, 99.0),
+            &["/materials/stiffness, row 0", "symmetric"],
+        ),
+        (
+            "stiffness that isn't positive",
+            |f| set(f, "/materials/stiffness", 9, -2.0),
+            &["/materials/stiffness, row 1", "positive"],
+        ),
+        (
+            "poisson",
+            |f| set(f, "/materials/poisson", 0, 0.7),
+            &["/materials/poisson, row 0", "0.7"],
+        ),
+        (
+            "half a row out of plane",
+            |f| set(f, "/materials/out_of_plane", 0, f64::NAN),
+            &["/materials/out_of_plane, row 0"],
+        ),
+        (
+            "body",
+            |f| set(f, "/subdomains/body", 0, 5i64),
+            &["/subdomains/body, row 0", "5 is no body"],
+        ),
+        (
+            "group",
+            |f| set(f, "/subdomains/group", 0, -2i64),
+            &["/subdomains/group, row 0", "-1"],
+        ),
+        (
+            "offsets that fall",
+            |f| set(f, "/interface/offset", 1, 1000i64),
+            &["/interface/offset, row 1", "1000"],
+        ),
+        (
+            "interface in disorder",
+            |f| set(f, "/interface/interface", 0, 4i64),
+            &["/interface/interface"],
+        ),
+        (
+            "interface node",
+            |f| set(f, "/interface/node", 0, -1i64),
+            &["/interface/node, row 0", "-1"],
+        ),
+        (
+            "direction that isn't a unit vector",
+            |f| set(f, "/support/direction", 0, 2.0),
+            &["/support/direction, row 0", "expected 1"],
+        ),
+        (
+            "directions that aren't orthogonal",
+            |f| {
+                set(f, "/support/direction", 2, 0.6);
+                set(f, "/support/direction", 3, 0.8);
+            },
+            &["/support/direction, row 1", "orthogonal"],
+        ),
+        (
+            "nodes that aren't integers",
+            |f| {
+                let rows = f.dataset("/support/node").unwrap().shape()[0];
+                replace(f, "/support/node", &[rows], &vec![0.5; rows]);
+            },
+            &["/support/node", "expected integers"],
+        ),
+        (
+            "force that isn't finite",
+            |f| set(f, "/force/value", 1, f64::INFINITY),
+            &["/force/value, row 0", "finite"],
+        ),
+        (
+            "contact",
+            |f| set(f, "/contact/contact", 2, 3i64),
+            &["/contact/contact, row 2"],
+        ),
+        (
+            "place that occurs twice",
+            |f| set(f, "/contact/place", 1, 0i64),
+            &["/contact/place, row 1", "once"],
+        ),
+        (
+            "normal",
+            |f| set(f, "/contact/normal", 0, 3.0),
+            &["/contact/normal, row 0"],
+        ),
+        (
+            "entry's subdomain",
+            |f| {
+                let group: Vec<i64> = f.dataset("/subdomains/group").unwrap().read_raw().unwrap();
+                let linear = group.iter().position(|&g| g == -1).unwrap();
+                set(f, "/contact/entry_subdomain", 3, linear as i64);
+            },
+            &["/contact/entry_subdomain, row 3", "isn't in group 0"],
+        ),
+        (
+            "entry's node",
+            |f| set(f, "/contact/entry_node", 0, 12345i64),
+            &["/contact/entry_node, row 0", "12345"],
+        ),
+        (
+            "zero row",
+            |f| {
+                set(f, "/contact/entry_coefficient", 1, 0.0);
+                set(f, "/contact/entry_coefficient", 3, 0.0);
+            },
+            &["/contact/entry_offset, row 0", "zero"],
+        ),
+        (
+            "contact node between a group and the rest",
+            |f| {
+                let subdomain: Vec<i64> = f
+                    .dataset("/contact/entry_subdomain")
+                    .unwrap()
+                    .read_raw()
+                    .unwrap();
+                let offset: Vec<i64> = f.dataset("/interface/offset").unwrap().read_raw().unwrap();
+                let node: Vec<i64> = f.dataset("/interface/node").unwrap().read_raw().unwrap();
+                let shared = node[offset[subdomain[0] as usize] as usize];
+                set(f, "/contact/entry_node", 0, shared);
+            },
+            &["/contact/entry_node, row 0", "outside group 0"],
+        ),
+        (
+            "copies of a node that differ",
+            |f| {
+                let node: Vec<i64> = f.dataset("/interface/node").unwrap().read_raw().unwrap();
+                set(
+                    f,
+                    "/VTKHDF/PointData/GlobalNodeId",
+                    node[0] as usize,
+                    999_999i64,
+                );
+            },
+            &["on Γ", "tag"],
+        ),
+        (
+            "more declared than stored",
+            |f| {
+                f.unlink("/VTKHDF/Types").unwrap();
+                let shape = 1usize << 50;
+                let builder = f.new_dataset::<u8>().chunk(1024).shape(shape);
+                builder.create("/VTKHDF/Types").unwrap();
+            },
+            &["/VTKHDF/Types", "holds only"],
+        ),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("problem.h5");
+    write(&path);
+    ProblemFile::open(&path).unwrap().problem().unwrap();
+    for (what, damage, words) in defects {
+        write(&path);
+        let file = hdf5::File::open_rw(&path).unwrap();
+        damage(&file);
+        file.close().unwrap();
+        let message = match ProblemFile::open(&path).and_then(|file| file.problem()) {
+            Ok(_) => panic!("{what}: accepted"),
+            Err(error) => error.to_string(),
+        };
+        assert!(message.starts_with(path.to_str().unwrap()), "{message}");
+        for word in *words {
+            assert!(message.contains(word), "{what}: {message}");
+        }
+    }
+}
+
+#[test]
+fn a_file_cut_short_anywhere_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("problem.h5");
+    write(&path);
+    let whole = std::fs::read(&path).unwrap();
+    for part in 0..20 {
+        std::fs::write(&path, &whole[..whole.len() * part / 20]).unwrap();
+        let message = ProblemFile::open(&path).unwrap_err().to_string();
+        assert!(message.starts_with(path.to_str().unwrap()), "{message}");
+    }
+    for missing in [
+        folder.path().join("nothing.h5"),
+        folder.path().to_path_buf(),
+    ] {
+        let message = ProblemFile::open(&missing).unwrap_err().to_string();
+        assert!(message.starts_with(missing.to_str().unwrap()), "{message}");
+    }
+}
+
+#[test]
+fn a_file_that_cannot_be_written_leaves_what_was_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = folder.path().join("nowhere").join("problem.h5");
+    let error = problem().write(&inside).unwrap_err();
+    assert_eq!(error.path, inside);
+    let error = problem().write(folder.path()).unwrap_err();
+    assert!(error.to_string().contains("folder"), "{error}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+
+    let path = folder.path().join("problem.h5");
+    std::fs::write(&path, "something else").unwrap();
+    write(&path);
+    ProblemFile::open(&path).unwrap();
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
