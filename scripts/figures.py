@@ -17,6 +17,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
+from PIL import Image
 
 LARGEST_PNG = 300_000
 
@@ -52,6 +53,8 @@ class Result:
                 name: {key: table[key][:] for key in table}
                 for name, table in file.get("contact", {}).items()
             }
+        if not cells:
+            sys.exit(f"figures: {path}: there are no cells to draw")
         self.size = max(np.ptp(self.points, axis=0))
         self.triangles, self.cell_of_triangle, facets, owner = [], [], [], []
         for kind, members, nodes in cells:
@@ -132,9 +135,11 @@ def legend(axes, columns):
 
 
 def save(figure, path):
-    """Saves a PNG, coarser where it would be too large."""
+    """Saves a PNG; where it would be too large with fewer colours, then with fewer pixels."""
     for dpi in (150, 120, 100, 80, 60):
         figure.savefig(path, dpi=dpi)
+        if path.stat().st_size > LARGEST_PNG:
+            Image.open(path).convert("RGB").quantize(64).save(path, optimize=True)
         if path.stat().st_size <= LARGEST_PNG:
             break
     plt.close(figure)
@@ -226,7 +231,7 @@ def principal(result, path):
                 axes.quiver(
                     *foot[drawn].T, *(sign * side * length[:, None] * along)[drawn].T, color=color,
                     pivot=pivot, angles="xy", scale_units="xy", scale=1, units="xy",
-                    width=0.028 * step, headwidth=4, headlength=4.5, headaxislength=4, minlength=0.1,
+                    width=0.035 * step, headwidth=3.6, headlength=4, headaxislength=3.6, minlength=0.1,
                 )
     shown, unit = in_units(np.array([largest]), "Pa")
     axes.plot([], [], color="tab:red", label="tension ←→")
