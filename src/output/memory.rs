@@ -1,6 +1,6 @@
 //! How much memory this process has needed.
 
-/// Peak resident memory of this process [bytes]; 0 where the system doesn't tell.
+/// Peak resident memory of this process (bytes); 0 where the system doesn't tell.
 pub fn peak_memory_bytes() -> u64 {
     std::fs::read_to_string("/proc/self/status")
         .ok()
@@ -8,7 +8,7 @@ pub fn peak_memory_bytes() -> u64 {
         .unwrap_or(0)
 }
 
-/// The high-water mark in Linux' `/proc/self/status` [bytes].
+/// The high-water mark in Linux' `/proc/self/status` (bytes).
 fn high_water_mark(status: &str) -> Option<u64> {
     let line = status
         .lines()
@@ -32,10 +32,7 @@ mod tests {
     #[test]
     fn memory_that_was_used_counts_after_it_is_freed() {
         let used = vec![1_u8; 64 << 20];
-        assert_eq!(
-            used.iter().map(|&byte| u64::from(byte)).sum::<u64>(),
-            64 << 20
-        );
+        std::hint::black_box(&used);
         drop(used);
         assert!(peak_memory_bytes() >= 64 << 20);
     }

@@ -37,7 +37,7 @@ pub struct Certificate {
     pub interface_jump: f64,
 }
 
-/// Time that each phase of a run took [s].
+/// Time that each phase of a run took, in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct PhaseSeconds {
     /// From start to end.
@@ -94,7 +94,7 @@ pub struct RankReport {
     /// Its time in each phase.
     #[serde(flatten)]
     pub seconds: PhaseSeconds,
-    /// Its peak resident memory [bytes].
+    /// Its peak resident memory (bytes).
     pub peak_memory_bytes: u64,
     /// Number of subdomains that it owns.
     pub subdomains: usize,
@@ -133,7 +133,7 @@ pub struct Report {
     pub seconds: PhaseSeconds,
     /// What each rank had to do.
     pub per_rank: Vec<RankReport>,
-    /// Sum of the ranks' peak resident memory [bytes].
+    /// Sum of the ranks' peak resident memory (bytes).
     pub peak_memory_bytes: u64,
     /// What the scene didn't need, in words.
     pub skipped: Vec<String>,

@@ -4,13 +4,13 @@ use contact_dd_partition::element::Elements;
 
 /// The solution on one subdomain.
 ///
-/// Stresses are [Pa] in the order XX, YY, ZZ, XY, YZ, XZ; vectors that belong to nodes have one
+/// Stresses are (Pa) in the order XX, YY, ZZ, XY, YZ, XZ; vectors that belong to nodes have one
 /// entry for each of `points`, those that belong to cells one for each of `cells`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SubdomainResult {
     /// Number of the subdomain.
     pub index: usize,
-    /// Undeformed coordinates of its nodes [m].
+    /// Undeformed coordinates of its nodes (m).
     pub points: Vec<[f64; 3]>,
     /// The mesh file's tag of each node.
     pub node_tags: Vec<i64>,
@@ -18,15 +18,15 @@ pub struct SubdomainResult {
     pub cells: Elements,
     /// Index of its material for every cell.
     pub cell_material: Vec<u32>,
-    /// Displacement of the nodes [m].
+    /// Displacement of the nodes (m).
     pub displacement: Vec<[f64; 3]>,
     /// Stress recovered at the nodes.
     pub nodal_stress: Vec<[f64; 6]>,
     /// Stress of the cells.
     pub cell_stress: Vec<[f64; 6]>,
-    /// Principal stresses of the cells, descending [Pa].
+    /// Principal stresses of the cells, descending (Pa).
     pub principal: Vec<[f64; 3]>,
-    /// Von Mises stress of the cells [Pa].
+    /// Von Mises stress of the cells (Pa).
     pub von_mises: Vec<f64>,
 }
 
@@ -41,15 +41,15 @@ pub struct ContactResult {
     pub tag_a: i64,
     /// Tag of its node on side b, −1 where there is none.
     pub tag_b: i64,
-    /// Undeformed position on side a [m].
+    /// Undeformed position on side a (m).
     pub position: [f64; 3],
     /// Unit normal of the undeformed side a, outward.
     pub normal: [f64; 3],
-    /// The gap that is left, g − B u ≥ 0 [m].
+    /// The gap that is left, g − B u ≥ 0 (m).
     pub gap: f64,
-    /// Contact force ≥ 0 [N, per metre of thickness in the plane].
+    /// Contact force ≥ 0 (N, per metre of thickness in the plane).
     pub force: f64,
-    /// Force over the condition's share of side a, ≥ 0 [Pa].
+    /// Force over the condition's share of side a, ≥ 0 (Pa).
     pub pressure: f64,
     /// Whether the contact is closed.
     pub closed: bool,
@@ -62,6 +62,6 @@ pub struct ConvergenceRow {
     pub residual: f64,
     /// Number of closed contact conditions.
     pub active: usize,
-    /// Time that the sweep took [s].
+    /// Time that the sweep took (s).
     pub seconds: f64,
 }

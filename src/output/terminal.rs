@@ -41,7 +41,7 @@ pub struct SweepLine {
     pub active: usize,
     /// Number of conditions that opened or closed in this sweep; the start has none.
     pub changed: Option<usize>,
-    /// Time that the sweep took [s].
+    /// Time that the sweep took (s).
     pub seconds: f64,
 }
 
@@ -261,7 +261,7 @@ mod tests {
             }
             ends
         };
-        let header = printed(|out| sweep_header(out));
+        let header = printed(sweep_header);
         let header = ends(header.trim_end_matches('\n').lines().last().unwrap());
         for (sweep_number, residual, active, changed) in [
             (0, 1.0, 48, None),
