@@ -8,6 +8,7 @@ pub mod fem;
 pub mod interface;
 pub mod output;
 pub mod plan;
+pub mod rigid;
 pub mod run;
 pub mod schur;
 pub mod settings;

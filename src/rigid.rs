@@ -1,0 +1,11 @@
+//! Rigid motions that neither supports nor contact hold.
+//!
+//! Found from geometry alone, before anything is factorized, because a Cholesky factorization
+//! passes a free motion at a pivot of round-off. With R the rigid motions that the supports
+//! leave, a motion z is free if B R z = 0, and held by contact if B R z ≤ 0 doesn't allow it; the
+//! load balances if contact forces λ ≥ 0 with (B R)ᵀ λ = Rᵀ f exist.
+
+pub mod analysis;
+pub mod motion;
+mod nonnegative;
+pub mod projection;

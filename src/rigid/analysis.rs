@@ -1,0 +1,372 @@
+//! Which rigid motions are free, whether the load drives one, and where to pin those it doesn't.
+
+use faer::Mat;
+use nalgebra::{DMatrix, DVector};
+
+use super::motion::BodyFrame;
+use super::nonnegative;
+use crate::error::Failure;
+
+/// Relative size below which a singular value is zero: a support that is this much shorter than
+/// the body it holds doesn't hold it.
+const RANK_TOLERANCE: f64 = 1e-9;
+/// Load along a free motion, relative to all loads, that counts as none.
+const LOAD_TOLERANCE: f64 = 1e-10;
+/// Load that contact can't balance, relative to all loads, that counts as none.
+const BALANCE_TOLERANCE: f64 = 1e-9;
+
+/// A body as the analysis sees it.
+#[derive(Clone, Debug)]
+pub struct BodyState {
+    /// Frame of its rigid motions.
+    pub frame: BodyFrame,
+    /// Rows of its supports against its rigid motions.
+    pub supports: Vec<Vec<f64>>,
+    /// Resultant of its load against its rigid motions.
+    pub load: Vec<f64>,
+    /// Sum of its absolute nodal forces.
+    pub load_scale: f64,
+    /// Nodes at which it may be pinned: subdomain, node, position.
+    pub candidates: Vec<(u32, u32, [f64; 3])>,
+}
+
+/// A contact condition against the rigid motions of the bodies it touches.
+pub type RigidRow = Vec<(usize, Vec<f64>)>;
+
+/// A spring on one node of a body that can move freely: u·direction = 0 there. It carries no force
+/// because the load has no component along the motion that it stops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pin {
+    /// Subdomain.
+    pub subdomain: u32,
+    /// Node of the subdomain.
+    pub node: u32,
+    /// Component that is held.
+    pub component: u32,
+}
+
+/// A free rigid motion without load along it: for each body that takes part its coefficients.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FreeMotion {
+    /// Bodies and their coefficients.
+    pub bodies: Vec<(usize, Vec<f64>)>,
+}
+
+/// The rigid motions of a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RigidMotions {
+    /// Free ones.
+    pub free: Vec<FreeMotion>,
+    /// As many pins as there are free motions.
+    pub pins: Vec<Pin>,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+}
+
+/// The motions that supports leave to all bodies, side by side.
+struct Kinematics {
+    dim: usize,
+    /// For each body its basis of motions, modes × kept.
+    bases: Vec<DMatrix<f64>>,
+    /// First unknown of each body.
+    first: Vec<usize>,
+    len: usize,
+}
+
+/// Analyses a scene of `bodies` named `names` under contact `rows`.
+///
+/// # Errors
+/// The load drives a motion that neither supports nor contact hold: body and motion are named.
+pub fn analyse(
+    dim: usize,
+    bodies: &[BodyState],
+    names: &[String],
+    rows: &[RigidRow],
+) -> Result<RigidMotions, Failure> {
+    let kinematics = Kinematics::new(dim, bodies);
+    if kinematics.len == 0 {
+        return Ok(RigidMotions::default());
+    }
+    let b = kinematics.rows(rows);
+    let load = kinematics.load(bodies);
+    let scale: f64 = bodies.iter().map(|body| body.load_scale).sum();
+    let free = null_space(&b);
+    let along = free.transpose() * &load;
+    let driven = &free * &along;
+    if along.norm() > LOAD_TOLERANCE * scale {
+        return Err(kinematics.ill_posed(bodies, names, &driven, "nothing holds it"));
+    }
+    let held = &load - &driven;
+    let unbalanced = nonnegative::residual(&b.transpose(), &held);
+    if unbalanced.norm() > BALANCE_TOLERANCE * scale {
+        let why = "contact can't hold it";
+        return Err(kinematics.ill_posed(bodies, names, &unbalanced, why));
+    }
+    Ok(kinematics.fix(bodies, names, &free))
+}
+
+/// An orthonormal basis of the x with B x = 0.
+fn null_space(b: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = b.ncols();
+    if b.nrows() == 0 {
+        return DMatrix::identity(n, n);
+    }
+    // Rows beyond the number of unknowns are folded into R first: R x = 0 is B x = 0.
+    let full = Mat::from_fn(b.nrows().max(n), n, |i, j| {
+        if i < b.nrows() { b[(i, j)] } else { 0.0 }
+    });
+    let r = full.qr().thin_R().to_owned();
+    let square = DMatrix::from_fn(n, n, |i, j| if i <= j { r[(i, j)] } else { 0.0 });
+    let svd = square.svd(false, true);
+    let largest = svd.singular_values.amax();
+    let Some(v_t) = svd.v_t else {
+        return DMatrix::zeros(n, 0);
+    };
+    let kept: Vec<usize> = (0..n)
+        .filter(|&i| svd.singular_values[i] <= RANK_TOLERANCE * largest)
+        .collect();
+    DMatrix::from_fn(n, kept.len(), |i, j| v_t[(kept[j], i)])
+}
+
+impl Kinematics {
+    fn new(dim: usize, bodies: &[BodyState]) -> Self {
+        let modes = BodyFrame::count(dim);
+        let bases: Vec<DMatrix<f64>> = bodies
+            .iter()
+            .map(|body| {
+                let rows = DMatrix::from_fn(body.supports.len(), modes, |i, j| body.supports[i][j]);
+                null_space(&rows)
+            })
+            .collect();
+        let mut first = Vec::with_capacity(bases.len());
+        let mut len = 0;
+        for basis in &bases {
+            first.push(len);
+            len += basis.ncols();
+        }
+        Self {
+            dim,
+            bases,
+            first,
+            len,
+        }
+    }
+
+    fn rows(&self, rows: &[RigidRow]) -> DMatrix<f64> {
+        let mut b = DMatrix::zeros(rows.len(), self.len);
+        for (i, row) in rows.iter().enumerate() {
+            for (body, action) in row {
+                let basis = &self.bases[*body];
+                for k in 0..basis.ncols() {
+                    let value: f64 = action
+                        .iter()
+                        .zip(basis.column(k).iter())
+                        .map(|(a, z)| a * z)
+                        .sum();
+                    b[(i, self.first[*body] + k)] += value;
+                }
+            }
+        }
+        b
+    }
+
+    fn load(&self, bodies: &[BodyState]) -> DVector<f64> {
+        let mut load = DVector::zeros(self.len);
+        for (body, (basis, &first)) in bodies.iter().zip(self.bases.iter().zip(&self.first)) {
+            let resultant = DVector::from_column_slice(&body.load);
+            load.rows_mut(first, basis.ncols())
+                .copy_from(&(basis.transpose() * resultant));
+        }
+        load
+    }
+
+    /// The part of motion `x` that body `b` takes, in its own frame.
+    fn of_body(&self, b: usize, x: &[f64]) -> Vec<f64> {
+        let basis = &self.bases[b];
+        let own = DVector::from_column_slice(&x[self.first[b]..self.first[b] + basis.ncols()]);
+        (basis * own).iter().copied().collect()
+    }
+
+    fn ill_posed(
+        &self,
+        bodies: &[BodyState],
+        names: &[String],
+        motion: &DVector<f64>,
+        why: &str,
+    ) -> Failure {
+        let size = |b: usize| -> f64 {
+            self.of_body(b, motion.as_slice())
+                .iter()
+                .map(|z| z * z)
+                .sum()
+        };
+        let mut worst = 0;
+        for b in 1..bodies.len() {
+            if size(b) > size(worst) {
+                worst = b;
+            }
+        }
+        let z = self.of_body(worst, motion.as_slice());
+        Failure::ill_posed(format!(
+            "body '{}' can move freely under its load: {}, and {why}; expected supports or contact \
+             against it",
+            names[worst],
+            bodies[worst].frame.describe(self.dim, &z)
+        ))
+    }
+
+    /// Pins the free motions, the columns of `free`, and says so.
+    fn fix(&self, bodies: &[BodyState], names: &[String], free: &DMatrix<f64>) -> RigidMotions {
+        let mut motions = RigidMotions::default();
+        for column in free.column_iter() {
+            let x: Vec<f64> = column.iter().copied().collect();
+            let taking_part: Vec<(usize, Vec<f64>)> = (0..bodies.len())
+                .map(|b| (b, self.of_body(b, &x)))
+                .filter(|(_, z)| z.iter().any(|z| z.abs() > 1e-12))
+                .collect();
+            let described: Vec<String> = taking_part
+                .iter()
+                .filter(|(_, z)| z.iter().any(|z| z.abs() > 1e-6))
+                .map(|(b, z)| {
+                    format!(
+                        "'{}' ({})",
+                        names[*b],
+                        bodies[*b].frame.describe(self.dim, z)
+                    )
+                })
+                .collect();
+            motions.warnings.push(format!(
+                "nothing holds {}; without load along it, this motion is fixed so that the mean \
+                 displacement has no component along it",
+                described.join(", ")
+            ));
+            motions.free.push(FreeMotion {
+                bodies: taking_part,
+            });
+        }
+        motions.pins = self.pins(bodies, free);
+        motions
+    }
+
+    /// As many components of candidate nodes as there are free motions, chosen one after the other
+    /// where the motions not yet stopped are largest.
+    fn pins(&self, bodies: &[BodyState], free: &DMatrix<f64>) -> Vec<Pin> {
+        let mut candidates: Vec<(Pin, DVector<f64>)> = Vec::new();
+        for (b, body) in bodies.iter().enumerate() {
+            for &(subdomain, node, x) in &body.candidates {
+                let moves: Vec<[f64; 3]> = free
+                    .column_iter()
+                    .map(|column| {
+                        let motion: Vec<f64> = column.iter().copied().collect();
+                        let z = self.of_body(b, &motion);
+                        body.frame.displacement(self.dim, &x, &z)
+                    })
+                    .collect();
+                for component in 0..self.dim {
+                    let pin = Pin {
+                        subdomain,
+                        node,
+                        component: component as u32,
+                    };
+                    let row = DVector::from_fn(moves.len(), |k, _| moves[k][component]);
+                    candidates.push((pin, row));
+                }
+            }
+        }
+        let mut pins = Vec::new();
+        for _ in 0..free.ncols() {
+            let mut best = 0;
+            for (i, (_, row)) in candidates.iter().enumerate() {
+                if row.norm() > candidates[best].1.norm() * (1.0 + 1e-9) {
+                    best = i;
+                }
+            }
+            let Some((pin, row)) = candidates.get(best).cloned() else {
+                break;
+            };
+            pins.push(pin);
+            let unit = row.normalize();
+            for (_, other) in &mut candidates {
+                let along = other.dot(&unit);
+                other.axpy(-along, &unit, 1.0);
+            }
+        }
+        pins
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(at: f64, load: [f64; 3], supports: Vec<Vec<f64>>) -> BodyState {
+        let frame = BodyFrame::new([at, 0.0, 0.0], [at + 1.0, 1.0, 0.0]);
+        BodyState {
+            frame,
+            supports,
+            load: load.to_vec(),
+            load_scale: load.iter().map(|f| f.abs()).sum(),
+            candidates: vec![(0, 0, [at, 0.0, 0.0]), (0, 1, [at + 1.0, 1.0, 0.0])],
+        }
+    }
+
+    fn floor(body: &BodyState, b: usize, xs: &[f64]) -> Vec<RigidRow> {
+        xs.iter()
+            .map(|&x| {
+                let action = body.frame.action(2, &[x, 0.0, 0.0], &[0.0, -1.0, 0.0]);
+                vec![(b, action)]
+            })
+            .collect()
+    }
+
+    fn names() -> Vec<String> {
+        vec!["block".into(), "other".into()]
+    }
+
+    #[test]
+    fn a_block_on_the_floor_slides_freely_and_is_pinned_once() {
+        let block = square(0.0, [0.0, -3.0, 0.0], vec![]);
+        let rows = floor(&block, 0, &[0.0, 0.5, 1.0]);
+        let motions = analyse(2, &[block], &names(), &rows).unwrap();
+        assert_eq!(motions.pins.len(), 1);
+        assert_eq!(motions.pins[0].component, 0);
+        assert!(motions.warnings[0].contains("'block'"));
+    }
+
+    #[test]
+    fn a_pushed_block_slides_and_is_named() {
+        let block = square(0.0, [0.1, -3.0, 0.0], vec![]);
+        let rows = floor(&block, 0, &[0.0, 1.0]);
+        let failure = analyse(2, &[block], &names(), &rows).unwrap_err();
+        assert!(failure.message.contains("'block'"), "{failure}");
+        assert!(
+            failure
+                .message
+                .contains("translation along (1.0000, 0.0000)")
+        );
+    }
+
+    #[test]
+    fn a_lifted_block_and_a_toppling_one_have_no_equilibrium() {
+        let lifted = square(0.0, [0.0, 1.0, 0.0], vec![]);
+        let rows = floor(&lifted, 0, &[0.0, 1.0]);
+        assert!(analyse(2, &[lifted], &names(), &rows).is_err());
+        let toppling = square(0.0, [0.0, -1.0, -3.0], vec![]);
+        assert!(analyse(2, &[toppling], &names(), &rows).is_err());
+        let steady = square(0.0, [0.0, -1.0, -0.5], vec![]);
+        assert!(analyse(2, &[steady], &names(), &rows).is_ok());
+    }
+
+    #[test]
+    fn a_supported_body_is_left_alone() {
+        let frame = BodyFrame::new([0.0; 3], [1.0, 1.0, 0.0]);
+        let supports = vec![
+            frame.action(2, &[0.0, 0.0, 0.0], &[1.0, 0.0, 0.0]),
+            frame.action(2, &[0.0, 0.0, 0.0], &[0.0, 1.0, 0.0]),
+            frame.action(2, &[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0]),
+        ];
+        let body = square(0.0, [5.0, 1.0, 2.0], supports);
+        let motions = analyse(2, &[body], &names(), &[]).unwrap();
+        assert_eq!(motions, RigidMotions::default());
+    }
+}

@@ -1,0 +1,84 @@
+//! Taking the free rigid motions out of a displacement.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Sums over nodes of the products of free motions with each other and with the displacement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionProducts {
+    /// Σ z_i·z_j.
+    pub gram: Vec<f64>,
+    /// Σ z_i·u.
+    pub displacement: Vec<f64>,
+}
+
+impl MotionProducts {
+    /// Sums over no nodes, for `n` motions.
+    pub fn zeros(n: usize) -> Self {
+        Self {
+            gram: vec![0.0; n * n],
+            displacement: vec![0.0; n],
+        }
+    }
+
+    /// Adds a node at which the motions displace by `moves` and the solution by `u`.
+    pub fn add_node(&mut self, moves: &[[f64; 3]], u: &[f64]) {
+        let n = moves.len();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        for i in 0..n {
+            self.displacement[i] += dot(&moves[i], u);
+            for j in 0..n {
+                self.gram[i * n + j] += dot(&moves[i], &moves[j]);
+            }
+        }
+    }
+
+    /// Adds the sums over other nodes.
+    pub fn add(&mut self, other: &Self) {
+        for (a, b) in self.gram.iter_mut().zip(&other.gram) {
+            *a += b;
+        }
+        for (a, b) in self.displacement.iter_mut().zip(&other.displacement) {
+            *a += b;
+        }
+    }
+
+    /// How much of each motion the displacement has.
+    pub fn coefficients(&self) -> Vec<f64> {
+        let n = self.displacement.len();
+        let gram = DMatrix::from_row_slice(n, n, &self.gram);
+        let rhs = DVector::from_column_slice(&self.displacement);
+        gram.svd(true, true)
+            .solve(&rhs, 1e-14)
+            .map_or_else(|_| vec![0.0; n], |x| x.iter().copied().collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_taken_out_leaves_nothing_along_the_motions() {
+        let nodes: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.5, 3.0, 0.0]];
+        let moves = |x: &[f64; 3]| [[1.0, 0.0, 0.0], [-x[1], x[0], 0.0]];
+        let u = [[0.3, 0.1], [-0.2, 0.7], [1.0, 0.4]];
+        let mut products = MotionProducts::zeros(2);
+        for (x, u) in nodes.iter().zip(&u) {
+            products.add_node(&moves(x), u);
+        }
+        let c = products.coefficients();
+        for motion in 0..2 {
+            let left: f64 = nodes
+                .iter()
+                .zip(&u)
+                .map(|(x, u)| {
+                    let z = moves(x);
+                    (0..2)
+                        .map(|k| z[motion][k] * (u[k] - c[0] * z[0][k] - c[1] * z[1][k]))
+                        .sum::<f64>()
+                })
+                .sum();
+            assert!(left.abs() < 1e-14);
+        }
+    }
+}
