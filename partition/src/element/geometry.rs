@@ -23,7 +23,7 @@ pub fn length(a: [f64; 3]) -> f64 {
 }
 
 impl ElementKind {
-    /// The point x(ξ) = Σ N_i(ξ) x_i of an element with the nodes at `at` [m].
+    /// The point x(ξ) = Σ N_i(ξ) x_i of an element with the nodes at `at`, in metres.
     pub fn position(self, at: &[[f64; 3]], xi: [f64; 3]) -> [f64; 3] {
         self.shape(xi)
             .into_iter()
