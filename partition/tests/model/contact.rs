@@ -231,6 +231,24 @@ fn the_end_of_a_curved_gap_still_finds_its_partner() {
 }
 
 #[test]
+fn a_nodes_normal_is_the_average_weighted_by_length() {
+    let blocks = stack(0.0).moved(|[x, y, z]| [x * x, y + 0.2 * x.powi(3), z]);
+    let points = &blocks.mesh.points;
+    let rows = conditions(&blocks, CONTACT).unwrap();
+    assert_eq!(rows.len(), 5);
+    // Lengths times normals of a chain of facets add up to its chord, turned.
+    for (x, row) in [1.5, 1.0, 0.5].into_iter().zip(&rows[1..4]) {
+        let top = |x: f64| [x * x, 1.0 + 0.2 * x.powi(3)];
+        assert_eq!(points[row.entries[0].0 as usize][0], x * x);
+        let (before, after) = (top(x - 0.5), top(x + 0.5));
+        let chord = [after[0] - before[0], after[1] - before[1]];
+        let size = chord[0].hypot(chord[1]);
+        close(row.normal[0], -chord[1] / size, 1e-15);
+        close(row.normal[1], chord[0] / size, 1e-15);
+    }
+}
+
+#[test]
 fn a_straight_obstacle_leaves_the_signed_distance_along_its_normal() {
     let blocks = stack(0.0).moved(|[x, y, z]| [x, y + 0.2 * x, z]);
     let text = "[[contact]]\nname = 't'\nsides = ['lower bottom']\nobstacle = {point = [0, -1], normal = [0, 4]}";
