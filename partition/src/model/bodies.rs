@@ -26,7 +26,7 @@ impl Bodies {
         let mut owner: Vec<Option<u32>> = vec![None; mesh.cells.len()];
         let names: Vec<&String> = scene.bodies.keys().collect();
         for (body, name) in names.iter().enumerate() {
-            for &cell in &groups::cell_group(&mesh, name, &format!("body '{name}'"))?.members {
+            for &cell in &groups::cells(&mesh, name, &format!("body '{name}'"))?.members {
                 if let Some(other) = owner[cell as usize].replace(body as u32) {
                     return Err(InputError::new(format!(
                         "cell {} of the mesh is in two bodies, '{}' and '{name}'",

@@ -33,14 +33,13 @@ impl Members {
     }
 }
 
-/// The cells of the groups `names`, ascending. `what` names the key of the scene.
-pub(super) fn cells(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>, InputError> {
-    union(mesh, names, Members::Cells, what)
-}
-
 /// The facets of the groups `names`, ascending.
 pub(super) fn facets(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>, InputError> {
-    union(mesh, names, Members::Facets, what)
+    let mut facets = BTreeSet::new();
+    for name in names.iter() {
+        facets.extend(&find(mesh, name, Members::Facets, what)?.members);
+    }
+    Ok(facets.into_iter().collect())
 }
 
 /// The nodes of the groups `names`, of whatever they consist, ascending.
@@ -61,21 +60,9 @@ pub(super) fn nodes(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>, 
     Ok(nodes.into_iter().collect())
 }
 
-/// The group of cells `name`.
-pub(super) fn cell_group<'a>(
-    mesh: &'a Mesh,
-    name: &str,
-    what: &str,
-) -> Result<&'a Group, InputError> {
+/// The group of cells `name`. `what` names the key of the scene that asks for it.
+pub(super) fn cells<'a>(mesh: &'a Mesh, name: &str, what: &str) -> Result<&'a Group, InputError> {
     find(mesh, name, Members::Cells, what)
-}
-
-fn union(mesh: &Mesh, names: &Names, members: Members, what: &str) -> Result<Vec<u32>, InputError> {
-    let mut union = BTreeSet::new();
-    for name in names.iter() {
-        union.extend(&find(mesh, name, members, what)?.members);
-    }
-    Ok(union.into_iter().collect())
 }
 
 fn find<'a>(

@@ -11,7 +11,7 @@ pub(super) fn prescribed(mesh: &Mesh, names: &Names) -> Result<Vec<u32>, InputEr
     let list: Vec<&str> = names.iter().collect();
     let mut owner: Vec<Option<u32>> = vec![None; mesh.cells.len()];
     for (subdomain, name) in list.iter().enumerate() {
-        for &cell in &groups::cell_group(mesh, name, "subdomains")?.members {
+        for &cell in &groups::cells(mesh, name, "subdomains")?.members {
             if let Some(other) = owner[cell as usize].replace(subdomain as u32) {
                 return Err(InputError::new(format!(
                     "subdomains: cell {} of the mesh is in two of them, '{}' and '{name}'",

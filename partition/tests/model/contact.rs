@@ -1,0 +1,304 @@
+//! Γ_c.
+
+use crate::blocks::{Blocks, close};
+use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::model::ContactCondition;
+
+const CONTACT: &str = "[[contact]]\nname = 'c'\nsides = ['lower top', 'upper bottom']\n";
+
+/// Two blocks with a gap between them.
+fn stack(gap: f64) -> Blocks {
+    Blocks::new()
+        .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 2])
+        .block("upper", [0.0, 2.0], [1.0 + gap, 2.0], [4, 2])
+}
+
+fn conditions(blocks: &Blocks, text: &str) -> Result<Vec<ContactCondition>, String> {
+    let mut model = blocks.model(text)?;
+    Ok(model.contacts.remove(0).conditions)
+}
+
+#[test]
+fn a_row_is_the_jump_along_the_outward_normal_of_side_a() {
+    let rows = conditions(&stack(0.25), CONTACT).unwrap();
+    assert_eq!(rows.len(), 5);
+    for (i, row) in rows.iter().enumerate() {
+        let [(a, plus), (b, minus)] = row.entries[..] else {
+            panic!("two entries");
+        };
+        assert_eq!((plus, minus), ([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]));
+        assert_eq!(row.normal, plus);
+        let points = stack(0.25).mesh.points;
+        assert_eq!(points[a as usize], row.position);
+        assert_eq!(points[b as usize][0], row.position[0]);
+        assert_eq!(row.tag_a, stack(0.25).mesh.node_tags[a as usize]);
+        assert_eq!(row.tag_b, stack(0.25).mesh.node_tags[b as usize]);
+        close(row.gap, 0.25, 1e-15);
+        close(row.share, if i == 0 || i == 4 { 0.25 } else { 0.5 }, 1e-15);
+    }
+    let steps: Vec<f64> = rows.iter().map(|row| row.position[0]).collect();
+    assert_eq!(steps, [2.0, 1.5, 1.0, 0.5, 0.0]);
+}
+
+#[test]
+fn a_given_gap_replaces_the_geometric_one() {
+    let rows = conditions(&stack(0.25), &format!("{CONTACT}gap = '0.1*x+y'")).unwrap();
+    for row in rows {
+        close(row.gap, 0.1 * row.position[0] + 1.0, 1e-15);
+    }
+    let rows = conditions(&stack(0.25), &format!("{CONTACT}gap = 0")).unwrap();
+    assert!(rows.iter().all(|row| row.gap == 0.0));
+}
+
+#[test]
+fn interference_is_allowed_with_a_note() {
+    let model = stack(-0.01).model(CONTACT).unwrap();
+    assert!(model.warnings[0].contains("contact 'c': 5 of 5 gaps are negative"));
+    close(model.contacts[0].conditions[2].gap, -0.01, 1e-15);
+    let model = stack(0.0)
+        .model(&format!("{CONTACT}gap = '-1e-3'"))
+        .unwrap();
+    assert!(model.warnings[0].contains("interference fit of up to 0.001 m"));
+    assert!(stack(0.0).model(CONTACT).unwrap().warnings.is_empty());
+}
+
+#[test]
+fn nodes_beyond_the_end_of_the_overlap_carry_no_condition() {
+    let blocks = Blocks::new()
+        .block("lower", [-1.0, 3.0], [0.0, 1.0], [8, 2])
+        .block("upper", [0.0, 2.0], [1.0, 2.0], [4, 2]);
+    assert_eq!(conditions(&blocks, CONTACT).unwrap().len(), 5);
+    let turned = "[[contact]]\nname = 'c'\nsides = ['upper bottom', 'lower top']";
+    let rows = conditions(&blocks, turned).unwrap();
+    assert_eq!(rows.len(), 5);
+    assert!(rows.iter().all(|row| row.normal == [0.0, -1.0, 0.0]));
+}
+
+#[test]
+fn sides_whose_nodes_dont_match_are_an_error_with_tags() {
+    let other = |n: usize, x: [f64; 2]| {
+        Blocks::new()
+            .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 2])
+            .block("upper", x, [1.0, 2.0], [n, 2])
+    };
+    for blocks in [
+        other(5, [0.0, 2.0]),
+        other(2, [0.0, 2.0]),
+        other(8, [0.0, 2.0]),
+        other(4, [0.1, 2.1]),
+        other(1, [-0.5, 2.5]),
+    ] {
+        let error = conditions(&blocks, CONTACT).unwrap_err();
+        assert!(
+            error.contains("contact 'c': the sides don't match at"),
+            "{error}"
+        );
+        assert!(error.contains("tags 1"), "{error}");
+    }
+}
+
+#[test]
+fn sides_that_dont_face_each_other_are_an_error() {
+    let text = |a: &str, b: &str| format!("[[contact]]\nname = 'c'\nsides = ['{a}', '{b}']");
+    for (a, b, expected) in [
+        ("lower top", "upper top", "the sides face the same way"),
+        ("lower bottom", "upper top", "no node of side a"),
+        ("lower left", "upper top", "no node of side a"),
+    ] {
+        let error = conditions(&stack(0.5), &text(a, b)).unwrap_err();
+        assert!(error.contains(expected), "{error}");
+    }
+    let mut blocks = stack(0.0);
+    let copy = blocks.mesh.groups["lower top"].clone();
+    blocks.mesh.groups.insert("copy".into(), copy);
+    let error = conditions(&blocks, &text("lower top", "copy")).unwrap_err();
+    assert!(error.contains("is on both sides"), "{error}");
+}
+
+/// A block with a crack along y = 0 from x = 0 to its tip at x = 1.
+fn cracked() -> Blocks {
+    let mut blocks = Blocks::new()
+        .block("lower", [0.0, 2.0], [-1.0, 0.0], [4, 2])
+        .block("upper", [0.0, 2.0], [0.0, 1.0], [4, 2]);
+    // Weld the blocks from the tip on.
+    let points = blocks.mesh.points.clone();
+    let half = points.len() / 2;
+    let weld = |node: u32| {
+        let at = points[node as usize];
+        if node as usize >= half && at[1] == 0.0 && at[0] >= 1.0 {
+            points.iter().position(|p| *p == at).unwrap() as u32
+        } else {
+            node
+        }
+    };
+    for e in 0..blocks.mesh.cells.len() {
+        let nodes = blocks.mesh.cells.nodes_of_mut(e);
+        nodes.iter_mut().for_each(|node| *node = weld(*node));
+    }
+    for e in 0..blocks.mesh.facets.len() {
+        let nodes = blocks.mesh.facets.nodes_of_mut(e);
+        nodes.iter_mut().for_each(|node| *node = weld(*node));
+    }
+    let on_crack = |mesh: &Mesh, facet: u32| {
+        let nodes = mesh.facets.nodes_of(facet as usize);
+        nodes.iter().all(|&n| mesh.points[n as usize][0] <= 1.0)
+    };
+    for name in ["lower top", "upper bottom"] {
+        let mut group = blocks.mesh.groups[name].clone();
+        group.members.retain(|&facet| on_crack(&blocks.mesh, facet));
+        blocks.mesh.groups.insert(name.into(), group);
+    }
+    blocks
+}
+
+#[test]
+fn a_crack_tip_carries_no_condition() {
+    let rows = conditions(&cracked(), CONTACT).unwrap();
+    let places: Vec<f64> = rows.iter().map(|row| row.position[0]).collect();
+    assert_eq!(places, [0.5, 0.0]);
+    assert!(
+        rows.iter()
+            .all(|row| row.gap == 0.0 && row.tag_a != row.tag_b)
+    );
+}
+
+#[test]
+fn facets_of_an_undoubled_crack_are_refused_with_advice() {
+    let mut blocks = cracked();
+    let (a, b) = (blocks.node(1.0, 0.0), blocks.node(1.5, 0.0));
+    blocks.facets("glued", [a, b].into_iter());
+    let error = conditions(
+        &blocks,
+        "[[contact]]\nname = 'c'\nsides = ['glued', 'upper top']",
+    )
+    .unwrap_err();
+    assert!(
+        error.contains("side 'glued': the facet of nodes") && error.contains("twice"),
+        "{error}"
+    );
+}
+
+#[test]
+fn several_contacts_may_meet_in_one_node() {
+    let blocks = Blocks::new()
+        .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 2])
+        .block("left", [0.0, 1.0], [1.0, 2.0], [2, 2])
+        .block("right", [1.0, 2.0], [1.0, 2.0], [2, 2]);
+    let apart = blocks
+        .model("[[contact]]\nname = '1'\nsides = ['lower top', 'left bottom']\n[[contact]]\nname = '2'\nsides = ['lower top', 'right bottom']\n[[contact]]\nname = '3'\nsides = ['left right', 'right left']")
+        .unwrap();
+    let counts: Vec<usize> = apart.contacts.iter().map(|c| c.conditions.len()).collect();
+    assert_eq!(counts, [3, 3, 3]);
+    let as_one = "[[contact]]\nname = 'c'\nsides = ['lower top', ['left bottom', 'right bottom']]";
+    let rows = conditions(&blocks, as_one).unwrap();
+    assert_eq!(rows.len(), 6);
+    close(rows.iter().map(|row| row.share).sum(), 2.0, 1e-15);
+    assert_eq!(rows[2].tag_a, rows[3].tag_a);
+    assert_ne!(rows[2].tag_b, rows[3].tag_b);
+}
+
+#[test]
+fn a_pair_that_is_prescribed_on_both_sides_carries_no_condition() {
+    let text = |y: f64| {
+        format!(
+            "{CONTACT}[[bilateral]]\non = 'lower bottom'\n[[displacement]]\non = ['lower left', 'upper left']\nx = 0\n[[displacement]]\non = 'upper left'\ny = {y}\n[[displacement]]\non = 'lower left'\ny = 0"
+        )
+    };
+    let rows = conditions(&stack(0.25), &text(-0.25)).unwrap();
+    assert_eq!(rows.len(), 4);
+    assert!(rows.iter().all(|row| row.position[0] > 0.0));
+    let error = conditions(&stack(0.25), &text(-0.26)).unwrap_err();
+    assert!(
+        error.contains("contact 'c': at node") && error.contains("by 0.26 m"),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_end_of_a_curved_gap_still_finds_its_partner() {
+    // A quarter of a ring around a quarter of a ring, with a clearance of a thousandth.
+    let ring = |[x, y, z]: [f64; 3]| {
+        let angle = 0.5 * std::f64::consts::PI * x / 2.0;
+        [(1.0 + y) * angle.sin(), (1.0 + y) * angle.cos(), z]
+    };
+    let blocks = Blocks::new()
+        .block("lower", [0.0, 2.0], [-0.5, 0.0], [20, 2])
+        .block("upper", [0.0, 2.0], [1e-3, 0.5], [20, 2])
+        .moved(ring);
+    let rows = conditions(&blocks, CONTACT).unwrap();
+    assert_eq!(rows.len(), 21);
+    assert!(rows.iter().all(|row| (row.gap - 1e-3).abs() < 1e-6));
+}
+
+#[test]
+fn a_nodes_normal_is_the_average_weighted_by_length() {
+    let blocks = stack(0.0).moved(|[x, y, z]| [x * x, y + 0.2 * x.powi(3), z]);
+    let points = &blocks.mesh.points;
+    let rows = conditions(&blocks, CONTACT).unwrap();
+    assert_eq!(rows.len(), 5);
+    // Lengths times normals of a chain of facets add up to its chord, turned.
+    for (x, row) in [1.5, 1.0, 0.5].into_iter().zip(&rows[1..4]) {
+        let top = |x: f64| [x * x, 1.0 + 0.2 * x.powi(3)];
+        assert_eq!(points[row.entries[0].0 as usize][0], x * x);
+        let (before, after) = (top(x - 0.5), top(x + 0.5));
+        let chord = [after[0] - before[0], after[1] - before[1]];
+        let size = chord[0].hypot(chord[1]);
+        close(row.normal[0], -chord[1] / size, 1e-15);
+        close(row.normal[1], chord[0] / size, 1e-15);
+    }
+}
+
+#[test]
+fn a_straight_obstacle_leaves_the_signed_distance_along_its_normal() {
+    let blocks = stack(0.0).moved(|[x, y, z]| [x, y + 0.2 * x, z]);
+    let text = "[[contact]]\nname = 't'\nsides = ['lower bottom']\nobstacle = {point = [0, -1], normal = [0, 4]}";
+    let rows = conditions(&blocks, text).unwrap();
+    assert_eq!(rows.len(), 5);
+    for row in &rows {
+        assert_eq!((row.tag_b, row.entries.len()), (-1, 1));
+        assert_eq!(row.entries[0].1, [0.0, -1.0, 0.0]);
+        assert_eq!(row.normal, [0.0, -1.0, 0.0]);
+        close(row.gap, row.position[1] + 1.0, 1e-15);
+    }
+    close(
+        rows.iter().map(|row| row.share).sum(),
+        2.0 * 1.04_f64.sqrt(),
+        1e-15,
+    );
+}
+
+#[test]
+fn a_circle_keeps_bodies_out_or_in() {
+    let text = |inside: bool| {
+        format!(
+            "[[contact]]\nname = 't'\nsides = ['lower bottom']\nobstacle = {{center = [1, -3], radius = 2, inside = {inside}}}"
+        )
+    };
+    for (inside, sign) in [(false, 1.0), (true, -1.0)] {
+        for row in conditions(&stack(0.0), &text(inside)).unwrap() {
+            let arm = [row.position[0] - 1.0, 3.0];
+            let far = arm[0].hypot(arm[1]);
+            close(row.gap, sign * (far - 2.0), 1e-15);
+            close(row.normal[0], -sign * arm[0] / far, 1e-15);
+            close(row.normal[1], -sign * arm[1] / far, 1e-15);
+            assert_eq!(row.entries[0].1, row.normal);
+        }
+    }
+    let error = conditions(&stack(0.0), &text(false).replace("[1, -3]", "[1, 0]")).unwrap_err();
+    assert!(
+        error.contains("contact 't': node") && error.contains("centre"),
+        "{error}"
+    );
+}
+
+#[test]
+fn many_nodes_a_side_take_no_quadratic_time() {
+    let n = 20_000;
+    let blocks = Blocks::new()
+        .block("lower", [0.0, 100.0], [0.0, 1.0], [n, 1])
+        .block("upper", [0.0, 100.0], [1.0, 2.0], [n, 1])
+        .moved(|[x, y, z]| [x, y + (0.1 * x).sin(), z]);
+    let start = std::time::Instant::now();
+    assert_eq!(conditions(&blocks, CONTACT).unwrap().len(), n + 1);
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+}

@@ -1,0 +1,130 @@
+//! The same scene, written differently.
+
+use crate::blocks::{Blocks, close};
+use contact_dd_partition::model::Model;
+
+const SCENE: &str = "[[contact]]\nname = 'c'\nsides = ['lower top', 'upper bottom']\n\
+    [[displacement]]\non = 'lower bottom'\nx = 0\ny = '0.1*x'\n\
+    [[bilateral]]\non = 'upper right'\n\
+    [[pressure]]\non = 'upper top'\nvalue = '1+x'\n\
+    [[traction]]\non = 'upper left'\nvalue = ['y^2', 1]\n";
+
+fn blocks() -> Blocks {
+    Blocks::new()
+        .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 3])
+        .block("upper", [0.0, 2.0], [1.01, 2.0], [4, 3])
+        .moved(|[x, y, z]| [x + 0.03 * (7.0 * x).sin(), y + 0.05 * (5.0 * x).sin(), z])
+}
+
+fn tag(model: &Model, node: u32) -> i64 {
+    model.mesh.node_tags[node as usize]
+}
+
+#[test]
+fn numbering_and_orientation_in_the_mesh_file_dont_matter() {
+    let (one, other) = (
+        blocks().model(SCENE).unwrap(),
+        blocks().disguised().model(SCENE).unwrap(),
+    );
+    let (a, b) = (&one.contacts[0].conditions, &other.contacts[0].conditions);
+    assert_eq!(a.len(), 5);
+    assert_eq!(a.len(), b.len());
+    for (a, b) in a.iter().zip(b) {
+        assert_eq!((a.tag_a, a.tag_b), (b.tag_a, b.tag_b));
+        close(a.gap, b.gap, 1e-15);
+        close(a.share, b.share, 1e-15);
+        (0..3).for_each(|i| close(a.normal[i], b.normal[i], 1e-15));
+    }
+    let forces = |model: &Model| {
+        let mut list: Vec<_> = model
+            .forces
+            .iter()
+            .map(|(n, f)| (tag(model, *n), *f))
+            .collect();
+        list.sort_by_key(|entry| entry.0);
+        list
+    };
+    let (a, b) = (forces(&one), forces(&other));
+    assert_eq!(a.len(), b.len());
+    for ((tag_a, a), (tag_b, b)) in a.iter().zip(&b) {
+        assert_eq!(tag_a, tag_b);
+        (0..3).for_each(|i| close(a[i], b[i], 1e-14));
+    }
+    // What rows prescribe is their projector, whichever rows they are.
+    let projector = |model: &Model| {
+        let mut sums = std::collections::BTreeMap::new();
+        for s in &model.supports {
+            let sum: &mut [f64; 5] = sums.entry(tag(model, s.node)).or_default();
+            let [x, y, _] = s.direction;
+            for (sum, term) in sum
+                .iter_mut()
+                .zip([x * x, x * y, y * y, x * s.value, y * s.value])
+            {
+                *sum += term;
+            }
+        }
+        sums
+    };
+    let (a, b) = (projector(&one), projector(&other));
+    assert!(a.keys().eq(b.keys()));
+    for (a, b) in a.values().zip(b.values()) {
+        (0..5).for_each(|i| close(a[i], b[i], 1e-14));
+    }
+    for model in [&one, &other] {
+        for (kind, nodes) in model.mesh.cells.iter() {
+            let at: Vec<_> = nodes
+                .iter()
+                .map(|&n| model.mesh.points[n as usize])
+                .collect();
+            assert!(kind.jacobian(&at, [0.0; 3]) > 0.0);
+        }
+    }
+}
+
+#[test]
+fn a_scene_turned_and_shifted_has_turned_rows_and_the_same_gaps() {
+    let text = SCENE.split("[[displacement]]").next().unwrap();
+    let one = blocks().model(text).unwrap();
+    let (c, s) = (0.28, 0.96);
+    let turned = blocks().moved(|[x, y, z]| [c * x - s * y + 100.0, s * x + c * y - 50.0, z]);
+    let other = turned.model(text).unwrap();
+    let pairs = one.contacts[0].conditions.iter();
+    for (a, b) in pairs.zip(&other.contacts[0].conditions) {
+        assert_eq!((a.tag_a, a.tag_b), (b.tag_a, b.tag_b));
+        close(a.gap, b.gap, 1e-13);
+        close(a.share, b.share, 1e-13);
+        close(b.normal[0], c * a.normal[0] - s * a.normal[1], 1e-12);
+        close(b.normal[1], s * a.normal[0] + c * a.normal[1], 1e-12);
+    }
+}
+
+#[test]
+fn a_mirrored_scene_has_mirrored_rows() {
+    let text = SCENE.split("[[displacement]]").next().unwrap();
+    let one = blocks().model(text).unwrap();
+    let other = blocks().moved(|[x, y, z]| [-x, y, z]).model(text).unwrap();
+    let mirrored = other.contacts[0].conditions.iter().rev();
+    for (a, b) in one.contacts[0].conditions.iter().zip(mirrored) {
+        assert_eq!((a.tag_a, a.tag_b), (b.tag_a, b.tag_b));
+        close(a.gap, b.gap, 1e-15);
+        close(a.normal[0], -b.normal[0], 1e-15);
+        close(a.normal[1], b.normal[1], 1e-15);
+    }
+}
+
+#[test]
+fn millimetres_in_place_of_metres_change_lengths_alone() {
+    let text = SCENE.split("[[displacement]]").next().unwrap();
+    let one = blocks().model(text).unwrap();
+    for factor in [1e3, 1e-6] {
+        let scaled = blocks().moved(|p| p.map(|c| c * factor));
+        let other = scaled.model(text).unwrap();
+        assert_eq!(other.contacts[0].conditions.len(), 5);
+        let pairs = one.contacts[0].conditions.iter();
+        for (a, b) in pairs.zip(&other.contacts[0].conditions) {
+            assert_eq!((a.tag_a, a.tag_b), (b.tag_a, b.tag_b));
+            close(a.gap * factor, b.gap, 1e-13 * factor);
+            close(a.share * factor, b.share, 1e-13 * factor);
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! What a scene means on its mesh.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "what the tests share may panic as they do"
+)]
+
+mod blocks;
+mod bodies;
+mod contact;
+mod invariance;
+mod loads;
+mod supports;
