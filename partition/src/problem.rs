@@ -42,7 +42,7 @@ pub struct Subdomain {
     pub index: usize,
     /// Index of its body among [`Catalog::bodies`].
     pub body: usize,
-    /// Coordinates of its nodes [m].
+    /// Coordinates of its nodes (m).
     pub points: Vec<[f64; 3]>,
     /// The mesh file's tag of each node.
     pub node_tags: Vec<i64>,
@@ -52,7 +52,7 @@ pub struct Subdomain {
     pub cell_material: Vec<u32>,
     /// Supports, by node of the subdomain.
     pub supports: Vec<Support>,
-    /// Nodal forces, by node of the subdomain [N per metre of thickness].
+    /// Nodal forces, by node of the subdomain (N per metre of thickness).
     pub forces: Vec<(u32, [f64; 3])>,
     /// Its nodes on Γ, in ascending order of their number on Γ.
     pub interface: Vec<InterfaceNode>,
@@ -78,11 +78,11 @@ pub struct ContactRow {
     pub place: u32,
     /// The row of B.
     pub entries: Vec<RowEntry>,
-    /// g [m].
+    /// g (m).
     pub gap: f64,
-    /// Share of side a [m].
+    /// Share of side a (m).
     pub share: f64,
-    /// Undeformed position on side a [m].
+    /// Undeformed position on side a (m).
     pub position: [f64; 3],
     /// Unit normal, outward of side a.
     pub normal: [f64; 3],

@@ -201,3 +201,69 @@ fn a_prescribed_partition_is_taken_as_it_is() {
     let message = Decomposition::new(&model, None).unwrap_err().to_string();
     assert!(message.contains("subdomain 2 has no cells"), "{message}");
 }
+
+#[test]
+fn a_prescribed_subdomain_in_two_parts_is_a_warning() {
+    let mut model = stacked(1, 6, 2);
+    let third = |cell: usize| {
+        let nodes = model.mesh.cells.nodes_of(cell);
+        let x: f64 = nodes
+            .iter()
+            .map(|&n| model.mesh.points[n as usize][0])
+            .sum();
+        u32::from((6.0..12.0).contains(&x))
+    };
+    model.prescribed_subdomains = Some((0..model.mesh.cells.len()).map(third).collect());
+    let decomposition = Decomposition::new(&model, None).unwrap();
+    let warnings = Problem::new(&model, &decomposition)
+        .unwrap()
+        .catalog
+        .warnings;
+    assert!(warnings[1].ends_with("hang together: 0"), "{warnings:?}");
+}
+
+#[test]
+fn pieces_that_share_a_node_alone_are_one_body_of_two_subdomains() {
+    let mut model = stacked(2, 4, 3);
+    let first = model.contacts[0].conditions.remove(0);
+    let (hinge, gone) = (first.entries[0].0, first.entries[1].0);
+    for cell in 0..model.mesh.cells.len() {
+        for node in model.mesh.cells.nodes_of_mut(cell) {
+            if *node == gone {
+                *node = hinge;
+            }
+        }
+    }
+    assert_eq!(range(&model).0, 2);
+    let decomposition = Decomposition::new(&model, Some(2)).unwrap();
+    let catalog = Problem::new(&model, &decomposition).unwrap().catalog;
+    assert_eq!(catalog.bodies[0].name, "block 0+block 1");
+    assert_eq!((catalog.bodies.len(), catalog.interface_nodes), (1, 1));
+}
+
+#[test]
+fn a_node_with_a_condition_at_which_the_mesh_is_pinched_keeps_its_group_together() {
+    // Two blocks that share one node, which has a condition of its own.
+    let mut model = stacked(2, 4, 3);
+    let (hinge, gone) = {
+        let entries = &mut model.contacts[0].conditions[0].entries;
+        let gone = entries.pop().unwrap().0;
+        (entries[0].0, gone)
+    };
+    for cell in 0..model.mesh.cells.len() {
+        for node in model.mesh.cells.nodes_of_mut(cell) {
+            if *node == gone {
+                *node = hinge;
+            }
+        }
+    }
+    for count in 2..12 {
+        let decomposition = Decomposition::new(&model, Some(count)).unwrap();
+        assert_eq!(components(&model, &decomposition), count);
+        let catalog = Problem::new(&model, &decomposition).unwrap().catalog;
+        let sets = subdomains_of_node(&model, &decomposition);
+        for &subdomain in &sets[hinge as usize] {
+            assert_eq!(catalog.subdomains[subdomain as usize].group, Some(0));
+        }
+    }
+}

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod groups;
+mod scattered;
 
 use self::bodies::Bodies;
 use self::groups::Groups;
@@ -31,6 +32,7 @@ impl Problem {
         let rows = gather_rows(model, &owners, &groups);
         let mut warnings = model.warnings.clone();
         warnings.extend(groups.warning.clone());
+        warnings.extend(scattered::warning(model, decomposition));
         let catalog = Catalog {
             title: model.title.clone(),
             dim: model.mesh.dim,
