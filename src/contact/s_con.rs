@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
-use super::active_set::GapSolution;
 use super::pair::{ContactPair, PairResponse};
 use crate::comm::{Comm, Message};
 use crate::interface::operator::{Interface, multiply_add};
@@ -100,11 +99,11 @@ impl<'a> SCon<'a> {
             totals.active += response.active;
             if moved[p] {
                 totals.changed += response.changed;
-                totals.steps += response.contact.steps;
+                totals.steps += response.steps;
             } else {
                 totals.unchanged_pairs += 1;
             }
-            totals.failed_pairs += usize::from(!response.contact.converged);
+            totals.failed_pairs += usize::from(!response.converged);
         }
         state.traces = traces.into_iter().map(Some).collect();
         totals
@@ -219,11 +218,10 @@ fn pack(pair: &ContactPair, response: &PairResponse, derivative: bool) -> Messag
     let mut message = Message::default();
     message.integers.extend([
         response.reaction.len() as i64,
-        response.contact.gaps.len() as i64,
         response.active as i64,
         response.changed as i64,
-        response.contact.steps as i64,
-        i64::from(response.contact.converged),
+        response.steps as i64,
+        i64::from(response.converged),
     ]);
     message.reals.extend(&response.reaction);
     message.reals.extend(&response.scale);
@@ -242,11 +240,10 @@ fn pack(pair: &ContactPair, response: &PairResponse, derivative: bool) -> Messag
     message
 }
 
-/// The root's copy of a response; gaps and forces stay with the owner.
+/// A response from a message; approaches and forces stay with the owner.
 fn unpack(message: Message) -> (PairResponse, Option<Mat<f64>>) {
     let mut reader = message.read();
     let traces = reader.count();
-    let _conditions = reader.count();
     let active = reader.count();
     let changed = reader.count();
     let steps = reader.count();
@@ -254,14 +251,10 @@ fn unpack(message: Message) -> (PairResponse, Option<Mat<f64>>) {
     let response = PairResponse {
         reaction: reader.reals(traces),
         scale: reader.reals(traces),
-        contact: GapSolution {
-            gaps: Vec::new(),
-            forces: Vec::new(),
-            steps,
-            converged,
-        },
         active,
         changed,
+        steps,
+        converged,
     };
     let rows = reader.integer();
     let opening = (rows >= 0).then(|| {

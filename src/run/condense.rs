@@ -8,8 +8,8 @@ use faer::{Mat, Par};
 
 use super::read::OwnedBlock;
 use crate::comm::{Comm, Message};
-use crate::contact::gap::Dependence;
-use crate::contact::pair::ContactPair;
+use crate::contact::approach::ApproachOf;
+use crate::contact::pair::{ContactPair, Limits};
 use crate::error::Failure;
 use crate::fem::assembly::assemble;
 use crate::fem::dofs::{DofError, Dofs, TraceDof};
@@ -62,9 +62,10 @@ pub fn condense_blocks(
         let load = schur.condense(system.load);
         match plan.pair_of(number) {
             Some(pair) => {
-                let gap_scale = gap_scale(owned);
-                let pair_of_block = ContactPair::new(schur, dofs.gaps, load, gap_scale);
-                condensed.pairs.insert(pair, pair_of_block);
+                let limits = limits(owned, &dofs, catalog)?;
+                condensed
+                    .pairs
+                    .insert(pair, ContactPair::new(schur, load, limits));
             }
             None => {
                 condensed
@@ -80,8 +81,34 @@ pub fn condense_blocks(
     Ok(condensed)
 }
 
-/// The largest displacement that is prescribed in a block, initial gaps among them [m].
-fn gap_scale(owned: &OwnedBlock) -> f64 {
+/// The bounds on a block's approaches.
+fn limits(owned: &OwnedBlock, dofs: &Dofs, catalog: &Catalog) -> Result<Limits, Failure> {
+    let scale = prescribed_scale(owned);
+    for (of, row) in dofs.approach_of.iter().zip(&owned.rows) {
+        if let ApproachOf::Prescribed(approach) = *of
+            && approach > row.gap + 1e-12 * scale
+        {
+            let contact = &catalog.contacts[row.contact as usize].name;
+            return Err(Failure::input(format!(
+                "contact '{contact}': nodes {} and {} are prescribed to penetrate by {:.3e}; \
+                 expected displacements that leave a gap",
+                row.tag_a,
+                row.tag_b,
+                approach - row.gap
+            )));
+        }
+    }
+    let gaps: Vec<f64> = owned.conditions.iter().map(|c| c.gap).collect();
+    Ok(Limits::new(
+        dofs.approaches,
+        &dofs.approach_of,
+        &gaps,
+        scale,
+    ))
+}
+
+/// The largest displacement that is prescribed in a block, initial gaps among them (m).
+fn prescribed_scale(owned: &OwnedBlock) -> f64 {
     let prescribed = owned
         .block
         .members
@@ -100,18 +127,14 @@ fn size(plan: &Plan, number: usize) -> Failure {
 }
 
 fn dof_failure(error: DofError, owned: &OwnedBlock, catalog: &Catalog) -> Failure {
-    let DofError::Condition(j, why) = error else {
+    let DofError::Dependent(j) = error else {
         return Failure::internal("a subdomain has more than 2^32 unknowns");
     };
     let row = &owned.rows[j];
     let contact = &catalog.contacts[row.contact as usize].name;
-    let what = match why {
-        Dependence::OnOthers => "follows from other conditions",
-        Dependence::Prescribed => "is prescribed on both sides",
-    };
     Failure::input(format!(
-        "contact '{contact}': the condition between nodes {} and {} {what}; expected conditions \
-         that are independent of each other and of the supports",
+        "contact '{contact}': the condition between nodes {} and {} follows from several others; \
+         expected conditions that are independent of each other and of the supports",
         row.tag_a, row.tag_b
     ))
 }

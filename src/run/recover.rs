@@ -60,13 +60,13 @@ fn recover_block(
         });
     }
     let pair = blocks.pairs.get(&plan.pair_of(b)?)?;
-    let contact = pair.contact();
-    let mut x_b = contact.gaps.clone();
+    let mut x_b = pair.approaches().to_vec();
     x_b.extend_from_slice(u);
     let x = pair.schur().recover(pair.load(), &x_b);
+    let (forces, closed) = pair.conditions();
     Some(BlockSolution {
         u: dofs.displacement(&x),
-        forces: contact.forces.clone(),
-        closed: pair.open().iter().map(|open| !open).collect(),
+        forces,
+        closed,
     })
 }
