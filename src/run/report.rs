@@ -2,6 +2,7 @@
 
 use std::io::stdout;
 
+use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
 
 use crate::comm::{Comm, Message};
@@ -181,6 +182,7 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
     } = totals;
     let seconds: Vec<PhaseSeconds> = totals.ranks.iter().map(|r| r.seconds).collect();
     let mut warnings = catalog.warnings.clone();
+    warnings.extend(unknown_stress(catalog));
     warnings.extend(totals.warnings.iter().cloned());
     warnings.extend(outcome.notes.iter().cloned());
     Report {
@@ -207,6 +209,21 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
         warnings,
         version: env!("CARGO_PKG_VERSION").into(),
     }
+}
+
+/// A warning for every material whose σ_zz isn't known.
+fn unknown_stress(catalog: &Catalog) -> Vec<String> {
+    catalog
+        .materials
+        .iter()
+        .filter(|m| catalog.plane == PlaneState::Strain && m.out_of_plane.is_none())
+        .map(|m| {
+            format!(
+                "material '{}' has no out_of_plane stiffness: its stress ZZ is reported as 0",
+                m.name
+            )
+        })
+        .collect()
 }
 
 /// What the scene didn't need.
