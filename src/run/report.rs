@@ -192,7 +192,7 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
         },
         method: settings.method.name().into(),
         sweeps: outcome.records.len().saturating_sub(1),
-        interface_residual: outcome.records.last().map_or(0.0, |r| r.residual),
+        interface_residual: outcome.residual,
         dofs: dofs(catalog),
         interface_dofs: totals.interface_dofs,
         contact_conditions: conditions(catalog),

@@ -1,13 +1,17 @@
 //! Semismooth Newton: (S_0 + S_CON'(U)) δ = r.
 //!
+//! A sweep freezes every pair's active set at U^(k−1) and solves the linear interface problem. r is
+//! minus the gradient of a convex energy, along which a line search gets down.
+//!
 //! The derivative differs from the factorized bilateral operator by the contacts that opened, a
 //! change of low rank, so that conjugate gradients preconditioned with that one factorization
 //! need few steps and nothing is ever factorized again at the root.
 
 use super::{ROUND_OFF, Residual, SweepStatus, Sweeps, axpy, dot, maximum};
+use crate::contact::s_con::Openings;
 
 /// Sweeps before another method takes over.
-const MAX_SWEEPS: usize = 60;
+const MAX_SWEEPS: usize = 80;
 /// Most conjugate gradient steps of one sweep.
 const MAX_STEPS: usize = 1000;
 /// Share of the bilateral operator that is blended in where the derivative is singular.
@@ -42,11 +46,12 @@ impl Sweeps<'_, '_> {
 
     /// δ = ((1 − blend) J + blend J_bilateral)⁻¹ r by preconditioned conjugate gradients; `None`
     /// where that operator is singular along the way.
-    fn newton_step(&self, r: &[f64], blend: f64) -> Option<Vec<f64>> {
+    pub(super) fn newton_step(&self, r: &[f64], blend: f64) -> Option<Vec<f64>> {
         let n = r.len();
         let mut x = vec![0.0; n];
         let mut r = r.to_vec();
-        let target = maximum(&r) * 1e-2 * ROUND_OFF;
+        let target = maximum(&r) * 0.1 * ROUND_OFF;
+        let start = maximum(&r);
         let mut z = r.clone();
         self.interface.solve_bilateral(&mut z);
         let mut p = z.clone();
@@ -67,7 +72,7 @@ impl Sweeps<'_, '_> {
             let curvature = dot(&p, &q);
             if curvature <= SINGULAR_CURVATURE * dot(&p, &reference) || curvature.is_nan() {
                 // Along p nothing resists; what is solved so far serves if it is nearly all.
-                return (best.0 <= 1e-10 * target / ROUND_OFF).then_some(x);
+                return (best.0 <= 1e-10 * start).then_some(x);
             }
             let alpha = rz / curvature;
             axpy(alpha, &p, &mut x);
@@ -115,7 +120,7 @@ impl Sweeps<'_, '_> {
         loop {
             let mut trial = u.clone();
             axpy(alpha, step, &mut trial);
-            let residual = self.residual(&trial);
+            let residual = self.residual(&trial, Openings::Changed);
             let there = dot(step, &residual.r);
             let accepted = there >= -0.9 * slope || self.is_converged(&residual);
             if accepted || alpha < 1e-4 {
