@@ -108,6 +108,8 @@ pub struct Sweeps<'a, 'c> {
 #[derive(Clone, Debug)]
 struct Residual {
     r: Vec<f64>,
+    /// Largest sum of the absolute terms of an entry of r.
+    scale: f64,
     relative: f64,
     totals: ConTotals,
 }
@@ -162,7 +164,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             if residual.relative <= ROUND_OFF || residual.totals.changed > 0 {
                 return;
             }
-            let Some(step) = self.newton_step(&residual.r, 0.0) else {
+            let Some(step) = self.newton_step(&residual, 0.0) else {
                 return;
             };
             let mut refined = u.clone();
@@ -185,6 +187,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         let (r_max, scale_max) = (maximum(&r), maximum(&scale));
         Residual {
             r,
+            scale: scale_max,
             relative: if r_max == 0.0 { 0.0 } else { r_max / scale_max },
             totals,
         }

@@ -14,6 +14,8 @@ use crate::contact::s_con::Openings;
 const MAX_SWEEPS: usize = 80;
 /// Most conjugate gradient steps of one sweep.
 const MAX_STEPS: usize = 1000;
+/// Conjugate gradient steps without progress that are taken for round-off.
+const PATIENCE: usize = 20;
 /// Share of the bilateral operator that is blended in where the derivative is singular.
 const BLEND: f64 = 1e-3;
 /// Curvature relative to the bilateral operator's below which the derivative is singular.
@@ -33,8 +35,8 @@ impl Sweeps<'_, '_> {
                 return self.anderson(u, residual);
             }
             let step = self
-                .newton_step(&residual.r, 0.0)
-                .or_else(|| self.newton_step(&residual.r, BLEND));
+                .newton_step(&residual, 0.0)
+                .or_else(|| self.newton_step(&residual, BLEND));
             let Some(step) = step else {
                 return self.gave_up(&residual, "newton found no direction");
             };
@@ -46,11 +48,10 @@ impl Sweeps<'_, '_> {
 
     /// δ = ((1 − blend) J + blend J_bilateral)⁻¹ r by preconditioned conjugate gradients; `None`
     /// where that operator is singular along the way.
-    pub(super) fn newton_step(&self, r: &[f64], blend: f64) -> Option<Vec<f64>> {
-        let n = r.len();
-        let mut x = vec![0.0; n];
-        let mut r = r.to_vec();
-        let target = maximum(&r) * 0.1 * ROUND_OFF;
+    pub(super) fn newton_step(&self, residual: &Residual, blend: f64) -> Option<Vec<f64>> {
+        let mut x = vec![0.0; residual.r.len()];
+        let mut r = residual.r.clone();
+        let target = 0.1 * ROUND_OFF * residual.scale;
         let start = maximum(&r);
         let mut z = r.clone();
         self.interface.solve_bilateral(&mut z);
@@ -62,10 +63,10 @@ impl Sweeps<'_, '_> {
             if size <= target || rz == 0.0 {
                 break;
             }
-            // Round-off has its say in the end: no progress for long means that it's reached.
+            // No progress for long means that round-off is reached.
             if size < 0.5 * best.0 {
                 best = (size, step);
-            } else if step > best.1 + 30 {
+            } else if step > best.1 + PATIENCE {
                 break;
             }
             let (q, reference) = self.derivative(&p, blend);
