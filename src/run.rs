@@ -60,21 +60,23 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
 
     // Every rank reads its own subdomains and pairs.
     phase("reading");
+    comm.agree(settings.check_paths())?;
     let file = comm.agree(ProblemFile::open(&settings.problem).map_err(Failure::from))?;
     let catalog = file.catalog();
     let plan = Plan::new(catalog, comm.size());
     let blocks = comm.agree(read_blocks(comm, &file, &plan))?;
     narrator.problem(catalog, &plan);
-    if settings.check {
-        return Ok(Ending::Converged);
-    }
-    let mut output = comm.agree(create_output(comm, settings, catalog, &plan, &blocks))?;
-    seconds.read = began.elapsed().as_secs_f64();
 
     // Rigid motions that neither supports nor contact hold.
     phase("looking for free rigid motions");
     let survey = survey(comm, &blocks, catalog, &plan)?;
     let pins = &survey.motions.pins;
+    if settings.check {
+        narrator.check(&survey);
+        return Ok(Ending::Converged);
+    }
+    let mut output = comm.agree(create_output(comm, settings, catalog, &plan, &blocks))?;
+    seconds.read = began.elapsed().as_secs_f64();
 
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12).
     phase("factorizing");

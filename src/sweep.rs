@@ -64,7 +64,7 @@ pub struct SweepRecord {
     pub active: usize,
     /// Conditions that opened or closed in it.
     pub changed: usize,
-    /// Since the sweeps began [s].
+    /// Since the sweeps began (s).
     pub seconds: f64,
 }
 
@@ -158,7 +158,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
 
     /// Iterative refinement with the factors at hand: the tolerance of the sweeps isn't what limits
     /// the solution.
-    fn refine(&mut self, u: &mut Vec<f64>) {
+    fn refine(&mut self, u: &mut [f64]) {
         let mut residual = self.residual(u, Openings::All);
         for _ in 0..MAX_REFINEMENTS {
             if residual.relative <= ROUND_OFF || residual.totals.changed > 0 {
@@ -167,13 +167,13 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             let Some(step) = self.newton_step(&residual, 0.0) else {
                 return;
             };
-            let mut refined = u.clone();
+            let mut refined = u.to_vec();
             axpy(1.0, &step, &mut refined);
             let after = self.residual(&refined, Openings::Changed);
             if after.relative > 0.5 * residual.relative || after.totals.changed > 0 {
                 return;
             }
-            *u = refined;
+            u.copy_from_slice(&refined);
             residual = after;
         }
     }

@@ -16,7 +16,7 @@ pub struct BlockSystem {
     pub load: Vec<f64>,
 }
 
-/// Nodal forces of a block, node by node [N per metre of thickness].
+/// Nodal forces of a block, node by node (N per metre of thickness).
 pub fn nodal_forces(block: &Block) -> Vec<f64> {
     let mut f = vec![0.0; block.nodes() * block.dim];
     for (member, node_of) in block.members.iter().zip(&block.node_of) {

@@ -184,7 +184,7 @@ impl Dofs {
         &self.terms[self.offsets[row] as usize..self.offsets[row + 1] as usize]
     }
 
-    /// The constant part of a component of a node's displacement [m].
+    /// The constant part of a component of a node's displacement (m).
     pub fn constant(&self, node: u32, component: usize) -> f64 {
         self.constants[node as usize * self.dim + component]
     }

@@ -31,7 +31,7 @@ pub struct CondensedBlocks {
     pub linear: BTreeMap<usize, LinearSubdomain>,
     /// ϑ: the pairs in contact, by their place among all pairs.
     pub pairs: BTreeMap<usize, ContactPair>,
-    /// Time for assembling and for factorizing [s].
+    /// Time for assembling and for factorizing (s).
     pub seconds: [f64; 2],
 }
 

@@ -15,6 +15,7 @@ use crate::output::result::ConvergenceRow;
 use crate::output::terminal::{self, Summary, SweepLine};
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
+use crate::rigid::survey::Survey;
 use crate::settings::Settings;
 use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
 
@@ -74,6 +75,18 @@ impl<'a> Narrator<'a> {
         let _ = terminal::summary(&mut stdout(), &summary);
         if !self.settings.check {
             let _ = terminal::settings(&mut stdout(), &self.settings.resolved());
+        }
+    }
+
+    /// What validating found.
+    pub fn check(&self, survey: &Survey) {
+        if self.comm.is_root() {
+            for warning in &survey.motions.warnings {
+                eprintln!("warning: {warning}");
+            }
+        }
+        if self.speaks() {
+            println!("\nthe problem file is valid");
         }
     }
 

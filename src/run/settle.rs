@@ -79,8 +79,9 @@ pub fn settle_free_motions(
                 }
                 let moves = motions_at(survey, dim, member, &member.points[local]);
                 for (z, c) in moves.iter().zip(&coefficients.reals) {
-                    for k in 0..dim {
-                        solution.u[node as usize * dim + k] -= c * z[k];
+                    let start = node as usize * dim;
+                    for (u, z) in solution.u[start..start + dim].iter_mut().zip(z) {
+                        *u -= c * z;
                     }
                 }
             }

@@ -22,7 +22,7 @@ const BLEND: f64 = 1e-3;
 const SINGULAR_CURVATURE: f64 = 1e-13;
 
 impl Sweeps<'_, '_> {
-    pub(super) fn newton(&mut self, u: &mut Vec<f64>, mut residual: Residual) -> SweepStatus {
+    pub(super) fn newton(&mut self, u: &mut [f64], mut residual: Residual) -> SweepStatus {
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
         while !self.is_converged(&residual) {
             if self.sweeps_done() >= limit {
@@ -115,17 +115,17 @@ impl Sweeps<'_, '_> {
     ///
     /// r is minus the gradient of a convex energy: a step too far shows in a slope stepᵀr that has
     /// turned and is as steep as before; then a shorter one is taken. The residual's size may rise.
-    fn line_search(&mut self, u: &mut Vec<f64>, step: &[f64], before: &Residual) -> Residual {
+    fn line_search(&mut self, u: &mut [f64], step: &[f64], before: &Residual) -> Residual {
         let slope = dot(step, &before.r);
         let mut alpha = 1.0;
         loop {
-            let mut trial = u.clone();
+            let mut trial = u.to_vec();
             axpy(alpha, step, &mut trial);
             let residual = self.residual(&trial, Openings::Changed);
             let there = dot(step, &residual.r);
             let accepted = there >= -0.9 * slope || self.is_converged(&residual);
             if accepted || alpha < 1e-4 {
-                *u = trial;
+                u.copy_from_slice(&trial);
                 return residual;
             }
             alpha *= (slope / (slope - there)).clamp(0.1, 0.6);

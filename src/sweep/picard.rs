@@ -16,7 +16,7 @@ const POWER_STEPS: usize = 60;
 const DIVERGED: f64 = 1e8;
 
 impl Sweeps<'_, '_> {
-    pub(super) fn picard(&mut self, u: &mut Vec<f64>, mut residual: Residual) -> SweepStatus {
+    pub(super) fn picard(&mut self, u: &mut [f64], mut residual: Residual) -> SweepStatus {
         if self.is_converged(&residual) {
             return SweepStatus::Converged;
         }
