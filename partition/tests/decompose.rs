@@ -1,6 +1,6 @@
 //! Laws of the contact-aware partition.
 
-#![allow(clippy::unwrap_used, reason = "a failing step is a failing test")]
+#![expect(clippy::unwrap_used, reason = "what fails here fails the test")]
 
 mod problem_scenes;
 

@@ -43,7 +43,7 @@ impl ElementKind {
     }
 
     /// det ∂x/∂ξ of a cell that fills its space: positive where it is positively oriented, and
-    /// dx = det·dξ \[m^dim\].
+    /// dx = det·dξ (m^dim).
     pub fn jacobian(self, at: &[[f64; 3]], xi: [f64; 3]) -> f64 {
         let [t, s, _] = self.tangents(at, xi);
         match self.dim() {
@@ -69,7 +69,7 @@ impl ElementKind {
     }
 
     /// Where the line x + s·`direction` (a unit vector) crosses the inside of a straight facet of
-    /// a plane: s \[m\]. `None` where it passes by, or along it.
+    /// a plane: s (m). `None` where it passes by, or along it.
     pub fn crossing(self, at: &[[f64; 3]], x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
         match (self, at) {
             (Self::Line2, &[p, q]) => {

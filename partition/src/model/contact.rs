@@ -24,7 +24,7 @@ pub(super) struct Contacts<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     supports: HashMap<u32, Vec<Support>>,
-    /// The largest coordinate \[m\].
+    /// The largest coordinate (m).
     size: f64,
 }
 

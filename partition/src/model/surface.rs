@@ -15,7 +15,7 @@ pub(super) struct SurfaceFacet {
     pub kind: ElementKind,
     /// Nodes in the order in which the cell lies to their left.
     pub nodes: Vec<u32>,
-    /// Coordinates of the nodes \[m\].
+    /// Coordinates of the nodes (m).
     pub at: Vec<[f64; 3]>,
     /// Unit outward normal in its middle.
     pub normal: [f64; 3],
@@ -24,7 +24,7 @@ pub(super) struct SurfaceFacet {
 }
 
 impl SurfaceFacet {
-    /// Its diameter, by the order of magnitude \[m\].
+    /// Its diameter, by the order of magnitude (m).
     pub fn size(&self) -> f64 {
         match self.kind.dim() {
             0 => 0.0,
@@ -173,7 +173,7 @@ impl Surface {
         order
     }
 
-    /// The largest extent of its bounding box \[m\].
+    /// The largest extent of its bounding box (m).
     pub fn extent(&self) -> f64 {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];
