@@ -53,6 +53,14 @@ impl ElementKind {
         }
     }
 
+    /// ∫ det ∂x/∂ξ dξ of a cell that fills its space: its length, area or volume, with the sign of
+    /// its orientation (m^dim).
+    pub fn measure(self, at: &[[f64; 3]]) -> f64 {
+        let rule = self.quadrature(1);
+        let points = rule.points.iter().zip(&rule.weights);
+        points.map(|(&xi, w)| w * self.jacobian(at, xi)).sum()
+    }
+
     /// n dS/dξ of a facet whose cell lies to its left: its unit outward normal times the measure
     /// that a unit of the reference facet has in space.
     pub fn area_vector(self, at: &[[f64; 3]], xi: [f64; 3]) -> [f64; 3] {

@@ -2,7 +2,6 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::bodies::tags_of;
 use crate::element::ElementKind;
 use crate::element::geometry::{advance, length};
 use crate::error::InputError;
@@ -71,7 +70,7 @@ impl Surface {
         let facet_of = |&facet: &u32| {
             let listed = mesh.facets.nodes_of(facet as usize);
             let refused = |reason: &str| {
-                let tags = tags_of(mesh, listed);
+                let tags = mesh.tags_of(listed);
                 InputError::new(format!("{what}: the facet of nodes {tags} {reason}"))
             };
             let cell_facet = match topology.cells_at(listed) {
