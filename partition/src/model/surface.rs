@@ -73,8 +73,8 @@ impl Surface {
                 let tags = mesh.tags_of(listed);
                 InputError::new(format!("{what}: the facet of nodes {tags} {reason}"))
             };
-            let cell_facet = match topology.cells_at(listed) {
-                [one] => one,
+            let cell_facet = match topology.cells_at(listed).as_slice() {
+                [one] => *one,
                 [] => return Err(refused("belongs to no cell of a body")),
                 [_, _] => {
                     return Err(refused(
