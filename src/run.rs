@@ -5,7 +5,9 @@
 pub mod condense;
 pub mod read;
 pub mod recover;
+pub mod refine;
 mod report;
+pub mod settle;
 pub mod write;
 
 use std::collections::BTreeMap;
@@ -18,17 +20,18 @@ use faer::Par;
 use self::condense::{assemble_interface, condense_blocks};
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
+use self::refine::{Parts, RootParts, refine};
 use self::report::{Narrator, Totals};
+use self::settle::settle_free_motions;
 use self::write::{stresses, write_solution};
-use crate::certificate::{BlockCheck, certificate};
 use crate::comm::{Comm, Message, phase};
 use crate::contact::s_con::SCon;
 use crate::error::Failure;
-use crate::fem::balance::Balance;
 use crate::output::progress::Progress;
 use crate::output::report::PhaseSeconds;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
+use crate::rigid::survey::survey;
 use crate::settings::Settings;
 use crate::sweep::{SweepRecord, SweepStatus, Sweeps};
 
@@ -57,12 +60,19 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
 
     // Every rank reads its own subdomains and pairs.
     phase("reading");
+    comm.agree(settings.check_paths())?;
     let file = comm.agree(ProblemFile::open(&settings.problem).map_err(Failure::from))?;
     let catalog = file.catalog();
     let plan = Plan::new(catalog, comm.size());
     let blocks = comm.agree(read_blocks(comm, &file, &plan))?;
     narrator.problem(catalog, &plan);
+
+    // Rigid motions that neither supports nor contact hold.
+    phase("looking for free rigid motions");
+    let survey = survey(comm, &blocks, catalog, &plan)?;
+    let pins = &survey.motions.pins;
     if settings.check {
+        narrator.check(&survey);
         return Ok(Ending::Converged);
     }
     let mut output = comm.agree(create_output(comm, settings, catalog, &plan, &blocks))?;
@@ -71,7 +81,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12).
     phase("factorizing");
     let progress = Progress::factorization(blocks.len(), settings.quiet || !comm.is_root());
-    let condensed = condense_blocks(&blocks, catalog, &plan, &progress, par);
+    let condensed = condense_blocks(&blocks, catalog, &plan, pins, &progress, par);
     progress.finish();
     let mut condensed = comm.agree(condensed)?;
     [seconds.assemble, seconds.factorize] = condensed.seconds;
@@ -106,20 +116,23 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     phase("recovering");
     let lap = Instant::now();
     let root = outcome.as_ref().zip(interface.as_ref());
-    let trace_of_root = root.map(|((o, _), (numbering, _))| (&o.u[..], &numbering.traces[..]));
-    let solutions = recover(comm, &condensed, &plan, trace_of_root);
-    let mut checks = Vec::new();
-    comm.gather(
-        &plan.owners(),
-        |b| {
-            let (owned, solution) = (&blocks[&b], &solutions[&b]);
-            let (u, forces) = (&solution.u, &solution.forces);
-            let conditions = &owned.conditions;
-            let balance = Balance::new(&owned.block, conditions, &catalog.materials, u, forces);
-            BlockCheck::new(&owned.block, conditions, &balance, u, forces).pack()
-        },
-        |_, message| checks.push(BlockCheck::unpack(message)),
-    );
+    let trace_of_root = root.map(|(o, (numbering, _))| (&o.u[..], &numbering.traces[..]));
+    let mut solutions = recover(comm, &condensed, &plan, trace_of_root);
+    settle_free_motions(comm, &survey, &blocks, &mut solutions, catalog, &plan);
+    let parts = Parts {
+        comm,
+        blocks: &blocks,
+        condensed: &condensed,
+        catalog,
+        plan: &plan,
+    };
+    let root_parts = root.map(|(outcome, (numbering, interface))| RootParts {
+        numbering,
+        interface,
+        state: &outcome.state,
+        converged: outcome.status == SweepStatus::Converged,
+    });
+    let certificate = refine(parts, root_parts, &mut solutions);
     let stress = stresses(comm, &blocks, &solutions, catalog, &plan);
     seconds.recover = lap.elapsed().as_secs_f64();
 
@@ -133,16 +146,16 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
 
     let ranks = report::collect(comm, &seconds, &plan);
     let finished = match (root, output) {
-        (Some(((outcome, totals), (numbering, interface))), Some(output)) => {
+        (Some((outcome, (_, interface))), Some(output)) => {
             let totals = Totals {
                 catalog,
                 plan: &plan,
                 outcome,
-                con: *totals,
+                con: outcome.totals,
                 interface_dofs: interface.len,
-                certificate: certificate(&checks, &numbering.traces, interface.len),
+                certificate,
                 ranks,
-                warnings: Vec::new(),
+                warnings: survey.motions.warnings.clone(),
             };
             narrator.finish(&totals, output)
         }
@@ -151,7 +164,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     comm.agree(finished)?;
     let mut converged = Message {
         integers: vec![i64::from(
-            outcome.is_none_or(|(o, _)| o.status == SweepStatus::Converged),
+            outcome.is_none_or(|o| o.status == SweepStatus::Converged),
         )],
         reals: Vec::new(),
     };

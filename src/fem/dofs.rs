@@ -184,7 +184,7 @@ impl Dofs {
         &self.terms[self.offsets[row] as usize..self.offsets[row + 1] as usize]
     }
 
-    /// The constant part of a component of a node's displacement [m].
+    /// The constant part of a component of a node's displacement (m).
     pub fn constant(&self, node: u32, component: usize) -> f64 {
         self.constants[node as usize * self.dim + component]
     }
@@ -198,13 +198,18 @@ impl Dofs {
     /// u = T x + c, node by node.
     pub fn displacement(&self, x: &[f64]) -> Vec<f64> {
         let mut u = self.constants.clone();
+        self.add_change(x, &mut u);
+        u
+    }
+
+    /// u ← u + T x: what a change of the unknowns adds to the displacement.
+    pub fn add_change(&self, x: &[f64], u: &mut [f64]) {
         for (row, u) in u.iter_mut().enumerate() {
             let range = self.offsets[row] as usize..self.offsets[row + 1] as usize;
             for &(dof, c) in &self.terms[range] {
                 *u += c * x[dof as usize];
             }
         }
-        u
     }
 
     /// y ← y + Tᵀ f for nodal forces f, node by node.

@@ -12,11 +12,13 @@ use crate::contact::approach::ApproachOf;
 use crate::contact::pair::{ContactPair, Limits};
 use crate::error::Failure;
 use crate::fem::assembly::assemble;
+use crate::fem::block::Block;
 use crate::fem::dofs::{DofError, Dofs, TraceDof};
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::{Contribution, Interface};
 use crate::output::progress::Progress;
 use crate::plan::Plan;
+use crate::rigid::analysis::Pin;
 use crate::schur::factor::FactorError;
 use crate::schur::local::{CondensedLoad, LinearSubdomain, LocalSchur};
 
@@ -29,7 +31,7 @@ pub struct CondensedBlocks {
     pub linear: BTreeMap<usize, LinearSubdomain>,
     /// ϑ: the pairs in contact, by their place among all pairs.
     pub pairs: BTreeMap<usize, ContactPair>,
-    /// Time for assembling and for factorizing [s].
+    /// Time for assembling and for factorizing (s).
     pub seconds: [f64; 2],
 }
 
@@ -41,6 +43,7 @@ pub fn condense_blocks(
     blocks: &BTreeMap<usize, OwnedBlock>,
     catalog: &Catalog,
     plan: &Plan,
+    pins: &[Pin],
     progress: &Progress,
     par: Par,
 ) -> Result<CondensedBlocks, Failure> {
@@ -52,8 +55,8 @@ pub fn condense_blocks(
         } = owned;
         let dofs =
             Dofs::new(block, conditions).map_err(|error| dof_failure(error, owned, catalog))?;
-        let system =
-            assemble(block, &dofs, &catalog.materials).ok_or_else(|| size(plan, number))?;
+        let system = assemble(block, &dofs, &catalog.materials, &pins_of(block, pins))
+            .ok_or_else(|| size(plan, number))?;
         let assembled = Instant::now();
         let schur = LocalSchur::new(&system, dofs.interior, par).map_err(|error| match error {
             FactorError::Size => size(plan, number),
@@ -79,6 +82,17 @@ pub fn condense_blocks(
         progress.advance();
     }
     Ok(condensed)
+}
+
+/// The pins that lie in a block: node and component.
+fn pins_of(block: &Block, pins: &[Pin]) -> Vec<(u32, usize)> {
+    pins.iter()
+        .filter_map(|pin| {
+            let m = block.member(pin.subdomain as usize)?;
+            let node = block.node_of[m][pin.node as usize];
+            Some((node, pin.component as usize))
+        })
+        .collect()
 }
 
 /// The bounds on a block's approaches.

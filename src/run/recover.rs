@@ -9,9 +9,9 @@ use crate::plan::Plan;
 /// The solution on a block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockSolution {
-    /// Displacement, node by node [m].
+    /// Displacement, node by node (m).
     pub u: Vec<f64>,
-    /// Force of every condition [N/m].
+    /// Force of every condition (N/m).
     pub forces: Vec<f64>,
     /// Which conditions are closed.
     pub closed: Vec<bool>,
