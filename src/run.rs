@@ -153,6 +153,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
                 outcome,
                 con: outcome.totals,
                 interface_dofs: interface.len,
+                smallest_pivot: interface.smallest_pivot(),
                 certificate,
                 ranks,
                 warnings: survey.motions.warnings.clone(),

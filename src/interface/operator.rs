@@ -14,6 +14,8 @@ pub struct Contribution {
     pub s: Mat<f64>,
     /// Its condensed load.
     pub load: Vec<f64>,
+    /// The smallest pivot of its interior relative to its diagonal entry.
+    pub smallest_pivot: f64,
 }
 
 /// The interface problem S_0 U + S_CON(U) = F, (14), as the root holds it.
@@ -33,6 +35,7 @@ pub struct Interface {
     /// F of the pairs with every contact closed.
     f_bilateral: Vec<f64>,
     factor: BoundaryLastCholesky,
+    smallest_pivot: f64,
     par: Par,
 }
 
@@ -65,9 +68,11 @@ impl Interface {
         let mut f = vec![0.0; n];
         let mut f_bilateral = vec![0.0; n];
         let mut f_scale = vec![0.0; n];
+        let mut smallest_pivot = f64::INFINITY;
         for ((part, traces), &is_pair) in contributions.into_iter().zip(&numbering.traces).zip(pair)
         {
             sum.add(traces, |a, b| part.s[(a, b)]);
+            smallest_pivot = smallest_pivot.min(part.smallest_pivot);
             let load_of_kind = if is_pair { &mut f_bilateral } else { &mut f };
             for (&dof, load) in traces.iter().zip(&part.load) {
                 load_of_kind[dof as usize] += load;
@@ -94,14 +99,16 @@ impl Interface {
             f_scale,
             bilateral,
             f_bilateral,
+            smallest_pivot: smallest_pivot.min(factor.smallest_pivot()),
             factor,
             par,
         })
     }
 
-    /// The smallest pivot of the bilateral operator relative to its diagonal.
+    /// The smallest pivot of all blocks and of the bilateral operator, each relative to its
+    /// diagonal entry.
     pub fn smallest_pivot(&self) -> f64 {
-        self.factor.smallest_pivot()
+        self.smallest_pivot
     }
 
     /// U^0: the solution of the bilateral problem (16)-(17).
