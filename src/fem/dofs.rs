@@ -362,3 +362,6 @@ fn elimination_order(
     let order = minimum_degree(nodes.len(), &cliques).ok_or(DofError::Size)?;
     Ok(order.into_iter().map(|s| nodes[s as usize]).collect())
 }
+
+#[cfg(test)]
+mod tests;
