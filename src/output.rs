@@ -4,7 +4,6 @@
 //! into the result file subdomain by subdomain, [`report`] is the JSON of `--report` and of the
 //! file's attribute, [`terminal`] prints for people, [`progress`] draws the bar.
 
-mod destination;
 pub mod memory;
 pub mod progress;
 pub mod report;

@@ -11,11 +11,11 @@ mod stack;
 use std::path::{Path, PathBuf};
 
 use self::blocks::Patch;
+use crate::destination;
 use crate::error::{InputError, OutputError};
 use crate::mesh::{Mesh, gmsh};
 use crate::scene::Scene;
 use crate::scene::suggest::nearest;
-use crate::whole_file;
 
 /// The built-in scenes.
 pub const EXAMPLES: &[Example] = &[
@@ -90,7 +90,7 @@ impl Example {
         })?;
         gmsh::write(mesh, &directory.join(MESH))?;
         let scene = directory.join("scene.toml");
-        whole_file::replace_bytes(&scene, |out| out.write_all(self.scene.as_bytes()))?;
+        destination::write_bytes(&scene, |out| out.write_all(self.scene.as_bytes()))?;
         Ok(scene)
     }
 }

@@ -14,6 +14,7 @@
 //! the problem file, for its writer here and for its reader in `contact-dd-mpi`.
 
 pub mod decompose;
+pub mod destination;
 pub mod element;
 pub mod error;
 pub mod example;
@@ -22,4 +23,3 @@ pub mod mesh;
 pub mod model;
 pub mod problem;
 pub mod scene;
-mod whole_file;

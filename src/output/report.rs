@@ -3,10 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use contact_dd_partition::destination::{Destination, failure};
 use contact_dd_partition::error::OutputError;
 use serde::Serialize;
-
-use super::destination::{Destination, failure};
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

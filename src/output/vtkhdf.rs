@@ -9,6 +9,7 @@ mod grid;
 
 use std::path::Path;
 
+use contact_dd_partition::destination::Destination;
 use contact_dd_partition::error::OutputError;
 use contact_dd_partition::problem::{Catalog, ContactSummary, SubdomainSummary};
 use hdf5::File;
@@ -16,7 +17,6 @@ use hdf5::types::VarLenUnicode;
 
 use self::contact_table::ContactTables;
 use self::grid::Grid;
-use super::destination::Destination;
 use super::result::{ContactResult, ConvergenceRow, SubdomainResult};
 
 /// How much room a subdomain takes.

@@ -6,9 +6,9 @@ use hdf5::H5Type;
 use hdf5::types::{FixedAscii, VarLenUnicode};
 
 use super::{ContactRow, FORMAT, Problem, Subdomain, VERSION};
+use crate::destination::Destination;
 use crate::error::OutputError;
 use crate::model::PlaneState;
-use crate::whole_file;
 
 /// Version of VTKHDF's layout.
 const VTKHDF_VERSION: [i64; 2] = [2, 0];
@@ -24,7 +24,10 @@ impl Problem {
     /// The file can't be written; what was there before is untouched.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
         hdf5::silence_errors(true);
-        whole_file::replace(path, |file| self.write_all(file.path()))
+        let destination = Destination::new(path)?;
+        self.write_all(destination.temporary())
+            .map_err(|error| destination.failure(error))?;
+        destination.commit()
     }
 
     fn write_all(&self, path: &Path) -> hdf5::Result<()> {

@@ -5,10 +5,10 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::element_type;
+use crate::destination;
 use crate::element::ElementKind;
 use crate::error::OutputError;
 use crate::mesh::Mesh;
-use crate::whole_file;
 
 /// Writes a mesh as MSH 4.1, ASCII, with the tags that it has; facets and nodes of groups get the
 /// tags behind those of the cells.
@@ -19,7 +19,7 @@ use crate::whole_file;
 /// # Errors
 /// The file can't be written.
 pub fn write(mesh: &Mesh, path: &Path) -> Result<(), OutputError> {
-    whole_file::replace_bytes(path, |out| {
+    destination::write_bytes(path, |out| {
         let plan = Plan::new(mesh);
         writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat")?;
         plan.write_names(out)?;

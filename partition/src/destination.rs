@@ -1,18 +1,19 @@
 //! A file that appears under its name only when it is whole.
 
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use contact_dd_partition::error::OutputError;
 use tempfile::TempPath;
+
+use crate::error::OutputError;
 
 /// A name for a file and, in the same folder, the temporary file that will take it.
 ///
 /// Dropped without [`commit`](Self::commit), the temporary file goes and what stood under the name
 /// stays.
 #[derive(Debug)]
-pub(super) struct Destination {
+pub struct Destination {
     path: PathBuf,
     target: PathBuf,
     temporary: TempPath,
@@ -24,7 +25,7 @@ impl Destination {
     /// # Errors
     /// A folder that doesn't exist or can't be written, a name that something other than a
     /// writable file has.
-    pub(super) fn new(path: &Path) -> Result<Self, OutputError> {
+    pub fn new(path: &Path) -> Result<Self, OutputError> {
         // A link is followed: what it points to is replaced, not the link.
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         if let Ok(metadata) = fs::metadata(&target) {
@@ -66,12 +67,12 @@ impl Destination {
     }
 
     /// The file to write to.
-    pub(super) fn temporary(&self) -> &Path {
+    pub fn temporary(&self) -> &Path {
         &self.temporary
     }
 
     /// An error that names the file.
-    pub(super) fn failure(&self, reason: impl ToString) -> OutputError {
+    pub fn failure(&self, reason: impl ToString) -> OutputError {
         failure(&self.path, reason)
     }
 
@@ -79,7 +80,7 @@ impl Destination {
     ///
     /// # Errors
     /// What the system said.
-    pub(super) fn commit(self) -> Result<(), OutputError> {
+    pub fn commit(self) -> Result<(), OutputError> {
         let sync = |file: &Path| File::open(file).and_then(|file| file.sync_all());
         sync(&self.temporary).map_err(|error| failure(&self.path, plain_words(&error)))?;
         self.temporary
@@ -91,8 +92,26 @@ impl Destination {
     }
 }
 
+/// Writes `path` as a stream of bytes; it gets its name when it is whole.
+///
+/// # Errors
+/// The file can't be written.
+pub fn write_bytes(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    let destination = Destination::new(path)?;
+    let written = File::create(destination.temporary()).and_then(|file| {
+        let mut buffered = BufWriter::new(file);
+        write(&mut buffered)?;
+        buffered.flush()
+    });
+    written.map_err(|error| destination.failure(plain_words(&error)))?;
+    destination.commit()
+}
+
 /// An error for `path`.
-pub(super) fn failure(path: &Path, reason: impl ToString) -> OutputError {
+pub fn failure(path: &Path, reason: impl ToString) -> OutputError {
     OutputError {
         path: path.to_path_buf(),
         reason: reason.to_string(),
@@ -161,5 +180,19 @@ mod tests {
         assert!(refused(&folder.path().join("no/result")).contains("there is no folder"));
         assert!(refused(Path::new("/dev/null")).contains("isn't a file"));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_failed_write_leaves_what_was_there_and_nothing_else() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("kept");
+        write_bytes(&path, |w| w.write_all(b"first")).unwrap();
+        let failed = write_bytes(&path, |w| {
+            w.write_all(b"half")?;
+            Err(io::Error::other("disk full"))
+        });
+        assert!(failed.unwrap_err().to_string().contains("disk full"));
+        assert_eq!(fs::read(&path).unwrap(), b"first");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
     }
 }
