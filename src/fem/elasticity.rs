@@ -184,11 +184,11 @@ mod tests {
     fn stiffness_is_symmetric_and_rigid_motions_cost_nothing() {
         let k = stiffness(ElementKind::Triangle3, &POINTS, &C);
         let rotation: Vec<f64> = POINTS.iter().flat_map(|x| [-x[1], x[0]]).collect();
-        for i in 0..6 {
-            let force: f64 = (0..6).map(|j| k[i][j] * rotation[j]).sum();
-            let push: f64 = (0..3).map(|j| k[i][2 * j]).sum();
+        for (i, row) in k.iter().enumerate().take(6) {
+            let force: f64 = row.iter().zip(&rotation).map(|(k, u)| k * u).sum();
+            let push: f64 = row.iter().step_by(2).sum();
             assert!(force.abs() < 1e-14 && push.abs() < 1e-14);
-            assert!((0..6).all(|j| k[i][j] == k[j][i]));
+            assert!(k.iter().zip(row).all(|(column, k)| column[i] == *k));
         }
     }
 
