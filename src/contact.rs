@@ -1,6 +1,6 @@
-//! Unilateral contact: gap variables, the pair's small problem, and S_kl.
+//! Unilateral contact: approaches, the pair's small problem, S_kl and S_CON.
 
 pub mod active_set;
-pub mod gap;
+pub mod approach;
 pub mod pair;
 pub mod s_con;

@@ -9,3 +9,4 @@ pub mod analysis;
 pub mod motion;
 mod nonnegative;
 pub mod projection;
+pub mod survey;

@@ -6,6 +6,7 @@ pub mod condense;
 pub mod read;
 pub mod recover;
 mod report;
+pub mod settle;
 pub mod write;
 
 use std::collections::BTreeMap;
@@ -19,6 +20,7 @@ use self::condense::{assemble_interface, condense_blocks};
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
 use self::report::{Narrator, Totals};
+use self::settle::settle_free_motions;
 use self::write::{stresses, write_solution};
 use crate::certificate::{BlockCheck, certificate};
 use crate::comm::{Comm, Message, phase};
@@ -29,6 +31,7 @@ use crate::output::progress::Progress;
 use crate::output::report::PhaseSeconds;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
+use crate::rigid::survey::survey;
 use crate::settings::Settings;
 use crate::sweep::{SweepRecord, SweepStatus, Sweeps};
 
@@ -57,12 +60,19 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
 
     // Every rank reads its own subdomains and pairs.
     phase("reading");
+    comm.agree(settings.check_paths())?;
     let file = comm.agree(ProblemFile::open(&settings.problem).map_err(Failure::from))?;
     let catalog = file.catalog();
     let plan = Plan::new(catalog, comm.size());
     let blocks = comm.agree(read_blocks(comm, &file, &plan))?;
     narrator.problem(catalog, &plan);
+
+    // Rigid motions that neither supports nor contact hold.
+    phase("looking for free rigid motions");
+    let survey = survey(comm, &blocks, catalog, &plan)?;
+    let pins = &survey.motions.pins;
     if settings.check {
+        narrator.check(&survey);
         return Ok(Ending::Converged);
     }
     let mut output = comm.agree(create_output(comm, settings, catalog, &plan, &blocks))?;
@@ -71,7 +81,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12).
     phase("factorizing");
     let progress = Progress::factorization(blocks.len(), settings.quiet || !comm.is_root());
-    let condensed = condense_blocks(&blocks, catalog, &plan, &progress, par);
+    let condensed = condense_blocks(&blocks, catalog, &plan, pins, &progress, par);
     progress.finish();
     let mut condensed = comm.agree(condensed)?;
     [seconds.assemble, seconds.factorize] = condensed.seconds;
@@ -107,7 +117,8 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let lap = Instant::now();
     let root = outcome.as_ref().zip(interface.as_ref());
     let trace_of_root = root.map(|((o, _), (numbering, _))| (&o.u[..], &numbering.traces[..]));
-    let solutions = recover(comm, &condensed, &plan, trace_of_root);
+    let mut solutions = recover(comm, &condensed, &plan, trace_of_root);
+    settle_free_motions(comm, &survey, &blocks, &mut solutions, catalog, &plan);
     let mut checks = Vec::new();
     comm.gather(
         &plan.owners(),
@@ -142,7 +153,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
                 interface_dofs: interface.len,
                 certificate: certificate(&checks, &numbering.traces, interface.len),
                 ranks,
-                warnings: Vec::new(),
+                warnings: survey.motions.warnings.clone(),
             };
             narrator.finish(&totals, output)
         }

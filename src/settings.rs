@@ -1,9 +1,10 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Parser;
 
+use crate::error::Failure;
 use crate::output::default_result_path;
 use crate::sweep::{Method, SweepSettings};
 
@@ -58,6 +59,37 @@ impl Settings {
             .unwrap_or_else(|| default_result_path(&self.problem))
     }
 
+    /// Checks that the results don't replace the problem.
+    ///
+    /// # Errors
+    /// One of the outputs is the problem file or the other output.
+    pub fn check_paths(&self) -> Result<(), Failure> {
+        let result = self.result_path();
+        let outputs = [
+            ("--output", Some(&result)),
+            ("--report", self.report.as_ref()),
+        ];
+        for (option, path) in outputs {
+            if path.is_some_and(|path| same_file(path, &self.problem)) {
+                return Err(Failure::input(format!(
+                    "{option} {}: that is the problem file; expected another name",
+                    self.problem.display()
+                )));
+            }
+        }
+        if self
+            .report
+            .as_ref()
+            .is_some_and(|report| same_file(report, &result))
+        {
+            return Err(Failure::input(format!(
+                "--report {}: that is the result file; expected another name",
+                result.display()
+            )));
+        }
+        Ok(())
+    }
+
     /// What the sweeps need to know.
     pub fn sweeps(&self) -> SweepSettings {
         SweepSettings {
@@ -83,6 +115,11 @@ impl Settings {
         list.push(("result", self.result_path().display().to_string()));
         list
     }
+}
+
+/// Whether two paths lead to one place.
+fn same_file(a: &Path, b: &Path) -> bool {
+    a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -10,11 +10,13 @@ pub mod picard;
 
 use std::time::Instant;
 
-use crate::contact::s_con::{ConState, ConTotals, SCon};
+use crate::contact::s_con::{ConState, ConTotals, Openings, SCon};
 use crate::interface::operator::Interface;
 
 /// Residual that is round-off and nothing else.
-const ROUND_OFF: f64 = 1e-14;
+const ROUND_OFF: f64 = 1e-15;
+/// Most refinements after the sweeps.
+const MAX_REFINEMENTS: usize = 3;
 
 /// How U is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -62,7 +64,7 @@ pub struct SweepRecord {
     pub active: usize,
     /// Conditions that opened or closed in it.
     pub changed: usize,
-    /// Since the sweeps began [s].
+    /// Since the sweeps began (s).
     pub seconds: f64,
 }
 
@@ -86,6 +88,8 @@ pub struct SweepOutcome {
     pub records: Vec<SweepRecord>,
     /// What a user should know.
     pub notes: Vec<String>,
+    /// The residual that is left in the end.
+    pub residual: f64,
 }
 
 /// The state of the sweeps on the root.
@@ -104,6 +108,8 @@ pub struct Sweeps<'a, 'c> {
 #[derive(Clone, Debug)]
 struct Residual {
     r: Vec<f64>,
+    /// Largest sum of the absolute terms of an entry of r.
+    scale: f64,
     relative: f64,
     totals: ConTotals,
 }
@@ -128,34 +134,60 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             observer,
         };
         let mut u = interface.bilateral_start();
-        let residual = sweeps.residual(&u);
+        let residual = sweeps.residual(&u, Openings::Changed);
         sweeps.record(&residual);
         let status = match settings.method {
             Method::Newton => sweeps.newton(&mut u, residual),
             Method::Anderson => sweeps.anderson(&mut u, residual),
             Method::Picard => sweeps.picard(&mut u, residual),
         };
-        // The pairs keep the gaps and forces of their last evaluation: it has to be this U.
-        let totals = sweeps.residual(&u).totals;
+        if status == SweepStatus::Converged {
+            sweeps.refine(&mut u);
+        }
+        // The pairs keep the approaches and forces of their last evaluation: it has to be S_CON(U).
+        let last = sweeps.residual(&u, Openings::Changed);
         let outcome = SweepOutcome {
             u,
             status,
             records: sweeps.records,
             notes: sweeps.notes,
+            residual: last.relative,
         };
-        (outcome, totals)
+        (outcome, last.totals)
     }
 
-    fn residual(&mut self, u: &[f64]) -> Residual {
-        let derivative = self.settings.method != Method::Anderson;
+    /// Iterative refinement with the factors at hand: the tolerance of the sweeps isn't what limits
+    /// the solution.
+    fn refine(&mut self, u: &mut [f64]) {
+        let mut residual = self.residual(u, Openings::All);
+        for _ in 0..MAX_REFINEMENTS {
+            if residual.relative <= ROUND_OFF || residual.totals.changed > 0 {
+                return;
+            }
+            let Some(step) = self.newton_step(&residual, 0.0) else {
+                return;
+            };
+            let mut refined = u.to_vec();
+            axpy(1.0, &step, &mut refined);
+            let after = self.residual(&refined, Openings::Changed);
+            if after.relative > 0.5 * residual.relative || after.totals.changed > 0 {
+                return;
+            }
+            u.copy_from_slice(&refined);
+            residual = after;
+        }
+    }
+
+    fn residual(&mut self, u: &[f64], openings: Openings) -> Residual {
         let totals = self
             .s_con
-            .evaluate(self.interface, u, derivative, &mut self.state);
+            .evaluate(self.interface, u, openings, &mut self.state);
         let (mut r, mut scale) = self.interface.linear_residual(u);
         self.state.subtract(self.interface, &mut r, &mut scale);
         let (r_max, scale_max) = (maximum(&r), maximum(&scale));
         Residual {
             r,
+            scale: scale_max,
             relative: if r_max == 0.0 { 0.0 } else { r_max / scale_max },
             totals,
         }
@@ -173,12 +205,11 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         (self.observer)(&record);
     }
 
-    /// Whether the residual is small and the active set settled. A residual at round-off needs no
-    /// settled set: what still flips carries neither gap nor force.
+    /// Whether the residual is small and the active set settled.
     fn is_converged(&self, residual: &Residual) -> bool {
         residual.totals.failed_pairs == 0
             && residual.relative <= self.settings.tolerance
-            && (residual.totals.changed == 0 || residual.relative <= ROUND_OFF)
+            && residual.totals.changed == 0
     }
 
     fn sweeps_done(&self) -> usize {

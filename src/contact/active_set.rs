@@ -1,7 +1,7 @@
-//! The small problem of a pair: min ½ sᵀ H s − cᵀ s subject to s ≥ 0.
+//! The small problem of a pair: min ½ tᵀ H t − cᵀ t subject to t ≤ g.
 //!
-//! H is the pair's Schur complement on its gaps, c the load that opens them; λ = H s − c ≥ 0 are
-//! the contact forces. Solved by a warm-started primal-dual active set with Júdice and Pires'
+//! t are the approaches of the pair's conditions, H its Schur complement on them, c the load that
+//! drives them; λ = c − H t ≥ 0 are the contact forces. Solved by a warm-started primal-dual active set with Júdice and Pires'
 //! rule: flip every condition whose sign is wrong as long as their number falls, else one at a
 //! time, which ends for every positive definite H. Where H is singular along a motion that opens
 //! gaps without resistance, proximal steps make it definite and converge to a solution of the
@@ -12,7 +12,7 @@ use faer::{Conj, Mat, MatRef, Side};
 
 /// How far below zero, relative to its scale, a force must be to open a contact.
 const FORCE_TOLERANCE: f64 = 1e-12;
-/// How far below zero, relative to its scale, a gap must be to close a contact.
+/// How far below zero, relative to the displacements, a gap must be to close a contact.
 const GAP_TOLERANCE: f64 = 1e-14;
 /// Attempts at flipping all wrong signs without progress before single ones are flipped.
 const PATIENCE: usize = 10;
@@ -30,15 +30,17 @@ pub struct GapProblem<'a> {
     pub c: &'a [f64],
     /// Scale of the terms that c is a difference of, for each condition.
     pub c_scale: &'a [f64],
-    /// Scale of the displacements that the gaps are differences of.
-    pub gap_scale: f64,
+    /// g, the bounds.
+    pub bounds: &'a [f64],
+    /// Scale of the displacements that the approaches are differences of.
+    pub scale: f64,
 }
 
 /// Its solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GapSolution {
-    /// s ≥ 0; exactly 0 where closed.
-    pub gaps: Vec<f64>,
+    /// t ≤ g; exactly g where closed.
+    pub approaches: Vec<f64>,
     /// λ ≥ 0; exactly 0 where open.
     pub forces: Vec<f64>,
     /// Linear systems solved.
@@ -51,7 +53,7 @@ impl GapSolution {
     /// Every one of `m` conditions closed, before anything is known of its force.
     pub fn bilateral(m: usize) -> Self {
         Self {
-            gaps: vec![0.0; m],
+            approaches: vec![0.0; m],
             forces: vec![0.0; m],
             steps: 0,
             converged: true,
@@ -78,20 +80,16 @@ impl GapProblem<'_> {
                 open.copy_from_slice(&trial);
                 return exact;
             }
-            let largest = solution.gaps.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
-            let moved = solution
-                .gaps
-                .iter()
-                .zip(&center)
-                .fold(0.0, |m: f64, (s, c)| m.max((s - c).abs()));
-            if moved <= 1e-13 * largest.max(self.gap_scale) {
+            let largest = maximum(solution.approaches.iter().copied());
+            let moved = maximum(solution.approaches.iter().zip(&center).map(|(t, c)| t - c));
+            if moved <= 1e-13 * largest.max(self.scale) {
                 return solution;
             }
-            center = solution.gaps;
+            center = solution.approaches;
         }
         let forces = vec![0.0; self.c.len()];
         GapSolution {
-            gaps: center,
+            approaches: center,
             forces,
             steps,
             converged: false,
@@ -112,11 +110,15 @@ impl GapProblem<'_> {
         let limit = *steps + 10 * m + 50;
         loop {
             *steps += 1;
-            let (gaps, forces) = self.linear(open, center)?;
-            let wrong = self.wrong_signs(open, &gaps, &forces);
+            let (approaches, forces) = self.linear(open, center)?;
+            let wrong = self.wrong_signs(open, &approaches, &forces);
             if wrong.is_empty() || *steps >= limit {
                 return Some(GapSolution {
-                    gaps: gaps.iter().map(|s| s.max(0.0)).collect(),
+                    approaches: approaches
+                        .iter()
+                        .zip(self.bounds)
+                        .map(|(t, g)| t.min(*g))
+                        .collect(),
                     forces: forces.iter().map(|f| f.max(0.0)).collect(),
                     steps: *steps,
                     converged: wrong.is_empty(),
@@ -139,47 +141,64 @@ impl GapProblem<'_> {
         }
     }
 
-    /// s and λ for a given set of open conditions.
+    /// t and λ for a given set of open conditions.
     fn linear(&self, open: &[bool], center: Option<&[f64]>) -> Option<(Vec<f64>, Vec<f64>)> {
         let m = self.c.len();
         let spring = |j: usize| center.map_or(0.0, |_| PROXIMITY * self.h[(j, j)]);
-        let load = |j: usize| self.c[j] + center.map_or(0.0, |s| spring(j) * s[j]);
         let factor = OpenFactor::new(self.h, open, spring)?;
-        let mut gaps = vec![0.0; m];
-        let s = factor.solve(&load);
-        for (&j, s) in factor.open.iter().zip(s) {
-            gaps[j] = s;
+        let mut t: Vec<f64> = (0..m)
+            .map(|j| if open[j] { 0.0 } else { self.bounds[j] })
+            .collect();
+        // What the closed conditions and the spring leave of the load.
+        let mut load = self.c.to_vec();
+        for j in (0..m).filter(|&j| t[j] != 0.0) {
+            for (i, load) in load.iter_mut().enumerate() {
+                *load -= self.h[(i, j)] * t[j];
+            }
+        }
+        if let Some(center) = center {
+            for (j, load) in load.iter_mut().enumerate() {
+                *load += spring(j) * (center[j] - t[j]);
+            }
+        }
+        let solved = factor.solve(|j| load[j]);
+        for (&j, solved) in factor.open.iter().zip(solved) {
+            t[j] = solved;
         }
         let forces = (0..m)
             .map(|i| {
                 if open[i] {
                     return 0.0;
                 }
-                let opening: f64 = factor.open.iter().map(|&j| self.h[(i, j)] * gaps[j]).sum();
-                opening - load(i)
+                let held: f64 = factor.open.iter().map(|&j| self.h[(i, j)] * t[j]).sum();
+                load[i] - held
             })
             .collect();
-        Some((gaps, forces))
+        Some((t, forces))
     }
 
     /// The conditions that are open with a negative gap or closed with a negative force, beyond
     /// round-off: within it a condition stays what it was.
-    fn wrong_signs(&self, open: &[bool], gaps: &[f64], forces: &[f64]) -> Vec<usize> {
-        let largest = gaps.iter().fold(self.gap_scale, |m, s| m.max(s.abs()));
+    fn wrong_signs(&self, open: &[bool], approaches: &[f64], forces: &[f64]) -> Vec<usize> {
+        let largest = maximum(approaches.iter().copied()).max(self.scale);
         (0..open.len())
             .filter(|&i| {
                 if open[i] {
-                    gaps[i] < -GAP_TOLERANCE * largest
+                    approaches[i] > self.bounds[i] + GAP_TOLERANCE * largest
                 } else {
-                    let opening: f64 = (0..open.len())
-                        .filter(|&j| open[j])
-                        .map(|j| (self.h[(i, j)] * gaps[j]).abs())
+                    let terms: f64 = (0..open.len())
+                        .map(|j| (self.h[(i, j)] * approaches[j]).abs())
                         .sum();
-                    forces[i] < -FORCE_TOLERANCE * (self.c_scale[i] + opening)
+                    forces[i] < -FORCE_TOLERANCE * (self.c_scale[i] + terms)
                 }
             })
             .collect()
     }
+}
+
+/// max |x|.
+fn maximum(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |m, x| m.max(x.abs()))
 }
 
 /// The Cholesky factor of H on the open conditions.
@@ -243,14 +262,15 @@ impl OpenFactor {
 mod tests {
     use super::*;
 
-    fn solve(h: &Mat<f64>, c: &[f64]) -> (GapSolution, Vec<bool>) {
+    fn solve(h: &Mat<f64>, c: &[f64], bounds: &[f64]) -> (GapSolution, Vec<bool>) {
         let mut open = vec![false; c.len()];
         let c_scale: Vec<f64> = c.iter().map(|c| c.abs()).collect();
         let problem = GapProblem {
             h: h.as_ref(),
             c,
             c_scale: &c_scale,
-            gap_scale: 0.0,
+            bounds,
+            scale: 0.0,
         };
         (problem.solve(&mut open), open)
     }
@@ -261,16 +281,14 @@ mod tests {
         2.0 * (x - x.floor()) - 1.0
     }
 
-    fn assert_optimal(h: &Mat<f64>, c: &[f64], solution: &GapSolution) {
-        let scale: f64 = c.iter().fold(1e-300, |m, c| m.max(c.abs()));
+    fn assert_optimal(h: &Mat<f64>, c: &[f64], bounds: &[f64], solution: &GapSolution) {
+        let t = &solution.approaches;
+        let scale: f64 = c.iter().chain(bounds).fold(1e-300, |m, c| m.max(c.abs()));
         for i in 0..c.len() {
-            let gradient: f64 = (0..c.len())
-                .map(|j| h[(i, j)] * solution.gaps[j])
-                .sum::<f64>()
-                - c[i];
-            assert!((gradient - solution.forces[i]).abs() < 1e-9 * scale);
-            assert!(solution.gaps[i] >= 0.0 && solution.forces[i] >= 0.0);
-            assert!(solution.gaps[i] == 0.0 || solution.forces[i] == 0.0);
+            let held: f64 = (0..c.len()).map(|j| h[(i, j)] * t[j]).sum();
+            assert!((c[i] - held - solution.forces[i]).abs() < 1e-9 * scale);
+            assert!(t[i] <= bounds[i] && solution.forces[i] >= 0.0);
+            assert!(t[i] == bounds[i] || solution.forces[i] == 0.0);
         }
     }
 
@@ -281,22 +299,22 @@ mod tests {
             let a = Mat::from_fn(m, m, |i, j| noise(seed * 1000 + i * 31 + j));
             let h = &a * a.transpose() + Mat::<f64>::identity(m, m) * faer::Scale(1e-3);
             let c: Vec<f64> = (0..m).map(|i| noise(seed * 77 + i + 5)).collect();
-            let (solution, _) = solve(&h, &c);
+            let bounds: Vec<f64> = (0..m).map(|i| noise(seed * 13 + i).max(-0.2)).collect();
+            let (solution, _) = solve(&h, &c, &bounds);
             assert!(solution.converged);
-            assert_optimal(&h, &c, &solution);
+            assert_optimal(&h, &c, &bounds, &solution);
         }
     }
 
     #[test]
     fn a_body_that_rests_on_three_points_needs_no_stiffness_of_its_own() {
-        // Rigid beam on three springs-free supports: H = 0 along lifting and rocking, the load
-        // presses on the middle.
+        // A beam on three rigid supports: H = 0 along lifting and rocking, the load presses it
+        // into its gaps.
         let bend = [1.0, -2.0, 1.0];
         let h = Mat::from_fn(3, 3, |i, j| bend[i] * bend[j]);
-        let c = [-0.2, -0.6, -0.2];
-        let (solution, open) = solve(&h, &c);
-        assert_optimal(&h, &c, &solution);
-        assert_eq!(open, [false; 3]);
+        let (c, bounds) = ([0.2, 0.6, 0.2], [0.1, 0.3, -0.2]);
+        let (solution, _) = solve(&h, &c, &bounds);
+        assert_optimal(&h, &c, &bounds, &solution);
     }
 
     #[test]
@@ -304,8 +322,8 @@ mod tests {
         // The load rocks a beam off its left support until nothing but its bending resists.
         let bend = [1.0, -2.0, 1.0];
         let h = Mat::from_fn(3, 3, |i, j| bend[i] * bend[j]);
-        let c = [0.1, -1.2, -0.1];
-        let (solution, _) = solve(&h, &c);
-        assert_optimal(&h, &c, &solution);
+        let (c, bounds) = ([-0.1, 1.2, 0.1], [0.0; 3]);
+        let (solution, _) = solve(&h, &c, &bounds);
+        assert_optimal(&h, &c, &bounds, &solution);
     }
 }

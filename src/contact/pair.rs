@@ -3,46 +3,90 @@
 use faer::{Mat, MatRef};
 
 use super::active_set::{GapProblem, GapSolution, OpenFactor};
+use super::approach::ApproachOf;
 use crate::schur::local::{CondensedLoad, LocalSchur};
 
-/// A group of subdomains in contact, condensed onto its gaps s and its traces U on Γ.
+/// A group of subdomains in contact, condensed onto its approaches t and its traces U on Γ.
 #[derive(Debug)]
 pub struct ContactPair {
     schur: LocalSchur,
-    gaps: usize,
     load: CondensedLoad,
-    gap_scale: f64,
+    limits: Limits,
     open: Vec<bool>,
     contact: GapSolution,
+}
+
+/// The bounds t ≤ g, and the conditions that they come from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Limits {
+    /// g of every approach: the tightest of its conditions (m).
+    bounds: Vec<f64>,
+    /// Which condition that is, and its factor.
+    tightest: Vec<(usize, f64)>,
+    /// Number of conditions.
+    conditions: usize,
+    /// The largest displacement prescribed in the pair, initial gaps among them (m).
+    scale: f64,
+}
+
+impl Limits {
+    /// The bounds on `approaches` unknowns that conditions with these `gaps` make; `scale` bounds
+    /// the displacements that are prescribed.
+    pub fn new(approaches: usize, of: &[ApproachOf], gaps: &[f64], scale: f64) -> Self {
+        let mut limits = Self {
+            bounds: vec![f64::INFINITY; approaches],
+            tightest: vec![(0, 1.0); approaches],
+            conditions: of.len(),
+            scale,
+        };
+        for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
+            if let ApproachOf::Unknown {
+                number,
+                factor,
+                constant,
+            } = *of
+            {
+                let bound = (gap - constant) / factor;
+                if bound < limits.bounds[number] {
+                    limits.bounds[number] = bound;
+                    limits.tightest[number] = (j, factor);
+                }
+            }
+        }
+        limits
+    }
+
+    fn len(&self) -> usize {
+        self.bounds.len()
+    }
 }
 
 /// One evaluation of S_kl.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairResponse {
-    /// S_kl(U): the forces that hold the traces, less the pair's load [N/m].
+    /// S_kl(U): the forces that hold the traces, less the pair's load (N/m).
     pub reaction: Vec<f64>,
-    /// Scale of the terms that each reaction is a difference of.
+    /// Scale of the terms that each reaction is a sum of.
     pub scale: Vec<f64>,
-    /// Gaps and contact forces.
-    pub contact: GapSolution,
     /// Closed conditions.
     pub active: usize,
     /// Conditions that opened or closed since the last evaluation.
     pub changed: usize,
+    /// Linear systems solved.
+    pub steps: usize,
+    /// Whether the small problem converged.
+    pub converged: bool,
 }
 
 impl ContactPair {
-    /// A pair with its first `gaps` boundary unknowns in contact, bilateral at first.
-    ///
-    /// `gap_scale` bounds the displacements that are prescribed in it, initial gaps among them.
-    pub fn new(schur: LocalSchur, gaps: usize, load: CondensedLoad, gap_scale: f64) -> Self {
+    /// A pair whose first boundary unknowns are the approaches within `limits`, bilateral at first.
+    pub fn new(schur: LocalSchur, load: CondensedLoad, limits: Limits) -> Self {
         Self {
             schur,
-            gaps,
             load,
-            gap_scale,
-            open: vec![false; gaps],
-            contact: GapSolution::bilateral(gaps),
+            open: vec![false; limits.len()],
+            contact: GapSolution::bilateral(limits.len()),
+            limits,
         }
     }
 
@@ -56,99 +100,105 @@ impl ContactPair {
         &self.load
     }
 
-    /// Which conditions were open in the last evaluation.
-    pub fn open(&self) -> &[bool] {
-        &self.open
+    /// Approaches of the last evaluation (m).
+    pub fn approaches(&self) -> &[f64] {
+        &self.contact.approaches
     }
 
-    /// Gaps and forces of the last evaluation.
-    pub fn contact(&self) -> &GapSolution {
-        &self.contact
+    /// Force of every condition in the last evaluation, and whether it was closed.
+    pub fn conditions(&self) -> (Vec<f64>, Vec<bool>) {
+        let mut forces = vec![0.0; self.limits.conditions];
+        let mut closed = vec![false; self.limits.conditions];
+        for (t, &(condition, factor)) in self.limits.tightest.iter().enumerate() {
+            forces[condition] = self.contact.forces[t] / factor;
+            closed[condition] = !self.open[t];
+        }
+        (forces, closed)
     }
 
     fn traces(&self) -> usize {
-        self.schur.boundary() - self.gaps
+        self.schur.boundary() - self.limits.len()
     }
 
-    fn s_gap_trace(&self) -> MatRef<'_, f64> {
-        self.schur
-            .s
-            .as_ref()
-            .submatrix(0, self.gaps, self.gaps, self.traces())
+    /// H, on the approaches.
+    fn s_tt(&self) -> MatRef<'_, f64> {
+        let m = self.limits.len();
+        self.schur.s.as_ref().submatrix(0, 0, m, m)
+    }
+
+    /// Approaches against traces.
+    fn s_t_gamma(&self) -> MatRef<'_, f64> {
+        let m = self.limits.len();
+        self.schur.s.as_ref().submatrix(0, m, m, self.traces())
     }
 
     /// S_ΓΓ, the derivative with every contact closed (16).
     pub fn bilateral(&self) -> MatRef<'_, f64> {
-        self.schur
-            .s
-            .as_ref()
-            .submatrix(self.gaps, self.gaps, self.traces(), self.traces())
+        let (m, n) = (self.limits.len(), self.traces());
+        self.schur.s.as_ref().submatrix(m, m, n, n)
     }
 
-    /// Load on the traces with every contact closed.
+    /// Load on the traces with every approach zero.
     pub fn bilateral_load(&self) -> &[f64] {
-        &self.load.boundary()[self.gaps..]
+        &self.load.boundary()[self.limits.len()..]
     }
 
-    /// Evaluates S_kl(U) = S_ΓΓ U + S_Γs s(U) − f_Γ, where s(U) ≥ 0 minimizes the pair's energy.
+    /// Evaluates S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ, where t(U) ≤ g minimizes the pair's energy.
     pub fn evaluate(&mut self, u: &[f64]) -> PairResponse {
-        let f = self.load.boundary();
-        let s_st = self.s_gap_trace();
-        let mut c = f[..self.gaps].to_vec();
+        let m = self.limits.len();
+        let mut c = self.load.boundary()[..m].to_vec();
         let mut c_scale: Vec<f64> = c.iter().map(|f| f.abs()).collect();
+        let s_t_gamma = self.s_t_gamma();
         for (j, &u_j) in u.iter().enumerate() {
-            for i in 0..self.gaps {
-                let term = s_st[(i, j)] * u_j;
+            for i in 0..m {
+                let term = s_t_gamma[(i, j)] * u_j;
                 c[i] -= term;
                 c_scale[i] += term.abs();
             }
         }
-        let gap_scale = u.iter().fold(self.gap_scale, |m, u| m.max(u.abs()));
-        let problem = GapProblem {
-            h: self.schur.s.as_ref().submatrix(0, 0, self.gaps, self.gaps),
+        let mut open = self.open.clone();
+        let contact = GapProblem {
+            h: self.s_tt(),
             c: &c,
             c_scale: &c_scale,
-            gap_scale,
-        };
-        let before = self.open.clone();
-        let contact = problem.solve(&mut self.open);
-        self.contact.clone_from(&contact);
-
-        let n = self.traces();
-        let s_tt = self.bilateral();
-        let s_st = self.s_gap_trace();
-        let mut reaction: Vec<f64> = f[self.gaps..].iter().map(|f| -f).collect();
-        let mut scale: Vec<f64> = reaction.iter().map(|f| f.abs()).collect();
-        for (j, &u_j) in u.iter().enumerate() {
-            for i in 0..n {
-                let term = s_tt[(i, j)] * u_j;
-                reaction[i] += term;
-                scale[i] += term.abs();
-            }
+            bounds: &self.limits.bounds,
+            scale: u.iter().fold(self.limits.scale, |m, u| m.max(u.abs())),
         }
-        for i in 0..n {
-            for (j, &s) in contact.gaps.iter().enumerate() {
-                let term = s_st[(j, i)] * s;
-                reaction[i] += term;
-                scale[i] += term.abs();
-            }
-        }
+        .solve(&mut open);
+        let changed = self.open.iter().zip(&open).filter(|(a, b)| a != b).count();
+        let (steps, converged) = (contact.steps, contact.converged);
+        self.open = open;
+        self.contact = contact;
+        let (reaction, scale) = self.reaction(u);
         PairResponse {
             reaction,
             scale,
             active: self.open.iter().filter(|&&open| !open).count(),
-            changed: before
-                .iter()
-                .zip(&self.open)
-                .filter(|(a, b)| a != b)
-                .count(),
-            contact,
+            changed,
+            steps,
+            converged,
         }
+    }
+
+    /// S_ΓΓ U + S_Γt t − f_Γ and the scale of its terms.
+    fn reaction(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let mut reaction: Vec<f64> = self.bilateral_load().iter().map(|f| -f).collect();
+        let mut scale: Vec<f64> = reaction.iter().map(|f| f.abs()).collect();
+        let m = self.limits.len();
+        let unknowns = self.contact.approaches.iter().chain(u);
+        for (j, &x) in unknowns.enumerate() {
+            for i in 0..reaction.len() {
+                let term = self.schur.s[(m + i, j)] * x;
+                reaction[i] += term;
+                scale[i] += term.abs();
+            }
+        }
+        (reaction, scale)
     }
 
     /// W with S_kl'(U) = S_ΓΓ − Wᵀ W for the active set of the last evaluation, |open| × |Γ|.
     pub fn opening(&self) -> Option<Mat<f64>> {
-        let h = self.schur.s.as_ref().submatrix(0, 0, self.gaps, self.gaps);
-        OpenFactor::regular(h, &self.open).map(|factor| factor.half_solve(self.s_gap_trace()))
+        OpenFactor::regular(self.s_tt(), &self.open)
+            .map(|factor| factor.half_solve(self.s_t_gamma()))
     }
 }

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
-use super::active_set::GapSolution;
 use super::pair::{ContactPair, PairResponse};
 use crate::comm::{Comm, Message};
 use crate::interface::operator::{Interface, multiply_add};
@@ -39,6 +38,26 @@ pub struct ConTotals {
     pub failed_pairs: usize,
 }
 
+/// Which openings an evaluation brings to the root.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Openings {
+    /// None.
+    Keep,
+    /// Those of pairs whose active set changed.
+    Changed,
+    /// All, from pairs whose trace hasn't changed, too.
+    All,
+}
+
+impl Openings {
+    fn from_code(code: i64) -> Self {
+        [Self::Keep, Self::Changed, Self::All]
+            .into_iter()
+            .find(|openings| *openings as i64 == code)
+            .unwrap_or(Self::All)
+    }
+}
+
 const STOP: i64 = 0;
 const EVALUATE: i64 = 1;
 
@@ -68,13 +87,11 @@ impl<'a> SCon<'a> {
 
     /// Evaluates all pairs whose trace changed and leaves their answers in `state`. On the root;
     /// the other ranks [`serve`](Self::serve).
-    ///
-    /// `derivative` asks for the openings, too, of pairs whose active set changed.
     pub fn evaluate(
         &mut self,
         interface: &Interface,
         u: &[f64],
-        derivative: bool,
+        openings: Openings,
         state: &mut ConState,
     ) -> ConTotals {
         let n = self.len();
@@ -82,29 +99,30 @@ impl<'a> SCon<'a> {
         state.responses.resize(n, None);
         state.openings.resize(n, None);
         let traces: Vec<Vec<f64>> = (0..n).map(|p| interface.restrict(p, u)).collect();
+        let again = openings == Openings::All;
         let moved: Vec<bool> = (0..n)
-            .map(|p| state.traces[p].as_ref() != Some(&traces[p]))
+            .map(|p| again || state.traces[p].as_ref() != Some(&traces[p]))
             .collect();
         let mut totals = ConTotals::default();
         if moved.contains(&true) {
             let mut command = Message {
-                integers: vec![EVALUATE, i64::from(derivative)],
+                integers: vec![EVALUATE, openings as i64],
                 reals: Vec::new(),
             };
             command.integers.extend(moved.iter().map(|&m| i64::from(m)));
             self.comm.broadcast(&mut command);
-            self.exchange(&moved, derivative, Some((&traces, state)));
+            self.exchange(&moved, openings, Some((&traces, state)));
         }
         for (p, response) in state.responses.iter().enumerate() {
             let Some(response) = response else { continue };
             totals.active += response.active;
             if moved[p] {
                 totals.changed += response.changed;
-                totals.steps += response.contact.steps;
+                totals.steps += response.steps;
             } else {
                 totals.unchanged_pairs += 1;
             }
-            totals.failed_pairs += usize::from(!response.contact.converged);
+            totals.failed_pairs += usize::from(!response.converged);
         }
         state.traces = traces.into_iter().map(Some).collect();
         totals
@@ -120,13 +138,13 @@ impl<'a> SCon<'a> {
             if command.integer() == STOP {
                 return;
             }
-            let derivative = command.integer() != 0;
+            let openings = Openings::from_code(command.integer());
             let moved: Vec<bool> = command
                 .integers(self.len())
                 .iter()
                 .map(|&m| m != 0)
                 .collect();
-            self.exchange(&moved, derivative, None);
+            self.exchange(&moved, openings, None);
         }
     }
 
@@ -142,7 +160,7 @@ impl<'a> SCon<'a> {
     fn exchange(
         &mut self,
         moved: &[bool],
-        derivative: bool,
+        openings: Openings,
         root: Option<(&[Vec<f64>], &mut ConState)>,
     ) {
         let called: Vec<usize> = (0..self.len()).filter(|&p| moved[p]).collect();
@@ -164,7 +182,7 @@ impl<'a> SCon<'a> {
             .filter_map(|(p, u)| {
                 let pair = self.pairs.get_mut(&p)?;
                 let response = pair.evaluate(&u);
-                Some((p, pack(pair, &response, derivative)))
+                Some((p, pack(pair, &response, openings)))
             })
             .collect();
         self.comm.gather(
@@ -214,23 +232,24 @@ impl ConState {
     }
 }
 
-/// A response as a message, with the pair's opening if it is asked for and the active set changed.
-fn pack(pair: &ContactPair, response: &PairResponse, derivative: bool) -> Message {
+/// A response as a message, with the pair's opening if it is asked for.
+fn pack(pair: &ContactPair, response: &PairResponse, openings: Openings) -> Message {
     let mut message = Message::default();
     message.integers.extend([
         response.reaction.len() as i64,
-        response.contact.gaps.len() as i64,
         response.active as i64,
         response.changed as i64,
-        response.contact.steps as i64,
-        i64::from(response.contact.converged),
+        response.steps as i64,
+        i64::from(response.converged),
     ]);
     message.reals.extend(&response.reaction);
     message.reals.extend(&response.scale);
-    let opening = (derivative && response.changed > 0)
-        .then(|| pair.opening())
-        .flatten();
-    match opening {
+    let asked = match openings {
+        Openings::Keep => false,
+        Openings::Changed => response.changed > 0,
+        Openings::All => true,
+    };
+    match asked.then(|| pair.opening()).flatten() {
         Some(w) => {
             message
                 .integers
@@ -242,11 +261,10 @@ fn pack(pair: &ContactPair, response: &PairResponse, derivative: bool) -> Messag
     message
 }
 
-/// The root's copy of a response; gaps and forces stay with the owner.
+/// A response from a message; approaches and forces stay with the owner.
 fn unpack(message: Message) -> (PairResponse, Option<Mat<f64>>) {
     let mut reader = message.read();
     let traces = reader.count();
-    let _conditions = reader.count();
     let active = reader.count();
     let changed = reader.count();
     let steps = reader.count();
@@ -254,14 +272,10 @@ fn unpack(message: Message) -> (PairResponse, Option<Mat<f64>>) {
     let response = PairResponse {
         reaction: reader.reals(traces),
         scale: reader.reals(traces),
-        contact: GapSolution {
-            gaps: Vec::new(),
-            forces: Vec::new(),
-            steps,
-            converged,
-        },
         active,
         changed,
+        steps,
+        converged,
     };
     let rows = reader.integer();
     let opening = (rows >= 0).then(|| {

@@ -16,7 +16,7 @@ pub struct BlockSystem {
     pub load: Vec<f64>,
 }
 
-/// Nodal forces of a block, node by node [N per metre of thickness].
+/// Nodal forces of a block, node by node (N per metre of thickness).
 pub fn nodal_forces(block: &Block) -> Vec<f64> {
     let mut f = vec![0.0; block.nodes() * block.dim];
     for (member, node_of) in block.members.iter().zip(&block.node_of) {
@@ -30,10 +30,16 @@ pub fn nodal_forces(block: &Block) -> Vec<f64> {
     f
 }
 
-/// Assembles `block` by scattering every element into the pattern.
+/// Assembles `block` by scattering every element into the pattern; `pins` are components of nodes
+/// that a spring holds, because nothing else does and no load moves them.
 ///
 /// Returns `None` where the matrix has more than 2³² entries.
-pub fn assemble(block: &Block, dofs: &Dofs, materials: &[Material]) -> Option<BlockSystem> {
+pub fn assemble(
+    block: &Block,
+    dofs: &Dofs,
+    materials: &[Material],
+    pins: &[(u32, usize)],
+) -> Option<BlockSystem> {
     let cliques = dofs.cliques(block);
     let pattern = LowerPattern::new(dofs.len(), &cliques)?;
     let mut system = BlockSystem {
@@ -42,7 +48,27 @@ pub fn assemble(block: &Block, dofs: &Dofs, materials: &[Material]) -> Option<Bl
     };
     dofs.add_load(&nodal_forces(block), &mut system.load);
     scatter(block, dofs, materials, &cliques, &mut system);
+    for &(node, component) in pins {
+        pin(dofs, node, component, &mut system);
+    }
     Some(system)
+}
+
+/// Adds a spring as stiff as the node itself.
+fn pin(dofs: &Dofs, node: u32, component: usize, system: &mut BlockSystem) {
+    let terms = dofs.terms(node, component);
+    let diagonal = system.stiffness.diagonal();
+    let spring = terms
+        .iter()
+        .map(|&(dof, _)| diagonal[dof as usize])
+        .fold(0.0, f64::max);
+    let unknowns: Vec<u32> = terms.iter().map(|&(dof, _)| dof).collect();
+    system
+        .stiffness
+        .add(&unknowns, |a, b| spring * terms[a].1 * terms[b].1);
+    for &(dof, c) in terms {
+        system.load[dof as usize] -= spring * c * dofs.constant(node, component);
+    }
 }
 
 fn scatter(

@@ -7,7 +7,7 @@ use super::block::Block;
 use super::condition::BlockCondition;
 use super::elasticity::{MAX_NODES, stiffness};
 
-/// f − K u − Bᵀλ of a block and the scale of its terms, node by node [N/m].
+/// f − K u − Bᵀλ of a block and the scale of its terms, node by node (N/m).
 #[derive(Clone, Debug)]
 pub struct Balance {
     /// f − K u − Bᵀλ.

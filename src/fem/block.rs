@@ -13,7 +13,7 @@ pub struct Block {
     pub members: Vec<Subdomain>,
     /// Node of the block for every node of every member.
     pub node_of: Vec<Vec<u32>>,
-    /// Coordinates of the block's nodes [m].
+    /// Coordinates of the block's nodes (m).
     pub points: Vec<[f64; 3]>,
     /// The mesh file's tag of each node.
     pub tags: Vec<i64>,

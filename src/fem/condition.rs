@@ -9,7 +9,7 @@ use super::block::Block;
 pub struct BlockCondition {
     /// Nodes of the block and coefficients.
     pub entries: Vec<(u32, [f64; 3])>,
-    /// g [m].
+    /// g (m).
     pub gap: f64,
 }
 
@@ -30,7 +30,7 @@ impl BlockCondition {
         }
     }
 
-    /// The gap that displacements `u`, node by node, leave: g − B u [m].
+    /// The gap that displacements `u`, node by node, leave: g − B u (m).
     pub fn gap_left(&self, dim: usize, u: &[f64]) -> f64 {
         let approach: f64 = self
             .entries

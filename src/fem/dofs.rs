@@ -1,4 +1,4 @@
-//! The unknowns of a block: u = T x + c, with x ordered [I | gaps | Γ].
+//! The unknowns of a block: u = T x + c, with x ordered [I | approaches | Γ].
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use contact_dd_partition::model::Support;
 use super::block::Block;
 use super::condition::BlockCondition;
 use super::frame::{Frame, dot, support_frames};
-use crate::contact::gap::{Dependence, GapVariables, Variable};
+use crate::contact::approach::{ApproachOf, ApproachRow, Approaches, DependentCondition, Variable};
 use crate::schur::ordering::minimum_degree;
 use crate::schur::pattern::Cliques;
 
@@ -23,8 +23,8 @@ pub struct TraceDof {
 /// Why a block's unknowns can't be numbered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DofError {
-    /// A condition can't be met by an unknown of its own.
-    Condition(usize, Dependence),
+    /// A condition depends on several others.
+    Dependent(usize),
     /// Too many unknowns for 32-bit indices.
     Size,
 }
@@ -39,8 +39,10 @@ pub struct Dofs {
     first: Vec<u32>,
     /// Number of interior unknowns I.
     pub interior: usize,
-    /// Number of gaps; gap j is unknown `interior + j`.
-    pub gaps: usize,
+    /// Number of approaches; approach j is unknown `interior + j`.
+    pub approaches: usize,
+    /// Where the approach of each condition is found.
+    pub approach_of: Vec<ApproachOf>,
     /// Its unknowns on Γ; they come last, in this order.
     pub traces: Vec<TraceDof>,
 }
@@ -48,11 +50,11 @@ pub struct Dofs {
 const NOT_DIRECT: u32 = u32::MAX;
 
 impl Dofs {
-    /// Numbers the unknowns of `block`: its interior in a fill-reducing order, then a gap for each
-    /// of `conditions`, then the traces on Γ.
+    /// Numbers the unknowns of `block`: its interior in a fill-reducing order, then the
+    /// approach of each of `conditions`, then the traces on Γ.
     ///
     /// # Errors
-    /// A condition that depends on others or that is prescribed on both sides.
+    /// A condition that depends on several others.
     pub fn new(block: &Block, conditions: &[BlockCondition]) -> Result<Self, DofError> {
         let dim = block.dim;
         let frames = frames(block, conditions);
@@ -61,25 +63,26 @@ impl Dofs {
         for &(node, _) in &block.interface {
             on_interface[node as usize] = true;
         }
-        let gaps = {
+        let approaches = {
             let rows: Vec<_> = conditions
                 .iter()
                 .map(|c| in_frames(c, frame, dim))
                 .collect();
             let may_go = |v: u32| !on_interface[v as usize / dim];
-            GapVariables::new(&rows, may_go).map_err(|(j, why)| DofError::Condition(j, why))?
+            Approaches::new(&rows, may_go)
+                .map_err(|DependentCondition(j)| DofError::Dependent(j))?
         };
 
         let mut number = vec![u32::MAX; block.nodes() * dim];
         let is_interior = |node: u32, axis: usize| {
             !on_interface[node as usize]
                 && frame(node).prescribed[axis].is_none()
-                && !gaps
+                && !approaches
                     .replaced
                     .contains_key(&(node * dim as u32 + axis as u32))
         };
         let mut interior = 0u32;
-        for node in elimination_order(block, &gaps, is_interior)? {
+        for node in elimination_order(block, &approaches, is_interior)? {
             for axis in 0..dim {
                 if is_interior(node, axis) {
                     number[node as usize * dim + axis] = interior;
@@ -87,7 +90,7 @@ impl Dofs {
                 }
             }
         }
-        let mut next = interior + conditions.len() as u32;
+        let mut next = interior + approaches.len as u32;
         let mut traces = Vec::new();
         for &(node, id) in &block.interface {
             for axis in 0..dim {
@@ -108,17 +111,18 @@ impl Dofs {
             constants: Vec::with_capacity(number.len()),
             first: Vec::with_capacity(block.nodes()),
             interior: interior as usize,
-            gaps: conditions.len(),
+            approaches: approaches.len,
+            approach_of: approaches.of.clone(),
             traces,
         };
         for node in 0..block.nodes() as u32 {
-            dofs.push_node(node, frame(node), &number, &gaps);
+            dofs.push_node(node, frame(node), &number, &approaches);
         }
         Ok(dofs)
     }
 
     /// Appends the rows of T and c for `node`.
-    fn push_node(&mut self, node: u32, frame: &Frame, number: &[u32], gaps: &GapVariables) {
+    fn push_node(&mut self, node: u32, frame: &Frame, number: &[u32], approaches: &Approaches) {
         let dim = self.dim;
         let start = self.offsets.len() - 1;
         for component in 0..dim {
@@ -132,12 +136,12 @@ impl Dofs {
                 let raw = node * dim as u32 + axis as u32;
                 if let Some(value) = frame.prescribed[axis] {
                     constant += along * value;
-                } else if let Some(value) = gaps.replaced.get(&raw) {
+                } else if let Some(value) = approaches.replaced.get(&raw) {
                     constant += along * value.constant;
                     for &(variable, c) in &value.terms {
                         let dof = match variable {
                             Variable::Displacement(v) => number[v as usize],
-                            Variable::Gap(j) => self.interior as u32 + j,
+                            Variable::Approach(j) => self.interior as u32 + j,
                         };
                         *row.entry(dof).or_default() += along * c;
                     }
@@ -166,7 +170,7 @@ impl Dofs {
 
     /// Number of unknowns.
     pub fn len(&self) -> usize {
-        self.interior + self.gaps + self.traces.len()
+        self.interior + self.approaches + self.traces.len()
     }
 
     /// Whether there is no unknown.
@@ -180,7 +184,7 @@ impl Dofs {
         &self.terms[self.offsets[row] as usize..self.offsets[row + 1] as usize]
     }
 
-    /// The constant part of a component of a node's displacement [m].
+    /// The constant part of a component of a node's displacement (m).
     pub fn constant(&self, node: u32, component: usize) -> f64 {
         self.constants[node as usize * self.dim + component]
     }
@@ -286,15 +290,15 @@ fn in_frames<'a>(
     condition: &BlockCondition,
     frame: impl Fn(u32) -> &'a Frame,
     dim: usize,
-) -> (Vec<(u32, f64)>, f64) {
-    let mut gap = condition.gap;
+) -> ApproachRow {
+    let mut constant = 0.0;
     let mut row: BTreeMap<u32, f64> = BTreeMap::new();
     for (node, coefficient) in &condition.entries {
         let frame = frame(*node);
         for axis in 0..dim {
             let along = dot(coefficient, &frame.axes[axis]);
             match frame.prescribed[axis] {
-                Some(value) => gap -= along * value,
+                Some(value) => constant += along * value,
                 None => *row.entry(node * dim as u32 + axis as u32).or_default() += along,
             }
         }
@@ -305,17 +309,19 @@ fn in_frames<'a>(
         .iter()
         .map(|(_, c)| dot(c, c).sqrt())
         .fold(0.0, f64::max);
-    let row = row
-        .into_iter()
-        .filter(|(_, c)| c.abs() > 1e-14 * scale)
-        .collect();
-    (row, gap)
+    ApproachRow {
+        constant,
+        terms: row
+            .into_iter()
+            .filter(|(_, c)| c.abs() > 1e-14 * scale)
+            .collect(),
+    }
 }
 
 /// The order in which nodes with interior unknowns are eliminated.
 fn elimination_order(
     block: &Block,
-    gaps: &GapVariables,
+    approaches: &Approaches,
     is_interior: impl Fn(u32, usize) -> bool,
 ) -> Result<Vec<u32>, DofError> {
     let dim = block.dim;
@@ -328,7 +334,7 @@ fn elimination_order(
         }
     }
     let mut partners: Vec<Vec<u32>> = vec![Vec::new(); block.nodes()];
-    for (&raw, value) in &gaps.replaced {
+    for (&raw, value) in &approaches.replaced {
         for &(variable, _) in &value.terms {
             if let Variable::Displacement(v) = variable {
                 partners[raw as usize / dim].push(v / dim as u32);

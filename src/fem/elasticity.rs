@@ -1,4 +1,6 @@
-//! Linear elasticity of one element: strains, stresses, stiffness.
+//! Linear elasticity of one element in the plane: strains, stresses, stiffness.
+
+use std::sync::LazyLock;
 
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::model::{Material, PlaneState};
@@ -11,25 +13,65 @@ pub const MAX_DOFS: usize = 2 * MAX_NODES;
 /// Gradients of the shape functions at a point of an element, and the weight of that point.
 #[derive(Clone, Copy, Debug)]
 pub struct PointGradients {
-    /// ∂N_i/∂x_d [1/m].
+    /// ∂N_i/∂x_d (1/m).
     pub gradients: [[f64; 2]; MAX_NODES],
-    /// Quadrature weight times Jacobian [m²].
+    /// Quadrature weight times Jacobian (m²).
     pub weight: f64,
 }
 
+/// Gradients and weights at the quadrature points of a reference element's stiffness.
+struct StiffnessRule {
+    points: Vec<(Vec<[f64; 3]>, f64)>,
+}
+
+impl StiffnessRule {
+    /// A rule that is exact for integrands of `degree` in the reference coordinates.
+    fn new(kind: ElementKind, degree: usize) -> Self {
+        let rule = kind.quadrature(degree);
+        let gradients = rule.points.iter().map(|&xi| kind.gradients(xi));
+        Self {
+            points: gradients.zip(rule.weights).collect(),
+        }
+    }
+
+    fn of(kind: ElementKind) -> &'static Self {
+        static TRIANGLE3: LazyLock<StiffnessRule> =
+            LazyLock::new(|| StiffnessRule::new(ElementKind::Triangle3, 0));
+        static NONE: StiffnessRule = StiffnessRule { points: Vec::new() };
+        match kind {
+            ElementKind::Triangle3 => &TRIANGLE3,
+            // Points and lines are facets; as cells they have no stiffness.
+            ElementKind::Point1 | ElementKind::Line2 => &NONE,
+        }
+    }
+}
+
 /// The quadrature points of an element's stiffness.
-pub fn stiffness_points(kind: ElementKind, points: &[[f64; 3]]) -> Vec<PointGradients> {
-    debug_assert_eq!(kind, ElementKind::Triangle3);
-    let [a, b, c] = [points[0], points[1], points[2]];
-    let det = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-    let mut gradients = [[0.0; 2]; MAX_NODES];
-    gradients[0] = [(b[1] - c[1]) / det, (c[0] - b[0]) / det];
-    gradients[1] = [(c[1] - a[1]) / det, (a[0] - c[0]) / det];
-    gradients[2] = [(a[1] - b[1]) / det, (b[0] - a[0]) / det];
-    vec![PointGradients {
-        gradients,
-        weight: det / 2.0,
-    }]
+pub fn stiffness_points(
+    kind: ElementKind,
+    points: &[[f64; 3]],
+) -> impl Iterator<Item = PointGradients> {
+    let rule = &StiffnessRule::of(kind).points;
+    rule.iter().map(move |(reference, weight)| {
+        // J = ∂x/∂ξ
+        let mut j = [[0.0; 2]; 2];
+        for (x, g) in points.iter().zip(reference) {
+            for (row, x) in j.iter_mut().zip(x) {
+                row[0] += x * g[0];
+                row[1] += x * g[1];
+            }
+        }
+        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+        let mut gradients = [[0.0; 2]; MAX_NODES];
+        for (gradient, g) in gradients.iter_mut().zip(reference) {
+            gradient[0] = (j[1][1] * g[0] - j[1][0] * g[1]) / det;
+            gradient[1] = (j[0][0] * g[1] - j[0][1] * g[0]) / det;
+        }
+        PointGradients {
+            gradients,
+            weight: det * weight,
+        }
+    })
 }
 
 /// ε = (ε_xx, ε_yy, γ_xy) at a point for nodal displacements `u`.
@@ -43,7 +85,7 @@ pub fn strain(point: &PointGradients, u: &[f64]) -> [f64; 3] {
     strain
 }
 
-/// σ = (XX, YY, ZZ, XY, YZ, XZ) for a strain in the plane [Pa].
+/// σ = (XX, YY, ZZ, XY, YZ, XZ) for a strain in the plane (Pa).
 ///
 /// σ_zz follows from the material's row out of the plane; where that isn't known it is 0.
 pub fn stress(material: &Material, plane: PlaneState, strain: &[f64; 3]) -> [f64; 6] {
@@ -59,7 +101,7 @@ pub fn stress(material: &Material, plane: PlaneState, strain: &[f64; 3]) -> [f64
 /// An element's stiffness, row after row.
 pub type ElementMatrix = [[f64; MAX_DOFS]; MAX_DOFS];
 
-/// K_e = ∫ Bᵀ C B over an element of unit thickness [Pa], dofs node by node.
+/// K_e = ∫ Bᵀ C B over an element of unit thickness (Pa), dofs node by node.
 pub fn stiffness(kind: ElementKind, points: &[[f64; 3]], c: &[[f64; 3]; 3]) -> ElementMatrix {
     let mut k = [[0.0; MAX_DOFS]; MAX_DOFS];
     let n = kind.nodes();
@@ -84,8 +126,9 @@ pub fn stiffness(kind: ElementKind, points: &[[f64; 3]], c: &[[f64; 3]; 3]) -> E
     }
     // Symmetric to the last bit, so that assembling one triangle is assembling both.
     for i in 0..2 * n {
-        for j in 0..i {
-            k[j][i] = k[i][j];
+        let (above, below) = k.split_at_mut(i);
+        for (j, row) in above.iter_mut().enumerate() {
+            row[i] = below[0][j];
         }
     }
     k
@@ -100,9 +143,81 @@ pub fn principal_stresses(s: &[f64; 6]) -> [f64; 3] {
     values
 }
 
-/// von Mises' equivalent stress [Pa].
+/// von Mises' equivalent stress (Pa).
 pub fn von_mises(s: &[f64; 6]) -> f64 {
     let normal = (s[0] - s[1]).powi(2) + (s[1] - s[2]).powi(2) + (s[2] - s[0]).powi(2);
     let shear = s[3].powi(2) + s[4].powi(2) + s[5].powi(2);
     (0.5 * normal + 3.0 * shear).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const POINTS: [[f64; 3]; 3] = [[0.2, 0.1, 0.0], [1.3, 0.4, 0.0], [0.5, 1.7, 0.0]];
+    const C: [[f64; 3]; 3] = [[3.0, 1.0, 0.2], [1.0, 2.5, -0.1], [0.2, -0.1, 0.9]];
+
+    fn material() -> Material {
+        Material {
+            name: "m".into(),
+            stiffness: C,
+            out_of_plane: Some([0.3, 0.4, 0.5]),
+            poisson: None,
+        }
+    }
+
+    #[test]
+    fn a_linear_displacement_has_its_own_strain() {
+        let u: Vec<f64> = POINTS
+            .iter()
+            .flat_map(|x| [0.1 * x[0] + 0.2 * x[1], -0.3 * x[0] + 0.4 * x[1]])
+            .collect();
+        for point in stiffness_points(ElementKind::Triangle3, &POINTS) {
+            let e = strain(&point, &u);
+            for (e, exact) in e.iter().zip([0.1, 0.4, -0.1]) {
+                assert!((e - exact).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn stiffness_is_symmetric_and_rigid_motions_cost_nothing() {
+        let k = stiffness(ElementKind::Triangle3, &POINTS, &C);
+        let rotation: Vec<f64> = POINTS.iter().flat_map(|x| [-x[1], x[0]]).collect();
+        for i in 0..6 {
+            let force: f64 = (0..6).map(|j| k[i][j] * rotation[j]).sum();
+            let push: f64 = (0..3).map(|j| k[i][2 * j]).sum();
+            assert!(force.abs() < 1e-14 && push.abs() < 1e-14);
+            assert!((0..6).all(|j| k[i][j] == k[j][i]));
+        }
+    }
+
+    #[test]
+    fn the_energy_is_half_stress_times_strain_times_area() {
+        let u = [0.3, -0.1, 0.2, 0.5, -0.4, 0.1];
+        let k = stiffness(ElementKind::Triangle3, &POINTS, &C);
+        let energy: f64 = (0..6)
+            .flat_map(|i| (0..6).map(move |j| (i, j)))
+            .map(|(i, j)| u[i] * k[i][j] * u[j])
+            .sum();
+        let exact: f64 = stiffness_points(ElementKind::Triangle3, &POINTS)
+            .map(|point| {
+                let e = strain(&point, &u);
+                let s = stress(&material(), PlaneState::Strain, &e);
+                point.weight * (s[0] * e[0] + s[1] * e[1] + s[3] * e[2])
+            })
+            .sum();
+        assert!((energy - exact).abs() < 1e-13);
+    }
+
+    #[test]
+    fn principal_stresses_and_von_mises_of_known_states() {
+        let shear = [0.0, 0.0, 0.0, 2.0, 0.0, 0.0];
+        let exact = [2.0, 0.0, -2.0];
+        for (s, e) in principal_stresses(&shear).iter().zip(exact) {
+            assert!((s - e).abs() < 1e-15);
+        }
+        assert!((von_mises(&shear) - 2.0 * 3f64.sqrt()).abs() < 1e-15);
+        assert_eq!(von_mises(&[5.0, 5.0, 5.0, 0.0, 0.0, 0.0]), 0.0);
+    }
 }

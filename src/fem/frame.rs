@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::model::Support;
 
-/// An orthonormal frame of a node. Its displacement is u = Σ_k axes[k]·v_k.
+/// An orthonormal frame of a node. Its displacement is u = Σ v_k·axis_k.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Axes; the first `dim` count.

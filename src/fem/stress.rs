@@ -11,9 +11,9 @@ use super::elasticity::{MAX_NODES, stiffness_points, strain, stress};
 /// Area-weighted sum of the stresses around a node, and the area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StressSum {
-    /// ∫ σ [N], order XX YY ZZ XY YZ XZ.
+    /// ∫ σ (N), order XX YY ZZ XY YZ XZ.
     pub stress: [f64; 6],
-    /// Area [m²].
+    /// Area (m²).
     pub area: f64,
 }
 
@@ -26,7 +26,7 @@ impl StressSum {
         self.area += other.area;
     }
 
-    /// The mean stress [Pa].
+    /// The mean stress (Pa).
     pub fn mean(&self) -> [f64; 6] {
         self.stress.map(|s| s / self.area)
     }
@@ -35,7 +35,7 @@ impl StressSum {
 /// The stresses of a block.
 #[derive(Clone, Debug)]
 pub struct BlockStress {
-    /// Of every cell, member by member [Pa].
+    /// Of every cell, member by member (Pa).
     pub cells: Vec<[f64; 6]>,
     /// Around every node, by material.
     sums: BTreeMap<u32, Vec<StressSum>>,

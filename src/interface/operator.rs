@@ -163,9 +163,9 @@ impl Interface {
 
 /// y ← y + A x.
 pub fn multiply_add(a: MatRef<'_, f64>, x: &[f64], y: &mut [f64]) {
-    for (j, &x_j) in x.iter().enumerate() {
-        for (i, y_i) in y.iter_mut().enumerate() {
-            *y_i += a[(i, j)] * x_j;
+    for (column, x_j) in a.col_iter().zip(x) {
+        for (y_i, a_ij) in y.iter_mut().zip(column.iter()) {
+            *y_i += a_ij * x_j;
         }
     }
 }

@@ -3,9 +3,9 @@
 /// The frame in which the rigid motions of a body are written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyFrame {
-    /// Center of the body's bounding box [m].
+    /// Center of the body's bounding box (m).
     pub center: [f64; 3],
-    /// Half its diagonal [m].
+    /// Half its diagonal (m).
     pub size: f64,
 }
 

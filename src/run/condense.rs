@@ -8,15 +8,17 @@ use faer::{Mat, Par};
 
 use super::read::OwnedBlock;
 use crate::comm::{Comm, Message};
-use crate::contact::gap::Dependence;
-use crate::contact::pair::ContactPair;
+use crate::contact::approach::ApproachOf;
+use crate::contact::pair::{ContactPair, Limits};
 use crate::error::Failure;
 use crate::fem::assembly::assemble;
+use crate::fem::block::Block;
 use crate::fem::dofs::{DofError, Dofs, TraceDof};
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::{Contribution, Interface};
 use crate::output::progress::Progress;
 use crate::plan::Plan;
+use crate::rigid::analysis::Pin;
 use crate::schur::factor::FactorError;
 use crate::schur::local::{CondensedLoad, LinearSubdomain, LocalSchur};
 
@@ -29,7 +31,7 @@ pub struct CondensedBlocks {
     pub linear: BTreeMap<usize, LinearSubdomain>,
     /// ϑ: the pairs in contact, by their place among all pairs.
     pub pairs: BTreeMap<usize, ContactPair>,
-    /// Time for assembling and for factorizing [s].
+    /// Time for assembling and for factorizing (s).
     pub seconds: [f64; 2],
 }
 
@@ -41,6 +43,7 @@ pub fn condense_blocks(
     blocks: &BTreeMap<usize, OwnedBlock>,
     catalog: &Catalog,
     plan: &Plan,
+    pins: &[Pin],
     progress: &Progress,
     par: Par,
 ) -> Result<CondensedBlocks, Failure> {
@@ -52,8 +55,8 @@ pub fn condense_blocks(
         } = owned;
         let dofs =
             Dofs::new(block, conditions).map_err(|error| dof_failure(error, owned, catalog))?;
-        let system =
-            assemble(block, &dofs, &catalog.materials).ok_or_else(|| size(plan, number))?;
+        let system = assemble(block, &dofs, &catalog.materials, &pins_of(block, pins))
+            .ok_or_else(|| size(plan, number))?;
         let assembled = Instant::now();
         let schur = LocalSchur::new(&system, dofs.interior, par).map_err(|error| match error {
             FactorError::Size => size(plan, number),
@@ -62,9 +65,10 @@ pub fn condense_blocks(
         let load = schur.condense(system.load);
         match plan.pair_of(number) {
             Some(pair) => {
-                let gap_scale = gap_scale(owned);
-                let pair_of_block = ContactPair::new(schur, dofs.gaps, load, gap_scale);
-                condensed.pairs.insert(pair, pair_of_block);
+                let limits = limits(owned, &dofs, catalog)?;
+                condensed
+                    .pairs
+                    .insert(pair, ContactPair::new(schur, load, limits));
             }
             None => {
                 condensed
@@ -80,8 +84,45 @@ pub fn condense_blocks(
     Ok(condensed)
 }
 
-/// The largest displacement that is prescribed in a block, initial gaps among them [m].
-fn gap_scale(owned: &OwnedBlock) -> f64 {
+/// The pins that lie in a block: node and component.
+fn pins_of(block: &Block, pins: &[Pin]) -> Vec<(u32, usize)> {
+    pins.iter()
+        .filter_map(|pin| {
+            let m = block.member(pin.subdomain as usize)?;
+            let node = block.node_of[m][pin.node as usize];
+            Some((node, pin.component as usize))
+        })
+        .collect()
+}
+
+/// The bounds on a block's approaches.
+fn limits(owned: &OwnedBlock, dofs: &Dofs, catalog: &Catalog) -> Result<Limits, Failure> {
+    let scale = prescribed_scale(owned);
+    for (of, row) in dofs.approach_of.iter().zip(&owned.rows) {
+        if let ApproachOf::Prescribed(approach) = *of
+            && approach > row.gap + 1e-12 * scale
+        {
+            let contact = &catalog.contacts[row.contact as usize].name;
+            return Err(Failure::input(format!(
+                "contact '{contact}': nodes {} and {} are prescribed to penetrate by {:.3e}; \
+                 expected displacements that leave a gap",
+                row.tag_a,
+                row.tag_b,
+                approach - row.gap
+            )));
+        }
+    }
+    let gaps: Vec<f64> = owned.conditions.iter().map(|c| c.gap).collect();
+    Ok(Limits::new(
+        dofs.approaches,
+        &dofs.approach_of,
+        &gaps,
+        scale,
+    ))
+}
+
+/// The largest displacement that is prescribed in a block, initial gaps among them (m).
+fn prescribed_scale(owned: &OwnedBlock) -> f64 {
     let prescribed = owned
         .block
         .members
@@ -100,18 +141,14 @@ fn size(plan: &Plan, number: usize) -> Failure {
 }
 
 fn dof_failure(error: DofError, owned: &OwnedBlock, catalog: &Catalog) -> Failure {
-    let DofError::Condition(j, why) = error else {
+    let DofError::Dependent(j) = error else {
         return Failure::internal("a subdomain has more than 2^32 unknowns");
     };
     let row = &owned.rows[j];
     let contact = &catalog.contacts[row.contact as usize].name;
-    let what = match why {
-        Dependence::OnOthers => "follows from other conditions",
-        Dependence::Prescribed => "is prescribed on both sides",
-    };
     Failure::input(format!(
-        "contact '{contact}': the condition between nodes {} and {} {what}; expected conditions \
-         that are independent of each other and of the supports",
+        "contact '{contact}': the condition between nodes {} and {} follows from several others; \
+         expected conditions that are independent of each other and of the supports",
         row.tag_a, row.tag_b
     ))
 }

@@ -9,9 +9,9 @@ use crate::plan::Plan;
 /// The solution on a block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockSolution {
-    /// Displacement, node by node [m].
+    /// Displacement, node by node (m).
     pub u: Vec<f64>,
-    /// Force of every condition [N/m].
+    /// Force of every condition (N/m).
     pub forces: Vec<f64>,
     /// Which conditions are closed.
     pub closed: Vec<bool>,
@@ -60,13 +60,13 @@ fn recover_block(
         });
     }
     let pair = blocks.pairs.get(&plan.pair_of(b)?)?;
-    let contact = pair.contact();
-    let mut x_b = contact.gaps.clone();
+    let mut x_b = pair.approaches().to_vec();
     x_b.extend_from_slice(u);
     let x = pair.schur().recover(pair.load(), &x_b);
+    let (forces, closed) = pair.conditions();
     Some(BlockSolution {
         u: dofs.displacement(&x),
-        forces: contact.forces.clone(),
-        closed: pair.open().iter().map(|open| !open).collect(),
+        forces,
+        closed,
     })
 }

@@ -2,6 +2,7 @@
 
 use std::io::stdout;
 
+use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
 
 use crate::comm::{Comm, Message};
@@ -14,6 +15,7 @@ use crate::output::result::ConvergenceRow;
 use crate::output::terminal::{self, Summary, SweepLine};
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
+use crate::rigid::survey::Survey;
 use crate::settings::Settings;
 use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
 
@@ -73,6 +75,18 @@ impl<'a> Narrator<'a> {
         let _ = terminal::summary(&mut stdout(), &summary);
         if !self.settings.check {
             let _ = terminal::settings(&mut stdout(), &self.settings.resolved());
+        }
+    }
+
+    /// What validating found.
+    pub fn check(&self, survey: &Survey) {
+        if self.comm.is_root() {
+            for warning in &survey.motions.warnings {
+                eprintln!("warning: {warning}");
+            }
+        }
+        if self.speaks() {
+            println!("\nthe problem file is valid");
         }
     }
 
@@ -181,6 +195,7 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
     } = totals;
     let seconds: Vec<PhaseSeconds> = totals.ranks.iter().map(|r| r.seconds).collect();
     let mut warnings = catalog.warnings.clone();
+    warnings.extend(unknown_stress(catalog));
     warnings.extend(totals.warnings.iter().cloned());
     warnings.extend(outcome.notes.iter().cloned());
     Report {
@@ -190,7 +205,7 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
         },
         method: settings.method.name().into(),
         sweeps: outcome.records.len().saturating_sub(1),
-        interface_residual: outcome.records.last().map_or(0.0, |r| r.residual),
+        interface_residual: outcome.residual,
         dofs: dofs(catalog),
         interface_dofs: totals.interface_dofs,
         contact_conditions: conditions(catalog),
@@ -207,6 +222,21 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
         warnings,
         version: env!("CARGO_PKG_VERSION").into(),
     }
+}
+
+/// A warning for every material whose σ_zz isn't known.
+fn unknown_stress(catalog: &Catalog) -> Vec<String> {
+    catalog
+        .materials
+        .iter()
+        .filter(|m| catalog.plane == PlaneState::Strain && m.out_of_plane.is_none())
+        .map(|m| {
+            format!(
+                "material '{}' has no out_of_plane stiffness: its stress ZZ is reported as 0",
+                m.name
+            )
+        })
+        .collect()
 }
 
 /// What the scene didn't need.

@@ -12,7 +12,7 @@ use crate::fem::assembly::BlockSystem;
 pub struct LocalSchur {
     factor: BoundaryLastCholesky,
     interior: usize,
-    /// S, both triangles [Pa].
+    /// S, both triangles (Pa).
     pub s: Mat<f64>,
 }
 

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use nalgebra::{DMatrix, DVector};
 
 use super::{Residual, SweepStatus, Sweeps, axpy};
+use crate::contact::s_con::Openings;
 
 /// Steps that are remembered.
 const DEPTH: usize = 5;
@@ -12,7 +13,7 @@ const DEPTH: usize = 5;
 const MAX_SWEEPS: usize = 500;
 
 impl Sweeps<'_, '_> {
-    pub(super) fn anderson(&mut self, u: &mut Vec<f64>, mut residual: Residual) -> SweepStatus {
+    pub(super) fn anderson(&mut self, u: &mut [f64], mut residual: Residual) -> SweepStatus {
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
         let first = self.sweeps_done();
         let mut history: VecDeque<(Vec<f64>, Vec<f64>)> = VecDeque::new();
@@ -23,7 +24,7 @@ impl Sweeps<'_, '_> {
             }
             let mut chord = residual.r.clone();
             self.interface.solve_bilateral(&mut chord);
-            if let Some((u_last, chord_last)) = last.replace((u.clone(), chord.clone())) {
+            if let Some((u_last, chord_last)) = last.replace((u.to_vec(), chord.clone())) {
                 history.push_back((difference(u, &u_last), difference(&chord, &chord_last)));
                 if history.len() > DEPTH {
                     history.pop_front();
@@ -35,7 +36,7 @@ impl Sweeps<'_, '_> {
                 axpy(-weight, du, u);
                 axpy(-weight, dc, u);
             }
-            residual = self.residual(u);
+            residual = self.residual(u, Openings::Keep);
             self.record(&residual);
         }
         SweepStatus::Converged

@@ -1,22 +1,28 @@
 //! Semismooth Newton: (S_0 + S_CON'(U)) δ = r.
 //!
+//! A sweep freezes every pair's active set at U^(k−1) and solves the linear interface problem. r is
+//! minus the gradient of a convex energy, along which a line search gets down.
+//!
 //! The derivative differs from the factorized bilateral operator by the contacts that opened, a
 //! change of low rank, so that conjugate gradients preconditioned with that one factorization
 //! need few steps and nothing is ever factorized again at the root.
 
 use super::{ROUND_OFF, Residual, SweepStatus, Sweeps, axpy, dot, maximum};
+use crate::contact::s_con::Openings;
 
 /// Sweeps before another method takes over.
-const MAX_SWEEPS: usize = 60;
+const MAX_SWEEPS: usize = 80;
 /// Most conjugate gradient steps of one sweep.
 const MAX_STEPS: usize = 1000;
+/// Conjugate gradient steps without progress that are taken for round-off.
+const PATIENCE: usize = 20;
 /// Share of the bilateral operator that is blended in where the derivative is singular.
 const BLEND: f64 = 1e-3;
 /// Curvature relative to the bilateral operator's below which the derivative is singular.
 const SINGULAR_CURVATURE: f64 = 1e-13;
 
 impl Sweeps<'_, '_> {
-    pub(super) fn newton(&mut self, u: &mut Vec<f64>, mut residual: Residual) -> SweepStatus {
+    pub(super) fn newton(&mut self, u: &mut [f64], mut residual: Residual) -> SweepStatus {
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
         while !self.is_converged(&residual) {
             if self.sweeps_done() >= limit {
@@ -29,8 +35,8 @@ impl Sweeps<'_, '_> {
                 return self.anderson(u, residual);
             }
             let step = self
-                .newton_step(&residual.r, 0.0)
-                .or_else(|| self.newton_step(&residual.r, BLEND));
+                .newton_step(&residual, 0.0)
+                .or_else(|| self.newton_step(&residual, BLEND));
             let Some(step) = step else {
                 return self.gave_up(&residual, "newton found no direction");
             };
@@ -42,11 +48,11 @@ impl Sweeps<'_, '_> {
 
     /// δ = ((1 − blend) J + blend J_bilateral)⁻¹ r by preconditioned conjugate gradients; `None`
     /// where that operator is singular along the way.
-    fn newton_step(&self, r: &[f64], blend: f64) -> Option<Vec<f64>> {
-        let n = r.len();
-        let mut x = vec![0.0; n];
-        let mut r = r.to_vec();
-        let target = maximum(&r) * 1e-2 * ROUND_OFF;
+    pub(super) fn newton_step(&self, residual: &Residual, blend: f64) -> Option<Vec<f64>> {
+        let mut x = vec![0.0; residual.r.len()];
+        let mut r = residual.r.clone();
+        let target = 0.1 * ROUND_OFF * residual.scale;
+        let start = maximum(&r);
         let mut z = r.clone();
         self.interface.solve_bilateral(&mut z);
         let mut p = z.clone();
@@ -57,17 +63,17 @@ impl Sweeps<'_, '_> {
             if size <= target || rz == 0.0 {
                 break;
             }
-            // Round-off has its say in the end: no progress for long means that it's reached.
+            // No progress for long means that round-off is reached.
             if size < 0.5 * best.0 {
                 best = (size, step);
-            } else if step > best.1 + 30 {
+            } else if step > best.1 + PATIENCE {
                 break;
             }
             let (q, reference) = self.derivative(&p, blend);
             let curvature = dot(&p, &q);
             if curvature <= SINGULAR_CURVATURE * dot(&p, &reference) || curvature.is_nan() {
                 // Along p nothing resists; what is solved so far serves if it is nearly all.
-                return (best.0 <= 1e-10 * target / ROUND_OFF).then_some(x);
+                return (best.0 <= 1e-10 * start).then_some(x);
             }
             let alpha = rz / curvature;
             axpy(alpha, &p, &mut x);
@@ -109,17 +115,17 @@ impl Sweeps<'_, '_> {
     ///
     /// r is minus the gradient of a convex energy: a step too far shows in a slope stepᵀr that has
     /// turned and is as steep as before; then a shorter one is taken. The residual's size may rise.
-    fn line_search(&mut self, u: &mut Vec<f64>, step: &[f64], before: &Residual) -> Residual {
+    fn line_search(&mut self, u: &mut [f64], step: &[f64], before: &Residual) -> Residual {
         let slope = dot(step, &before.r);
         let mut alpha = 1.0;
         loop {
-            let mut trial = u.clone();
+            let mut trial = u.to_vec();
             axpy(alpha, step, &mut trial);
-            let residual = self.residual(&trial);
+            let residual = self.residual(&trial, Openings::Changed);
             let there = dot(step, &residual.r);
             let accepted = there >= -0.9 * slope || self.is_converged(&residual);
             if accepted || alpha < 1e-4 {
-                *u = trial;
+                u.copy_from_slice(&trial);
                 return residual;
             }
             alpha *= (slope / (slope - there)).clamp(0.1, 0.6);

@@ -5,6 +5,7 @@
 //! θ < 2 / (1 + λ), λ the largest eigenvalue of S_0⁻¹ S_CON', wherever S_0 is regular.
 
 use super::{Residual, SweepStatus, Sweeps, axpy, dot, maximum};
+use crate::contact::s_con::Openings;
 use crate::schur::factor::BoundaryLastCholesky;
 
 /// Sweeps before it gives up.
@@ -15,7 +16,7 @@ const POWER_STEPS: usize = 60;
 const DIVERGED: f64 = 1e8;
 
 impl Sweeps<'_, '_> {
-    pub(super) fn picard(&mut self, u: &mut Vec<f64>, mut residual: Residual) -> SweepStatus {
+    pub(super) fn picard(&mut self, u: &mut [f64], mut residual: Residual) -> SweepStatus {
         if self.is_converged(&residual) {
             return SweepStatus::Converged;
         }
@@ -61,7 +62,7 @@ impl Sweeps<'_, '_> {
             s_0.forward(&mut step);
             s_0.backward(&mut step);
             axpy(theta, &step, u);
-            residual = self.residual(u);
+            residual = self.residual(u, Openings::Keep);
             self.record(&residual);
         }
         SweepStatus::Converged
