@@ -7,6 +7,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process};
+use tempfile::TempDir;
 
 /// How a program ended and what it printed.
 #[derive(Debug)]
@@ -46,14 +47,19 @@ impl Ended {
 /// A program on its way.
 pub struct Running {
     child: Child,
+    _temporary: TempDir,
     began: Instant,
     stdout: thread::JoinHandle<String>,
     stderr: thread::JoinHandle<String>,
 }
 
 impl Running {
+    /// Starts it with a folder of its own for temporary files: launchers that end at the same
+    /// time remove the folder that they share.
     pub fn start(command: &mut Command) -> Self {
+        let temporary = tempfile::tempdir().unwrap();
         let mut child = command
+            .env("TMPDIR", temporary.path())
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -63,6 +69,7 @@ impl Running {
         let stderr = collect(child.stderr.take());
         Self {
             child,
+            _temporary: temporary,
             began: Instant::now(),
             stdout,
             stderr,
