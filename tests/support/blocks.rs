@@ -238,3 +238,24 @@ pub fn shuffled(mesh: &Mesh, seed: u64) -> (Mesh, BTreeMap<i64, i64>) {
     };
     (shuffled, old_tags)
 }
+
+/// Two meshes as one, without common nodes.
+pub fn joined(mut first: Mesh, second: Mesh) -> Mesh {
+    let nodes = first.points.len() as u32;
+    let number: Vec<u32> = (nodes..nodes + second.points.len() as u32).collect();
+    let counts = [nodes, first.facets.len() as u32, first.cells.len() as u32];
+    first.points.extend(&second.points);
+    let cells = renumbered(&second.cells, &number);
+    let facets = renumbered(&second.facets, &number);
+    cells.iter().for_each(|(k, n)| first.cells.push(k, n));
+    facets.iter().for_each(|(k, n)| first.facets.push(k, n));
+    first.node_tags = (1..=first.points.len() as i64).collect();
+    first.cell_tags = (1..=first.cells.len() as i64).collect();
+    for (name, mut group) in second.groups {
+        for member in &mut group.members {
+            *member += counts[group.dim];
+        }
+        first.groups.insert(name, group);
+    }
+    first
+}

@@ -63,12 +63,14 @@ impl Case {
         Running::start(program(0).arg(self.problem()).args(args)).wait(LIMIT)
     }
 
-    /// Runs without a launcher and reads the result.
+    /// Runs without a launcher and reads the result, which has to keep its certificate.
     #[track_caller]
     pub fn solve(&self, args: &[&str]) -> Solution {
         let ended = self.run(args);
         assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
-        Solution::read(&self.result())
+        let solution = Solution::read(&self.result());
+        solution.check_certificate();
+        solution
     }
 }
 
