@@ -108,8 +108,8 @@ fn three_contacts_that_meet_leave_uniform_compression_alone() {
         let length: f64 = nodes.iter().map(|(_, z)| z[0] * z[0] + z[1] * z[1]).sum();
         let part = along(&exact) / length;
         for &(node, z) in &nodes {
-            for axis in 0..2 {
-                close(u(node)[axis], exact(node)[axis] - part * z[axis], slack);
+            for ((u, e), z) in u(node).into_iter().zip(exact(node)).zip(z) {
+                close(u, e - part * z, slack);
             }
         }
         let warnings = &solution.report["warnings"];
@@ -417,20 +417,20 @@ fn a_schur_complement_is_symmetric_and_rigid_motions_cost_nothing() {
 fn cracked_plate(cells: usize) -> Mesh {
     const HALF: f64 = 20.0;
     let graded = |t: f64| (HALF - 1.0) * (0.15 * t + 0.85 * t.powi(3));
-    let across: [(&str, usize, &dyn Fn(f64) -> f64); 3] = [
-        ("left", cells / 2, &|s| -1.0 - graded(1.0 - s)),
-        ("middle", cells, &|s| 2.0 * s - 1.0),
-        ("right", cells / 2, &|s| 1.0 + graded(s)),
-    ];
+    let x = |column: &str, s: f64| match column {
+        "left" => -1.0 - graded(1.0 - s),
+        "middle" => 2.0 * s - 1.0,
+        _ => 1.0 + graded(s),
+    };
     let mut blocks = Blocks::new();
-    for (column, n, x) in across {
+    for (column, n) in [("left", cells / 2), ("middle", cells), ("right", cells / 2)] {
         let up = |t: f64| HALF * (0.05 * t + 0.95 * t.powi(3));
         blocks = blocks
             .mapped(&format!("{column} below"), [n, cells], |[s, t]| {
-                [x(s), -up(1.0 - t)]
+                [x(column, s), -up(1.0 - t)]
             })
             .mapped(&format!("{column} above"), [n, cells], |[s, t]| {
-                [x(s), up(t)]
+                [x(column, s), up(t)]
             });
     }
     blocks.glued(|x, y| y != 0.0 || x.abs() > 1.0 - 1e-9).mesh

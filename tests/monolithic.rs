@@ -8,6 +8,8 @@
 
 mod support;
 
+use std::collections::BTreeSet;
+
 use contact_dd_partition::model::Model;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -260,6 +262,33 @@ fn a_round_obstacle_is_the_monolithic_solution() {
     assert!(0 < closed && closed < 21, "{closed}");
 }
 
+/// The upper two blocks of the stack may slide; the answer has no part in that.
+#[test]
+fn blocks_that_could_slide_are_the_monolithic_solution_without_sliding() {
+    let model = built_in_model("stack", 0);
+    let slides = ["middle block", "upper block"].map(|body| {
+        let cells = model.mesh.groups[body].members.iter();
+        let nodes: BTreeSet<u32> = cells
+            .flat_map(|&cell| model.mesh.cells.nodes_of(cell as usize).to_vec())
+            .collect();
+        nodes.iter().map(|&node| (2 * node as usize, 1.0)).collect()
+    });
+    let reference = Monolithic::with(&model, slides.to_vec());
+    for count in [4, 9] {
+        compare(&model, &reference, &solve(&model, count));
+    }
+}
+
+#[test]
+fn stiffness_ratios_of_a_million_are_the_monolithic_solution() {
+    for young in ["210e3", "210e15"] {
+        let text = two_block_scene().replace("20e9", young);
+        let model = model(&text, two_blocks().mesh);
+        let difference = Monolithic::new(&model).energy_difference(&solve(&model, 7).dofs(&model));
+        assert!(difference < 1e-6, "{difference:e}");
+    }
+}
+
 /// A column of blocks in rough contact, none of which can slide or turn over.
 #[derive(Clone, Debug)]
 struct Column {
@@ -308,7 +337,7 @@ impl Column {
         let mut conditions = String::new();
         let mut low = 0.0;
         for (i, height) in self.heights.iter().enumerate() {
-            let rows = (height * self.columns as f64).ceil() as usize;
+            let rows = (height * self.columns as f64).ceil().max(4.0) as usize;
             let n = [self.columns, rows];
             blocks = blocks.rectangle(&format!("b{i}"), [0.0, 1.0], [low, low + height], n);
             low += height;

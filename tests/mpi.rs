@@ -120,9 +120,11 @@ fn datasets(case: &Case) -> BTreeMap<String, Vec<u64>> {
     all
 }
 
+type MakeCase = fn() -> Case;
+
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, fn() -> Case); 7] = [
+    let cases: [(&str, MakeCase); 7] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)

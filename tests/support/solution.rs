@@ -97,8 +97,8 @@ impl Solution {
             ("penetration", 1e-14),
             ("tension", 1e-12),
             ("complementarity", 1e-12),
-            ("force_balance", 1e-10),
-            ("moment_balance", 1e-10),
+            ("force_balance", 1e-9),
+            ("moment_balance", 1e-9),
             ("interface_jump", 1e-14),
         ];
         let certificate = &self.report["certificate"];
