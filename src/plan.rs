@@ -139,3 +139,74 @@ fn interface_nodes(catalog: &Catalog, block: &BlockPlan) -> Vec<u32> {
     nodes.dedup();
     nodes
 }
+
+#[cfg(test)]
+mod tests {
+    use contact_dd_partition::model::PlaneState;
+    use contact_dd_partition::problem::{Body, SubdomainSummary};
+
+    use super::*;
+
+    /// Subdomains 1 and 3 in contact; 0, 2 and 4 linear, 4 the largest.
+    fn catalog() -> Catalog {
+        let sizes = [40, 30, 20, 30, 90];
+        Catalog {
+            title: String::new(),
+            dim: 2,
+            plane: PlaneState::Strain,
+            materials: Vec::new(),
+            bodies: vec![Body { name: "b".into() }],
+            contacts: Vec::new(),
+            subdomains: sizes
+                .iter()
+                .enumerate()
+                .map(|(s, &nodes)| SubdomainSummary {
+                    body: 0,
+                    group: [1, 3].contains(&s).then_some(0),
+                    nodes,
+                    cells: nodes,
+                })
+                .collect(),
+            interface: vec![vec![0, 1], vec![1, 2], vec![0, 3], vec![2, 3], vec![0]],
+            interface_nodes: 4,
+            groups: vec![5],
+            warnings: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn every_subdomain_lies_in_one_block_and_groups_stay_together() {
+        let plan = Plan::new(&catalog(), 3);
+        assert_eq!(plan.block_of, [0, 1, 2, 1, 3]);
+        assert_eq!(plan.blocks[1].subdomains, [1, 3]);
+        assert_eq!((plan.pairs.clone(), plan.pair_of(1)), (vec![1], Some(0)));
+    }
+
+    #[test]
+    fn a_node_that_only_members_of_a_group_share_is_not_on_the_interface() {
+        let catalog = catalog();
+        let plan = Plan::new(&catalog, 1);
+        assert_eq!(plan.shared_nodes(&catalog, 1), [1, 3]);
+        assert_eq!(plan.sharing, [3, 2, 1, 2]);
+    }
+
+    #[test]
+    fn blocks_and_their_order_do_not_depend_on_the_number_of_ranks() {
+        let catalog = catalog();
+        let one = Plan::new(&catalog, 1);
+        for ranks in 2..8 {
+            let plan = Plan::new(&catalog, ranks);
+            for (a, b) in one.blocks.iter().zip(&plan.blocks) {
+                assert_eq!(a.subdomains, b.subdomains);
+                assert!(b.owner < ranks);
+            }
+        }
+    }
+
+    #[test]
+    fn the_largest_block_gets_a_rank_of_its_own() {
+        let plan = Plan::new(&catalog(), 2);
+        let alone = plan.blocks[3].owner;
+        assert_eq!(plan.blocks.iter().filter(|b| b.owner == alone).count(), 1);
+    }
+}

@@ -5,6 +5,7 @@
 pub mod condense;
 pub mod read;
 pub mod recover;
+pub mod refine;
 mod report;
 pub mod settle;
 pub mod write;
@@ -19,14 +20,13 @@ use faer::Par;
 use self::condense::{assemble_interface, condense_blocks};
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
+use self::refine::{Parts, RootParts, refine};
 use self::report::{Narrator, Totals};
 use self::settle::settle_free_motions;
 use self::write::{stresses, write_solution};
-use crate::certificate::{BlockCheck, certificate};
 use crate::comm::{Comm, Message, phase};
 use crate::contact::s_con::SCon;
 use crate::error::Failure;
-use crate::fem::balance::Balance;
 use crate::output::progress::Progress;
 use crate::output::report::PhaseSeconds;
 use crate::output::vtkhdf::{Layout, ResultFile};
@@ -116,21 +116,23 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     phase("recovering");
     let lap = Instant::now();
     let root = outcome.as_ref().zip(interface.as_ref());
-    let trace_of_root = root.map(|((o, _), (numbering, _))| (&o.u[..], &numbering.traces[..]));
+    let trace_of_root = root.map(|(o, (numbering, _))| (&o.u[..], &numbering.traces[..]));
     let mut solutions = recover(comm, &condensed, &plan, trace_of_root);
     settle_free_motions(comm, &survey, &blocks, &mut solutions, catalog, &plan);
-    let mut checks = Vec::new();
-    comm.gather(
-        &plan.owners(),
-        |b| {
-            let (owned, solution) = (&blocks[&b], &solutions[&b]);
-            let (u, forces) = (&solution.u, &solution.forces);
-            let conditions = &owned.conditions;
-            let balance = Balance::new(&owned.block, conditions, &catalog.materials, u, forces);
-            BlockCheck::new(&owned.block, conditions, &balance, u, forces).pack()
-        },
-        |_, message| checks.push(BlockCheck::unpack(message)),
-    );
+    let parts = Parts {
+        comm,
+        blocks: &blocks,
+        condensed: &condensed,
+        catalog,
+        plan: &plan,
+    };
+    let root_parts = root.map(|(outcome, (numbering, interface))| RootParts {
+        numbering,
+        interface,
+        state: &outcome.state,
+        converged: outcome.status == SweepStatus::Converged,
+    });
+    let certificate = refine(parts, root_parts, &mut solutions);
     let stress = stresses(comm, &blocks, &solutions, catalog, &plan);
     seconds.recover = lap.elapsed().as_secs_f64();
 
@@ -144,14 +146,15 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
 
     let ranks = report::collect(comm, &seconds, &plan);
     let finished = match (root, output) {
-        (Some(((outcome, totals), (numbering, interface))), Some(output)) => {
+        (Some((outcome, (_, interface))), Some(output)) => {
             let totals = Totals {
                 catalog,
                 plan: &plan,
                 outcome,
-                con: *totals,
+                con: outcome.totals,
                 interface_dofs: interface.len,
-                certificate: certificate(&checks, &numbering.traces, interface.len),
+                smallest_pivot: interface.smallest_pivot(),
+                certificate,
                 ranks,
                 warnings: survey.motions.warnings.clone(),
             };
@@ -162,7 +165,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     comm.agree(finished)?;
     let mut converged = Message {
         integers: vec![i64::from(
-            outcome.is_none_or(|(o, _)| o.status == SweepStatus::Converged),
+            outcome.is_none_or(|o| o.status == SweepStatus::Converged),
         )],
         reals: Vec::new(),
     };

@@ -5,11 +5,13 @@
 //! ([`anderson`]), or S_0 + S_CON'(U) ([`newton`]).
 
 pub mod anderson;
+pub mod frozen;
 pub mod newton;
 pub mod picard;
 
 use std::time::Instant;
 
+use self::frozen::Frozen;
 use crate::contact::s_con::{ConState, ConTotals, Openings, SCon};
 use crate::interface::operator::Interface;
 
@@ -78,7 +80,7 @@ pub enum SweepStatus {
 }
 
 /// What the sweeps found.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct SweepOutcome {
     /// U.
     pub u: Vec<f64>,
@@ -90,6 +92,10 @@ pub struct SweepOutcome {
     pub notes: Vec<String>,
     /// The residual that is left in the end.
     pub residual: f64,
+    /// Totals of the last evaluation of S_CON.
+    pub totals: ConTotals,
+    /// The pairs' answers in the last evaluation of S_CON.
+    pub state: ConState,
 }
 
 /// The state of the sweeps on the root.
@@ -122,7 +128,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         s_con: &'a mut SCon<'c>,
         settings: SweepSettings,
         observer: &'a mut dyn FnMut(&SweepRecord),
-    ) -> (SweepOutcome, ConTotals) {
+    ) -> SweepOutcome {
         let mut sweeps = Self {
             interface,
             s_con,
@@ -146,14 +152,15 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         }
         // The pairs keep the approaches and forces of their last evaluation: it has to be S_CON(U).
         let last = sweeps.residual(&u, Openings::Changed);
-        let outcome = SweepOutcome {
+        SweepOutcome {
             u,
             status,
             records: sweeps.records,
             notes: sweeps.notes,
             residual: last.relative,
-        };
-        (outcome, last.totals)
+            totals: last.totals,
+            state: sweeps.state,
+        }
     }
 
     /// Iterative refinement with the factors at hand: the tolerance of the sweeps isn't what limits
@@ -164,7 +171,8 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             if residual.relative <= ROUND_OFF || residual.totals.changed > 0 {
                 return;
             }
-            let Some(step) = self.newton_step(&residual, 0.0) else {
+            let frozen = Frozen::new(self.interface, &self.state);
+            let Some(step) = frozen.solve(&residual.r, residual.scale, 0.0) else {
                 return;
             };
             let mut refined = u.to_vec();

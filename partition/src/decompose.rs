@@ -4,13 +4,14 @@ mod atoms;
 pub(crate) mod disjoint_sets;
 mod graph;
 mod multilevel;
-mod piece;
 mod prescribed;
 mod regions;
 mod share;
+mod unit;
+mod units;
 
 use self::atoms::Atoms;
-use self::graph::Graph;
+use self::units::Units;
 use crate::error::InputError;
 use crate::mesh::topology::Topology;
 use crate::model::Model;
@@ -20,6 +21,10 @@ const DOFS: usize = 20_000;
 
 /// Subdomains without contact that there are beside those in contact, at least.
 const LINEAR: usize = 4;
+
+/// Regions of one material up to which each gets its own subdomain where the user doesn't say how
+/// many subdomains there should be; more are grains of a composite.
+const MATERIALS: usize = 32;
 
 /// A partition of the cells into subdomains.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,7 +40,8 @@ impl Decomposition {
     ///
     /// Every subdomain is connected across facets. All cells around a node with a contact
     /// condition are in one subdomain, and each side of a contact has its own wherever `count`
-    /// allows, so that contacts lie within pairs. Equal models give equal partitions. A partition
+    /// allows, so that contacts lie within pairs. Where `count` allows, every subdomain is of one
+    /// material but for the cells around a contact surface that ends at another one. Equal models give equal partitions. A partition
     /// that the scene prescribes is taken as it is.
     ///
     /// # Errors
@@ -49,33 +55,39 @@ impl Decomposition {
             return prescribed::take(model, &topology, subdomain, count);
         }
         let atoms = Atoms::new(model, &topology);
-        let graphs: Vec<&Graph> = atoms.pieces.iter().map(|piece| &piece.graph).collect();
-        let (least, most) = (graphs.len(), atoms.count());
-        let count = count.unwrap_or_else(|| suitable(model, &graphs).clamp(least, most));
+        let units = Units::new(&atoms.graph);
+        let (least, most) = (units.pieces(), atoms.graph.len());
+        let count = count.unwrap_or_else(|| suitable(model, &atoms, &units).clamp(least, most));
         if !(least..=most).contains(&count) {
             return Err(InputError::new(format!(
                 "{count} subdomains can't be; expected {least} (the separate pieces of the mesh) to {most} (the cells, those around a contact surface counted as one)"
             )));
         }
+        let units = units.for_count(count);
+        let graphs = atoms.graph.split(&units);
         let parts: Vec<Vec<u32>> = graphs
             .iter()
             .zip(share::share(&graphs, count))
-            .map(|(graph, share)| piece::split(graph, share))
+            .map(|(graph, share)| unit::split(graph, share))
             .collect();
         Ok(Self {
             count,
-            subdomain: atoms.subdomains(&parts),
+            subdomain: atoms.subdomains(&units, &parts),
         })
     }
 }
 
-/// A number of subdomains that suits the size and gives every cluster its own.
-fn suitable(model: &Model, graphs: &[&Graph]) -> usize {
+/// A number of subdomains that suits the size and gives every cluster, and every material where
+/// there are few, its own.
+fn suitable(model: &Model, atoms: &Atoms, units: &Units) -> usize {
     let dofs = model.mesh.dim * model.mesh.points.len();
-    let clusters: usize = graphs.iter().map(|graph| graph.clusters()).sum();
-    let with_contact = match clusters {
+    let with_contact = match atoms.graph.clusters() {
         0 => 1,
-        _ => clusters + LINEAR,
+        clusters => clusters + LINEAR,
     };
-    dofs.div_ceil(DOFS).max(with_contact)
+    let with_materials = match units.of_one_material() {
+        many if many > MATERIALS => 1,
+        few => few,
+    };
+    dofs.div_ceil(DOFS).max(with_contact).max(with_materials)
 }

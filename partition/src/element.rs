@@ -136,7 +136,7 @@ impl Elements {
     }
 
     /// The elements in order: kind and nodes.
-    pub fn iter(&self) -> impl Iterator<Item = (ElementKind, &[u32])> {
+    pub fn iter(&self) -> impl Iterator<Item = (ElementKind, &[u32])> + Clone {
         (0..self.len()).map(|e| (self.kind(e), self.nodes_of(e)))
     }
 

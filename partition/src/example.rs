@@ -14,6 +14,7 @@ use self::blocks::Patch;
 use crate::error::{InputError, OutputError};
 use crate::mesh::{Mesh, gmsh};
 use crate::scene::Scene;
+use crate::scene::suggest::nearest;
 use crate::whole_file;
 
 /// The built-in scenes.
@@ -39,6 +40,9 @@ pub struct Example {
     patches: fn() -> Vec<Patch>,
 }
 
+/// Name of the mesh file of every built-in scene.
+pub const MESH: &str = "mesh.msh";
+
 /// The built-in scene `name`.
 ///
 /// # Errors
@@ -48,9 +52,8 @@ pub fn find(name: &str) -> Result<&'static Example, InputError> {
         .iter()
         .find(|example| example.name == name)
         .ok_or_else(|| {
-            let likeness = |e: &&Example| strsim::damerau_levenshtein(e.name, name);
-            let nearest = EXAMPLES.iter().min_by_key(likeness).map_or("", |e| e.name);
             let names: Vec<&str> = EXAMPLES.iter().map(|e| e.name).collect();
+            let nearest = nearest(name, names.iter().copied()).unwrap_or_default();
             InputError::new(format!(
                 "no example is called `{name}`; did you mean `{nearest}`? There are {}",
                 names.join(", ")
@@ -85,9 +88,9 @@ impl Example {
             path: directory.to_path_buf(),
             reason: e.to_string(),
         })?;
-        gmsh::write(mesh, &directory.join("mesh.msh"))?;
+        gmsh::write(mesh, &directory.join(MESH))?;
         let scene = directory.join("scene.toml");
-        whole_file::replace(&scene, |out| out.write_all(self.scene.as_bytes()))?;
+        whole_file::replace_bytes(&scene, |out| out.write_all(self.scene.as_bytes()))?;
         Ok(scene)
     }
 }

@@ -17,6 +17,7 @@ pub mod decompose;
 pub mod element;
 pub mod error;
 pub mod example;
+mod lists;
 pub mod mesh;
 pub mod model;
 pub mod problem;

@@ -14,7 +14,7 @@ use contact_dd_partition::scene::Scene;
 
 /// Splits a scene into subdomains and writes the problem file that contact-dd-mpi solves.
 #[derive(Debug, Parser)]
-#[command(version, arg_required_else_help = true, after_help = EXAMPLES_OF_USE)]
+#[command(version, after_help = EXAMPLES_OF_USE)]
 struct Args {
     /// The scene
     #[arg(value_name = "SCENE.toml", required_unless_present_any = ["example", "list_examples"])]
@@ -73,13 +73,31 @@ impl Failure {
 }
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(usage) if !usage.use_stderr() => usage.exit(),
+        Err(usage) => {
+            eprintln!("{} (--help tells more)", in_one_line(&usage.to_string()));
+            return ExitCode::from(2);
+        }
+    };
+    match run(&args) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("error: {failure}");
             failure.exit_code()
         }
     }
+}
+
+/// What clap says but for the usage and where to read of it.
+fn in_one_line(message: &str) -> String {
+    let said = message.lines().map(str::trim);
+    let said = said.take_while(|line| {
+        !line.starts_with("Usage:") && !line.starts_with("For more information")
+    });
+    let words: Vec<&str> = said.filter(|line| !line.is_empty()).collect();
+    words.join(" ").replace(" tip: ", "; ")
 }
 
 fn run(args: &Args) -> Result<(), Failure> {
@@ -96,7 +114,7 @@ fn run(args: &Args) -> Result<(), Failure> {
     let decomposition = Decomposition::new(&model, source.subdomains)?;
     let problem = Problem::new(&model, &decomposition)?;
     problem.write(&source.output)?;
-    report(&model, &problem, &source.output);
+    report(&problem, &source.output);
     Ok(())
 }
 
@@ -112,19 +130,25 @@ struct Source {
 fn read(args: &Args) -> Result<Option<Source>, Failure> {
     if let Some(path) = &args.scene {
         let scene = Scene::read(path)?;
-        let mesh = gmsh::read(&scene.mesh)?;
         let stem = path.file_stem().unwrap_or(path.as_os_str());
+        let output = output(args, Path::new(stem));
+        keep(path, &output)?;
+        keep(&scene.mesh, &output)?;
         return Ok(Some(Source {
+            mesh: gmsh::read(&scene.mesh)?,
             scene,
-            mesh,
             subdomains: args.subdomains,
-            output: output(args, Path::new(stem)),
+            output,
         }));
     }
     let example = example::find(args.example.as_deref().unwrap_or_default())?;
     let mesh = example.mesh(args.refine)?;
     if let Some(directory) = &args.write_scene {
         let scene = example.write(&mesh, directory)?;
+        if let Some(output) = &args.output {
+            keep(&scene, output)?;
+            keep(&directory.join(example::MESH), output)?;
+        }
         println!("scene         {}", scene.display());
         if args.output.is_none() {
             println!("next          contact-dd-partition {}", scene.display());
@@ -139,6 +163,18 @@ fn read(args: &Args) -> Result<Option<Source>, Failure> {
     }))
 }
 
+/// Refuses to write over what the problem file is made from.
+fn keep(input: &Path, output: &Path) -> Result<(), InputError> {
+    match (input.canonicalize(), output.canonicalize()) {
+        (Ok(one), Ok(other)) if one == other => Err(InputError::new(
+            "the problem file would take the place of what it is made from; \
+             expected another name behind -o",
+        )
+        .in_file(output)),
+        _ => Ok(()),
+    }
+}
+
 fn output(args: &Args, stem: &Path) -> PathBuf {
     let chosen = args.output.clone();
     chosen.unwrap_or_else(|| {
@@ -149,44 +185,10 @@ fn output(args: &Args, stem: &Path) -> PathBuf {
 }
 
 /// Prints what the problem file holds and what to do with it.
-fn report(model: &Model, problem: &Problem, output: &Path) {
-    let catalog = &problem.catalog;
-    let cells = catalog.subdomains.iter().map(|s| s.cells);
-    let mean = cells.clone().sum::<usize>() as f64 / catalog.subdomains.len().max(1) as f64;
-    let balance = cells.max().unwrap_or_default() as f64 / mean;
-    let (nodes, dim) = (model.mesh.points.len(), catalog.dim);
-    let conditions: usize = catalog.groups.iter().sum();
-
-    println!("title         {}", catalog.title);
-    println!(
-        "mesh          {nodes} nodes, {} cells",
-        model.mesh.cells.len()
-    );
-    println!("dofs          {}", nodes * dim);
-    println!(
-        "subdomains    {}, {} in contact",
-        catalog.subdomains.len(),
-        catalog
-            .subdomains
-            .iter()
-            .filter(|s| s.group.is_some())
-            .count()
-    );
-    println!("balance       {balance:.2} (largest subdomain over the mean, by cells)");
-    println!(
-        "interface     {} nodes, {} dofs",
-        catalog.interface_nodes,
-        catalog.interface_nodes * dim
-    );
-    println!("contact       {conditions} conditions");
-    for contact in &catalog.contacts {
-        println!(
-            "              {:>6} on {}",
-            contact.conditions, contact.name
-        );
-    }
-    println!("groups        {}", groups(problem));
-    for warning in &catalog.warnings {
+fn report(problem: &Problem, output: &Path) {
+    println!("title         {}", problem.catalog.title);
+    println!("{}", problem.summary());
+    for warning in &problem.catalog.warnings {
         println!("warning       {warning}");
     }
     println!("written       {}", output.display());
@@ -194,29 +196,4 @@ fn report(model: &Model, problem: &Problem, output: &Path) {
         "next          mpirun -n 2 contact-dd-mpi {}",
         output.display()
     );
-}
-
-/// How many subdomains the groups in contact have, in words.
-fn groups(problem: &Problem) -> String {
-    let mut sizes = vec![0; problem.catalog.groups.len()];
-    for subdomain in &problem.catalog.subdomains {
-        if let Some(group) = subdomain.group {
-            sizes[group] += 1;
-        }
-    }
-    let count = |wanted: fn(usize) -> bool| sizes.iter().filter(|&&size| wanted(size)).count();
-    let words = [
-        (count(|size| size == 1), "single"),
-        (count(|size| size == 2), "in pairs"),
-        (count(|size| size > 2), "larger"),
-    ];
-    let words: Vec<String> = words
-        .into_iter()
-        .filter(|&(count, _)| count > 0)
-        .map(|(count, word)| format!("{count} {word}"))
-        .collect();
-    match words.is_empty() {
-        true => "none".into(),
-        false => words.join(", "),
-    }
 }

@@ -27,6 +27,16 @@ pub struct Mesh {
     pub groups: BTreeMap<String, Group>,
 }
 
+impl Mesh {
+    /// The tags of nodes in words.
+    pub(crate) fn tags_of(&self, nodes: &[u32]) -> String {
+        let tags = nodes
+            .iter()
+            .map(|&n| self.node_tags[n as usize].to_string());
+        tags.collect::<Vec<_>>().join(", ")
+    }
+}
+
 /// A physical group.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Group {

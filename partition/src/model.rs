@@ -33,9 +33,9 @@ pub enum PlaneState {
 pub struct Material {
     /// Name in the scene.
     pub name: String,
-    /// C, symmetric positive definite, for the scene's plane state \[Pa\].
+    /// C, symmetric positive definite, for the scene's plane state (Pa).
     pub stiffness: [[f64; 3]; 3],
-    /// Row of σ_zz against (ε_xx, ε_yy, γ_xy) \[Pa\]; `None` where the user didn't give it.
+    /// Row of σ_zz against (ε_xx, ε_yy, γ_xy) (Pa); `None` where the user didn't give it.
     pub out_of_plane: Option<[f64; 3]>,
     /// Poisson's ratio of an isotropic material.
     pub poisson: Option<f64>,
@@ -48,7 +48,7 @@ pub struct Support {
     pub node: u32,
     /// Unit vector. The rows of one node are orthonormal.
     pub direction: [f64; 3],
-    /// Prescribed displacement along it \[m\].
+    /// Prescribed displacement along it (m).
     pub value: f64,
 }
 
@@ -57,11 +57,11 @@ pub struct Support {
 pub struct ContactCondition {
     /// The nodes of its row and their coefficients: Σ coefficient·u(node) ≤ gap.
     pub entries: Vec<(u32, [f64; 3])>,
-    /// g \[m\]; negative for an interference fit.
+    /// g (m); negative for an interference fit.
     pub gap: f64,
-    /// Share of side a that belongs to it: the integral of its weight \[m\].
+    /// Share of side a that belongs to it: the integral of its weight (m).
     pub share: f64,
-    /// Undeformed position on side a \[m\].
+    /// Undeformed position on side a (m).
     pub position: [f64; 3],
     /// Unit normal, outward of side a.
     pub normal: [f64; 3],
@@ -99,8 +99,8 @@ pub struct Model {
     pub cell_body: Vec<u32>,
     /// Supports in ascending order of nodes.
     pub supports: Vec<Support>,
-    /// Consistent nodal forces in ascending order of nodes, one entry a loaded node [N per metre
-    /// of thickness].
+    /// Consistent nodal forces in ascending order of nodes, one entry a loaded node (N per metre
+    /// of thickness).
     pub forces: Vec<(u32, [f64; 3])>,
     /// Contacts in the order of the scene.
     pub contacts: Vec<Contact>,

@@ -6,7 +6,6 @@
 pub mod build;
 mod dataset;
 mod interface;
-mod measure;
 pub mod read;
 pub mod summary;
 pub mod write;

@@ -19,7 +19,7 @@ use condition::{Bilateral, Body, Contact, Displacement, Names, Partner, Pressure
 use material::Elasticity;
 use place::Step;
 
-/// Size beyond which a file isn't a scene \[bytes\].
+/// Size beyond which a file isn't a scene (bytes).
 const LARGEST: u64 = 16 << 20;
 
 /// A scene as it was written, with every value checked that can be without the mesh.

@@ -1,9 +1,10 @@
 //! A file that is there whole or not at all.
 
-use std::fs::Permissions;
+use std::fmt::Display;
 use std::io::{self, BufWriter, Write};
-use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
+
+use tempfile::NamedTempFile;
 
 use crate::error::OutputError;
 
@@ -12,30 +13,50 @@ use crate::error::OutputError;
 ///
 /// # Errors
 /// The file can't be written.
-pub(crate) fn replace(
+pub(crate) fn replace<E: Display>(
     path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    write: impl FnOnce(&mut NamedTempFile) -> Result<(), E>,
 ) -> Result<(), OutputError> {
     let attempt = || {
+        if path.is_dir() {
+            return Err("it is a folder".to_owned());
+        }
         let directory = match path.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent,
             _ => Path::new("."),
         };
-        // Temporary files are private to their owner by default; results aren't.
-        let mut file = tempfile::Builder::new()
-            .prefix(".contact-dd-")
-            .permissions(Permissions::from_mode(0o666))
-            .tempfile_in(directory)?;
-        let mut buffered = BufWriter::new(file.as_file_mut());
-        write(&mut buffered)?;
-        buffered.flush()?;
-        drop(buffered);
-        file.persist(path).map_err(|e| e.error)?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".contact-dd-");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // Temporary files are private to their owner by default; results aren't. The system
+            // takes the user's umask off.
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        let mut file = builder.tempfile_in(directory).map_err(|e| e.to_string())?;
+        write(&mut file).map_err(|e| e.to_string())?;
+        file.persist(path).map_err(|e| e.error.to_string())?;
         Ok(())
     };
-    attempt().map_err(|e: io::Error| OutputError {
+    attempt().map_err(|reason| OutputError {
         path: path.to_path_buf(),
-        reason: e.to_string(),
+        reason,
+    })
+}
+
+/// Writes `path` as [`replace`] does, from a stream of bytes.
+///
+/// # Errors
+/// The file can't be written.
+pub(crate) fn replace_bytes(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    replace(path, |file| {
+        let mut buffered = BufWriter::new(file);
+        write(&mut buffered)?;
+        buffered.flush()
     })
 }
 
@@ -47,8 +68,8 @@ mod tests {
     fn a_failed_write_leaves_what_was_there_and_nothing_else() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("kept");
-        replace(&path, |w| w.write_all(b"first")).unwrap();
-        let failed = replace(&path, |w| {
+        replace_bytes(&path, |w| w.write_all(b"first")).unwrap();
+        let failed = replace_bytes(&path, |w| {
             w.write_all(b"half")?;
             Err(io::Error::other("disk full"))
         });

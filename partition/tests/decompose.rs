@@ -1,6 +1,6 @@
 //! Laws of the contact-aware partition.
 
-#![allow(clippy::unwrap_used, reason = "a failing step is a failing test")]
+#![expect(clippy::unwrap_used, reason = "what fails here fails the test")]
 
 mod problem_scenes;
 
@@ -127,6 +127,83 @@ fn contacts_lie_within_pairs_wherever_the_count_allows() {
             assert_eq!(summary.linear_subdomains, count - sides);
         }
     }
+}
+
+/// The materials in every subdomain.
+fn materials(model: &Model, decomposition: &Decomposition) -> Vec<BTreeSet<u32>> {
+    let mut materials = vec![BTreeSet::new(); decomposition.count];
+    for (&subdomain, &material) in decomposition.subdomain.iter().zip(&model.cell_material) {
+        materials[subdomain as usize].insert(material);
+    }
+    materials
+}
+
+/// Gives a material to every cell of a model by its centre.
+fn with_materials(mut model: Model, material: impl Fn(f64, f64) -> u32) -> Model {
+    for cell in 0..model.mesh.cells.len() {
+        let nodes = model.mesh.cells.nodes_of(cell).iter();
+        let points: Vec<_> = nodes.map(|&n| model.mesh.points[n as usize]).collect();
+        let mean = |axis: usize| points.iter().map(|p| p[axis]).sum::<f64>() / points.len() as f64;
+        model.cell_material[cell] = material(mean(0), mean(1));
+    }
+    model
+}
+
+#[test]
+fn bonded_materials_have_subdomains_of_their_own_wherever_the_count_allows() {
+    let layers = with_materials(stacked(1, 12, 10), |_, y| u32::from(y > 3.0));
+    // A frame around an island: three regions, two of them of one material.
+    let island = with_materials(stacked(1, 12, 12), |x, y| {
+        let out = (x - 6.0).abs().max((y - 6.0).abs());
+        u32::from(out > 2.0 && out < 4.0)
+    });
+    for (model, regions) in [(layers, 2), (island, 3)] {
+        assert_eq!(range(&model).0, 1);
+        for count in 1..=12 {
+            let decomposition = Decomposition::new(&model, Some(count)).unwrap();
+            assert_eq!(components(&model, &decomposition), count);
+            let pure = materials(&model, &decomposition)
+                .iter()
+                .all(|materials| materials.len() == 1);
+            assert_eq!(pure, count >= regions, "{count} subdomains");
+        }
+        let default = Decomposition::new(&model, None).unwrap();
+        assert_eq!(default.count, regions);
+    }
+}
+
+#[test]
+fn only_cells_around_a_contact_surface_mix_materials() {
+    // Both sides of the crack end at the bond between the materials.
+    let model = with_materials(cracked(16, &[(0, 9)]), |x, _| u32::from(x > 8.0));
+    let conditions = || model.contacts.iter().flat_map(|c| &c.conditions);
+    let in_contact: BTreeSet<u32> = conditions()
+        .flat_map(|c| &c.entries)
+        .map(|&(node, _)| node)
+        .collect();
+    for count in 6..20 {
+        let decomposition = Decomposition::new(&model, Some(count)).unwrap();
+        let mixed = materials(&model, &decomposition);
+        for (cell, &subdomain) in decomposition.subdomain.iter().enumerate() {
+            let away = |n: &u32| !in_contact.contains(n);
+            if mixed[subdomain as usize].len() > 1 && model.cell_material[cell] == 1 {
+                let nodes = model.mesh.cells.nodes_of(cell);
+                assert!(!nodes.iter().all(away), "{count} subdomains, cell {cell}");
+            }
+        }
+    }
+}
+
+#[test]
+fn grains_that_are_more_than_the_subdomains_leave_them_balanced() {
+    let grain = |x: f64, y: f64| u32::from((x % 4.0).max(y % 4.0) < 1.0);
+    let model = with_materials(stacked(1, 40, 40), grain);
+    for count in [4, 8, 16] {
+        let decomposition = Decomposition::new(&model, Some(count)).unwrap();
+        let summary = Problem::new(&model, &decomposition).unwrap().summary();
+        assert!(summary.imbalance < 1.2, "{count}: {summary}");
+    }
+    assert_eq!(Decomposition::new(&model, None).unwrap().count, 1);
 }
 
 #[test]

@@ -3,8 +3,6 @@
 #![expect(clippy::unwrap_used, reason = "what fails here fails the test")]
 
 use std::collections::{BTreeSet, HashMap};
-use std::path::Path;
-use std::process::{Command, Output};
 
 use contact_dd_partition::example::{self, EXAMPLES};
 use contact_dd_partition::mesh::topology::Topology;
@@ -249,85 +247,5 @@ fn scenes_name_groups_that_their_meshes_have() {
             assert_eq!(group.dim, dim, "{}: {name}", example.name);
             assert!(!group.members.is_empty());
         }
-    }
-}
-
-fn program(args: &[&str], dir: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_contact-dd-partition"))
-        .args(args)
-        .current_dir(dir)
-        .output()
-        .unwrap()
-}
-
-#[test]
-fn the_program_writes_a_scene_to_start_from() {
-    let dir = tempfile::tempdir().unwrap();
-    let args = [
-        "--example",
-        "patch",
-        "--refine",
-        "1",
-        "--write-scene",
-        "a/b",
-    ];
-    let output = program(&args, dir.path());
-    assert!(output.status.success(), "{output:?}");
-    let mesh = gmsh::read(&dir.path().join("a/b/mesh.msh")).unwrap();
-    assert_eq!(mesh, mesh_of("patch", 1));
-    assert_eq!(
-        std::fs::read_dir(dir.path().join("a/b")).unwrap().count(),
-        2
-    );
-}
-
-#[test]
-fn the_program_lists_every_example() {
-    let output = program(&["--list-examples"], Path::new("."));
-    let list = String::from_utf8(output.stdout).unwrap();
-    assert_eq!(list.lines().count(), EXAMPLES.len());
-    for example in EXAMPLES {
-        assert!(list.contains(example.name) && list.contains(example.about));
-    }
-}
-
-#[test]
-fn bad_usage_ends_with_2_and_unwritable_output_with_5_and_one_line() {
-    let dir = tempfile::tempdir().unwrap();
-    std::fs::write(dir.path().join("file"), "").unwrap();
-    std::fs::create_dir(dir.path().join("dir")).unwrap();
-    let scene = example::find("patch").unwrap().scene;
-    std::fs::write(dir.path().join("dir/scene.toml"), scene).unwrap();
-    let cases: [(&[&str], i32, &str); 5] = [
-        (&["--example", "granit"], 2, "did you mean `granite`?"),
-        (&["no-such-scene.toml"], 2, "no-such-scene.toml"),
-        (&["dir/scene.toml"], 2, "error: dir/mesh.msh: "),
-        (
-            &["--example", "patch", "--refine", "40"],
-            2,
-            "refined 40 times",
-        ),
-        (
-            &["--example", "patch", "--write-scene", "file/x"],
-            5,
-            "file/x",
-        ),
-    ];
-    for (args, code, expected) in cases {
-        let output = program(args, dir.path());
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
-        assert!(
-            said.starts_with("error: ") && said.contains(expected),
-            "{said}"
-        );
-        assert_eq!(said.lines().count(), 1, "{said}");
-    }
-    for args in [
-        &["--refine", "1"][..],
-        &["--example", "patch", "--frobnicate"],
-        &[],
-    ] {
-        assert_eq!(program(args, dir.path()).status.code(), Some(2), "{args:?}");
     }
 }

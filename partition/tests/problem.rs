@@ -1,6 +1,6 @@
 //! Laws of the problem file and of how a model is cut.
 
-#![allow(clippy::unwrap_used, reason = "a failing step is a failing test")]
+#![expect(clippy::unwrap_used, reason = "what fails here fails the test")]
 
 mod problem_scenes;
 

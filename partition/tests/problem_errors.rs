@@ -1,6 +1,6 @@
 //! Every defect of a problem file is an error that names the file, the dataset and the row.
 
-#![allow(clippy::unwrap_used, reason = "a failing step is a failing test")]
+#![expect(clippy::unwrap_used, reason = "what fails here fails the test")]
 
 mod problem_scenes;
 

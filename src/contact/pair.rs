@@ -78,6 +78,17 @@ pub struct PairResponse {
     pub converged: bool,
 }
 
+/// A load condensed onto the traces with the active set frozen.
+#[derive(Debug)]
+pub struct FrozenLoad {
+    /// The load condensed onto approaches and traces.
+    pub load: CondensedLoad,
+    factor: OpenFactor,
+    t: Vec<f64>,
+    /// What is left of it on the traces.
+    pub traces: Vec<f64>,
+}
+
 impl ContactPair {
     /// A pair whose first boundary unknowns are the approaches within `limits`, bilateral at first.
     pub fn new(schur: LocalSchur, load: CondensedLoad, limits: Limits) -> Self {
@@ -194,6 +205,68 @@ impl ContactPair {
             }
         }
         (reaction, scale)
+    }
+
+    /// Condenses a load onto the traces with the active set frozen, where the closed conditions
+    /// still have to approach by `missing`, one entry a condition.
+    pub fn condense_frozen(&self, load: CondensedLoad, missing: &[f64]) -> Option<FrozenLoad> {
+        let (m, h) = (self.limits.len(), self.s_tt());
+        let factor = OpenFactor::regular(h, &self.open)?;
+        let mut t: Vec<f64> = (0..m)
+            .map(|j| {
+                let (condition, factor) = self.limits.tightest[j];
+                if self.open[j] {
+                    0.0
+                } else {
+                    missing[condition] / factor
+                }
+            })
+            .collect();
+        let mut left = load.boundary()[..m].to_vec();
+        for (column, t) in h.col_iter().zip(&t) {
+            for (left, h) in left.iter_mut().zip(column.iter()) {
+                *left -= h * t;
+            }
+        }
+        let opened = factor.solve(|j| left[j]);
+        for (&j, opened) in factor.open.iter().zip(opened) {
+            t[j] = opened;
+        }
+        let mut traces = load.boundary()[m..].to_vec();
+        for (column, traces) in self.s_t_gamma().col_iter().zip(&mut traces) {
+            *traces -= column.iter().zip(&t).map(|(s, t)| s * t).sum::<f64>();
+        }
+        Some(FrozenLoad {
+            load,
+            factor,
+            t,
+            traces,
+        })
+    }
+
+    /// What such a load adds to the approaches and to the force of every condition once the change
+    /// `u` of the traces is known.
+    pub fn recover_frozen(&self, frozen: &FrozenLoad, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let m = self.limits.len();
+        let mut driven = vec![0.0; m];
+        for (column, u) in self.s_t_gamma().col_iter().zip(u) {
+            for (driven, s) in driven.iter_mut().zip(column.iter()) {
+                *driven -= s * u;
+            }
+        }
+        let mut t = frozen.t.clone();
+        let opened = frozen.factor.solve(|j| driven[j]);
+        for (&j, opened) in frozen.factor.open.iter().zip(opened) {
+            t[j] += opened;
+        }
+        let mut forces = vec![0.0; self.limits.conditions];
+        for (j, &(condition, factor)) in self.limits.tightest.iter().enumerate() {
+            if !self.open[j] {
+                let held: f64 = (0..m).map(|k| self.schur.s[(j, k)] * t[k]).sum();
+                forces[condition] = (frozen.load.boundary()[j] + driven[j] - held) / factor;
+            }
+        }
+        (t, forces)
     }
 
     /// W with S_kl'(U) = S_ΓΓ − Wᵀ W for the active set of the last evaluation, |open| × |Γ|.

@@ -212,21 +212,25 @@ impl ConState {
         }
     }
 
-    /// y ← y + S_CON'(U) x with the active sets of the last evaluation.
-    pub fn add_derivative(&self, interface: &Interface, x: &[f64], y: &mut [f64]) {
-        for p in 0..self.responses.len() {
+    /// Wᵀ W of pair p, by which its derivative falls short of the bilateral one; `None` where every
+    /// contact is closed.
+    pub fn opening(&self, p: usize) -> Option<Mat<f64>> {
+        let w = self.openings.get(p)?.as_ref()?;
+        (w.nrows() > 0).then(|| w.transpose() * w)
+    }
+
+    /// y ← y + a (S_CON'(U) − S_CON' of the bilateral problem) x with the active sets of the last
+    /// evaluation.
+    pub fn add_openings(&self, interface: &Interface, a: f64, x: &[f64], y: &mut [f64]) {
+        for (p, opening) in self.openings.iter().enumerate() {
+            let Some(w) = opening else { continue };
             let x_p = interface.restrict(p, x);
-            let mut y_p = vec![0.0; x_p.len()];
-            interface.add_pair_bilateral(p, &x_p, &mut y_p);
-            if let Some(w) = &self.openings[p] {
-                let mut wx = vec![0.0; w.nrows()];
-                multiply_add(w.as_ref(), &x_p, &mut wx);
-                for (wx, w) in wx.iter().zip(w.row_iter()) {
-                    for (y, w) in y_p.iter_mut().zip(w.iter()) {
-                        *y -= w * wx;
-                    }
-                }
-            }
+            let mut wx = vec![0.0; w.nrows()];
+            multiply_add(w.as_ref(), &x_p, &mut wx);
+            let y_p: Vec<f64> = w
+                .col_iter()
+                .map(|column| -a * column.iter().zip(&wx).map(|(w, wx)| w * wx).sum::<f64>())
+                .collect();
             interface.extend(p, &y_p, y);
         }
     }

@@ -198,13 +198,18 @@ impl Dofs {
     /// u = T x + c, node by node.
     pub fn displacement(&self, x: &[f64]) -> Vec<f64> {
         let mut u = self.constants.clone();
+        self.add_change(x, &mut u);
+        u
+    }
+
+    /// u ← u + T x: what a change of the unknowns adds to the displacement.
+    pub fn add_change(&self, x: &[f64], u: &mut [f64]) {
         for (row, u) in u.iter_mut().enumerate() {
             let range = self.offsets[row] as usize..self.offsets[row + 1] as usize;
             for &(dof, c) in &self.terms[range] {
                 *u += c * x[dof as usize];
             }
         }
-        u
     }
 
     /// y ← y + Tᵀ f for nodal forces f, node by node.
@@ -357,3 +362,6 @@ fn elimination_order(
     let order = minimum_degree(nodes.len(), &cliques).ok_or(DofError::Size)?;
     Ok(order.into_iter().map(|s| nodes[s as usize]).collect())
 }
+
+#[cfg(test)]
+mod tests;

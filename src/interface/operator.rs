@@ -14,6 +14,8 @@ pub struct Contribution {
     pub s: Mat<f64>,
     /// Its condensed load.
     pub load: Vec<f64>,
+    /// The smallest pivot of its interior relative to its diagonal entry.
+    pub smallest_pivot: f64,
 }
 
 /// The interface problem S_0 U + S_CON(U) = F, (14), as the root holds it.
@@ -25,6 +27,8 @@ pub struct Interface {
     pub pair_traces: Vec<Vec<u32>>,
     /// S_0 = Σ R_iᵀ S_i R_i over the linear subdomains, (15).
     s_0: SparseSymmetric,
+    /// Pattern of S_0 + S_CON'.
+    pattern: LowerPattern,
     /// F of the linear subdomains.
     f: Vec<f64>,
     f_scale: Vec<f64>,
@@ -33,6 +37,7 @@ pub struct Interface {
     /// F of the pairs with every contact closed.
     f_bilateral: Vec<f64>,
     factor: BoundaryLastCholesky,
+    smallest_pivot: f64,
     par: Par,
 }
 
@@ -59,15 +64,16 @@ impl Interface {
             ))
         };
         let mut s_0 = SparseSymmetric::zeros(LowerPattern::new(n, &linear).ok_or_else(too_large)?);
-        let mut sum = SparseSymmetric::zeros(LowerPattern::new(n, &all).ok_or_else(too_large)?);
+        let pattern = LowerPattern::new(n, &all).ok_or_else(too_large)?;
         let mut pair_traces = Vec::new();
         let mut bilateral = Vec::new();
         let mut f = vec![0.0; n];
         let mut f_bilateral = vec![0.0; n];
         let mut f_scale = vec![0.0; n];
+        let mut smallest_pivot = f64::INFINITY;
         for ((part, traces), &is_pair) in contributions.into_iter().zip(&numbering.traces).zip(pair)
         {
-            sum.add(traces, |a, b| part.s[(a, b)]);
+            smallest_pivot = smallest_pivot.min(part.smallest_pivot);
             let load_of_kind = if is_pair { &mut f_bilateral } else { &mut f };
             for (&dof, load) in traces.iter().zip(&part.load) {
                 load_of_kind[dof as usize] += load;
@@ -80,6 +86,8 @@ impl Interface {
                 s_0.add(traces, |a, b| part.s[(a, b)]);
             }
         }
+        let pairs = pair_traces.iter().zip(bilateral.iter().map(Mat::as_ref));
+        let sum = with_pairs(&s_0, &pattern, pairs);
         let factor = BoundaryLastCholesky::new(sum, n, &[], par).map_err(|error| {
             Failure::ill_posed(format!(
                 "the interface problem can't be solved even with every contact closed ({error}): \
@@ -90,18 +98,21 @@ impl Interface {
             len: n,
             pair_traces,
             s_0,
+            pattern,
             f,
             f_scale,
             bilateral,
             f_bilateral,
+            smallest_pivot: smallest_pivot.min(factor.smallest_pivot()),
             factor,
             par,
         })
     }
 
-    /// The smallest pivot of the bilateral operator relative to its diagonal.
+    /// The smallest pivot of all blocks and of the bilateral operator, each relative to its
+    /// diagonal entry.
     pub fn smallest_pivot(&self) -> f64 {
-        self.factor.smallest_pivot()
+        self.smallest_pivot
     }
 
     /// U^0: the solution of the bilateral problem (16)-(17).
@@ -127,9 +138,20 @@ impl Interface {
         self.s_0.multiply_add(x, y);
     }
 
-    /// y ← y + S_ΓΓ x of pair p, over the pair's own traces.
-    pub fn add_pair_bilateral(&self, p: usize, x: &[f64], y: &mut [f64]) {
-        multiply_add(self.bilateral[p].as_ref(), x, y);
+    /// y ← y + (S_0 + S_CON' of the bilateral problem) x.
+    pub fn add_bilateral(&self, x: &[f64], y: &mut [f64]) {
+        self.add_s_0(x, y);
+        self.add_pairs_bilateral(x, y);
+    }
+
+    /// y ← y + S_CON' x of the bilateral problem.
+    pub fn add_pairs_bilateral(&self, x: &[f64], y: &mut [f64]) {
+        for (p, bilateral) in self.bilateral.iter().enumerate() {
+            let x_p = self.restrict(p, x);
+            let mut y_p = vec![0.0; x_p.len()];
+            multiply_add(bilateral.as_ref(), &x_p, &mut y_p);
+            self.extend(p, &y_p, y);
+        }
     }
 
     /// F − S_0 U and the scale of its terms.
@@ -140,6 +162,29 @@ impl Interface {
         self.s_0.multiply_add_absolute(u, &mut scale);
         let r = self.f.iter().zip(&su).map(|(f, su)| f - su).collect();
         (r, scale)
+    }
+
+    /// The factor of S_0 + S_CON' for other derivatives of the pairs than the bilateral ones: S_ΓΓ
+    /// less `opening(p)` for pair p. `None` where it is singular.
+    pub fn factor_opened(
+        &self,
+        opening: impl Fn(usize) -> Option<Mat<f64>>,
+    ) -> Option<BoundaryLastCholesky> {
+        let derivatives: Vec<Mat<f64>> = self
+            .bilateral
+            .iter()
+            .enumerate()
+            .map(|(p, bilateral)| match opening(p) {
+                Some(opening) => bilateral - opening,
+                None => bilateral.clone(),
+            })
+            .collect();
+        let pairs = self
+            .pair_traces
+            .iter()
+            .zip(derivatives.iter().map(Mat::as_ref));
+        let sum = with_pairs(&self.s_0, &self.pattern, pairs);
+        BoundaryLastCholesky::new(sum, self.len, &[], self.par).ok()
     }
 
     /// The factor of S_0 alone; `None` where S_0 is singular.
@@ -159,6 +204,20 @@ impl Interface {
             y[i as usize] += x;
         }
     }
+}
+
+/// S_0 and the pairs' matrices on their traces, summed in one pattern.
+fn with_pairs<'a>(
+    s_0: &SparseSymmetric,
+    pattern: &LowerPattern,
+    pairs: impl Iterator<Item = (&'a Vec<u32>, MatRef<'a, f64>)>,
+) -> SparseSymmetric {
+    let mut sum = SparseSymmetric::zeros(pattern.clone());
+    sum.add_sparse(s_0);
+    for (traces, matrix) in pairs {
+        sum.add(traces, |a, b| matrix[(a, b)]);
+    }
+    sum
 }
 
 /// y ← y + A x.

@@ -60,7 +60,7 @@ impl BodyFrame {
             let length = norm(translation);
             let along: Vec<String> = translation
                 .iter()
-                .map(|t| format!("{:.4}", t / length + 0.0))
+                .map(|t| format!("{:.4}", (1e4 * t / length).round() / 1e4 + 0.0))
                 .collect();
             return format!("translation along ({})", along.join(", "));
         }

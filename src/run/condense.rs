@@ -20,7 +20,7 @@ use crate::output::progress::Progress;
 use crate::plan::Plan;
 use crate::rigid::analysis::Pin;
 use crate::schur::factor::FactorError;
-use crate::schur::local::{CondensedLoad, LinearSubdomain, LocalSchur};
+use crate::schur::local::{LinearSubdomain, LocalSchur};
 
 /// The condensed blocks of this rank.
 #[derive(Debug, Default)]
@@ -222,9 +222,11 @@ fn pack(blocks: &CondensedBlocks, plan: &Plan, b: usize) -> Message {
     if let Some(pair) = pair {
         message.push_lower(pair.bilateral());
         message.reals.extend(pair.bilateral_load());
+        message.reals.push(pair.schur().smallest_pivot());
     } else if let Some(LinearSubdomain { schur, load }) = blocks.linear.get(&b) {
         message.push_lower(schur.s.as_ref());
-        message.reals.extend(CondensedLoad::boundary(load));
+        message.reals.extend(load.boundary());
+        message.reals.push(schur.smallest_pivot());
     }
     message
 }
@@ -240,5 +242,10 @@ fn unpack(message: Message) -> (Vec<TraceDof>, Contribution) {
         .collect();
     let s: Mat<f64> = reader.lower(n);
     let load = reader.reals(n);
-    (traces, Contribution { s, load })
+    let contribution = Contribution {
+        s,
+        load,
+        smallest_pivot: reader.real(),
+    };
+    (traces, contribution)
 }

@@ -19,6 +19,9 @@ use crate::rigid::survey::Survey;
 use crate::settings::Settings;
 use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
 
+/// Pivot relative to its diagonal entry that may as well be zero.
+const SUSPICIOUS_PIVOT: f64 = 1e-13;
+
 /// Prints on the root what a user wants to follow, and nothing elsewhere.
 pub struct Narrator<'a> {
     comm: &'a Comm,
@@ -37,6 +40,8 @@ pub struct Totals<'a> {
     pub con: ConTotals,
     /// Number of unknowns on Γ.
     pub interface_dofs: usize,
+    /// The smallest pivot of all factorizations relative to its diagonal entry.
+    pub smallest_pivot: f64,
     /// The certificate.
     pub certificate: Certificate,
     /// Every rank's times.
@@ -197,6 +202,13 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
     let mut warnings = catalog.warnings.clone();
     warnings.extend(unknown_stress(catalog));
     warnings.extend(totals.warnings.iter().cloned());
+    if totals.smallest_pivot < SUSPICIOUS_PIVOT {
+        warnings.push(format!(
+            "the smallest pivot is {:.1e} of its diagonal entry: the scene is so badly conditioned \
+             that it may be a mechanism, and its displacement may be meaningless",
+            totals.smallest_pivot
+        ));
+    }
     warnings.extend(outcome.notes.iter().cloned());
     Report {
         status: match outcome.status {
@@ -251,7 +263,8 @@ fn skipped(totals: &Totals<'_>) -> Vec<String> {
     let idle = totals.ranks.iter().filter(|r| r.subdomains == 0).count();
     if idle > 0 {
         skipped.push(format!(
-            "{idle} ranks had nothing to do: more ranks than blocks"
+            "ranks without work: {idle} of {}, there are more ranks than blocks",
+            totals.ranks.len()
         ));
     }
     skipped

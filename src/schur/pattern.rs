@@ -184,6 +184,20 @@ impl SparseSymmetric {
         }
     }
 
+    /// Adds a sparse matrix whose pattern is part of this one's.
+    pub fn add_sparse(&mut self, other: &Self) {
+        for j in 0..other.pattern.n() {
+            let range = self.pattern.column(j);
+            let mut place = range.start;
+            for (from, &i) in other.pattern.column(j).zip(other.pattern.rows_of(j)) {
+                while place < range.end && self.pattern.rows[place] < i {
+                    place += 1;
+                }
+                self.values[place] += other.values[from];
+            }
+        }
+    }
+
     /// y ← y + A x.
     pub fn multiply_add(&self, x: &[f64], y: &mut [f64]) {
         for j in 0..self.pattern.n() {

@@ -85,7 +85,8 @@ impl Sweeps<'_, '_> {
                 *x /= norm;
             }
             let mut y = vec![0.0; n];
-            self.state.add_derivative(self.interface, &x, &mut y);
+            self.interface.add_pairs_bilateral(&x, &mut y);
+            self.state.add_openings(self.interface, 1.0, &x, &mut y);
             s_0.forward(&mut y);
             s_0.backward(&mut y);
             rho = dot(&y, &y).sqrt();

@@ -17,14 +17,6 @@ const SAME_MATERIAL: u32 = 4;
 pub(super) struct Atoms {
     /// The atom of every cell, numbered by first cell.
     of_cell: Vec<u32>,
-    /// The pieces of the mesh that hang together across facets.
-    pub pieces: Vec<Piece>,
-}
-
-/// A piece of the mesh.
-pub(super) struct Piece {
-    /// Its atoms' global numbers.
-    atoms: Vec<u32>,
     /// How they hang together.
     pub graph: Graph,
 }
@@ -32,48 +24,42 @@ pub(super) struct Piece {
 impl Atoms {
     /// Contracts the cells of a model.
     pub fn new(model: &Model, topology: &Topology) -> Self {
-        let cells = &model.mesh.cells;
-        let around = cells_around(model);
-        let mut sets = DisjointSets::new(cells.len());
-        for (node, fan) in around.iter() {
-            for &a in fan {
-                for &b in topology.neighbours(a as usize) {
-                    if cells.nodes_of(b as usize).contains(node) {
-                        sets.unite(a, b);
-                    }
+        let around = Around::new(model);
+        let (of_cell, count) = contract(model, topology, &around);
+        let mut cells = vec![0; count];
+        let mut edges = Vec::with_capacity(3 * of_cell.len());
+        for (cell, &a) in of_cell.iter().enumerate() {
+            cells[a as usize] += 1;
+            for &next in topology.neighbours(cell) {
+                let b = of_cell[next as usize];
+                if a != b {
+                    let same = model.cell_material[cell] == model.cell_material[next as usize];
+                    edges.push((a, b, if same { SAME_MATERIAL } else { 1 }));
                 }
             }
         }
-        let mut of_cell = vec![u32::MAX; cells.len()];
-        let mut count = 0;
-        for cell in 0..cells.len() {
-            let root = sets.find(cell as u32) as usize;
-            if root == cell {
-                of_cell[cell] = count;
-                count += 1;
-            } else {
-                of_cell[cell] = of_cell[root];
+        let mut contacts: Vec<Vec<u32>> = vec![Vec::new(); count];
+        for &(node, cell) in &around.cells {
+            let list = &mut contacts[of_cell[cell as usize] as usize];
+            for &contact in &around.contacts[node as usize] {
+                if let Err(at) = list.binary_search(&contact) {
+                    list.insert(at, contact);
+                }
             }
         }
-        let mut atoms = Self {
+        let material = materials(model, &of_cell, count);
+        Self {
             of_cell,
-            pieces: Vec::new(),
-        };
-        atoms.pieces = atoms.find_pieces(model, topology, count as usize, &around);
-        atoms
+            graph: Graph::new(cells, material, contacts, edges),
+        }
     }
 
-    /// Number of atoms.
-    pub fn count(&self) -> usize {
-        self.pieces.iter().map(|piece| piece.atoms.len()).sum()
-    }
-
-    /// The subdomain of every cell, from the part of every atom of every piece; subdomains are
+    /// The subdomain of every cell, from the part of every atom of every unit; subdomains are
     /// numbered by first cell.
-    pub fn subdomains(&self, parts: &[Vec<u32>]) -> Vec<u32> {
-        let mut label = vec![(0, 0); self.count()];
-        for (number, (piece, parts)) in self.pieces.iter().zip(parts).enumerate() {
-            for (&atom, &part) in piece.atoms.iter().zip(parts) {
+    pub fn subdomains(&self, units: &[Vec<u32>], parts: &[Vec<u32>]) -> Vec<u32> {
+        let mut label = vec![(0, 0); self.graph.len()];
+        for (number, (atoms, parts)) in units.iter().zip(parts).enumerate() {
+            for (&atom, &part) in atoms.iter().zip(parts) {
                 label[atom as usize] = (number, part);
             }
         }
@@ -86,92 +72,77 @@ impl Atoms {
             })
             .collect()
     }
+}
 
-    fn find_pieces(
-        &self,
-        model: &Model,
-        topology: &Topology,
-        count: usize,
-        around: &[(u32, Vec<u32>)],
-    ) -> Vec<Piece> {
-        let piece_of_cell = topology.pieces();
-        let pieces = piece_of_cell.iter().max().map_or(0, |&p| p as usize + 1);
-        let mut place = vec![(0u32, u32::MAX); count];
-        let mut atoms: Vec<Vec<u32>> = vec![Vec::new(); pieces];
-        for (cell, &atom) in self.of_cell.iter().enumerate() {
-            let place = &mut place[atom as usize];
-            if place.1 == u32::MAX {
-                let list = &mut atoms[piece_of_cell[cell] as usize];
-                *place = (piece_of_cell[cell], list.len() as u32);
-                list.push(atom);
-            }
-        }
-        let mut cells: Vec<Vec<u32>> = atoms.iter().map(|a| vec![0; a.len()]).collect();
-        let mut edges: Vec<Vec<(u32, u32, u32)>> = vec![Vec::new(); pieces];
-        for (cell, &atom) in self.of_cell.iter().enumerate() {
-            let (piece, a) = place[atom as usize];
-            cells[piece as usize][a as usize] += 1;
-            for &next in topology.neighbours(cell) {
-                let (_, b) = place[self.of_cell[next as usize] as usize];
-                if a != b {
-                    let same = model.cell_material[cell] == model.cell_material[next as usize];
-                    let weight = if same { SAME_MATERIAL } else { 1 };
-                    edges[piece as usize].push((a, b, weight));
+/// The surroundings of the nodes that have contact conditions.
+struct Around {
+    /// The contacts that have a condition at each node, ascending.
+    contacts: Vec<Vec<u32>>,
+    /// Each such node with each cell around it, ascending.
+    cells: Vec<(u32, u32)>,
+}
+
+impl Around {
+    fn new(model: &Model) -> Self {
+        let mut contacts: Vec<Vec<u32>> = vec![Vec::new(); model.mesh.points.len()];
+        for (number, contact) in model.contacts.iter().enumerate() {
+            for &(node, _) in contact.conditions.iter().flat_map(|c| &c.entries) {
+                let list = &mut contacts[node as usize];
+                if list.last() != Some(&(number as u32)) {
+                    list.push(number as u32);
                 }
             }
         }
-        let mut contacts: Vec<Vec<Vec<u32>>> =
-            atoms.iter().map(|a| vec![Vec::new(); a.len()]).collect();
-        let contact_of_node = contacts_of_nodes(model);
-        for (node, fan) in around {
-            for &cell in fan {
-                let (piece, a) = place[self.of_cell[cell as usize] as usize];
-                let list = &mut contacts[piece as usize][a as usize];
-                for &contact in &contact_of_node[*node as usize] {
-                    if let Err(at) = list.binary_search(&contact) {
-                        list.insert(at, contact);
-                    }
-                }
-            }
+        let mut cells = Vec::new();
+        for (cell, (_, nodes)) in model.mesh.cells.iter().enumerate() {
+            let in_contact = nodes.iter().filter(|&&n| !contacts[n as usize].is_empty());
+            cells.extend(in_contact.map(|&node| (node, cell as u32)));
         }
-        atoms
-            .into_iter()
-            .zip(cells)
-            .zip(edges)
-            .zip(contacts)
-            .map(|(((atoms, cells), edges), contacts)| Piece {
-                atoms,
-                graph: Graph::new(cells, edges, contacts),
-            })
-            .collect()
+        cells.sort_unstable();
+        Self { contacts, cells }
     }
 }
 
-/// The contacts that have a condition at each node.
-fn contacts_of_nodes(model: &Model) -> Vec<Vec<u32>> {
-    let mut contacts: Vec<Vec<u32>> = vec![Vec::new(); model.mesh.points.len()];
-    for (number, contact) in model.contacts.iter().enumerate() {
-        for &(node, _) in contact.conditions.iter().flat_map(|c| &c.entries) {
-            let list = &mut contacts[node as usize];
-            if list.last() != Some(&(number as u32)) {
-                list.push(number as u32);
+/// The atom of every cell, and how many atoms there are.
+fn contract(model: &Model, topology: &Topology, around: &Around) -> (Vec<u32>, usize) {
+    let cells = &model.mesh.cells;
+    let mut sets = DisjointSets::new(cells.len());
+    for &(node, a) in &around.cells {
+        for &b in topology.neighbours(a as usize) {
+            if cells.nodes_of(b as usize).contains(&node) {
+                sets.unite(a, b);
             }
         }
     }
-    contacts
+    let mut of_cell = vec![u32::MAX; cells.len()];
+    let mut count = 0;
+    for cell in 0..cells.len() {
+        let root = sets.find(cell as u32) as usize;
+        if root == cell {
+            of_cell[cell] = count;
+            count += 1;
+        } else {
+            of_cell[cell] = of_cell[root];
+        }
+    }
+    (of_cell, count as usize)
 }
 
-/// The nodes that have contact conditions, each with the cells around it.
-fn cells_around(model: &Model) -> Vec<(u32, Vec<u32>)> {
-    let in_contact: Vec<bool> = contacts_of_nodes(model)
+/// The material of most cells of every atom; the first in the scene where two have as many.
+fn materials(model: &Model, of_cell: &[u32], count: usize) -> Vec<u32> {
+    let mut of_atom: Vec<(u32, u32)> = of_cell
         .iter()
-        .map(|list| !list.is_empty())
+        .copied()
+        .zip(model.cell_material.iter().copied())
         .collect();
-    let mut around: std::collections::BTreeMap<u32, Vec<u32>> = Default::default();
-    for (cell, (_, nodes)) in model.mesh.cells.iter().enumerate() {
-        for &node in nodes.iter().filter(|&&n| in_contact[n as usize]) {
-            around.entry(node).or_default().push(cell as u32);
+    of_atom.sort_unstable();
+    let mut most = vec![(0, 0); count];
+    for cells in of_atom.chunk_by(|a, b| a == b) {
+        let (atom, material) = cells[0];
+        let best = &mut most[atom as usize];
+        if cells.len() > best.0 {
+            *best = (cells.len(), material);
         }
     }
-    around.into_iter().collect()
+    most.into_iter().map(|(_, material)| material).collect()
 }

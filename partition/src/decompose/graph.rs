@@ -1,9 +1,11 @@
-//! The graph of one piece: atoms, and the facets between them.
+//! The graph of a mesh: atoms, and the facets between them.
 
-/// A connected graph of atoms.
+/// A graph of atoms.
 pub(super) struct Graph {
     /// Number of cells of every atom.
     pub cells: Vec<u32>,
+    /// Material of every atom, that of most of its cells.
+    pub material: Vec<u32>,
     /// The contacts of every atom, ascending; empty unless it is a cluster.
     pub contacts: Vec<Vec<u32>>,
     offsets: Vec<usize>,
@@ -15,8 +17,9 @@ impl Graph {
     /// that occur more than once add up.
     pub fn new(
         cells: Vec<u32>,
-        mut directed: Vec<(u32, u32, u32)>,
+        material: Vec<u32>,
         contacts: Vec<Vec<u32>>,
+        mut directed: Vec<(u32, u32, u32)>,
     ) -> Self {
         directed.sort_unstable();
         let mut offsets = vec![0; cells.len() + 1];
@@ -37,10 +40,48 @@ impl Graph {
         }
         Self {
             cells,
+            material,
             contacts,
             offsets,
             edges,
         }
+    }
+
+    /// The graph of some of the atoms for each of several lists, none of which have an atom in
+    /// common; an atom's number there is its place in the list.
+    pub fn split(&self, lists: &[Vec<u32>]) -> Vec<Self> {
+        let mut place = vec![(u32::MAX, 0); self.len()];
+        for (list, atoms) in lists.iter().enumerate() {
+            for (number, &atom) in atoms.iter().enumerate() {
+                place[atom as usize] = (list as u32, number as u32);
+            }
+        }
+        let part = |(list, atoms): (usize, &Vec<u32>)| {
+            let mut offsets = Vec::with_capacity(atoms.len() + 1);
+            let mut edges = Vec::new();
+            offsets.push(0);
+            for &atom in atoms {
+                for &(next, weight) in self.edges(atom) {
+                    if let (of, number) = place[next as usize]
+                        && of as usize == list
+                    {
+                        edges.push((number, weight));
+                    }
+                }
+                offsets.push(edges.len());
+            }
+            let of_atoms = |values: &[u32]| atoms.iter().map(|&a| values[a as usize]).collect();
+            Self {
+                cells: of_atoms(&self.cells),
+                material: of_atoms(&self.material),
+                contacts: (atoms.iter())
+                    .map(|&atom| self.contacts[atom as usize].clone())
+                    .collect(),
+                offsets,
+                edges,
+            }
+        };
+        lists.iter().enumerate().map(part).collect()
     }
 
     /// Number of atoms.

@@ -43,7 +43,7 @@ impl ElementKind {
     }
 
     /// det ∂x/∂ξ of a cell that fills its space: positive where it is positively oriented, and
-    /// dx = det·dξ \[m^dim\].
+    /// dx = det·dξ (m^dim).
     pub fn jacobian(self, at: &[[f64; 3]], xi: [f64; 3]) -> f64 {
         let [t, s, _] = self.tangents(at, xi);
         match self.dim() {
@@ -51,6 +51,14 @@ impl ElementKind {
             1 => t[0],
             _ => t[0] * s[1] - t[1] * s[0],
         }
+    }
+
+    /// ∫ det ∂x/∂ξ dξ of a cell that fills its space: its length, area or volume, with the sign of
+    /// its orientation (m^dim).
+    pub fn measure(self, at: &[[f64; 3]]) -> f64 {
+        let rule = self.quadrature(1);
+        let points = rule.points.iter().zip(&rule.weights);
+        points.map(|(&xi, w)| w * self.jacobian(at, xi)).sum()
     }
 
     /// n dS/dξ of a facet whose cell lies to its left: its unit outward normal times the measure
@@ -69,7 +77,7 @@ impl ElementKind {
     }
 
     /// Where the line x + s·`direction` (a unit vector) crosses the inside of a straight facet of
-    /// a plane: s \[m\]. `None` where it passes by, or along it.
+    /// a plane: s (m). `None` where it passes by, or along it.
     pub fn crossing(self, at: &[[f64; 3]], x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
         match (self, at) {
             (Self::Line2, &[p, q]) => {

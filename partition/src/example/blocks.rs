@@ -17,7 +17,7 @@ const SAME: f64 = 1e-9;
 pub(super) struct Patch {
     /// Group of its cells.
     pub(super) body: &'static str,
-    /// Where a point of the unit square lies [m]; keeps orientation.
+    /// Where a point of the unit square lies (m); keeps orientation.
     pub(super) map: Box<dyn Fn([f64; 2]) -> [f64; 2]>,
     /// How the unit square is triangulated.
     pub(super) pattern: Pattern,

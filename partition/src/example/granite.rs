@@ -16,10 +16,10 @@ pub(super) const EXAMPLE: Example = Example {
     patches,
 };
 
-/// Side of the block [m].
+/// Side of the block (m).
 const SIDE: f64 = 10.0;
 
-/// The points 5, 6, 7 and 8 [m].
+/// The points 5, 6, 7 and 8 (m).
 const LINE: [[f64; 2]; 4] = [[0.0, 6.5], [3.0, 5.0], [7.0, 5.0], [10.0, 6.5]];
 
 /// Coarse columns under each of 5-6, 6-7, 7-8; along the line there are twice as many.

@@ -17,10 +17,10 @@ pub(super) const EXAMPLE: Example = Example {
     patches,
 };
 
-/// Half of the square's side [m].
+/// Half of the square's side (m).
 const HALF: f64 = 5.0;
 
-/// Height of the oblique contact at the left side, and its depth at the right one [m].
+/// Height of the oblique contact at the left side, and its depth at the right one (m).
 const RISE: f64 = 3.0;
 
 /// Cells along each contact from the middle on; even.

@@ -16,7 +16,7 @@ pub(super) const EXAMPLE: Example = Example {
     patches,
 };
 
-/// Radius of the hole and half the side of the plate [m].
+/// Radius of the hole and half the side of the plate (m).
 const RADIUS: f64 = 0.01;
 const HALF: f64 = 0.05;
 

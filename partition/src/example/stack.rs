@@ -14,7 +14,7 @@ pub(super) const EXAMPLE: Example = Example {
     patches,
 };
 
-/// Half of the blocks' widths, from below [m].
+/// Half of the blocks' widths, from below (m).
 const HALF_WIDTHS: [f64; 3] = [2.0, 1.5, 1.0];
 
 /// Cells per metre.

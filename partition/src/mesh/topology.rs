@@ -1,11 +1,16 @@
 //! Which cells meet at a facet, and what hangs together.
 
-use std::collections::HashMap;
-
 use super::Mesh;
+use crate::lists::Lists;
+
+/// Nodes that tell facets apart: those beyond lie between them.
+const CORNERS: usize = 4;
+
+/// The smallest nodes of a facet, ascending.
+type Key = [u32; CORNERS];
 
 /// A facet of a cell: the cell and the facet's place in [`crate::element::ElementKind::facets`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct CellFacet {
     /// Cell.
     pub cell: u32,
@@ -16,55 +21,58 @@ pub struct CellFacet {
 /// The adjacency of a mesh's cells across facets.
 #[derive(Clone, Debug)]
 pub struct Topology {
-    by_nodes: HashMap<Vec<u32>, Vec<CellFacet>>,
-    neighbours: Vec<Vec<u32>>,
+    /// The facets of all cells by their smallest node; those of the same nodes beside each other.
+    facets: Lists<(Key, CellFacet)>,
+    neighbours: Lists<u32>,
 }
 
 impl Topology {
     /// Finds all facets of all cells.
     pub fn new(mesh: &Mesh) -> Self {
-        let mut by_nodes: HashMap<Vec<u32>, Vec<CellFacet>> =
-            HashMap::with_capacity(2 * mesh.cells.len());
-        for (cell, (kind, nodes)) in mesh.cells.iter().enumerate() {
-            for (facet, (_, local)) in kind.facets().iter().enumerate() {
-                let mut key: Vec<u32> = local.iter().map(|&i| nodes[i]).collect();
-                key.sort_unstable();
-                by_nodes.entry(key).or_default().push(CellFacet {
-                    cell: cell as u32,
-                    facet: facet as u8,
-                });
-            }
-        }
-        let mut neighbours = vec![Vec::new(); mesh.cells.len()];
-        for facets in by_nodes.values() {
-            for a in facets {
-                for b in facets {
-                    if a.cell != b.cell {
-                        neighbours[a.cell as usize].push(b.cell);
-                    }
-                }
-            }
-        }
-        for list in &mut neighbours {
-            list.sort_unstable();
-            list.dedup();
-        }
-        Self {
-            by_nodes,
-            neighbours,
-        }
+        let all = mesh
+            .cells
+            .iter()
+            .enumerate()
+            .flat_map(|(cell, (kind, nodes))| {
+                let facets = kind.facets().iter().enumerate();
+                facets.map(move |(facet, (_, local))| {
+                    let key = key(local.iter().map(|&i| nodes[i]));
+                    let cell = cell as u32;
+                    let facet = facet as u8;
+                    (key[0], (key, CellFacet { cell, facet }))
+                })
+            });
+        let mut facets = Lists::new(mesh.points.len(), all);
+        facets.sort();
+        let same = facets
+            .iter()
+            .flat_map(|list| list.chunk_by(|a, b| a.0 == b.0));
+        let pairs = same.flat_map(|same| {
+            let others = move |a: u32| same.iter().map(move |(_, b)| (a, b.cell));
+            same.iter().flat_map(move |(_, a)| others(a.cell))
+        });
+        let mut neighbours = Lists::new(mesh.cells.len(), pairs.filter(|(a, b)| a != b));
+        neighbours.sort();
+        neighbours.dedup();
+        Self { facets, neighbours }
     }
 
     /// The facets of cells that have exactly these nodes, in any order.
-    pub fn cells_at(&self, facet_nodes: &[u32]) -> &[CellFacet] {
-        let mut key = facet_nodes.to_vec();
-        key.sort_unstable();
-        self.by_nodes.get(&key).map_or(&[], Vec::as_slice)
+    pub fn cells_at(&self, facet_nodes: &[u32]) -> Vec<CellFacet> {
+        let key = key(facet_nodes.iter().copied());
+        let list = match key[0] as usize {
+            node if node < self.facets.len() => self.facets.of(node),
+            _ => &[],
+        };
+        let start = list.partition_point(|(other, _)| *other < key);
+        let same = list[start..].partition_point(|(other, _)| *other == key);
+        let found = list[start..start + same].iter();
+        found.map(|&(_, facet)| facet).collect()
     }
 
     /// The cells that share a facet with `cell`, ascending.
     pub fn neighbours(&self, cell: usize) -> &[u32] {
-        &self.neighbours[cell]
+        self.neighbours.of(cell)
     }
 
     /// For every cell the piece of the mesh that it hangs together with across facets; pieces are
@@ -90,4 +98,16 @@ impl Topology {
         }
         piece
     }
+}
+
+fn key(nodes: impl Iterator<Item = u32>) -> Key {
+    let mut key = [u32::MAX; CORNERS];
+    for node in nodes {
+        let place = key.partition_point(|&other| other < node);
+        if place < CORNERS {
+            key[place..].rotate_right(1);
+            key[place] = node;
+        }
+    }
+    key
 }

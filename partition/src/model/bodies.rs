@@ -44,7 +44,7 @@ impl Bodies {
         }
         let kept: Vec<bool> = owner.iter().map(Option::is_some).collect();
         let mut mesh = restrict(mesh, &kept, &used_groups(scene))?;
-        orient(&mut mesh)?;
+        mesh.orient_cells()?;
         let cell_body: Vec<u32> = owner.into_iter().flatten().collect();
         let material_of_body: Vec<u32> = scene
             .bodies
@@ -172,9 +172,9 @@ fn restrict(mesh: Mesh, kept: &[bool], used: &BTreeSet<&str>) -> Result<Mesh, In
         let lost = group.members.iter().find(|&&m| new[m as usize].is_none());
         if let Some(&lost) = lost.filter(|_| used.contains(name.as_str())) {
             let tags = match word {
-                "cell" => tags_of(&mesh, mesh.cells.nodes_of(lost as usize)),
-                "facet" => tags_of(&mesh, mesh.facets.nodes_of(lost as usize)),
-                _ => tags_of(&mesh, &[lost]),
+                "cell" => mesh.tags_of(mesh.cells.nodes_of(lost as usize)),
+                "facet" => mesh.tags_of(mesh.facets.nodes_of(lost as usize)),
+                _ => mesh.tags_of(&[lost]),
             };
             return Err(InputError::new(format!(
                 "group '{name}': the {word} of nodes {tags} belongs to no body"
@@ -223,41 +223,4 @@ fn renumbered(kept: &[bool]) -> Vec<Option<u32>> {
         })
     };
     kept.iter().map(number).collect()
-}
-
-/// Turns negatively oriented cells round; refuses those without area.
-fn orient(mesh: &mut Mesh) -> Result<(), InputError> {
-    for cell in 0..mesh.cells.len() {
-        let kind = mesh.cells.kind(cell);
-        if kind.dim() != mesh.dim {
-            continue;
-        }
-        let nodes = mesh.cells.nodes_of(cell).to_vec();
-        let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
-        let jacobian = kind.jacobian(&at, [0.0; 3]);
-        let size = at
-            .iter()
-            .flat_map(|p| p.iter().zip(&at[0]).map(|(a, b)| (a - b).abs()))
-            .fold(0.0, f64::max);
-        if jacobian.abs() <= 1e-14 * size.powi(mesh.dim as i32) {
-            return Err(InputError::new(format!(
-                "cell {} of the mesh (nodes {}) has no area",
-                mesh.cell_tags[cell],
-                tags_of(mesh, &nodes)
-            )));
-        }
-        if jacobian < 0.0 {
-            let turned: Vec<u32> = kind.reversed().iter().map(|&i| nodes[i]).collect();
-            mesh.cells.nodes_of_mut(cell).copy_from_slice(&turned);
-        }
-    }
-    Ok(())
-}
-
-/// The tags of nodes in words.
-pub(super) fn tags_of(mesh: &Mesh, nodes: &[u32]) -> String {
-    let tags: Vec<String> = (nodes.iter())
-        .map(|&node| mesh.node_tags[node as usize].to_string())
-        .collect();
-    tags.join(", ")
 }

@@ -2,7 +2,6 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::bodies::tags_of;
 use super::sight::{Met, Target};
 use super::supports::PARALLEL;
 use super::surface::Surface;
@@ -24,7 +23,7 @@ pub(super) struct Contacts<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     supports: HashMap<u32, Vec<Support>>,
-    /// The largest coordinate \[m\].
+    /// The largest coordinate (m).
     size: f64,
 }
 
@@ -70,7 +69,7 @@ impl<'a> Contacts<'a> {
                 if let Some(&both) = facets_b.iter().find(|facet| on_a.contains(facet)) {
                     Err(format!(
                         "the facet of nodes {} is on both sides",
-                        tags_of(self.mesh, self.mesh.facets.nodes_of(both as usize))
+                        self.mesh.tags_of(self.mesh.facets.nodes_of(both as usize))
                     ))
                 } else {
                     self.pairs(&side_a, &side_b, &what)
@@ -213,11 +212,11 @@ impl<'a> Contacts<'a> {
                 "the sides don't match at {} nodes (tags {}{}): the normal of node {} meets side \
                  {} between nodes {}; expected each node opposite a node",
                 unmatched.len(),
-                tags_of(mesh, &shown),
+                mesh.tags_of(&shown),
                 if unmatched.len() > 5 { ", …" } else { "" },
                 mesh.node_tags[*node as usize],
                 if on_a.contains_key(node) { "b" } else { "a" },
-                tags_of(mesh, &facet.nodes)
+                mesh.tags_of(&facet.nodes)
             ));
         }
         if conditions.is_empty() {

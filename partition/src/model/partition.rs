@@ -1,6 +1,5 @@
 //! The partition that a scene asks for.
 
-use super::bodies::tags_of;
 use super::groups;
 use crate::error::InputError;
 use crate::mesh::Mesh;
@@ -25,7 +24,7 @@ pub(super) fn prescribed(mesh: &Mesh, names: &Names) -> Result<Vec<u32>, InputEr
             "subdomains: cell {} of the mesh (nodes {}) is in none of them; \
              expected each cell of the bodies in exactly one",
             mesh.cell_tags[cell],
-            tags_of(mesh, mesh.cells.nodes_of(cell))
+            mesh.tags_of(mesh.cells.nodes_of(cell))
         )));
     }
     Ok(owner.into_iter().flatten().collect())

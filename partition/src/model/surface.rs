@@ -2,7 +2,6 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::bodies::tags_of;
 use crate::element::ElementKind;
 use crate::element::geometry::{advance, length};
 use crate::error::InputError;
@@ -15,7 +14,7 @@ pub(super) struct SurfaceFacet {
     pub kind: ElementKind,
     /// Nodes in the order in which the cell lies to their left.
     pub nodes: Vec<u32>,
-    /// Coordinates of the nodes \[m\].
+    /// Coordinates of the nodes (m).
     pub at: Vec<[f64; 3]>,
     /// Unit outward normal in its middle.
     pub normal: [f64; 3],
@@ -24,7 +23,7 @@ pub(super) struct SurfaceFacet {
 }
 
 impl SurfaceFacet {
-    /// Its diameter, by the order of magnitude \[m\].
+    /// Its diameter, by the order of magnitude (m).
     pub fn size(&self) -> f64 {
         match self.kind.dim() {
             0 => 0.0,
@@ -71,11 +70,11 @@ impl Surface {
         let facet_of = |&facet: &u32| {
             let listed = mesh.facets.nodes_of(facet as usize);
             let refused = |reason: &str| {
-                let tags = tags_of(mesh, listed);
+                let tags = mesh.tags_of(listed);
                 InputError::new(format!("{what}: the facet of nodes {tags} {reason}"))
             };
-            let cell_facet = match topology.cells_at(listed) {
-                [one] => one,
+            let cell_facet = match topology.cells_at(listed).as_slice() {
+                [one] => *one,
                 [] => return Err(refused("belongs to no cell of a body")),
                 [_, _] => {
                     return Err(refused(
@@ -173,7 +172,7 @@ impl Surface {
         order
     }
 
-    /// The largest extent of its bounding box \[m\].
+    /// The largest extent of its bounding box (m).
     pub fn extent(&self) -> f64 {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];

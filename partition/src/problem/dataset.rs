@@ -6,7 +6,7 @@ use hdf5::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenU
 
 use crate::error::InputError;
 
-/// Longest fixed-length string that is read [bytes].
+/// Longest fixed-length string that is read (bytes).
 const LONGEST_FIXED: usize = 1024;
 
 /// The best compression that HDF5's deflate reaches; a dataset that declares more isn't there.

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::fmt;
 
-use super::Problem;
+use super::{ContactSummary, Problem};
 
 /// A group of subdomains in contact.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,6 +17,8 @@ pub struct GroupSummary {
 /// Sizes and balance of a problem; its `Display` is what the partition tool prints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
+    /// Number of nodes, shared ones counted once.
+    pub nodes: usize,
     /// Number of dofs, shared ones counted once.
     pub dofs: usize,
     /// Number of cells.
@@ -35,6 +37,8 @@ pub struct Summary {
     pub cut_facets: usize,
     /// Number of contact conditions.
     pub contact_conditions: usize,
+    /// Contacts.
+    pub contacts: Vec<ContactSummary>,
     /// Groups in contact.
     pub groups: Vec<GroupSummary>,
 }
@@ -48,8 +52,10 @@ impl Problem {
         let largest = catalog.subdomains.iter().map(|s| s.cells).max();
         let copies: usize = catalog.subdomains.iter().map(|s| s.nodes).sum();
         let shared: usize = catalog.interface.iter().map(Vec::len).sum();
+        let nodes = copies - shared + catalog.interface_nodes;
         Summary {
-            dofs: catalog.dim * (copies - shared + catalog.interface_nodes),
+            nodes,
+            dofs: catalog.dim * nodes,
             cells,
             bodies: catalog.bodies.len(),
             subdomains: count,
@@ -62,6 +68,7 @@ impl Problem {
             interface_nodes: catalog.interface_nodes,
             cut_facets: self.cut_facets(),
             contact_conditions: catalog.groups.iter().sum(),
+            contacts: catalog.contacts.clone(),
             groups: catalog
                 .groups
                 .iter()
@@ -113,29 +120,58 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{} dofs, {} cells, bodies: {}",
-            self.dofs, self.cells, self.bodies
+            "mesh          {} nodes, {} cells",
+            self.nodes, self.cells
+        )?;
+        writeln!(f, "dofs          {}", self.dofs)?;
+        writeln!(
+            f,
+            "subdomains    {}, {} in contact",
+            self.subdomains,
+            self.subdomains - self.linear_subdomains
         )?;
         writeln!(
             f,
-            "{} subdomains ({} without contact), largest / mean {:.2}",
-            self.subdomains, self.linear_subdomains, self.imbalance
+            "balance       {:.2} (largest subdomain over the mean, by cells)",
+            self.imbalance
         )?;
         writeln!(
             f,
-            "interface: {} nodes, {} facets cut",
+            "interface     {} nodes, {} facets cut",
             self.interface_nodes, self.cut_facets
         )?;
-        write!(f, "contact conditions: {}", self.contact_conditions)?;
-        for (number, group) in self.groups.iter().enumerate() {
-            let members: Vec<String> = group.subdomains.iter().map(ToString::to_string).collect();
-            write!(
+        writeln!(f, "contact       {} conditions", self.contact_conditions)?;
+        for contact in &self.contacts {
+            writeln!(
                 f,
-                "\n  group {number}: subdomains {}, {} conditions",
-                members.join(" + "),
-                group.conditions
+                "              {:>6} on {}",
+                contact.conditions, contact.name
             )?;
         }
-        Ok(())
+        write!(f, "groups        {}", self.sizes_of_groups())
+    }
+}
+
+impl Summary {
+    /// How many subdomains the groups in contact have, in words.
+    fn sizes_of_groups(&self) -> String {
+        let count = |wanted: fn(usize) -> bool| {
+            let sizes = self.groups.iter().map(|group| group.subdomains.len());
+            sizes.filter(|&size| wanted(size)).count()
+        };
+        let words = [
+            (count(|size| size == 1), "single"),
+            (count(|size| size == 2), "in pairs"),
+            (count(|size| size > 2), "larger"),
+        ];
+        let words: Vec<String> = words
+            .into_iter()
+            .filter(|&(count, _)| count > 0)
+            .map(|(count, word)| format!("{count} {word}"))
+            .collect();
+        match words.is_empty() {
+            true => "none".into(),
+            false => words.join(", "),
+        }
     }
 }

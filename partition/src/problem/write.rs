@@ -1,6 +1,6 @@
 //! Writes `problem.h5`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use hdf5::H5Type;
 use hdf5::types::{FixedAscii, VarLenUnicode};
@@ -8,6 +8,7 @@ use hdf5::types::{FixedAscii, VarLenUnicode};
 use super::{ContactRow, FORMAT, Problem, Subdomain, VERSION};
 use crate::error::OutputError;
 use crate::model::PlaneState;
+use crate::whole_file;
 
 /// Version of VTKHDF's layout.
 const VTKHDF_VERSION: [i64; 2] = [2, 0];
@@ -22,38 +23,8 @@ impl Problem {
     /// # Errors
     /// The file can't be written; what was there before is untouched.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
-        self.write_renamed(path).map_err(|reason| OutputError {
-            path: path.to_path_buf(),
-            reason,
-        })
-    }
-
-    fn write_renamed(&self, path: &Path) -> Result<(), String> {
-        let folder = match path.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
-            _ => PathBuf::from("."),
-        };
-        if path.is_dir() {
-            return Err("it is a folder".into());
-        }
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".contact-dd-").suffix(".h5.part");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // The system takes the user's umask off.
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        let temporary = builder
-            .tempfile_in(folder)
-            .map_err(|reason| reason.to_string())?;
         hdf5::silence_errors(true);
-        self.write_all(temporary.path())
-            .map_err(|reason| reason.to_string())?;
-        temporary
-            .persist(path)
-            .map_err(|reason| reason.to_string())?;
-        Ok(())
+        whole_file::replace(path, |file| self.write_all(file.path()))
     }
 
     fn write_all(&self, path: &Path) -> hdf5::Result<()> {

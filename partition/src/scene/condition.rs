@@ -63,7 +63,7 @@ impl<'de> Deserialize<'de> for Names {
 pub struct Body {
     /// Name of its material.
     pub material: String,
-    /// Force per volume [N/m³].
+    /// Force per volume (N/m³).
     pub body_force: Option<Vector>,
 }
 
@@ -73,7 +73,7 @@ pub struct Body {
 pub struct Displacement {
     /// Where.
     pub on: Names,
-    /// u_x, u_y, u_z \[m\].
+    /// u_x, u_y, u_z (m).
     pub components: [Option<Number>; 3],
 }
 
@@ -115,7 +115,7 @@ pub struct Bilateral {
 pub struct Traction {
     /// Where.
     pub on: Names,
-    /// τ [N/m²].
+    /// τ (N/m²).
     pub value: Vector,
 }
 
@@ -125,7 +125,7 @@ pub struct Traction {
 pub struct Pressure {
     /// Where.
     pub on: Names,
-    /// Pressure, positive where it pushes into the body [N/m²].
+    /// Pressure, positive where it pushes into the body (N/m²).
     pub value: Number,
 }
 
@@ -139,7 +139,7 @@ pub struct Contact {
     pub side_a: Names,
     /// What side a may touch.
     pub partner: Partner,
-    /// The gap in place of the geometric one \[m\].
+    /// The gap in place of the geometric one (m).
     pub gap: Option<Number>,
 }
 
@@ -232,16 +232,16 @@ impl TryFrom<String> for ContactName {
 pub enum Obstacle {
     /// All that lies behind a straight wall.
     HalfPlane {
-        /// A point on the wall \[m\].
+        /// A point on the wall (m).
         point: ConstantVector,
         /// Direction out of the obstacle towards the body, of any length but zero.
         normal: ConstantVector,
     },
     /// A circle.
     Circle {
-        /// Centre \[m\].
+        /// Centre (m).
         center: ConstantVector,
-        /// Radius \[m\].
+        /// Radius (m).
         radius: f64,
         /// Whether it keeps bodies inside, not outside.
         inside: bool,

@@ -11,16 +11,16 @@ use super::number::Constant;
 pub enum Elasticity {
     /// The same in all directions.
     Isotropic {
-        /// Young's modulus \[Pa\].
+        /// Young's modulus (Pa).
         young: f64,
         /// Poisson's ratio.
         poisson: f64,
     },
     /// Any stiffness in the plane.
     Anisotropic {
-        /// C: (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy), symmetric positive definite \[Pa\].
+        /// C: (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy), symmetric positive definite (Pa).
         stiffness: [[f64; 3]; 3],
-        /// (ε_xx, ε_yy, γ_xy) to σ_zz in plane strain \[Pa\].
+        /// (ε_xx, ε_yy, γ_xy) to σ_zz in plane strain (Pa).
         out_of_plane: Option<[f64; 3]>,
     },
 }

@@ -15,7 +15,7 @@ pub enum Number {
 }
 
 impl Number {
-    /// Its value at a point \[m\].
+    /// Its value at a point (m).
     ///
     /// # Errors
     /// An expression that isn't finite there.
@@ -118,7 +118,7 @@ impl Vector {
         self.0.len()
     }
 
-    /// Its value at a point \[m\], with zero for a third component that it hasn't.
+    /// Its value at a point (m), with zero for a third component that it hasn't.
     ///
     /// # Errors
     /// An expression that isn't finite there.

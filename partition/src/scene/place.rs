@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use serde::{Deserialize, Deserializer};
+use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
 use super::suggest::nearest;
@@ -74,31 +75,44 @@ fn compose(text: &str, start: Option<usize>, path: &[Step], message: &str) -> In
         place = format!("line {}: ", start.matches('\n').count() + 1);
     }
     if !path.is_empty() {
-        place = format!("{place}{}: ", shown(path));
+        place = format!("{place}{}: ", shown(text, path));
     }
     InputError::new(format!("{place}{message}"))
 }
 
-/// A path as in `contact[2].sides`, counted from 1.
-fn shown(path: &[Step]) -> String {
-    let mut text = String::new();
-    for step in path {
+/// A path as in `contact[2] 'seam'.sides`, counted from 1, with the names of the tables that have
+/// one.
+fn shown(text: &str, path: &[Step]) -> String {
+    let root = DeTable::parse(text).ok();
+    let root = root.map(|root| DeValue::Table(root.into_inner()));
+    let mut value = root.as_ref();
+    let mut shown = String::new();
+    for (depth, step) in path.iter().enumerate() {
         match step {
             Step::Key(key) => {
-                if !text.is_empty() {
-                    text.push('.');
+                value = value.and_then(|table| table.get(key.as_str()).map(Spanned::get_ref));
+                if !shown.is_empty() {
+                    shown.push('.');
                 }
                 let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
                 if !key.is_empty() && key.chars().all(bare) {
-                    text.push_str(key);
+                    shown.push_str(key);
                 } else {
-                    text.push_str(&format!("{key:?}"));
+                    shown.push_str(&format!("{key:?}"));
                 }
             }
-            Step::Index(index) => text.push_str(&format!("[{}]", index + 1)),
+            Step::Index(index) => {
+                value = value.and_then(|array| array.get(*index).map(Spanned::get_ref));
+                shown.push_str(&format!("[{}]", index + 1));
+                let name = value.and_then(|item| item.get("name")?.get_ref().as_str());
+                let about_name = path.get(depth + 1) == Some(&Step::from("name"));
+                if let Some(name) = name.filter(|name| !about_name && !name.is_empty()) {
+                    shown.push_str(&format!(" '{}'", name.escape_debug()));
+                }
+            }
         }
     }
-    text
+    shown
 }
 
 /// Serde's words for keys that aren't known, with the nearest that is.

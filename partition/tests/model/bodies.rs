@@ -137,7 +137,7 @@ fn a_cell_without_area_is_named() {
     blocks.mesh.points[4] = [2.0, 1.0, 0.0];
     let error = blocks.model("").unwrap_err();
     assert!(
-        error.contains("cell 5000 of the mesh (nodes 1003, 1006, 1015) has no area"),
+        error.contains("element 5000 has no area: its nodes 1003, 1006, 1015 lie on one line"),
         "{error}"
     );
 }

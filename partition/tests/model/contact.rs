@@ -163,6 +163,37 @@ fn a_crack_tip_carries_no_condition() {
 }
 
 #[test]
+fn a_normal_that_goes_through_the_crack_tip_passes_it_by() {
+    // A notch below the tip: the normal of its deepest node is that of the chord between its
+    // neighbours, and leads from there to the tip.
+    let (tip, deepest, last) = ([1.0, 0.0], [0.5, -0.4], [0.2, 1.0]);
+    let chord = [tip[0] - last[0], tip[1] - last[1]];
+    let way = [tip[0] - deepest[0], tip[1] - deepest[1]];
+    close(chord[0] * way[0] + chord[1] * way[1], 0.0, 1e-15);
+    // On the normal of the last facet.
+    let partner = [last[0] + 0.4 * 1.4, last[1] + 0.4 * 0.3];
+    let mut blocks = cracked();
+    let half = blocks.mesh.points.len() / 2;
+    for (node, [x, y, _]) in blocks.mesh.points.iter_mut().enumerate() {
+        let lower = node < half;
+        let to = match (lower, *x) {
+            (true, 0.5) if *y == 0.0 => deepest,
+            (true, 0.0) if *y == 0.0 => last,
+            (false, 0.5) => [partner[0], partner[1] + *y],
+            (false, 0.0) => [0.5, 2.2 + *y],
+            _ => continue,
+        };
+        [*x, *y] = to;
+    }
+    let rows = conditions(&blocks, CONTACT).unwrap();
+    let ends: Vec<_> = (rows.iter())
+        .flat_map(|row| &row.entries)
+        .map(|&(node, _)| blocks.mesh.points[node as usize])
+        .collect();
+    assert_eq!(ends, [last, partner].map(|[x, y]| [x, y, 0.0]));
+}
+
+#[test]
 fn facets_of_an_undoubled_crack_are_refused_with_advice() {
     let mut blocks = cracked();
     let (a, b) = (blocks.node(1.0, 0.0), blocks.node(1.5, 0.0));

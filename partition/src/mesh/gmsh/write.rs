@@ -19,7 +19,7 @@ use crate::whole_file;
 /// # Errors
 /// The file can't be written.
 pub fn write(mesh: &Mesh, path: &Path) -> Result<(), OutputError> {
-    whole_file::replace(path, |out| {
+    whole_file::replace_bytes(path, |out| {
         let plan = Plan::new(mesh);
         writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat")?;
         plan.write_names(out)?;

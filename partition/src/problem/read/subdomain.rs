@@ -7,7 +7,6 @@ use super::ProblemFile;
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::model::Support;
-use crate::problem::measure::measure;
 use crate::problem::{InterfaceNode, Subdomain, UNIT_TOLERANCE};
 
 impl ProblemFile {
@@ -111,7 +110,8 @@ impl ProblemFile {
                     &format!("offset {end}; expected at most {}", nodes.len()),
                 ));
             };
-            let size = measure(kind, corners, points);
+            let at_corners: Vec<_> = corners.iter().map(|&n| points[n as usize]).collect();
+            let size = kind.measure(&at_corners);
             if !(size > 0.0 && size.is_finite()) {
                 return Err(connectivity.row_error(
                     entries.start + at,

@@ -1,4 +1,4 @@
-//! The partition of one piece.
+//! The partition of one unit.
 
 use super::graph::Graph;
 use super::multilevel;
@@ -17,7 +17,7 @@ const BUDGET: usize = 1_000_000;
 /// METIS isn't asked for parts of fewer atoms than these.
 const FEWEST_ATOMS: usize = 8;
 
-/// Splits a piece into exactly `count` connected parts; `count` is at least one and at most the
+/// Splits a unit into exactly `count` connected parts; `count` is at least one and at most the
 /// number of atoms. Returns the part of every atom.
 pub(super) fn split(graph: &Graph, count: usize) -> Vec<u32> {
     if count == 1 {

@@ -1,0 +1,98 @@
+//! Many short lists in two allocations.
+
+/// Lists of items, one for each of `0..len`.
+#[derive(Clone, Debug)]
+pub(crate) struct Lists<T> {
+    offsets: Vec<usize>,
+    items: Vec<T>,
+}
+
+impl<T: Copy> Lists<T> {
+    /// Puts each item into the list that stands before it; those of one list keep their order.
+    /// O(items + lists).
+    pub fn new(len: usize, items: impl Iterator<Item = (u32, T)> + Clone) -> Self {
+        let mut offsets = vec![0; len + 1];
+        let mut first = None;
+        for (list, item) in items.clone() {
+            offsets[list as usize + 1] += 1;
+            first.get_or_insert(item);
+        }
+        for list in 0..len {
+            offsets[list + 1] += offsets[list];
+        }
+        let mut sorted = first.map_or_else(Vec::new, |item| vec![item; offsets[len]]);
+        let mut ends = offsets.clone();
+        for (list, item) in items {
+            sorted[ends[list as usize]] = item;
+            ends[list as usize] += 1;
+        }
+        Self {
+            offsets,
+            items: sorted,
+        }
+    }
+
+    /// Number of lists.
+    pub fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// One of the lists.
+    pub fn of(&self, list: usize) -> &[T] {
+        &self.items[self.offsets[list]..self.offsets[list + 1]]
+    }
+
+    /// The lists in order.
+    pub fn iter(&self) -> impl Iterator<Item = &[T]> + Clone {
+        (0..self.len()).map(|list| self.of(list))
+    }
+}
+
+impl<T: Copy + Ord> Lists<T> {
+    /// Sorts every list.
+    pub fn sort(&mut self) {
+        for list in 0..self.len() {
+            self.items[self.offsets[list]..self.offsets[list + 1]].sort_unstable();
+        }
+    }
+
+    /// Takes out what equals the item before it.
+    pub fn dedup(&mut self) {
+        let mut kept = 0;
+        for list in 0..self.len() {
+            let range = self.offsets[list]..self.offsets[list + 1];
+            let start = kept;
+            for at in range {
+                if kept == start || self.items[at] != self.items[kept - 1] {
+                    self.items[kept] = self.items[at];
+                    kept += 1;
+                }
+            }
+            self.offsets[list] = start;
+        }
+        let len = self.len();
+        self.offsets[len] = kept;
+        self.items.truncate(kept);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_hold_what_was_put_into_them_and_nothing_else() {
+        let items = [(2, 'b'), (0, 'z'), (2, 'a'), (2, 'b'), (4, 'z'), (0, 'z')];
+        let mut lists = Lists::new(6, items.into_iter());
+        let words = |lists: &Lists<char>| -> Vec<String> {
+            lists.iter().map(|list| list.iter().collect()).collect()
+        };
+        assert_eq!(words(&lists), ["zz", "", "bab", "", "z", ""]);
+        lists.sort();
+        assert_eq!(words(&lists), ["zz", "", "abb", "", "z", ""]);
+        lists.dedup();
+        assert_eq!(words(&lists), ["z", "", "ab", "", "z", ""]);
+        let none: [(u32, char); 0] = [];
+        assert_eq!(words(&Lists::new(0, none.into_iter())), [""; 0]);
+    }
+}
