@@ -1,0 +1,20 @@
+//! What the tests of the whole program share.
+
+#![allow(
+    dead_code,
+    reason = "every test binary takes what it needs and leaves the rest"
+)]
+
+pub mod blocks;
+pub mod monolithic;
+pub mod process;
+pub mod random;
+pub mod scenes;
+pub mod solution;
+pub mod solver;
+
+/// Fails unless both agree to within `slack`.
+#[track_caller]
+pub fn close(a: f64, b: f64, slack: f64) {
+    assert!((a - b).abs() <= slack, "{a:e}; expected {b:e} ± {slack:e}");
+}

@@ -1,0 +1,189 @@
+//! Running programs that may hang, and ending all of their processes.
+
+use std::fs;
+use std::io::Read;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rustix::process::{Pid, Signal, kill_process};
+use tempfile::TempDir;
+
+/// How a program ended and what it printed.
+#[derive(Debug)]
+pub struct Ended {
+    /// Its exit status; `None` if it had to be ended because its time was up.
+    pub status: Option<ExitStatus>,
+    pub stdout: String,
+    pub stderr: String,
+    pub took: Duration,
+}
+
+impl Ended {
+    /// Its exit code.
+    ///
+    /// # Panics
+    /// If it has none, because it hung or was killed.
+    #[track_caller]
+    pub fn code(&self) -> i32 {
+        let Some(status) = self.status else {
+            panic!(
+                "hung, and was ended after {:?}\n{}\n{}",
+                self.took, self.stdout, self.stderr
+            );
+        };
+        status
+            .code()
+            .unwrap_or_else(|| panic!("ended by a signal: {status}\n{}", self.stderr))
+    }
+
+    /// Lines that begin with `error:`, the program's way to fail.
+    pub fn errors(&self) -> Vec<&str> {
+        let lines = self.stderr.lines().chain(self.stdout.lines());
+        lines.filter(|line| line.starts_with("error:")).collect()
+    }
+}
+
+/// A program on its way.
+pub struct Running {
+    child: Child,
+    _temporary: TempDir,
+    began: Instant,
+    stdout: thread::JoinHandle<String>,
+    stderr: thread::JoinHandle<String>,
+}
+
+impl Running {
+    /// Starts it with a folder of its own for temporary files: launchers that end at the same
+    /// time remove the folder that they share.
+    pub fn start(command: &mut Command) -> Self {
+        let temporary = tempfile::tempdir().unwrap();
+        let mut child = command
+            .env("TMPDIR", temporary.path())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap_or_else(|error| panic!("{command:?} can't be started: {error}"));
+        let stdout = collect(child.stdout.take());
+        let stderr = collect(child.stderr.take());
+        Self {
+            child,
+            _temporary: temporary,
+            began: Instant::now(),
+            stdout,
+            stderr,
+        }
+    }
+
+    /// The processes that it started, and those that these started, whose name is `name`.
+    pub fn descendants(&self, name: &str) -> Vec<u32> {
+        let processes = processes();
+        let mut tree = vec![self.child.id()];
+        let mut next = 0;
+        while next < tree.len() {
+            let parent = tree[next];
+            tree.extend(
+                processes
+                    .iter()
+                    .filter(|p| p.parent == parent)
+                    .map(|p| p.id),
+            );
+            next += 1;
+        }
+        processes
+            .iter()
+            .filter(|p| tree[1..].contains(&p.id) && p.name == name)
+            .map(|p| p.id)
+            .collect()
+    }
+
+    pub fn is_running(&mut self) -> bool {
+        self.child.try_wait().unwrap().is_none()
+    }
+
+    /// Waits for its end, for `limit` at most; then it and all that it started are killed.
+    pub fn wait(mut self, limit: Duration) -> Ended {
+        let deadline = Instant::now() + limit;
+        let status = loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                break Some(status);
+            }
+            if Instant::now() > deadline {
+                self.kill();
+                break None;
+            }
+            thread::sleep(Duration::from_millis(5));
+        };
+        Ended {
+            status,
+            took: self.began.elapsed(),
+            stdout: self.stdout.join().unwrap(),
+            stderr: self.stderr.join().unwrap(),
+        }
+    }
+
+    /// The launcher's ranks are in process groups of their own, so that they are looked up one by
+    /// one.
+    fn kill(&mut self) {
+        let mut doomed = Vec::new();
+        for process in processes() {
+            if process.parent == self.child.id() || doomed.contains(&process.parent) {
+                doomed.push(process.id);
+            }
+        }
+        // The launcher first: it would take the end of a rank for news.
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+        doomed.into_iter().for_each(kill);
+    }
+}
+
+/// Sends SIGKILL; a process that is gone already is fine.
+pub fn kill(id: u32) {
+    if let Some(id) = Pid::from_raw(id as i32) {
+        let _ = kill_process(id, Signal::KILL);
+    }
+}
+
+/// Whether the process is there and hasn't ended.
+pub fn is_alive(id: u32) -> bool {
+    processes().iter().any(|process| process.id == id)
+}
+
+struct Process {
+    id: u32,
+    parent: u32,
+    name: String,
+}
+
+/// All processes but zombies, by ascending id, from /proc.
+fn processes() -> Vec<Process> {
+    let mut all: Vec<Process> = fs::read_dir("/proc")
+        .unwrap()
+        .filter_map(|entry| {
+            let id = entry.ok()?.file_name().to_str()?.parse().ok()?;
+            // "id (name) state parent …", where the name may hold anything.
+            let stat = fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
+            let (head, tail) = stat.rsplit_once(") ")?;
+            let (_, name) = head.split_once('(')?;
+            let mut fields = tail.split(' ');
+            let state = fields.next()?;
+            let parent = fields.next()?.parse().ok()?;
+            let name = name.to_owned();
+            (state != "Z").then_some(Process { id, parent, name })
+        })
+        .collect();
+    all.sort_by_key(|process| process.id);
+    all
+}
+
+fn collect(stream: Option<impl Read + Send + 'static>) -> thread::JoinHandle<String> {
+    thread::spawn(move || {
+        let mut bytes = Vec::new();
+        if let Some(mut stream) = stream {
+            let _ = stream.read_to_end(&mut bytes);
+        }
+        String::from_utf8_lossy(&bytes).into_owned()
+    })
+}

@@ -1,0 +1,77 @@
+//! Scenes that several tests solve.
+
+use contact_dd_partition::example;
+use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::model::Model;
+use contact_dd_partition::scene::Scene;
+
+use super::blocks::Blocks;
+
+/// Plane state, materials and bodies of most scenes.
+pub const BODIES: &str = "
+plane = 'strain'
+materials.steel = {young = 210e9, poisson = 0.3}
+materials.rock = {young = 20e9, poisson = 0.22}
+bodies.lower.material = 'rock'
+bodies.upper.material = 'steel'
+";
+
+/// The lower block held at its bottom, the upper one at its left side against sliding.
+pub const SUPPORTS: &str = "
+[[displacement]]
+on = 'lower bottom'
+x = 0.0
+y = 0.0
+[[displacement]]
+on = 'upper left'
+x = 0.0
+";
+
+/// A pressure on the left that is a pull on the right.
+pub const LOAD: &str = "
+[[pressure]]
+on = 'upper top'
+value = '1e6*(1.95-1.9*x)'
+";
+
+/// The joint of the two blocks.
+pub const JOINT: &str = "
+[[contact]]
+name = 'joint'
+sides = ['upper bottom', 'lower top']
+";
+
+/// A wide lower and a narrower upper block, 2 m and 1 m wide, 1 m high each.
+pub fn two_blocks() -> Blocks {
+    Blocks::new()
+        .rectangle("lower", [0.0, 2.0], [0.0, 1.0], [16, 8])
+        .rectangle("upper", [0.5, 1.5], [1.0, 2.0], [8, 8])
+}
+
+/// The scene of [`two_blocks`] with what is added or put in the place of a part.
+pub fn two_block_scene() -> String {
+    format!("{BODIES}{SUPPORTS}{LOAD}{JOINT}")
+}
+
+/// The model of a scene in TOML, which may leave out `mesh`, on a mesh.
+#[track_caller]
+pub fn model(text: &str, mesh: Mesh) -> Model {
+    let text = match text.contains("mesh =") {
+        true => text.to_owned(),
+        false => format!("mesh = 'here.msh'\n{text}"),
+    };
+    let scene = Scene::parse(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    Model::new(&scene, mesh).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A built-in scene: its text and its mesh.
+pub fn built_in(name: &str, refine: u32) -> (&'static str, Mesh) {
+    let example = example::find(name).unwrap();
+    (example.scene, example.mesh(refine).unwrap())
+}
+
+/// The model of a built-in scene.
+pub fn built_in_model(name: &str, refine: u32) -> Model {
+    let (text, mesh) = built_in(name, refine);
+    model(text, mesh)
+}

@@ -1,0 +1,166 @@
+//! A result file as any reader of HDF5 sees it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use contact_dd_partition::model::Model;
+use hdf5::File;
+use hdf5::types::VarLenUnicode;
+use serde_json::Value;
+
+/// What a run found.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// Displacement by node tag [m].
+    pub displacement: BTreeMap<i64, [f64; 3]>,
+    /// Stress of every cell, with its centre [Pa].
+    pub cells: Vec<([f64; 3], [f64; 6])>,
+    /// Conditions by contact.
+    pub contacts: BTreeMap<String, Vec<ContactPoint>>,
+    /// The report.
+    pub report: Value,
+}
+
+/// A contact condition.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    pub tags: [i64; 2],
+    pub position: [f64; 3],
+    pub normal: [f64; 3],
+    pub gap: f64,
+    pub force: f64,
+    pub pressure: f64,
+    pub closed: bool,
+}
+
+fn column<T: hdf5::H5Type>(file: &File, name: &str) -> Vec<T> {
+    let dataset = file.dataset(name).unwrap_or_else(|e| panic!("{name}: {e}"));
+    dataset.read_raw().unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+fn table<const N: usize>(file: &File, name: &str) -> Vec<[f64; N]> {
+    column::<f64>(file, name).as_chunks::<N>().0.to_vec()
+}
+
+impl Solution {
+    pub fn read(path: &Path) -> Self {
+        let file = File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        let tags = column::<i64>(&file, "VTKHDF/PointData/GlobalNodeId");
+        let displacement = table::<3>(&file, "VTKHDF/PointData/Displacement");
+        let report: VarLenUnicode = file.attr("report").unwrap().read_scalar().unwrap();
+        let names = file.group("contact").map(|g| g.member_names().unwrap());
+        let contacts = (names.unwrap_or_default().into_iter())
+            .map(|name| (name.clone(), points(&file, &format!("contact/{name}"))))
+            .collect();
+        Self {
+            displacement: tags.into_iter().zip(displacement).collect(),
+            cells: cells(&file),
+            contacts,
+            report: serde_json::from_str(report.as_str()).unwrap(),
+        }
+    }
+
+    /// Displacement in the order of the model's nodes, its dofs in a row.
+    pub fn dofs(&self, model: &Model) -> Vec<f64> {
+        let tags = model.mesh.node_tags.iter();
+        tags.flat_map(|tag| self.displacement[tag][..model.mesh.dim].to_vec())
+            .collect()
+    }
+
+    pub fn largest_displacement(&self) -> f64 {
+        let components = self.displacement.values().flatten();
+        components.fold(0.0, |m, u| m.max(u.abs()))
+    }
+
+    pub fn largest_force(&self) -> f64 {
+        self.points().fold(0.0, |m, point| m.max(point.force))
+    }
+
+    /// All conditions.
+    pub fn points(&self) -> impl Iterator<Item = &ContactPoint> {
+        self.contacts.values().flatten()
+    }
+
+    pub fn closed(&self) -> usize {
+        self.points().filter(|point| point.closed).count()
+    }
+
+    pub fn sweeps(&self) -> u64 {
+        self.report["sweeps"].as_u64().unwrap()
+    }
+
+    /// Fails unless the certificate keeps what the design promises.
+    #[track_caller]
+    pub fn check_certificate(&self) {
+        let limits = [
+            ("equilibrium", 1e-14),
+            ("penetration", 1e-14),
+            ("tension", 1e-12),
+            ("complementarity", 1e-12),
+            ("force_balance", 1e-9),
+            ("moment_balance", 1e-9),
+            ("interface_jump", 1e-14),
+        ];
+        let certificate = &self.report["certificate"];
+        for (name, limit) in limits {
+            let value = certificate[name].as_f64();
+            assert!(
+                value.is_some_and(|value| value <= limit),
+                "{name} is {value:?}; expected at most {limit:e}\n{certificate:#}"
+            );
+        }
+    }
+}
+
+fn points(file: &File, group: &str) -> Vec<ContactPoint> {
+    let reals = |name: &str| column::<f64>(file, &format!("{group}/{name}"));
+    let vectors = |name: &str| table::<3>(file, &format!("{group}/{name}"));
+    let tags = |name: &str| column::<i64>(file, &format!("{group}/{name}"));
+    let (a, b) = (tags("node_a"), tags("node_b"));
+    let (position, normal) = (vectors("position"), vectors("normal"));
+    let (gap, force, pressure) = (reals("gap"), reals("force"), reals("pressure"));
+    let status = column::<u8>(file, &format!("{group}/status"));
+    let all = [position.len(), normal.len(), gap.len(), force.len()];
+    assert!(all.iter().all(|&n| n == a.len()), "{group}: {all:?} rows");
+    (0..a.len())
+        .map(|i| ContactPoint {
+            tags: [a[i], b[i]],
+            position: position[i],
+            normal: normal[i],
+            gap: gap[i],
+            force: force[i],
+            pressure: pressure[i],
+            closed: status[i] == 1,
+        })
+        .collect()
+}
+
+fn cells(file: &File) -> Vec<([f64; 3], [f64; 6])> {
+    let counts = |name: &str| column::<i64>(file, &format!("VTKHDF/{name}"));
+    let points = table::<3>(file, "VTKHDF/Points");
+    let connectivity = counts("Connectivity");
+    let offsets = counts("Offsets");
+    let stress = table::<6>(file, "VTKHDF/CellData/Stress");
+    let mut list = Vec::with_capacity(stress.len());
+    let (mut first_point, mut first_entry, mut first_offset) = (0, 0, 0);
+    for ((n, m), c) in (counts("NumberOfPoints").iter())
+        .zip(counts("NumberOfCells"))
+        .zip(counts("NumberOfConnectivityIds"))
+    {
+        for cell in 0..m as usize {
+            let ends = &offsets[first_offset + cell..][..2];
+            let nodes = &connectivity[first_entry..][ends[0] as usize..ends[1] as usize];
+            let mut centre = [0.0; 3];
+            for &node in nodes {
+                for (c, x) in centre.iter_mut().zip(points[first_point + node as usize]) {
+                    *c += x / nodes.len() as f64;
+                }
+            }
+            list.push((centre, stress[list.len()]));
+        }
+        first_point += *n as usize;
+        first_entry += c as usize;
+        first_offset += m as usize + 1;
+    }
+    list
+}

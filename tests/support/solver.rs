@@ -1,0 +1,109 @@
+//! The program under test, started as a user starts it.
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::model::Model;
+use contact_dd_partition::problem::Problem;
+use tempfile::TempDir;
+
+use super::process::{Ended, Running};
+use super::solution::Solution;
+
+/// Longer than any of these runs takes.
+pub const LIMIT: Duration = Duration::from_secs(60);
+
+/// A folder with a problem file.
+pub struct Case {
+    folder: TempDir,
+}
+
+impl Case {
+    pub fn new(problem: &Problem) -> Self {
+        let case = Self {
+            folder: tempfile::tempdir().unwrap(),
+        };
+        problem.write(&case.problem()).unwrap();
+        case
+    }
+
+    /// A model in `count` subdomains.
+    #[track_caller]
+    pub fn of(model: &Model, count: usize) -> Self {
+        Self::new(&problem(model, Some(count)))
+    }
+
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    pub fn problem(&self) -> PathBuf {
+        self.folder.path().join("problem.h5")
+    }
+
+    pub fn result(&self) -> PathBuf {
+        self.folder.path().join("problem.vtkhdf")
+    }
+
+    /// The names of all files in the folder.
+    pub fn files(&self) -> Vec<String> {
+        let mut names: Vec<String> = std::fs::read_dir(self.folder.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    /// Runs without a launcher, with the problem and `args`.
+    pub fn run(&self, args: &[&str]) -> Ended {
+        Running::start(program(0).arg(self.problem()).args(args)).wait(LIMIT)
+    }
+
+    /// Runs without a launcher and reads the result, which has to keep its certificate.
+    #[track_caller]
+    pub fn solve(&self, args: &[&str]) -> Solution {
+        let ended = self.run(args);
+        assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+        let solution = Solution::read(&self.result());
+        solution.check_certificate();
+        solution
+    }
+}
+
+/// A model cut into `count` subdomains.
+#[track_caller]
+pub fn problem(model: &Model, count: Option<usize>) -> Problem {
+    let decomposition = Decomposition::new(model, count).unwrap_or_else(|e| panic!("{e}"));
+    Problem::new(model, &decomposition).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Solves a model in `count` subdomains with `newton`.
+#[track_caller]
+pub fn solve(model: &Model, count: usize) -> Solution {
+    Case::of(model, count).solve(&[])
+}
+
+/// The command that starts the program on `ranks` ranks; without the launcher for 0.
+pub fn program(ranks: usize) -> Command {
+    let binary = env!("CARGO_BIN_EXE_contact-dd-mpi");
+    let mut command = match ranks {
+        0 => Command::new(binary),
+        _ => {
+            let launcher = env::var("MPIEXEC").unwrap_or_else(|_| "mpirun".into());
+            let mut words = launcher.split_whitespace();
+            let mut command = Command::new(words.next().unwrap_or("mpirun"));
+            command.args(words).args(["-n", &ranks.to_string(), binary]);
+            command
+        }
+    };
+    command
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+        .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
+        .env("OMPI_MCA_hwloc_base_binding_policy", "none");
+    command
+}
