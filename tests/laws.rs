@@ -287,7 +287,7 @@ fn a_schur_complement_is_symmetric_and_rigid_motions_cost_nothing() {
         }
         let is_held = !subdomain.supports.is_empty();
         let block = Block::new(vec![subdomain.clone()], 2, |_| true);
-        let dofs = Dofs::new(&block, &[]).unwrap();
+        let dofs = Dofs::new(&block, &[], &model.materials).unwrap();
         let system = assemble(&block, &dofs, &model.materials, &[]).unwrap();
         let schur = LocalSchur::new(&system, dofs.interior, Par::Seq).unwrap();
         let s = &schur.s;

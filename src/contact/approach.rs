@@ -104,13 +104,16 @@ pub struct Approaches {
 impl Approaches {
     /// Solves each of `rows`, t = b·v, for one of its unknowns.
     ///
-    /// `may_go` tells which unknowns may be replaced (not those on Γ, which other blocks share).
+    /// `may_go` tells which unknowns may be replaced (not those on Γ, which other blocks share),
+    /// `stiffness` how stiff the body is around them: the softer side follows the stiffer one, because
+    /// a stiff side in terms of a soft one is a small difference of large forces.
     ///
     /// # Errors
     /// The first condition that can be neither an unknown nor a multiple of one.
     pub fn new(
         rows: &[ApproachRow],
         may_go: impl Fn(u32) -> bool,
+        stiffness: impl Fn(u32) -> f64,
     ) -> Result<Self, DependentCondition> {
         let mut uses: HashMap<u32, usize> = HashMap::new();
         for row in rows {
@@ -139,7 +142,7 @@ impl Approaches {
             let own: Vec<u32> = row.terms.iter().map(|&(v, _)| v).collect();
             let nowhere_else = |v: u32| uses[&v] == 1 && own.contains(&v);
             let of = approaches
-                .solve_for_one(rest, nowhere_else, &may_go)
+                .solve_for_one(rest, nowhere_else, &may_go, &stiffness)
                 .ok_or(DependentCondition(j))?;
             approaches.of.push(of);
         }
@@ -153,6 +156,7 @@ impl Approaches {
         mut rest: Affine,
         nowhere_else: impl Fn(u32) -> bool,
         may_go: &impl Fn(u32) -> bool,
+        stiffness: &impl Fn(u32) -> f64,
     ) -> Option<ApproachOf> {
         let candidates = rest.terms.iter().filter_map(|&(v, c)| match v {
             Variable::Displacement(v) if may_go(v) => Some((v, c)),
@@ -166,7 +170,12 @@ impl Approaches {
         }
         let (pivot, coefficient) = candidates
             .filter(|(_, c)| c.abs() >= 0.5 * largest)
-            .min_by_key(|&(v, _)| (!nowhere_else(v), v))?;
+            .min_by(|&(v, _), &(w, _)| {
+                (!nowhere_else(v))
+                    .cmp(&!nowhere_else(w))
+                    .then(stiffness(v).total_cmp(&stiffness(w)))
+                    .then(v.cmp(&w))
+            })?;
         let number = self.len;
         self.len += 1;
         rest.add(Variable::Approach(number as u32), -1.0);
@@ -231,7 +240,7 @@ mod tests {
             row(&[(2, 1.0), (0, 0.7), (5, -0.3)], -0.3),
             row(&[(3, -1.0)], 0.4),
         ];
-        let approaches = Approaches::new(&rows, |_| true).unwrap();
+        let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
         let t = [0.5, 0.25, 0.125, 2.0];
         for (row, t_j) in rows.iter().zip(t) {
             let v = |i: u32| (f64::from(i) + 1.0).sqrt();
@@ -245,7 +254,7 @@ mod tests {
             row(&[(0, 1.0), (1, -1.0)], 0.0),
             row(&[(0, 2.0), (1, -2.0)], 0.5),
         ];
-        let approaches = Approaches::new(&rows, |_| true).unwrap();
+        let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
         assert_eq!(approaches.len, 1);
         let shared = ApproachOf::Unknown {
             number: 0,
@@ -262,14 +271,24 @@ mod tests {
             row(&[(1, 1.0), (2, -1.0)], 0.0),
             row(&[(0, 1.0), (2, -1.0)], 0.0),
         ];
-        let error = Approaches::new(&rows, |_| true).unwrap_err();
+        let error = Approaches::new(&rows, |_| true, |_| 1.0).unwrap_err();
         assert_eq!(error, DependentCondition(2));
     }
 
     #[test]
     fn an_unknown_on_the_interface_stays() {
         let rows = [row(&[(0, 1.0), (1, -1.0)], 0.0)];
-        let approaches = Approaches::new(&rows, |v| v != 0).unwrap();
+        let approaches = Approaches::new(&rows, |v| v != 0, |_| 1.0).unwrap();
         assert!(approaches.replaced.contains_key(&1));
+    }
+
+    #[test]
+    fn the_softer_side_follows_the_stiffer_one() {
+        let rows = [row(&[(0, 1.0), (1, -1.0)], 0.0)];
+        for soft in [0, 1] {
+            let stiffness = |v| if v == soft { 1.0 } else { 1e6 };
+            let approaches = Approaches::new(&rows, |_| true, stiffness).unwrap();
+            assert!(approaches.replaced.contains_key(&soft));
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::model::Support;
+use contact_dd_partition::model::{Material, Support};
 
 use super::block::Block;
 use super::condition::BlockCondition;
@@ -55,7 +55,11 @@ impl Dofs {
     ///
     /// # Errors
     /// A condition that depends on several others.
-    pub fn new(block: &Block, conditions: &[BlockCondition]) -> Result<Self, DofError> {
+    pub fn new(
+        block: &Block,
+        conditions: &[BlockCondition],
+        materials: &[Material],
+    ) -> Result<Self, DofError> {
         let dim = block.dim;
         let frames = frames(block, conditions);
         let frame = |node: u32| frames.get(&node).unwrap_or(&Frame::CARTESIAN);
@@ -69,7 +73,8 @@ impl Dofs {
                 .map(|c| in_frames(c, frame, dim))
                 .collect();
             let may_go = |v: u32| !on_interface[v as usize / dim];
-            Approaches::new(&rows, may_go)
+            let stiffness = node_stiffness(block, materials);
+            Approaches::new(&rows, may_go, |v| stiffness[v as usize / dim])
                 .map_err(|DependentCondition(j)| DofError::Dependent(j))?
         };
 
@@ -257,6 +262,19 @@ pub fn supported_frames(block: &Block) -> BTreeMap<u32, Frame> {
         })
         .collect();
     support_frames(&without_repetition(supports), block.dim)
+}
+
+/// The stiffest material around every node (Pa).
+fn node_stiffness(block: &Block, materials: &[Material]) -> Vec<f64> {
+    let mut stiffness = vec![0.0; block.nodes()];
+    for cell in block.cells() {
+        let modulus = materials[cell.material].stiffness[0][0];
+        for node in cell.nodes() {
+            let of_node: &mut f64 = &mut stiffness[node as usize];
+            *of_node = of_node.max(modulus);
+        }
+    }
+    stiffness
 }
 
 /// Frames of supported nodes, and of nodes with a condition along the first one's normal.

@@ -53,8 +53,8 @@ pub fn condense_blocks(
         let OwnedBlock {
             block, conditions, ..
         } = owned;
-        let dofs =
-            Dofs::new(block, conditions).map_err(|error| dof_failure(error, owned, catalog))?;
+        let dofs = Dofs::new(block, conditions, &catalog.materials)
+            .map_err(|error| dof_failure(error, owned, catalog))?;
         let system = assemble(block, &dofs, &catalog.materials, &pins_of(block, pins))
             .ok_or_else(|| size(plan, number))?;
         let assembled = Instant::now();

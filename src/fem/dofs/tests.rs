@@ -1,11 +1,20 @@
 use contact_dd_partition::element::{ElementKind, Elements};
-use contact_dd_partition::model::Support;
+use contact_dd_partition::model::{Material, Support};
 use contact_dd_partition::problem::{InterfaceNode, Subdomain};
 
 use super::super::block::Block;
 use super::super::condition::BlockCondition;
 use super::super::frame::dot;
 use super::*;
+
+fn material() -> Material {
+    Material {
+        name: "m".into(),
+        stiffness: [[3.0, 1.0, 0.0], [1.0, 3.0, 0.0], [0.0, 0.0, 1.0]],
+        out_of_plane: None,
+        poisson: None,
+    }
+}
 
 /// A unit square of two triangles, its lower left corner at `at`.
 fn square(index: usize, at: [f64; 2]) -> Subdomain {
@@ -76,7 +85,7 @@ fn unknowns(dofs: &Dofs) -> Vec<f64> {
 #[test]
 fn every_displacement_obeys_the_supports() {
     let (block, conditions) = scene();
-    let dofs = Dofs::new(&block, &conditions).unwrap();
+    let dofs = Dofs::new(&block, &conditions, &[material()]).unwrap();
     let u = dofs.displacement(&unknowns(&dofs));
     assert!((dot(&vector(&u, 0), &[0.6, 0.8, 0.0]) - 0.25).abs() < 1e-15);
     assert!((u[2] + 0.5).abs() < 1e-15);
@@ -86,7 +95,7 @@ fn every_displacement_obeys_the_supports() {
 #[test]
 fn the_approach_of_a_condition_is_its_unknown() {
     let (block, conditions) = scene();
-    let dofs = Dofs::new(&block, &conditions).unwrap();
+    let dofs = Dofs::new(&block, &conditions, &[material()]).unwrap();
     let x = unknowns(&dofs);
     let u = dofs.displacement(&x);
     for (j, condition) in conditions.iter().enumerate() {
@@ -98,7 +107,7 @@ fn the_approach_of_a_condition_is_its_unknown() {
 #[test]
 fn traces_come_last_and_are_the_displacement_of_shared_nodes() {
     let (block, conditions) = scene();
-    let dofs = Dofs::new(&block, &conditions).unwrap();
+    let dofs = Dofs::new(&block, &conditions, &[material()]).unwrap();
     let x = unknowns(&dofs);
     let u = dofs.displacement(&x);
     assert_eq!(
@@ -113,7 +122,7 @@ fn traces_come_last_and_are_the_displacement_of_shared_nodes() {
 #[test]
 fn loads_work_on_unknowns_what_they_work_on_displacements() {
     let (block, conditions) = scene();
-    let dofs = Dofs::new(&block, &conditions).unwrap();
+    let dofs = Dofs::new(&block, &conditions, &[material()]).unwrap();
     let f: Vec<f64> = (0..16).map(|i| (0.7 * i as f64).cos()).collect();
     let x = unknowns(&dofs);
     let mut change = vec![0.0; 16];

@@ -1,0 +1,173 @@
+//! The program under its launcher: every case once for every number of ranks.
+//!
+//! `MPIEXEC` names the launcher, `mpirun` by default. A case that hangs fails after a minute, and
+//! its processes are ended.
+
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that can't go on has failed"
+)]
+
+mod bad_input;
+mod endings;
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::panic;
+use std::process::ExitCode;
+use std::sync::{Arc, OnceLock};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use hdf5::types::TypeDescriptor;
+use hdf5::{File, H5Type};
+use libtest_mimic::{Arguments, Trial};
+
+use support::process::{Ended, Running, is_alive, kill};
+use support::scenes::{
+    BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks,
+};
+use support::solution::Solution;
+use support::solver::{Case, LIMIT, program};
+
+/// Numbers of ranks; there are few cores, so that more would only wait for each other.
+const RANKS: [usize; 4] = [1, 2, 3, 4];
+
+fn main() -> ExitCode {
+    let mut arguments = Arguments::from_args();
+    // Most of a case's time is the launcher's, which sleeps.
+    arguments.test_threads.get_or_insert(4);
+    // The harness shows the message; what it doesn't know is the place.
+    panic::set_hook(Box::new(|panic| {
+        panic.location().inspect(|place| eprintln!("at {place}:"));
+    }));
+    let mut trials = Trials::default();
+    same_results(&mut trials);
+    bad_input::bad_input(&mut trials);
+    bad_input::bad_usage(&mut trials);
+    endings::no_equilibrium(&mut trials);
+    endings::not_converged(&mut trials);
+    endings::unwritable_output(&mut trials);
+    endings::killed_rank(&mut trials);
+    libtest_mimic::run(&arguments, trials.0).exit_code()
+}
+
+/// The cases so far.
+#[derive(Default)]
+struct Trials(Vec<Trial>);
+
+impl Trials {
+    /// Adds `case` once for every number of ranks.
+    fn on_all_ranks(&mut self, name: &str, case: impl Fn(usize) + Send + Sync + 'static) {
+        let case = Arc::new(case);
+        for ranks in RANKS {
+            let case = Arc::clone(&case);
+            self.once(&format!("{name}::on_{ranks}_ranks"), move || case(ranks));
+        }
+    }
+
+    fn once(&mut self, name: &str, case: impl FnOnce() + Send + 'static) {
+        let trial = Trial::test(name, move || {
+            case();
+            Ok(())
+        });
+        self.0.push(trial);
+    }
+}
+
+/// Runs a case on so many ranks.
+fn run(case: &Case, ranks: usize, args: &[&str]) -> Ended {
+    Running::start(program(ranks).arg(case.problem()).args(args)).wait(LIMIT)
+}
+
+/// Fails unless a run ended with `code` and said why exactly once.
+#[track_caller]
+fn failed_once(ended: &Ended, code: i32, words: &[&str]) {
+    assert_eq!(ended.code(), code, "{}{}", ended.stdout, ended.stderr);
+    let errors = ended.errors();
+    assert_eq!(errors.len(), 1, "{}{}", ended.stdout, ended.stderr);
+    for word in words {
+        assert!(errors[0].contains(word), "{}\nlacks '{word}'", errors[0]);
+    }
+    assert!(!ended.stderr.contains("panicked"), "{}", ended.stderr);
+    assert!(!ended.stderr.contains("HDF5-DIAG"), "{}", ended.stderr);
+}
+
+/// Every dataset of a result file that doesn't speak of time, bit by bit.
+fn datasets(case: &Case) -> BTreeMap<String, Vec<u64>> {
+    let file = File::open(case.result()).unwrap();
+    let mut all = BTreeMap::new();
+    let mut groups = vec![file.group("/").unwrap()];
+    while let Some(group) = groups.pop() {
+        groups.extend(group.groups().unwrap());
+        for dataset in group.datasets().unwrap() {
+            fn bits<T: H5Type>(dataset: &hdf5::Dataset, as_bits: impl Fn(&T) -> u64) -> Vec<u64> {
+                dataset
+                    .read_raw::<T>()
+                    .unwrap()
+                    .iter()
+                    .map(as_bits)
+                    .collect()
+            }
+            let values = match dataset.dtype().unwrap().to_descriptor().unwrap() {
+                TypeDescriptor::Float(_) => bits::<f64>(&dataset, |x| x.to_bits()),
+                _ => bits::<i64>(&dataset, |x| *x as u64),
+            };
+            all.insert(dataset.name(), values);
+        }
+    }
+    all.retain(|name, _| !name.ends_with("/seconds"));
+    all
+}
+
+type MakeCase = fn() -> Case;
+
+/// One problem file has one answer: the same bits on any number of ranks and without a launcher.
+fn same_results(trials: &mut Trials) {
+    let cases: [(&str, MakeCase); 7] = [
+        ("granite", || Case::of(&built_in_model("granite", 0), 8)),
+        ("granite_in_one_subdomain", || {
+            Case::of(&built_in_model("granite", 0), 1)
+        }),
+        ("more_ranks_than_subdomains", || {
+            Case::of(&model(&two_block_scene(), two_blocks().mesh), 2)
+        }),
+        ("two_blocks", || {
+            Case::of(&model(&two_block_scene(), two_blocks().mesh), 9)
+        }),
+        ("without_contact", || {
+            Case::of(&built_in_model("plain", 0), 4)
+        }),
+        ("junction", || Case::of(&built_in_model("junction", 0), 6)),
+        ("stack", || Case::of(&built_in_model("stack", 0), 6)),
+    ];
+    for (name, make) in cases {
+        let alone: OnceLock<(Case, BTreeMap<String, Vec<u64>>)> = OnceLock::new();
+        trials.on_all_ranks(&format!("same_bits::{name}"), move |ranks| {
+            let (_, expected) = alone.get_or_init(|| {
+                let case = make();
+                let ended = case.run(&[]);
+                assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+                let datasets = datasets(&case);
+                (case, datasets)
+            });
+            let case = make();
+            let ended = run(&case, ranks, &[]);
+            assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+            let found = datasets(&case);
+            assert!(found.keys().eq(expected.keys()), "{:?}", found.keys());
+            for (name, values) in &found {
+                assert!(values == &expected[name], "{name} differs");
+            }
+            let report = Solution::read(&case.result()).report;
+            assert_eq!(report["ranks"], ranks);
+            assert_eq!(report["per_rank"].as_array().unwrap().len(), ranks);
+            // The title of the run stands once, whoever printed it.
+            assert_eq!(ended.stdout.matches("certificate").count(), 1);
+            assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
+        });
+    }
+}
