@@ -30,7 +30,7 @@ impl Destination {
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         if let Ok(metadata) = fs::metadata(&target) {
             if metadata.is_dir() {
-                return Err(failure(path, "a folder has this name, which isn't a file"));
+                return Err(failure(path, "it is a folder, which isn't a file"));
             }
             if !metadata.is_file() {
                 return Err(failure(path, "something that isn't a file has this name"));
