@@ -172,7 +172,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
                 return;
             }
             let frozen = Frozen::new(self.interface, &self.state);
-            let Some(step) = frozen.solve(&residual.r, residual.scale, 0.0) else {
+            let Some(step) = frozen.solve(&residual.r, residual.scale) else {
                 return;
             };
             let mut refined = u.to_vec();

@@ -11,17 +11,23 @@ use crate::schur::pattern::Cliques;
 pub struct Numbering {
     /// Number of unknowns.
     pub len: usize,
+    /// Number of those that no pair has; they come first.
+    pub linear: usize,
     /// For every block the numbers of its traces.
     pub traces: Vec<Vec<u32>>,
 }
 
 impl Numbering {
-    /// Numbers the traces of all blocks; `nodes[b]` are the nodes of Γ that block b shares with
-    /// others.
+    /// Numbers the traces of all blocks, those of pairs last; `nodes[b]` are the nodes of Γ that
+    /// block b shares with others, `pair[b]` tells whether it is a pair.
     ///
     /// # Errors
     /// Two blocks disagree on which components of a shared node are free.
-    pub fn new(traces: &[Vec<TraceDof>], nodes: &[Vec<u32>]) -> Result<Self, Failure> {
+    pub fn new(
+        traces: &[Vec<TraceDof>],
+        nodes: &[Vec<u32>],
+        pair: &[bool],
+    ) -> Result<Self, Failure> {
         check_agreement(traces, nodes)?;
         let mut blocks_of: BTreeMap<TraceDof, Vec<u32>> = BTreeMap::new();
         for (b, list) in traces.iter().enumerate() {
@@ -31,13 +37,18 @@ impl Numbering {
         }
         let faces = Faces::new(&blocks_of, traces.len());
         let mut number: HashMap<TraceDof, u32> = HashMap::with_capacity(blocks_of.len());
-        for face in faces.elimination_order() {
+        let mut linear = 0;
+        for face in faces.elimination_order(pair) {
             for &dof in &faces.dofs[face] {
                 number.insert(dof, number.len() as u32);
+            }
+            if !faces.touches(face, pair) {
+                linear = number.len();
             }
         }
         Ok(Self {
             len: number.len(),
+            linear,
             traces: traces
                 .iter()
                 .map(|list| list.iter().map(|dof| number[dof]).collect())
@@ -102,8 +113,13 @@ impl Faces {
         }
     }
 
-    /// Minimum degree on faces, each counted with its number of unknowns.
-    fn elimination_order(&self) -> Vec<usize> {
+    /// Whether one of a face's blocks is a pair.
+    fn touches(&self, face: usize, pair: &[bool]) -> bool {
+        self.blocks[face].iter().any(|&b| pair[b as usize])
+    }
+
+    /// Minimum degree on faces, each counted with its number of unknowns; those of pairs come last.
+    fn elimination_order(&self, pair: &[bool]) -> Vec<usize> {
         let n = self.dofs.len();
         let mut neighbours: Vec<BTreeSet<usize>> = self
             .blocks
@@ -120,20 +136,23 @@ impl Faces {
             .collect();
         let degree =
             |list: &BTreeSet<usize>| list.iter().map(|&f| self.dofs[f].len()).sum::<usize>();
-        let mut queue: BTreeSet<(usize, usize)> =
-            (0..n).map(|f| (degree(&neighbours[f]), f)).collect();
+        let place = |f: usize, neighbours: &[BTreeSet<usize>]| {
+            (self.touches(f, pair), degree(&neighbours[f]), f)
+        };
+        let mut queue: BTreeSet<(bool, usize, usize)> =
+            (0..n).map(|f| place(f, &neighbours)).collect();
         let mut order = Vec::with_capacity(n);
-        while let Some((_, face)) = queue.pop_first() {
+        while let Some((_, _, face)) = queue.pop_first() {
             order.push(face);
             let clique = std::mem::take(&mut neighbours[face]);
             for &f in &clique {
-                queue.remove(&(degree(&neighbours[f]), f));
+                queue.remove(&place(f, &neighbours));
                 // `face` still counts in the old degree, which is why it leaves only now.
                 neighbours[f].remove(&face);
                 neighbours[f].extend(clique.iter().copied().filter(|&g| g != f));
             }
             for &f in &clique {
-                queue.insert((degree(&neighbours[f]), f));
+                queue.insert(place(f, &neighbours));
             }
         }
         order
@@ -155,7 +174,7 @@ mod tests {
     fn every_trace_gets_one_number_whichever_block_asks() {
         let nodes = vec![vec![0, 1, 2], vec![2, 3, 4], vec![0, 4, 5, 1], vec![3, 5]];
         let lists: Vec<_> = nodes.iter().map(|n| traces(n)).collect();
-        let numbering = Numbering::new(&lists, &nodes).unwrap();
+        let numbering = Numbering::new(&lists, &nodes, &[false, true, false, false]).unwrap();
         let mut seen: BTreeMap<TraceDof, u32> = BTreeMap::new();
         for (list, numbers) in lists.iter().zip(&numbering.traces) {
             for (&dof, &number) in list.iter().zip(numbers) {
@@ -165,13 +184,16 @@ mod tests {
         let mut numbers: Vec<u32> = seen.into_values().collect();
         numbers.sort_unstable();
         assert_eq!(numbers, (0..12).collect::<Vec<u32>>());
+        // Nodes 2, 3 and 4 belong to the pair.
+        assert_eq!(numbering.linear, 6);
+        assert!(numbering.traces[1].iter().all(|&i| i >= 6));
     }
 
     #[test]
     fn blocks_that_hold_a_shared_node_differently_are_told_so() {
         let mut lists = vec![traces(&[7]), traces(&[7])];
         lists[1].pop();
-        let error = Numbering::new(&lists, &[vec![7], vec![7]]).unwrap_err();
+        let error = Numbering::new(&lists, &[vec![7], vec![7]], &[false; 2]).unwrap_err();
         assert!(error.message.contains("node 7"));
     }
 }

@@ -1,11 +1,50 @@
 //! S_0, the bilateral operator S_0 + S_CON', and the solve at the root.
 
-use faer::{Mat, MatRef, Par};
+use faer::linalg::solvers::{Llt, SolveCore};
+use faer::{Conj, Mat, MatMut, MatRef, Par, Side};
 
 use super::numbering::Numbering;
 use crate::error::Failure;
 use crate::schur::factor::BoundaryLastCholesky;
 use crate::schur::pattern::{LowerPattern, SparseSymmetric};
+
+/// Most traces of pairs that a dense matrix is made for.
+const DENSE_LIMIT: usize = 4000;
+/// Pivot relative to its diagonal entry below which an operator is singular.
+const SINGULAR_PIVOT: f64 = 1e-13;
+
+/// The factor of S_0 + S_CON' with some contacts open.
+#[derive(Debug)]
+pub enum Opened<'a> {
+    /// Only what contact can change is factorized anew, the traces of pairs, dense.
+    Dense {
+        /// The interface problem, whose factor serves for all else.
+        interface: &'a Interface,
+        /// The factor on the traces of pairs.
+        factor: Llt<f64>,
+    },
+    /// All of it.
+    Sparse(BoundaryLastCholesky),
+}
+
+impl Opened<'_> {
+    /// x ← (S_0 + S_CON')⁻¹ x.
+    pub fn solve(&self, x: &mut [f64]) {
+        match self {
+            Self::Dense { interface, factor } => {
+                interface.factor.forward(x);
+                let pairs = MatMut::from_column_major_slice_mut(
+                    &mut x[interface.linear..],
+                    interface.len - interface.linear,
+                    1,
+                );
+                factor.solve_in_place_with_conj(Conj::No, pairs);
+                interface.factor.backward(x);
+            }
+            Self::Sparse(factor) => factor.solve(x),
+        }
+    }
+}
 
 /// What a block contributes to the interface problem.
 #[derive(Clone, Debug)]
@@ -23,12 +62,16 @@ pub struct Contribution {
 pub struct Interface {
     /// Number of unknowns on Γ.
     pub len: usize,
+    /// Number of those that no pair has; they come first.
+    linear: usize,
     /// The traces of every pair.
     pub pair_traces: Vec<Vec<u32>>,
     /// S_0 = Σ R_iᵀ S_i R_i over the linear subdomains, (15).
     s_0: SparseSymmetric,
     /// Pattern of S_0 + S_CON'.
     pattern: LowerPattern,
+    /// The bilateral operator condensed onto the traces of pairs, where they aren't too many.
+    s_pairs: Option<Mat<f64>>,
     /// F of the linear subdomains.
     f: Vec<f64>,
     f_scale: Vec<f64>,
@@ -88,17 +131,21 @@ impl Interface {
         }
         let pairs = pair_traces.iter().zip(bilateral.iter().map(Mat::as_ref));
         let sum = with_pairs(&s_0, &pattern, pairs);
-        let factor = BoundaryLastCholesky::new(sum, n, &[], par).map_err(|error| {
+        let free = vec![0.0; n - numbering.linear];
+        let factor = BoundaryLastCholesky::new(sum, numbering.linear, &free, par).map_err(|error| {
             Failure::ill_posed(format!(
                 "the interface problem can't be solved even with every contact closed ({error}): \
                  some part of the scene is held neither by supports nor by contact"
             ))
         })?;
+        let s_pairs = (free.len() <= DENSE_LIMIT).then(|| factor.schur_complement(&free, par));
         Ok(Self {
             len: n,
+            linear: numbering.linear,
             pair_traces,
             s_0,
             pattern,
+            s_pairs,
             f,
             f_scale,
             bilateral,
@@ -129,8 +176,7 @@ impl Interface {
 
     /// x ← (S_0 + S_CON' of the bilateral problem)⁻¹ x.
     pub fn solve_bilateral(&self, x: &mut [f64]) {
-        self.factor.forward(x);
-        self.factor.backward(x);
+        self.factor.solve(x);
     }
 
     /// y ← y + S_0 x.
@@ -166,31 +212,45 @@ impl Interface {
 
     /// The factor of S_0 + S_CON' for other derivatives of the pairs than the bilateral ones: S_ΓΓ
     /// less `opening(p)` for pair p. `None` where it is singular.
-    pub fn factor_opened(
-        &self,
-        opening: impl Fn(usize) -> Option<Mat<f64>>,
-    ) -> Option<BoundaryLastCholesky> {
-        let derivatives: Vec<Mat<f64>> = self
-            .bilateral
+    pub fn factor_opened(&self, opening: impl Fn(usize) -> Option<Mat<f64>>) -> Option<Opened<'_>> {
+        let openings = (0..self.pair_traces.len()).filter_map(|p| Some((p, opening(p)?)));
+        let Some(s_pairs) = &self.s_pairs else {
+            let mut sum = with_pairs(&self.s_0, &self.pattern, self.pairs());
+            for (p, opening) in openings {
+                sum.add(&self.pair_traces[p], |a, b| -opening[(a, b)]);
+            }
+            let factor = BoundaryLastCholesky::new(sum, self.len, &[], self.par).ok()?;
+            return (factor.smallest_pivot() > SINGULAR_PIVOT).then_some(Opened::Sparse(factor));
+        };
+        let mut s = s_pairs.clone();
+        for (p, opening) in openings {
+            let traces = &self.pair_traces[p];
+            for (b, &j) in traces.iter().enumerate() {
+                for (a, &i) in traces.iter().enumerate() {
+                    s[(i as usize - self.linear, j as usize - self.linear)] -= opening[(a, b)];
+                }
+            }
+        }
+        let factor = s.llt(Side::Lower).ok()?;
+        let l = factor.L();
+        let regular =
+            (0..s.nrows()).all(|i| l[(i, i)] * l[(i, i)] > SINGULAR_PIVOT * s_pairs[(i, i)]);
+        regular.then_some(Opened::Dense {
+            interface: self,
+            factor,
+        })
+    }
+
+    fn pairs(&self) -> impl Iterator<Item = (&Vec<u32>, MatRef<'_, f64>)> {
+        self.pair_traces
             .iter()
-            .enumerate()
-            .map(|(p, bilateral)| match opening(p) {
-                Some(opening) => bilateral - opening,
-                None => bilateral.clone(),
-            })
-            .collect();
-        let pairs = self
-            .pair_traces
-            .iter()
-            .zip(derivatives.iter().map(Mat::as_ref));
-        let sum = with_pairs(&self.s_0, &self.pattern, pairs);
-        BoundaryLastCholesky::new(sum, self.len, &[], self.par).ok()
+            .zip(self.bilateral.iter().map(Mat::as_ref))
     }
 
     /// The factor of S_0 alone; `None` where S_0 is singular.
     pub fn factor_s_0(&self) -> Option<BoundaryLastCholesky> {
         let factor = BoundaryLastCholesky::new(self.s_0.clone(), self.len, &[], self.par).ok()?;
-        (factor.smallest_pivot() > 1e-12).then_some(factor)
+        (factor.smallest_pivot() > SINGULAR_PIVOT).then_some(factor)
     }
 
     /// The entries of `u` on the traces of pair p.

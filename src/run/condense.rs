@@ -201,8 +201,8 @@ pub fn assemble_interface(
     let nodes: Vec<Vec<u32>> = (0..plan.blocks.len())
         .map(|b| plan.shared_nodes(catalog, b))
         .collect();
-    let numbering = Numbering::new(&traces, &nodes)?;
     let is_pair: Vec<bool> = plan.blocks.iter().map(|b| b.group.is_some()).collect();
+    let numbering = Numbering::new(&traces, &nodes, &is_pair)?;
     let interface = Interface::new(&numbering, contributions, &is_pair, par)?;
     Ok(Some((numbering, interface)))
 }

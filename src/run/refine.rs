@@ -174,8 +174,7 @@ impl Parts<'_> {
             },
         );
         let scale = r.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
-        let change =
-            root.and_then(|root| Frozen::new(root.interface, root.state).solve(&r, scale, 0.0));
+        let change = root.and_then(|root| Frozen::new(root.interface, root.state).solve(&r, scale));
         let change = change.unwrap_or_else(|| vec![0.0; r.len()]);
         let mut received: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         self.comm.scatter(

@@ -95,12 +95,17 @@ impl BoundaryLastCholesky {
             interior,
             smallest_pivot: f64::INFINITY,
         };
-        factor.smallest_pivot = factor.find_smallest_pivot(&matrix);
+        let unshifted = if shift.iter().all(|&s| s == 0.0) {
+            n
+        } else {
+            interior
+        };
+        factor.smallest_pivot = factor.find_smallest_pivot(&matrix, unshifted);
         Ok(factor)
     }
 
-    /// The smallest pivot of I relative to its diagonal entry, min L_jj² / K_jj: how close K_II is
-    /// to a singular matrix whatever its scaling.
+    /// The smallest pivot relative to its diagonal entry, min L_jj² / K_jj, of I or, where B wasn't
+    /// shifted, of all unknowns: how close the matrix is to a singular one whatever its scaling.
     pub fn smallest_pivot(&self) -> f64 {
         self.smallest_pivot
     }
@@ -110,11 +115,11 @@ impl BoundaryLastCholesky {
         self.symbolic.len_val()
     }
 
-    fn find_smallest_pivot(&self, matrix: &SparseSymmetric) -> f64 {
+    fn find_smallest_pivot(&self, matrix: &SparseSymmetric, count: usize) -> f64 {
         let diagonal = matrix.diagonal();
         let mut smallest = f64::INFINITY;
         for panel in self.panels() {
-            for j in 0..panel.interior_columns(self.interior) {
+            for j in 0..panel.columns_before(count) {
                 let pivot = panel.column(j)[j].powi(2) / diagonal[panel.start + j];
                 smallest = smallest.min(pivot);
             }
@@ -139,7 +144,7 @@ impl BoundaryLastCholesky {
         let n = self.interior + shift.len();
         let mut l_bb = Mat::<f64>::zeros(shift.len(), shift.len());
         for panel in self.panels() {
-            for j in panel.interior_columns(self.interior)..panel.columns {
+            for j in panel.columns_before(self.interior)..panel.columns {
                 let column = panel.column(j);
                 let to = panel.start + j - self.interior;
                 for i in j..panel.columns {
@@ -174,8 +179,13 @@ impl BoundaryLastCholesky {
 
     /// x_I ← L_II⁻¹ x_I and x_B ← x_B − L_BI x_I: condenses a load onto B.
     pub fn forward(&self, x: &mut [f64]) {
+        self.forward_before(self.interior, x);
+    }
+
+    /// The same with the first `count` unknowns in the place of I.
+    fn forward_before(&self, count: usize, x: &mut [f64]) {
         for panel in self.panels() {
-            for j in 0..panel.interior_columns(self.interior) {
+            for j in 0..panel.columns_before(count) {
                 let column = panel.column(j);
                 let xj = x[panel.start + j] / column[j];
                 x[panel.start + j] = xj;
@@ -194,8 +204,19 @@ impl BoundaryLastCholesky {
     /// x_I ← L_II⁻ᵀ (x_I − L_BIᵀ x_B): recovers the interior from what `forward` left there and
     /// the solution on B.
     pub fn backward(&self, x: &mut [f64]) {
+        self.backward_before(self.interior, x);
+    }
+
+    /// x ← K⁻¹ x. Only where B wasn't shifted.
+    pub fn solve(&self, x: &mut [f64]) {
+        self.forward_before(x.len(), x);
+        self.backward_before(x.len(), x);
+    }
+
+    /// `backward` with the first `count` unknowns in the place of I.
+    fn backward_before(&self, count: usize, x: &mut [f64]) {
         for panel in self.panels().rev() {
-            for j in (0..panel.interior_columns(self.interior)).rev() {
+            for j in (0..panel.columns_before(count)).rev() {
                 let column = panel.column(j);
                 let (top, bottom) = column.split_at(panel.columns);
                 let inside = panel.start + j + 1..panel.start + panel.columns;
@@ -226,9 +247,9 @@ impl<'a> Panel<'a> {
         &self.values[j * rows..(j + 1) * rows]
     }
 
-    /// How many of its columns belong to I; a supernode may reach from I into B.
-    fn interior_columns(&self, interior: usize) -> usize {
-        interior.saturating_sub(self.start).min(self.columns)
+    /// How many of its columns are among the first `count`; a supernode may reach from I into B.
+    fn columns_before(&self, count: usize) -> usize {
+        count.saturating_sub(self.start).min(self.columns)
     }
 }
 

@@ -1,16 +1,17 @@
 //! The linear interface problem with every pair's active set frozen: J δ = r.
 //!
-//! J = S_0 + S_CON'(U) differs from the factorized bilateral operator by the contacts that opened, a
-//! change of low rank, so that conjugate gradients preconditioned with that one factorization mostly
-//! need few steps. Where they don't, J itself is factorized.
+//! J = S_0 + S_CON'(U) differs from the factorized bilateral operator by the contacts that opened,
+//! and on the traces of pairs alone. Those are eliminated last, so that nothing else is ever
+//! factorized again. Where J is singular, because too little is closed to hold a body, conjugate
+//! gradients preconditioned with the bilateral operator solve for it all the same or blended with it.
 
 use super::{ROUND_OFF, axpy, dot, maximum};
 use crate::contact::s_con::ConState;
 use crate::interface::operator::Interface;
 
-/// Conjugate gradient steps after which it pays to factorize.
-const FEW_STEPS: usize = 60;
-/// Most conjugate gradient steps where that can't be.
+/// Most refinements of a direct solution.
+const MAX_REFINEMENTS: usize = 2;
+/// Most conjugate gradient steps.
 const MAX_STEPS: usize = 1000;
 /// Conjugate gradient steps without progress that are taken for round-off.
 const PATIENCE: usize = 20;
@@ -30,55 +31,39 @@ impl<'a> Frozen<'a> {
         Self { interface, state }
     }
 
-    /// δ = ((1 − blend) J + blend J_bilateral)⁻¹ r, to the round-off of terms of size `scale`;
-    /// `None` where that operator is singular along the way.
-    pub fn solve(&self, r: &[f64], scale: f64, blend: f64) -> Option<Vec<f64>> {
-        let target = 0.1 * ROUND_OFF * scale;
-        let bilateral = |z: &mut [f64]| self.interface.solve_bilateral(z);
-        let first = self.conjugate_gradients(r, target, blend, FEW_STEPS, bilateral);
-        if let Ending::Solved(x) = first {
-            return Some(x);
-        }
-        // Many contacts opened, and the bilateral operator is far from J: factorize that one.
-        if blend == 0.0
-            && let Some(factor) = self.interface.factor_opened(|p| self.state.opening(p))
-        {
-            let opened = |z: &mut [f64]| {
-                factor.forward(z);
-                factor.backward(z);
-            };
-            match self.conjugate_gradients(r, target, blend, FEW_STEPS, opened) {
-                Ending::Solved(x) | Ending::Unfinished(x) => return Some(x),
-                Ending::Singular => {}
+    /// δ = J⁻¹ r, to the round-off of terms of size `scale`; `None` where J is singular.
+    pub fn solve(&self, r: &[f64], scale: f64) -> Option<Vec<f64>> {
+        let factor = self.interface.factor_opened(|p| self.state.opening(p))?;
+        let mut x = r.to_vec();
+        factor.solve(&mut x);
+        for _ in 0..MAX_REFINEMENTS {
+            let mut left = r.to_vec();
+            axpy(-1.0, &self.derivative(&x, 0.0).0, &mut left);
+            if maximum(&left) <= ROUND_OFF * scale {
+                break;
             }
+            factor.solve(&mut left);
+            axpy(1.0, &left, &mut x);
         }
-        match self.conjugate_gradients(r, target, blend, MAX_STEPS, bilateral) {
-            Ending::Solved(x) | Ending::Unfinished(x) => Some(x),
-            Ending::Singular => None,
-        }
+        x.iter().all(|x| x.is_finite()).then_some(x)
     }
 
-    /// Conjugate gradients preconditioned with `precondition`, until the residual is `target`.
-    fn conjugate_gradients(
-        &self,
-        r: &[f64],
-        target: f64,
-        blend: f64,
-        most: usize,
-        precondition: impl Fn(&mut [f64]),
-    ) -> Ending {
+    /// δ = ((1 − blend) J + blend J_bilateral)⁻¹ r by conjugate gradients preconditioned with the
+    /// bilateral operator, which need no regular J; `None` where r drives what nothing resists.
+    pub fn solve_blended(&self, r: &[f64], scale: f64, blend: f64) -> Option<Vec<f64>> {
         let mut x = vec![0.0; r.len()];
         let mut r = r.to_vec();
+        let target = 0.1 * ROUND_OFF * scale;
         let start = maximum(&r);
         let mut z = r.clone();
-        precondition(&mut z);
+        self.interface.solve_bilateral(&mut z);
         let mut p = z.clone();
         let mut rz = dot(&r, &z);
         let mut best = (f64::INFINITY, 0);
-        for step in 0..=most {
+        for step in 0..MAX_STEPS {
             let size = maximum(&r);
             if size <= target || rz == 0.0 {
-                return Ending::Solved(x);
+                return Some(x);
             }
             // No progress for long means that round-off is reached.
             if size < 0.5 * best.0 {
@@ -90,16 +75,13 @@ impl<'a> Frozen<'a> {
             let curvature = dot(&p, &q);
             if curvature <= SINGULAR_CURVATURE * dot(&p, &reference) || curvature.is_nan() {
                 // Along p nothing resists; what is solved so far serves if it is nearly all.
-                if best.0 <= 1e-10 * start {
-                    return Ending::Unfinished(x);
-                }
-                return Ending::Singular;
+                return (best.0 <= 1e-10 * start).then_some(x);
             }
             let alpha = rz / curvature;
             axpy(alpha, &p, &mut x);
             axpy(-alpha, &q, &mut r);
             z.clone_from(&r);
-            precondition(&mut z);
+            self.interface.solve_bilateral(&mut z);
             let rz_next = dot(&r, &z);
             let beta = rz_next / rz;
             rz = rz_next;
@@ -107,11 +89,7 @@ impl<'a> Frozen<'a> {
                 *p = z + beta * *p;
             }
         }
-        if x.iter().all(|x| x.is_finite()) {
-            Ending::Unfinished(x)
-        } else {
-            Ending::Singular
-        }
+        x.iter().all(|x| x.is_finite()).then_some(x)
     }
 
     /// (1 − blend) J p + blend J_bilateral p, and J_bilateral p.
@@ -123,14 +101,4 @@ impl<'a> Frozen<'a> {
             .add_openings(self.interface, 1.0 - blend, p, &mut q);
         (q, bilateral)
     }
-}
-
-/// How conjugate gradients end.
-enum Ending {
-    /// The residual is what was asked for.
-    Solved(Vec<f64>),
-    /// It isn't, but no better one was found in the steps that were allowed.
-    Unfinished(Vec<f64>),
-    /// The operator is singular.
-    Singular,
 }

@@ -28,8 +28,9 @@ impl Sweeps<'_, '_> {
             let frozen = Frozen::new(self.interface, &self.state);
             let (r, scale) = (&residual.r, residual.scale);
             let step = frozen
-                .solve(r, scale, 0.0)
-                .or_else(|| frozen.solve(r, scale, BLEND));
+                .solve(r, scale)
+                .or_else(|| frozen.solve_blended(r, scale, 0.0))
+                .or_else(|| frozen.solve_blended(r, scale, BLEND));
             let Some(step) = step else {
                 return self.gave_up(&residual, "newton found no direction");
             };

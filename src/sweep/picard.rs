@@ -59,8 +59,7 @@ impl Sweeps<'_, '_> {
                 return self.gave_up(&residual, &why);
             }
             let mut step = residual.r.clone();
-            s_0.forward(&mut step);
-            s_0.backward(&mut step);
+            s_0.solve(&mut step);
             axpy(theta, &step, u);
             residual = self.residual(u, Openings::Keep);
             self.record(&residual);
@@ -87,8 +86,7 @@ impl Sweeps<'_, '_> {
             let mut y = vec![0.0; n];
             self.interface.add_pairs_bilateral(&x, &mut y);
             self.state.add_openings(self.interface, 1.0, &x, &mut y);
-            s_0.forward(&mut y);
-            s_0.backward(&mut y);
+            s_0.solve(&mut y);
             rho = dot(&y, &y).sqrt();
             x = y;
         }
