@@ -18,8 +18,12 @@ const GAP_TOLERANCE: f64 = 1e-14;
 const PATIENCE: usize = 10;
 /// Stiffness of a proximal step relative to the diagonal of H.
 const PROXIMITY: f64 = 1e-6;
+/// Most proximal steps.
+const PROXIMAL_STEPS: usize = 200;
+/// Spring force of a proximal step, relative to what it's balanced with, that is round-off.
+const ROUND_OFF: f64 = 1e-15;
 /// Scaled pivot below which H is taken as singular.
-const SINGULAR_PIVOT: f64 = 1e-11;
+const SINGULAR_PIVOT: f64 = 1e-13;
 
 /// The small problem of a pair.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +74,9 @@ impl GapProblem<'_> {
             return solution;
         }
         let mut center = vec![0.0; self.c.len()];
-        for _ in 0..200 {
+        let mut last = GapSolution::bilateral(self.c.len());
+        let mut unbalanced = f64::INFINITY;
+        for _ in 0..PROXIMAL_STEPS {
             let Some(solution) = self.pivot(open, Some(&center), &mut steps) else {
                 break;
             };
@@ -80,20 +86,39 @@ impl GapProblem<'_> {
                 open.copy_from_slice(&trial);
                 return exact;
             }
-            let largest = maximum(solution.approaches.iter().copied());
-            let moved = maximum(solution.approaches.iter().zip(&center).map(|(t, c)| t - c));
-            if moved <= 1e-13 * largest.max(self.scale) {
-                return solution;
+            unbalanced = self.unbalanced(&solution.approaches, &center);
+            center.clone_from(&solution.approaches);
+            last = solution;
+            if unbalanced <= ROUND_OFF {
+                break;
             }
-            center = solution.approaches;
         }
-        let forces = vec![0.0; self.c.len()];
-        GapSolution {
-            approaches: center,
-            forces,
-            steps,
-            converged: false,
+        last.steps = steps;
+        last.converged &= unbalanced <= FORCE_TOLERANCE;
+        last
+    }
+
+    /// The largest spring force of a proximal step from `center` to `t`, relative to the terms of
+    /// the equilibrium that it's a part of.
+    fn unbalanced(&self, t: &[f64], center: &[f64]) -> f64 {
+        let mut largest = 0.0;
+        for i in 0..t.len() {
+            let spring = (PROXIMITY * self.h[(i, i)] * (t[i] - center[i])).abs();
+            if spring > 0.0 {
+                largest = f64::max(largest, spring / self.scale_of(i, t));
+            }
         }
+        largest
+    }
+
+    /// The absolute terms of condition i's equilibrium.
+    fn scale_of(&self, i: usize, t: &[f64]) -> f64 {
+        let held: f64 = t
+            .iter()
+            .enumerate()
+            .map(|(j, t)| (self.h[(i, j)] * t).abs())
+            .sum();
+        self.c_scale[i] + held
     }
 
     /// Pivots until all signs are right, proximally to `center` if there is one. `None` where H is
@@ -186,10 +211,7 @@ impl GapProblem<'_> {
                 if open[i] {
                     approaches[i] > self.bounds[i] + GAP_TOLERANCE * largest
                 } else {
-                    let terms: f64 = (0..open.len())
-                        .map(|j| (self.h[(i, j)] * approaches[j]).abs())
-                        .sum();
-                    forces[i] < -FORCE_TOLERANCE * (self.c_scale[i] + terms)
+                    forces[i] < -FORCE_TOLERANCE * self.scale_of(i, approaches)
                 }
             })
             .collect()

@@ -9,14 +9,19 @@ use nalgebra::{DMatrix, DVector};
 pub fn residual(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     let n = a.ncols();
     let norms: Vec<f64> = a.column_iter().map(|c| c.norm()).collect();
+    let largest = norms.iter().copied().fold(0.0, f64::max);
     let tolerance = 1e-13 * b.norm();
+    // A column that is round-off would have a direction all the same.
+    let mut candidates: Vec<usize> = (0..n).filter(|&j| norms[j] > 1e-12 * largest).collect();
     let mut passive: Vec<usize> = Vec::new();
     let mut lambda = vec![0.0; n];
     let mut r = b.clone();
     for _ in 0..10 * (n + a.nrows()) + 10 {
         let slope = |j: usize| a.column(j).dot(&r) / norms[j];
-        let best = (0..n)
-            .filter(|j| norms[*j] > 0.0 && !passive.contains(j))
+        let best = candidates
+            .iter()
+            .copied()
+            .filter(|j| !passive.contains(j))
             .map(|j| (slope(j), j))
             .max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1)));
         let Some((steepest, entering)) = best else {
@@ -28,9 +33,10 @@ pub fn residual(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
         passive.push(entering);
         loop {
             let Some(trial) = least_squares(a, b, &passive) else {
-                // The entering column depends on those that are in: it adds nothing.
+                // The entering column depends on those that are in: its slope is round-off.
                 passive.pop();
-                return r;
+                candidates.retain(|&j| j != entering);
+                break;
             };
             let blocking = passive
                 .iter()

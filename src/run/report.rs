@@ -202,6 +202,13 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
     let mut warnings = catalog.warnings.clone();
     warnings.extend(unknown_stress(catalog));
     warnings.extend(totals.warnings.iter().cloned());
+    let certificate = &totals.certificate;
+    if certificate.equilibrium > 1e-14 || certificate.penetration > 1e-14 {
+        warnings.push(format!(
+            "the certificate falls short of 1e-14: equilibrium {:.1e}, penetration {:.1e}",
+            certificate.equilibrium, certificate.penetration
+        ));
+    }
     if totals.smallest_pivot < SUSPICIOUS_PIVOT {
         warnings.push(format!(
             "the smallest pivot is {:.1e} of its diagonal entry: the scene is so badly conditioned \

@@ -19,7 +19,8 @@ impl Sweeps<'_, '_> {
         let mut history: VecDeque<(Vec<f64>, Vec<f64>)> = VecDeque::new();
         let mut last: Option<(Vec<f64>, Vec<f64>)> = None;
         while !self.is_converged(&residual) {
-            if self.sweeps_done() - first >= limit || !residual.relative.is_finite() {
+            let hopeless = !residual.relative.is_finite() || self.interface.len == 0;
+            if hopeless || self.sweeps_done() - first >= limit {
                 return self.gave_up(&residual, "anderson stopped");
             }
             let mut chord = residual.r.clone();

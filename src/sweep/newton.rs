@@ -16,6 +16,10 @@ impl Sweeps<'_, '_> {
     pub(super) fn newton(&mut self, u: &mut [f64], mut residual: Residual) -> SweepStatus {
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
         while !self.is_converged(&residual) {
+            // A pair that fails at a residual of zero fails again.
+            if residual.relative == 0.0 && residual.totals.failed_pairs > 0 {
+                return self.gave_up(&residual, "newton stopped");
+            }
             if self.sweeps_done() >= limit {
                 if self.settings.max_sweeps.is_some() {
                     return self.gave_up(&residual, "newton stopped");
