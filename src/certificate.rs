@@ -22,6 +22,8 @@ pub struct BlockCheck {
     penetration: f64,
     tension: f64,
     largest_force: f64,
+    /// Largest load, contact force or support reaction at a node.
+    largest_load: f64,
     complementarity: f64,
     largest_displacement: f64,
     /// Sum of loads, contact forces and support reactions, and of their absolute values.
@@ -75,6 +77,7 @@ impl BlockCheck {
             let scale = vector(&balance.scale, node);
             let mut force = vector(&balance.external, node);
             self.force_scale += force.iter().map(|f| f.abs()).sum::<f64>();
+            self.largest_load = force.iter().fold(self.largest_load, |m, &f| maximum(m, f));
             for axis in 0..dim {
                 let axes = &frame.axes[axis];
                 let along = dot(axes, &residual);
@@ -84,6 +87,7 @@ impl BlockCheck {
                         *f -= along * a;
                     }
                     self.force_scale += along.abs();
+                    self.largest_load = maximum(self.largest_load, along);
                 } else if let Some(&id) = shared.get(&(node as u32)) {
                     of_trace.entry(id).or_default().push((along, along_scale));
                 } else {
@@ -135,6 +139,7 @@ impl BlockCheck {
             self.penetration,
             self.tension,
             self.largest_force,
+            self.largest_load,
             self.complementarity,
             self.largest_displacement,
             self.force_scale,
@@ -163,6 +168,7 @@ impl BlockCheck {
             penetration: reader.real(),
             tension: reader.real(),
             largest_force: reader.real(),
+            largest_load: reader.real(),
             complementarity: reader.real(),
             largest_displacement: reader.real(),
             force_scale: reader.real(),
@@ -193,6 +199,7 @@ pub fn certificate(checks: &[BlockCheck], traces: &[Vec<u32>], interface: usize)
         total.penetration = maximum(total.penetration, check.penetration);
         total.tension = maximum(total.tension, check.tension);
         total.largest_force = maximum(total.largest_force, check.largest_force);
+        total.largest_load = maximum(total.largest_load, check.largest_load);
         total.complementarity = maximum(total.complementarity, check.complementarity);
         total.largest_displacement =
             maximum(total.largest_displacement, check.largest_displacement);
@@ -221,6 +228,7 @@ pub fn certificate(checks: &[BlockCheck], traces: &[Vec<u32>], interface: usize)
     let force_scale = maximum(total.scale, total.largest_force);
     Certificate {
         equilibrium: ratio(total.residual, total.scale),
+        equilibrium_of_load: ratio(total.residual, total.largest_load),
         penetration: ratio(total.penetration, total.largest_displacement),
         tension: ratio(total.tension, force_scale),
         complementarity: ratio(

@@ -22,6 +22,9 @@ pub enum Status {
 pub struct Certificate {
     /// ‖K u − f + Bᵀλ‖∞ / ‖|K||u| + |f| + |Bᵀλ|‖∞.
     pub equilibrium: f64,
+    /// ‖K u − f + Bᵀλ‖∞ over the largest load, contact force or reaction at a node: what the
+    /// condition of the scene makes of round-off.
+    pub equilibrium_of_load: f64,
     /// Largest penetration over the largest displacement.
     pub penetration: f64,
     /// Largest tension in a contact over the load scale.
@@ -230,6 +233,7 @@ mod tests {
             [
                 "complementarity",
                 "equilibrium",
+                "equilibrium_of_load",
                 "force_balance",
                 "interface_jump",
                 "moment_balance",

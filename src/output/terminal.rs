@@ -151,6 +151,7 @@ pub fn closing(out: &mut impl Write, reason: &str, report: &Report, result: &Pat
 pub fn certificate(out: &mut impl Write, certificate: &Certificate) -> Result<()> {
     let Certificate {
         equilibrium,
+        equilibrium_of_load,
         penetration,
         tension,
         complementarity,
@@ -160,8 +161,8 @@ pub fn certificate(out: &mut impl Write, certificate: &Certificate) -> Result<()
     } = certificate;
     writeln!(
         out,
-        "certificate  equilibrium {equilibrium:.1e}  penetration {penetration:.1e}  \
-         tension {tension:.1e}  complementarity {complementarity:.1e}"
+        "certificate  equilibrium {equilibrium:.1e} ({equilibrium_of_load:.1e} of the load)  \
+         penetration {penetration:.1e}  tension {tension:.1e}  complementarity {complementarity:.1e}"
     )?;
     writeln!(
         out,

@@ -209,6 +209,13 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
             certificate.equilibrium, certificate.penetration
         ));
     }
+    if certificate.equilibrium_of_load > 1e-6 {
+        warnings.push(format!(
+            "the forces on the nodes are balanced to {:.1e} of the largest load only: the scene is \
+             badly conditioned, and stresses and contact forces are no better than that",
+            certificate.equilibrium_of_load
+        ));
+    }
     if totals.smallest_pivot < SUSPICIOUS_PIVOT {
         warnings.push(format!(
             "the smallest pivot is {:.1e} of its diagonal entry: the scene is so badly conditioned \
