@@ -348,4 +348,15 @@ mod tests {
         let (solution, _) = solve(&h, &c, &bounds);
         assert_optimal(&h, &c, &bounds, &solution);
     }
+
+    #[test]
+    fn a_body_that_only_round_off_pulls_away_is_left_where_it_is() {
+        // H = 0 along opening all gaps at once; the load there is what round-off left of it.
+        let bend = [1.0, -2.0, 1.0];
+        let h = Mat::from_fn(3, 3, |i, j| bend[i] * bend[j]);
+        let (c, bounds) = ([-1.0 - 1e-16, 2.0 - 1e-16, -1.0 - 1e-16], [1.0; 3]);
+        let (solution, _) = solve(&h, &c, &bounds);
+        assert!(solution.converged);
+        assert_optimal(&h, &c, &bounds, &solution);
+    }
 }

@@ -122,4 +122,11 @@ mod tests {
             assert!((b.dot(&r) - r.norm_squared()).abs() < 1e-11);
         }
     }
+
+    #[test]
+    fn a_column_of_round_off_does_not_keep_the_others_from_balancing() {
+        let a = DMatrix::from_row_slice(2, 4, &[3e-17, 1.0, -1.0, 0.0, 2e-17, 0.0, 1.0, -1.0]);
+        let b = DVector::from_column_slice(&[0.7, 0.6]);
+        assert!(residual(&a, &b).norm() < 1e-14);
+    }
 }
