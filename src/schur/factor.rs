@@ -110,11 +110,6 @@ impl BoundaryLastCholesky {
         self.smallest_pivot
     }
 
-    /// Number of entries of the factor.
-    pub fn entries(&self) -> usize {
-        self.symbolic.len_val()
-    }
-
     fn find_smallest_pivot(&self, matrix: &SparseSymmetric, count: usize) -> f64 {
         let diagonal = matrix.diagonal();
         let mut smallest = f64::INFINITY;

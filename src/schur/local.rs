@@ -40,11 +40,6 @@ impl LocalSchur {
         self.s.nrows()
     }
 
-    /// Number of entries of the factor.
-    pub fn entries(&self) -> usize {
-        self.factor.entries()
-    }
-
     /// The smallest pivot of K_II relative to its diagonal.
     pub fn smallest_pivot(&self) -> f64 {
         self.factor.smallest_pivot()
