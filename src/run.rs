@@ -194,6 +194,7 @@ fn create_output(
     comm.gather(
         &owners,
         |s| {
+            // Called on the owner of subdomain s, which has read its block.
             let block = &blocks[&plan.block_of[s]].block;
             let cells = block.member(s).map(|m| &block.members[m].cells);
             Message {

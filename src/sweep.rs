@@ -103,6 +103,8 @@ pub struct Sweeps<'a, 'c> {
     interface: &'a Interface,
     s_con: &'a mut SCon<'c>,
     state: ConState,
+    /// Whether active sets may have changed since their openings were last sent.
+    stale_openings: bool,
     settings: SweepSettings,
     began: Instant,
     records: Vec<SweepRecord>,
@@ -133,6 +135,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             interface,
             s_con,
             state: ConState::default(),
+            stale_openings: false,
             settings,
             began: Instant::now(),
             records: Vec::new(),
@@ -166,7 +169,12 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     /// Iterative refinement with the factors at hand: the tolerance of the sweeps isn't what limits
     /// the solution.
     fn refine(&mut self, u: &mut [f64]) {
-        let mut residual = self.residual(u, Openings::All);
+        let openings = if self.stale_openings {
+            Openings::All
+        } else {
+            Openings::Changed
+        };
+        let mut residual = self.residual(u, openings);
         for _ in 0..MAX_REFINEMENTS {
             if residual.relative <= ROUND_OFF || residual.totals.changed > 0 {
                 return;
@@ -187,6 +195,11 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     }
 
     fn residual(&mut self, u: &[f64], openings: Openings) -> Residual {
+        self.stale_openings = match openings {
+            Openings::Keep => true,
+            Openings::Changed => self.stale_openings,
+            Openings::All => false,
+        };
         let totals = self
             .s_con
             .evaluate(self.interface, u, openings, &mut self.state);

@@ -40,6 +40,7 @@ pub fn survey(
         .iter()
         .map(|&b| plan.blocks[b].owner)
         .collect();
+    // Below, what is asked of a subdomain is asked on its owner, which has read it.
     let frames = body_frames(comm, &subdomains, catalog, &owners);
     let states = body_states(comm, &subdomains, catalog, &owners, &frames);
     let rows = rigid_rows(comm, blocks, catalog, plan, &frames);
