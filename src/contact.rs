@@ -2,5 +2,8 @@
 
 pub mod active_set;
 pub mod approach;
+pub mod interior_point;
+pub mod law;
+pub mod open_factor;
 pub mod pair;
 pub mod s_con;

@@ -3,6 +3,7 @@
 //! read → assemble → condense → S_0 at the root → sweeps → recover → certificate → write
 
 pub mod condense;
+pub mod frozen;
 pub mod read;
 pub mod recover;
 pub mod refine;
@@ -18,9 +19,10 @@ use contact_dd_partition::problem::read::ProblemFile;
 use faer::Par;
 
 use self::condense::{assemble_interface, condense_blocks};
+use self::frozen::{Frozen, FrozenRoot};
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
-use self::refine::{Parts, RootParts, refine};
+use self::refine::refine;
 use self::report::{Narrator, Totals};
 use self::settle::settle_free_motions;
 use self::write::{stresses, write_solution};
@@ -119,20 +121,20 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let trace_of_root = root.map(|(o, (numbering, _))| (&o.u[..], &numbering.traces[..]));
     let mut solutions = recover(comm, &condensed, &plan, trace_of_root);
     settle_free_motions(comm, &survey, &blocks, &mut solutions, catalog, &plan);
-    let parts = Parts {
+    let frozen = Frozen {
         comm,
         blocks: &blocks,
         condensed: &condensed,
         catalog,
         plan: &plan,
+        root: root.map(|(outcome, (numbering, interface))| FrozenRoot {
+            numbering,
+            interface,
+            state: &outcome.state,
+            converged: outcome.status == SweepStatus::Converged,
+        }),
     };
-    let root_parts = root.map(|(outcome, (numbering, interface))| RootParts {
-        numbering,
-        interface,
-        state: &outcome.state,
-        converged: outcome.status == SweepStatus::Converged,
-    });
-    let certificate = refine(parts, root_parts, &mut solutions);
+    let certificate = refine(&frozen, &mut solutions);
     let stress = stresses(comm, &blocks, &solutions, catalog, &plan);
     seconds.recover = lap.elapsed().as_secs_f64();
 

@@ -2,28 +2,24 @@
 //!
 //! All methods share the residual r(U) = F − S_0 U − S_CON(U) and differ in what is inverted:
 //! M δ = r with M = S_0 ([`picard`], the paper's (18)), S_0 + S_CON' of the bilateral problem
-//! ([`anderson`]), or S_0 + S_CON'(U) ([`newton`]).
+//! ([`anderson`]), or S_0 + S_CON(U + ·) as it is, the contact conditions included ([`newton`]).
 
 pub mod anderson;
-pub mod frozen;
 pub mod newton;
 pub mod picard;
 
 use std::time::Instant;
 
-use self::frozen::Frozen;
-use crate::contact::s_con::{ConState, ConTotals, Openings, SCon};
+use crate::contact::s_con::{ConState, ConTotals, SCon};
 use crate::interface::operator::Interface;
 
 /// Residual that is round-off and nothing else.
 const ROUND_OFF: f64 = 1e-15;
-/// Most refinements after the sweeps.
-const MAX_REFINEMENTS: usize = 3;
 
 /// How U is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Method {
-    /// Semismooth Newton: S_0 + S_CON'(U) is inverted.
+    /// Newton: S_0 + S_CON is inverted, contact conditions included.
     Newton,
     /// Accelerated chord: S_0 + S_CON' of the bilateral problem is inverted.
     Anderson,
@@ -90,6 +86,10 @@ pub struct SweepOutcome {
     pub records: Vec<SweepRecord>,
     /// What a user should know.
     pub notes: Vec<String>,
+    /// Linear systems solved in contact problems, those of single pairs and the coupled one.
+    pub inner_steps: usize,
+    /// Which other methods had to help, in words.
+    pub fallbacks: Vec<String>,
     /// The residual that is left in the end.
     pub residual: f64,
     /// Totals of the last evaluation of S_CON.
@@ -103,12 +103,12 @@ pub struct Sweeps<'a, 'c> {
     interface: &'a Interface,
     s_con: &'a mut SCon<'c>,
     state: ConState,
-    /// Whether active sets may have changed since their openings were last sent.
-    stale_openings: bool,
     settings: SweepSettings,
     began: Instant,
     records: Vec<SweepRecord>,
     notes: Vec<String>,
+    inner_steps: usize,
+    fallbacks: Vec<String>,
     observer: &'a mut dyn FnMut(&SweepRecord),
 }
 
@@ -116,8 +116,6 @@ pub struct Sweeps<'a, 'c> {
 #[derive(Clone, Debug)]
 struct Residual {
     r: Vec<f64>,
-    /// Largest sum of the absolute terms of an entry of r.
-    scale: f64,
     relative: f64,
     totals: ConTotals,
 }
@@ -135,15 +133,16 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             interface,
             s_con,
             state: ConState::default(),
-            stale_openings: false,
             settings,
             began: Instant::now(),
             records: Vec::new(),
             notes: Vec::new(),
+            inner_steps: 0,
+            fallbacks: Vec::new(),
             observer,
         };
         let mut u = interface.bilateral_start();
-        let residual = sweeps.residual(&u, Openings::Changed);
+        let residual = sweeps.residual(&u, None);
         sweeps.record(&residual);
         let status = match settings.method {
             Method::Newton => sweeps.newton(&mut u, residual),
@@ -154,63 +153,41 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             sweeps.refine(&mut u);
         }
         // The pairs keep the approaches and forces of their last evaluation: it has to be S_CON(U).
-        let last = sweeps.residual(&u, Openings::Changed);
+        let last = sweeps.residual(&u, None);
         SweepOutcome {
             u,
             status,
             records: sweeps.records,
             notes: sweeps.notes,
+            inner_steps: sweeps.inner_steps,
+            fallbacks: sweeps.fallbacks,
             residual: last.relative,
             totals: last.totals,
             state: sweeps.state,
         }
     }
 
-    /// Iterative refinement with the factors at hand: the tolerance of the sweeps isn't what limits
-    /// the solution.
-    fn refine(&mut self, u: &mut [f64]) {
-        let openings = if self.stale_openings {
-            Openings::All
-        } else {
-            Openings::Changed
-        };
-        let mut residual = self.residual(u, openings);
-        for _ in 0..MAX_REFINEMENTS {
-            if residual.relative <= ROUND_OFF || residual.totals.changed > 0 {
-                return;
-            }
-            let frozen = Frozen::new(self.interface, &self.state);
-            let Some(step) = frozen.solve(&residual.r, residual.scale) else {
-                return;
-            };
-            let mut refined = u.to_vec();
-            axpy(1.0, &step, &mut refined);
-            let after = self.residual(&refined, Openings::Changed);
-            if after.relative > 0.5 * residual.relative || after.totals.changed > 0 {
-                return;
-            }
-            u.copy_from_slice(&refined);
-            residual = after;
+    /// r(U), where the pairs' approaches are `expected` to be open; else as they were last.
+    fn residual(&mut self, u: &[f64], expected: Option<&[Vec<bool>]>) -> Residual {
+        let totals = (self.s_con).evaluate(self.interface, u, expected, &mut self.state);
+        self.inner_steps += totals.steps;
+        if totals.fallen_back_pairs > 0 {
+            self.fell_back("pairs: the interior-point method named the closed contacts");
         }
-    }
-
-    fn residual(&mut self, u: &[f64], openings: Openings) -> Residual {
-        self.stale_openings = match openings {
-            Openings::Keep => true,
-            Openings::Changed => self.stale_openings,
-            Openings::All => false,
-        };
-        let totals = self
-            .s_con
-            .evaluate(self.interface, u, openings, &mut self.state);
         let (mut r, mut scale) = self.interface.linear_residual(u);
         self.state.subtract(self.interface, &mut r, &mut scale);
         let (r_max, scale_max) = (maximum(&r), maximum(&scale));
         Residual {
             r,
-            scale: scale_max,
             relative: if r_max == 0.0 { 0.0 } else { r_max / scale_max },
             totals,
+        }
+    }
+
+    /// Remembers that another method had to help.
+    fn fell_back(&mut self, what: &str) {
+        if !self.fallbacks.iter().any(|known| known == what) {
+            self.fallbacks.push(what.into());
         }
     }
 

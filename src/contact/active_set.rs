@@ -1,35 +1,37 @@
-//! The small problem of a pair: min ½ tᵀ H t − cᵀ t subject to t ≤ g.
+//! The contact problem: min ½ tᵀ H t − cᵀ t subject to t ≤ g.
 //!
-//! t are the approaches of the pair's conditions, H its Schur complement on them, c the load that
-//! drives them; λ = c − H t ≥ 0 are the contact forces. Solved by a warm-started primal-dual active set with Júdice and Pires'
-//! rule: flip every condition whose sign is wrong as long as their number falls, else one at a
-//! time, which ends for every positive definite H. Where H is singular along a motion that opens
-//! gaps without resistance, proximal steps make it definite and converge to a solution of the
-//! problem itself.
+//! t are the approaches of the conditions, of one pair or of all, H the stiffness condensed onto
+//! them, c the load that drives them; λ = c − H t ≥ 0 are the contact forces. A warm-started
+//! primal-dual active set flips every condition whose sign is wrong. Where that turns in circles or
+//! opens conditions one by one, an interior-point method names the set to start from, and from there
+//! Júdice and Pires' rule ends for every positive definite H: flip all as long as their number
+//! falls, else one at a time.
 
-use faer::linalg::solvers::{Llt, SolveCore};
-use faer::{Conj, Mat, MatRef, Side};
+use faer::MatRef;
+
+use super::interior_point::open_conditions;
+use super::open_factor::{OpenFactor, scale_of};
 
 /// How far below zero, relative to its scale, a force must be to open a contact.
 const FORCE_TOLERANCE: f64 = 1e-12;
 /// How far below zero, relative to the displacements, a gap must be to close a contact.
 const GAP_TOLERANCE: f64 = 1e-14;
-/// Attempts at flipping all wrong signs without progress before single ones are flipped.
+/// Attempts at flipping all wrong signs without progress before that is given up.
 const PATIENCE: usize = 10;
-/// Stiffness of a proximal step relative to the diagonal of H.
-const PROXIMITY: f64 = 1e-6;
-/// Most proximal steps.
-const PROXIMAL_STEPS: usize = 200;
-/// Spring force of a proximal step, relative to what it's balanced with, that is round-off.
-const ROUND_OFF: f64 = 1e-15;
-/// Scaled pivot below which H is taken as singular.
-const SINGULAR_PIVOT: f64 = 1e-13;
+/// Linear systems solved from the start that is given before the interior-point method is asked.
+const QUICK_STEPS: usize = 25;
+/// Single flips at most, for each condition up to [`SINGLE_FLIPS`] of them.
+const FLIPS_EACH: usize = 10;
+/// Conditions for which every single flip that may be needed is tried.
+const SINGLE_FLIPS: usize = 100;
 
-/// The small problem of a pair.
+/// The contact problem.
 #[derive(Clone, Copy, Debug)]
 pub struct GapProblem<'a> {
     /// H, symmetric positive semidefinite.
     pub h: MatRef<'a, f64>,
+    /// The diagonal of the matrix that H is condensed from: what H's round-off is relative to.
+    pub stiffness: &'a [f64],
     /// c.
     pub c: &'a [f64],
     /// Scale of the terms that c is a difference of, for each condition.
@@ -49,7 +51,9 @@ pub struct GapSolution {
     pub forces: Vec<f64>,
     /// Linear systems solved.
     pub steps: usize,
-    /// Whether all signs are right.
+    /// Whether the interior-point method was needed.
+    pub fell_back: bool,
+    /// Whether all signs are right and the open conditions balanced.
     pub converged: bool,
 }
 
@@ -60,100 +64,85 @@ impl GapSolution {
             approaches: vec![0.0; m],
             forces: vec![0.0; m],
             steps: 0,
+            fell_back: false,
             converged: true,
         }
     }
+}
+
+/// t and λ for a given set of open conditions.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// t, exactly g where closed.
+    pub approaches: Vec<f64>,
+    /// λ = c − H t, exactly 0 where open.
+    pub forces: Vec<f64>,
+    /// What H t leaves of c at open conditions, relative to its terms.
+    unbalanced: f64,
 }
 
 impl GapProblem<'_> {
     /// Solves the problem from the conditions that are `open` at first, and leaves there which
     /// ones are open in the solution.
     pub fn solve(&self, open: &mut [bool]) -> GapSolution {
-        let mut steps = 0;
-        if let Some(solution) = self.pivot(open, None, &mut steps) {
-            return solution;
+        let mut set = open.to_vec();
+        let mut solution = self.pivot(&mut set, QUICK_STEPS, false);
+        if !solution.converged {
+            let quick = solution.steps;
+            let (mut named, named_in) = self.interior_point();
+            solution = self.pivot(&mut named, self.most_steps(), true);
+            solution.steps += quick + named_in;
+            solution.fell_back = true;
+            set = named;
         }
-        let mut center = vec![0.0; self.c.len()];
-        let mut last = GapSolution::bilateral(self.c.len());
-        let mut unbalanced = f64::INFINITY;
-        for _ in 0..PROXIMAL_STEPS {
-            let Some(solution) = self.pivot(open, Some(&center), &mut steps) else {
-                break;
-            };
-            // With the right set at hand the problem itself is solved where it can be.
-            let mut trial = open.to_vec();
-            if let Some(exact) = self.pivot(&mut trial, None, &mut steps) {
-                open.copy_from_slice(&trial);
-                return exact;
-            }
-            unbalanced = self.unbalanced(&solution.approaches, &center);
-            center.clone_from(&solution.approaches);
-            last = solution;
-            if unbalanced <= ROUND_OFF {
-                break;
-            }
-        }
-        last.steps = steps;
-        last.converged &= unbalanced <= FORCE_TOLERANCE;
-        last
+        open.copy_from_slice(&set);
+        solution
     }
 
-    /// The largest spring force of a proximal step from `center` to `t`, relative to the terms of
-    /// the equilibrium that it's a part of.
-    fn unbalanced(&self, t: &[f64], center: &[f64]) -> f64 {
-        let mut largest = 0.0;
-        for i in 0..t.len() {
-            let spring = (PROXIMITY * self.h[(i, i)] * (t[i] - center[i])).abs();
-            if spring > 0.0 {
-                largest = f64::max(largest, spring / self.scale_of(i, t));
-            }
-        }
-        largest
-    }
-
-    /// The absolute terms of condition i's equilibrium.
-    fn scale_of(&self, i: usize, t: &[f64]) -> f64 {
-        let held: f64 = t
-            .iter()
-            .enumerate()
-            .map(|(j, t)| (self.h[(i, j)] * t).abs())
-            .sum();
-        self.c_scale[i] + held
-    }
-
-    /// Pivots until all signs are right, proximally to `center` if there is one. `None` where H is
-    /// singular on the open conditions.
-    fn pivot(
-        &self,
-        open: &mut [bool],
-        center: Option<&[f64]>,
-        steps: &mut usize,
-    ) -> Option<GapSolution> {
+    fn interior_point(&self) -> (Vec<bool>, usize) {
         let m = self.c.len();
+        let mut q = self.c.to_vec();
+        for (column, &g) in self.h.col_iter().zip(self.bounds) {
+            for (q, h) in q.iter_mut().zip(column.iter()) {
+                *q -= h * g;
+            }
+        }
+        let scale: Vec<f64> = (0..m)
+            .map(|j| scale_of(self.h[(j, j)], self.stiffness[j]))
+            .collect();
+        open_conditions(self.h, &q, &scale)
+    }
+
+    fn most_steps(&self) -> usize {
+        QUICK_STEPS + FLIPS_EACH * self.c.len().min(SINGLE_FLIPS)
+    }
+
+    /// Pivots until all signs are right, or `limit` systems are solved, or flipping all wrong
+    /// signs gets nowhere and single flips aren't asked for.
+    fn pivot(&self, open: &mut [bool], limit: usize, single_flips: bool) -> GapSolution {
         let mut fewest = usize::MAX;
         let mut patience = PATIENCE;
-        let limit = *steps + 10 * m + 50;
+        let mut steps = 0;
         loop {
-            *steps += 1;
-            let (approaches, forces) = self.linear(open, center)?;
-            let wrong = self.wrong_signs(open, &approaches, &forces);
-            if wrong.is_empty() || *steps >= limit {
-                return Some(GapSolution {
-                    approaches: approaches
-                        .iter()
-                        .zip(self.bounds)
-                        .map(|(t, g)| t.min(*g))
-                        .collect(),
-                    forces: forces.iter().map(|f| f.max(0.0)).collect(),
-                    steps: *steps,
-                    converged: wrong.is_empty(),
-                });
-            }
+            steps += 1;
+            let trial = self.linear(open);
+            let wrong = self.wrong_signs(open, &trial);
             if wrong.len() < fewest {
                 fewest = wrong.len();
                 patience = PATIENCE;
             } else {
                 patience = patience.saturating_sub(1);
+            }
+            let stuck = patience == 0 && !single_flips;
+            if wrong.is_empty() || stuck || steps >= limit {
+                let approaches = trial.approaches.iter().zip(self.bounds);
+                return GapSolution {
+                    approaches: approaches.map(|(t, g)| t.min(*g)).collect(),
+                    forces: trial.forces.iter().map(|f| f.max(0.0)).collect(),
+                    steps,
+                    fell_back: false,
+                    converged: wrong.is_empty() && trial.unbalanced <= FORCE_TOLERANCE,
+                };
             }
             let flips = if patience > 0 {
                 &wrong[..]
@@ -166,129 +155,86 @@ impl GapProblem<'_> {
         }
     }
 
-    /// t and λ for a given set of open conditions.
-    fn linear(&self, open: &[bool], center: Option<&[f64]>) -> Option<(Vec<f64>, Vec<f64>)> {
+    /// t and λ with the conditions that aren't `open` held at their bounds.
+    pub fn linear(&self, open: &[bool]) -> Trial {
         let m = self.c.len();
-        let spring = |j: usize| center.map_or(0.0, |_| PROXIMITY * self.h[(j, j)]);
-        let factor = OpenFactor::new(self.h, open, spring)?;
+        let factor = OpenFactor::new(self.h, self.stiffness, open);
         let mut t: Vec<f64> = (0..m)
             .map(|j| if open[j] { 0.0 } else { self.bounds[j] })
             .collect();
-        // What the closed conditions and the spring leave of the load.
-        let mut load = self.c.to_vec();
-        for j in (0..m).filter(|&j| t[j] != 0.0) {
-            for (i, load) in load.iter_mut().enumerate() {
-                *load -= self.h[(i, j)] * t[j];
+        // What the closed conditions leave of the load.
+        let mut left = self.c.to_vec();
+        self.subtract(&t, |j| !open[j], &mut left);
+        let mut opened: Vec<f64> = factor.open.iter().map(|&j| left[j]).collect();
+        factor.solve(&mut opened);
+        for (&j, opened) in factor.open.iter().zip(opened) {
+            t[j] = opened;
+        }
+        self.subtract(&t, |j| open[j], &mut left);
+        let mut unbalanced = 0.0;
+        for &i in &factor.open {
+            if left[i] != 0.0 {
+                unbalanced = f64::max(unbalanced, left[i].abs() / self.scale_of(i, &t));
             }
+            left[i] = 0.0;
         }
-        if let Some(center) = center {
-            for (j, load) in load.iter_mut().enumerate() {
-                *load += spring(j) * (center[j] - t[j]);
-            }
+        Trial {
+            approaches: t,
+            forces: left,
+            unbalanced,
         }
-        let solved = factor.solve(|j| load[j]);
-        for (&j, solved) in factor.open.iter().zip(solved) {
-            t[j] = solved;
-        }
-        let forces = (0..m)
-            .map(|i| {
-                if open[i] {
-                    return 0.0;
+    }
+
+    /// left ← left − H t over the conditions that are `asked` for.
+    fn subtract(&self, t: &[f64], asked: impl Fn(usize) -> bool, left: &mut [f64]) {
+        for (j, &t) in t.iter().enumerate() {
+            if t != 0.0 && asked(j) {
+                for (left, h) in left.iter_mut().zip(self.h.col(j).iter()) {
+                    *left -= h * t;
                 }
-                let held: f64 = factor.open.iter().map(|&j| self.h[(i, j)] * t[j]).sum();
-                load[i] - held
-            })
-            .collect();
-        Some((t, forces))
+            }
+        }
+    }
+
+    /// The absolute terms of condition i's equilibrium.
+    fn scale_of(&self, i: usize, t: &[f64]) -> f64 {
+        let row = self.h.col(i);
+        let held: f64 = row.iter().zip(t).map(|(h, t)| (h * t).abs()).sum();
+        self.c_scale[i] + held
     }
 
     /// The conditions that are open with a negative gap or closed with a negative force, beyond
     /// round-off: within it a condition stays what it was.
-    fn wrong_signs(&self, open: &[bool], approaches: &[f64], forces: &[f64]) -> Vec<usize> {
-        let largest = maximum(approaches.iter().copied()).max(self.scale);
+    fn wrong_signs(&self, open: &[bool], trial: &Trial) -> Vec<usize> {
+        let Trial {
+            approaches, forces, ..
+        } = trial;
+        let largest = approaches.iter().fold(self.scale, |m, t| m.max(t.abs()));
         (0..open.len())
             .filter(|&i| {
                 if open[i] {
                     approaches[i] > self.bounds[i] + GAP_TOLERANCE * largest
                 } else {
-                    forces[i] < -FORCE_TOLERANCE * self.scale_of(i, approaches)
+                    forces[i] < 0.0 && forces[i] < -FORCE_TOLERANCE * self.scale_of(i, approaches)
                 }
             })
             .collect()
     }
 }
 
-/// max |x|.
-fn maximum(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, |m, x| m.max(x.abs()))
-}
-
-/// The Cholesky factor of H on the open conditions.
-#[derive(Debug)]
-pub struct OpenFactor {
-    /// The open conditions, ascending.
-    pub open: Vec<usize>,
-    factor: Option<Llt<f64>>,
-}
-
-impl OpenFactor {
-    /// Factorizes H_NN + `spring` on the open conditions N; `None` where it is singular.
-    pub fn new(h: MatRef<'_, f64>, open: &[bool], spring: impl Fn(usize) -> f64) -> Option<Self> {
-        let open: Vec<usize> = (0..open.len()).filter(|&j| open[j]).collect();
-        if open.is_empty() {
-            return Some(Self { open, factor: None });
-        }
-        let h_nn = Mat::from_fn(open.len(), open.len(), |a, b| {
-            let (i, j) = (open[a], open[b]);
-            h[(i, j)] + if a == b { spring(i) } else { 0.0 }
-        });
-        let factor = h_nn.llt(Side::Lower).ok()?;
-        let l = factor.L();
-        let regular =
-            (0..open.len()).all(|a| l[(a, a)] * l[(a, a)] > SINGULAR_PIVOT * h_nn[(a, a)]);
-        regular.then_some(Self {
-            open,
-            factor: Some(factor),
-        })
-    }
-
-    /// The same with springs of `proximity` times the diagonal wherever H alone is singular.
-    pub fn regular(h: MatRef<'_, f64>, open: &[bool]) -> Option<Self> {
-        Self::new(h, open, |_| 0.0).or_else(|| Self::new(h, open, |j| PROXIMITY * h[(j, j)]))
-    }
-
-    /// H_NN⁻¹ r.
-    pub fn solve(&self, r: impl Fn(usize) -> f64) -> Vec<f64> {
-        let mut x = Mat::from_fn(self.open.len(), 1, |a, _| r(self.open[a]));
-        if let Some(factor) = &self.factor {
-            factor.solve_in_place_with_conj(Conj::No, x.as_mut());
-        }
-        (0..self.open.len()).map(|a| x[(a, 0)]).collect()
-    }
-
-    /// W = L⁻¹ R for the rows of `r` that are open, so that Rᵀ H_NN⁻¹ R = Wᵀ W.
-    pub fn half_solve(&self, r: MatRef<'_, f64>) -> Mat<f64> {
-        let mut w = Mat::from_fn(self.open.len(), r.ncols(), |a, b| r[(self.open[a], b)]);
-        if let Some(factor) = &self.factor {
-            faer::linalg::triangular_solve::solve_lower_triangular_in_place(
-                factor.L(),
-                w.as_mut(),
-                faer::Par::Seq,
-            );
-        }
-        w
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use faer::Mat;
+
     use super::*;
 
     fn solve(h: &Mat<f64>, c: &[f64], bounds: &[f64]) -> (GapSolution, Vec<bool>) {
         let mut open = vec![false; c.len()];
         let c_scale: Vec<f64> = c.iter().map(|c| c.abs()).collect();
+        let stiffness: Vec<f64> = (0..c.len()).map(|j| 1.0 + h[(j, j)]).collect();
         let problem = GapProblem {
             h: h.as_ref(),
+            stiffness: &stiffness,
             c,
             c_scale: &c_scale,
             bounds,

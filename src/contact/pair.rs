@@ -1,10 +1,11 @@
 //! A contact pair: the common, nonlinear Schur complement S_kl of two subdomains, (12).
 
-use faer::{Mat, MatRef};
+use faer::MatRef;
 
-use super::active_set::{GapProblem, GapSolution, OpenFactor};
+use super::active_set::{GapProblem, GapSolution};
 use super::approach::ApproachOf;
-use crate::schur::local::{CondensedLoad, LocalSchur};
+use super::open_factor::OpenFactor;
+use crate::schur::local::{CondensedLoad, LocalSchur, multiply_add};
 
 /// A group of subdomains in contact, condensed onto its approaches t and its traces U on Γ.
 #[derive(Debug)]
@@ -20,13 +21,13 @@ pub struct ContactPair {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Limits {
     /// g of every approach: the tightest of its conditions (m).
-    bounds: Vec<f64>,
+    pub bounds: Vec<f64>,
     /// Which condition that is, and its factor.
     tightest: Vec<(usize, f64)>,
     /// Number of conditions.
     conditions: usize,
     /// The largest displacement prescribed in the pair, initial gaps among them (m).
-    scale: f64,
+    pub scale: f64,
 }
 
 impl Limits {
@@ -62,31 +63,28 @@ impl Limits {
 }
 
 /// One evaluation of S_kl.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PairResponse {
     /// S_kl(U): the forces that hold the traces, less the pair's load (N/m).
     pub reaction: Vec<f64>,
     /// Scale of the terms that each reaction is a sum of.
     pub scale: Vec<f64>,
-    /// Closed conditions.
-    pub active: usize,
-    /// Conditions that opened or closed since the last evaluation.
+    /// g − t: what every approach has left (m), 0 where closed.
+    pub gaps: Vec<f64>,
+    /// c − H t: the contact forces where closed, round-off where open (N/m).
+    pub drives: Vec<f64>,
+    /// Scale of the terms that each drive is a sum of.
+    pub drive_scale: Vec<f64>,
+    /// Which approaches are open.
+    pub open: Vec<bool>,
+    /// Conditions that opened or closed, against what was expected or the last evaluation.
     pub changed: usize,
     /// Linear systems solved.
     pub steps: usize,
+    /// Whether the interior-point method was needed.
+    pub fell_back: bool,
     /// Whether the small problem converged.
     pub converged: bool,
-}
-
-/// A load condensed onto the traces with the active set frozen.
-#[derive(Debug)]
-pub struct FrozenLoad {
-    /// The load condensed onto approaches and traces.
-    pub load: CondensedLoad,
-    factor: OpenFactor,
-    t: Vec<f64>,
-    /// What is left of it on the traces.
-    pub traces: Vec<f64>,
 }
 
 impl ContactPair {
@@ -118,13 +116,11 @@ impl ContactPair {
 
     /// Force of every condition in the last evaluation, and whether it was closed.
     pub fn conditions(&self) -> (Vec<f64>, Vec<bool>) {
-        let mut forces = vec![0.0; self.limits.conditions];
         let mut closed = vec![false; self.limits.conditions];
-        for (t, &(condition, factor)) in self.limits.tightest.iter().enumerate() {
-            forces[condition] = self.contact.forces[t] / factor;
-            closed[condition] = !self.open[t];
+        for (&(condition, _), open) in self.limits.tightest.iter().zip(&self.open) {
+            closed[condition] = !open;
         }
-        (forces, closed)
+        (self.forces(&self.contact.forces), closed)
     }
 
     fn traces(&self) -> usize {
@@ -132,13 +128,13 @@ impl ContactPair {
     }
 
     /// H, on the approaches.
-    fn s_tt(&self) -> MatRef<'_, f64> {
+    pub fn s_tt(&self) -> MatRef<'_, f64> {
         let m = self.limits.len();
         self.schur.s.as_ref().submatrix(0, 0, m, m)
     }
 
     /// Approaches against traces.
-    fn s_t_gamma(&self) -> MatRef<'_, f64> {
+    pub fn s_t_gamma(&self) -> MatRef<'_, f64> {
         let m = self.limits.len();
         self.schur.s.as_ref().submatrix(0, m, m, self.traces())
     }
@@ -154,41 +150,63 @@ impl ContactPair {
         &self.load.boundary()[self.limits.len()..]
     }
 
+    /// The diagonal of the matrix that H is condensed from.
+    pub fn stiffness(&self) -> &[f64] {
+        &self.schur.stiffness[..self.limits.len()]
+    }
+
+    /// The bounds t ≤ g.
+    pub fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
     /// Evaluates S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ, where t(U) ≤ g minimizes the pair's energy.
-    pub fn evaluate(&mut self, u: &[f64]) -> PairResponse {
+    /// The search begins at the conditions `expected` to be open, else at those of last time.
+    pub fn evaluate(&mut self, u: &[f64], expected: Option<Vec<bool>>) -> PairResponse {
         let m = self.limits.len();
+        let before = expected.unwrap_or_else(|| self.open.clone());
         let mut c = self.load.boundary()[..m].to_vec();
         let mut c_scale: Vec<f64> = c.iter().map(|f| f.abs()).collect();
-        let s_t_gamma = self.s_t_gamma();
-        for (j, &u_j) in u.iter().enumerate() {
-            for i in 0..m {
-                let term = s_t_gamma[(i, j)] * u_j;
+        for (column, &u_j) in self.s_t_gamma().col_iter().zip(u) {
+            for (i, s) in column.iter().enumerate() {
+                let term = s * u_j;
                 c[i] -= term;
                 c_scale[i] += term.abs();
             }
         }
-        let mut open = self.open.clone();
+        let mut open = before.clone();
         let contact = GapProblem {
             h: self.s_tt(),
+            stiffness: self.stiffness(),
             c: &c,
             c_scale: &c_scale,
             bounds: &self.limits.bounds,
             scale: u.iter().fold(self.limits.scale, |m, u| m.max(u.abs())),
         }
         .solve(&mut open);
-        let changed = self.open.iter().zip(&open).filter(|(a, b)| a != b).count();
-        let (steps, converged) = (contact.steps, contact.converged);
-        self.open = open;
-        self.contact = contact;
-        let (reaction, scale) = self.reaction(u);
-        PairResponse {
-            reaction,
-            scale,
-            active: self.open.iter().filter(|&&open| !open).count(),
-            changed,
-            steps,
-            converged,
+        let (mut drives, mut drive_scale) = (c, c_scale);
+        for (column, &t) in self.s_tt().col_iter().zip(&contact.approaches) {
+            for (i, h) in column.iter().enumerate() {
+                drives[i] -= h * t;
+                drive_scale[i] += (h * t).abs();
+            }
         }
+        let gaps = self.limits.bounds.iter().zip(&contact.approaches);
+        let mut response = PairResponse {
+            gaps: gaps.map(|(g, t)| g - t).collect(),
+            drives,
+            drive_scale,
+            changed: before.iter().zip(&open).filter(|(a, b)| a != b).count(),
+            steps: contact.steps,
+            fell_back: contact.fell_back,
+            converged: contact.converged,
+            ..PairResponse::default()
+        };
+        self.contact = contact;
+        self.open.clone_from(&open);
+        response.open = open;
+        (response.reaction, response.scale) = self.reaction(u);
+        response
     }
 
     /// S_ΓΓ U + S_Γt t − f_Γ and the scale of its terms.
@@ -207,71 +225,38 @@ impl ContactPair {
         (reaction, scale)
     }
 
-    /// Condenses a load onto the traces with the active set frozen, where the closed conditions
-    /// still have to approach by `missing`, one entry a condition.
-    pub fn condense_frozen(&self, load: CondensedLoad, missing: &[f64]) -> Option<FrozenLoad> {
-        let (m, h) = (self.limits.len(), self.s_tt());
-        let factor = OpenFactor::regular(h, &self.open)?;
-        let mut t: Vec<f64> = (0..m)
-            .map(|j| {
-                let (condition, factor) = self.limits.tightest[j];
-                if self.open[j] {
-                    0.0
-                } else {
-                    missing[condition] / factor
-                }
-            })
-            .collect();
-        let mut left = load.boundary()[..m].to_vec();
-        for (column, t) in h.col_iter().zip(&t) {
-            for (left, h) in left.iter_mut().zip(column.iter()) {
-                *left -= h * t;
-            }
-        }
-        let opened = factor.solve(|j| left[j]);
+    /// S_kl'(U) x = S_ΓΓ x − S_ΓN H_NN⁻¹ S_NΓ x with the open approaches N of the last evaluation.
+    pub fn derivative(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; x.len()];
+        multiply_add(self.bilateral(), x, &mut y);
+        let factor = OpenFactor::new(self.s_tt(), self.stiffness(), &self.open);
+        let mut driven = vec![0.0; self.limits.len()];
+        multiply_add(self.s_t_gamma(), x, &mut driven);
+        let mut opened: Vec<f64> = factor.open.iter().map(|&j| -driven[j]).collect();
+        factor.solve(&mut opened);
+        let mut t = vec![0.0; self.limits.len()];
         for (&j, opened) in factor.open.iter().zip(opened) {
             t[j] = opened;
         }
-        let mut traces = load.boundary()[m..].to_vec();
-        for (column, traces) in self.s_t_gamma().col_iter().zip(&mut traces) {
-            *traces -= column.iter().zip(&t).map(|(s, t)| s * t).sum::<f64>();
-        }
-        Some(FrozenLoad {
-            load,
-            factor,
-            t,
-            traces,
-        })
+        multiply_add(self.s_t_gamma().transpose(), &t, &mut y);
+        y
     }
 
-    /// What such a load adds to the approaches and to the force of every condition once the change
-    /// `u` of the traces is known.
-    pub fn recover_frozen(&self, frozen: &FrozenLoad, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let m = self.limits.len();
-        let mut driven = vec![0.0; m];
-        for (column, u) in self.s_t_gamma().col_iter().zip(u) {
-            for (driven, s) in driven.iter_mut().zip(column.iter()) {
-                *driven -= s * u;
-            }
-        }
-        let mut t = frozen.t.clone();
-        let opened = frozen.factor.solve(|j| driven[j]);
-        for (&j, opened) in frozen.factor.open.iter().zip(opened) {
-            t[j] += opened;
-        }
+    /// Forces of all conditions for those of the approaches.
+    pub fn forces(&self, of_approaches: &[f64]) -> Vec<f64> {
         let mut forces = vec![0.0; self.limits.conditions];
-        for (j, &(condition, factor)) in self.limits.tightest.iter().enumerate() {
-            if !self.open[j] {
-                let held: f64 = (0..m).map(|k| self.schur.s[(j, k)] * t[k]).sum();
-                forces[condition] = (frozen.load.boundary()[j] + driven[j] - held) / factor;
-            }
+        for (force, &(condition, factor)) in of_approaches.iter().zip(&self.limits.tightest) {
+            forces[condition] = force / factor;
         }
-        (t, forces)
+        forces
     }
 
-    /// W with S_kl'(U) = S_ΓΓ − Wᵀ W for the active set of the last evaluation, |open| × |Γ|.
-    pub fn opening(&self) -> Option<Mat<f64>> {
-        OpenFactor::regular(self.s_tt(), &self.open)
-            .map(|factor| factor.half_solve(self.s_t_gamma()))
+    /// What every closed approach lacks of its bound when its conditions lack `missing`, one entry a
+    /// condition; 0 for the open ones.
+    pub fn missing(&self, missing: &[f64]) -> Vec<f64> {
+        let of_condition = |&(condition, factor): &(usize, f64)| missing[condition] / factor;
+        (self.limits.tightest.iter().zip(&self.open))
+            .map(|(tightest, &open)| if open { 0.0 } else { of_condition(tightest) })
+            .collect()
     }
 }

@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use faer::Mat;
-
 use super::pair::{ContactPair, PairResponse};
 use crate::comm::{Comm, Message};
-use crate::interface::operator::{Interface, multiply_add};
+use crate::interface::operator::Interface;
 
 /// S_CON = Σ R_kᵀ S_kl R_k, (15), as the root drives it and the other ranks serve it.
 pub struct SCon<'a> {
@@ -19,47 +17,30 @@ pub struct SCon<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct ConState {
     traces: Vec<Option<Vec<f64>>>,
-    responses: Vec<Option<PairResponse>>,
-    openings: Vec<Option<Mat<f64>>>,
+    /// The answer of every pair.
+    pub responses: Vec<PairResponse>,
 }
 
 /// Totals of one evaluation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ConTotals {
-    /// Closed conditions.
+    /// Closed approaches.
     pub active: usize,
-    /// Conditions that opened or closed.
+    /// Those that opened or closed, against what was expected or the last evaluation.
     pub changed: usize,
     /// Linear systems solved within pairs.
     pub steps: usize,
     /// Pairs that weren't evaluated, because their trace hadn't changed.
     pub unchanged_pairs: usize,
+    /// Pairs that needed the interior-point method.
+    pub fallen_back_pairs: usize,
     /// Pairs whose small problem didn't converge.
     pub failed_pairs: usize,
 }
 
-/// Which openings an evaluation brings to the root.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Openings {
-    /// None.
-    Keep,
-    /// Those of pairs whose active set changed.
-    Changed,
-    /// All, from pairs whose trace hasn't changed, too.
-    All,
-}
-
-impl Openings {
-    fn from_code(code: i64) -> Self {
-        [Self::Keep, Self::Changed, Self::All]
-            .into_iter()
-            .find(|openings| *openings as i64 == code)
-            .unwrap_or(Self::All)
-    }
-}
-
 const STOP: i64 = 0;
 const EVALUATE: i64 = 1;
+const DIFFERENTIATE: i64 = 2;
 
 impl<'a> SCon<'a> {
     /// S_CON over `pairs` of this rank; `owners` has the owner of every pair.
@@ -85,66 +66,76 @@ impl<'a> SCon<'a> {
         self.owners.is_empty()
     }
 
-    /// Evaluates all pairs whose trace changed and leaves their answers in `state`. On the root;
-    /// the other ranks [`serve`](Self::serve).
+    /// Evaluates all pairs whose trace changed and leaves their answers in `state`; a pair's search
+    /// begins at the approaches `expected` to be open. On the root; the other ranks
+    /// [`serve`](Self::serve).
     pub fn evaluate(
         &mut self,
         interface: &Interface,
         u: &[f64],
-        openings: Openings,
+        expected: Option<&[Vec<bool>]>,
         state: &mut ConState,
     ) -> ConTotals {
         let n = self.len();
         state.traces.resize(n, None);
-        state.responses.resize(n, None);
-        state.openings.resize(n, None);
+        state.responses.resize_with(n, PairResponse::default);
         let traces: Vec<Vec<f64>> = (0..n).map(|p| interface.restrict(p, u)).collect();
-        let again = openings == Openings::All;
-        let moved: Vec<bool> = (0..n)
-            .map(|p| again || state.traces[p].as_ref() != Some(&traces[p]))
+        let moved: Vec<usize> = (0..n)
+            .filter(|&p| state.traces[p].as_ref() != Some(&traces[p]))
             .collect();
-        let mut totals = ConTotals::default();
-        if moved.contains(&true) {
-            let mut command = Message {
-                integers: vec![EVALUATE, openings as i64],
-                reals: Vec::new(),
-            };
-            command.integers.extend(moved.iter().map(|&m| i64::from(m)));
-            self.comm.broadcast(&mut command);
-            self.exchange(&moved, openings, Some((&traces, state)));
-        }
+        let question = |p: usize| Message {
+            integers: expected.map_or_else(Vec::new, |sets| {
+                sets[p].iter().map(|&open| i64::from(open)).collect()
+            }),
+            reals: traces[p].clone(),
+        };
+        self.ask(EVALUATE, &moved, question, |p, message| {
+            state.responses[p] = unpack(message);
+        });
+        let mut totals = ConTotals {
+            unchanged_pairs: n - moved.len(),
+            ..ConTotals::default()
+        };
         for (p, response) in state.responses.iter().enumerate() {
-            let Some(response) = response else { continue };
-            totals.active += response.active;
-            if moved[p] {
+            totals.active += response.open.iter().filter(|&&open| !open).count();
+            totals.failed_pairs += usize::from(!response.converged);
+            if moved.contains(&p) {
                 totals.changed += response.changed;
                 totals.steps += response.steps;
-            } else {
-                totals.unchanged_pairs += 1;
+                totals.fallen_back_pairs += usize::from(response.fell_back);
             }
-            totals.failed_pairs += usize::from(!response.converged);
         }
         state.traces = traces.into_iter().map(Some).collect();
         totals
     }
 
-    /// Evaluates this rank's pairs whenever the root asks, until it stops. On all ranks but the
+    /// y ← y + S_CON'(U) x with the active sets of the last evaluation. On the root; the other
+    /// ranks [`serve`](Self::serve).
+    pub fn add_derivative(&mut self, interface: &Interface, x: &[f64], y: &mut [f64]) {
+        let all: Vec<usize> = (0..self.len()).collect();
+        let question = |p: usize| Message {
+            integers: Vec::new(),
+            reals: interface.restrict(p, x),
+        };
+        self.ask(DIFFERENTIATE, &all, question, |p, message| {
+            interface.extend(p, &message.reals, y);
+        });
+    }
+
+    /// Answers for this rank's pairs whatever the root asks, until it stops. On all ranks but the
     /// root.
     pub fn serve(&mut self) {
         loop {
             let mut command = Message::default();
             self.comm.broadcast(&mut command);
-            let mut command = command.read();
-            if command.integer() == STOP {
+            let Some((&kind, called)) = command.integers.split_first() else {
+                return;
+            };
+            if kind == STOP {
                 return;
             }
-            let openings = Openings::from_code(command.integer());
-            let moved: Vec<bool> = command
-                .integers(self.len())
-                .iter()
-                .map(|&m| m != 0)
-                .collect();
-            self.exchange(&moved, openings, None);
+            let called: Vec<usize> = called.iter().map(|&p| p as usize).collect();
+            self.exchange(kind, &called, |_| Message::default(), |_, _| {});
         }
     }
 
@@ -156,47 +147,51 @@ impl<'a> SCon<'a> {
         });
     }
 
-    /// Traces to the owners, responses to the root. Collective.
+    /// Puts a question to the pairs that are `called`, if any, and takes their answers.
+    fn ask(
+        &mut self,
+        kind: i64,
+        called: &[usize],
+        question: impl Fn(usize) -> Message,
+        take: impl FnMut(usize, Message),
+    ) {
+        if called.is_empty() {
+            return;
+        }
+        let mut command = Message {
+            integers: vec![kind],
+            reals: Vec::new(),
+        };
+        command.integers.extend(called.iter().map(|&p| p as i64));
+        self.comm.broadcast(&mut command);
+        self.exchange(kind, called, question, take);
+    }
+
+    /// Questions to the owners, answers to the root. Collective.
     fn exchange(
         &mut self,
-        moved: &[bool],
-        openings: Openings,
-        root: Option<(&[Vec<f64>], &mut ConState)>,
+        kind: i64,
+        called: &[usize],
+        question: impl Fn(usize) -> Message,
+        mut take: impl FnMut(usize, Message),
     ) {
-        let called: Vec<usize> = (0..self.len()).filter(|&p| moved[p]).collect();
         let owners: Vec<usize> = called.iter().map(|&p| self.owners[p]).collect();
-        let (traces, mut state) = root.unzip();
-        let mut received: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        let mut received: BTreeMap<usize, Message> = BTreeMap::new();
         self.comm.scatter(
             &owners,
-            |i| Message {
-                integers: Vec::new(),
-                reals: traces.map_or_else(Vec::new, |t| t[called[i]].clone()),
-            },
+            |i| question(called[i]),
             |i, message| {
-                received.insert(called[i], message.reals);
+                received.insert(called[i], message);
             },
         );
         let mut answers: BTreeMap<usize, Message> = received
             .into_iter()
-            .filter_map(|(p, u)| {
-                let pair = self.pairs.get_mut(&p)?;
-                let response = pair.evaluate(&u);
-                Some((p, pack(pair, &response, openings)))
-            })
+            .filter_map(|(p, message)| Some((p, answer(kind, self.pairs.get_mut(&p)?, message))))
             .collect();
         self.comm.gather(
             &owners,
             |i| answers.remove(&called[i]).unwrap_or_default(),
-            |i, message| {
-                if let Some(state) = state.as_mut() {
-                    let (response, opening) = unpack(message);
-                    state.responses[called[i]] = Some(response);
-                    if opening.is_some() {
-                        state.openings[called[i]] = opening;
-                    }
-                }
-            },
+            |i, message| take(called[i], message),
         );
     }
 }
@@ -205,86 +200,73 @@ impl ConState {
     /// r ← r − S_CON(U) and its scale.
     pub fn subtract(&self, interface: &Interface, r: &mut [f64], scale: &mut [f64]) {
         for (p, response) in self.responses.iter().enumerate() {
-            let Some(response) = response else { continue };
             let minus: Vec<f64> = response.reaction.iter().map(|x| -x).collect();
             interface.extend(p, &minus, r);
             interface.extend(p, &response.scale, scale);
         }
     }
 
-    /// Wᵀ W of pair p, by which its derivative falls short of the bilateral one; `None` where every
-    /// contact is closed.
-    pub fn opening(&self, p: usize) -> Option<Mat<f64>> {
-        let w = self.openings.get(p)?.as_ref()?;
-        (w.nrows() > 0).then(|| w.transpose() * w)
-    }
-
-    /// y ← y + a (S_CON'(U) − S_CON' of the bilateral problem) x with the active sets of the last
-    /// evaluation.
-    pub fn add_openings(&self, interface: &Interface, a: f64, x: &[f64], y: &mut [f64]) {
-        for (p, opening) in self.openings.iter().enumerate() {
-            let Some(w) = opening else { continue };
-            let x_p = interface.restrict(p, x);
-            let mut wx = vec![0.0; w.nrows()];
-            multiply_add(w.as_ref(), &x_p, &mut wx);
-            let y_p: Vec<f64> = w
-                .col_iter()
-                .map(|column| -a * column.iter().zip(&wx).map(|(w, wx)| w * wx).sum::<f64>())
-                .collect();
-            interface.extend(p, &y_p, y);
-        }
+    /// The sets of open approaches, pair by pair.
+    pub fn open(&self) -> Vec<Vec<bool>> {
+        self.responses.iter().map(|r| r.open.clone()).collect()
     }
 }
 
-/// A response as a message, with the pair's opening if it is asked for.
-fn pack(pair: &ContactPair, response: &PairResponse, openings: Openings) -> Message {
+/// What a pair answers.
+fn answer(kind: i64, pair: &mut ContactPair, question: Message) -> Message {
+    if kind == DIFFERENTIATE {
+        return Message {
+            integers: Vec::new(),
+            reals: pair.derivative(&question.reals),
+        };
+    }
+    let expected: Vec<bool> = question.integers.iter().map(|&open| open != 0).collect();
+    let expected = (!expected.is_empty()).then_some(expected);
+    pack(&pair.evaluate(&question.reals, expected))
+}
+
+/// A response as a message.
+fn pack(response: &PairResponse) -> Message {
     let mut message = Message::default();
     message.integers.extend([
         response.reaction.len() as i64,
-        response.active as i64,
+        response.open.len() as i64,
         response.changed as i64,
         response.steps as i64,
+        i64::from(response.fell_back),
         i64::from(response.converged),
     ]);
-    message.reals.extend(&response.reaction);
-    message.reals.extend(&response.scale);
-    let asked = match openings {
-        Openings::Keep => false,
-        Openings::Changed => response.changed > 0,
-        Openings::All => true,
-    };
-    match asked.then(|| pair.opening()).flatten() {
-        Some(w) => {
-            message
-                .integers
-                .extend([w.nrows() as i64, w.ncols() as i64]);
-            message.push_matrix(w.as_ref());
-        }
-        None => message.integers.push(-1),
+    let open = response.open.iter().map(|&open| i64::from(open));
+    message.integers.extend(open);
+    for list in [
+        &response.reaction,
+        &response.scale,
+        &response.gaps,
+        &response.drives,
+        &response.drive_scale,
+    ] {
+        message.reals.extend(list);
     }
     message
 }
 
-/// A response from a message; approaches and forces stay with the owner.
-fn unpack(message: Message) -> (PairResponse, Option<Mat<f64>>) {
+/// A response from a message.
+fn unpack(message: Message) -> PairResponse {
     let mut reader = message.read();
     let traces = reader.count();
-    let active = reader.count();
-    let changed = reader.count();
-    let steps = reader.count();
-    let converged = reader.integer() != 0;
-    let response = PairResponse {
+    let approaches = reader.count();
+    PairResponse {
+        changed: reader.count(),
+        steps: reader.count(),
+        fell_back: reader.integer() != 0,
+        converged: reader.integer() != 0,
+        open: (reader.integers(approaches).iter())
+            .map(|&open| open != 0)
+            .collect(),
         reaction: reader.reals(traces),
         scale: reader.reals(traces),
-        active,
-        changed,
-        steps,
-        converged,
-    };
-    let rows = reader.integer();
-    let opening = (rows >= 0).then(|| {
-        let columns = reader.count();
-        reader.matrix(rows as usize, columns)
-    });
-    (response, opening)
+        gaps: reader.reals(approaches),
+        drives: reader.reals(approaches),
+        drive_scale: reader.reals(approaches),
+    }
 }

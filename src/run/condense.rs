@@ -9,11 +9,13 @@ use faer::{Mat, Par};
 use super::read::OwnedBlock;
 use crate::comm::{Comm, Message};
 use crate::contact::approach::ApproachOf;
+use crate::contact::law::PairLaw;
 use crate::contact::pair::{ContactPair, Limits};
 use crate::error::Failure;
 use crate::fem::assembly::assemble;
 use crate::fem::block::Block;
 use crate::fem::dofs::{DofError, Dofs, TraceDof};
+use crate::interface::coupled::MAX_APPROACHES;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::{Contribution, Interface};
 use crate::output::progress::Progress;
@@ -184,11 +186,12 @@ pub fn assemble_interface(
     par: Par,
 ) -> Result<Option<(Numbering, Interface)>, Failure> {
     let owners = plan.owners();
+    let with_laws = with_laws(catalog);
     let mut traces: Vec<Vec<TraceDof>> = Vec::new();
     let mut contributions: Vec<Contribution> = Vec::new();
     comm.gather(
         &owners,
-        |b| pack(blocks, plan, b),
+        |b| pack(blocks, plan, b, with_laws),
         |_, message| {
             let (list, contribution) = unpack(message);
             traces.push(list);
@@ -207,22 +210,34 @@ pub fn assemble_interface(
     Ok(Some((numbering, interface)))
 }
 
-fn pack(blocks: &CondensedBlocks, plan: &Plan, b: usize) -> Message {
+/// Whether the pairs have few enough conditions for the root to solve for all of them at once.
+fn with_laws(catalog: &Catalog) -> bool {
+    let conditions: usize = catalog.contacts.iter().map(|c| c.conditions).sum();
+    conditions <= MAX_APPROACHES
+}
+
+fn pack(blocks: &CondensedBlocks, plan: &Plan, b: usize, with_laws: bool) -> Message {
     let mut message = Message::default();
     let Some(dofs) = blocks.dofs.get(&b) else {
         return message;
     };
+    let pair = plan.pair_of(b).and_then(|p| blocks.pairs.get(&p));
     message.integers.push(dofs.traces.len() as i64);
+    message
+        .integers
+        .push(i64::from(with_laws && pair.is_some()));
     for dof in &dofs.traces {
         message
             .integers
             .extend([i64::from(dof.node), i64::from(dof.axis)]);
     }
-    let pair = plan.pair_of(b).and_then(|p| blocks.pairs.get(&p));
     if let Some(pair) = pair {
         message.push_lower(pair.bilateral());
         message.reals.extend(pair.bilateral_load());
         message.reals.push(pair.schur().smallest_pivot());
+        if with_laws {
+            PairLaw::pack(pair, &mut message);
+        }
     } else if let Some(LinearSubdomain { schur, load }) = blocks.linear.get(&b) {
         message.push_lower(schur.s.as_ref());
         message.reals.extend(load.boundary());
@@ -234,6 +249,7 @@ fn pack(blocks: &CondensedBlocks, plan: &Plan, b: usize) -> Message {
 fn unpack(message: Message) -> (Vec<TraceDof>, Contribution) {
     let mut reader = message.read();
     let n = reader.count();
+    let has_law = reader.integer() != 0;
     let traces = (0..n)
         .map(|_| TraceDof {
             node: reader.integer() as u32,
@@ -246,6 +262,7 @@ fn unpack(message: Message) -> (Vec<TraceDof>, Contribution) {
         s,
         load,
         smallest_pivot: reader.real(),
+        law: has_law.then(|| PairLaw::unpack(&mut reader, n)),
     };
     (traces, contribution)
 }

@@ -6,6 +6,7 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::sparse::linalg::cholesky::simplicial;
 use faer::sparse::linalg::cholesky::supernodal::{
     SymbolicSupernodalCholesky, factorize_supernodal_numeric_llt,
@@ -13,7 +14,7 @@ use faer::sparse::linalg::cholesky::supernodal::{
     factorize_supernodal_symbolic_cholesky_scratch,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Accum, Mat, Par};
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 
 use super::pattern::SparseSymmetric;
 
@@ -191,6 +192,30 @@ impl BoundaryLastCholesky {
                 }
                 for (&i, l) in panel.below.iter().zip(bottom) {
                     x[i as usize] -= l * xj;
+                }
+            }
+        }
+    }
+
+    /// X ← L_BB⁻¹ X, where X has a row for every unknown of B. Only where B wasn't shifted.
+    pub fn forward_boundary(&self, mut x: MatMut<'_, f64>, par: Par) {
+        for panel in self.panels() {
+            let skipped = panel.columns_before(self.interior);
+            let (first, count) = (panel.start + skipped, panel.columns - skipped);
+            if count == 0 {
+                continue;
+            }
+            let rows = panel.columns + panel.below.len();
+            let values = MatRef::from_column_major_slice(panel.values, rows, panel.columns);
+            let own = values.submatrix(skipped, skipped, count, count);
+            let mut top = x.as_mut().subrows_mut(first - self.interior, count);
+            solve_lower_triangular_in_place(own, top.as_mut(), par);
+            let below = values.submatrix(panel.columns, skipped, panel.below.len(), count);
+            let product = below * top.as_ref();
+            for (&i, row) in panel.below.iter().zip(product.row_iter()) {
+                let to = x.as_mut().row_mut(i as usize - self.interior);
+                for (x, p) in to.iter_mut().zip(row.iter()) {
+                    *x -= p;
                 }
             }
         }

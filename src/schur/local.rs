@@ -1,6 +1,6 @@
 //! A block condensed onto its boundary: S_i of a linear subdomain, S_kl of a pair in contact.
 
-use faer::{Mat, Par};
+use faer::{Mat, MatRef, Par};
 
 use super::factor::{BoundaryLastCholesky, FactorError};
 use crate::fem::assembly::BlockSystem;
@@ -14,6 +14,8 @@ pub struct LocalSchur {
     interior: usize,
     /// S, both triangles (Pa).
     pub s: Mat<f64>,
+    /// The diagonal of K_BB (Pa): what S's round-off is relative to.
+    pub stiffness: Vec<f64>,
 }
 
 impl LocalSchur {
@@ -32,6 +34,7 @@ impl LocalSchur {
             factor,
             interior,
             s,
+            stiffness: shift,
         })
     }
 
@@ -84,4 +87,13 @@ pub struct LinearSubdomain {
     pub schur: LocalSchur,
     /// Its load.
     pub load: CondensedLoad,
+}
+
+/// y ← y + A x.
+pub fn multiply_add(a: MatRef<'_, f64>, x: &[f64], y: &mut [f64]) {
+    for (column, x_j) in a.col_iter().zip(x) {
+        for (y_i, a_ij) in y.iter_mut().zip(column.iter()) {
+            *y_i += a_ij * x_j;
+        }
+    }
 }

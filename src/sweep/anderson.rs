@@ -5,7 +5,6 @@ use std::collections::VecDeque;
 use nalgebra::{DMatrix, DVector};
 
 use super::{Residual, SweepStatus, Sweeps, axpy};
-use crate::contact::s_con::Openings;
 
 /// Steps that are remembered.
 const DEPTH: usize = 5;
@@ -37,7 +36,7 @@ impl Sweeps<'_, '_> {
                 axpy(-weight, du, u);
                 axpy(-weight, dc, u);
             }
-            residual = self.residual(u, Openings::Keep);
+            residual = self.residual(u, None);
             self.record(&residual);
         }
         SweepStatus::Converged

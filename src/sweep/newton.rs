@@ -1,67 +1,79 @@
-//! Semismooth Newton: (S_0 + S_CON'(U)) δ = r.
+//! Newton's method for generalized equations: every sweep solves the contact problem of all pairs,
+//! coupled through the interface.
 //!
-//! A sweep freezes every pair's active set at U^(k−1) and solves the linear interface problem. r is
-//! minus the gradient of a convex energy, along which a line search gets down.
-//!
-use super::frozen::Frozen;
-use super::{Residual, SweepStatus, Sweeps, axpy, dot};
-use crate::contact::s_con::Openings;
+//! S_CON is piecewise linear. Freezing every pair's active set at U^(k−1) gives semismooth Newton,
+//! whose sets may peel off one condition a sweep; keeping the law as it stands, λ ≥ 0, t ≤ g, gives
+//! a [`CoupledContact`] whose solution is U: one sweep gets there, the next ones take off round-off.
+
+use super::{ROUND_OFF, Residual, SweepStatus, Sweeps, axpy};
+use crate::interface::coupled::CoupledContact;
 
 /// Sweeps before another method takes over.
-const MAX_SWEEPS: usize = 80;
-/// Share of the bilateral operator that is blended in where the derivative is singular.
-const BLEND: f64 = 1e-3;
+const MAX_SWEEPS: usize = 20;
 
 impl Sweeps<'_, '_> {
     pub(super) fn newton(&mut self, u: &mut [f64], mut residual: Residual) -> SweepStatus {
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
+        if self.is_converged(&residual) {
+            return SweepStatus::Converged;
+        }
+        let Some(coupled) = CoupledContact::new(self.interface) else {
+            return self.fall_back(u, residual, "the pairs have too many conditions for newton");
+        };
         while !self.is_converged(&residual) {
-            // A pair that fails at a residual of zero fails again.
-            if residual.relative == 0.0 && residual.totals.failed_pairs > 0 {
-                return self.gave_up(&residual, "newton stopped");
-            }
             if self.sweeps_done() >= limit {
                 if self.settings.max_sweeps.is_some() {
                     return self.gave_up(&residual, "newton stopped");
                 }
-                self.notes.push(format!(
-                    "newton didn't converge in {limit} sweeps; anderson took over"
-                ));
-                return self.anderson(u, residual);
+                let why = format!("newton didn't converge in {limit} sweeps");
+                return self.fall_back(u, residual, &why);
             }
-            let frozen = Frozen::new(self.interface, &self.state);
-            let (r, scale) = (&residual.r, residual.scale);
-            let step = frozen
-                .solve(r, scale)
-                .or_else(|| frozen.solve_blended(r, scale, 0.0))
-                .or_else(|| frozen.solve_blended(r, scale, BLEND));
-            let Some(step) = step else {
-                return self.gave_up(&residual, "newton found no direction");
-            };
-            residual = self.line_search(u, &step, &residual);
+            let step = coupled.solve(u, &residual.r, &self.state);
+            self.inner_steps += step.steps;
+            if step.fell_back {
+                self.fell_back("newton: the interior-point method named the closed contacts");
+            }
+            if !step.converged {
+                return self.fall_back(u, residual, "newton's contact problem didn't converge");
+            }
+            axpy(1.0, &step.u, u);
+            residual = self.residual(u, Some(&step.open));
             self.record(&residual);
         }
         SweepStatus::Converged
     }
 
-    /// Moves U along `step` and returns the residual there.
-    ///
-    /// r is minus the gradient of a convex energy: a step too far shows in a slope stepᵀr that has
-    /// turned and is as steep as before; then a shorter one is taken. The residual's size may rise.
-    fn line_search(&mut self, u: &mut [f64], step: &[f64], before: &Residual) -> Residual {
-        let slope = dot(step, &before.r);
-        let mut alpha = 1.0;
-        loop {
-            let mut trial = u.to_vec();
-            axpy(alpha, step, &mut trial);
-            let residual = self.residual(&trial, Openings::Changed);
-            let there = dot(step, &residual.r);
-            let accepted = there >= -0.9 * slope || self.is_converged(&residual);
-            if accepted || alpha < 1e-4 {
-                u.copy_from_slice(&trial);
-                return residual;
+    fn fall_back(&mut self, u: &mut [f64], residual: Residual, why: &str) -> SweepStatus {
+        self.fell_back(&format!("{why}; anderson took over"));
+        self.anderson(u, residual)
+    }
+
+    /// Newton's steps beyond the tolerance of the sweeps, which isn't what limits the solution.
+    pub(super) fn refine(&mut self, u: &mut [f64]) {
+        let mut residual = self.residual(u, None);
+        for _ in 0..MAX_REFINEMENTS {
+            if residual.relative <= ROUND_OFF {
+                return;
             }
-            alpha *= (slope / (slope - there)).clamp(0.1, 0.6);
+            let Some(coupled) = CoupledContact::new(self.interface) else {
+                return;
+            };
+            let step = coupled.solve(u, &residual.r, &self.state);
+            self.inner_steps += step.steps;
+            let mut refined = u.to_vec();
+            axpy(1.0, &step.u, &mut refined);
+            let after = self.residual(&refined, Some(&step.open));
+            if !step.converged
+                || after.totals.failed_pairs > 0
+                || after.relative > 0.5 * residual.relative
+            {
+                return;
+            }
+            u.copy_from_slice(&refined);
+            residual = after;
         }
     }
 }
+
+/// Most refinements after the sweeps.
+const MAX_REFINEMENTS: usize = 3;

@@ -5,7 +5,6 @@
 //! θ < 2 / (1 + λ), λ the largest eigenvalue of S_0⁻¹ S_CON', wherever S_0 is regular.
 
 use super::{Residual, SweepStatus, Sweeps, axpy, dot, maximum};
-use crate::contact::s_con::Openings;
 use crate::schur::factor::BoundaryLastCholesky;
 
 /// Sweeps before it gives up.
@@ -61,7 +60,7 @@ impl Sweeps<'_, '_> {
             let mut step = residual.r.clone();
             s_0.solve(&mut step);
             axpy(theta, &step, u);
-            residual = self.residual(u, Openings::Keep);
+            residual = self.residual(u, None);
             self.record(&residual);
         }
         SweepStatus::Converged
@@ -69,7 +68,7 @@ impl Sweeps<'_, '_> {
 
     /// ρ(S_0⁻¹ S_CON') at the active sets of the last evaluation, by power iteration from a vector
     /// that no symmetry of a scene can be orthogonal to.
-    fn spectral_radius(&self, s_0: &BoundaryLastCholesky) -> f64 {
+    fn spectral_radius(&mut self, s_0: &BoundaryLastCholesky) -> f64 {
         let n = self.interface.len;
         let mut x: Vec<f64> = (0..n)
             .map(|i| 1.0 + (i as f64 * 0.754_877_666).fract())
@@ -84,8 +83,7 @@ impl Sweeps<'_, '_> {
                 *x /= norm;
             }
             let mut y = vec![0.0; n];
-            self.interface.add_pairs_bilateral(&x, &mut y);
-            self.state.add_openings(self.interface, 1.0, &x, &mut y);
+            self.s_con.add_derivative(self.interface, &x, &mut y);
             s_0.solve(&mut y);
             rho = dot(&y, &y).sqrt();
             x = y;

@@ -1,0 +1,58 @@
+//! The law of a pair: what its answer to a trace follows from.
+
+use faer::{Mat, MatRef};
+
+use super::pair::ContactPair;
+use crate::comm::{Message, MessageReader};
+
+/// λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0: the part of S_kl that the root needs to
+/// solve for all pairs at once.
+#[derive(Clone, Debug)]
+pub struct PairLaw {
+    /// H, on the approaches (Pa).
+    pub h: Mat<f64>,
+    /// S_tΓ, approaches against traces (Pa).
+    pub s_t_gamma: Mat<f64>,
+    /// The diagonal of the matrix that H is condensed from (Pa).
+    pub stiffness: Vec<f64>,
+    /// The largest displacement prescribed in the pair (m).
+    pub scale: f64,
+}
+
+impl PairLaw {
+    /// Number of approaches.
+    pub fn len(&self) -> usize {
+        self.stiffness.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.stiffness.is_empty()
+    }
+
+    /// Appends the law of `pair` to a message.
+    pub fn pack(pair: &ContactPair, message: &mut Message) {
+        let stiffness = pair.stiffness();
+        message.integers.push(stiffness.len() as i64);
+        message.push_lower(pair.s_tt());
+        message.push_matrix(pair.s_t_gamma());
+        message.reals.extend(stiffness);
+        message.reals.push(pair.limits().scale);
+    }
+
+    /// The law of a pair with `traces` traces.
+    pub fn unpack(reader: &mut MessageReader, traces: usize) -> Self {
+        let m = reader.count();
+        Self {
+            h: reader.lower(m),
+            s_t_gamma: reader.matrix(m, traces),
+            stiffness: reader.reals(m),
+            scale: reader.real(),
+        }
+    }
+
+    /// S_tΓ as it lies in memory.
+    pub fn s_t_gamma(&self) -> MatRef<'_, f64> {
+        self.s_t_gamma.as_ref()
+    }
+}

@@ -1,0 +1,232 @@
+//! The contact problem of all pairs, coupled through the interface.
+//!
+//! With A = S_0 + S_CON' of the bilateral problem, C = Σ R_pᵀ S_Γt and the pairs' laws,
+//!
+//! ```text
+//! A δ + C τ = r,    λ = d − Cᵀ δ − H τ ≥ 0,    τ ≤ s,    λ (s − τ) = 0
+//! ```
+//!
+//! is what the interface problem (14) asks of a change δ of U and τ of the approaches: r is its
+//! residual, d and s are the forces and gaps at U. Eliminating δ leaves a contact problem with
+//! H − Cᵀ A⁻¹ C in the approaches of all pairs and nothing else.
+
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::{Accum, Mat, MatRef, Par};
+
+use super::operator::Interface;
+use crate::contact::active_set::GapProblem;
+use crate::contact::law::PairLaw;
+use crate::contact::pair::PairResponse;
+use crate::contact::s_con::ConState;
+use crate::schur::local::multiply_add;
+
+/// Most approaches of all pairs together for which their problem is solved at once: its matrix is
+/// dense.
+pub const MAX_APPROACHES: usize = 12_000;
+
+/// The coupled contact problem.
+#[derive(Clone, Debug)]
+pub struct CoupledContact<'a> {
+    interface: &'a Interface,
+    /// H − Cᵀ A⁻¹ C.
+    h: MatRef<'a, f64>,
+    stiffness: Vec<f64>,
+    scale: f64,
+}
+
+/// A change of U and of the approaches, pair by pair.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoupledStep {
+    /// δ.
+    pub u: Vec<f64>,
+    /// τ.
+    pub approaches: Vec<Vec<f64>>,
+    /// λ.
+    pub forces: Vec<Vec<f64>>,
+    /// Which approaches are open then.
+    pub open: Vec<Vec<bool>>,
+    /// Linear systems solved.
+    pub steps: usize,
+    /// Whether the interior-point method was needed.
+    pub fell_back: bool,
+    /// Whether the contact problem converged.
+    pub converged: bool,
+}
+
+/// The right-hand side after δ is eliminated.
+struct Condensed {
+    /// A⁻¹ r.
+    z: Vec<f64>,
+    /// d − Cᵀ A⁻¹ r.
+    c: Vec<f64>,
+    /// Scale of its terms.
+    c_scale: Vec<f64>,
+}
+
+/// H − Cᵀ A⁻¹ C for the laws of all pairs.
+pub fn condense_laws(interface: &Interface, par: Par) -> Mat<f64> {
+    let laws = &interface.laws;
+    let m = laws.iter().map(PairLaw::len).sum();
+    let mut h = Mat::zeros(m, m);
+    let mut w = Mat::zeros(interface.len - interface.linear, m);
+    let mut first = 0;
+    for (law, traces) in laws.iter().zip(&interface.pair_traces) {
+        h.as_mut()
+            .submatrix_mut(first, first, law.len(), law.len())
+            .copy_from(&law.h);
+        for (column, &trace) in law.s_t_gamma.col_iter().zip(traces) {
+            for (i, s) in column.iter().enumerate() {
+                w[(trace as usize - interface.linear, first + i)] = *s;
+            }
+        }
+        first += law.len();
+    }
+    interface.half_solve_pairs(w.as_mut());
+    triangular::matmul(
+        h.as_mut(),
+        BlockStructure::TriangularLower,
+        Accum::Add,
+        w.transpose(),
+        BlockStructure::Rectangular,
+        w.as_ref(),
+        BlockStructure::Rectangular,
+        -1.0,
+        par,
+    );
+    for j in 0..m {
+        for i in j + 1..m {
+            h[(j, i)] = h[(i, j)];
+        }
+    }
+    h
+}
+
+impl<'a> CoupledContact<'a> {
+    /// The contact problem of all pairs of `interface`; `None` where they have too many approaches.
+    pub fn new(interface: &'a Interface) -> Option<Self> {
+        let laws = &interface.laws;
+        (laws.len() == interface.pair_traces.len()).then(|| Self {
+            interface,
+            h: interface.condensed_laws(),
+            stiffness: laws.iter().flat_map(|law| law.stiffness.clone()).collect(),
+            scale: laws.iter().fold(0.0, |m, law| m.max(law.scale)),
+        })
+    }
+
+    /// The step to the solution from U, where the pairs answered `state` and the residual is `r`.
+    pub fn solve(&self, u: &[f64], r: &[f64], state: &ConState) -> CoupledStep {
+        let all = |of: fn(&PairResponse) -> &Vec<f64>| -> Vec<f64> {
+            state.responses.iter().flat_map(of).copied().collect()
+        };
+        let condensed = self.condense(r, all(|p| &p.drives), all(|p| &p.drive_scale));
+        let mut open: Vec<bool> = state.open().concat();
+        let solution = self
+            .problem(&condensed, &all(|p| &p.gaps), u)
+            .solve(&mut open);
+        let mut step = self.step(r, &condensed, &solution.approaches, solution.forces, &open);
+        step.steps = solution.steps;
+        step.fell_back = solution.fell_back;
+        step.converged = solution.converged;
+        step
+    }
+
+    /// The change that balances `r` on Γ and `loads` on the approaches of every pair where the
+    /// conditions stay `open` or closed and the closed ones still have to approach by `missing`.
+    pub fn solve_frozen(
+        &self,
+        r: &[f64],
+        loads: &[Vec<f64>],
+        missing: &[Vec<f64>],
+        open: &[Vec<bool>],
+    ) -> CoupledStep {
+        let loads = loads.concat();
+        let scale = loads.iter().map(|x| x.abs()).collect();
+        let condensed = self.condense(r, loads, scale);
+        let open = open.concat();
+        let trial = self
+            .problem(&condensed, &missing.concat(), &[])
+            .linear(&open);
+        self.step(r, &condensed, &trial.approaches, trial.forces, &open)
+    }
+
+    fn condense(&self, r: &[f64], mut c: Vec<f64>, mut c_scale: Vec<f64>) -> Condensed {
+        let mut z = r.to_vec();
+        self.interface.solve_bilateral(&mut z);
+        let mut first = 0;
+        for (p, law) in self.interface.laws.iter().enumerate() {
+            let z_p = self.interface.restrict(p, &z);
+            for (column, &z) in law.s_t_gamma.col_iter().zip(&z_p) {
+                for (i, s) in column.iter().enumerate() {
+                    c[first + i] -= s * z;
+                    c_scale[first + i] += (s * z).abs();
+                }
+            }
+            first += law.len();
+        }
+        Condensed { z, c, c_scale }
+    }
+
+    fn problem<'b>(
+        &'b self,
+        condensed: &'b Condensed,
+        bounds: &'b [f64],
+        u: &[f64],
+    ) -> GapProblem<'b> {
+        GapProblem {
+            h: self.h,
+            stiffness: &self.stiffness,
+            c: &condensed.c,
+            c_scale: &condensed.c_scale,
+            bounds,
+            scale: u.iter().fold(self.scale, |m, u| m.max(u.abs())),
+        }
+    }
+
+    /// δ = A⁻¹ (r − C τ).
+    fn step(
+        &self,
+        r: &[f64],
+        condensed: &Condensed,
+        approaches: &[f64],
+        forces: Vec<f64>,
+        open: &[bool],
+    ) -> CoupledStep {
+        let mut u = condensed.z.clone();
+        if approaches.iter().any(|&t| t != 0.0) {
+            u.copy_from_slice(r);
+            let mut first = 0;
+            for (p, law) in self.interface.laws.iter().enumerate() {
+                let of_pair: Vec<f64> = (approaches[first..first + law.len()].iter())
+                    .map(|t| -t)
+                    .collect();
+                let mut held = vec![0.0; law.s_t_gamma.ncols()];
+                multiply_add(law.s_t_gamma.transpose(), &of_pair, &mut held);
+                self.interface.extend(p, &held, &mut u);
+                first += law.len();
+            }
+            self.interface.solve_bilateral(&mut u);
+        }
+        CoupledStep {
+            u,
+            approaches: self.by_pair(approaches),
+            forces: self.by_pair(&forces),
+            open: self.by_pair(open),
+            steps: 1,
+            fell_back: false,
+            converged: true,
+        }
+    }
+
+    fn by_pair<T: Clone>(&self, all: &[T]) -> Vec<Vec<T>> {
+        let mut rest = all;
+        self.interface
+            .laws
+            .iter()
+            .map(|law| {
+                let (own, others) = rest.split_at(law.len());
+                rest = others;
+                own.to_vec()
+            })
+            .collect()
+    }
+}
