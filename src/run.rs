@@ -3,6 +3,7 @@
 //! read → assemble → condense → S_0 at the root → sweeps → recover → certificate → write
 
 pub mod condense;
+pub mod conditioning;
 pub mod frozen;
 pub mod read;
 pub mod recover;
@@ -19,6 +20,7 @@ use contact_dd_partition::problem::read::ProblemFile;
 use faer::Par;
 
 use self::condense::{assemble_interface, condense_blocks};
+use self::conditioning::condition_number;
 use self::frozen::{Frozen, FrozenRoot};
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
@@ -135,6 +137,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         }),
     };
     let certificate = refine(&frozen, &mut solutions);
+    let condition = condition_number(&frozen);
     let stress = stresses(comm, &blocks, &solutions, catalog, &plan);
     seconds.recover = lap.elapsed().as_secs_f64();
 
@@ -157,6 +160,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
                 interface_dofs: interface.len,
                 smallest_pivot: interface.smallest_pivot(),
                 certificate,
+                condition,
                 ranks,
                 warnings: survey.motions.warnings.clone(),
             };

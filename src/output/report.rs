@@ -111,6 +111,10 @@ pub struct Report {
     pub method: String,
     /// Number of sweeps after the bilateral start.
     pub sweeps: usize,
+    /// Number of linear systems solved within contact problems.
+    pub inner_steps: usize,
+    /// Which other methods had to help, in words.
+    pub fallbacks: Vec<String>,
     /// Relative residual of the interface problem at the end.
     pub interface_residual: f64,
     /// Number of degrees of freedom.
@@ -131,6 +135,9 @@ pub struct Report {
     pub threads: usize,
     /// Checks of the solution.
     pub certificate: Certificate,
+    /// Estimate of the condition number of the stiffness, scaled to a unit diagonal, with the
+    /// contacts as they are in the solution; `null` where it can't be made.
+    pub condition: Option<f64>,
     /// Time of each phase, that of the slowest rank.
     pub seconds: PhaseSeconds,
     /// What each rank had to do.
@@ -179,6 +186,8 @@ mod tests {
             status: Status::NotConverged,
             method: "newton".into(),
             sweeps: 3,
+            inner_steps: 7,
+            fallbacks: Vec::new(),
             interface_residual: f64::INFINITY,
             dofs: 10,
             interface_dofs: 4,
@@ -192,6 +201,7 @@ mod tests {
                 equilibrium: f64::NAN,
                 ..Certificate::default()
             },
+            condition: None,
             seconds: PhaseSeconds::default(),
             per_rank: vec![RankReport::default()],
             peak_memory_bytes: 1,
@@ -246,9 +256,12 @@ mod tests {
             [
                 "active_contacts",
                 "certificate",
+                "condition",
                 "contact_conditions",
                 "contact_pairs",
                 "dofs",
+                "fallbacks",
+                "inner_steps",
                 "interface_dofs",
                 "interface_residual",
                 "method",

@@ -132,11 +132,17 @@ pub fn closing(out: &mut impl Write, reason: &str, report: &Report, result: &Pat
     writeln!(out, "{reason}")?;
     writeln!(out)?;
     certificate(out, &report.certificate)?;
+    if let Some(condition) = report.condition {
+        writeln!(out, "             condition number about {condition:.0e}")?;
+    }
     writeln!(out)?;
     timing(out, &report.per_rank)?;
     writeln!(out)?;
     for skipped in &report.skipped {
         writeln!(out, "skipped: {skipped}")?;
+    }
+    for fallback in &report.fallbacks {
+        writeln!(out, "fall-back: {fallback}")?;
     }
     for warning in &report.warnings {
         writeln!(out, "warning: {warning}")?;

@@ -29,6 +29,8 @@ use crate::schur::local::{LinearSubdomain, LocalSchur};
 pub struct CondensedBlocks {
     /// The unknowns of every block.
     pub dofs: BTreeMap<usize, Dofs>,
+    /// The diagonal of every block's stiffness (Pa).
+    pub diagonals: BTreeMap<usize, Vec<f64>>,
     /// T: the subdomains without contact, by block.
     pub linear: BTreeMap<usize, LinearSubdomain>,
     /// ϑ: the pairs in contact, by their place among all pairs.
@@ -78,6 +80,7 @@ pub fn condense_blocks(
                     .insert(number, LinearSubdomain { schur, load });
             }
         }
+        (condensed.diagonals).insert(number, system.stiffness.diagonal().to_vec());
         condensed.dofs.insert(number, dofs);
         condensed.seconds[0] += (assembled - began).as_secs_f64();
         condensed.seconds[1] += assembled.elapsed().as_secs_f64();

@@ -22,6 +22,9 @@ use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
 /// Pivot relative to its diagonal entry that may as well be zero.
 const SUSPICIOUS_PIVOT: f64 = 1e-13;
 
+/// Condition number from which round-off is worth a warning.
+const BAD_CONDITION: f64 = 1e10;
+
 /// Prints on the root what a user wants to follow, and nothing elsewhere.
 pub struct Narrator<'a> {
     comm: &'a Comm,
@@ -44,6 +47,8 @@ pub struct Totals<'a> {
     pub smallest_pivot: f64,
     /// The certificate.
     pub certificate: Certificate,
+    /// The condition number.
+    pub condition: Option<f64>,
     /// Every rank's times.
     pub ranks: Vec<RankReport>,
     /// What the ranks noticed on the way.
@@ -216,6 +221,13 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
             certificate.equilibrium_of_load
         ));
     }
+    if let Some(condition) = totals.condition.filter(|&c| c > BAD_CONDITION) {
+        warnings.push(format!(
+            "the condition number is about {condition:.0e}: round-off alone makes an error of about \
+             {:.0e} in the softest part's displacement",
+            condition * f64::EPSILON
+        ));
+    }
     if totals.smallest_pivot < SUSPICIOUS_PIVOT {
         warnings.push(format!(
             "the smallest pivot is {:.1e} of its diagonal entry: the scene is so badly conditioned \
@@ -231,6 +243,8 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
         },
         method: settings.method.name().into(),
         sweeps: outcome.records.len().saturating_sub(1),
+        inner_steps: outcome.inner_steps,
+        fallbacks: outcome.fallbacks.clone(),
         interface_residual: outcome.residual,
         dofs: dofs(catalog),
         interface_dofs: totals.interface_dofs,
@@ -241,6 +255,7 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
         ranks,
         threads: usize::from(settings.threads),
         certificate: totals.certificate,
+        condition: totals.condition,
         seconds: PhaseSeconds::slowest(&seconds),
         peak_memory_bytes: totals.ranks.iter().map(|r| r.peak_memory_bytes).sum(),
         per_rank: totals.ranks.clone(),
