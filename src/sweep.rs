@@ -203,11 +203,11 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         (self.observer)(&record);
     }
 
-    /// Whether the residual is small and the active set settled.
+    /// Whether the residual is small and the active set settled, or the residual is round-off: S_CON
+    /// is evaluated exactly, so that then nothing is left that could change.
     fn is_converged(&self, residual: &Residual) -> bool {
-        residual.totals.failed_pairs == 0
-            && residual.relative <= self.settings.tolerance
-            && residual.totals.changed == 0
+        let small = residual.relative <= self.settings.tolerance && residual.totals.changed == 0;
+        residual.totals.failed_pairs == 0 && (small || residual.relative <= ROUND_OFF)
     }
 
     fn sweeps_done(&self) -> usize {

@@ -17,21 +17,22 @@ use contact_dd_mpi::schur::local::LocalSchur;
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 use faer::{Par, Side};
+use nalgebra::DMatrix;
 
 use support::blocks::{Blocks, jittered, moved, shuffled};
-use support::close;
 use support::scenes::{built_in, built_in_model, model, two_block_scene, two_blocks};
 use support::solution::{ContactPoint, Solution};
 use support::solver::{Case, problem, solve};
+use support::{close, monolithic};
 
 /// What two runs are to agree in.
 struct Likeness {
-    /// Displacement of the second for one of the first.
+    /// Direction of a displacement of the second for one of the first.
     displacement: fn([f64; 3]) -> [f64; 3],
     /// Contact force of the second over that of the first.
     force: f64,
-    /// Gap of the second over that of the first.
-    gap: f64,
+    /// Displacement and gap of the second over those of the first.
+    length: f64,
     /// Allowed difference relative to the largest displacement; that of forces is ten times
     /// as large.
     slack: f64,
@@ -40,7 +41,7 @@ struct Likeness {
 const SAME: Likeness = Likeness {
     displacement: |u| u,
     force: 1.0,
-    gap: 1.0,
+    length: 1.0,
     slack: 1e-11,
 };
 
@@ -53,7 +54,7 @@ fn alike(first: &Solution, second: &Solution, likeness: &Likeness, tag: impl Fn(
     for (new, u) in &second.displacement {
         let expected = (likeness.displacement)(first.displacement[&tag(*new)]);
         for (a, b) in u.iter().zip(expected) {
-            close(*a, b, likeness.slack * size);
+            close(*a, likeness.length * b, likeness.slack * size);
         }
     }
     let force = second.largest_force();
@@ -63,7 +64,11 @@ fn alike(first: &Solution, second: &Solution, likeness: &Likeness, tag: impl Fn(
         assert_eq!(by_tags.len(), points.len());
         for point in points {
             let other = by_tags[&point.tags.map(&tag)];
-            close(point.gap, likeness.gap * other.gap, likeness.slack * size);
+            close(
+                point.gap,
+                likeness.length * other.gap,
+                likeness.slack * size,
+            );
             let expected = likeness.force * other.force;
             close(point.force, expected, 10.0 * likeness.slack * force);
             if expected > 1e-9 * force || point.gap > 1e-9 * size {
@@ -142,22 +147,47 @@ fn a_renumbered_mesh_has_the_same_answer() {
 }
 
 #[test]
-fn millimetres_and_megapascals_give_the_same_answer() {
+fn units_do_not_change_the_answer() {
     let (text, mesh) = rough_granite();
     let first = solve(&model(text, mesh.clone()), 8);
-    let text = text
-        .replace("5.2e9", "5.2e3")
-        .replace("0.6e7", "0.6e1")
-        .replace("0.3e7", "0.3e1");
-    let millimetres = moved(mesh, |[x, y]| [1e3 * x, 1e3 * y]);
-    let second = solve(&model(&text, millimetres), 8);
-    let scaled = Likeness {
-        displacement: |u| u.map(|u| 1e3 * u),
-        force: 1e-3,
-        gap: 1e3,
-        ..SAME
-    };
-    alike(&first, &second, &scaled, |tag| tag);
+    // Millimetres and megapascals, micrometres and gigapascals.
+    for (length, stress) in [(1e3, 1e-6), (1e6, 1e-9)] {
+        let number = |pascal: f64| format!("{:e}", stress * pascal);
+        let text = text
+            .replace("5.2e9", &number(5.2e9))
+            .replace("0.6e7", &number(0.6e7))
+            .replace("0.3e7", &number(0.3e7));
+        let scaled = moved(mesh.clone(), |[x, y]| [length * x, length * y]);
+        let second = solve(&model(&text, scaled), 8);
+        let likeness = Likeness {
+            force: length * stress,
+            length,
+            ..SAME
+        };
+        alike(&first, &second, &likeness, |tag| tag);
+        assert_eq!(first.sweeps(), second.sweeps());
+    }
+}
+
+#[test]
+fn loads_of_any_size_give_the_same_answer() {
+    let (text, mesh) = rough_granite();
+    let first = solve(&model(text, mesh.clone()), 8);
+    for exponent in [-100, 100] {
+        let larger = |load: &str, e: i32| format!("{load}e{}", e + exponent);
+        let text = text
+            .replace("0.6e7", &larger("0.6", 7))
+            .replace("0.3e7", &larger("0.3", 7));
+        let second = solve(&model(&text, mesh.clone()), 8);
+        let factor = 10f64.powi(exponent);
+        let likeness = Likeness {
+            force: factor,
+            length: factor,
+            ..SAME
+        };
+        alike(&first, &second, &likeness, |tag| tag);
+        assert_eq!(first.sweeps(), second.sweeps());
+    }
 }
 
 #[test]
@@ -266,12 +296,12 @@ fn newton_and_anderson_find_the_same_answer_on_granite() {
 }
 
 #[test]
-fn newton_needs_few_sweeps_whatever_the_mesh_and_the_partition() {
+fn newton_needs_one_sweep_whatever_the_mesh_and_the_partition() {
     for (refine, counts) in [(0, &[8, 16, 32][..]), (1, &[8])] {
         let model = built_in_model("granite", refine);
         for &count in counts {
             let sweeps = solve(&model, count).sweeps();
-            assert!(sweeps <= 5, "{sweeps} sweeps at {refine}, {count}");
+            assert_eq!(sweeps, 1, "at {refine}, {count}");
         }
     }
 }
@@ -318,4 +348,53 @@ fn a_schur_complement_is_symmetric_and_rigid_motions_cost_nothing() {
         }
     }
     assert!(floating > 0);
+}
+
+/// λ_max / λ_min of the stiffness of a model without contact, scaled to a unit diagonal, on the
+/// dofs that no support along an axis holds.
+fn condition_number(model: &Model) -> f64 {
+    let mut stiffness =
+        DMatrix::<f64>::zeros(2 * model.mesh.points.len(), 2 * model.mesh.points.len());
+    for t in monolithic::stiffness(model) {
+        stiffness[(t.row, t.col)] += t.val;
+    }
+    let held: Vec<usize> = (model.supports.iter())
+        .map(|s| 2 * s.node as usize + usize::from(s.direction[0] == 0.0))
+        .collect();
+    let free: Vec<usize> = (0..stiffness.nrows())
+        .filter(|dof| !held.contains(dof))
+        .collect();
+    let scaled = DMatrix::from_fn(free.len(), free.len(), |a, b| {
+        let (i, j) = (free[a], free[b]);
+        stiffness[(i, j)] / (stiffness[(i, i)] * stiffness[(j, j)]).sqrt()
+    });
+    let eigenvalues = scaled.symmetric_eigenvalues();
+    eigenvalues.max() / eigenvalues.min()
+}
+
+#[test]
+fn the_condition_number_is_estimated_to_within_a_small_factor() {
+    for (length, soft) in [(2.0, 1.0), (30.0, 1.0), (2.0, 1e-4)] {
+        let mesh = Blocks::new()
+            .rectangle("beam", [0.0, length], [0.0, 1.0], [12, 4])
+            .rectangle("end", [length, 1.25 * length], [0.0, 1.0], [3, 4])
+            .glued(|_, _| true);
+        let text = format!(
+            "plane = 'strain'
+            materials.steel = {{young = 210e9, poisson = 0.3}}
+            materials.soft = {{young = {:e}, poisson = 0.3}}
+            bodies.beam.material = 'steel'
+            bodies.end.material = 'soft'
+            displacement = [{{on = 'beam left', x = 0.0, y = 0.0}}]
+            traction = [{{on = 'end right', value = [0.0, 1e6]}}]",
+            210e9 * soft
+        );
+        let model = model(&text, mesh.mesh);
+        let exact = condition_number(&model);
+        for count in [2, 7] {
+            let estimate = solve(&model, count).report["condition"].as_f64().unwrap();
+            let ratio = estimate / exact;
+            assert!((0.5..10.0).contains(&ratio), "{estimate:e} for {exact:e}");
+        }
+    }
 }

@@ -175,7 +175,7 @@ impl Kkt {
 }
 
 /// K = Σ A Gᵀ C G over the triangles, G the constant strains (ε_xx, ε_yy, γ_xy) of each dof.
-fn stiffness(model: &Model) -> Vec<Triplet<usize, usize, f64>> {
+pub fn stiffness(model: &Model) -> Vec<Triplet<usize, usize, f64>> {
     let mesh = &model.mesh;
     let mut entries = Vec::with_capacity(36 * mesh.cells.len());
     for ((_, nodes), &material) in mesh.cells.iter().zip(&model.cell_material) {
