@@ -224,7 +224,8 @@ impl GapProblem<'_> {
 
 #[cfg(test)]
 mod tests {
-    use faer::Mat;
+    use faer::linalg::solvers::DenseSolveCore;
+    use faer::{Mat, Side};
 
     use super::*;
 
@@ -304,5 +305,54 @@ mod tests {
         let (solution, _) = solve(&h, &c, &bounds);
         assert!(solution.converged);
         assert_optimal(&h, &c, &bounds, &solution);
+    }
+
+    /// H of a thin cantilever with `m` conditions along it: the inverse of its flexibility
+    /// x²(3y − x)/6 for x ≤ y.
+    fn cantilever(m: usize) -> Mat<f64> {
+        let flexibility = Mat::from_fn(m, m, |i, j| {
+            let (x, y) = ((i.min(j) + 1) as f64, (i.max(j) + 1) as f64);
+            x * x * (3.0 * y - x) / 6.0
+        });
+        let inverse = flexibility.llt(Side::Lower).unwrap().inverse();
+        Mat::from_fn(m, m, |i, j| 0.5 * (inverse[(i, j)] + inverse[(j, i)]))
+    }
+
+    #[test]
+    fn a_thin_cantilever_over_a_rough_floor_never_cycles() {
+        let m = 24;
+        let h = cantilever(m);
+        let mut fell_back = 0;
+        for seed in 0..150 {
+            let c: Vec<f64> = (0..m).map(|i| 1e-4 * noise(seed * 91 + i)).collect();
+            let bounds: Vec<f64> = (0..m).map(|i| 0.1 * noise(seed * 17 + i).abs()).collect();
+            let (solution, _) = solve(&h, &c, &bounds);
+            assert!(solution.converged, "{seed}");
+            fell_back += usize::from(solution.fell_back);
+            let t = &solution.approaches;
+            for i in 0..m {
+                let terms = (0..m).map(|j| h[(i, j)] * t[j]);
+                let scale: f64 = terms.clone().map(f64::abs).sum();
+                let left = c[i] - terms.sum::<f64>() - solution.forces[i];
+                assert!(left.abs() <= 1e-10 * (scale + c[i].abs()));
+                assert!(t[i] == bounds[i] || solution.forces[i] == 0.0);
+            }
+        }
+        assert!(fell_back > 0, "no draw asks for the interior-point method");
+    }
+
+    #[test]
+    fn the_interior_point_method_names_the_closed_conditions() {
+        for seed in 0..100 {
+            let m = 2 + seed % 30;
+            let a = Mat::from_fn(m, m, |i, j| noise(seed * 1000 + i * 31 + j));
+            let h = &a * a.transpose() + Mat::<f64>::identity(m, m) * faer::Scale(1e-3);
+            let c: Vec<f64> = (0..m).map(|i| noise(seed * 77 + i + 5)).collect();
+            let (_, open) = solve(&h, &c, &vec![0.0; m]);
+            let diagonal: Vec<f64> = (0..m).map(|j| h[(j, j)]).collect();
+            let (named, steps) = open_conditions(h.as_ref(), &c, &diagonal);
+            assert_eq!(named, open);
+            assert!(steps < 30);
+        }
     }
 }

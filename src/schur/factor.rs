@@ -290,6 +290,9 @@ fn symbolic(matrix: &SparseSymmetric) -> Result<SymbolicSupernodalCholesky<u32>,
 
 #[cfg(test)]
 mod tests {
+    use faer::Side;
+    use faer::linalg::solvers::Solve;
+
     use super::super::pattern::{Cliques, LowerPattern};
     use super::*;
 
@@ -355,6 +358,17 @@ mod tests {
         for (x, e) in x.iter().zip(exact.iter()) {
             assert!((x - e).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn half_of_a_solve_on_the_boundary_is_half_of_its_schur_complement() {
+        let factor = BoundaryLastCholesky::new(chain(12), 8, &[0.0; 4], Par::Seq).unwrap();
+        let s = factor.schur_complement(&[0.0; 4], Par::Seq);
+        let x = Mat::from_fn(4, 3, |i, j| ((3 * i + 5 * j) as f64).sin());
+        let mut w = x.clone();
+        factor.forward_boundary(w.as_mut(), Par::Seq);
+        let exact = x.transpose() * s.llt(Side::Lower).unwrap().solve(&x);
+        assert!((w.transpose() * &w - exact).norm_max() < 1e-13);
     }
 
     #[test]
