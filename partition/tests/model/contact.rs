@@ -7,13 +7,14 @@ use contact_dd_partition::model::ContactCondition;
 const CONTACT: &str = "[[contact]]\nname = 'c'\nsides = ['lower top', 'upper bottom']\n";
 
 /// Two blocks with a gap between them.
-fn stack(gap: f64) -> Blocks {
+pub fn stack(gap: f64) -> Blocks {
     Blocks::new()
         .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 2])
         .block("upper", [0.0, 2.0], [1.0 + gap, 2.0], [4, 2])
 }
 
-fn conditions(blocks: &Blocks, text: &str) -> Result<Vec<ContactCondition>, String> {
+/// The conditions of a scene's first contact.
+pub fn conditions(blocks: &Blocks, text: &str) -> Result<Vec<ContactCondition>, String> {
     let mut model = blocks.model(text)?;
     Ok(model.contacts.remove(0).conditions)
 }
@@ -277,124 +278,6 @@ fn a_nodes_normal_is_the_average_weighted_by_length() {
         close(row.normal[0], -chord[1] / size, 1e-15);
         close(row.normal[1], chord[0] / size, 1e-15);
     }
-}
-
-#[test]
-fn a_straight_obstacle_leaves_the_signed_distance_along_its_normal() {
-    let blocks = stack(0.0).moved(|[x, y, z]| [x, y + 0.2 * x, z]);
-    let text = "[[contact]]\nname = 't'\nsides = ['lower bottom']\nobstacle = {point = [0, -1], normal = [0, 4]}";
-    let rows = conditions(&blocks, text).unwrap();
-    assert_eq!(rows.len(), 5);
-    for row in &rows {
-        assert_eq!((row.tag_b, row.entries.len()), (-1, 1));
-        assert_eq!(row.entries[0].1, [0.0, -1.0, 0.0]);
-        assert_eq!(row.normal, [0.0, -1.0, 0.0]);
-        close(row.gap, row.position[1] + 1.0, 1e-15);
-    }
-    close(
-        rows.iter().map(|row| row.share).sum(),
-        2.0 * 1.04_f64.sqrt(),
-        1e-15,
-    );
-}
-
-#[test]
-fn a_circle_keeps_bodies_out_or_in() {
-    let text = |side: &str, inside: bool| {
-        format!(
-            "[[contact]]\nname = 't'\nsides = ['lower {side}']\nobstacle = {{center = [1, -3], radius = 2, inside = {inside}}}"
-        )
-    };
-    for (side, inside, sign) in [("bottom", false, 1.0), ("top", true, -1.0)] {
-        let rows = conditions(&stack(0.0), &text(side, inside)).unwrap();
-        assert_eq!(rows.len(), 5);
-        for row in rows {
-            let arm = [row.position[0] - 1.0, row.position[1] + 3.0];
-            let far = arm[0].hypot(arm[1]);
-            close(row.gap, sign * (far - 2.0), 1e-15);
-            close(row.normal[0], -sign * arm[0] / far, 1e-15);
-            close(row.normal[1], -sign * arm[1] / far, 1e-15);
-            assert_eq!(row.entries[0].1, row.normal);
-        }
-    }
-    let text = text("bottom", false).replace("[1, -3]", "[1, 0]");
-    let error = conditions(&stack(0.0), &text).unwrap_err();
-    assert!(
-        error.contains("contact 't': node") && error.contains("centre"),
-        "{error}"
-    );
-}
-
-#[test]
-fn only_nodes_that_face_an_obstacle_meet_it() {
-    let outline = "['lower bottom', 'lower right', 'lower top', 'lower left']";
-    let floor = |sides: &str| {
-        let text = format!(
-            "[[contact]]\nname = 't'\nsides = [{sides}]\nobstacle = {{point = [0, 0], normal = [0, 1]}}"
-        );
-        conditions(&stack(0.0), &text)
-    };
-    let rows = floor(outline).unwrap();
-    assert_eq!(rows.len(), 5);
-    assert!(rows.iter().all(|row| row.position[1] == 0.0));
-    let error = floor("'lower top'").unwrap_err();
-    assert!(
-        error.contains("no node of the side faces the obstacle"),
-        "{error}"
-    );
-}
-
-/// A block of four cells a side on the left, one of eight on the right, above each one of its kind.
-fn four_blocks() -> Blocks {
-    Blocks::new()
-        .block("lower left", [0.0, 1.0], [0.0, 1.0], [4, 4])
-        .block("lower right", [1.0, 2.0], [0.0, 1.0], [8, 4])
-        .block("upper left", [0.0, 1.0], [1.0, 2.0], [4, 4])
-        .block("upper right", [1.0, 2.0], [1.0, 2.0], [8, 4])
-}
-
-#[test]
-fn blocks_that_lie_diagonally_across_a_corner_share_no_condition() {
-    let text = "[[contact]]\nname = 'bed'\nsides = [['lower left top', 'lower right top'], ['upper left bottom', 'upper right bottom']]";
-    let blocks = four_blocks();
-    let rows = conditions(&blocks, text).unwrap();
-    assert_eq!(rows.len(), 5 + 9);
-    let corner: Vec<_> = rows.iter().filter(|row| row.position[0] == 1.0).collect();
-    assert_eq!(corner.len(), 2);
-    for row in corner {
-        let [below, above] = [0, 1].map(|i| {
-            let node = row.entries[i].0;
-            let cells = ["lower left", "lower right", "upper left", "upper right"];
-            let holds = |name: &&str| {
-                let mut members = blocks.mesh.groups[*name].members.iter();
-                members.any(|&cell| blocks.mesh.cells.nodes_of(cell as usize).contains(&node))
-            };
-            cells.into_iter().find(holds).unwrap()
-        });
-        assert_eq!(below.replace("lower", "upper"), above);
-        let left = below == "lower left";
-        close(row.share, if left { 0.125 } else { 0.0625 }, 1e-15);
-    }
-    close(rows.iter().map(|row| row.share).sum(), 2.0, 1e-14);
-}
-
-#[test]
-fn a_node_opposite_two_corners_shares_with_each_what_lies_opposite_it() {
-    // Its facets are half as long on the right as they are on the left.
-    let graded = |[x, y, z]: [f64; 3]| [if x > 1.0 { 0.5 + 0.5 * x } else { x }, y, z];
-    let blocks = Blocks::new()
-        .block("lower", [0.0, 2.0], [0.0, 1.0], [8, 4])
-        .block("upper left", [0.0, 1.0], [1.0, 2.0], [4, 4])
-        .block("upper right", [1.0, 2.0], [1.0, 2.0], [4, 4])
-        .moved(graded);
-    let text = "[[contact]]\nname = 'c'\nsides = ['lower top', ['upper left bottom', 'upper right bottom']]";
-    let rows = conditions(&blocks, text).unwrap();
-    assert_eq!(rows.len(), 10);
-    let at_joint = rows.iter().filter(|row| row.position[0] == 1.0);
-    let mut shares: Vec<f64> = at_joint.map(|row| row.share).collect();
-    shares.sort_by(f64::total_cmp);
-    close(shares[0], 0.0625, 1e-15);
-    close(shares[1], 0.125, 1e-15);
 }
 
 #[test]
