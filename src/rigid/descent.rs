@@ -167,7 +167,7 @@ mod tests {
     fn a_square_falls_onto_an_uneven_floor_and_leans_on_it() {
         let body = square([0.0, -2.0, 0.1], vec![]);
         let rows = floor(&body, [0.1, 0.3]);
-        let z = descent(2, &[body.clone()], &rows).remove(0);
+        let z = descent(2, std::slice::from_ref(&body), &rows).remove(0);
         let motions = [z.clone()];
         close(&[0, 1].map(|j| approach(&rows[j], &motions)), &[0.1, 0.3]);
         // It sinks by the mean, and turns by the difference over its width.

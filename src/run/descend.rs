@@ -7,7 +7,8 @@ use super::recover::BlockSolution;
 use crate::fem::frame::dot;
 use crate::rigid::survey::Survey;
 
-/// What is left of a length after a motion, relative to the motion, that is round-off.
+/// What is left of a length after a motion, relative to both, that is round-off: a body is stiff
+/// enough to make forces of it.
 const ROUND_OFF: f64 = 1e-14;
 
 /// Takes the bodies' descent out of gaps and supports.
@@ -24,7 +25,7 @@ pub fn take_out_descent(blocks: &mut BTreeMap<usize, OwnedBlock>, survey: &Surve
                         member.body,
                         &member.points[entry.node as usize],
                     );
-                    reduce(&mut condition.gap, dot(&entry.coefficient, &moved));
+                    reduce(&mut condition.gap, &entry.coefficient, &moved);
                 }
             }
         }
@@ -36,15 +37,16 @@ pub fn take_out_descent(blocks: &mut BTreeMap<usize, OwnedBlock>, survey: &Surve
                     member.body,
                     &member.points[support.node as usize],
                 );
-                reduce(&mut support.value, dot(&support.direction, &moved));
+                reduce(&mut support.value, &support.direction, &moved);
             }
         }
     }
 }
 
-fn reduce(length: &mut f64, by: f64) {
-    let given = length.abs().max(by.abs());
-    *length -= by;
+/// Takes the part of a motion along `row` out of a length.
+fn reduce(length: &mut f64, row: &[f64; 3], moved: &[f64; 3]) {
+    let given = length.abs() + dot(row, row).sqrt() * dot(moved, moved).sqrt();
+    *length -= dot(row, moved);
     if length.abs() <= ROUND_OFF * given {
         *length = 0.0;
     }
