@@ -7,6 +7,7 @@
 //! load balances if contact forces λ ≥ 0 with (B R)ᵀ λ = Rᵀ f exist.
 
 pub mod analysis;
+mod columns;
 mod descent;
 mod kinematics;
 pub mod motion;

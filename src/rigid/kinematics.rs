@@ -33,16 +33,16 @@ pub(super) fn null_space(b: &DMatrix<f64>) -> DMatrix<f64> {
         if i < b.nrows() { b[(i, j)] } else { 0.0 }
     });
     let r = full.qr().thin_R().to_owned();
-    let square = DMatrix::from_fn(n, n, |i, j| if i <= j { r[(i, j)] } else { 0.0 });
-    let svd = square.svd(false, true);
-    let largest = svd.singular_values.amax();
-    let Some(v_t) = svd.v_t else {
+    let upper = Mat::from_fn(n, n, |i, j| if i <= j { r[(i, j)] } else { 0.0 });
+    let Ok(svd) = upper.svd() else {
         return DMatrix::zeros(n, 0);
     };
+    let (sizes, v) = (svd.S().column_vector(), svd.V());
+    let largest = sizes.iter().copied().fold(0.0, f64::max);
     let kept: Vec<usize> = (0..n)
-        .filter(|&i| svd.singular_values[i] <= RANK_TOLERANCE * largest)
+        .filter(|&i| sizes[i] <= RANK_TOLERANCE * largest)
         .collect();
-    DMatrix::from_fn(n, kept.len(), |i, j| v_t[(kept[j], i)])
+    DMatrix::from_fn(n, kept.len(), |i, j| v[(i, kept[j])])
 }
 
 impl Kinematics {
