@@ -1,4 +1,5 @@
-//! Rigid motions that neither supports nor contact hold.
+//! Rigid motions: those that neither supports nor contact hold, and those by which bodies come to
+//! rest.
 //!
 //! Found from geometry alone, before anything is factorized, because a Cholesky factorization
 //! passes a free motion at a pivot of round-off. With R the rigid motions that the supports
@@ -6,6 +7,9 @@
 //! load balances if contact forces λ ≥ 0 with (B R)ᵀ λ = Rᵀ f exist.
 
 pub mod analysis;
+mod columns;
+mod descent;
+mod kinematics;
 pub mod motion;
 mod nonnegative;
 pub mod projection;

@@ -4,6 +4,7 @@
 
 pub mod condense;
 pub mod conditioning;
+mod descend;
 pub mod frozen;
 pub mod read;
 pub mod recover;
@@ -21,13 +22,14 @@ use faer::Par;
 
 use self::condense::{assemble_interface, condense_blocks};
 use self::conditioning::condition_number;
+use self::descend::{take_out_descent, with_descent};
 use self::frozen::{Frozen, FrozenRoot};
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
 use self::refine::refine;
 use self::report::{Narrator, Totals};
 use self::settle::settle_free_motions;
-use self::write::{stresses, write_solution};
+use self::write::{Fields, stresses, write_solution};
 use crate::comm::{Comm, Message, phase};
 use crate::contact::s_con::SCon;
 use crate::error::Failure;
@@ -60,6 +62,8 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         1 => Par::Seq,
         n => Par::rayon(usize::from(n)),
     };
+    // Dense algebra, which takes no such argument everywhere, would use all cores.
+    faer::set_global_parallelism(par);
     let narrator = Narrator::new(comm, settings);
 
     // Every rank reads its own subdomains and pairs.
@@ -68,10 +72,10 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let file = comm.agree(ProblemFile::open(&settings.problem).map_err(Failure::from))?;
     let catalog = file.catalog();
     let plan = Plan::new(catalog, comm.size());
-    let blocks = comm.agree(read_blocks(comm, &file, &plan))?;
+    let mut blocks = comm.agree(read_blocks(comm, &file, &plan))?;
     narrator.problem(catalog, &plan);
 
-    // Rigid motions that neither supports nor contact hold.
+    // Rigid motions that neither supports nor contact hold, and those by which bodies come to rest.
     phase("looking for free rigid motions");
     let survey = survey(comm, &blocks, catalog, &plan)?;
     let pins = &survey.motions.pins;
@@ -80,6 +84,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         return Ok(Ending::Converged);
     }
     let mut output = comm.agree(create_output(comm, settings, catalog, &plan, &blocks))?;
+    take_out_descent(&mut blocks, &survey, catalog.dim);
     seconds.read = began.elapsed().as_secs_f64();
 
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12).
@@ -122,7 +127,8 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let root = outcome.as_ref().zip(interface.as_ref());
     let trace_of_root = root.map(|(o, (numbering, _))| (&o.u[..], &numbering.traces[..]));
     let mut solutions = recover(comm, &condensed, &plan, trace_of_root);
-    settle_free_motions(comm, &survey, &blocks, &mut solutions, catalog, &plan);
+    let free = solutions.iter_mut().map(|(&b, s)| (b, &mut s.u)).collect();
+    settle_free_motions(comm, &survey, &blocks, free, catalog, &plan);
     let frozen = Frozen {
         comm,
         blocks: &blocks,
@@ -139,12 +145,20 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let certificate = refine(&frozen, &mut solutions);
     let condition = condition_number(&frozen);
     let stress = stresses(comm, &blocks, &solutions, catalog, &plan);
+    let mut displacement = with_descent(&blocks, &solutions, &survey, catalog.dim);
+    let free = displacement.iter_mut().map(|(&b, u)| (b, u)).collect();
+    settle_free_motions(comm, &survey, &blocks, free, catalog, &plan);
     seconds.recover = lap.elapsed().as_secs_f64();
 
     // Results travel to the root subdomain by subdomain and are written as they arrive.
     phase("writing");
     let lap = Instant::now();
-    let written = write_solution(comm, &blocks, &solutions, &stress, &plan, output.as_mut());
+    let fields = Fields {
+        solutions: &solutions,
+        displacement: &displacement,
+        stress: &stress,
+    };
+    let written = write_solution(comm, &blocks, fields, &plan, output.as_mut());
     comm.agree(written.map_err(Failure::from))?;
     seconds.write = lap.elapsed().as_secs_f64();
     seconds.total = began.elapsed().as_secs_f64();

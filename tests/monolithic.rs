@@ -15,11 +15,11 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use support::blocks::{Blocks, jittered, shuffled};
+use support::comparison::compare;
 use support::monolithic::Monolithic;
 use support::scenes::{
     BODIES, JOINT, LOAD, SUPPORTS, built_in, built_in_model, model, two_block_scene, two_blocks,
 };
-use support::solution::Solution;
 use support::solver::solve;
 
 /// Solves `model` in `count` subdomains and fails unless displacement, forces, pressures, gaps and
@@ -29,43 +29,6 @@ fn agrees(model: &Model, count: usize) -> usize {
     let solution = solve(model, count);
     compare(model, &Monolithic::new(model), &solution);
     solution.closed()
-}
-
-#[track_caller]
-fn compare(model: &Model, reference: &Monolithic, solution: &Solution) {
-    let difference = reference.energy_difference(&solution.dofs(model));
-    assert!(difference <= 1e-11, "energy difference {difference:e}");
-    let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    let (size, force) = (largest(&reference.u), largest(&reference.forces));
-    let mut row = 0;
-    for contact in &model.contacts {
-        let points = &solution.contacts[&contact.name];
-        assert_eq!(points.len(), contact.conditions.len(), "{}", contact.name);
-        for (point, condition) in points.iter().zip(&contact.conditions) {
-            let (gap_ref, force_ref) = (reference.gaps[row], reference.forces[row]);
-            let at = format!("{} at {:?}", contact.name, point.position);
-            assert_eq!(point.tags, [condition.tag_a, condition.tag_b], "{at}");
-            close(point.gap, gap_ref, 1e-11 * size, &at);
-            close(point.force, force_ref, 1e-10 * force, &at);
-            let pressure = force_ref / condition.share;
-            close(
-                point.pressure,
-                pressure,
-                1e-10 * force / condition.share,
-                &at,
-            );
-            // What carries neither gap nor force may be either.
-            if gap_ref > 1e-11 * size || force_ref > 1e-10 * force {
-                assert_eq!(point.closed, force_ref > 0.0, "{at}: {point:?}");
-            }
-            row += 1;
-        }
-    }
-}
-
-#[track_caller]
-fn close(a: f64, b: f64, slack: f64, at: &str) {
-    assert!((a - b).abs() <= slack, "{at}: {a:e}; expected {b:e}");
 }
 
 #[test]

@@ -1,15 +1,12 @@
 //! Which rigid motions are free, whether the load drives one, and where to pin those it doesn't.
 
-use faer::Mat;
 use nalgebra::{DMatrix, DVector};
 
+use super::kinematics::{Kinematics, null_space};
 use super::motion::BodyFrame;
 use super::nonnegative;
 use crate::error::Failure;
 
-/// Relative size below which a singular value is zero: a support that is this much shorter than
-/// the body it holds doesn't hold it.
-const RANK_TOLERANCE: f64 = 1e-9;
 /// Load along a free motion, relative to all loads, that counts as none.
 const LOAD_TOLERANCE: f64 = 1e-10;
 /// Load that contact can't balance, relative to all loads, that counts as none.
@@ -20,7 +17,7 @@ const BALANCE_TOLERANCE: f64 = 1e-9;
 pub struct BodyState {
     /// Frame of its rigid motions.
     pub frame: BodyFrame,
-    /// Rows of its supports against its rigid motions.
+    /// Rows of its supports against its rigid motions, what they prescribe last (m).
     pub supports: Vec<Vec<f64>>,
     /// Resultant of its load against its rigid motions.
     pub load: Vec<f64>,
@@ -31,7 +28,13 @@ pub struct BodyState {
 }
 
 /// A contact condition against the rigid motions of the bodies it touches.
-pub type RigidRow = Vec<(usize, Vec<f64>)>;
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidRow {
+    /// Bodies, and the row against their motions.
+    pub bodies: Vec<(usize, Vec<f64>)>,
+    /// g (m).
+    pub gap: f64,
+}
 
 /// A spring on one node of a body that can move freely: u·direction = 0 there. It carries no force
 /// because the load has no component along the motion that it stops.
@@ -61,16 +64,6 @@ pub struct RigidMotions {
     pub pins: Vec<Pin>,
     /// What a user should know.
     pub warnings: Vec<String>,
-}
-
-/// The motions that supports leave to all bodies, side by side.
-struct Kinematics {
-    dim: usize,
-    /// For each body its basis of motions, modes × kept.
-    bases: Vec<DMatrix<f64>>,
-    /// First unknown of each body.
-    first: Vec<usize>,
-    len: usize,
 }
 
 /// Analyses a scene of `bodies` named `names` under contact `rows`.
@@ -105,88 +98,7 @@ pub fn analyse(
     Ok(kinematics.fix(bodies, names, &free))
 }
 
-/// An orthonormal basis of the x with B x = 0.
-fn null_space(b: &DMatrix<f64>) -> DMatrix<f64> {
-    let n = b.ncols();
-    if b.nrows() == 0 {
-        return DMatrix::identity(n, n);
-    }
-    // Rows beyond the number of unknowns are folded into R first: R x = 0 is B x = 0.
-    let full = Mat::from_fn(b.nrows().max(n), n, |i, j| {
-        if i < b.nrows() { b[(i, j)] } else { 0.0 }
-    });
-    let r = full.qr().thin_R().to_owned();
-    let square = DMatrix::from_fn(n, n, |i, j| if i <= j { r[(i, j)] } else { 0.0 });
-    let svd = square.svd(false, true);
-    let largest = svd.singular_values.amax();
-    let Some(v_t) = svd.v_t else {
-        return DMatrix::zeros(n, 0);
-    };
-    let kept: Vec<usize> = (0..n)
-        .filter(|&i| svd.singular_values[i] <= RANK_TOLERANCE * largest)
-        .collect();
-    DMatrix::from_fn(n, kept.len(), |i, j| v_t[(kept[j], i)])
-}
-
 impl Kinematics {
-    fn new(dim: usize, bodies: &[BodyState]) -> Self {
-        let modes = BodyFrame::count(dim);
-        let bases: Vec<DMatrix<f64>> = bodies
-            .iter()
-            .map(|body| {
-                let rows = DMatrix::from_fn(body.supports.len(), modes, |i, j| body.supports[i][j]);
-                null_space(&rows)
-            })
-            .collect();
-        let mut first = Vec::with_capacity(bases.len());
-        let mut len = 0;
-        for basis in &bases {
-            first.push(len);
-            len += basis.ncols();
-        }
-        Self {
-            dim,
-            bases,
-            first,
-            len,
-        }
-    }
-
-    fn rows(&self, rows: &[RigidRow]) -> DMatrix<f64> {
-        let mut b = DMatrix::zeros(rows.len(), self.len);
-        for (i, row) in rows.iter().enumerate() {
-            for (body, action) in row {
-                let basis = &self.bases[*body];
-                for k in 0..basis.ncols() {
-                    let value: f64 = action
-                        .iter()
-                        .zip(basis.column(k).iter())
-                        .map(|(a, z)| a * z)
-                        .sum();
-                    b[(i, self.first[*body] + k)] += value;
-                }
-            }
-        }
-        b
-    }
-
-    fn load(&self, bodies: &[BodyState]) -> DVector<f64> {
-        let mut load = DVector::zeros(self.len);
-        for (body, (basis, &first)) in bodies.iter().zip(self.bases.iter().zip(&self.first)) {
-            let resultant = DVector::from_column_slice(&body.load);
-            load.rows_mut(first, basis.ncols())
-                .copy_from(&(basis.transpose() * resultant));
-        }
-        load
-    }
-
-    /// The part of motion `x` that body `b` takes, in its own frame.
-    fn of_body(&self, b: usize, x: &[f64]) -> Vec<f64> {
-        let basis = &self.bases[b];
-        let own = DVector::from_column_slice(&x[self.first[b]..self.first[b] + basis.ncols()]);
-        (basis * own).iter().copied().collect()
-    }
-
     fn ill_posed(
         &self,
         bodies: &[BodyState],
@@ -314,7 +226,10 @@ mod tests {
         xs.iter()
             .map(|&x| {
                 let action = body.frame.action(2, &[x, 0.0, 0.0], &[0.0, -1.0, 0.0]);
-                vec![(b, action)]
+                RigidRow {
+                    bodies: vec![(b, action)],
+                    gap: 0.0,
+                }
             })
             .collect()
     }
@@ -360,11 +275,16 @@ mod tests {
     #[test]
     fn a_supported_body_is_left_alone() {
         let frame = BodyFrame::new([0.0; 3], [1.0, 1.0, 0.0]);
-        let supports = vec![
-            frame.action(2, &[0.0, 0.0, 0.0], &[1.0, 0.0, 0.0]),
-            frame.action(2, &[0.0, 0.0, 0.0], &[0.0, 1.0, 0.0]),
-            frame.action(2, &[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0]),
-        ];
+        let rows = [([0.0; 3], 0), ([0.0; 3], 1), ([1.0, 0.0, 0.0], 1)];
+        let supports = (rows.iter())
+            .map(|(x, axis)| {
+                let mut direction = [0.0; 3];
+                direction[*axis] = 1.0;
+                let mut row = frame.action(2, x, &direction);
+                row.push(0.0);
+                row
+            })
+            .collect();
         let body = square(0.0, [5.0, 1.0, 2.0], supports);
         let motions = analyse(2, &[body], &names(), &[]).unwrap();
         assert_eq!(motions, RigidMotions::default());

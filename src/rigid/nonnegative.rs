@@ -2,6 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::columns::Columns;
+
 /// r = b − A λ for the λ ≥ 0 that minimizes ‖r‖₂, after Lawson and Hanson.
 ///
 /// r = 0 up to round-off where b lies in the cone of A's columns; otherwise Aᵀ r ≤ 0 and
@@ -13,16 +15,15 @@ pub fn residual(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     let tolerance = 1e-13 * b.norm();
     // A column that is round-off would have a direction all the same.
     let mut candidates: Vec<usize> = (0..n).filter(|&j| norms[j] > 1e-12 * largest).collect();
-    let mut passive: Vec<usize> = Vec::new();
+    let mut passive = Columns::default();
+    let mut is_passive = vec![false; n];
     let mut lambda = vec![0.0; n];
     let mut r = b.clone();
     for _ in 0..10 * (n + a.nrows()) + 10 {
-        let slope = |j: usize| a.column(j).dot(&r) / norms[j];
-        let best = candidates
-            .iter()
-            .copied()
-            .filter(|j| !passive.contains(j))
-            .map(|j| (slope(j), j))
+        let slopes = a.tr_mul(&r);
+        let best = (candidates.iter().copied())
+            .filter(|&j| !is_passive[j])
+            .map(|j| (slopes[j] / norms[j], j))
             .max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1)));
         let Some((steepest, entering)) = best else {
             break;
@@ -30,64 +31,44 @@ pub fn residual(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
         if steepest <= tolerance {
             break;
         }
-        passive.push(entering);
+        if !passive.push(a, entering) {
+            // It depends on those that are in: its slope is round-off.
+            candidates.retain(|&j| j != entering);
+            continue;
+        }
+        is_passive[entering] = true;
         loop {
-            let Some(trial) = least_squares(a, b, &passive) else {
-                // The entering column depends on those that are in: its slope is round-off.
-                passive.pop();
-                candidates.retain(|&j| j != entering);
-                break;
-            };
-            let blocking = passive
-                .iter()
-                .zip(&trial)
+            let trial = passive.solve(b);
+            let blocking = (passive.numbers.iter().zip(&trial))
                 .filter(|(_, t)| **t <= 0.0)
                 .map(|(&j, t)| lambda[j] / (lambda[j] - t))
                 .fold(f64::INFINITY, f64::min);
             if blocking.is_infinite() {
-                for (&j, t) in passive.iter().zip(&trial) {
+                for (&j, t) in passive.numbers.iter().zip(&trial) {
                     lambda[j] = *t;
                 }
                 break;
             }
             let step = if blocking.is_nan() { 0.0 } else { blocking };
-            for (&j, t) in passive.iter().zip(&trial) {
+            for (&j, t) in passive.numbers.iter().zip(&trial) {
                 lambda[j] += step * (t - lambda[j]);
             }
             let largest = lambda.iter().fold(0.0, |m: f64, l| m.max(l.abs()));
-            passive.retain(|&j| {
-                let stays = lambda[j] > 1e-14 * largest;
-                if !stays {
+            for place in (0..passive.numbers.len()).rev() {
+                let j = passive.numbers[place];
+                if lambda[j] <= 1e-14 * largest {
                     lambda[j] = 0.0;
+                    is_passive[j] = false;
+                    passive.remove(place);
                 }
-                stays
-            });
-            if passive.is_empty() {
+            }
+            if passive.numbers.is_empty() {
                 break;
             }
         }
-        r = b - a * DVector::from_column_slice(&lambda);
+        r = passive.residual(b);
     }
     r
-}
-
-/// The least squares solution on the columns `passive`; `None` where they depend on each other.
-fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, passive: &[usize]) -> Option<Vec<f64>> {
-    if passive.len() > a.nrows() {
-        return None;
-    }
-    let columns = a.select_columns(passive);
-    let qr = columns.qr();
-    let r = qr.r();
-    let largest = r.diagonal().amax();
-    if r.diagonal().iter().any(|d| d.abs() <= 1e-12 * largest) {
-        return None;
-    }
-    let mut rhs = b.clone();
-    qr.q_tr_mul(&mut rhs);
-    let head = rhs.rows(0, passive.len()).clone_owned();
-    r.solve_upper_triangular(&head)
-        .map(|x| x.iter().copied().collect())
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use contact_dd_partition::problem::{Catalog, ContactRow, Subdomain};
 use nalgebra::DMatrix;
 
 use super::analysis::{BodyState, FreeMotion, Pin, RigidMotions, RigidRow, analyse};
+use super::descent::descent;
 use super::motion::BodyFrame;
 use crate::comm::{Comm, Message};
 use crate::error::Failure;
@@ -19,9 +20,12 @@ pub struct Survey {
     pub frames: Vec<BodyFrame>,
     /// Its free motions, their pins, and warnings; the latter on the root alone.
     pub motions: RigidMotions,
+    /// The rigid motion by which every body comes to rest.
+    pub descent: Vec<Vec<f64>>,
 }
 
-/// Finds the free rigid motions of the scene. Collective.
+/// Finds the free rigid motions of the scene, and those by which its bodies come to rest.
+/// Collective.
 ///
 /// # Errors
 /// The load drives a motion that nothing holds.
@@ -51,6 +55,7 @@ pub fn survey(
         Ok(RigidMotions::default())
     };
     let mut motions = comm.agree(found)?;
+    let modes = BodyFrame::count(catalog.dim);
     let mut message = if comm.is_root() {
         pack(&motions)
     } else {
@@ -58,9 +63,18 @@ pub fn survey(
     };
     comm.broadcast(&mut message);
     if !comm.is_root() {
-        motions = unpack(message, BodyFrame::count(catalog.dim));
+        motions = unpack(message, modes);
     }
-    Ok(Survey { frames, motions })
+    let mut message = Message::default();
+    if comm.is_root() {
+        message.reals = descent(catalog.dim, &states, &rows).concat();
+    }
+    comm.broadcast(&mut message);
+    Ok(Survey {
+        frames,
+        motions,
+        descent: message.reals.chunks(modes).map(<[f64]>::to_vec).collect(),
+    })
 }
 
 fn body_frames(
@@ -139,7 +153,7 @@ fn body_states(
             let mut reader = message.read();
             let rows = reader.count();
             for _ in 0..rows {
-                state.supports.push(reader.reals(modes));
+                state.supports.push(reader.reals(modes + 1));
             }
             for (sum, part) in state.load.iter_mut().zip(reader.reals(modes)) {
                 *sum += part;
@@ -161,9 +175,13 @@ fn pack_subdomain(subdomain: &Subdomain, dim: usize, frame: &BodyFrame) -> Messa
     let rows: Vec<Vec<f64>> = subdomain
         .supports
         .iter()
-        .map(|s| frame.action(dim, &points[s.node as usize], &s.direction))
+        .map(|s| {
+            let mut row = frame.action(dim, &points[s.node as usize], &s.direction);
+            row.push(s.value);
+            row
+        })
         .collect();
-    let rows = compressed(rows, modes);
+    let rows = compressed(rows, modes + 1);
     let mut load = vec![0.0; modes];
     let mut load_scale = 0.0;
     for (node, force) in &subdomain.forces {
@@ -187,12 +205,13 @@ fn pack_subdomain(subdomain: &Subdomain, dim: usize, frame: &BodyFrame) -> Messa
     message
 }
 
-/// Rows with the same null space as `rows`, at most as many as they have entries.
-fn compressed(rows: Vec<Vec<f64>>, modes: usize) -> Vec<Vec<f64>> {
-    if rows.len() <= modes {
+/// Rows with the same null space and least squares solution as `rows`, at most as many as their
+/// `entries`.
+fn compressed(rows: Vec<Vec<f64>>, entries: usize) -> Vec<Vec<f64>> {
+    if rows.len() <= entries {
         return rows;
     }
-    let r = DMatrix::from_fn(rows.len(), modes, |i, j| rows[i][j])
+    let r = DMatrix::from_fn(rows.len(), entries, |i, j| rows[i][j])
         .qr()
         .r();
     r.row_iter()
@@ -242,11 +261,11 @@ fn rigid_rows(
             while read < count {
                 let entries = reader.count();
                 read += 1 + entries;
-                rows.push(
-                    (0..entries)
-                        .map(|_| (reader.count(), reader.reals(modes)))
-                        .collect(),
-                );
+                let bodies = (0..entries)
+                    .map(|_| (reader.count(), reader.reals(modes)))
+                    .collect();
+                let gap = reader.real();
+                rows.push(RigidRow { bodies, gap });
             }
         },
     );
@@ -274,6 +293,7 @@ fn pack_row(
             .reals
             .extend(frames[member.body].action(catalog.dim, x, &entry.coefficient));
     }
+    message.reals.push(row.gap);
 }
 
 fn pack(motions: &RigidMotions) -> Message {

@@ -103,17 +103,19 @@ fn pins_of(block: &Block, pins: &[Pin]) -> Vec<(u32, usize)> {
 /// The bounds on a block's approaches.
 fn limits(owned: &OwnedBlock, dofs: &Dofs, catalog: &Catalog) -> Result<Limits, Failure> {
     let scale = prescribed_scale(owned);
-    for (of, row) in dofs.approach_of.iter().zip(&owned.rows) {
+    for (j, of) in dofs.approach_of.iter().enumerate() {
+        let gap = owned.conditions[j].gap;
         if let ApproachOf::Prescribed(approach) = *of
-            && approach > row.gap + 1e-12 * scale
+            && approach > gap + 1e-12 * scale
         {
+            let row = &owned.rows[j];
             let contact = &catalog.contacts[row.contact as usize].name;
             return Err(Failure::input(format!(
                 "contact '{contact}': nodes {} and {} are prescribed to penetrate by {:.3e}; \
                  expected displacements that leave a gap",
                 row.tag_a,
                 row.tag_b,
-                approach - row.gap
+                approach - gap
             )));
         }
     }

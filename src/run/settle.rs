@@ -5,19 +5,18 @@ use std::collections::BTreeMap;
 use contact_dd_partition::problem::{Catalog, Subdomain};
 
 use super::read::OwnedBlock;
-use super::recover::BlockSolution;
 use crate::comm::{Comm, Message};
 use crate::plan::Plan;
 use crate::rigid::projection::MotionProducts;
 use crate::rigid::survey::Survey;
 
-/// Makes the displacement orthogonal to every free motion, in the Euclidean sense over the nodes
-/// of the bodies that take part. Collective.
+/// Makes the displacement of all blocks, node by node, orthogonal to every free motion, in the
+/// Euclidean sense over the nodes of the bodies that take part. Collective.
 pub fn settle_free_motions(
     comm: &Comm,
     survey: &Survey,
     blocks: &BTreeMap<usize, OwnedBlock>,
-    solutions: &mut BTreeMap<usize, BlockSolution>,
+    mut displacement: BTreeMap<usize, &mut Vec<f64>>,
     catalog: &Catalog,
     plan: &Plan,
 ) {
@@ -38,7 +37,7 @@ pub fn settle_free_motions(
         |s| {
             let mut products = MotionProducts::zeros(count);
             let b = plan.block_of[s];
-            if let (Some(owned), Some(solution)) = (blocks.get(&b), solutions.get(&b))
+            if let (Some(owned), Some(u)) = (blocks.get(&b), displacement.get(&b))
                 && let Some(m) = owned.block.member(s)
             {
                 let member = &owned.block.members[m];
@@ -47,7 +46,7 @@ pub fn settle_free_motions(
                     if !elsewhere[local] {
                         let moves = motions_at(survey, dim, member, &member.points[local]);
                         let start = node as usize * dim;
-                        products.add_node(&moves, &solution.u[start..start + dim]);
+                        products.add_node(&moves, &u[start..start + dim]);
                     }
                 }
             }
@@ -69,7 +68,7 @@ pub fn settle_free_motions(
         coefficients.reals = total.coefficients();
     }
     comm.broadcast(&mut coefficients);
-    for (b, solution) in solutions {
+    for (b, u) in &mut displacement {
         let Some(owned) = blocks.get(b) else { continue };
         let mut settled = vec![false; owned.block.nodes()];
         for (member, node_of) in owned.block.members.iter().zip(&owned.block.node_of) {
@@ -80,7 +79,7 @@ pub fn settle_free_motions(
                 let moves = motions_at(survey, dim, member, &member.points[local]);
                 for (z, c) in moves.iter().zip(&coefficients.reals) {
                     let start = node as usize * dim;
-                    for (u, z) in solution.u[start..start + dim].iter_mut().zip(z) {
+                    for (u, z) in u[start..start + dim].iter_mut().zip(z) {
                         *u -= c * z;
                     }
                 }

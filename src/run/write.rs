@@ -86,6 +86,17 @@ fn stress_sum(values: &[f64]) -> StressSum {
     sum
 }
 
+/// What this rank's blocks have found.
+#[derive(Clone, Copy, Debug)]
+pub struct Fields<'a> {
+    /// Solutions, without the bodies' descent.
+    pub solutions: &'a BTreeMap<usize, BlockSolution>,
+    /// Displacement with it, node by node (m).
+    pub displacement: &'a BTreeMap<usize, Vec<f64>>,
+    /// Stresses.
+    pub stress: &'a BTreeMap<usize, BlockStress>,
+}
+
 /// Streams all subdomains and contact rows to the root, which writes each as it arrives.
 /// Collective; `file` is the root's.
 ///
@@ -94,8 +105,7 @@ fn stress_sum(values: &[f64]) -> StressSum {
 pub fn write_solution(
     comm: &Comm,
     blocks: &BTreeMap<usize, OwnedBlock>,
-    solutions: &BTreeMap<usize, BlockSolution>,
-    stresses: &BTreeMap<usize, BlockStress>,
+    fields: Fields<'_>,
     plan: &Plan,
     mut file: Option<&mut ResultFile>,
 ) -> Result<(), OutputError> {
@@ -111,12 +121,14 @@ pub fn write_solution(
         &owners,
         |s| {
             let b = plan.block_of[s];
-            let (Some(owned), Some(solution), Some(stress)) =
-                (blocks.get(&b), solutions.get(&b), stresses.get(&b))
-            else {
+            let (Some(owned), Some(displacement), Some(stress)) = (
+                blocks.get(&b),
+                fields.displacement.get(&b),
+                fields.stress.get(&b),
+            ) else {
                 return Message::default();
             };
-            pack_subdomain(owned, solution, stress, s)
+            pack_subdomain(owned, displacement, stress, s)
         },
         |s, message| {
             let result = unpack_subdomain(s, message);
@@ -127,7 +139,7 @@ pub fn write_solution(
         &plan.pair_owners(),
         |p| {
             let b = plan.pairs[p];
-            match (blocks.get(&b), solutions.get(&b)) {
+            match (blocks.get(&b), fields.solutions.get(&b)) {
                 (Some(owned), Some(solution)) => pack_contacts(owned, solution),
                 _ => Message::default(),
             }
@@ -142,7 +154,7 @@ pub fn write_solution(
 
 fn pack_subdomain(
     owned: &OwnedBlock,
-    solution: &BlockSolution,
+    displacement: &[f64],
     stress: &BlockStress,
     index: usize,
 ) -> Message {
@@ -166,7 +178,7 @@ fn pack_subdomain(
     for &node in &block.node_of[m] {
         let start = node as usize * block.dim;
         let mut u = [0.0; 3];
-        u[..block.dim].copy_from_slice(&solution.u[start..start + block.dim]);
+        u[..block.dim].copy_from_slice(&displacement[start..start + block.dim]);
         reals.extend(u);
     }
     reals.extend(stress.at_nodes(block, m).iter().flatten());

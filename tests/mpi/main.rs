@@ -11,6 +11,7 @@
 
 mod bad_input;
 mod endings;
+mod resting;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -49,6 +50,8 @@ fn main() -> ExitCode {
     bad_input::bad_input(&mut trials);
     bad_input::bad_usage(&mut trials);
     endings::no_equilibrium(&mut trials);
+    resting::no_rest(&mut trials);
+    resting::just_rest(&mut trials);
     endings::not_converged(&mut trials);
     endings::unwritable_output(&mut trials);
     endings::killed_rank(&mut trials);
@@ -127,7 +130,7 @@ type MakeCase = fn() -> Case;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 7] = [
+    let cases: [(&str, MakeCase); 10] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
@@ -143,6 +146,11 @@ fn same_results(trials: &mut Trials) {
         }),
         ("junction", || Case::of(&built_in_model("junction", 0), 6)),
         ("stack", || Case::of(&built_in_model("stack", 0), 6)),
+        ("stack_without_interface", || {
+            Case::of(&built_in_model("stack", 0), 3)
+        }),
+        ("row", || Case::of(&resting::row([-1e6, 0.0], true), 6)),
+        ("fallen", || Case::of(&resting::fallen(), 5)),
     ];
     for (name, make) in cases {
         let alone: OnceLock<(Case, BTreeMap<String, Vec<u64>>)> = OnceLock::new();

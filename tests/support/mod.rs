@@ -6,12 +6,15 @@
 )]
 
 pub mod blocks;
+pub mod comparison;
 pub mod monolithic;
 pub mod process;
 pub mod random;
+pub mod round;
 pub mod scenes;
 pub mod solution;
 pub mod solver;
+pub mod statics;
 
 /// Fails unless both agree to within `slack`.
 #[track_caller]

@@ -181,9 +181,8 @@ impl<'a> Contacts<'a> {
         for a in &nodes_a {
             match target.met(a.position, a.normal, behind, skip) {
                 Met::Nodes(nodes, _) => {
-                    let share = a.share / nodes.len() as f64;
-                    for b in nodes {
-                        partners.insert(b);
+                    partners.extend(nodes.iter().copied());
+                    for (b, share) in opposite(a, nodes, [side_a, side_b], [&on_a, &on_b]) {
                         let to_b = advance(mesh.points[b as usize], -1.0, a.position);
                         conditions.push(ContactCondition {
                             entries: vec![(a.node, a.normal), (b, a.normal.map(|c| -c))],
@@ -244,4 +243,47 @@ impl<'a> Contacts<'a> {
             (length(free) <= PARALLEL).then_some(approach)
         })
     }
+}
+
+/// Which of the nodes `partners` in one place on side b node `a` of side a has conditions with, and
+/// its share of each.
+///
+/// Where corners of several bodies meet in a point, two that lie diagonally across share nothing but
+/// that point, and a condition between them would follow from those between neighbours.
+fn opposite(
+    a: &SideNode,
+    partners: Vec<u32>,
+    [side_a, side_b]: [&Surface; 2],
+    [on_a, on_b]: [&HashMap<u32, Vec<usize>>; 2],
+) -> Vec<(u32, f64)> {
+    if let [only] = partners[..] {
+        return vec![(only, a.share)];
+    }
+    let mut shares: Vec<f64> = vec![0.0; partners.len()];
+    let mut alone = 0.0;
+    for facet in on_a[&a.node].iter().map(|&f| &side_a.facets[f]) {
+        let meets = |b: &u32| {
+            let mut facets = on_b[b].iter().map(|&f| &side_b.facets[f]);
+            facets.any(|other| facet.is_opposite(a.node, other, *b, a.normal))
+        };
+        let met: Vec<bool> = partners.iter().map(meets).collect();
+        let count = met.iter().filter(|&&met| met).count();
+        let own = facet.nodes.iter().position(|&node| node == a.node);
+        let share = own.map_or(0.0, |i| facet.share(i));
+        match count {
+            0 => alone += share,
+            _ => (shares.iter_mut().zip(met).filter(|(_, met)| *met))
+                .for_each(|(sum, _)| *sum += share / count as f64),
+        }
+    }
+    if shares.iter().all(|&share| share == 0.0) {
+        let share = a.share / partners.len() as f64;
+        return partners.into_iter().map(|b| (b, share)).collect();
+    }
+    let mut kept: Vec<(u32, f64)> = (partners.into_iter().zip(shares))
+        .filter(|&(_, share)| share > 0.0)
+        .collect();
+    let alone = alone / kept.len() as f64;
+    kept.iter_mut().for_each(|(_, share)| *share += alone);
+    kept
 }

@@ -2,12 +2,16 @@
 
 use super::ContactCondition;
 use super::contact::SideNode;
+use super::sight::FACING;
 use crate::element::geometry::{difference, dot, length};
 use crate::mesh::Mesh;
 use crate::scene::condition::Obstacle;
 
-/// A condition for every node of a side: its signed distance, linearized at the nearest point of
-/// the obstacle, stays ≥ 0.
+/// A condition for every node of a side that faces the obstacle: its signed distance, linearized
+/// at the nearest point of the obstacle, stays ≥ 0.
+///
+/// From the other nodes the body itself lies between them and the obstacle. Without them a whole
+/// outline may be given as a side, and a node meets one of two opposite walls only.
 pub(super) fn conditions(
     mesh: &Mesh,
     obstacle: &Obstacle,
@@ -20,7 +24,8 @@ pub(super) fn conditions(
             mesh.dim
         ));
     }
-    let condition = |a: SideNode| {
+    let mut conditions = Vec::with_capacity(nodes.len());
+    for a in nodes {
         let tag = mesh.node_tags[a.node as usize];
         let Some((distance, out)) = distance(obstacle, a.position) else {
             return Err(format!(
@@ -28,7 +33,10 @@ pub(super) fn conditions(
             ));
         };
         let normal = out.map(|c| -c);
-        Ok(ContactCondition {
+        if dot(a.normal, normal) < FACING {
+            continue;
+        }
+        conditions.push(ContactCondition {
             entries: vec![(a.node, normal)],
             gap: distance,
             share: a.share,
@@ -36,9 +44,16 @@ pub(super) fn conditions(
             normal,
             tag_a: tag,
             tag_b: -1,
-        })
-    };
-    nodes.into_iter().map(condition).collect()
+        });
+    }
+    if conditions.is_empty() {
+        return Err(
+            "no node of the side faces the obstacle; expected an outward normal towards it \
+             (an obstacle's normal points out of its material)"
+                .to_owned(),
+        );
+    }
+    Ok(conditions)
 }
 
 /// Signed distance of a point to an obstacle, positive outside of its material, and the

@@ -10,7 +10,7 @@ use crate::element::geometry::{advance, difference, dot, length};
 /// the last facet at the end of a curve, miss the partner by the gap times a small angle.
 const ASIDE: f64 = 1e-2;
 /// Cosine of the angle between a line and the inward normal of a facet that it meets face to face.
-const FACING: f64 = 0.1;
+pub(super) const FACING: f64 = 0.1;
 
 /// A surface that lines are sent at.
 pub(super) struct Target<'a> {

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::element::ElementKind;
-use crate::element::geometry::{advance, length};
+use crate::element::geometry::{advance, dot, length};
 use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
@@ -29,6 +29,37 @@ impl SurfaceFacet {
             0 => 0.0,
             1 => self.measure,
             _ => self.measure.sqrt(),
+        }
+    }
+
+    /// ∫ of the shape function of its node `i` over it.
+    pub fn share(&self, i: usize) -> f64 {
+        let share = integrate(self.kind, |xi| {
+            let weight = self.kind.shape(xi)[i];
+            let measure = length(self.kind.area_vector(&self.at, xi));
+            [weight * measure, 0.0, 0.0]
+        });
+        share[0]
+    }
+
+    /// The way from its node `node` to its middle, across `normal`; `None` if it isn't its node.
+    fn aside(&self, node: u32, normal: [f64; 3]) -> Option<[f64; 3]> {
+        let from = self.nodes.iter().position(|&n| n == node)?;
+        let count = self.at.len() as f64;
+        let middle = (self.at.iter()).fold([0.0; 3], |sum, &at| advance(sum, 1.0 / count, at));
+        let way = advance(middle, -1.0, self.at[from]);
+        Some(advance(way, -dot(way, normal), normal))
+    }
+
+    /// Whether this facet at node `a` and `other` at node `b`, which lies on the `normal` of `a`,
+    /// lie opposite each other and not beside each other.
+    pub fn is_opposite(&self, a: u32, other: &Self, b: u32, normal: [f64; 3]) -> bool {
+        match (self.aside(a, normal), other.aside(b, normal)) {
+            (Some(own), Some(others)) => {
+                dot(own, others) > 1e-6 * length(own) * length(others)
+                    && dot(self.normal, other.normal) < 0.0
+            }
+            _ => false,
         }
     }
 }
@@ -108,18 +139,10 @@ impl Surface {
         let mut nodes: HashMap<u32, SurfaceNode> = HashMap::new();
         for facet in &self.facets {
             for (i, &node) in facet.nodes.iter().enumerate() {
-                let share = integrate(facet.kind, |xi| {
-                    let weight = facet.kind.shape(xi)[i];
-                    [
-                        weight * length(facet.kind.area_vector(&facet.at, xi)),
-                        0.0,
-                        0.0,
-                    ]
-                });
                 let sum = nodes.entry(node).or_default();
                 sum.area = advance(sum.area, facet.measure, facet.normal);
                 sum.measure += facet.measure;
-                sum.share += share[0];
+                sum.share += facet.share(i);
             }
         }
         nodes

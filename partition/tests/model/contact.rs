@@ -7,13 +7,14 @@ use contact_dd_partition::model::ContactCondition;
 const CONTACT: &str = "[[contact]]\nname = 'c'\nsides = ['lower top', 'upper bottom']\n";
 
 /// Two blocks with a gap between them.
-fn stack(gap: f64) -> Blocks {
+pub fn stack(gap: f64) -> Blocks {
     Blocks::new()
         .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 2])
         .block("upper", [0.0, 2.0], [1.0 + gap, 2.0], [4, 2])
 }
 
-fn conditions(blocks: &Blocks, text: &str) -> Result<Vec<ContactCondition>, String> {
+/// The conditions of a scene's first contact.
+pub fn conditions(blocks: &Blocks, text: &str) -> Result<Vec<ContactCondition>, String> {
     let mut model = blocks.model(text)?;
     Ok(model.contacts.remove(0).conditions)
 }
@@ -277,49 +278,6 @@ fn a_nodes_normal_is_the_average_weighted_by_length() {
         close(row.normal[0], -chord[1] / size, 1e-15);
         close(row.normal[1], chord[0] / size, 1e-15);
     }
-}
-
-#[test]
-fn a_straight_obstacle_leaves_the_signed_distance_along_its_normal() {
-    let blocks = stack(0.0).moved(|[x, y, z]| [x, y + 0.2 * x, z]);
-    let text = "[[contact]]\nname = 't'\nsides = ['lower bottom']\nobstacle = {point = [0, -1], normal = [0, 4]}";
-    let rows = conditions(&blocks, text).unwrap();
-    assert_eq!(rows.len(), 5);
-    for row in &rows {
-        assert_eq!((row.tag_b, row.entries.len()), (-1, 1));
-        assert_eq!(row.entries[0].1, [0.0, -1.0, 0.0]);
-        assert_eq!(row.normal, [0.0, -1.0, 0.0]);
-        close(row.gap, row.position[1] + 1.0, 1e-15);
-    }
-    close(
-        rows.iter().map(|row| row.share).sum(),
-        2.0 * 1.04_f64.sqrt(),
-        1e-15,
-    );
-}
-
-#[test]
-fn a_circle_keeps_bodies_out_or_in() {
-    let text = |inside: bool| {
-        format!(
-            "[[contact]]\nname = 't'\nsides = ['lower bottom']\nobstacle = {{center = [1, -3], radius = 2, inside = {inside}}}"
-        )
-    };
-    for (inside, sign) in [(false, 1.0), (true, -1.0)] {
-        for row in conditions(&stack(0.0), &text(inside)).unwrap() {
-            let arm = [row.position[0] - 1.0, 3.0];
-            let far = arm[0].hypot(arm[1]);
-            close(row.gap, sign * (far - 2.0), 1e-15);
-            close(row.normal[0], -sign * arm[0] / far, 1e-15);
-            close(row.normal[1], -sign * arm[1] / far, 1e-15);
-            assert_eq!(row.entries[0].1, row.normal);
-        }
-    }
-    let error = conditions(&stack(0.0), &text(false).replace("[1, -3]", "[1, 0]")).unwrap_err();
-    assert!(
-        error.contains("contact 't': node") && error.contains("centre"),
-        "{error}"
-    );
 }
 
 #[test]

@@ -8,6 +8,8 @@
 mod blocks;
 mod bodies;
 mod contact;
+mod corner;
 mod invariance;
 mod loads;
+mod obstacle;
 mod supports;

@@ -1,0 +1,114 @@
+//! The motions that supports leave to the bodies of a scene.
+
+use faer::Mat;
+use nalgebra::{DMatrix, DVector};
+
+use super::analysis::{BodyState, RigidRow};
+use super::motion::BodyFrame;
+
+/// Relative size below which a singular value is zero: a support that is this much shorter than
+/// the body it holds doesn't hold it.
+const RANK_TOLERANCE: f64 = 1e-9;
+
+/// The motions that supports leave to all bodies, side by side.
+pub(super) struct Kinematics {
+    /// Dimension of space.
+    pub dim: usize,
+    /// For each body its basis of motions, modes × kept.
+    bases: Vec<DMatrix<f64>>,
+    /// First unknown of each body.
+    first: Vec<usize>,
+    /// Number of unknowns.
+    pub len: usize,
+}
+
+/// An orthonormal basis of the x with B x = 0.
+pub(super) fn null_space(b: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = b.ncols();
+    if b.nrows() == 0 {
+        return DMatrix::identity(n, n);
+    }
+    // Rows beyond the number of unknowns are folded into R first: R x = 0 is B x = 0.
+    let full = Mat::from_fn(b.nrows().max(n), n, |i, j| {
+        if i < b.nrows() { b[(i, j)] } else { 0.0 }
+    });
+    let r = full.qr().thin_R().to_owned();
+    let upper = Mat::from_fn(n, n, |i, j| if i <= j { r[(i, j)] } else { 0.0 });
+    let Ok(svd) = upper.svd() else {
+        return DMatrix::zeros(n, 0);
+    };
+    let (sizes, v) = (svd.S().column_vector(), svd.V());
+    let largest = sizes.iter().copied().fold(0.0, f64::max);
+    let kept: Vec<usize> = (0..n)
+        .filter(|&i| sizes[i] <= RANK_TOLERANCE * largest)
+        .collect();
+    DMatrix::from_fn(n, kept.len(), |i, j| v[(i, kept[j])])
+}
+
+impl Kinematics {
+    /// Those of `bodies`.
+    pub fn new(dim: usize, bodies: &[BodyState]) -> Self {
+        let modes = BodyFrame::count(dim);
+        let bases: Vec<DMatrix<f64>> = bodies
+            .iter()
+            .map(|body| {
+                let rows = &body.supports;
+                null_space(&DMatrix::from_fn(rows.len(), modes, |i, j| rows[i][j]))
+            })
+            .collect();
+        let mut first = Vec::with_capacity(bases.len());
+        let mut len = 0;
+        for basis in &bases {
+            first.push(len);
+            len += basis.ncols();
+        }
+        Self {
+            dim,
+            bases,
+            first,
+            len,
+        }
+    }
+
+    /// B against them, a row a condition.
+    pub fn rows(&self, rows: &[RigidRow]) -> DMatrix<f64> {
+        let mut b = DMatrix::zeros(rows.len(), self.len);
+        for (i, row) in rows.iter().enumerate() {
+            for (body, action) in &row.bodies {
+                let basis = &self.bases[*body];
+                for k in 0..basis.ncols() {
+                    let value: f64 = action
+                        .iter()
+                        .zip(basis.column(k).iter())
+                        .map(|(a, z)| a * z)
+                        .sum();
+                    b[(i, self.first[*body] + k)] += value;
+                }
+            }
+        }
+        b
+    }
+
+    /// The load against them.
+    pub fn load(&self, bodies: &[BodyState]) -> DVector<f64> {
+        let mut load = DVector::zeros(self.len);
+        for (body, (basis, &first)) in bodies.iter().zip(self.bases.iter().zip(&self.first)) {
+            let resultant = DVector::from_column_slice(&body.load);
+            load.rows_mut(first, basis.ncols())
+                .copy_from(&(basis.transpose() * resultant));
+        }
+        load
+    }
+
+    /// The unknowns of body `b`.
+    pub fn unknowns(&self, b: usize) -> std::ops::Range<usize> {
+        self.first[b]..self.first[b] + self.bases[b].ncols()
+    }
+
+    /// The part of motion `x` that body `b` takes, in its own frame.
+    pub fn of_body(&self, b: usize, x: &[f64]) -> Vec<f64> {
+        let basis = &self.bases[b];
+        let own = DVector::from_column_slice(&x[self.first[b]..self.first[b] + basis.ncols()]);
+        (basis * own).iter().copied().collect()
+    }
+}

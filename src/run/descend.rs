@@ -1,0 +1,82 @@
+//! The rigid way to rest, taken out of the problem before it is solved and added to its solution.
+
+use std::collections::BTreeMap;
+
+use super::read::OwnedBlock;
+use super::recover::BlockSolution;
+use crate::fem::frame::dot;
+use crate::rigid::survey::Survey;
+
+/// What is left of a length after a motion, relative to both, that is round-off: a body is stiff
+/// enough to make forces of it.
+const ROUND_OFF: f64 = 1e-14;
+
+/// Takes the bodies' descent out of gaps and supports.
+pub fn take_out_descent(blocks: &mut BTreeMap<usize, OwnedBlock>, survey: &Survey, dim: usize) {
+    for owned in blocks.values_mut() {
+        let block = &mut owned.block;
+        for (row, condition) in owned.rows.iter().zip(&mut owned.conditions) {
+            for entry in &row.entries {
+                if let Some(m) = block.member(entry.subdomain as usize) {
+                    let member = &block.members[m];
+                    let moved = moved(
+                        survey,
+                        dim,
+                        member.body,
+                        &member.points[entry.node as usize],
+                    );
+                    reduce(&mut condition.gap, &entry.coefficient, &moved);
+                }
+            }
+        }
+        for member in &mut block.members {
+            for support in &mut member.supports {
+                let moved = moved(
+                    survey,
+                    dim,
+                    member.body,
+                    &member.points[support.node as usize],
+                );
+                reduce(&mut support.value, &support.direction, &moved);
+            }
+        }
+    }
+}
+
+/// Takes the part of a motion along `row` out of a length.
+fn reduce(length: &mut f64, row: &[f64; 3], moved: &[f64; 3]) {
+    let given = length.abs() + dot(row, row).sqrt() * dot(moved, moved).sqrt();
+    *length -= dot(row, moved);
+    if length.abs() <= ROUND_OFF * given {
+        *length = 0.0;
+    }
+}
+
+/// The displacement of every block, node by node: its solution and the bodies' descent.
+pub fn with_descent(
+    blocks: &BTreeMap<usize, OwnedBlock>,
+    solutions: &BTreeMap<usize, BlockSolution>,
+    survey: &Survey,
+    dim: usize,
+) -> BTreeMap<usize, Vec<f64>> {
+    let of_block = |(&b, solution): (&usize, &BlockSolution)| {
+        let block = &blocks.get(&b)?.block;
+        let mut u = solution.u.clone();
+        let mut done = vec![false; block.nodes()];
+        for (member, node_of) in block.members.iter().zip(&block.node_of) {
+            for (x, &node) in member.points.iter().zip(node_of) {
+                if !std::mem::replace(&mut done[node as usize], true) {
+                    let moved = moved(survey, dim, member.body, x);
+                    let u = &mut u[node as usize * dim..][..dim];
+                    u.iter_mut().zip(moved).for_each(|(u, m)| *u += m);
+                }
+            }
+        }
+        Some((b, u))
+    };
+    solutions.iter().filter_map(of_block).collect()
+}
+
+fn moved(survey: &Survey, dim: usize, body: usize, x: &[f64; 3]) -> [f64; 3] {
+    survey.frames[body].displacement(dim, x, &survey.descent[body])
+}

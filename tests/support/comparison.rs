@@ -1,0 +1,44 @@
+//! A solution against the reference.
+
+use contact_dd_partition::model::Model;
+
+use super::monolithic::Monolithic;
+use super::solution::Solution;
+
+/// Fails unless displacement, forces, pressures, gaps and status are those of the reference.
+#[track_caller]
+pub fn compare(model: &Model, reference: &Monolithic, solution: &Solution) {
+    let difference = reference.energy_difference(&solution.dofs(model));
+    assert!(difference <= 1e-11, "energy difference {difference:e}");
+    let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let (size, force) = (largest(&reference.u), largest(&reference.forces));
+    let mut row = 0;
+    for contact in &model.contacts {
+        let points = &solution.contacts[&contact.name];
+        assert_eq!(points.len(), contact.conditions.len(), "{}", contact.name);
+        for (point, condition) in points.iter().zip(&contact.conditions) {
+            let (gap_ref, force_ref) = (reference.gaps[row], reference.forces[row]);
+            let at = format!("{} at {:?}", contact.name, point.position);
+            assert_eq!(point.tags, [condition.tag_a, condition.tag_b], "{at}");
+            close(point.gap, gap_ref, 1e-11 * size, &at);
+            close(point.force, force_ref, 1e-10 * force, &at);
+            let pressure = force_ref / condition.share;
+            close(
+                point.pressure,
+                pressure,
+                1e-10 * force / condition.share,
+                &at,
+            );
+            // What carries neither gap nor force may be either.
+            if gap_ref > 1e-11 * size || force_ref > 1e-10 * force {
+                assert_eq!(point.closed, force_ref > 0.0, "{at}: {point:?}");
+            }
+            row += 1;
+        }
+    }
+}
+
+#[track_caller]
+fn close(a: f64, b: f64, slack: f64, at: &str) {
+    assert!((a - b).abs() <= slack, "{at}: {a:e}; expected {b:e}");
+}
