@@ -204,7 +204,6 @@ fn a_block_on_two_circles_obeys_the_lever() {
 }
 
 #[test]
-#[ignore = "sweeps: what may move freely once contacts have opened leaves their derivative singular"]
 fn bodies_that_may_roll_are_as_accurate_in_several_subdomains() {
     disc_rests(4);
     pushes_both_alike(4);

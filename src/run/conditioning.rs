@@ -101,7 +101,7 @@ fn sign(block: usize, unknown: usize) -> f64 {
         .wrapping_mul(0x9e37_79b9_7f4a_7c15)
         .wrapping_add(unknown as u64)
         .wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    if (mixed >> 40).count_ones() % 2 == 0 {
+    if (mixed >> 40).count_ones().is_multiple_of(2) {
         1.0
     } else {
         -1.0
