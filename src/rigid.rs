@@ -10,6 +10,7 @@ pub mod analysis;
 mod columns;
 mod descent;
 mod kinematics;
+pub mod loose;
 pub mod motion;
 mod nonnegative;
 pub mod projection;

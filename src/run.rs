@@ -26,9 +26,9 @@ use self::descend::{take_out_descent, with_descent};
 use self::frozen::{Frozen, FrozenRoot};
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
-use self::refine::refine;
+use self::refine::{check, refine};
 use self::report::{Narrator, Totals};
-use self::settle::settle_free_motions;
+use self::settle::{settle_free_motions, settle_loose_motions};
 use self::write::{Fields, stresses, write_solution};
 use crate::comm::{Comm, Message, phase};
 use crate::contact::s_con::SCon;
@@ -127,8 +127,6 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let root = outcome.as_ref().zip(interface.as_ref());
     let trace_of_root = root.map(|(o, (numbering, _))| (&o.u[..], &numbering.traces[..]));
     let mut solutions = recover(comm, &condensed, &plan, trace_of_root);
-    let free = solutions.iter_mut().map(|(&b, s)| (b, &mut s.u)).collect();
-    settle_free_motions(comm, &survey, &blocks, free, catalog, &plan);
     let frozen = Frozen {
         comm,
         blocks: &blocks,
@@ -142,12 +140,16 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
             converged: outcome.status == SweepStatus::Converged,
         }),
     };
-    let certificate = refine(&frozen, &mut solutions);
+    settle_free_motions(&frozen, &survey, &mut solutions);
+    let mut certificate = refine(&frozen, &mut solutions);
     let condition = condition_number(&frozen);
     let stress = stresses(comm, &blocks, &solutions, catalog, &plan);
     let mut displacement = with_descent(&blocks, &solutions, &survey, catalog.dim);
-    let free = displacement.iter_mut().map(|(&b, u)| (b, u)).collect();
-    settle_free_motions(comm, &survey, &blocks, free, catalog, &plan);
+    let settled = settle_loose_motions(&frozen, &survey, &mut solutions, &mut displacement);
+    if settled.is_some() {
+        certificate = check(&frozen, &solutions);
+    }
+    let settled = settled.unwrap_or_default();
     seconds.recover = lap.elapsed().as_secs_f64();
 
     // Results travel to the root subdomain by subdomain and are written as they arrive.
@@ -170,13 +172,13 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
                 catalog,
                 plan: &plan,
                 outcome,
-                con: outcome.totals,
+                active: outcome.totals.active - settled.opened,
                 interface_dofs: interface.len,
                 smallest_pivot: interface.smallest_pivot(),
                 certificate,
                 condition,
                 ranks,
-                warnings: survey.motions.warnings.clone(),
+                warnings: [survey.motions.warnings, settled.warnings].concat(),
             };
             narrator.finish(&totals, output)
         }

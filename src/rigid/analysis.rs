@@ -66,36 +66,57 @@ pub struct RigidMotions {
     pub warnings: Vec<String>,
 }
 
-/// Analyses a scene of `bodies` named `names` under contact `rows`.
-///
-/// # Errors
-/// The load drives a motion that neither supports nor contact hold: body and motion are named.
-pub fn analyse(
-    dim: usize,
-    bodies: &[BodyState],
-    names: &[String],
-    rows: &[RigidRow],
-) -> Result<RigidMotions, Failure> {
-    let kinematics = Kinematics::new(dim, bodies);
-    if kinematics.len == 0 {
-        return Ok(RigidMotions::default());
+/// What the rigid motions of a scene follow from. On the root.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Dimension of space.
+    pub dim: usize,
+    /// Bodies.
+    pub bodies: Vec<BodyState>,
+    /// Their names.
+    pub names: Vec<String>,
+    /// Conditions, pair by pair.
+    pub rows: Vec<RigidRow>,
+}
+
+impl Scene {
+    /// Whether supports leave any rigid motion to any body.
+    pub fn is_movable(&self) -> bool {
+        Kinematics::new(self.dim, &self.bodies).len > 0
     }
-    let b = kinematics.rows(rows);
-    let load = kinematics.load(bodies);
-    let scale: f64 = bodies.iter().map(|body| body.load_scale).sum();
-    let free = null_space(&b);
-    let along = free.transpose() * &load;
-    let driven = &free * &along;
-    if along.norm() > LOAD_TOLERANCE * scale {
-        return Err(kinematics.ill_posed(bodies, names, &driven, "nothing holds it"));
+
+    /// Finds the free motions.
+    ///
+    /// # Errors
+    /// The load drives a motion that neither supports nor contact hold: body and motion are named.
+    pub fn analyse(&self) -> Result<RigidMotions, Failure> {
+        let Self {
+            bodies,
+            names,
+            rows,
+            ..
+        } = self;
+        let kinematics = Kinematics::new(self.dim, bodies);
+        if kinematics.len == 0 {
+            return Ok(RigidMotions::default());
+        }
+        let b = kinematics.rows(rows);
+        let load = kinematics.load(bodies);
+        let scale: f64 = bodies.iter().map(|body| body.load_scale).sum();
+        let free = null_space(&b);
+        let along = free.transpose() * &load;
+        let driven = &free * &along;
+        if along.norm() > LOAD_TOLERANCE * scale {
+            return Err(kinematics.ill_posed(bodies, names, &driven, "nothing holds it"));
+        }
+        let held = &load - &driven;
+        let unbalanced = nonnegative::residual(&b.transpose(), &held);
+        if unbalanced.norm() > BALANCE_TOLERANCE * scale {
+            let why = "contact can't hold it";
+            return Err(kinematics.ill_posed(bodies, names, &unbalanced, why));
+        }
+        Ok(kinematics.fix(bodies, names, &free))
     }
-    let held = &load - &driven;
-    let unbalanced = nonnegative::residual(&b.transpose(), &held);
-    if unbalanced.norm() > BALANCE_TOLERANCE * scale {
-        let why = "contact can't hold it";
-        return Err(kinematics.ill_posed(bodies, names, &unbalanced, why));
-    }
-    Ok(kinematics.fix(bodies, names, &free))
 }
 
 impl Kinematics {
@@ -131,33 +152,45 @@ impl Kinematics {
     fn fix(&self, bodies: &[BodyState], names: &[String], free: &DMatrix<f64>) -> RigidMotions {
         let mut motions = RigidMotions::default();
         for column in free.column_iter() {
-            let x: Vec<f64> = column.iter().copied().collect();
-            let taking_part: Vec<(usize, Vec<f64>)> = (0..bodies.len())
-                .map(|b| (b, self.of_body(b, &x)))
-                .filter(|(_, z)| z.iter().any(|z| z.abs() > 1e-12))
-                .collect();
-            let described: Vec<String> = taking_part
-                .iter()
-                .filter(|(_, z)| z.iter().any(|z| z.abs() > 1e-6))
-                .map(|(b, z)| {
-                    format!(
-                        "'{}' ({})",
-                        names[*b],
-                        bodies[*b].frame.describe(self.dim, z)
-                    )
-                })
-                .collect();
+            let x = column.into_owned();
             motions.warnings.push(format!(
                 "nothing holds {}; without load along it, this motion is fixed so that the mean \
                  displacement has no component along it",
-                described.join(", ")
+                self.described(bodies, names, &x)
             ));
-            motions.free.push(FreeMotion {
-                bodies: taking_part,
-            });
+            motions.free.push(self.motion(&x));
         }
         motions.pins = self.pins(bodies, free);
         motions
+    }
+
+    /// Motion `x` body by body.
+    pub(super) fn motion(&self, x: &DVector<f64>) -> FreeMotion {
+        FreeMotion {
+            bodies: (0..self.bodies())
+                .map(|b| (b, self.of_body(b, x.as_slice())))
+                .filter(|(_, z)| z.iter().any(|z| z.abs() > 1e-12))
+                .collect(),
+        }
+    }
+
+    /// Motion `x` in words.
+    pub(super) fn described(
+        &self,
+        bodies: &[BodyState],
+        names: &[String],
+        x: &DVector<f64>,
+    ) -> String {
+        let motion = self.motion(x);
+        let taking_part = motion.bodies.iter();
+        let words: Vec<String> = taking_part
+            .filter(|(_, z)| z.iter().any(|z| z.abs() > 1e-6))
+            .map(|(b, z)| {
+                let how = bodies[*b].frame.describe(self.dim, z);
+                format!("'{}' ({how})", names[*b])
+            })
+            .collect();
+        words.join(", ")
     }
 
     /// As many components of candidate nodes as there are free motions, chosen one after the other
@@ -234,15 +267,21 @@ mod tests {
             .collect()
     }
 
-    fn names() -> Vec<String> {
-        vec!["block".into(), "other".into()]
+    fn analyse(body: BodyState, rows: Vec<RigidRow>) -> Result<RigidMotions, Failure> {
+        let scene = Scene {
+            dim: 2,
+            bodies: vec![body],
+            names: vec!["block".into()],
+            rows,
+        };
+        scene.analyse()
     }
 
     #[test]
     fn a_block_on_the_floor_slides_freely_and_is_pinned_once() {
         let block = square(0.0, [0.0, -3.0, 0.0], vec![]);
         let rows = floor(&block, 0, &[0.0, 0.5, 1.0]);
-        let motions = analyse(2, &[block], &names(), &rows).unwrap();
+        let motions = analyse(block, rows).unwrap();
         assert_eq!(motions.pins.len(), 1);
         assert_eq!(motions.pins[0].component, 0);
         assert!(motions.warnings[0].contains("'block'"));
@@ -252,7 +291,7 @@ mod tests {
     fn a_pushed_block_slides_and_is_named() {
         let block = square(0.0, [0.1, -3.0, 0.0], vec![]);
         let rows = floor(&block, 0, &[0.0, 1.0]);
-        let failure = analyse(2, &[block], &names(), &rows).unwrap_err();
+        let failure = analyse(block, rows).unwrap_err();
         assert!(failure.message.contains("'block'"), "{failure}");
         assert!(
             failure
@@ -265,11 +304,11 @@ mod tests {
     fn a_lifted_block_and_a_toppling_one_have_no_equilibrium() {
         let lifted = square(0.0, [0.0, 1.0, 0.0], vec![]);
         let rows = floor(&lifted, 0, &[0.0, 1.0]);
-        assert!(analyse(2, &[lifted], &names(), &rows).is_err());
+        assert!(analyse(lifted, rows.clone()).is_err());
         let toppling = square(0.0, [0.0, -1.0, -3.0], vec![]);
-        assert!(analyse(2, &[toppling], &names(), &rows).is_err());
+        assert!(analyse(toppling, rows.clone()).is_err());
         let steady = square(0.0, [0.0, -1.0, -0.5], vec![]);
-        assert!(analyse(2, &[steady], &names(), &rows).is_ok());
+        assert!(analyse(steady, rows).is_ok());
     }
 
     #[test]
@@ -286,7 +325,7 @@ mod tests {
             })
             .collect();
         let body = square(0.0, [5.0, 1.0, 2.0], supports);
-        let motions = analyse(2, &[body], &names(), &[]).unwrap();
+        let motions = analyse(body, vec![]).unwrap();
         assert_eq!(motions, RigidMotions::default());
     }
 }

@@ -3,7 +3,7 @@
 use faer::Mat;
 use nalgebra::{DMatrix, DVector};
 
-use super::analysis::{BodyState, RigidRow};
+use super::analysis::{BodyState, FreeMotion, RigidRow};
 use super::motion::BodyFrame;
 
 /// Relative size below which a singular value is zero: a support that is this much shorter than
@@ -110,5 +110,20 @@ impl Kinematics {
         let basis = &self.bases[b];
         let own = DVector::from_column_slice(&x[self.first[b]..self.first[b] + basis.ncols()]);
         (basis * own).iter().copied().collect()
+    }
+
+    /// Number of bodies.
+    pub fn bodies(&self) -> usize {
+        self.bases.len()
+    }
+
+    /// A motion, given body by body, in the unknowns.
+    pub fn unknowns_of(&self, motion: &FreeMotion) -> DVector<f64> {
+        let mut x = DVector::zeros(self.len);
+        for (b, z) in &motion.bodies {
+            let own = self.bases[*b].tr_mul(&DVector::from_column_slice(z));
+            x.rows_mut(self.first[*b], own.len()).copy_from(&own);
+        }
+        x
     }
 }

@@ -5,16 +5,16 @@ use std::collections::BTreeMap;
 use contact_dd_partition::problem::{Catalog, ContactRow, Subdomain};
 use nalgebra::DMatrix;
 
-use super::analysis::{BodyState, FreeMotion, Pin, RigidMotions, RigidRow, analyse};
+use super::analysis::{BodyState, FreeMotion, Pin, RigidMotions, RigidRow, Scene};
 use super::descent::descent;
 use super::motion::BodyFrame;
-use crate::comm::{Comm, Message};
+use crate::comm::{Comm, Message, MessageReader};
 use crate::error::Failure;
 use crate::plan::Plan;
 use crate::run::read::OwnedBlock;
 
 /// Free rigid motions, and the frames that they are written in.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Survey {
     /// The frame of every body.
     pub frames: Vec<BodyFrame>,
@@ -22,6 +22,10 @@ pub struct Survey {
     pub motions: RigidMotions,
     /// The rigid motion by which every body comes to rest.
     pub descent: Vec<Vec<f64>>,
+    /// Whether supports leave any rigid motion to any body.
+    pub movable: bool,
+    /// What all this follows from, on the root.
+    pub scene: Option<Scene>,
 }
 
 /// Finds the free rigid motions of the scene, and those by which its bodies come to rest.
@@ -46,11 +50,14 @@ pub fn survey(
         .collect();
     // Below, what is asked of a subdomain is asked on its owner, which has read it.
     let frames = body_frames(comm, &subdomains, catalog, &owners);
-    let states = body_states(comm, &subdomains, catalog, &owners, &frames);
-    let rows = rigid_rows(comm, blocks, catalog, plan, &frames);
+    let scene = Scene {
+        dim: catalog.dim,
+        bodies: body_states(comm, &subdomains, catalog, &owners, &frames),
+        names: catalog.bodies.iter().map(|b| b.name.clone()).collect(),
+        rows: rigid_rows(comm, blocks, catalog, plan, &frames),
+    };
     let found = if comm.is_root() {
-        let names: Vec<String> = catalog.bodies.iter().map(|b| b.name.clone()).collect();
-        analyse(catalog.dim, &states, &names, &rows)
+        scene.analyse()
     } else {
         Ok(RigidMotions::default())
     };
@@ -67,13 +74,16 @@ pub fn survey(
     }
     let mut message = Message::default();
     if comm.is_root() {
-        message.reals = descent(catalog.dim, &states, &rows).concat();
+        message.integers.push(i64::from(scene.is_movable()));
+        message.reals = descent(catalog.dim, &scene.bodies, &scene.rows).concat();
     }
     comm.broadcast(&mut message);
     Ok(Survey {
         frames,
         motions,
+        movable: message.integers.first() == Some(&1),
         descent: message.reals.chunks(modes).map(<[f64]>::to_vec).collect(),
+        scene: comm.is_root().then_some(scene),
     })
 }
 
@@ -304,15 +314,31 @@ fn pack(motions: &RigidMotions) -> Message {
             .integers
             .extend([pin.subdomain, pin.node, pin.component].map(i64::from));
     }
-    message.integers.push(motions.free.len() as i64);
-    for motion in &motions.free {
+    pack_motions(&motions.free, &mut message);
+    message
+}
+
+/// Appends motions to a message.
+pub fn pack_motions(motions: &[FreeMotion], message: &mut Message) {
+    message.integers.push(motions.len() as i64);
+    for motion in motions {
         message.integers.push(motion.bodies.len() as i64);
         for (body, z) in &motion.bodies {
             message.integers.push(*body as i64);
             message.reals.extend(z);
         }
     }
-    message
+}
+
+/// Motions from a message, of bodies that have so many `modes` each.
+pub fn unpack_motions(reader: &mut MessageReader, modes: usize) -> Vec<FreeMotion> {
+    (0..reader.count())
+        .map(|_| FreeMotion {
+            bodies: (0..reader.count())
+                .map(|_| (reader.count(), reader.reals(modes)))
+                .collect(),
+        })
+        .collect()
 }
 
 fn unpack(message: Message, modes: usize) -> RigidMotions {
@@ -324,13 +350,7 @@ fn unpack(message: Message, modes: usize) -> RigidMotions {
             component: reader.integer() as u32,
         })
         .collect();
-    let free = (0..reader.count())
-        .map(|_| FreeMotion {
-            bodies: (0..reader.count())
-                .map(|_| (reader.count(), reader.reals(modes)))
-                .collect(),
-        })
-        .collect();
+    let free = unpack_motions(&mut reader, modes);
     RigidMotions {
         free,
         pins,

@@ -52,7 +52,8 @@ fn decide(frozen: &Frozen<'_>, decision: bool) -> bool {
     message.read().integer() != 0
 }
 
-fn balance(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option<Balance> {
+/// What balances at the nodes of block b.
+pub(super) fn balance(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option<Balance> {
     let owned = frozen.blocks.get(&b)?;
     Some(Balance::new(
         &owned.block,
@@ -64,7 +65,7 @@ fn balance(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option<Ba
 }
 
 /// The certificate, on the root. Collective.
-fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Certificate {
+pub fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Certificate {
     let of_block = |b: usize| {
         let (owned, solution) = (frozen.blocks.get(&b)?, solutions.get(&b)?);
         Some(BlockCheck::new(

@@ -6,7 +6,6 @@ use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
 
 use crate::comm::{Comm, Message};
-use crate::contact::s_con::ConTotals;
 use crate::error::Failure;
 use crate::interface::operator::Interface;
 use crate::output::memory::peak_memory_bytes;
@@ -39,8 +38,8 @@ pub struct Totals<'a> {
     pub plan: &'a Plan,
     /// What the sweeps found.
     pub outcome: &'a SweepOutcome,
-    /// The last evaluation of S_CON.
-    pub con: ConTotals,
+    /// Closed conditions.
+    pub active: usize,
     /// Number of unknowns on Γ.
     pub interface_dofs: usize,
     /// The smallest pivot of all factorizations relative to its diagonal entry.
@@ -200,7 +199,6 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
         catalog,
         plan,
         outcome,
-        con,
         ..
     } = totals;
     let seconds: Vec<PhaseSeconds> = totals.ranks.iter().map(|r| r.seconds).collect();
@@ -249,7 +247,7 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
         dofs: dofs(catalog),
         interface_dofs: totals.interface_dofs,
         contact_conditions: conditions(catalog),
-        active_contacts: con.active,
+        active_contacts: totals.active,
         subdomains: catalog.subdomains.len(),
         contact_pairs: plan.pairs.len(),
         ranks,
@@ -308,7 +306,7 @@ fn reason(totals: &Totals<'_>) -> String {
         SweepStatus::Converged => format!(
             "converged after {sweeps} sweeps: the residual is below the tolerance and no contact \
              changes any more; {} of {} conditions are closed",
-            totals.con.active,
+            totals.active,
             conditions(totals.catalog)
         ),
         SweepStatus::NotConverged(why) => format!("not converged: {why}"),

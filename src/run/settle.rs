@@ -1,90 +1,274 @@
-//! Settling free motions: the solution's part along motions that nothing holds is taken out.
+//! Settling rigid motions that nothing resists: the solution's part along them is taken out.
 
 use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::{Catalog, Subdomain};
 
-use super::read::OwnedBlock;
-use crate::comm::{Comm, Message};
-use crate::plan::Plan;
+use super::frozen::Frozen;
+use super::recover::BlockSolution;
+use super::refine::balance;
+use crate::comm::Message;
+use crate::rigid::analysis::FreeMotion;
+use crate::rigid::loose::LooseMotions;
+use crate::rigid::motion::BodyFrame;
 use crate::rigid::projection::MotionProducts;
-use crate::rigid::survey::Survey;
+use crate::rigid::survey::{Survey, pack_motions, unpack_motions};
 
-/// Makes the displacement of all blocks, node by node, orthogonal to every free motion, in the
-/// Euclidean sense over the nodes of the bodies that take part. Collective.
+/// A contact force, relative to the terms of the equilibrium at its nodes, that is round-off.
+const ROUND_OFF: f64 = 1e-12;
+/// A gap, relative to the largest displacement of its block, that is open.
+const OPENED: f64 = 1e-13;
+
+/// Makes the displacement of all blocks, node by node, orthogonal to every motion that is free
+/// whatever the contacts do, in the Euclidean sense over the nodes of the bodies that take part.
+/// Collective.
 pub fn settle_free_motions(
-    comm: &Comm,
+    frozen: &Frozen<'_>,
     survey: &Survey,
-    blocks: &BTreeMap<usize, OwnedBlock>,
-    mut displacement: BTreeMap<usize, &mut Vec<f64>>,
-    catalog: &Catalog,
-    plan: &Plan,
+    solutions: &mut BTreeMap<usize, BlockSolution>,
 ) {
-    let count = survey.motions.free.len();
-    if count == 0 {
+    let motions = Motions {
+        list: &survey.motions.free,
+        frames: &survey.frames,
+    };
+    if motions.list.is_empty() {
         return;
     }
-    let dim = catalog.dim;
-    let first_of = first_subdomains(catalog);
-    let owners: Vec<usize> = plan
-        .block_of
-        .iter()
-        .map(|&b| plan.blocks[b].owner)
-        .collect();
-    let mut total = MotionProducts::zeros(count);
-    comm.gather(
-        &owners,
-        |s| {
-            let mut products = MotionProducts::zeros(count);
-            let b = plan.block_of[s];
-            if let (Some(owned), Some(u)) = (blocks.get(&b), displacement.get(&b))
-                && let Some(m) = owned.block.member(s)
-            {
-                let member = &owned.block.members[m];
-                let elsewhere = counted_elsewhere(member, &first_of);
-                for (local, &node) in owned.block.node_of[m].iter().enumerate() {
-                    if !elsewhere[local] {
-                        let moves = motions_at(survey, dim, member, &member.points[local]);
-                        let start = node as usize * dim;
-                        products.add_node(&moves, &u[start..start + dim]);
-                    }
-                }
-            }
-            Message {
-                integers: Vec::new(),
-                reals: [products.gram, products.displacement].concat(),
-            }
-        },
-        |_, message| {
-            let (gram, displacement) = message.reals.split_at(count * count);
-            total.add(&MotionProducts {
-                gram: gram.to_vec(),
-                displacement: displacement.to_vec(),
-            });
-        },
+    let displacement = solutions.iter_mut().map(|(&b, s)| (b, &mut s.u)).collect();
+    let products = motions.products(frozen, &displacement);
+    let mut coefficients = Message::default();
+    if frozen.root.is_some() {
+        coefficients.reals = products.coefficients();
+    }
+    frozen.comm.broadcast(&mut coefficients);
+    motions.take_out(frozen, &coefficients.reals, displacement);
+}
+
+/// What settling loose motions came to. On the root.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Settled {
+    /// Conditions that opened by it.
+    pub opened: usize,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Of all positions that contact forces leave the bodies, gives them the one of least
+/// `displacement`, which is that of `solutions` and the way to rest; conditions that open by it are
+/// open. `None` where nothing is loose. Collective.
+pub fn settle_loose_motions(
+    frozen: &Frozen<'_>,
+    survey: &Survey,
+    solutions: &mut BTreeMap<usize, BlockSolution>,
+    displacement: &mut BTreeMap<usize, Vec<f64>>,
+) -> Option<Settled> {
+    if !survey.movable {
+        return None;
+    }
+    let loose = loose_motions(frozen, survey, solutions);
+    let mut message = Message::default();
+    if let Some(loose) = &loose {
+        pack_motions(&loose.motions, &mut message);
+    }
+    frozen.comm.broadcast(&mut message);
+    let list = unpack_motions(&mut message.read(), BodyFrame::count(frozen.catalog.dim));
+    if list.is_empty() {
+        return None;
+    }
+    let motions = Motions {
+        list: &list,
+        frames: &survey.frames,
+    };
+    let products = motions.products(
+        frozen,
+        &displacement.iter_mut().map(|(&b, u)| (b, u)).collect(),
     );
     let mut coefficients = Message::default();
-    if comm.is_root() {
-        coefficients.reals = total.coefficients();
+    if let Some(loose) = &loose {
+        coefficients.reals = loose.coefficients(&products);
     }
-    comm.broadcast(&mut coefficients);
-    for (b, u) in &mut displacement {
-        let Some(owned) = blocks.get(b) else { continue };
-        let mut settled = vec![false; owned.block.nodes()];
-        for (member, node_of) in owned.block.members.iter().zip(&owned.block.node_of) {
-            for (local, &node) in node_of.iter().enumerate() {
-                if std::mem::replace(&mut settled[node as usize], true) {
-                    continue;
+    frozen.comm.broadcast(&mut coefficients);
+    let all = displacement.iter_mut().map(|(&b, u)| (b, u)).collect();
+    motions.take_out(frozen, &coefficients.reals, all);
+    let all = solutions.iter_mut().map(|(&b, s)| (b, &mut s.u)).collect();
+    motions.take_out(frozen, &coefficients.reals, all);
+    let mut settled = Settled::default();
+    frozen.comm.gather(
+        &frozen.plan.pair_owners(),
+        |p| {
+            let b = frozen.plan.pairs[p];
+            let opened = solutions.get_mut(&b).map(|s| open(frozen, b, s));
+            Message {
+                integers: vec![opened.unwrap_or(0) as i64],
+                reals: Vec::new(),
+            }
+        },
+        |_, message| settled.opened += message.read().count(),
+    );
+    settled.warnings = loose.map_or_else(Vec::new, |loose| loose.warnings);
+    Some(settled)
+}
+
+/// Opens the conditions of block b that have a gap, and counts them.
+fn open(frozen: &Frozen<'_>, b: usize, solution: &mut BlockSolution) -> usize {
+    let Some(owned) = frozen.blocks.get(&b) else {
+        return 0;
+    };
+    let largest = solution.u.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+    let mut opened = 0;
+    for (j, condition) in owned.conditions.iter().enumerate() {
+        let gap = condition.gap_left(owned.block.dim, &solution.u);
+        if solution.closed[j] && gap > OPENED * largest {
+            solution.closed[j] = false;
+            solution.forces[j] = 0.0;
+            opened += 1;
+        }
+    }
+    opened
+}
+
+/// The loose motions of `solutions`, on the root. Collective.
+fn loose_motions(
+    frozen: &Frozen<'_>,
+    survey: &Survey,
+    solutions: &BTreeMap<usize, BlockSolution>,
+) -> Option<LooseMotions> {
+    let mut carrying = Vec::new();
+    let mut gaps = Vec::new();
+    frozen.comm.gather(
+        &frozen.plan.pair_owners(),
+        |p| {
+            let b = frozen.plan.pairs[p];
+            solutions
+                .get(&b)
+                .and_then(|solution| conditions(frozen, b, solution))
+                .unwrap_or_default()
+        },
+        |_, message| {
+            carrying.extend(message.integers.iter().map(|&c| c != 0));
+            gaps.extend(message.reals);
+        },
+    );
+    let scene = survey.scene.as_ref()?;
+    Some(scene.loose_motions(&survey.motions.free, &carrying, &gaps))
+}
+
+/// For every condition of block b whether it carries force, and what gap it has left.
+fn conditions(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option<Message> {
+    let owned = frozen.blocks.get(&b)?;
+    let dim = owned.block.dim;
+    let scale = balance(frozen, b, solution)?.scale;
+    let mut message = Message::default();
+    for (condition, &force) in owned.conditions.iter().zip(&solution.forces) {
+        let nodes = condition.entries.iter();
+        let around = nodes.flat_map(|&(node, _)| &scale[node as usize * dim..][..dim]);
+        let largest = around.fold(0.0, |m: f64, s| m.max(*s));
+        message
+            .integers
+            .push(i64::from(force > ROUND_OFF * largest));
+        message.reals.push(condition.gap_left(dim, &solution.u));
+    }
+    Some(message)
+}
+
+/// Rigid motions of the bodies.
+#[derive(Clone, Copy)]
+struct Motions<'a> {
+    list: &'a [FreeMotion],
+    frames: &'a [BodyFrame],
+}
+
+impl Motions<'_> {
+    /// Their products with each other and with `displacement`, on the root. Collective.
+    fn products(
+        &self,
+        frozen: &Frozen<'_>,
+        displacement: &BTreeMap<usize, &mut Vec<f64>>,
+    ) -> MotionProducts {
+        let Frozen {
+            comm,
+            blocks,
+            catalog,
+            plan,
+            ..
+        } = *frozen;
+        let (count, dim) = (self.list.len(), catalog.dim);
+        let first_of = first_subdomains(catalog);
+        let owners: Vec<usize> = (plan.block_of.iter())
+            .map(|&b| plan.blocks[b].owner)
+            .collect();
+        let mut total = MotionProducts::zeros(count);
+        comm.gather(
+            &owners,
+            |s| {
+                let mut products = MotionProducts::zeros(count);
+                let b = plan.block_of[s];
+                if let (Some(owned), Some(u)) = (blocks.get(&b), displacement.get(&b))
+                    && let Some(m) = owned.block.member(s)
+                {
+                    let member = &owned.block.members[m];
+                    let elsewhere = counted_elsewhere(member, &first_of);
+                    for (local, &node) in owned.block.node_of[m].iter().enumerate() {
+                        if !elsewhere[local] {
+                            let moves = self.at(dim, member.body, &member.points[local]);
+                            let start = node as usize * dim;
+                            products.add_node(&moves, &u[start..start + dim]);
+                        }
+                    }
                 }
-                let moves = motions_at(survey, dim, member, &member.points[local]);
-                for (z, c) in moves.iter().zip(&coefficients.reals) {
-                    let start = node as usize * dim;
-                    for (u, z) in u[start..start + dim].iter_mut().zip(z) {
-                        *u -= c * z;
+                Message {
+                    integers: Vec::new(),
+                    reals: [products.gram, products.displacement].concat(),
+                }
+            },
+            |_, message| {
+                let (gram, displacement) = message.reals.split_at(count * count);
+                total.add(&MotionProducts {
+                    gram: gram.to_vec(),
+                    displacement: displacement.to_vec(),
+                });
+            },
+        );
+        total
+    }
+
+    /// u ← u − Σ c z.
+    fn take_out(
+        &self,
+        frozen: &Frozen<'_>,
+        coefficients: &[f64],
+        displacement: BTreeMap<usize, &mut Vec<f64>>,
+    ) {
+        let dim = frozen.catalog.dim;
+        for (b, u) in displacement {
+            let Some(owned) = frozen.blocks.get(&b) else {
+                continue;
+            };
+            let mut settled = vec![false; owned.block.nodes()];
+            for (member, node_of) in owned.block.members.iter().zip(&owned.block.node_of) {
+                for (local, &node) in node_of.iter().enumerate() {
+                    if std::mem::replace(&mut settled[node as usize], true) {
+                        continue;
+                    }
+                    let moves = self.at(dim, member.body, &member.points[local]);
+                    for (z, c) in moves.iter().zip(coefficients) {
+                        let start = node as usize * dim;
+                        for (u, z) in u[start..start + dim].iter_mut().zip(z) {
+                            *u -= c * z;
+                        }
                     }
                 }
             }
         }
+    }
+
+    /// How each of them moves point x of a body.
+    fn at(&self, dim: usize, body: usize, x: &[f64; 3]) -> Vec<[f64; 3]> {
+        let of_motion = |motion: &FreeMotion| {
+            let own = motion.bodies.iter().find(|(b, _)| *b == body);
+            own.map_or([0.0; 3], |(_, z)| self.frames[body].displacement(dim, x, z))
+        };
+        self.list.iter().map(of_motion).collect()
     }
 }
 
@@ -107,21 +291,4 @@ fn counted_elsewhere(member: &Subdomain, first_of: &[usize]) -> Vec<bool> {
         elsewhere[on.node as usize] = first_of[on.interface as usize] < member.index;
     }
     elsewhere
-}
-
-fn motions_at(survey: &Survey, dim: usize, member: &Subdomain, x: &[f64; 3]) -> Vec<[f64; 3]> {
-    survey
-        .motions
-        .free
-        .iter()
-        .map(|motion| {
-            motion
-                .bodies
-                .iter()
-                .find(|(body, _)| *body == member.body)
-                .map_or([0.0; 3], |(body, z)| {
-                    survey.frames[*body].displacement(dim, x, z)
-                })
-        })
-        .collect()
 }

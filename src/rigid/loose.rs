@@ -1,0 +1,156 @@
+//! Rigid motions that are free in a solution, because no contact force is left that resists them.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::analysis::{FreeMotion, Scene};
+use super::kinematics::{Kinematics, null_space};
+use super::nonnegative;
+use super::projection::MotionProducts;
+
+/// The loose motions of a solution.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LooseMotions {
+    /// Them, first those that are free with every contact closed.
+    pub motions: Vec<FreeMotion>,
+    /// B of the conditions without force against them.
+    rows: DMatrix<f64>,
+    /// g − B u of these conditions (m).
+    gaps: Vec<f64>,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// The motions that no support and no contact force resists, where `free` ones are known
+    /// already; `carrying[j]` tells whether condition j carries force, `gaps[j]` is what it has left.
+    pub fn loose_motions(
+        &self,
+        free: &[FreeMotion],
+        carrying: &[bool],
+        gaps: &[f64],
+    ) -> LooseMotions {
+        let kinematics = Kinematics::new(self.dim, &self.bodies);
+        if kinematics.len == 0 {
+            return LooseMotions::default();
+        }
+        let b = kinematics.rows(&self.rows);
+        let (held, idle): (Vec<usize>, Vec<usize>) =
+            (0..carrying.len()).partition(|&j| carrying[j]);
+        // What is free anyway comes first; the rest is orthogonal to it.
+        let known: Vec<DVector<f64>> = free.iter().map(|m| kinematics.unknowns_of(m)).collect();
+        let mut resisted = b.select_rows(&held).insert_rows(0, known.len(), 0.0);
+        for (i, x) in known.iter().enumerate() {
+            resisted.row_mut(i).copy_from(&x.normalize().transpose());
+        }
+        let found = null_space(&resisted);
+        let mut motions = free.to_vec();
+        let mut warnings = Vec::new();
+        let mut columns = known;
+        for x in found.column_iter() {
+            let x = x.into_owned();
+            motions.push(kinematics.motion(&x));
+            warnings.push(format!(
+                "no contact force holds {}; of all positions that this leaves, the one of least \
+                 displacement is taken",
+                kinematics.described(&self.bodies, &self.names, &x)
+            ));
+            columns.push(x);
+        }
+        let z = DMatrix::from_fn(kinematics.len, columns.len(), |i, k| columns[k][i]);
+        LooseMotions {
+            motions,
+            rows: b.select_rows(&idle) * z,
+            gaps: idle.iter().map(|&j| gaps[j].max(0.0)).collect(),
+            warnings,
+        }
+    }
+}
+
+impl LooseMotions {
+    /// How much of each motion to take out of a displacement u to make it the smallest one that
+    /// leaves no gap negative: min ‖u − Z c‖ subject to g − B u + B Z c ≥ 0, by Lawson and Hanson's
+    /// least-distance programming.
+    pub fn coefficients(&self, products: &MotionProducts) -> Vec<f64> {
+        let free = products.coefficients();
+        let n = free.len();
+        let reached = &self.rows * DVector::from_column_slice(&free);
+        let missing: Vec<f64> = (self.gaps.iter().zip(reached.iter()))
+            .map(|(gap, opened)| -gap - opened)
+            .collect();
+        let most = missing.iter().fold(0.0, |m: f64, x| m.max(*x));
+        let gram = DMatrix::from_row_slice(n, n, &products.gram);
+        let Some(factor) = gram.cholesky().filter(|_| most > 0.0) else {
+            return free;
+        };
+        // With c = free + L⁻ᵀ y, ‖y‖ is to be least.
+        let Some(rows) = factor.l().solve_lower_triangular(&self.rows.transpose()) else {
+            return free;
+        };
+        let mut e = rows.insert_row(n, 0.0);
+        for (e, missing) in e.row_mut(n).iter_mut().zip(&missing) {
+            *e = missing / most;
+        }
+        let mut f = DVector::zeros(n + 1);
+        f[n] = 1.0;
+        let r = nonnegative::residual(&e, &f);
+        let y = DVector::from_fn(n, |i, _| -r[i] / r[n] * most);
+        let change = factor.l().transpose().solve_upper_triangular(&y);
+        match change {
+            Some(change) if change.iter().all(|c| c.is_finite()) => {
+                free.iter().zip(change.iter()).map(|(c, d)| c + d).collect()
+            }
+            // Nothing is nearer than where it is.
+            _ => vec![0.0; n],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A displacement of one node along two motions, x and y.
+    fn products(u: [f64; 2]) -> MotionProducts {
+        let mut products = MotionProducts::zeros(2);
+        products.add_node(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &u);
+        products
+    }
+
+    fn loose(rows: &[[f64; 2]], gaps: &[f64]) -> LooseMotions {
+        LooseMotions {
+            rows: DMatrix::from_fn(rows.len(), 2, |i, j| rows[i][j]),
+            gaps: gaps.to_vec(),
+            ..LooseMotions::default()
+        }
+    }
+
+    #[track_caller]
+    fn close(c: &[f64], expected: [f64; 2]) {
+        for (c, e) in c.iter().zip(expected) {
+            assert!((c - e).abs() < 1e-14, "{c}, expected {e}");
+        }
+    }
+
+    #[test]
+    fn what_nothing_stops_goes_back_to_where_it_was() {
+        close(
+            &loose(&[], &[]).coefficients(&products([3.0, -1.0])),
+            [3.0, -1.0],
+        );
+    }
+
+    #[test]
+    fn a_gap_that_would_close_stops_it() {
+        // Taking out c opens the gap by −c_x: at most 2 of x.
+        let c = loose(&[[-1.0, 0.0]], &[2.0]).coefficients(&products([3.0, -1.0]));
+        close(&c, [2.0, -1.0]);
+    }
+
+    #[test]
+    fn along_a_slope_it_slides_to_the_nearest_place() {
+        let c = loose(&[[-0.6, -0.8]], &[0.0]).coefficients(&products([3.0, 4.0]));
+        close(&c, [0.0, 0.0]);
+        let c = loose(&[[-1.0, 0.0], [0.0, -1.0]], &[0.0, 1.0]).coefficients(&products([3.0, 4.0]));
+        close(&c, [0.0, 1.0]);
+    }
+}
