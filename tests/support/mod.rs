@@ -5,6 +5,7 @@
     reason = "every test binary takes what it needs and leaves the rest"
 )]
 
+pub mod assembled;
 pub mod blocks;
 pub mod monolithic;
 pub mod process;
@@ -12,6 +13,7 @@ pub mod random;
 pub mod scenes;
 pub mod solution;
 pub mod solver;
+pub mod stress;
 
 /// Fails unless both agree to within `slack`.
 #[track_caller]
