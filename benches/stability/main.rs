@@ -9,6 +9,8 @@
     reason = "a suite that can't go on has failed"
 )]
 
+mod axes;
+mod document;
 mod random;
 #[path = "../../tests/support/mod.rs"]
 mod support;
@@ -18,6 +20,8 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::Parser;
+
+use support::stress::trial::Verdict;
 
 /// Runs scenes that are hard on the solver and says what became of each.
 #[derive(Parser)]
@@ -29,7 +33,7 @@ struct Arguments {
     #[arg(long, default_value_t = 0)]
     first: u64,
     /// Runs the scenes of these seeds alone and tells all of them.
-    #[arg(long, value_name = "SEED", num_args = 1..)]
+    #[arg(long, value_name = "SEED", num_args = 1.., conflicts_with = "markdown")]
     only: Vec<u64>,
     /// Copies problem and scene files of `--only` into this folder.
     #[arg(long, value_name = "DIR")]
@@ -70,7 +74,14 @@ fn main() -> ExitCode {
         true => arguments.only.clone(),
         false => (arguments.first..arguments.first + arguments.scenes).collect(),
     };
-    let trials = runs.all(&seeds, told);
-    random::summary(&trials);
-    ExitCode::SUCCESS
+    let ran = runs.all(&seeds, told);
+    if let Some(path) = &arguments.markdown {
+        let text = document::document(arguments.first, &ran, &axes::table(&runs));
+        std::fs::write(path, text).unwrap();
+    }
+    random::summary(&ran);
+    match ran.iter().all(|one| one.trial.verdict == Verdict::Right) {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
+    }
 }

@@ -21,6 +21,9 @@ pub struct Runs {
 pub struct Ran {
     pub seed: u64,
     pub family: &'static str,
+    /// Whether its solution was chosen first.
+    pub manufactured: bool,
+    /// On how many ranks it ran besides, 0 for none.
     pub ranks: usize,
     pub trial: Trial,
     pub seconds: f64,
@@ -51,13 +54,7 @@ impl Runs {
         let drawn = std::panic::catch_unwind(|| draw(seed, self.cells));
         let drawn = drawn.unwrap_or_else(|_| panic!("the scene of seed {seed} can't be"));
         let trial = Trial::of(&drawn, &self.binary, self.limit, self.keep.as_deref());
-        let ran = Ran {
-            seed,
-            family: drawn.family,
-            ranks: drawn.ranks,
-            trial,
-            seconds: began.elapsed().as_secs_f64(),
-        };
+        let ran = Ran::new(&drawn, trial, began);
         if told || ran.trial.verdict != Verdict::Right || ran.is_short() {
             println!("{}", ran.line());
         }
@@ -69,7 +66,7 @@ impl Runs {
 }
 
 fn tell(drawn: &Drawn, ran: &Ran) {
-    println!("{}\n{:#?}", drawn.text, drawn.remarks);
+    println!("{}", drawn.described());
     if let Some(report) = &ran.trial.report {
         println!("{report:#}");
     }
@@ -77,6 +74,17 @@ fn tell(drawn: &Drawn, ran: &Ran) {
 }
 
 impl Ran {
+    pub fn new(drawn: &Drawn, trial: Trial, began: Instant) -> Self {
+        Self {
+            seed: drawn.seed,
+            family: drawn.family,
+            manufactured: drawn.manufactured,
+            ranks: drawn.ranks,
+            trial,
+            seconds: began.elapsed().as_secs_f64(),
+        }
+    }
+
     /// Whether it falls short of what is promised of every scene though it is right.
     pub fn is_short(&self) -> bool {
         let over = |keys: &[&str], limit: f64| {

@@ -89,10 +89,13 @@ impl Assembled {
         sums.iter().map(Twofold::value).collect()
     }
 
-    /// uᵀ K u.
-    pub fn energy(&self, u: &[f64]) -> f64 {
-        let terms = (self.stiffness.iter()).map(|t| t.val * u[t.row] * u[t.col]);
-        terms.sum::<f64>().max(0.0)
+    /// uᵀ K u. A rigid part of u has none, however large it is.
+    fn energy(&self, u: &[f64]) -> f64 {
+        let mut sum = Twofold::default();
+        for (force, u) in self.times(u).iter().zip(u) {
+            sum.add_product(*force, *u);
+        }
+        sum.value().max(0.0)
     }
 
     /// ‖u − v‖ over ‖u‖ in the norm of the energy.
@@ -101,7 +104,13 @@ impl Assembled {
         let size = u.iter().fold(0.0, |m: f64, u| m.max(u.abs())).max(1e-300);
         let scaled: Vec<f64> = u.iter().map(|u| u / size).collect();
         let difference: Vec<f64> = u.iter().zip(v).map(|(u, v)| (u - v) / size).collect();
-        (self.energy(&difference) / self.energy(&scaled)).sqrt()
+        let (difference, energy) = (self.energy(&difference), self.energy(&scaled));
+        // Two rigid motions have no difference.
+        if difference == 0.0 {
+            0.0
+        } else {
+            (difference / energy).sqrt()
+        }
     }
 
     /// K u − f + Bᵀ λ with the digits of twice the precision.
@@ -128,13 +137,14 @@ impl Assembled {
     }
 
     /// u and λ with the `closed` conditions and `equations` as equations and the other conditions
-    /// away. With `disturbed`, the entries of K are moved in their last digits: what that does to
-    /// the solution is what its condition makes of round-off.
+    /// away. `disturbed` moves the entries of K in their last digits, and the load by up to its
+    /// force with random signs: what that does to the solution is what the scene's condition makes
+    /// of round-off.
     pub fn solve(
         &self,
         closed: &[bool],
         equations: &[(Row, f64)],
-        disturbed: Option<u64>,
+        disturbed: Option<f64>,
     ) -> (Vec<f64>, Vec<f64>) {
         let active: Vec<usize> = (0..closed.len()).filter(|&j| closed[j]).collect();
         let rows: Vec<&(Row, f64)> = (self.supports.iter())
@@ -143,13 +153,16 @@ impl Assembled {
             .collect();
         let n = self.dofs + rows.len();
         let mut entries = self.stiffness.clone();
-        if let Some(seed) = disturbed {
-            let mut random = Random::new(seed);
+        let mut rhs = self.load.clone();
+        if let Some(force) = disturbed {
+            let mut random = Random::new(1);
             for entry in &mut entries {
                 entry.val *= 1.0 + f64::EPSILON * random.signed();
             }
+            for load in &mut rhs {
+                *load += force * random.signed();
+            }
         }
-        let mut rhs = self.load.clone();
         for (k, (row, value)) in rows.iter().enumerate() {
             for &(dof, c) in row {
                 entries.push(Triplet::new(self.dofs + k, dof, c * self.scale));

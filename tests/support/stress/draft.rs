@@ -17,7 +17,7 @@ pub struct Draft {
     pub equilibrium: Option<bool>,
     /// Young's modulus about which those of the bodies vary (Pa).
     young: f64,
-    /// Orders of magnitude by which they do.
+    /// Orders of magnitude between the stiffest and the softest.
     contrast: f64,
     /// Size of the pressures (Pa).
     pub load: f64,
@@ -100,8 +100,8 @@ impl Draft {
         let random = &mut self.random;
         let exponent = match random.below(3) {
             0 => 0.0,
-            1 => self.contrast * random.signed(),
-            _ => self.contrast * random.signed().signum(),
+            1 => self.contrast / 2.0 * random.signed(),
+            _ => self.contrast / 2.0 * random.signed().signum(),
         };
         let poisson = match random.below(8) {
             0 => 0.0,

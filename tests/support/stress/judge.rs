@@ -15,10 +15,10 @@ const BACKWARD_ERROR: f64 = 1e-13;
 const PENETRATION: f64 = 1e-13;
 const TENSION: f64 = 1e-11;
 const COMPLEMENTARITY: f64 = 1e-10;
-/// Difference to the reference that is always round-off, and how many times that which a last
-/// digit in the stiffness makes.
+/// Difference to the reference that is always round-off, and how many times that which last
+/// digits make.
 const DIFFERENCE: f64 = 1e-10;
-const DISTURBANCES: f64 = 1e3;
+const DISTURBANCES: f64 = 100.0;
 
 /// What was found, all relative to the size of what it is about.
 #[derive(Clone, Copy, Debug, Default)]
@@ -33,8 +33,8 @@ pub struct Findings {
     pub supports: f64,
     /// Distance to the reference in the norm of the energy.
     pub difference: Option<f64>,
-    /// The same of a reference whose stiffness is another in the last digit; only where the
-    /// difference is more than round-off.
+    /// The same of a reference with stiffness and balance of forces changed in the last digits;
+    /// only where the difference is more than round-off.
     pub disturbance: Option<f64>,
     /// Tension or penetration of the reference at most.
     pub reference_signs: Option<f64>,
@@ -103,11 +103,7 @@ impl Findings {
             .collect();
         let (reference, forces) = assembled.solve(closed, &free, None);
         let difference = assembled.energy_difference(&reference, u);
-        self.difference = Some(if difference.is_nan() && largest(u) == 0.0 {
-            0.0
-        } else {
-            difference
-        });
+        self.difference = Some(difference);
         let given = assembled.conditions.iter().map(|(_, gap)| gap.abs());
         let size = given.fold(largest(&reference), f64::max);
         let force = largest(&forces).max(largest(&assembled.load));
@@ -122,11 +118,9 @@ impl Findings {
             });
         self.reference_signs = Some(signs.fold(0.0, f64::max));
         if difference > DIFFERENCE / 10.0 {
-            let worst = (1..=2).map(|seed| {
-                let (disturbed, _) = assembled.solve(closed, &free, Some(seed));
-                assembled.energy_difference(&reference, &disturbed)
-            });
-            self.disturbance = Some(worst.fold(0.0, f64::max));
+            let terms = largest(&assembled.residual(&reference, &forces).terms);
+            let (disturbed, _) = assembled.solve(closed, &free, Some(f64::EPSILON * terms));
+            self.disturbance = Some(assembled.energy_difference(&reference, &disturbed));
         }
     }
 

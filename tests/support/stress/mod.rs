@@ -41,16 +41,23 @@ pub const FAMILIES: [Family; 12] = [
     ("plank", beams::plank),
     ("cracks", cracks::cracked),
     ("wedge", cracks::wedge),
-    ("layers", towers::tower),
+    ("layers", towers::layers),
 ];
+
+/// Cells a side from which on some scenes are finer.
+const FINE: usize = 10;
 
 /// A random scene.
 pub struct Drawn {
     pub seed: u64,
     pub family: &'static str,
-    /// Its scene file; what was changed behind it stands in `remarks`.
+    /// Its scene file.
     pub text: String,
-    pub remarks: Vec<String>,
+    /// Whether its gaps, loads and prescribed displacements were replaced by those of a solution
+    /// chosen first.
+    pub manufactured: bool,
+    /// What gaps, loads and prescribed displacements were multiplied by.
+    pub factor: f64,
     pub model: Model,
     /// Whether it was built to have an equilibrium; `None` where only [`Balance`] knows.
     pub equilibrium: Option<bool>,
@@ -60,27 +67,41 @@ pub struct Drawn {
     pub ranks: usize,
 }
 
-/// The scene of a seed, with blocks of at most `cells` cells a side.
+impl Drawn {
+    /// Its scene file, and what was changed behind it.
+    pub fn described(&self) -> String {
+        let mut text = self.text.clone();
+        if self.manufactured {
+            text += "# gaps and loads replaced by those of a known solution\n";
+        }
+        text + &format!("# gaps and loads × {:e}\n", self.factor)
+    }
+}
+
+/// The scene of a seed, with blocks of at most `cells` cells a side; where that isn't few, some
+/// scenes are several times finer.
 #[track_caller]
 pub fn draw(seed: u64, cells: usize) -> Drawn {
     let (family, make) = FAMILIES[(seed % FAMILIES.len() as u64) as usize];
     let mut random = Random::new(seed);
-    let cells = random.count(2.min(cells), cells);
+    let cells = match cells >= FINE && random.chance(0.03) {
+        true => 3 * cells,
+        false => random.count(2.min(cells), cells),
+    };
     let mut draft = Draft::new(random.clone(), cells);
     make(&mut draft);
     let text = draft.text();
     let mut model = model(&text, draft.blocks.mesh);
-    let mut remarks = Vec::new();
     let mut random = draft.random;
-    if draft.equilibrium == Some(true) && random.chance(0.15) {
+    let manufactured = draft.equilibrium == Some(true) && random.chance(0.15);
+    if manufactured {
         manufactured::manufacture(&mut model, &mut random);
-        remarks.push("gaps and forces of a known solution".to_owned());
     }
-    if random.chance(0.12) {
-        let factor = random.pick(&[1e-100, 1e-30, 1e-8, 1e8, 1e30, 1e100]);
-        scale(&mut model, factor);
-        remarks.push(format!("loads and gaps × {factor:e}"));
-    }
+    let factor = match random.chance(0.12) {
+        true => random.pick(&[1e-100, 1e-30, 1e-8, 1e8, 1e30, 1e100]),
+        false => 1.0,
+    };
+    scale(&mut model, factor);
     let most = random.pick(&[4, 10, 30]);
     let subdomains = random.count(1, most);
     let ranks = match random.below(5) {
@@ -91,7 +112,8 @@ pub fn draw(seed: u64, cells: usize) -> Drawn {
         seed,
         family,
         text,
-        remarks,
+        manufactured,
+        factor,
         model,
         equilibrium: draft.equilibrium,
         subdomains,

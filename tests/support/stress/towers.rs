@@ -14,6 +14,16 @@ enum Fall {
 /// Blocks that get narrower towards the top, with smooth or rough joints; they stand by
 /// themselves, or against rollers at their left.
 pub fn tower(draft: &mut Draft) {
+    pile(draft, |draft, _| draft.random.magnitude(-3.0, 0.3));
+}
+
+/// Thin layers between blocks.
+pub fn layers(draft: &mut Draft) {
+    let thin = draft.random.magnitude(-4.0, -1.0);
+    pile(draft, |_, i| if i % 2 == 1 { thin } else { 1.0 });
+}
+
+fn pile(draft: &mut Draft, height: impl Fn(&mut Draft, usize) -> f64) {
     let count = draft.random.count(2, 5);
     let rolled = draft.random.chance(0.4);
     let fall = match draft.random.below(12) {
@@ -36,7 +46,7 @@ pub fn tower(draft: &mut Draft) {
             columns[0] += draft.random.below(2);
             columns[1] -= draft.random.below(2);
         }
-        let height = draft.random.magnitude(-3.0, 0.3);
+        let height = height(draft, i);
         let rows = ((height * width as f64).ceil() as usize).clamp(1, draft.cells);
         let x = columns.map(|c| c as f64 / width as f64);
         let n = [columns[1] - columns[0], rows];

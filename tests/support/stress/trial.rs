@@ -117,8 +117,11 @@ impl Trial {
         };
         if let Some(folder) = keep {
             std::fs::copy(case.problem(), folder.join(format!("{}.h5", drawn.seed))).unwrap();
-            let text = format!("{}\n# {}\n", drawn.text, drawn.remarks.join("; "));
-            std::fs::write(folder.join(format!("{}.toml", drawn.seed)), text).unwrap();
+            std::fs::write(
+                folder.join(format!("{}.toml", drawn.seed)),
+                drawn.described(),
+            )
+            .unwrap();
         }
         let ended = Running::start(launched(binary, 0).arg(case.problem())).wait(limit);
         trial.judge(drawn, &assembled, &case, &ended);
