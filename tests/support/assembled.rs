@@ -11,6 +11,7 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 
 use super::random::Random;
+use super::twofold::Twofold;
 
 /// Compliance of rows in the factorized matrix, relative to the largest entry of K: with it rows
 /// that depend on others do no harm, and refinement against the system without it takes it off.
@@ -25,6 +26,7 @@ pub type Row = Vec<(usize, f64)>;
 /// K, f, D, v, B and g.
 pub struct Assembled {
     pub dofs: usize,
+    cells: Vec<Cell>,
     /// K by element, entries of one place still apart.
     pub stiffness: Vec<Triplet<usize, usize, f64>>,
     /// The largest entry of K: rows of D and B are multiplied by it, λ and μ divided.
@@ -49,7 +51,8 @@ impl Assembled {
             });
             components.filter(|&(_, c)| c != 0.0).collect()
         };
-        let stiffness = stiffness(model);
+        let cells = cells(model);
+        let stiffness: Vec<_> = cells.iter().flat_map(Cell::entries).collect();
         let mut load = vec![0.0; dim * model.mesh.points.len()];
         for (node, force) in &model.forces {
             for axis in 0..dim {
@@ -60,6 +63,7 @@ impl Assembled {
         Self {
             dofs: load.len(),
             scale: stiffness.iter().fold(0.0, |m, t| t.val.abs().max(m)),
+            cells,
             stiffness,
             load,
             supports: (model.supports.iter())
@@ -89,13 +93,9 @@ impl Assembled {
         sums.iter().map(Twofold::value).collect()
     }
 
-    /// uᵀ K u. A rigid part of u has none, however large it is.
+    /// uᵀ K u from the strains, so that a rigid part of u has none, however large it is.
     fn energy(&self, u: &[f64]) -> f64 {
-        let mut sum = Twofold::default();
-        for (force, u) in self.times(u).iter().zip(u) {
-            sum.add_product(*force, *u);
-        }
-        sum.value().max(0.0)
+        self.cells.iter().map(|cell| cell.energy(u)).sum()
     }
 
     /// ‖u − v‖ over ‖u‖ in the norm of the energy.
@@ -222,55 +222,70 @@ fn refined(
     x
 }
 
-/// A sum of products with about twice the digits: what rounding takes is kept beside it.
-#[derive(Clone, Copy, Default)]
-struct Twofold {
-    sum: f64,
-    lost: f64,
+/// A triangle of constant strain.
+struct Cell {
+    nodes: [usize; 3],
+    /// ∇N of each node.
+    slopes: [[f64; 2]; 3],
+    area: f64,
+    stiffness: [[f64; 3]; 3],
 }
 
-impl Twofold {
-    fn add(&mut self, b: f64) {
-        let sum = self.sum + b;
-        let part = sum - self.sum;
-        self.lost += (self.sum - (sum - part)) + (b - part);
-        self.sum = sum;
-    }
-
-    fn add_product(&mut self, a: f64, b: f64) {
-        let product = a * b;
-        self.lost += a.mul_add(b, -product);
-        self.add(product);
-    }
-
-    fn value(&self) -> f64 {
-        self.sum + self.lost
-    }
-}
-
-/// K = Σ A Gᵀ C G over the triangles, G the constant strains (ε_xx, ε_yy, γ_xy) of each dof.
-fn stiffness(model: &Model) -> Vec<Triplet<usize, usize, f64>> {
-    let mesh = &model.mesh;
-    let mut entries = Vec::with_capacity(36 * mesh.cells.len());
-    for ((_, nodes), &material) in mesh.cells.iter().zip(&model.cell_material) {
-        let c = &model.materials[material as usize].stiffness;
-        let [p, q, r] = [0, 1, 2].map(|i| mesh.points[nodes[i] as usize]);
+impl Cell {
+    fn new(points: [[f64; 3]; 3], nodes: [usize; 3], stiffness: [[f64; 3]; 3]) -> Self {
+        let [p, q, r] = points;
         let twice_area = (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]);
         // ∇N_i = (y_j − y_k, x_k − x_j) / 2A
         let slopes = [(q, r), (r, p), (p, q)]
             .map(|(j, k)| [(j[1] - k[1]) / twice_area, (k[0] - j[0]) / twice_area]);
-        let strain = |i: usize| match i % 2 {
-            0 => [slopes[i / 2][0], 0.0, slopes[i / 2][1]],
-            _ => [0.0, slopes[i / 2][1], slopes[i / 2][0]],
-        };
-        for i in 0..6 {
-            for j in 0..6 {
-                let (a, b) = (strain(i), strain(j));
-                let sum: f64 = (0..9).map(|k| a[k / 3] * c[k / 3][k % 3] * b[k % 3]).sum();
-                let dof = |i: usize| 2 * nodes[i / 2] as usize + i % 2;
-                entries.push(Triplet::new(dof(i), dof(j), sum * twice_area.abs() / 2.0));
-            }
+        Self {
+            nodes,
+            slopes,
+            area: twice_area.abs() / 2.0,
+            stiffness,
         }
     }
-    entries
+
+    /// aᵀ C b.
+    fn product(&self, a: [f64; 3], b: [f64; 3]) -> f64 {
+        let c = &self.stiffness;
+        (0..9).map(|k| a[k / 3] * c[k / 3][k % 3] * b[k % 3]).sum()
+    }
+
+    /// A Gᵀ C G, G the strains (ε_xx, ε_yy, γ_xy) of each dof.
+    fn entries(&self) -> impl Iterator<Item = Triplet<usize, usize, f64>> {
+        let strain = |i: usize| match (i % 2, self.slopes[i / 2]) {
+            (0, [x, y]) => [x, 0.0, y],
+            (_, [x, y]) => [0.0, y, x],
+        };
+        let dof = |i: usize| 2 * self.nodes[i / 2] + i % 2;
+        (0..36).map(move |k| {
+            let (i, j) = (k / 6, k % 6);
+            let value = self.product(strain(i), strain(j)) * self.area;
+            Triplet::new(dof(i), dof(j), value)
+        })
+    }
+
+    fn energy(&self, u: &[f64]) -> f64 {
+        let mut strain = [0.0; 3];
+        for (node, [x, y]) in self.nodes.iter().zip(self.slopes).skip(1) {
+            // The slopes add up to 0: against the first node, a translation drops out.
+            let [du, dv] = [0, 1].map(|axis| u[2 * node + axis] - u[2 * self.nodes[0] + axis]);
+            strain[0] += x * du;
+            strain[1] += y * dv;
+            strain[2] += y * du + x * dv;
+        }
+        self.product(strain, strain) * self.area
+    }
+}
+
+fn cells(model: &Model) -> Vec<Cell> {
+    let mesh = &model.mesh;
+    (mesh.cells.iter().zip(&model.cell_material))
+        .map(|((_, nodes), &material)| {
+            let nodes = [0, 1, 2].map(|i| nodes[i] as usize);
+            let points = nodes.map(|node| mesh.points[node]);
+            Cell::new(points, nodes, model.materials[material as usize].stiffness)
+        })
+        .collect()
 }

@@ -14,6 +14,7 @@ pub mod scenes;
 pub mod solution;
 pub mod solver;
 pub mod stress;
+pub mod twofold;
 
 /// Fails unless both agree to within `slack`.
 #[track_caller]

@@ -19,6 +19,9 @@ const COMPLEMENTARITY: f64 = 1e-10;
 /// digits make.
 const DIFFERENCE: f64 = 1e-10;
 const DISTURBANCES: f64 = 100.0;
+/// Resultant of loads and contact forces on bodies that nothing else holds, relative to the loads,
+/// that is always round-off.
+const BALANCE: f64 = 1e-9;
 
 /// What was found, all relative to the size of what it is about.
 #[derive(Clone, Copy, Debug, Default)]
@@ -27,6 +30,11 @@ pub struct Findings {
     pub backward_error: f64,
     pub penetration: f64,
     pub tension: f64,
+    /// Resultant of loads and contact forces along the rigid motions that supports leave, over
+    /// the sum of the loads; and what round-off in the terms of K u makes of it. A body that
+    /// hangs in the air may have a small backward error where it fell far.
+    pub balance: f64,
+    balance_round_off: f64,
     /// The largest of the lesser of force and gap.
     pub complementarity: f64,
     /// What prescribed displacements are missed by.
@@ -53,6 +61,7 @@ impl Findings {
             points.map(|point| (point.force, point.closed)).unzip();
         let mut findings = Self::default();
         findings.equilibrium(assembled, &u, &forces);
+        findings.balance(model, assembled, &forces);
         if compare {
             findings.compare(model, assembled, &u, &closed);
         }
@@ -70,6 +79,8 @@ impl Findings {
             }
         }
         self.backward_error = ratio(largest(&residual.value), largest(&residual.terms));
+        let sum = |values: &[f64]| values.iter().map(|x| x.abs()).sum::<f64>();
+        self.balance_round_off = f64::EPSILON * ratio(sum(&residual.terms), sum(&assembled.load));
         let given = assembled.conditions.iter().map(|(_, gap)| gap.abs());
         let size = given.fold(largest(u), f64::max);
         let gaps = assembled.gaps(u);
@@ -83,6 +94,19 @@ impl Findings {
             let there: f64 = row.iter().map(|&(dof, c)| c * u[dof]).sum();
             self.supports = worse(self.supports, ratio((there - value).abs(), size));
         }
+    }
+
+    fn balance(&mut self, model: &Model, assembled: &Assembled, forces: &[f64]) {
+        let mut left = assembled.load.clone();
+        for ((row, _), force) in assembled.conditions.iter().zip(forces) {
+            row.iter().for_each(|&(dof, c)| left[dof] -= c * force);
+        }
+        let bodies = Bodies::new(model);
+        let resultant = bodies.act(&left.into_iter().enumerate().collect::<Row>());
+        let free = bodies.unseen(assembled.supports.iter().map(|(row, _)| row));
+        let along = free.iter().map(|motion| motion.dot(&resultant).abs());
+        let load: f64 = assembled.load.iter().map(|f| f.abs()).sum();
+        self.balance = ratio(along.fold(0.0, worse), load);
     }
 
     /// Solves with the closed conditions as equations; free motions as the program has them.
@@ -133,6 +157,10 @@ impl Findings {
             ("complementarity", self.complementarity, COMPLEMENTARITY),
             ("supports", self.supports, PENETRATION),
         ];
+        if self.balance_round_off.is_finite() {
+            let allowed = DISTURBANCES * self.balance_round_off;
+            limits.push(("balance", self.balance, allowed.max(BALANCE)));
+        }
         if let Some(difference) = self.difference {
             let allowed = DISTURBANCES * self.disturbance.unwrap_or(0.0);
             limits.push(("difference", difference, allowed.max(DIFFERENCE)));

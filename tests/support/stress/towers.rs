@@ -91,7 +91,8 @@ fn layer(
         draft.block(&name, rectangle(x, y), n, force);
         return;
     }
-    let size = (y[1] - y[0]).min(0.05) * draft.random.magnitude(-5.0, -2.0);
+    let facet = (x[1] - x[0]) / n[0] as f64;
+    let size = (y[1] - y[0]).min(facet) * draft.random.magnitude(-3.0, -1.5);
     let seed = [index as f64 * 7.0, index as f64 * 7.0 + 3.0];
     draft.shape(&name, n, |[s, t]| {
         let [px, py] = bilinear(rectangle(x, y), [s, t]);
