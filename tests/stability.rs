@@ -31,7 +31,8 @@ fn faults(tamper: impl Fn(&mut Solution)) -> Vec<String> {
 
 #[test]
 fn the_judge_finds_every_kind_of_fault() {
-    assert_eq!(faults(|_| {}), [String::new(); 0]);
+    let untouched = faults(|_| {});
+    assert!(untouched.is_empty(), "{untouched:?}");
     let found = |name: &str, tamper: &dyn Fn(&mut Solution)| {
         let faults = faults(tamper);
         assert!(

@@ -13,7 +13,7 @@ const WORST: usize = 20;
 /// A figure: its name, the limit that is promised, and how to read it off.
 type Figure = (&'static str, Option<f64>, fn(&Ran) -> Option<f64>);
 
-const FIGURES: [Figure; 7] = [
+const FIGURES: [Figure; 8] = [
     ("sweeps", Some(12.0), |ran| ran.trial.reported(&["sweeps"])),
     ("inner steps", None, |ran| {
         ran.trial.reported(&["inner_steps"])
@@ -31,6 +31,9 @@ const FIGURES: [Figure; 7] = [
         ran.trial.findings.map(|found| found.backward_error)
     }),
     ("difference to the reference", None, difference),
+    ("condition number", None, |ran| {
+        ran.trial.reported(&["condition"])
+    }),
 ];
 
 fn difference(ran: &Ran) -> Option<f64> {
