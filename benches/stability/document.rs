@@ -40,32 +40,40 @@ fn difference(ran: &Ran) -> Option<f64> {
     ran.trial.findings?.difference
 }
 
+const HOW_TO_READ: &str = "\
+## How to read it
+
+*Right* is an answer that fulfils the discrete problem (equilibrium, no penetration, no tension,
+force or gap) by matrices and sums that are none of the solver's, and that agrees with one sparse
+factorization of the whole mesh as far as round-off lets two solvers agree; where there is no
+equilibrium it is the message that says so. Whether there is one is known from how a scene was built
+and checked by a linear program. *Backward error*, *penetration* and *tension* are those of the
+report's certificate; the *difference* is that to the factorization in the norm of the energy, and
+grows with the condition of the scene.
+
+";
+
 /// The whole document.
 pub fn document(first: u64, ran: &[Ran], rows: &[Row]) -> String {
     let without = ran.iter().filter(|one| !one.trial.equilibrium).count();
     let manufactured = ran.iter().filter(|one| one.manufactured).count();
     let several = ran.iter().filter(|one| one.ranks > 0).count();
     let mut text = format!(
-        "# Stability\n\n\
-         `scripts/stress` runs the solver on scenes that are hard on it and writes this page.\n\n\
-         {} random scenes, seeds {first} to {}: {without} of them without equilibrium, \
-         {manufactured} made from a solution chosen first, {several} run on 2 to 4 ranks as well, \
-         where the result has to be the same bit for bit. \
-         They have stiffness ratios up to 1e8, Poisson's ratios up to 0.4999999, smooth and rough \
-         gaps, clearances and interferences, layers of a thousandth of a block, loads from 1e-100 to \
-         1e100 of the usual, and 1 to 30 subdomains. `scripts/stress --only SEED` repeats one.\n\n",
+        "# Stability
+
+`scripts/stress` runs the solver on scenes that are hard on it and writes this page.
+
+{} random scenes, seeds {first} to {}: {without} of them without equilibrium, {manufactured} made
+from a solution chosen first, {several} run on 2 to 4 ranks as well, where the result has to be the
+same bit for bit. They have stiffness ratios up to 1e8, Poisson's ratios up to 0.4999999, smooth and
+rough gaps, clearances and interferences, layers of a thousandth of a block, loads from 1e-100 to
+1e100 of the usual, and up to 30 subdomains. `scripts/stress --only SEED` repeats one.
+
+",
         ran.len(),
         first + ran.len() as u64 - 1,
     );
-    text += "## How to read it\n\n\
-         *Right* is an answer that fulfils the discrete problem (equilibrium, no penetration, no \
-         tension, force or gap) by matrices and sums that are none of the solver's, and that agrees \
-         with one sparse factorization of the whole mesh as far as round-off lets two solvers agree; \
-         where there is no equilibrium it is the message that says so. \
-         Whether there is one is known from how a scene was built and checked by a linear program. \
-         *Backward error*, *penetration* and *tension* are those of the report's certificate; the \
-         *difference* is that to the factorization in the norm of the energy, and grows with the \
-         condition of the scene.\n\n";
+    text += HOW_TO_READ;
     verdicts(&mut text, ran);
     distributions(&mut text, ran);
     worst(&mut text, ran);
@@ -132,9 +140,18 @@ fn distributions(text: &mut String, ran: &[Ran]) {
 fn worst(text: &mut String, ran: &[Ran]) {
     let mut order: Vec<&Ran> = ran.iter().collect();
     order.sort_by(|a, b| badness(b).total_cmp(&badness(a)));
+    let failed: Vec<String> = (order.iter())
+        .filter(|one| one.trial.verdict != Verdict::Right)
+        .map(|one| one.seed.to_string())
+        .collect();
+    let failed = match failed.is_empty() {
+        true => "All scenes are right.".to_owned(),
+        false => format!("Not right are the seeds {}.", failed.join(", ")),
+    };
     let _ = writeln!(
         text,
         "## The worst cases\n\n\
+         {failed}\n\n\
          Those that aren't right first, then by the promise that they come nearest to, or miss by \
          most.\n\n\
          | seed | family | dofs | conditions | subdomains | {HEADER}\n\

@@ -14,7 +14,7 @@ use super::judge::Findings;
 use super::{Balance, Drawn, decomposed};
 
 /// Dofs up to which there is a reference.
-const REFERENCE: usize = 60_000;
+const REFERENCE: usize = 100_000;
 
 /// What is to be said of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
