@@ -19,11 +19,12 @@ use contact_dd_partition::model::Model;
 use faer::{Par, Side};
 use nalgebra::DMatrix;
 
+use support::assembled::Assembled;
 use support::blocks::{Blocks, jittered, moved, shuffled};
+use support::close;
 use support::scenes::{built_in, built_in_model, model, two_block_scene, two_blocks};
 use support::solution::{ContactPoint, Solution};
 use support::solver::{Case, problem, solve};
-use support::{close, monolithic};
 
 /// What two runs are to agree in.
 struct Likeness {
@@ -355,7 +356,7 @@ fn a_schur_complement_is_symmetric_and_rigid_motions_cost_nothing() {
 fn condition_number(model: &Model) -> f64 {
     let mut stiffness =
         DMatrix::<f64>::zeros(2 * model.mesh.points.len(), 2 * model.mesh.points.len());
-    for t in monolithic::stiffness(model) {
+    for t in Assembled::new(model).stiffness {
         stiffness[(t.row, t.col)] += t.val;
     }
     let held: Vec<usize> = (model.supports.iter())

@@ -1,5 +1,7 @@
 //! Bad input and bad usage: exit code 2, one message, nothing lost.
 
+use hdf5::File;
+
 use super::*;
 
 /// What is wrong with a problem file that was right.

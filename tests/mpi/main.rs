@@ -23,15 +23,13 @@ use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use hdf5::types::TypeDescriptor;
-use hdf5::{File, H5Type};
 use libtest_mimic::{Arguments, Trial};
 
 use support::process::{Ended, Running, is_alive, kill};
 use support::scenes::{
     BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks,
 };
-use support::solution::Solution;
+use support::solution::{Solution, datasets};
 use support::solver::{Case, LIMIT, program};
 
 /// Numbers of ranks; there are few cores, so that more would only wait for each other.
@@ -99,33 +97,6 @@ fn failed_once(ended: &Ended, code: i32, words: &[&str]) {
     assert!(!ended.stderr.contains("HDF5-DIAG"), "{}", ended.stderr);
 }
 
-/// Every dataset of a result file that doesn't speak of time, bit by bit.
-fn datasets(case: &Case) -> BTreeMap<String, Vec<u64>> {
-    let file = File::open(case.result()).unwrap();
-    let mut all = BTreeMap::new();
-    let mut groups = vec![file.group("/").unwrap()];
-    while let Some(group) = groups.pop() {
-        groups.extend(group.groups().unwrap());
-        for dataset in group.datasets().unwrap() {
-            fn bits<T: H5Type>(dataset: &hdf5::Dataset, as_bits: impl Fn(&T) -> u64) -> Vec<u64> {
-                dataset
-                    .read_raw::<T>()
-                    .unwrap()
-                    .iter()
-                    .map(as_bits)
-                    .collect()
-            }
-            let values = match dataset.dtype().unwrap().to_descriptor().unwrap() {
-                TypeDescriptor::Float(_) => bits::<f64>(&dataset, |x| x.to_bits()),
-                _ => bits::<i64>(&dataset, |x| *x as u64),
-            };
-            all.insert(dataset.name(), values);
-        }
-    }
-    all.retain(|name, _| !name.ends_with("/seconds"));
-    all
-}
-
 type MakeCase = fn() -> Case;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
@@ -159,13 +130,13 @@ fn same_results(trials: &mut Trials) {
                 let case = make();
                 let ended = case.run(&[]);
                 assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
-                let datasets = datasets(&case);
+                let datasets = datasets(&case.result());
                 (case, datasets)
             });
             let case = make();
             let ended = run(&case, ranks, &[]);
             assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
-            let found = datasets(&case);
+            let found = datasets(&case.result());
             assert!(found.keys().eq(expected.keys()), "{:?}", found.keys());
             for (name, values) in &found {
                 assert!(values == &expected[name], "{name} differs");

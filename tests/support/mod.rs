@@ -5,6 +5,7 @@
     reason = "every test binary takes what it needs and leaves the rest"
 )]
 
+pub mod assembled;
 pub mod blocks;
 pub mod comparison;
 pub mod monolithic;
@@ -15,6 +16,8 @@ pub mod scenes;
 pub mod solution;
 pub mod solver;
 pub mod statics;
+pub mod stress;
+pub mod twofold;
 
 /// Fails unless both agree to within `slack`.
 #[track_caller]

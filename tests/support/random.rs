@@ -1,6 +1,7 @@
 //! Numbers that look random and are the same in every run.
 
 /// SplitMix64.
+#[derive(Clone)]
 pub struct Random(u64);
 
 impl Random {
@@ -19,6 +20,31 @@ impl Random {
     /// Between −1 and 1.
     pub fn signed(&mut self) -> f64 {
         self.next() as f64 / u64::MAX as f64 * 2.0 - 1.0
+    }
+
+    /// Between `low` and `high`.
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.signed() + 1.0) / 2.0
+    }
+
+    /// A power of ten with the exponent between `low` and `high`.
+    pub fn magnitude(&mut self, low: f64, high: f64) -> f64 {
+        10_f64.powf(self.within(low, high))
+    }
+
+    /// True with this probability.
+    pub fn chance(&mut self, probability: f64) -> bool {
+        self.within(0.0, 1.0) < probability
+    }
+
+    /// One of `choices`.
+    pub fn pick<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[self.below(choices.len())]
+    }
+
+    /// `low` to `high`, both included.
+    pub fn count(&mut self, low: usize, high: usize) -> usize {
+        low + self.below(high + 1 - low)
     }
 
     /// 0 to `n` − 1.

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use contact_dd_partition::model::Model;
-use hdf5::File;
-use hdf5::types::VarLenUnicode;
+use hdf5::types::{TypeDescriptor, VarLenUnicode};
+use hdf5::{File, H5Type};
 use serde_json::Value;
 
 /// What a run found.
@@ -33,7 +33,7 @@ pub struct ContactPoint {
     pub closed: bool,
 }
 
-fn column<T: hdf5::H5Type>(file: &File, name: &str) -> Vec<T> {
+fn column<T: H5Type>(file: &File, name: &str) -> Vec<T> {
     let dataset = file.dataset(name).unwrap_or_else(|e| panic!("{name}: {e}"));
     dataset.read_raw().unwrap_or_else(|e| panic!("{name}: {e}"))
 }
@@ -110,6 +110,33 @@ impl Solution {
             );
         }
     }
+}
+
+/// Every dataset of a result file that doesn't speak of time, bit by bit.
+pub fn datasets(result: &Path) -> BTreeMap<String, Vec<u64>> {
+    let file = File::open(result).unwrap();
+    let mut all = BTreeMap::new();
+    let mut groups = vec![file.group("/").unwrap()];
+    while let Some(group) = groups.pop() {
+        groups.extend(group.groups().unwrap());
+        for dataset in group.datasets().unwrap() {
+            fn bits<T: H5Type>(dataset: &hdf5::Dataset, as_bits: impl Fn(&T) -> u64) -> Vec<u64> {
+                dataset
+                    .read_raw::<T>()
+                    .unwrap()
+                    .iter()
+                    .map(as_bits)
+                    .collect()
+            }
+            let values = match dataset.dtype().unwrap().to_descriptor().unwrap() {
+                TypeDescriptor::Float(_) => bits::<f64>(&dataset, |x| x.to_bits()),
+                _ => bits::<i64>(&dataset, |x| *x as u64),
+            };
+            all.insert(dataset.name(), values);
+        }
+    }
+    all.retain(|name, _| !name.ends_with("/seconds"));
+    all
 }
 
 fn points(file: &File, group: &str) -> Vec<ContactPoint> {

@@ -87,16 +87,26 @@ pub fn solve(model: &Model, count: usize) -> Solution {
     Case::of(model, count).solve(&[])
 }
 
+/// The program under test as Cargo built it.
+pub fn built() -> &'static Path {
+    Path::new(env!("CARGO_BIN_EXE_contact-dd-mpi"))
+}
+
 /// The command that starts the program on `ranks` ranks; without the launcher for 0.
 pub fn program(ranks: usize) -> Command {
-    let binary = env!("CARGO_BIN_EXE_contact-dd-mpi");
+    launched(built(), ranks)
+}
+
+/// The command that starts `binary` on `ranks` ranks; without the launcher for 0.
+pub fn launched(binary: &Path, ranks: usize) -> Command {
     let mut command = match ranks {
         0 => Command::new(binary),
         _ => {
             let launcher = env::var("MPIEXEC").unwrap_or_else(|_| "mpirun".into());
             let mut words = launcher.split_whitespace();
             let mut command = Command::new(words.next().unwrap_or("mpirun"));
-            command.args(words).args(["-n", &ranks.to_string(), binary]);
+            command.args(words).args(["-n", &ranks.to_string()]);
+            command.arg(binary);
             command
         }
     };

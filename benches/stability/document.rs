@@ -1,0 +1,245 @@
+//! docs/stability.md: what was run, and what became of it.
+
+use std::fmt::Write as _;
+
+use crate::axes::Row;
+use crate::random::Ran;
+use crate::support::stress::FAMILIES;
+use crate::support::stress::trial::Verdict;
+
+/// How many of the worst cases are shown.
+const WORST: usize = 20;
+
+/// A figure: its name, the limit that is promised, and how to read it off.
+type Figure = (&'static str, Option<f64>, fn(&Ran) -> Option<f64>);
+
+const FIGURES: [Figure; 8] = [
+    ("sweeps", Some(12.0), |ran| ran.trial.reported(&["sweeps"])),
+    ("inner steps", None, |ran| {
+        ran.trial.reported(&["inner_steps"])
+    }),
+    ("backward error", Some(1e-14), |ran| {
+        ran.trial.reported(&["certificate", "equilibrium"])
+    }),
+    ("penetration", Some(1e-14), |ran| {
+        ran.trial.reported(&["certificate", "penetration"])
+    }),
+    ("tension", Some(1e-12), |ran| {
+        ran.trial.reported(&["certificate", "tension"])
+    }),
+    ("backward error, by the judge", None, |ran| {
+        ran.trial.findings.map(|found| found.backward_error)
+    }),
+    ("difference to the reference", None, difference),
+    ("condition number", None, |ran| {
+        ran.trial.reported(&["condition"])
+    }),
+];
+
+fn difference(ran: &Ran) -> Option<f64> {
+    ran.trial.findings?.difference
+}
+
+const HOW_TO_READ: &str = "\
+## How to read it
+
+*Right* is an answer that fulfils the discrete problem (equilibrium, no penetration, no tension,
+force or gap) by matrices and sums that are none of the solver's, and that agrees with one sparse
+factorization of the whole mesh as far as round-off lets two solvers agree; where there is no
+equilibrium it is the message that says so. Whether there is one is known from how a scene was built
+and checked by a linear program. *Backward error*, *penetration* and *tension* are those of the
+report's certificate; the *difference* is that to the factorization in the norm of the energy, and
+grows with the condition of the scene.
+
+";
+
+/// The whole document.
+pub fn document(first: u64, ran: &[Ran], rows: &[Row]) -> String {
+    let without = ran.iter().filter(|one| !one.trial.equilibrium).count();
+    let manufactured = ran.iter().filter(|one| one.manufactured).count();
+    let several = ran.iter().filter(|one| one.ranks > 0).count();
+    let mut text = format!(
+        "# Stability
+
+`scripts/stress` runs the solver on scenes that are hard on it and writes this page.
+
+{} random scenes, seeds {first} to {}: {without} of them without equilibrium, {manufactured} made
+from a solution chosen first, {several} run on 2 to 4 ranks as well, where the result has to be the
+same bit for bit. They have stiffness ratios up to 1e8, Poisson's ratios up to 0.4999999, smooth and
+rough gaps, clearances and interferences, layers of a thousandth of a block, loads from 1e-100 to
+1e100 of the usual, and up to 30 subdomains. `scripts/stress --only SEED` repeats one.
+
+",
+        ran.len(),
+        first + ran.len() as u64 - 1,
+    );
+    text += HOW_TO_READ;
+    verdicts(&mut text, ran);
+    distributions(&mut text, ran);
+    worst(&mut text, ran);
+    axes(&mut text, rows);
+    text
+}
+
+fn verdicts(text: &mut String, ran: &[Ran]) {
+    text.push_str("## Verdicts\n\n| scenes | number |");
+    for verdict in Verdict::ALL {
+        let _ = write!(text, " {} |", verdict.name());
+    }
+    text.push_str("\n|---|--:|");
+    text.push_str(&"--:|".repeat(Verdict::ALL.len()));
+    text.push('\n');
+    let mut line = |name: &str, of: &dyn Fn(&Ran) -> bool| {
+        let members: Vec<&Ran> = ran.iter().filter(|one| of(one)).collect();
+        let _ = write!(text, "| {name} | {} |", members.len());
+        for verdict in Verdict::ALL {
+            let count = (members.iter())
+                .filter(|one| one.trial.verdict == verdict)
+                .count();
+            let _ = write!(text, " {count} |");
+        }
+        text.push('\n');
+    };
+    for (family, _) in FAMILIES {
+        line(family, &|one| one.family == family);
+    }
+    line("with equilibrium", &|one| one.trial.equilibrium);
+    line("without equilibrium", &|one| !one.trial.equilibrium);
+    line("**all**", &|_| true);
+    text.push('\n');
+}
+
+fn distributions(text: &mut String, ran: &[Ran]) {
+    text.push_str(
+        "## Figures of the random scenes\n\n\
+         | figure | promised | median | 99 % | largest | seed of the largest |\n\
+         |---|--:|--:|--:|--:|--:|\n",
+    );
+    for (name, promised, figure) in FIGURES {
+        let mut values: Vec<(f64, u64)> = (ran.iter())
+            .filter_map(|one| Some((figure(one)?, one.seed)))
+            .collect();
+        values.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let promised = promised.map_or("–".into(), |limit| format!("≤ {}", number(limit)));
+        let Some(&(largest, seed)) = values.last() else {
+            let _ = writeln!(text, "| {name} | {promised} | – | – | – | – |");
+            continue;
+        };
+        let at = |share: f64| number(values[((values.len() - 1) as f64 * share) as usize].0);
+        let _ = writeln!(
+            text,
+            "| {name} | {promised} | {} | {} | {} | {seed} |",
+            at(0.5),
+            at(0.99),
+            number(largest)
+        );
+    }
+    text.push('\n');
+}
+
+fn worst(text: &mut String, ran: &[Ran]) {
+    let mut order: Vec<&Ran> = ran.iter().collect();
+    order.sort_by(|a, b| badness(b).total_cmp(&badness(a)));
+    let failed: Vec<String> = (order.iter())
+        .filter(|one| one.trial.verdict != Verdict::Right)
+        .map(|one| one.seed.to_string())
+        .collect();
+    let failed = match failed.is_empty() {
+        true => "All scenes are right.".to_owned(),
+        false => format!("Not right are the seeds {}.", failed.join(", ")),
+    };
+    let _ = writeln!(
+        text,
+        "## The worst cases\n\n\
+         {failed}\n\n\
+         Those that aren't right first, then by the promise that they come nearest to, or miss by \
+         most.\n\n\
+         | seed | family | dofs | conditions | subdomains | {HEADER}\n\
+         |--:|---|--:|--:|--:|{RULE}"
+    );
+    for one in order.into_iter().take(WORST) {
+        let trial = &one.trial;
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {}",
+            one.seed,
+            one.family,
+            trial.dofs,
+            trial.conditions,
+            trial.subdomains,
+            columns(one)
+        );
+    }
+    text.push('\n');
+}
+
+/// How far a run is from what is promised; all that aren't right come before all that are.
+fn badness(one: &Ran) -> f64 {
+    let missed = (FIGURES.iter()).filter_map(|(_, limit, figure)| Some(figure(one)? / (*limit)?));
+    let missed = missed.fold(0.0, f64::max).min(1e100);
+    match one.trial.verdict {
+        Verdict::Right => missed,
+        _ => 1e200 + missed,
+    }
+}
+
+fn axes(text: &mut String, rows: &[Row]) {
+    text.push_str(
+        "## Along every axis\n\n\
+         A layer between two blocks, pressed on one side and pulled on the other, unless it says \
+         granite; one thing is changed at a time.\n",
+    );
+    let mut axis = "";
+    for row in rows {
+        if row.axis != axis {
+            axis = row.axis;
+            let _ = writeln!(text, "\n| {axis} | dofs | {HEADER}\n|--:|--:|{RULE}");
+        }
+        let _ = writeln!(
+            text,
+            "| {} | {} | {}",
+            row.value,
+            row.ran.trial.dofs,
+            columns(&row.ran)
+        );
+    }
+}
+
+const HEADER: &str = "sweeps | inner steps | fall-backs | backward error | penetration | tension \
+                      | difference | status |";
+const RULE: &str = "--:|--:|---|--:|--:|--:|--:|---|";
+
+fn columns(one: &Ran) -> String {
+    let trial = &one.trial;
+    let reported = |keys: &[&str]| trial.reported(keys).map_or("–".into(), number);
+    let fallbacks = match trial.listed("fallbacks") {
+        Some(words) if words.is_empty() => "none".into(),
+        Some(words) => words.join(", "),
+        None => "–".into(),
+    };
+    let difference = match (trial.findings, difference(one)) {
+        (_, Some(difference)) => number(difference),
+        (Some(_), None) => "too large for it".into(),
+        (None, None) => "–".into(),
+    };
+    let status = match (trial.verdict, trial.equilibrium) {
+        (Verdict::Right, false) => "no equilibrium, rightly".to_owned(),
+        (verdict, _) => verdict.name().to_owned(),
+    };
+    format!(
+        "{} | {} | {fallbacks} | {} | {} | {} | {difference} | {status} |",
+        reported(&["sweeps"]),
+        reported(&["inner_steps"]),
+        reported(&["certificate", "equilibrium"]),
+        reported(&["certificate", "penetration"]),
+        reported(&["certificate", "tension"]),
+    )
+}
+
+fn number(value: f64) -> String {
+    match value {
+        0.0 => "0".into(),
+        whole if whole.fract() == 0.0 && (1.0..1e6).contains(&whole) => whole.to_string(),
+        _ => format!("{value:.1e}"),
+    }
+}

@@ -1,0 +1,87 @@
+//! The stress suite: random scenes by the thousand and a table along every axis of difficulty.
+//!
+//! `scripts/stress` runs it and writes docs/stability.md.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a suite that can't go on has failed"
+)]
+
+mod axes;
+mod document;
+mod random;
+#[path = "../../tests/support/mod.rs"]
+mod support;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use clap::Parser;
+
+use support::stress::trial::Verdict;
+
+/// Runs scenes that are hard on the solver and says what became of each.
+#[derive(Parser)]
+struct Arguments {
+    /// Number of random scenes.
+    #[arg(short = 'n', long, default_value_t = 1008)]
+    scenes: u64,
+    /// The first of their seeds.
+    #[arg(long, default_value_t = 0)]
+    first: u64,
+    /// Runs the scenes of these seeds alone and tells all of them.
+    #[arg(long, value_name = "SEED", num_args = 1.., conflicts_with = "markdown")]
+    only: Vec<u64>,
+    /// Copies problem and scene files of `--only` into this folder.
+    #[arg(long, value_name = "DIR")]
+    keep: Option<PathBuf>,
+    /// Most cells along a side of a block.
+    #[arg(long, default_value_t = 12)]
+    cells: usize,
+    /// Scenes at a time.
+    #[arg(long, default_value_t = 1)]
+    jobs: usize,
+    /// Seconds after which a run hangs.
+    #[arg(long, default_value_t = 60)]
+    limit: u64,
+    /// The program under test, where it isn't the one that Cargo builds.
+    #[arg(long, value_name = "PATH")]
+    binary: Option<PathBuf>,
+    /// Writes the results as markdown.
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+    /// Cargo adds it.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let binary = arguments.binary.clone();
+    let binary = binary.unwrap_or_else(|| support::solver::built().to_owned());
+    let runs = random::Runs {
+        binary,
+        cells: arguments.cells,
+        jobs: arguments.jobs,
+        limit: Duration::from_secs(arguments.limit),
+        keep: arguments.keep.clone(),
+    };
+    let told = !arguments.only.is_empty();
+    let seeds = match told {
+        true => arguments.only.clone(),
+        false => (arguments.first..arguments.first + arguments.scenes).collect(),
+    };
+    let ran = runs.all(&seeds, told);
+    if let Some(path) = &arguments.markdown {
+        let text = document::document(arguments.first, &ran, &axes::table(&runs));
+        std::fs::write(path, text).unwrap();
+    }
+    random::summary(&ran);
+    match ran.iter().all(|one| one.trial.verdict == Verdict::Right) {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
+    }
+}

@@ -1,0 +1,152 @@
+//! Random scenes, one after the other or several at a time.
+
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::support::stress::trial::{Trial, Verdict};
+use crate::support::stress::{Drawn, draw};
+
+/// How scenes are run.
+pub struct Runs {
+    pub binary: PathBuf,
+    pub cells: usize,
+    pub jobs: usize,
+    pub limit: Duration,
+    pub keep: Option<PathBuf>,
+}
+
+/// A scene that was run; of its model nothing is kept.
+pub struct Ran {
+    pub seed: u64,
+    pub family: &'static str,
+    /// Whether its solution was chosen first.
+    pub manufactured: bool,
+    /// On how many ranks it ran besides, 0 for none.
+    pub ranks: usize,
+    pub trial: Trial,
+    pub seconds: f64,
+}
+
+impl Runs {
+    /// Runs the scenes of `seeds`; tells each, or those only that aren't right.
+    pub fn all(&self, seeds: &[u64], told: bool) -> Vec<Ran> {
+        let next = AtomicUsize::new(0);
+        let ran = Mutex::new(Vec::new());
+        std::thread::scope(|scope| {
+            for _ in 0..self.jobs {
+                scope.spawn(|| {
+                    while let Some(&seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed)) {
+                        let one = self.one(seed, told);
+                        ran.lock().unwrap().push(one);
+                    }
+                });
+            }
+        });
+        let mut ran = ran.into_inner().unwrap();
+        ran.sort_by_key(|one| one.seed);
+        ran
+    }
+
+    fn one(&self, seed: u64, told: bool) -> Ran {
+        let began = Instant::now();
+        let drawn = std::panic::catch_unwind(|| draw(seed, self.cells));
+        let drawn = drawn.unwrap_or_else(|_| panic!("the scene of seed {seed} can't be"));
+        let trial = Trial::of(&drawn, &self.binary, self.limit, self.keep.as_deref());
+        let ran = Ran::new(&drawn, trial, began);
+        if told || ran.trial.verdict != Verdict::Right || ran.is_short() {
+            println!("{}", ran.line());
+        }
+        if told {
+            tell(&drawn, &ran);
+        }
+        ran
+    }
+}
+
+fn tell(drawn: &Drawn, ran: &Ran) {
+    println!("{}", drawn.described());
+    if let Some(report) = &ran.trial.report {
+        println!("{report:#}");
+    }
+    println!("{:#?}", ran.trial.findings);
+}
+
+impl Ran {
+    pub fn new(drawn: &Drawn, trial: Trial, began: Instant) -> Self {
+        Self {
+            seed: drawn.seed,
+            family: drawn.family,
+            manufactured: drawn.manufactured,
+            ranks: drawn.ranks,
+            trial,
+            seconds: began.elapsed().as_secs_f64(),
+        }
+    }
+
+    /// Whether it falls short of what is promised of every scene though it is right.
+    pub fn is_short(&self) -> bool {
+        let over = |keys: &[&str], limit: f64| {
+            let value = self.trial.reported(keys);
+            value.is_some_and(|value| value > limit)
+        };
+        over(&["sweeps"], 12.0)
+            || over(&["certificate", "equilibrium"], 1e-14)
+            || over(&["certificate", "penetration"], 1e-14)
+            || over(&["certificate", "tension"], 1e-12)
+    }
+
+    /// All in one line.
+    pub fn line(&self) -> String {
+        let trial = &self.trial;
+        let mut line = format!(
+            "{:>6} {:<10} {:<13} {:>6} dofs {:>4} conditions {:>3} subdomains {:>5.2} s",
+            self.seed,
+            self.family,
+            trial.verdict.name(),
+            trial.dofs,
+            trial.conditions,
+            trial.subdomains,
+            self.seconds
+        );
+        if let Some(sweeps) = trial.reported(&["sweeps"]) {
+            line += &format!("  sweeps {sweeps}");
+        }
+        for key in ["equilibrium", "penetration", "tension"] {
+            if let Some(value) = trial.reported(&["certificate", key]) {
+                line += &format!("  {key} {value:.1e}");
+            }
+        }
+        if let Some(findings) = &trial.findings {
+            line += &format!(
+                "  difference {:.1e} ({:.1e}) signs {:.1e}",
+                findings.difference.unwrap_or(f64::NAN),
+                findings.disturbance.unwrap_or(f64::NAN),
+                findings.reference_signs.unwrap_or(f64::NAN)
+            );
+        }
+        if !trial.reason.is_empty() {
+            line += &format!("  {}", trial.reason.trim());
+        }
+        line
+    }
+}
+
+/// Prints how many there are of each verdict.
+pub fn summary(ran: &[Ran]) {
+    for verdict in Verdict::ALL {
+        let count = (ran.iter())
+            .filter(|one| one.trial.verdict == verdict)
+            .count();
+        println!("{:<14} {count}", verdict.name());
+    }
+    println!(
+        "short          {}",
+        ran.iter().filter(|one| one.is_short()).count()
+    );
+    println!(
+        "seconds        {:.0}",
+        ran.iter().map(|one| one.seconds).sum::<f64>()
+    );
+}

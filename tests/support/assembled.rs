@@ -1,0 +1,291 @@
+//! The discrete problem of a whole model, assembled without any code of the program under test.
+//!
+//! ```text
+//! K u + Dᵀ μ + Bᵀ λ = f,   D u = v,   B u ≤ g
+//! ```
+
+use contact_dd_partition::model::Model;
+use faer::Mat;
+use faer::Par;
+use faer::linalg::solvers::Solve;
+use faer::sparse::{SparseColMat, Triplet};
+
+use super::random::Random;
+use super::twofold::Twofold;
+
+/// Compliance of rows in the factorized matrix, relative to the largest entry of K: with it rows
+/// that depend on others do no harm, and refinement against the system without it takes it off.
+const SLACK: f64 = 1e-13;
+
+/// Corrections of a solution at most.
+const REFINEMENTS: usize = 12;
+
+/// A row of a condition: dofs and coefficients.
+pub type Row = Vec<(usize, f64)>;
+
+/// K, f, D, v, B and g.
+pub struct Assembled {
+    pub dofs: usize,
+    cells: Vec<Cell>,
+    /// K by element, entries of one place still apart.
+    pub stiffness: Vec<Triplet<usize, usize, f64>>,
+    /// The largest entry of K: rows of D and B are multiplied by it, λ and μ divided.
+    scale: f64,
+    pub load: Vec<f64>,
+    pub supports: Vec<(Row, f64)>,
+    pub conditions: Vec<(Row, f64)>,
+}
+
+/// K u − f + Bᵀ λ, and the sum of the absolute values of its terms.
+pub struct Residual {
+    pub value: Vec<f64>,
+    pub terms: Vec<f64>,
+}
+
+impl Assembled {
+    pub fn new(model: &Model) -> Self {
+        let dim = model.mesh.dim;
+        let row = |entries: &[(u32, [f64; 3])]| -> Row {
+            let components = entries.iter().flat_map(|&(node, c)| {
+                (0..dim).map(move |axis| (node as usize * dim + axis, c[axis]))
+            });
+            components.filter(|&(_, c)| c != 0.0).collect()
+        };
+        let cells = cells(model);
+        let stiffness: Vec<_> = cells.iter().flat_map(Cell::entries).collect();
+        let mut load = vec![0.0; dim * model.mesh.points.len()];
+        for (node, force) in &model.forces {
+            for axis in 0..dim {
+                load[*node as usize * dim + axis] += force[axis];
+            }
+        }
+        let conditions = model.contacts.iter().flat_map(|c| &c.conditions);
+        Self {
+            dofs: load.len(),
+            scale: stiffness.iter().fold(0.0, |m, t| t.val.abs().max(m)),
+            cells,
+            stiffness,
+            load,
+            supports: (model.supports.iter())
+                .map(|s| (row(&[(s.node, s.direction)]), s.value))
+                .collect(),
+            conditions: conditions.map(|c| (row(&c.entries), c.gap)).collect(),
+        }
+    }
+
+    /// g − B u.
+    pub fn gaps(&self, u: &[f64]) -> Vec<f64> {
+        let left = |(row, gap): &(Row, f64)| {
+            let mut sum = Twofold::default();
+            sum.add(*gap);
+            row.iter().for_each(|&(i, c)| sum.add_product(-c, u[i]));
+            sum.value()
+        };
+        self.conditions.iter().map(left).collect()
+    }
+
+    /// K u.
+    pub fn times(&self, u: &[f64]) -> Vec<f64> {
+        let mut sums = vec![Twofold::default(); self.dofs];
+        for t in &self.stiffness {
+            sums[t.row].add_product(t.val, u[t.col]);
+        }
+        sums.iter().map(Twofold::value).collect()
+    }
+
+    /// uᵀ K u from the strains, so that a rigid part of u has none, however large it is.
+    fn energy(&self, u: &[f64]) -> f64 {
+        self.cells.iter().map(|cell| cell.energy(u)).sum()
+    }
+
+    /// ‖u − v‖ over ‖u‖ in the norm of the energy.
+    pub fn energy_difference(&self, u: &[f64], v: &[f64]) -> f64 {
+        // Squares of the smallest and largest loads would be 0 and infinite.
+        let size = u.iter().fold(0.0, |m: f64, u| m.max(u.abs())).max(1e-300);
+        let scaled: Vec<f64> = u.iter().map(|u| u / size).collect();
+        let difference: Vec<f64> = u.iter().zip(v).map(|(u, v)| (u - v) / size).collect();
+        let (difference, energy) = (self.energy(&difference), self.energy(&scaled));
+        // Two rigid motions have no difference.
+        if difference == 0.0 {
+            0.0
+        } else {
+            (difference / energy).sqrt()
+        }
+    }
+
+    /// K u − f + Bᵀ λ with the digits of twice the precision.
+    pub fn residual(&self, u: &[f64], forces: &[f64]) -> Residual {
+        let mut sums = vec![Twofold::default(); self.dofs];
+        let mut terms = vec![0.0; self.dofs];
+        let mut add = |row: usize, a: f64, b: f64| {
+            sums[row].add_product(a, b);
+            terms[row] += (a * b).abs();
+        };
+        for t in &self.stiffness {
+            add(t.row, t.val, u[t.col]);
+        }
+        for (dof, f) in self.load.iter().enumerate() {
+            add(dof, -1.0, *f);
+        }
+        for ((row, _), force) in self.conditions.iter().zip(forces) {
+            row.iter().for_each(|&(dof, c)| add(dof, c, *force));
+        }
+        Residual {
+            value: sums.iter().map(Twofold::value).collect(),
+            terms,
+        }
+    }
+
+    /// u and λ with the `closed` conditions and `equations` as equations and the other conditions
+    /// away. `disturbed` moves the entries of K in their last digits, and the load by up to its
+    /// force with random signs: what that does to the solution is what the scene's condition makes
+    /// of round-off.
+    pub fn solve(
+        &self,
+        closed: &[bool],
+        equations: &[(Row, f64)],
+        disturbed: Option<f64>,
+    ) -> (Vec<f64>, Vec<f64>) {
+        let active: Vec<usize> = (0..closed.len()).filter(|&j| closed[j]).collect();
+        let rows: Vec<&(Row, f64)> = (self.supports.iter())
+            .chain(equations)
+            .chain(active.iter().map(|&j| &self.conditions[j]))
+            .collect();
+        let n = self.dofs + rows.len();
+        let mut entries = self.stiffness.clone();
+        let mut rhs = self.load.clone();
+        if let Some(force) = disturbed {
+            let mut random = Random::new(1);
+            for entry in &mut entries {
+                entry.val *= 1.0 + f64::EPSILON * random.signed();
+            }
+            for load in &mut rhs {
+                *load += force * random.signed();
+            }
+        }
+        for (k, (row, value)) in rows.iter().enumerate() {
+            for &(dof, c) in row {
+                entries.push(Triplet::new(self.dofs + k, dof, c * self.scale));
+                entries.push(Triplet::new(dof, self.dofs + k, c * self.scale));
+            }
+            rhs.push(value * self.scale);
+        }
+        let x = refined(n, entries, self.dofs, SLACK * self.scale, &rhs);
+        let mut forces = vec![0.0; closed.len()];
+        let first = n - active.len();
+        for (k, &j) in active.iter().enumerate() {
+            forces[j] = x[first + k] * self.scale;
+        }
+        (x[..self.dofs].to_vec(), forces)
+    }
+}
+
+/// The solution of a system of `n` equations, those from `first` on with `slack` in the factor.
+fn refined(
+    n: usize,
+    entries: Vec<Triplet<usize, usize, f64>>,
+    first: usize,
+    slack: f64,
+    rhs: &[f64],
+) -> Vec<f64> {
+    faer::set_global_parallelism(Par::Seq);
+    let mut factorized = entries.clone();
+    factorized.extend((first..n).map(|row| Triplet::new(row, row, -slack)));
+    let matrix = SparseColMat::try_new_from_triplets(n, n, &factorized).unwrap();
+    let lu = matrix.sp_lu().unwrap();
+    let mut x = vec![0.0; n];
+    let mut last = f64::INFINITY;
+    for _ in 0..REFINEMENTS {
+        let mut sums = vec![Twofold::default(); n];
+        for (sum, b) in sums.iter_mut().zip(rhs) {
+            sum.add(*b);
+        }
+        for t in &entries {
+            sums[t.row].add_product(-t.val, x[t.col]);
+        }
+        let residual = Mat::from_fn(n, 1, |i, _| sums[i].value());
+        let correction = lu.solve(&residual);
+        let largest = |m: f64, x: &f64| m.max(x.abs());
+        let change = (0..n).fold(0.0, |m, i| largest(m, &correction[(i, 0)]));
+        // Where it grows, the matrix is singular to rounding.
+        if !change.is_finite() || change > last {
+            break;
+        }
+        for (i, x) in x.iter_mut().enumerate() {
+            *x += correction[(i, 0)];
+        }
+        if change <= f64::EPSILON * x.iter().fold(0.0, largest) {
+            break;
+        }
+        last = change;
+    }
+    x
+}
+
+/// A triangle of constant strain.
+struct Cell {
+    nodes: [usize; 3],
+    /// ∇N of each node.
+    slopes: [[f64; 2]; 3],
+    area: f64,
+    stiffness: [[f64; 3]; 3],
+}
+
+impl Cell {
+    fn new(points: [[f64; 3]; 3], nodes: [usize; 3], stiffness: [[f64; 3]; 3]) -> Self {
+        let [p, q, r] = points;
+        let twice_area = (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]);
+        // ∇N_i = (y_j − y_k, x_k − x_j) / 2A
+        let slopes = [(q, r), (r, p), (p, q)]
+            .map(|(j, k)| [(j[1] - k[1]) / twice_area, (k[0] - j[0]) / twice_area]);
+        Self {
+            nodes,
+            slopes,
+            area: twice_area.abs() / 2.0,
+            stiffness,
+        }
+    }
+
+    /// aᵀ C b.
+    fn product(&self, a: [f64; 3], b: [f64; 3]) -> f64 {
+        let c = &self.stiffness;
+        (0..9).map(|k| a[k / 3] * c[k / 3][k % 3] * b[k % 3]).sum()
+    }
+
+    /// A Gᵀ C G, G the strains (ε_xx, ε_yy, γ_xy) of each dof.
+    fn entries(&self) -> impl Iterator<Item = Triplet<usize, usize, f64>> {
+        let strain = |i: usize| match (i % 2, self.slopes[i / 2]) {
+            (0, [x, y]) => [x, 0.0, y],
+            (_, [x, y]) => [0.0, y, x],
+        };
+        let dof = |i: usize| 2 * self.nodes[i / 2] + i % 2;
+        (0..36).map(move |k| {
+            let (i, j) = (k / 6, k % 6);
+            let value = self.product(strain(i), strain(j)) * self.area;
+            Triplet::new(dof(i), dof(j), value)
+        })
+    }
+
+    fn energy(&self, u: &[f64]) -> f64 {
+        let mut strain = [0.0; 3];
+        for (node, [x, y]) in self.nodes.iter().zip(self.slopes).skip(1) {
+            // The slopes add up to 0: against the first node, a translation drops out.
+            let [du, dv] = [0, 1].map(|axis| u[2 * node + axis] - u[2 * self.nodes[0] + axis]);
+            strain[0] += x * du;
+            strain[1] += y * dv;
+            strain[2] += y * du + x * dv;
+        }
+        self.product(strain, strain) * self.area
+    }
+}
+
+fn cells(model: &Model) -> Vec<Cell> {
+    let mesh = &model.mesh;
+    (mesh.cells.iter().zip(&model.cell_material))
+        .map(|((_, nodes), &material)| {
+            let nodes = [0, 1, 2].map(|i| nodes[i] as usize);
+            let points = nodes.map(|node| mesh.points[node]);
+            Cell::new(points, nodes, model.materials[material as usize].stiffness)
+        })
+        .collect()
+}

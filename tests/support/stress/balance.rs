@@ -1,0 +1,148 @@
+//! Whether contact forces can balance the load: a linear program, solved by the simplex method.
+//!
+//! There is an equilibrium if λ ≥ 0 and support forces μ exist with Rᵀ (f − Bᵀ λ − Dᵀ μ) = 0 for the
+//! rigid motions R of all bodies. Either they do, or a motion z exists that supports and contact
+//! allow, D R z = 0 and B R z ≤ 0, and that the load drives, fᵀ R z > 0; both are checked.
+
+use contact_dd_partition::model::Model;
+use nalgebra::{DMatrix, DVector};
+
+use super::super::assembled::Assembled;
+use super::rigid::Bodies;
+
+/// What is left of the load, relative to it, up to which it is balanced, and from which not.
+const BALANCED: f64 = 1e-11;
+const UNBALANCED: f64 = 1e-7;
+
+/// What the linear program says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Balance {
+    Holds,
+    Fails,
+    /// Within round-off of the border between both.
+    Unclear,
+}
+
+impl Balance {
+    pub fn new(model: &Model, assembled: &Assembled) -> Self {
+        let bodies = Bodies::new(model);
+        let load: Vec<(usize, f64)> = assembled.load.iter().copied().enumerate().collect();
+        let load = bodies.act(&load);
+        let scale: f64 = assembled.load.iter().map(|f| f.abs()).sum();
+        if scale == 0.0 {
+            return Self::Holds;
+        }
+        let load = load / scale;
+        let supports: Vec<_> = assembled.supports.iter().map(|(row, _)| row).collect();
+        // Motions that supports allow, on which contact and load act.
+        let allowed = bodies.unseen(supports.into_iter());
+        if allowed.is_empty() {
+            return Self::Holds;
+        }
+        let allowed = DMatrix::from_columns(&allowed);
+        let columns: Vec<DVector<f64>> = (assembled.conditions.iter())
+            .map(|(row, _)| allowed.transpose() * bodies.act(row))
+            .collect();
+        Self::of(&columns, &(allowed.transpose() * load))
+    }
+
+    /// Whether `load` is a combination of `columns` with coefficients ≥ 0.
+    fn of(columns: &[DVector<f64>], load: &DVector<f64>) -> Self {
+        let (left, dual) = Simplex::new(columns, load).solve();
+        let grows = columns.iter().all(|column| {
+            let along = dual.dot(column);
+            along <= 1e-9 * dual.norm() * column.norm()
+        });
+        match left {
+            left if left <= BALANCED => Self::Holds,
+            left if left >= UNBALANCED && grows => Self::Fails,
+            _ => Self::Unclear,
+        }
+    }
+}
+
+/// The least Σ|r| with Σ x_j c_j + r = b, x ≥ 0: a basis of columns and slack, by Bland's rule.
+struct Simplex<'a> {
+    columns: &'a [DVector<f64>],
+    load: &'a DVector<f64>,
+    /// Column of each basic variable; from `columns.len()` on, slacks.
+    basis: Vec<usize>,
+    sign: Vec<f64>,
+}
+
+impl<'a> Simplex<'a> {
+    fn new(columns: &'a [DVector<f64>], load: &'a DVector<f64>) -> Self {
+        Self {
+            columns,
+            load,
+            basis: (columns.len()..columns.len() + load.len()).collect(),
+            sign: (load.iter())
+                .map(|b| if *b < 0.0 { -1.0 } else { 1.0 })
+                .collect(),
+        }
+    }
+
+    fn column(&self, j: usize) -> DVector<f64> {
+        match j.checked_sub(self.columns.len()) {
+            None => self.columns[j].clone(),
+            Some(row) => {
+                let mut unit = DVector::zeros(self.load.len());
+                unit[row] = self.sign[row];
+                unit
+            }
+        }
+    }
+
+    fn cost(&self, j: usize) -> f64 {
+        if j < self.columns.len() { 0.0 } else { 1.0 }
+    }
+
+    /// What is left of the load, and the dual that says why.
+    fn solve(&mut self) -> (f64, DVector<f64>) {
+        let m = self.load.len();
+        let mut dual = DVector::zeros(m);
+        let mut left = f64::INFINITY;
+        for step in 0..5000 {
+            // The basis is small: a fresh factorization in every step collects no round-off.
+            let columns: Vec<_> = self.basis.iter().map(|&j| self.column(j)).collect();
+            let basis = DMatrix::from_columns(&columns);
+            let lu = basis.clone().lu();
+            let Some(x) = lu.solve(self.load) else { break };
+            let cost = DVector::from_iterator(m, self.basis.iter().map(|&j| self.cost(j)));
+            let Some(y) = basis.transpose().lu().solve(&cost) else {
+                break;
+            };
+            left = (self.basis.iter().zip(x.iter()))
+                .filter(|(j, _)| **j >= self.columns.len())
+                .map(|(_, x)| x.abs())
+                .sum();
+            dual = y;
+            let gain = |j: &usize| {
+                let column = &self.columns[*j];
+                dual.dot(column) / (dual.norm() * column.norm()).max(1e-300)
+            };
+            let outside = (0..self.columns.len()).filter(|j| !self.basis.contains(j));
+            // The largest gain is fast, the first can't cycle.
+            let entering = match step < 500 {
+                true => outside
+                    .filter(|j| gain(j) > 1e-11)
+                    .max_by(|a, b| gain(a).total_cmp(&gain(b))),
+                false => outside.into_iter().find(|j| gain(j) > 1e-11),
+            };
+            let Some(entering) = entering else { break };
+            let Some(change) = lu.solve(&self.columns[entering]) else {
+                break;
+            };
+            let size = change.amax();
+            let leaving = (0..m)
+                .filter(|&i| change[i] > 1e-10 * size)
+                .min_by(|&a, &b| {
+                    let ratio = |i: usize| x[i].max(0.0) / change[i];
+                    (ratio(a).total_cmp(&ratio(b))).then(self.basis[a].cmp(&self.basis[b]))
+                });
+            let Some(leaving) = leaving else { break };
+            self.basis[leaving] = entering;
+        }
+        (left, dual)
+    }
+}

@@ -1,0 +1,134 @@
+//! Rigid motions of the bodies of a model, and what supports and contact do to them.
+
+use contact_dd_partition::model::Model;
+use nalgebra::{DMatrix, DVector};
+
+/// Singular value, relative to the largest, that counts as none.
+const NOTHING: f64 = 1e-9;
+
+/// Motions of a body in the plane: along x, along y, around its middle.
+const MODES: usize = 3;
+
+/// Bodies, each what hangs together through nodes, with their rigid motions.
+pub struct Bodies {
+    /// Body of every node.
+    of_node: Vec<usize>,
+    /// Middle and size of every body (m).
+    frames: Vec<([f64; 2], f64)>,
+    points: Vec<[f64; 3]>,
+}
+
+impl Bodies {
+    pub fn new(model: &Model) -> Self {
+        let mesh = &model.mesh;
+        let mut root: Vec<usize> = (0..mesh.points.len()).collect();
+        fn find(root: &mut [usize], node: usize) -> usize {
+            let mut at = node;
+            while root[at] != at {
+                root[at] = root[root[at]];
+                at = root[at];
+            }
+            at
+        }
+        for (_, nodes) in mesh.cells.iter() {
+            for pair in nodes.windows(2) {
+                let (a, b) = (
+                    find(&mut root, pair[0] as usize),
+                    find(&mut root, pair[1] as usize),
+                );
+                root[a.max(b)] = a.min(b);
+            }
+        }
+        let mut number = vec![usize::MAX; root.len()];
+        let mut boxes: Vec<[[f64; 2]; 2]> = Vec::new();
+        let mut of_node = Vec::with_capacity(root.len());
+        for node in 0..root.len() {
+            let top = find(&mut root, node);
+            let p = mesh.points[node];
+            if number[top] == usize::MAX {
+                number[top] = boxes.len();
+                boxes.push([[p[0], p[1]]; 2]);
+            }
+            let [low, high] = &mut boxes[number[top]];
+            for axis in 0..2 {
+                low[axis] = low[axis].min(p[axis]);
+                high[axis] = high[axis].max(p[axis]);
+            }
+            of_node.push(number[top]);
+        }
+        let frame = |[low, high]: [[f64; 2]; 2]| {
+            let size = (high[0] - low[0]).max(high[1] - low[1]);
+            ([0, 1].map(|i| (low[i] + high[i]) / 2.0), size)
+        };
+        Self {
+            of_node,
+            frames: boxes.into_iter().map(frame).collect(),
+            points: mesh.points.clone(),
+        }
+    }
+
+    /// Number of rigid motions.
+    pub fn motions(&self) -> usize {
+        MODES * self.frames.len()
+    }
+
+    /// What a row of coefficients, by dof, does to each rigid motion.
+    pub fn act(&self, row: &[(usize, f64)]) -> DVector<f64> {
+        let mut sums = DVector::zeros(self.motions());
+        for &(dof, c) in row {
+            let (node, axis) = (dof / 2, dof % 2);
+            let (first, arm) = (MODES * self.of_node[node], self.arm(node));
+            sums[first + axis] += c;
+            sums[first + 2] += c * [-arm[1], arm[0]][axis];
+        }
+        sums
+    }
+
+    fn arm(&self, node: usize) -> [f64; 2] {
+        let (middle, size) = self.frames[self.of_node[node]];
+        let p = self.points[node];
+        [0, 1].map(|i| (p[i] - middle[i]) / size)
+    }
+
+    /// The displacement of all nodes in the motion with these coefficients.
+    pub fn displacement(&self, motion: &[f64]) -> Vec<f64> {
+        (0..self.of_node.len())
+            .flat_map(|node| {
+                let (z, arm) = (&motion[MODES * self.of_node[node]..], self.arm(node));
+                [z[0] - z[2] * arm[1], z[1] + z[2] * arm[0]]
+            })
+            .collect()
+    }
+
+    /// Orthonormal coefficients of the motions that none of `rows` sees.
+    pub fn unseen<'a>(
+        &self,
+        rows: impl Iterator<Item = &'a Vec<(usize, f64)>>,
+    ) -> Vec<DVector<f64>> {
+        let n = self.motions();
+        // Rows are folded in one after the other: A ᵀA would lose half of the digits.
+        let mut folded = DMatrix::zeros(2 * n, n);
+        let mut filled = n;
+        for row in rows {
+            if filled == 2 * n {
+                let r = folded.clone().qr().r();
+                folded.rows_mut(0, n).copy_from(&r);
+                filled = n;
+            }
+            folded.set_row(filled, &self.act(row).transpose());
+            filled += 1;
+            for rest in filled..2 * n {
+                folded.row_mut(rest).fill(0.0);
+            }
+        }
+        let svd = folded.svd(false, true);
+        let largest = svd.singular_values.amax();
+        let Some(v_t) = svd.v_t else {
+            return Vec::new();
+        };
+        (0..n)
+            .filter(|&i| svd.singular_values[i] <= NOTHING * largest)
+            .map(|i| v_t.row(i).transpose())
+            .collect()
+    }
+}

@@ -1,0 +1,201 @@
+//! A scene put to the program, and the verdict.
+
+use std::path::Path;
+use std::time::Duration;
+
+use contact_dd_partition::problem::Problem;
+use serde_json::Value;
+
+use super::super::assembled::Assembled;
+use super::super::process::{Ended, Running};
+use super::super::solution::{Solution, datasets};
+use super::super::solver::{Case, launched};
+use super::judge::Findings;
+use super::{Balance, Drawn, decomposed};
+
+/// Dofs up to which there is a reference.
+const REFERENCE: usize = 100_000;
+
+/// What is to be said of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// The solution, or the message that there is none where there is none.
+    Right,
+    /// It says that it converged, but this isn't the solution.
+    Wrong,
+    /// Other bits on several ranks.
+    Differs,
+    /// Refused though there is an equilibrium.
+    Refused,
+    /// A solution of a scene without equilibrium.
+    Missed,
+    NotConverged,
+    Hung,
+    Crashed,
+    /// The scene isn't what it was built to be: its equilibrium is a matter of round-off.
+    Unclear,
+}
+
+impl Verdict {
+    pub const ALL: [Self; 9] = [
+        Self::Right,
+        Self::Wrong,
+        Self::Differs,
+        Self::Refused,
+        Self::Missed,
+        Self::NotConverged,
+        Self::Hung,
+        Self::Crashed,
+        Self::Unclear,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::Wrong => "wrong",
+            Self::Differs => "differs",
+            Self::Refused => "refused",
+            Self::Missed => "missed",
+            Self::NotConverged => "not converged",
+            Self::Hung => "hung",
+            Self::Crashed => "crashed",
+            Self::Unclear => "unclear",
+        }
+    }
+}
+
+/// A scene with its verdict.
+pub struct Trial {
+    pub verdict: Verdict,
+    /// Why, in words; empty where it is right.
+    pub reason: String,
+    /// Whether there is an equilibrium.
+    pub equilibrium: bool,
+    pub dofs: usize,
+    pub conditions: usize,
+    pub subdomains: usize,
+    /// Where there is a result.
+    pub findings: Option<Findings>,
+    /// The program's own report.
+    pub report: Option<Value>,
+}
+
+impl Trial {
+    /// Runs `binary` on a scene, `limit` at most; with `keep` the problem file is copied there.
+    pub fn of(drawn: &Drawn, binary: &Path, limit: Duration, keep: Option<&Path>) -> Self {
+        let model = &drawn.model;
+        let mut trial = Self {
+            verdict: Verdict::Right,
+            reason: String::new(),
+            equilibrium: drawn.equilibrium != Some(false),
+            dofs: model.mesh.dim * model.mesh.points.len(),
+            conditions: model.contacts.iter().map(|c| c.conditions.len()).sum(),
+            subdomains: 0,
+            findings: None,
+            report: None,
+        };
+        let assembled = Assembled::new(model);
+        let balance = Balance::new(model, &assembled);
+        trial.equilibrium = match (balance, drawn.equilibrium) {
+            (Balance::Holds, None | Some(true)) => true,
+            (Balance::Fails, None | Some(false)) => false,
+            (_, built) => {
+                trial.ends(Verdict::Unclear, format!("{balance:?}, built: {built:?}"));
+                return trial;
+            }
+        };
+        let problem = decomposed(model, drawn.subdomains).and_then(|decomposition| {
+            trial.subdomains = decomposition.count;
+            Problem::new(model, &decomposition).map_err(|error| error.to_string())
+        });
+        let case = match problem {
+            Ok(problem) => Case::new(&problem),
+            Err(message) => {
+                trial.ends(Verdict::Refused, message);
+                return trial;
+            }
+        };
+        if let Some(folder) = keep {
+            std::fs::copy(case.problem(), folder.join(format!("{}.h5", drawn.seed))).unwrap();
+            std::fs::write(
+                folder.join(format!("{}.toml", drawn.seed)),
+                drawn.described(),
+            )
+            .unwrap();
+        }
+        let ended = Running::start(launched(binary, 0).arg(case.problem())).wait(limit);
+        trial.judge(drawn, &assembled, &case, &ended);
+        if drawn.ranks > 0 && trial.verdict == Verdict::Right {
+            trial.again(drawn.ranks, binary, limit, &case, &ended);
+        }
+        trial
+    }
+
+    fn ends(&mut self, verdict: Verdict, reason: impl Into<String>) {
+        self.verdict = verdict;
+        self.reason = reason.into();
+    }
+
+    fn judge(&mut self, drawn: &Drawn, assembled: &Assembled, case: &Case, ended: &Ended) {
+        let Some(status) = ended.status else {
+            return self.ends(Verdict::Hung, format!("after {:.0?}", ended.took));
+        };
+        let message = ended.errors().join(" ");
+        match (status.code(), self.equilibrium) {
+            (Some(4), false) => return,
+            (Some(2 | 4), _) => return self.ends(Verdict::Refused, message),
+            (Some(0 | 3), _) => {}
+            _ => return self.ends(Verdict::Crashed, format!("{status} {}", ended.stderr)),
+        }
+        let solution = Solution::read(&case.result());
+        self.report = Some(solution.report.clone());
+        if !self.equilibrium {
+            return self.ends(Verdict::Missed, message);
+        }
+        let reference = self.dofs <= REFERENCE;
+        let findings = Findings::new(&drawn.model, assembled, &solution, reference);
+        self.findings = Some(findings);
+        let faults = findings.faults();
+        if status.code() == Some(3) {
+            self.ends(Verdict::NotConverged, faults.join(", "));
+        } else if !faults.is_empty() {
+            self.ends(Verdict::Wrong, faults.join(", "));
+        }
+    }
+
+    /// Runs it on `ranks` ranks: the same end, the same bits.
+    fn again(&mut self, ranks: usize, binary: &Path, limit: Duration, case: &Case, first: &Ended) {
+        let result = case.folder().join("again.vtkhdf");
+        let mut command = launched(binary, ranks);
+        command.arg(case.problem()).arg("-o").arg(&result);
+        let ended = Running::start(&mut command).wait(limit);
+        let code = |ended: &Ended| ended.status.and_then(|status| status.code());
+        if ended.status.is_none() {
+            return self.ends(Verdict::Hung, format!("on {ranks} ranks"));
+        }
+        if code(&ended) != code(first) {
+            let reason = format!("{:?} on {ranks} ranks: {}", code(&ended), ended.stderr);
+            return self.ends(Verdict::Differs, reason);
+        }
+        if code(first) == Some(0) {
+            let (a, b) = (datasets(&case.result()), datasets(&result));
+            if let Some((name, _)) = a.iter().find(|(name, values)| b.get(*name) != Some(values)) {
+                self.ends(Verdict::Differs, format!("{name} on {ranks} ranks"));
+            }
+        }
+    }
+
+    /// A number of the program's report.
+    pub fn reported(&self, keys: &[&str]) -> Option<f64> {
+        let report = self.report.as_ref()?;
+        keys.iter()
+            .try_fold(report, |at, key| at.get(key))?
+            .as_f64()
+    }
+
+    /// The words of a list in the program's report.
+    pub fn listed(&self, key: &str) -> Option<Vec<&str>> {
+        let words = self.report.as_ref()?.get(key)?.as_array()?;
+        Some(words.iter().filter_map(Value::as_str).collect())
+    }
+}
