@@ -14,6 +14,9 @@ use super::open_factor::{OpenFactor, scale_of};
 
 /// How far below zero, relative to its scale, a force must be to open a contact.
 const FORCE_TOLERANCE: f64 = 1e-12;
+/// The same relative to the stiffness that H is condensed from times the displacements: the round-off
+/// of H itself.
+const STIFFNESS_TOLERANCE: f64 = 1e-15;
 /// How far below zero, relative to the displacements, a gap must be to close a contact.
 const GAP_TOLERANCE: f64 = 1e-14;
 /// Attempts at flipping all wrong signs without progress before that is given up.
@@ -77,8 +80,8 @@ pub struct Trial {
     pub approaches: Vec<f64>,
     /// λ = c − H t, exactly 0 where open.
     pub forces: Vec<f64>,
-    /// What H t leaves of c at open conditions, relative to its terms.
-    unbalanced: f64,
+    /// Whether H t leaves nothing but round-off of c at open conditions.
+    balanced: bool,
 }
 
 impl GapProblem<'_> {
@@ -141,7 +144,7 @@ impl GapProblem<'_> {
                     forces: trial.forces.iter().map(|f| f.max(0.0)).collect(),
                     steps,
                     fell_back: false,
-                    converged: wrong.is_empty() && trial.unbalanced <= FORCE_TOLERANCE,
+                    converged: wrong.is_empty() && trial.balanced,
                 };
             }
             let flips = if patience > 0 {
@@ -171,17 +174,16 @@ impl GapProblem<'_> {
             t[j] = opened;
         }
         self.subtract(&t, |j| open[j], &mut left);
-        let mut unbalanced = 0.0;
+        let largest = self.largest(&t);
+        let mut balanced = true;
         for &i in &factor.open {
-            if left[i] != 0.0 {
-                unbalanced = f64::max(unbalanced, left[i].abs() / self.scale_of(i, &t));
-            }
+            balanced &= left[i].abs() <= self.round_off(i, &t, largest);
             left[i] = 0.0;
         }
         Trial {
             approaches: t,
             forces: left,
-            unbalanced,
+            balanced,
         }
     }
 
@@ -196,11 +198,17 @@ impl GapProblem<'_> {
         }
     }
 
-    /// The absolute terms of condition i's equilibrium.
-    fn scale_of(&self, i: usize, t: &[f64]) -> f64 {
+    /// The largest displacement, approaches `t` among them.
+    fn largest(&self, t: &[f64]) -> f64 {
+        t.iter().fold(self.scale, |m, t| m.max(t.abs()))
+    }
+
+    /// The force that is round-off at condition i, where displacements are up to `largest`.
+    fn round_off(&self, i: usize, t: &[f64], largest: f64) -> f64 {
         let row = self.h.col(i);
         let held: f64 = row.iter().zip(t).map(|(h, t)| (h * t).abs()).sum();
-        self.c_scale[i] + held
+        FORCE_TOLERANCE * (self.c_scale[i] + held)
+            + STIFFNESS_TOLERANCE * self.stiffness[i] * largest
     }
 
     /// The conditions that are open with a negative gap or closed with a negative force, beyond
@@ -209,13 +217,13 @@ impl GapProblem<'_> {
         let Trial {
             approaches, forces, ..
         } = trial;
-        let largest = approaches.iter().fold(self.scale, |m, t| m.max(t.abs()));
+        let largest = self.largest(approaches);
         (0..open.len())
             .filter(|&i| {
                 if open[i] {
                     approaches[i] > self.bounds[i] + GAP_TOLERANCE * largest
                 } else {
-                    forces[i] < 0.0 && forces[i] < -FORCE_TOLERANCE * self.scale_of(i, approaches)
+                    forces[i] < 0.0 && forces[i] < -self.round_off(i, approaches, largest)
                 }
             })
             .collect()
