@@ -9,6 +9,8 @@
 pub mod analysis;
 mod columns;
 mod descent;
+pub mod energy;
+mod inner;
 mod kinematics;
 pub mod loose;
 pub mod motion;

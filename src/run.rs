@@ -78,7 +78,6 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     // Rigid motions that neither supports nor contact hold, and those by which bodies come to rest.
     phase("looking for free rigid motions");
     let survey = survey(comm, &blocks, catalog, &plan)?;
-    let pins = &survey.motions.pins;
     if settings.check {
         narrator.check(&survey);
         return Ok(Ending::Converged);
@@ -90,7 +89,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12).
     phase("factorizing");
     let progress = Progress::factorization(blocks.len(), settings.quiet || !comm.is_root());
-    let condensed = condense_blocks(&blocks, catalog, &plan, pins, &progress, par);
+    let condensed = condense_blocks(&blocks, catalog, &plan, &survey, &progress, par);
     progress.finish();
     let mut condensed = comm.agree(condensed)?;
     [seconds.assemble, seconds.factorize] = condensed.seconds;
@@ -98,7 +97,9 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     // The root assembles S_0 and F, (15), and the bilateral operator.
     phase("assembling the interface problem");
     let lap = Instant::now();
-    let interface = comm.agree(assemble_interface(comm, &condensed, catalog, &plan, par))?;
+    let interface = comm.agree(assemble_interface(
+        comm, &condensed, catalog, &plan, &survey, par,
+    ))?;
     seconds.interface = lap.elapsed().as_secs_f64();
 
     // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17).

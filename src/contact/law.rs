@@ -17,6 +17,8 @@ pub struct PairLaw {
     pub stiffness: Vec<f64>,
     /// The largest displacement prescribed in the pair (m).
     pub scale: f64,
+    /// The condition that each approach is the unknown of.
+    pub defining: Vec<usize>,
 }
 
 impl PairLaw {
@@ -30,10 +32,12 @@ impl PairLaw {
         self.stiffness.is_empty()
     }
 
-    /// Appends the law of `pair` to a message.
-    pub fn pack(pair: &ContactPair, message: &mut Message) {
+    /// Appends the law of `pair`, whose approaches are unknowns of these `defining` conditions, to a
+    /// message.
+    pub fn pack(pair: &ContactPair, defining: &[usize], message: &mut Message) {
         let stiffness = pair.stiffness();
         message.integers.push(stiffness.len() as i64);
+        message.integers.extend(defining.iter().map(|&j| j as i64));
         message.push_lower(pair.s_tt());
         message.push_matrix(pair.s_t_gamma());
         message.reals.extend(stiffness);
@@ -48,6 +52,7 @@ impl PairLaw {
             s_t_gamma: reader.matrix(m, traces),
             stiffness: reader.reals(m),
             scale: reader.real(),
+            defining: (reader.integers(m).iter()).map(|&j| j as usize).collect(),
         }
     }
 

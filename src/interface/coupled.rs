@@ -18,6 +18,7 @@ use crate::contact::active_set::GapProblem;
 use crate::contact::law::PairLaw;
 use crate::contact::pair::PairResponse;
 use crate::contact::s_con::ConState;
+use crate::rigid::energy::remove_rigid_energy;
 use crate::schur::local::multiply_add;
 
 /// Most approaches of all pairs together for which their problem is solved at once: its matrix is
@@ -97,6 +98,10 @@ pub fn condense_laws(interface: &Interface, par: Par) -> Mat<f64> {
         for i in j + 1..m {
             h[(j, i)] = h[(i, j)];
         }
+    }
+    if interface.motions.nrows() == m {
+        let stiffness: Vec<f64> = laws.iter().flat_map(|law| law.stiffness.clone()).collect();
+        remove_rigid_energy(&mut h, &stiffness, interface.motions.as_ref());
     }
     h
 }

@@ -39,6 +39,8 @@ pub struct Interface {
     pub pair_traces: Vec<Vec<u32>>,
     /// The law of every pair; empty where they have too many approaches to be solved for at once.
     pub laws: Vec<PairLaw>,
+    /// Their approaches against the rigid motions of the bodies, which cost no energy.
+    pub motions: Mat<f64>,
     /// S_0 = Σ R_iᵀ S_i R_i over the linear subdomains, (15).
     s_0: SparseSymmetric,
     /// F of the linear subdomains.
@@ -54,7 +56,8 @@ pub struct Interface {
 
 impl Interface {
     /// Assembles S_0, F and the bilateral operator from all blocks, in their order, and factorizes
-    /// the latter. `pair[b]` tells whether block b is a pair.
+    /// the latter. `pair[b]` tells whether block b is a pair; `motions` are the pairs' approaches
+    /// against the rigid motions of the bodies.
     ///
     /// # Errors
     /// The bilateral problem is singular.
@@ -62,6 +65,7 @@ impl Interface {
         numbering: &Numbering,
         contributions: Vec<Contribution>,
         pair: &[bool],
+        motions: Mat<f64>,
         par: Par,
     ) -> Result<Self, Failure> {
         let n = numbering.len;
@@ -112,6 +116,7 @@ impl Interface {
             linear: numbering.linear,
             pair_traces,
             laws,
+            motions,
             s_0,
             f,
             f_scale,

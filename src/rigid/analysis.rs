@@ -77,6 +77,8 @@ pub struct Scene {
     pub names: Vec<String>,
     /// Conditions, pair by pair.
     pub rows: Vec<RigidRow>,
+    /// Number of conditions of every pair.
+    pub conditions: Vec<usize>,
 }
 
 impl Scene {
@@ -272,6 +274,7 @@ mod tests {
             dim: 2,
             bodies: vec![body],
             names: vec!["block".into()],
+            conditions: vec![rows.len()],
             rows,
         };
         scene.analyse()

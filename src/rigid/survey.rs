@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::{Catalog, ContactRow, Subdomain};
+use faer::Mat;
 use nalgebra::DMatrix;
 
 use super::analysis::{BodyState, FreeMotion, Pin, RigidMotions, RigidRow, Scene};
 use super::descent::descent;
+use super::inner::inner_motions;
 use super::motion::BodyFrame;
 use crate::comm::{Comm, Message, MessageReader};
 use crate::error::Failure;
@@ -22,6 +24,9 @@ pub struct Survey {
     pub motions: RigidMotions,
     /// The rigid motion by which every body comes to rest.
     pub descent: Vec<Vec<f64>>,
+    /// For every pair of this rank, its conditions against the motions that supports leave to the
+    /// bodies that lie wholly in it: what moves them costs the pair no energy.
+    pub inner_motions: BTreeMap<usize, Mat<f64>>,
     /// Whether supports leave any rigid motion to any body.
     pub movable: bool,
     /// What all this follows from, on the root.
@@ -50,11 +55,13 @@ pub fn survey(
         .collect();
     // Below, what is asked of a subdomain is asked on its owner, which has read it.
     let frames = body_frames(comm, &subdomains, catalog, &owners);
+    let (rows, conditions) = rigid_rows(comm, blocks, catalog, plan, &frames);
     let scene = Scene {
         dim: catalog.dim,
         bodies: body_states(comm, &subdomains, catalog, &owners, &frames),
         names: catalog.bodies.iter().map(|b| b.name.clone()).collect(),
-        rows: rigid_rows(comm, blocks, catalog, plan, &frames),
+        rows,
+        conditions,
     };
     let found = if comm.is_root() {
         scene.analyse()
@@ -81,6 +88,7 @@ pub fn survey(
     Ok(Survey {
         frames,
         motions,
+        inner_motions: inner_motions(comm, &scene, catalog, plan),
         movable: message.integers.first() == Some(&1),
         descent: message.reals.chunks(modes).map(<[f64]>::to_vec).collect(),
         scene: comm.is_root().then_some(scene),
@@ -250,9 +258,10 @@ fn rigid_rows(
     catalog: &Catalog,
     plan: &Plan,
     frames: &[BodyFrame],
-) -> Vec<RigidRow> {
+) -> (Vec<RigidRow>, Vec<usize>) {
     let modes = BodyFrame::count(catalog.dim);
     let mut rows = Vec::new();
+    let mut conditions = Vec::new();
     comm.gather(
         &plan.pair_owners(),
         |p| {
@@ -266,6 +275,7 @@ fn rigid_rows(
         },
         |_, message| {
             let count = message.integers.len();
+            let before = rows.len();
             let mut reader = message.read();
             let mut read = 0;
             while read < count {
@@ -277,9 +287,10 @@ fn rigid_rows(
                 let gap = reader.real();
                 rows.push(RigidRow { bodies, gap });
             }
+            conditions.push(rows.len() - before);
         },
     );
-    rows
+    (rows, conditions)
 }
 
 fn pack_row(

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use contact_dd_partition::problem::Catalog;
-use faer::{Mat, Par};
+use faer::{Mat, MatRef, Par};
 
 use super::read::OwnedBlock;
 use crate::comm::{Comm, Message};
@@ -21,6 +21,8 @@ use crate::interface::operator::{Contribution, Interface};
 use crate::output::progress::Progress;
 use crate::plan::Plan;
 use crate::rigid::analysis::Pin;
+use crate::rigid::energy::remove_rigid_energy;
+use crate::rigid::survey::Survey;
 use crate::schur::factor::FactorError;
 use crate::schur::local::{LinearSubdomain, LocalSchur};
 
@@ -47,7 +49,7 @@ pub fn condense_blocks(
     blocks: &BTreeMap<usize, OwnedBlock>,
     catalog: &Catalog,
     plan: &Plan,
-    pins: &[Pin],
+    survey: &Survey,
     progress: &Progress,
     par: Par,
 ) -> Result<CondensedBlocks, Failure> {
@@ -59,17 +61,26 @@ pub fn condense_blocks(
         } = owned;
         let dofs = Dofs::new(block, conditions, &catalog.materials)
             .map_err(|error| dof_failure(error, owned, catalog))?;
-        let system = assemble(block, &dofs, &catalog.materials, &pins_of(block, pins))
-            .ok_or_else(|| size(plan, number))?;
+        let system = assemble(
+            block,
+            &dofs,
+            &catalog.materials,
+            &pins_of(block, &survey.motions.pins),
+        )
+        .ok_or_else(|| size(plan, number))?;
         let assembled = Instant::now();
-        let schur = LocalSchur::new(&system, dofs.interior, par).map_err(|error| match error {
-            FactorError::Size => size(plan, number),
-            FactorError::Pivot(unknown) => moves(owned, &dofs, unknown, catalog),
-        })?;
+        let mut schur =
+            LocalSchur::new(&system, dofs.interior, par).map_err(|error| match error {
+                FactorError::Size => size(plan, number),
+                FactorError::Pivot(unknown) => moves(owned, &dofs, unknown, catalog),
+            })?;
         let load = schur.condense(system.load);
         match plan.pair_of(number) {
             Some(pair) => {
                 let limits = limits(owned, &dofs, catalog)?;
+                if let Some(motions) = survey.inner_motions.get(&pair) {
+                    forget_rigid_energy(&mut schur, &dofs.defining_conditions(), motions.as_ref());
+                }
                 condensed
                     .pairs
                     .insert(pair, ContactPair::new(schur, load, limits));
@@ -87,6 +98,16 @@ pub fn condense_blocks(
         progress.advance();
     }
     Ok(condensed)
+}
+
+/// Takes what round-off makes of the energy of rigid motions out of a pair's S on its approaches;
+/// `motions` are its conditions against them.
+fn forget_rigid_energy(schur: &mut LocalSchur, defining: &[usize], motions: MatRef<'_, f64>) {
+    let m = defining.len();
+    let of_approaches = Mat::from_fn(m, motions.ncols(), |i, k| motions[(defining[i], k)]);
+    let mut h = schur.s.submatrix(0, 0, m, m).to_owned();
+    remove_rigid_energy(&mut h, &schur.stiffness[..m], of_approaches.as_ref());
+    schur.s.submatrix_mut(0, 0, m, m).copy_from(&h);
 }
 
 /// The pins that lie in a block: node and component.
@@ -188,6 +209,7 @@ pub fn assemble_interface(
     blocks: &CondensedBlocks,
     catalog: &Catalog,
     plan: &Plan,
+    survey: &Survey,
     par: Par,
 ) -> Result<Option<(Numbering, Interface)>, Failure> {
     let owners = plan.owners();
@@ -211,8 +233,22 @@ pub fn assemble_interface(
         .collect();
     let is_pair: Vec<bool> = plan.blocks.iter().map(|b| b.group.is_some()).collect();
     let numbering = Numbering::new(&traces, &nodes, &is_pair)?;
-    let interface = Interface::new(&numbering, contributions, &is_pair, par)?;
+    let motions = motions_of_approaches(survey, &contributions);
+    let interface = Interface::new(&numbering, contributions, &is_pair, motions, par)?;
     Ok(Some((numbering, interface)))
+}
+
+/// The approaches of all pairs against the motions that supports leave to the bodies.
+fn motions_of_approaches(survey: &Survey, contributions: &[Contribution]) -> Mat<f64> {
+    let Some(scene) = survey.scene.as_ref().filter(|_| survey.movable) else {
+        return Mat::new();
+    };
+    let laws = contributions.iter().filter_map(|c| c.law.as_ref());
+    let defining: Vec<usize> = laws
+        .zip(scene.first_conditions())
+        .flat_map(|(law, first)| law.defining.iter().map(move |j| first + j))
+        .collect();
+    scene.against(&defining)
 }
 
 /// Whether the pairs have few enough conditions for the root to solve for all of them at once.
@@ -241,7 +277,7 @@ fn pack(blocks: &CondensedBlocks, plan: &Plan, b: usize, with_laws: bool) -> Mes
         message.reals.extend(pair.bilateral_load());
         message.reals.push(pair.schur().smallest_pivot());
         if with_laws {
-            PairLaw::pack(pair, &mut message);
+            PairLaw::pack(pair, &dofs.defining_conditions(), &mut message);
         }
     } else if let Some(LinearSubdomain { schur, load }) = blocks.linear.get(&b) {
         message.push_lower(schur.s.as_ref());

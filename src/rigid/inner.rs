@@ -1,0 +1,82 @@
+//! Contact conditions against the rigid motions of the bodies that lie wholly in a pair.
+
+use std::collections::BTreeMap;
+
+use contact_dd_partition::problem::Catalog;
+use faer::Mat;
+
+use super::analysis::Scene;
+use super::kinematics::Kinematics;
+use crate::comm::{Comm, Message};
+use crate::plan::Plan;
+
+impl Scene {
+    /// B of the conditions with these numbers against the motions that supports leave to the bodies.
+    pub fn against(&self, conditions: &[usize]) -> Mat<f64> {
+        let kinematics = Kinematics::new(self.dim, &self.bodies);
+        self.rows_against(&kinematics, conditions, |_| true)
+    }
+
+    fn rows_against(
+        &self,
+        kinematics: &Kinematics,
+        conditions: &[usize],
+        bodies: impl Fn(usize) -> bool,
+    ) -> Mat<f64> {
+        let rows: Vec<_> = conditions.iter().map(|&j| self.rows[j].clone()).collect();
+        let b = kinematics.rows(&rows);
+        let columns: Vec<usize> = (0..self.bodies.len())
+            .filter(|&body| bodies(body))
+            .flat_map(|body| kinematics.unknowns(body))
+            .collect();
+        Mat::from_fn(rows.len(), columns.len(), |i, k| b[(i, columns[k])])
+    }
+
+    /// The number of the first condition of every pair, and that of all.
+    pub fn first_conditions(&self) -> Vec<usize> {
+        let mut first = vec![0];
+        for count in &self.conditions {
+            first.push(first[first.len() - 1] + count);
+        }
+        first
+    }
+}
+
+/// For every pair of this rank, its conditions against the motions of the bodies wholly in it.
+/// Collective; `scene` counts on the root alone.
+pub(super) fn inner_motions(
+    comm: &Comm,
+    scene: &Scene,
+    catalog: &Catalog,
+    plan: &Plan,
+) -> BTreeMap<usize, Mat<f64>> {
+    let mut home: Vec<Option<usize>> = vec![None; catalog.bodies.len()];
+    let mut scattered = vec![false; catalog.bodies.len()];
+    for (subdomain, &block) in catalog.subdomains.iter().zip(&plan.block_of) {
+        let known = home[subdomain.body].get_or_insert(block);
+        scattered[subdomain.body] |= *known != block;
+    }
+    let first = scene.first_conditions();
+    let kinematics = Kinematics::new(scene.dim, &scene.bodies);
+    let mut motions = BTreeMap::new();
+    comm.scatter(
+        &plan.pair_owners(),
+        |p| {
+            let conditions: Vec<usize> = (first[p]..first[p + 1]).collect();
+            let within = |body: usize| !scattered[body] && home[body] == Some(plan.pairs[p]);
+            let against = scene.rows_against(&kinematics, &conditions, within);
+            let mut message = Message {
+                integers: vec![against.nrows() as i64, against.ncols() as i64],
+                reals: Vec::new(),
+            };
+            message.push_matrix(against.as_ref());
+            message
+        },
+        |p, message| {
+            let mut reader = message.read();
+            let (rows, columns) = (reader.count(), reader.count());
+            motions.insert(p, reader.matrix(rows, columns));
+        },
+    );
+    motions
+}
