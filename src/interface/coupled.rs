@@ -18,7 +18,6 @@ use crate::contact::active_set::GapProblem;
 use crate::contact::law::PairLaw;
 use crate::contact::pair::PairResponse;
 use crate::contact::s_con::ConState;
-use crate::rigid::energy::remove_rigid_energy;
 use crate::schur::local::multiply_add;
 
 /// Most approaches of all pairs together for which their problem is solved at once: its matrix is
@@ -99,10 +98,7 @@ pub fn condense_laws(interface: &Interface, par: Par) -> Mat<f64> {
             h[(j, i)] = h[(i, j)];
         }
     }
-    if interface.motions.nrows() == m {
-        let stiffness: Vec<f64> = laws.iter().flat_map(|law| law.stiffness.clone()).collect();
-        remove_rigid_energy(&mut h, &stiffness, interface.motions.as_ref());
-    }
+    interface.motions.remove_energy(&mut h);
     h
 }
 
@@ -123,7 +119,8 @@ impl<'a> CoupledContact<'a> {
         let all = |of: fn(&PairResponse) -> &Vec<f64>| -> Vec<f64> {
             state.responses.iter().flat_map(of).copied().collect()
         };
-        let condensed = self.condense(r, all(|p| &p.drives), all(|p| &p.drive_scale));
+        let mut condensed = self.condense(r, all(|p| &p.drives), all(|p| &p.drive_scale));
+        self.interface.motions.set_load(&mut condensed.c);
         let mut open: Vec<bool> = state.open().concat();
         let solution = self
             .problem(&condensed, &all(|p| &p.gaps), u)

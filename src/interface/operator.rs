@@ -8,6 +8,7 @@ use super::coupled::condense_laws;
 use super::numbering::Numbering;
 use crate::contact::law::PairLaw;
 use crate::error::Failure;
+use crate::rigid::energy::{RigidBasis, RigidDrive};
 use crate::schur::factor::BoundaryLastCholesky;
 use crate::schur::pattern::{LowerPattern, SparseSymmetric};
 
@@ -39,8 +40,8 @@ pub struct Interface {
     pub pair_traces: Vec<Vec<u32>>,
     /// The law of every pair; empty where they have too many approaches to be solved for at once.
     pub laws: Vec<PairLaw>,
-    /// Their approaches against the rigid motions of the bodies, which cost no energy.
-    pub motions: Mat<f64>,
+    /// The rigid motions of the bodies as their approaches see them.
+    pub motions: RigidBasis,
     /// S_0 = Σ R_iᵀ S_i R_i over the linear subdomains, (15).
     s_0: SparseSymmetric,
     /// F of the linear subdomains.
@@ -65,7 +66,7 @@ impl Interface {
         numbering: &Numbering,
         contributions: Vec<Contribution>,
         pair: &[bool],
-        motions: Mat<f64>,
+        motions: &RigidDrive,
         par: Par,
     ) -> Result<Self, Failure> {
         let n = numbering.len;
@@ -115,8 +116,8 @@ impl Interface {
             len: n,
             linear: numbering.linear,
             pair_traces,
+            motions: RigidBasis::new(motions, &stiffness_of(&laws)),
             laws,
-            motions,
             s_0,
             f,
             f_scale,
@@ -190,4 +191,9 @@ impl Interface {
             y[i as usize] += x;
         }
     }
+}
+
+/// The stiffness of all approaches, side by side.
+fn stiffness_of(laws: &[PairLaw]) -> Vec<f64> {
+    laws.iter().flat_map(|law| law.stiffness.clone()).collect()
 }

@@ -1,87 +1,175 @@
-//! Rigid motions cost no energy, whatever round-off makes of it.
+//! Rigid motions cost no energy and carry the load's resultant, whatever round-off makes of it.
 //!
-//! A stiff body among soft ones leaves cancellation in a stiffness condensed onto approaches: an
-//! energy, of either sign, for motions that have none. They are known, so it is taken out.
+//! A stiff body among soft ones leaves cancellation in what is condensed onto approaches: an energy
+//! H, of either sign, of motions that have none, and a load c that drives them otherwise than the
+//! load of the bodies does. Both are known exactly, from geometry.
 
-use faer::{Mat, MatRef};
+use faer::Mat;
 
 /// Part of a motion, relative to all of it, that is new.
 const INDEPENDENT: f64 = 1e-10;
 
-/// H ← Pᵀ H P, where P takes out the columns of `motions`, orthogonally if displacements are
-/// measured by the energy of `stiffness`, a diagonal.
-pub fn remove_rigid_energy(h: &mut Mat<f64>, stiffness: &[f64], motions: MatRef<'_, f64>) {
-    let root: Vec<f64> = stiffness.iter().map(|k| k.max(0.0).sqrt()).collect();
-    let q = orthonormal(Mat::from_fn(h.nrows(), motions.ncols(), |i, k| {
-        root[i] * motions[(i, k)]
-    }));
-    if q.ncols() == 0 {
-        return;
-    }
-    // In the scale of energies H is D^(−1/2) H D^(−1/2): P H P = H − Q Xᵀ − X Qᵀ with
-    // X = H Q − ½ Q (Qᵀ H Q).
-    let scaled = Mat::from_fn(h.nrows(), h.ncols(), |i, j| {
-        if root[i] > 0.0 && root[j] > 0.0 {
-            h[(i, j)] / root[i] / root[j]
-        } else {
-            0.0
-        }
-    });
-    let hq = &scaled * &q;
-    let qhq = q.transpose() * &hq;
-    let x = &hq - &q * &qhq * faer::Scale(0.5);
-    let change = &q * x.transpose();
-    for j in 0..h.ncols() {
-        for i in j..h.nrows() {
-            let value = h[(i, j)] - root[i] * root[j] * (change[(i, j)] + change[(j, i)]);
-            h[(i, j)] = value;
-            h[(j, i)] = value;
+/// Approaches against rigid motions: R, a row an approach and a column a motion, and the load Rᵀ c
+/// along them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidDrive {
+    /// R.
+    pub rows: Mat<f64>,
+    /// The resultant of the bodies' load along every motion.
+    pub load: Vec<f64>,
+}
+
+impl Default for RigidDrive {
+    /// No motions.
+    fn default() -> Self {
+        Self {
+            rows: Mat::new(),
+            load: Vec::new(),
         }
     }
 }
 
-/// An orthonormal basis of what the columns of `a` span, by Gram and Schmidt, twice.
-fn orthonormal(a: Mat<f64>) -> Mat<f64> {
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    for column in a.col_iter() {
-        let mut v: Vec<f64> = column.iter().copied().collect();
-        let whole = norm(&v);
-        for _ in 0..2 {
-            for q in &basis {
-                let along: f64 = v.iter().zip(q).map(|(v, q)| v * q).sum();
-                for (v, q) in v.iter_mut().zip(q) {
-                    *v -= along * q;
+/// The motions in the scale of energies: an orthonormal basis Q of what D^½ R spans, D the diagonal of
+/// the matrix that is condensed.
+#[derive(Clone, Debug, Default)]
+pub struct RigidBasis {
+    root: Vec<f64>,
+    q: Vec<Vec<f64>>,
+    /// Qᵀ D^(−½) c.
+    load: Vec<f64>,
+}
+
+impl RigidBasis {
+    /// The basis for approaches of this `stiffness` D, by Gram and Schmidt, twice.
+    pub fn new(drive: &RigidDrive, stiffness: &[f64]) -> Self {
+        let root: Vec<f64> = stiffness.iter().map(|k| k.max(0.0).sqrt()).collect();
+        let mut basis = Self {
+            root,
+            ..Self::default()
+        };
+        for (column, &load) in drive.rows.col_iter().zip(&drive.load) {
+            let mut v: Vec<f64> = (column.iter().zip(&basis.root))
+                .map(|(r, root)| r * root)
+                .collect();
+            let whole = dot(&v, &v).sqrt();
+            let mut load = load;
+            for _ in 0..2 {
+                for (q, load_of_q) in basis.q.iter().zip(&basis.load) {
+                    let along = dot(&v, q);
+                    load -= along * load_of_q;
+                    for (v, q) in v.iter_mut().zip(q) {
+                        *v -= along * q;
+                    }
                 }
             }
+            let left = dot(&v, &v).sqrt();
+            if left > INDEPENDENT * whole {
+                basis.q.push(v.iter().map(|v| v / left).collect());
+                basis.load.push(load / left);
+            }
         }
-        let left = norm(&v);
-        if left > INDEPENDENT * whole && left > 0.0 {
-            basis.push(v.iter().map(|v| v / left).collect());
+        basis
+    }
+
+    /// H ← Pᵀ H P, where P takes the motions out.
+    pub fn remove_energy(&self, h: &mut Mat<f64>) {
+        let (n, rank) = (h.nrows(), self.q.len());
+        if rank == 0 {
+            return;
+        }
+        // In the scale of energies P H P = H − Q Xᵀ − X Qᵀ with X = H Q − ½ Q (Qᵀ H Q).
+        let q = Mat::from_fn(n, rank, |i, k| self.q[k][i]);
+        let scaled = Mat::from_fn(n, n, |i, j| match self.root[i] * self.root[j] {
+            0.0 => 0.0,
+            product => h[(i, j)] / product,
+        });
+        let hq = &scaled * &q;
+        let qhq = q.transpose() * &hq;
+        let x = &hq - &q * &qhq * faer::Scale(0.5);
+        let change = &q * x.transpose();
+        for j in 0..n {
+            for i in j..n {
+                let of_both = change[(i, j)] + change[(j, i)];
+                let value = h[(i, j)] - self.root[i] * self.root[j] * of_both;
+                h[(i, j)] = value;
+                h[(j, i)] = value;
+            }
         }
     }
-    Mat::from_fn(a.nrows(), basis.len(), |i, k| basis[k][i])
+
+    /// Gives c the part along the motions that the bodies' load has.
+    pub fn set_load(&self, c: &mut [f64]) {
+        self.set(c, |k| self.load[k]);
+    }
+
+    /// Takes out of c what it has along the motions.
+    pub fn remove_load(&self, c: &mut [f64]) {
+        self.set(c, |_| 0.0);
+    }
+
+    fn set(&self, c: &mut [f64], exact: impl Fn(usize) -> f64) {
+        for (k, q) in self.q.iter().enumerate() {
+            let scaled = c.iter().zip(&self.root).zip(q);
+            let found: f64 = scaled
+                .map(|((c, root), q)| if *root > 0.0 { c / root * q } else { 0.0 })
+                .sum();
+            let missing = exact(k) - found;
+            for ((c, root), q) in c.iter_mut().zip(&self.root).zip(q) {
+                *c += missing * root * q;
+            }
+        }
+    }
 }
 
-fn norm(v: &[f64]) -> f64 {
-    v.iter().map(|v| v * v).sum::<f64>().sqrt()
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const BEND: [f64; 3] = [1.0, -2.0, 1.0];
+    const STIFFNESS: [f64; 3] = [1.0, 4.0, 2.0];
+
+    /// Lifting, rocking, and both at once, of a beam on three supports.
+    fn lifting_and_rocking(load: [f64; 2]) -> RigidDrive {
+        RigidDrive {
+            rows: Mat::from_fn(3, 3, |i, k| [1.0, i as f64 - 1.0, i as f64][k]),
+            load: vec![load[0], load[1], load[0] + load[1]],
+        }
+    }
+
     #[test]
     fn what_round_off_left_of_a_motion_goes_and_nothing_else() {
-        let bend = [1.0, -2.0, 1.0];
-        let exact = Mat::from_fn(3, 3, |i, j| bend[i] * bend[j]);
+        let exact = Mat::from_fn(3, 3, |i, j| BEND[i] * BEND[j]);
         let noise = |i: usize, j: usize| 1e-9 * ((i * j + i + j) as f64).sin();
         let mut h = Mat::from_fn(3, 3, |i, j| exact[(i, j)] + noise(i, j));
-        // Lifting, rocking, and both at once.
-        let motions = Mat::from_fn(3, 3, |i, k| [1.0, i as f64 - 1.0, i as f64][k]);
-        remove_rigid_energy(&mut h, &[1.0, 4.0, 2.0], motions.as_ref());
-        assert!((&h * &motions).norm_max() < 1e-15);
+        let drive = lifting_and_rocking([0.0, 0.0]);
+        RigidBasis::new(&drive, &STIFFNESS).remove_energy(&mut h);
+        assert!((&h * &drive.rows).norm_max() < 1e-15);
         assert!((&h - &exact).norm_max() < 1e-8);
-        remove_rigid_energy(&mut h, &[1.0, 4.0, 2.0], Mat::zeros(3, 0).as_ref());
-        assert!((&h * &motions).norm_max() < 1e-15);
+    }
+
+    #[test]
+    fn a_load_gets_the_resultant_that_it_has() {
+        let drive = lifting_and_rocking([3.0, -0.5]);
+        let mut c = vec![1.25 + 1e-9, 1.0 - 2e-9, 0.75];
+        let basis = RigidBasis::new(&drive, &STIFFNESS);
+        basis.set_load(&mut c);
+        for (column, load) in drive.rows.col_iter().zip(&drive.load) {
+            let found: f64 = column.iter().zip(&c).map(|(r, c)| r * c).sum();
+            assert!((found - load).abs() < 1e-14, "{found}, expected {load}");
+        }
+        assert!((c[0] - 1.25).abs() < 1e-8);
+        basis.remove_load(&mut c);
+        assert!(
+            c.iter()
+                .zip([1.0; 3])
+                .map(|(c, z)| c * z)
+                .sum::<f64>()
+                .abs()
+                < 1e-14
+        );
     }
 }

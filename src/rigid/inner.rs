@@ -6,30 +6,36 @@ use contact_dd_partition::problem::Catalog;
 use faer::Mat;
 
 use super::analysis::Scene;
+use super::energy::RigidDrive;
 use super::kinematics::Kinematics;
 use crate::comm::{Comm, Message};
 use crate::plan::Plan;
 
 impl Scene {
-    /// B of the conditions with these numbers against the motions that supports leave to the bodies.
-    pub fn against(&self, conditions: &[usize]) -> Mat<f64> {
+    /// The conditions with these numbers against the motions that supports leave to the bodies, and
+    /// the load along these.
+    pub fn against(&self, conditions: &[usize]) -> RigidDrive {
         let kinematics = Kinematics::new(self.dim, &self.bodies);
-        self.rows_against(&kinematics, conditions, |_| true)
+        self.drive(&kinematics, conditions, |_| true)
     }
 
-    fn rows_against(
+    fn drive(
         &self,
         kinematics: &Kinematics,
         conditions: &[usize],
         bodies: impl Fn(usize) -> bool,
-    ) -> Mat<f64> {
+    ) -> RigidDrive {
         let rows: Vec<_> = conditions.iter().map(|&j| self.rows[j].clone()).collect();
         let b = kinematics.rows(&rows);
+        let load = kinematics.load(&self.bodies);
         let columns: Vec<usize> = (0..self.bodies.len())
             .filter(|&body| bodies(body))
             .flat_map(|body| kinematics.unknowns(body))
             .collect();
-        Mat::from_fn(rows.len(), columns.len(), |i, k| b[(i, columns[k])])
+        RigidDrive {
+            rows: Mat::from_fn(rows.len(), columns.len(), |i, k| b[(i, columns[k])]),
+            load: columns.iter().map(|&k| load[k]).collect(),
+        }
     }
 
     /// The number of the first condition of every pair, and that of all.
@@ -49,7 +55,7 @@ pub(super) fn inner_motions(
     scene: &Scene,
     catalog: &Catalog,
     plan: &Plan,
-) -> BTreeMap<usize, Mat<f64>> {
+) -> BTreeMap<usize, RigidDrive> {
     let mut home: Vec<Option<usize>> = vec![None; catalog.bodies.len()];
     let mut scattered = vec![false; catalog.bodies.len()];
     for (subdomain, &block) in catalog.subdomains.iter().zip(&plan.block_of) {
@@ -64,18 +70,20 @@ pub(super) fn inner_motions(
         |p| {
             let conditions: Vec<usize> = (first[p]..first[p + 1]).collect();
             let within = |body: usize| !scattered[body] && home[body] == Some(plan.pairs[p]);
-            let against = scene.rows_against(&kinematics, &conditions, within);
+            let drive = scene.drive(&kinematics, &conditions, within);
             let mut message = Message {
-                integers: vec![against.nrows() as i64, against.ncols() as i64],
-                reals: Vec::new(),
+                integers: vec![drive.rows.nrows() as i64, drive.rows.ncols() as i64],
+                reals: drive.load,
             };
-            message.push_matrix(against.as_ref());
+            message.push_matrix(drive.rows.as_ref());
             message
         },
         |p, message| {
             let mut reader = message.read();
             let (rows, columns) = (reader.count(), reader.count());
-            motions.insert(p, reader.matrix(rows, columns));
+            let load = reader.reals(columns);
+            let rows = reader.matrix(rows, columns);
+            motions.insert(p, RigidDrive { rows, load });
         },
     );
     motions

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::{Catalog, ContactRow, Subdomain};
-use faer::Mat;
 use nalgebra::DMatrix;
 
 use super::analysis::{BodyState, FreeMotion, Pin, RigidMotions, RigidRow, Scene};
 use super::descent::descent;
+use super::energy::RigidDrive;
 use super::inner::inner_motions;
 use super::motion::BodyFrame;
 use crate::comm::{Comm, Message, MessageReader};
@@ -26,7 +26,7 @@ pub struct Survey {
     pub descent: Vec<Vec<f64>>,
     /// For every pair of this rank, its conditions against the motions that supports leave to the
     /// bodies that lie wholly in it: what moves them costs the pair no energy.
-    pub inner_motions: BTreeMap<usize, Mat<f64>>,
+    pub inner_motions: BTreeMap<usize, RigidDrive>,
     /// Whether supports leave any rigid motion to any body.
     pub movable: bool,
     /// What all this follows from, on the root.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use contact_dd_partition::problem::Catalog;
-use faer::{Mat, MatRef, Par};
+use faer::{Mat, Par};
 
 use super::read::OwnedBlock;
 use crate::comm::{Comm, Message};
@@ -21,10 +21,10 @@ use crate::interface::operator::{Contribution, Interface};
 use crate::output::progress::Progress;
 use crate::plan::Plan;
 use crate::rigid::analysis::Pin;
-use crate::rigid::energy::remove_rigid_energy;
+use crate::rigid::energy::{RigidBasis, RigidDrive};
 use crate::rigid::survey::Survey;
 use crate::schur::factor::FactorError;
-use crate::schur::local::{LinearSubdomain, LocalSchur};
+use crate::schur::local::{CondensedLoad, LinearSubdomain, LocalSchur};
 
 /// The condensed blocks of this rank.
 #[derive(Debug, Default)]
@@ -74,12 +74,12 @@ pub fn condense_blocks(
                 FactorError::Size => size(plan, number),
                 FactorError::Pivot(unknown) => moves(owned, &dofs, unknown, catalog),
             })?;
-        let load = schur.condense(system.load);
+        let mut load = schur.condense(system.load);
         match plan.pair_of(number) {
             Some(pair) => {
                 let limits = limits(owned, &dofs, catalog)?;
-                if let Some(motions) = survey.inner_motions.get(&pair) {
-                    forget_rigid_energy(&mut schur, &dofs.defining_conditions(), motions.as_ref());
+                if let Some(drive) = survey.inner_motions.get(&pair) {
+                    settle_rigid_motions(&mut schur, &mut load, &dofs, drive);
                 }
                 condensed
                     .pairs
@@ -100,14 +100,34 @@ pub fn condense_blocks(
     Ok(condensed)
 }
 
-/// Takes what round-off makes of the energy of rigid motions out of a pair's S on its approaches;
-/// `motions` are its conditions against them.
-fn forget_rigid_energy(schur: &mut LocalSchur, defining: &[usize], motions: MatRef<'_, f64>) {
+/// Makes a pair's S and load on its approaches exact along rigid motions of the bodies that lie wholly
+/// in it; `drive` is that of its conditions.
+fn settle_rigid_motions(
+    schur: &mut LocalSchur,
+    load: &mut CondensedLoad,
+    dofs: &Dofs,
+    drive: &RigidDrive,
+) {
+    let defining = dofs.defining_conditions();
     let m = defining.len();
-    let of_approaches = Mat::from_fn(m, motions.ncols(), |i, k| motions[(defining[i], k)]);
+    let columns = drive.rows.ncols();
+    let of_approaches = RigidDrive {
+        rows: Mat::from_fn(m, columns, |i, k| drive.rows[(defining[i], k)]),
+        load: drive.load.clone(),
+    };
+    let basis = RigidBasis::new(&of_approaches, &schur.stiffness[..m]);
     let mut h = schur.s.submatrix(0, 0, m, m).to_owned();
-    remove_rigid_energy(&mut h, &schur.stiffness[..m], of_approaches.as_ref());
+    basis.remove_energy(&mut h);
     schur.s.submatrix_mut(0, 0, m, m).copy_from(&h);
+    for j in m..schur.s.ncols() {
+        let mut column: Vec<f64> = (0..m).map(|i| schur.s[(i, j)]).collect();
+        basis.remove_load(&mut column);
+        for (i, s) in column.into_iter().enumerate() {
+            schur.s[(i, j)] = s;
+            schur.s[(j, i)] = s;
+        }
+    }
+    basis.set_load(&mut load.boundary_mut()[..m]);
 }
 
 /// The pins that lie in a block: node and component.
@@ -234,14 +254,14 @@ pub fn assemble_interface(
     let is_pair: Vec<bool> = plan.blocks.iter().map(|b| b.group.is_some()).collect();
     let numbering = Numbering::new(&traces, &nodes, &is_pair)?;
     let motions = motions_of_approaches(survey, &contributions);
-    let interface = Interface::new(&numbering, contributions, &is_pair, motions, par)?;
+    let interface = Interface::new(&numbering, contributions, &is_pair, &motions, par)?;
     Ok(Some((numbering, interface)))
 }
 
 /// The approaches of all pairs against the motions that supports leave to the bodies.
-fn motions_of_approaches(survey: &Survey, contributions: &[Contribution]) -> Mat<f64> {
+fn motions_of_approaches(survey: &Survey, contributions: &[Contribution]) -> RigidDrive {
     let Some(scene) = survey.scene.as_ref().filter(|_| survey.movable) else {
-        return Mat::new();
+        return RigidDrive::default();
     };
     let laws = contributions.iter().filter_map(|c| c.law.as_ref());
     let defining: Vec<usize> = laws

@@ -78,6 +78,11 @@ impl CondensedLoad {
     pub fn boundary(&self) -> &[f64] {
         &self.y[self.interior..]
     }
+
+    /// The load on B, to be corrected.
+    pub fn boundary_mut(&mut self) -> &mut [f64] {
+        &mut self.y[self.interior..]
+    }
 }
 
 /// A subdomain without contact: S_i and its condensed load.
