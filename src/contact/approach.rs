@@ -2,9 +2,14 @@
 //!
 //! A condition `b·v ≤ g` bounds the approach t = b·v of the two sides. Solving that equation for
 //! one of its unknowns makes t an unknown in that one's place, so that a pair's problem has nothing
-//! but bounds t ≤ g; t = 0 is the bilateral problem (16).
+//! but bounds t ≤ g; t = 0 is the bilateral problem (16). Where more conditions meet than there are
+//! directions, what is left of a condition is a combination of approaches.
 
 use std::collections::HashMap;
+
+/// Coefficients of unit normals are of order one; what elimination leaves of a condition that
+/// depends on others is round-off.
+const ROUND_OFF: f64 = 1e-10;
 
 /// What a displacement is made of once the approaches are unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -41,19 +46,25 @@ impl Affine {
         }
     }
 
-    /// This as a positive multiple of one approach, if it is one but for round-off.
-    fn as_multiple(&self) -> Option<ApproachOf> {
-        let mut terms = self.terms.iter().filter(|(_, c)| c.abs() > 1e-10);
-        match (terms.next(), terms.next()) {
-            (Some(&(Variable::Approach(number), factor)), None) if factor > 0.0 => {
-                Some(ApproachOf::Unknown {
-                    number: number as usize,
-                    factor,
-                    constant: self.constant,
-                })
-            }
-            _ => None,
+    /// This in terms of approaches alone, if it is so but for round-off.
+    fn of_approaches(&self) -> Option<ApproachOf> {
+        let mut terms = Vec::new();
+        for &(variable, factor) in self.terms.iter().filter(|(_, c)| c.abs() > ROUND_OFF) {
+            let Variable::Approach(number) = variable else {
+                return None;
+            };
+            terms.push((number as usize, factor));
         }
+        let constant = self.constant;
+        Some(match terms[..] {
+            [] => ApproachOf::Prescribed(constant),
+            [(number, factor)] if factor > 0.0 => ApproachOf::Unknown {
+                number,
+                factor,
+                constant,
+            },
+            _ => ApproachOf::Combination { terms, constant },
+        })
     }
 
     /// Puts `value` in the place of `variable`.
@@ -70,7 +81,7 @@ impl Affine {
 }
 
 /// Where the approach of a condition is found.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ApproachOf {
     /// It is `factor`·t + `constant` of an unknown approach t, factor > 0. The condition whose
     /// unknown that is has 1 and 0; one that says the same again shares it.
@@ -82,13 +93,20 @@ pub enum ApproachOf {
         /// Constant (m).
         constant: f64,
     },
+    /// It is Σ factor·t + `constant` of several unknown approaches, or a negative multiple of one.
+    Combination {
+        /// Numbers of the approaches and factors.
+        terms: Vec<(usize, f64)>,
+        /// Constant (m).
+        constant: f64,
+    },
     /// Supports prescribe it on both sides (m).
     Prescribed(f64),
 }
 
-/// A condition that depends on several others, so that it can't be a bound: its number.
+/// A condition that has unknowns on Γ alone, which can't be replaced: its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DependentCondition(pub usize);
+pub struct OnInterface(pub usize);
 
 /// Approaches solved for one unknown each.
 #[derive(Clone, Debug, Default)]
@@ -109,12 +127,12 @@ impl Approaches {
     /// a stiff side in terms of a soft one is a small difference of large forces.
     ///
     /// # Errors
-    /// The first condition that can be neither an unknown nor a multiple of one.
+    /// The first condition that lies on Γ.
     pub fn new(
         rows: &[ApproachRow],
         may_go: impl Fn(u32) -> bool,
         stiffness: impl Fn(u32) -> f64,
-    ) -> Result<Self, DependentCondition> {
+    ) -> Result<Self, OnInterface> {
         let mut uses: HashMap<u32, usize> = HashMap::new();
         for row in rows {
             for &(v, _) in &row.terms {
@@ -143,14 +161,14 @@ impl Approaches {
             let nowhere_else = |v: u32| uses[&v] == 1 && own.contains(&v);
             let of = approaches
                 .solve_for_one(rest, nowhere_else, &may_go, &stiffness)
-                .ok_or(DependentCondition(j))?;
+                .ok_or(OnInterface(j))?;
             approaches.of.push(of);
         }
         Ok(approaches)
     }
 
-    /// Solves t = `rest` for its best unknown, or finds that it's a multiple of an approach that is
-    /// one already; `nowhere_else` tells which unknowns no other condition has.
+    /// Solves t = `rest` for its best unknown, or finds that approaches which are unknowns already
+    /// make it; `nowhere_else` tells which unknowns no other condition has.
     fn solve_for_one(
         &mut self,
         mut rest: Affine,
@@ -163,10 +181,8 @@ impl Approaches {
             _ => None,
         });
         let largest = candidates.clone().map(|(_, c)| c.abs()).fold(0.0, f64::max);
-        // Coefficients of unit normals are of order one; what elimination leaves of a condition
-        // that depends on others is round-off.
-        if largest < 1e-10 {
-            return rest.as_multiple();
+        if largest < ROUND_OFF {
+            return rest.of_approaches();
         }
         let (pivot, coefficient) = candidates
             .filter(|(_, c)| c.abs() >= 0.5 * largest)
@@ -265,14 +281,50 @@ mod tests {
     }
 
     #[test]
-    fn a_condition_that_follows_from_two_others_is_refused() {
+    fn a_condition_that_follows_from_two_others_is_their_combination() {
+        let rows = [
+            row(&[(0, 1.0), (1, -1.0)], 0.5),
+            row(&[(1, 1.0), (2, -1.0)], 0.0),
+            row(&[(0, 1.0), (2, -1.0)], 0.25),
+        ];
+        let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
+        assert_eq!(approaches.len, 2);
+        let ApproachOf::Combination { terms, constant } = &approaches.of[2] else {
+            panic!("{:?}", approaches.of[2]);
+        };
+        let t = [0.3, 0.7];
+        let value: f64 = terms.iter().map(|&(i, c)| c * t[i]).sum();
+        let v = |i: u32| f64::from(i) + 2.0;
+        let expected = approach(&rows[2], &approaches, v, &t);
+        assert!((value + constant - expected).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_condition_from_the_other_side_is_a_negative_multiple() {
+        let rows = [row(&[(0, 1.0)], 0.0), row(&[(0, -1.0)], 0.5)];
+        let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
+        let opposite = ApproachOf::Combination {
+            terms: vec![(0, -1.0)],
+            constant: 0.5,
+        };
+        assert_eq!(approaches.of[1], opposite);
+    }
+
+    #[test]
+    fn conditions_whose_normals_cancel_are_prescribed() {
         let rows = [
             row(&[(0, 1.0), (1, -1.0)], 0.0),
-            row(&[(1, 1.0), (2, -1.0)], 0.0),
-            row(&[(0, 1.0), (2, -1.0)], 0.0),
+            row(&[(0, 1e-14), (1, -1e-14)], 0.5),
         ];
-        let error = Approaches::new(&rows, |_| true, |_| 1.0).unwrap_err();
-        assert_eq!(error, DependentCondition(2));
+        let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
+        assert_eq!(approaches.of[1], ApproachOf::Prescribed(0.5));
+    }
+
+    #[test]
+    fn a_condition_on_the_interface_alone_is_refused() {
+        let rows = [row(&[(0, 1.0), (1, -1.0)], 0.0), row(&[(0, 1.0)], 0.0)];
+        let error = Approaches::new(&rows, |v| v != 0, |_| 1.0).unwrap_err();
+        assert_eq!(error, OnInterface(1));
     }
 
     #[test]
