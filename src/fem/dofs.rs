@@ -338,6 +338,7 @@ fn in_frames<'a>(
             .into_iter()
             .filter(|(_, c)| c.abs() > 1e-14 * scale)
             .collect(),
+        gap: condition.gap,
     }
 }
 
