@@ -2,6 +2,8 @@
 
 pub mod active_set;
 pub mod approach;
+pub mod dependent;
+pub mod dual;
 pub mod interior_point;
 pub mod law;
 pub mod open_factor;

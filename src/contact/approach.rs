@@ -2,9 +2,16 @@
 //!
 //! A condition `b·v ≤ g` bounds the approach t = b·v of the two sides. Solving that equation for
 //! one of its unknowns makes t an unknown in that one's place, so that a pair's problem has nothing
-//! but bounds t ≤ g; t = 0 is the bilateral problem (16).
+//! but bounds t ≤ g; t = 0 is the bilateral problem (16). Where more conditions meet than there are
+//! directions, what is left of a condition is a combination of approaches.
 
 use std::collections::HashMap;
+
+/// Coefficients of unit normals are of order one; what elimination leaves of a condition that
+/// depends on others is round-off.
+const ROUND_OFF: f64 = 1e-10;
+/// Share of its largest coefficient below which a condition is nearly parallel to others.
+const PARALLEL: f64 = 0.1;
 
 /// What a displacement is made of once the approaches are unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,6 +38,8 @@ pub struct ApproachRow {
     pub constant: f64,
     /// Unknowns and coefficients.
     pub terms: Vec<(u32, f64)>,
+    /// What bounds it (m).
+    pub gap: f64,
 }
 
 impl Affine {
@@ -41,19 +50,34 @@ impl Affine {
         }
     }
 
-    /// This as a positive multiple of one approach, if it is one but for round-off.
-    fn as_multiple(&self) -> Option<ApproachOf> {
-        let mut terms = self.terms.iter().filter(|(_, c)| c.abs() > 1e-10);
-        match (terms.next(), terms.next()) {
-            (Some(&(Variable::Approach(number), factor)), None) if factor > 0.0 => {
-                Some(ApproachOf::Unknown {
-                    number: number as usize,
-                    factor,
-                    constant: self.constant,
-                })
-            }
-            _ => None,
+    /// The largest coefficient of a displacement.
+    fn largest_displacement(&self) -> f64 {
+        let coefficient = |&(variable, c): &(Variable, f64)| match variable {
+            Variable::Displacement(_) => c.abs(),
+            Variable::Approach(_) => 0.0,
+        };
+        self.terms.iter().map(coefficient).fold(0.0, f64::max)
+    }
+
+    /// This in terms of approaches alone, if it is so but for round-off.
+    fn of_approaches(&self) -> Option<ApproachOf> {
+        let mut terms = Vec::new();
+        for &(variable, factor) in self.terms.iter().filter(|(_, c)| c.abs() > ROUND_OFF) {
+            let Variable::Approach(number) = variable else {
+                return None;
+            };
+            terms.push((number as usize, factor));
         }
+        let constant = self.constant;
+        Some(match terms[..] {
+            [] => ApproachOf::Prescribed(constant),
+            [(number, factor)] if factor > 0.0 => ApproachOf::Unknown {
+                number,
+                factor,
+                constant,
+            },
+            _ => ApproachOf::Combination { terms, constant },
+        })
     }
 
     /// Puts `value` in the place of `variable`.
@@ -70,7 +94,7 @@ impl Affine {
 }
 
 /// Where the approach of a condition is found.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ApproachOf {
     /// It is `factor`·t + `constant` of an unknown approach t, factor > 0. The condition whose
     /// unknown that is has 1 and 0; one that says the same again shares it.
@@ -82,13 +106,20 @@ pub enum ApproachOf {
         /// Constant (m).
         constant: f64,
     },
+    /// It is Σ factor·t + `constant` of several unknown approaches, or a negative multiple of one.
+    Combination {
+        /// Numbers of the approaches and factors.
+        terms: Vec<(usize, f64)>,
+        /// Constant (m).
+        constant: f64,
+    },
     /// Supports prescribe it on both sides (m).
     Prescribed(f64),
 }
 
-/// A condition that depends on several others, so that it can't be a bound: its number.
+/// A condition that has unknowns on Γ alone, which can't be replaced: its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DependentCondition(pub usize);
+pub struct OnInterface(pub usize);
 
 /// Approaches solved for one unknown each.
 #[derive(Clone, Debug, Default)]
@@ -106,51 +137,97 @@ impl Approaches {
     ///
     /// `may_go` tells which unknowns may be replaced (not those on Γ, which other blocks share),
     /// `stiffness` how stiff the body is around them: the softer side follows the stiffer one, because
-    /// a stiff side in terms of a soft one is a small difference of large forces.
+    /// a stiff side in terms of a soft one is a small difference of large forces. Where some depend
+    /// on others, the tightest ones become unknowns, those that are nearly parallel to these last:
+    /// what closes is then a combination of little.
     ///
     /// # Errors
-    /// The first condition that can be neither an unknown nor a multiple of one.
+    /// The first condition that lies on Γ.
     pub fn new(
         rows: &[ApproachRow],
         may_go: impl Fn(u32) -> bool,
         stiffness: impl Fn(u32) -> f64,
-    ) -> Result<Self, DependentCondition> {
+    ) -> Result<Self, OnInterface> {
+        let mut order: Vec<usize> = (0..rows.len()).collect();
+        let as_given = Self::in_order(rows, &order, 0.0, &may_go, &stiffness)?;
+        let dependent = |of: &ApproachOf| matches!(of, ApproachOf::Combination { .. });
+        if !as_given.of.iter().any(dependent) {
+            return Ok(as_given);
+        }
+        let left = |j: usize| rows[j].gap - rows[j].constant;
+        order.sort_by(|&i, &j| left(i).total_cmp(&left(j)));
+        Self::in_order(rows, &order, PARALLEL, &may_go, &stiffness)
+    }
+
+    /// Solves `rows` in this `order`, those last of which elimination leaves less than the share
+    /// `least` of their largest coefficient.
+    fn in_order(
+        rows: &[ApproachRow],
+        order: &[usize],
+        least: f64,
+        may_go: &impl Fn(u32) -> bool,
+        stiffness: &impl Fn(u32) -> f64,
+    ) -> Result<Self, OnInterface> {
         let mut uses: HashMap<u32, usize> = HashMap::new();
         for row in rows {
             for &(v, _) in &row.terms {
                 *uses.entry(v).or_default() += 1;
             }
         }
-        let mut approaches = Self::default();
-        for (j, row) in rows.iter().enumerate() {
-            if row.terms.is_empty() {
-                approaches.of.push(ApproachOf::Prescribed(row.constant));
-                continue;
-            }
-            let mut rest = Affine {
-                constant: row.constant,
-                terms: Vec::with_capacity(row.terms.len() + 1),
-            };
-            for &(v, c) in &row.terms {
-                rest.add(Variable::Displacement(v), c);
-            }
-            for &(v, _) in &row.terms {
-                if let Some(value) = approaches.replaced.get(&v) {
-                    rest.substitute(Variable::Displacement(v), value);
-                }
-            }
+        let mut approaches = Self {
+            of: rows
+                .iter()
+                .map(|row| ApproachOf::Prescribed(row.constant))
+                .collect(),
+            ..Self::default()
+        };
+        // Whether condition j needn't wait.
+        let mut solve = |j: usize, least: f64| -> Result<bool, OnInterface> {
+            let row = &rows[j];
+            let rest = approaches.remainder(row);
             let own: Vec<u32> = row.terms.iter().map(|&(v, _)| v).collect();
             let nowhere_else = |v: u32| uses[&v] == 1 && own.contains(&v);
-            let of = approaches
-                .solve_for_one(rest, nowhere_else, &may_go, &stiffness)
-                .ok_or(DependentCondition(j))?;
-            approaches.of.push(of);
+            let largest = row.terms.iter().fold(0.0, |m: f64, (_, c)| m.max(c.abs()));
+            if rest.largest_displacement() < least * largest {
+                return Ok(false);
+            }
+            approaches.of[j] = approaches
+                .solve_for_one(rest, nowhere_else, may_go, stiffness)
+                .ok_or(OnInterface(j))?;
+            Ok(true)
+        };
+        let unknown = |&&j: &&usize| !rows[j].terms.is_empty();
+        let mut later = Vec::new();
+        for &j in order.iter().filter(unknown) {
+            if !solve(j, least)? {
+                later.push(j);
+            }
+        }
+        for j in later {
+            solve(j, 0.0)?;
         }
         Ok(approaches)
     }
 
-    /// Solves t = `rest` for its best unknown, or finds that it's a multiple of an approach that is
-    /// one already; `nowhere_else` tells which unknowns no other condition has.
+    /// A condition's approach in terms of what isn't replaced so far.
+    fn remainder(&self, row: &ApproachRow) -> Affine {
+        let mut rest = Affine {
+            constant: row.constant,
+            terms: Vec::with_capacity(row.terms.len() + 1),
+        };
+        for &(v, c) in &row.terms {
+            rest.add(Variable::Displacement(v), c);
+        }
+        for &(v, _) in &row.terms {
+            if let Some(value) = self.replaced.get(&v) {
+                rest.substitute(Variable::Displacement(v), value);
+            }
+        }
+        rest
+    }
+
+    /// Solves t = `rest` for its best unknown, or finds that approaches which are unknowns already
+    /// make it; `nowhere_else` tells which unknowns no other condition has.
     fn solve_for_one(
         &mut self,
         mut rest: Affine,
@@ -163,10 +240,8 @@ impl Approaches {
             _ => None,
         });
         let largest = candidates.clone().map(|(_, c)| c.abs()).fold(0.0, f64::max);
-        // Coefficients of unit normals are of order one; what elimination leaves of a condition
-        // that depends on others is round-off.
-        if largest < 1e-10 {
-            return rest.as_multiple();
+        if largest < ROUND_OFF {
+            return rest.of_approaches();
         }
         let (pivot, coefficient) = candidates
             .filter(|(_, c)| c.abs() >= 0.5 * largest)
@@ -200,95 +275,4 @@ impl Approaches {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn row(terms: &[(u32, f64)], constant: f64) -> ApproachRow {
-        ApproachRow {
-            constant,
-            terms: terms.to_vec(),
-        }
-    }
-
-    /// b·v for v given by the unknowns that stay and the approaches `t`.
-    fn approach(
-        row: &ApproachRow,
-        approaches: &Approaches,
-        v: impl Fn(u32) -> f64,
-        t: &[f64],
-    ) -> f64 {
-        let replaced = |a: &Affine| {
-            let term = |&(variable, c): &(Variable, f64)| match variable {
-                Variable::Displacement(i) => {
-                    assert!(!approaches.replaced.contains_key(&i));
-                    c * v(i)
-                }
-                Variable::Approach(j) => c * t[j as usize],
-            };
-            a.constant + a.terms.iter().map(term).sum::<f64>()
-        };
-        let value = |i: u32| approaches.replaced.get(&i).map_or_else(|| v(i), replaced);
-        row.constant + row.terms.iter().map(|&(i, c)| c * value(i)).sum::<f64>()
-    }
-
-    #[test]
-    fn a_chain_of_conditions_leaves_every_approach_what_it_is_called() {
-        // 0 against 1, 1 against 2, 2 against 0 in another direction, 3 alone.
-        let rows = vec![
-            row(&[(0, 1.0), (1, -1.0)], 0.1),
-            row(&[(1, 1.0), (2, -0.8), (5, 0.6)], 0.2),
-            row(&[(2, 1.0), (0, 0.7), (5, -0.3)], -0.3),
-            row(&[(3, -1.0)], 0.4),
-        ];
-        let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
-        let t = [0.5, 0.25, 0.125, 2.0];
-        for (row, t_j) in rows.iter().zip(t) {
-            let v = |i: u32| (f64::from(i) + 1.0).sqrt();
-            assert!((approach(row, &approaches, v, &t) - t_j).abs() < 1e-14);
-        }
-    }
-
-    #[test]
-    fn a_condition_given_twice_shares_its_approach() {
-        let rows = [
-            row(&[(0, 1.0), (1, -1.0)], 0.0),
-            row(&[(0, 2.0), (1, -2.0)], 0.5),
-        ];
-        let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
-        assert_eq!(approaches.len, 1);
-        let shared = ApproachOf::Unknown {
-            number: 0,
-            factor: 2.0,
-            constant: 0.5,
-        };
-        assert_eq!(approaches.of[1], shared);
-    }
-
-    #[test]
-    fn a_condition_that_follows_from_two_others_is_refused() {
-        let rows = [
-            row(&[(0, 1.0), (1, -1.0)], 0.0),
-            row(&[(1, 1.0), (2, -1.0)], 0.0),
-            row(&[(0, 1.0), (2, -1.0)], 0.0),
-        ];
-        let error = Approaches::new(&rows, |_| true, |_| 1.0).unwrap_err();
-        assert_eq!(error, DependentCondition(2));
-    }
-
-    #[test]
-    fn an_unknown_on_the_interface_stays() {
-        let rows = [row(&[(0, 1.0), (1, -1.0)], 0.0)];
-        let approaches = Approaches::new(&rows, |v| v != 0, |_| 1.0).unwrap();
-        assert!(approaches.replaced.contains_key(&1));
-    }
-
-    #[test]
-    fn the_softer_side_follows_the_stiffer_one() {
-        let rows = [row(&[(0, 1.0), (1, -1.0)], 0.0)];
-        for soft in [0, 1] {
-            let stiffness = |v| if v == soft { 1.0 } else { 1e6 };
-            let approaches = Approaches::new(&rows, |_| true, stiffness).unwrap();
-            assert!(approaches.replaced.contains_key(&soft));
-        }
-    }
-}
+mod tests;

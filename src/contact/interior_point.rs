@@ -2,10 +2,13 @@
 //!
 //! The problem in gaps, w = q + H s with s, w ≥ 0 and sᵀw = 0, is solved along the path sᵢwᵢ = μ → 0
 //! in some twenty steps whatever the number of conditions and however H is conditioned, where an
-//! active set may open them one by one or turn in circles.
+//! active set may open them one by one or turn in circles. Dependent conditions have gaps
+//! σ = e + D s ≥ 0 and forces μ ≥ 0 besides, w + Dᵀ μ = q + H s.
 
 use faer::linalg::solvers::SolveCore;
 use faer::{Conj, Mat, MatMut, MatRef, Side};
+
+use super::dependent::DependentRows;
 
 /// Most steps.
 const MAX_STEPS: usize = 60;
@@ -16,37 +19,151 @@ const SHARE: f64 = 0.995;
 /// Stiffness relative to the diagonal that keeps a motion that nothing resists bounded.
 const SPRING: f64 = 1e-13;
 
-/// The conditions that are open in the solution of w = q + H s, with gaps s and forces w, and the
-/// number of linear systems solved; `scale` measures the diagonal of H.
-pub fn open_conditions(h: MatRef<'_, f64>, q: &[f64], scale: &[f64]) -> (Vec<bool>, usize) {
-    let n = q.len();
-    // Gaps and forces become square roots of energies, so that units don't matter.
-    let root: Vec<f64> = scale.iter().map(|d| d.sqrt()).collect();
-    let load = (0..n).fold(0.0, |m: f64, i| m.max((q[i] / root[i]).abs()));
-    if load == 0.0 || !load.is_finite() {
-        return (vec![false; n], 0);
-    }
-    let q: Vec<f64> = (0..n).map(|i| q[i] / root[i] / load).collect();
-    let h = Mat::from_fn(n, n, |i, j| {
-        h[(i, j)] / root[i] / root[j] + if i == j { SPRING } else { 0.0 }
-    });
-    let mut point = Point {
-        s: vec![1.0; n],
-        w: vec![1.0; n],
-    };
-    let mut steps = 0;
-    while steps < MAX_STEPS && point.mean_product() > TOLERANCE {
-        steps += 1;
-        let Some(moved) = point.step(h.as_ref(), &q) else {
-            break;
-        };
-        point = moved;
-    }
-    let open = (point.s.iter().zip(&point.w)).map(|(s, w)| s > w).collect();
-    (open, steps)
+/// The problem.
+#[derive(Clone, Copy, Debug)]
+pub struct InGaps<'a> {
+    /// H.
+    pub h: MatRef<'a, f64>,
+    /// q.
+    pub q: &'a [f64],
+    /// What measures the diagonal of H.
+    pub scale: &'a [f64],
+    /// D.
+    pub rows: &'a DependentRows,
+    /// e.
+    pub e: &'a [f64],
 }
 
-/// Gaps and forces, all positive.
+impl InGaps<'_> {
+    /// The conditions that are open in the solution, those of gaps first, and the number of linear
+    /// systems solved.
+    pub fn open_conditions(&self) -> (Vec<bool>, usize) {
+        let n = self.q.len();
+        let all = n + self.rows.len();
+        // Gaps and forces become square roots of energies, so that units don't matter.
+        let root: Vec<f64> = self.scale.iter().map(|d| d.sqrt()).collect();
+        let mut rows = DependentRows::default();
+        let mut e = Vec::with_capacity(self.e.len());
+        for (row, e_j) in self.rows.iter().zip(self.e) {
+            let scaled = row.iter().map(|&(i, c)| (i, c / root[i]));
+            let size = scaled.clone().map(|(_, c)| c * c).sum::<f64>().sqrt();
+            rows.push(scaled.map(|(i, c)| (i, c / size)).collect());
+            e.push(e_j / size);
+        }
+        let load = (0..n).fold(0.0, |m: f64, i| m.max((self.q[i] / root[i]).abs()));
+        let load = e.iter().fold(load, |m, e| m.max(e.abs()));
+        if load == 0.0 || !load.is_finite() {
+            return (vec![false; all], 0);
+        }
+        let problem = Scaled {
+            h: Mat::from_fn(n, n, |i, j| {
+                self.h[(i, j)] / root[i] / root[j] + if i == j { SPRING } else { 0.0 }
+            }),
+            q: (0..n).map(|i| self.q[i] / root[i] / load).collect(),
+            e: e.iter().map(|e| e / load).collect(),
+            rows,
+        };
+        let mut point = Point {
+            s: vec![1.0; all],
+            w: vec![1.0; all],
+        };
+        let mut steps = 0;
+        while steps < MAX_STEPS && point.mean_product() > TOLERANCE {
+            steps += 1;
+            let Some(moved) = problem.step(&point) else {
+                break;
+            };
+            point = moved;
+        }
+        let open = (point.s.iter().zip(&point.w)).map(|(s, w)| s > w).collect();
+        (open, steps)
+    }
+}
+
+/// The problem without units.
+struct Scaled {
+    h: Mat<f64>,
+    q: Vec<f64>,
+    rows: DependentRows,
+    e: Vec<f64>,
+}
+
+impl Scaled {
+    /// q + H s − w − Dᵀ μ, then e + D s − σ: what the equations are missed by.
+    fn missing(&self, point: &Point) -> Vec<f64> {
+        let n = self.q.len();
+        let mut missing = self.q.clone();
+        for (column, &s) in self.h.col_iter().zip(&point.s) {
+            for (missing, h) in missing.iter_mut().zip(column.iter()) {
+                *missing += h * s;
+            }
+        }
+        for (missing, w) in missing.iter_mut().zip(&point.w) {
+            *missing -= w;
+        }
+        self.rows.subtract_transposed(&point.w[n..], &mut missing);
+        for (j, e) in self.e.iter().enumerate() {
+            missing.push(e + self.rows.value(j, &point.s) - point.s[n + j]);
+        }
+        missing
+    }
+
+    /// H with the slopes w/s of all conditions.
+    fn matrix(&self, point: &Point) -> Mat<f64> {
+        let n = self.q.len();
+        let mut matrix = self.h.clone();
+        for i in 0..n {
+            matrix[(i, i)] += point.w[i] / point.s[i];
+        }
+        for (j, row) in self.rows.iter().enumerate() {
+            let slope = point.w[n + j] / point.s[n + j];
+            for &(b, d_b) in row {
+                for &(a, d_a) in row {
+                    matrix[(a, b)] += slope * d_a * d_b;
+                }
+            }
+        }
+        matrix
+    }
+
+    /// One predictor and one corrector; `None` where round-off leaves no step.
+    fn step(&self, point: &Point) -> Option<Point> {
+        let (n, all) = (self.q.len(), point.s.len());
+        let missing = self.missing(point);
+        let factor = self.matrix(point).llt(Side::Lower).ok()?;
+        let solve = |target: &[f64]| {
+            let mut ds: Vec<f64> = (0..n)
+                .map(|i| target[i] / point.s[i] - point.w[i] - missing[i])
+                .collect();
+            let of_rows: Vec<f64> = (n..all)
+                .map(|i| point.w[i] - (target[i] - point.w[i] * missing[i]) / point.s[i])
+                .collect();
+            self.rows.subtract_transposed(&of_rows, &mut ds);
+            let column = MatMut::from_column_major_slice_mut(&mut ds, n, 1);
+            factor.solve_in_place_with_conj(Conj::No, column);
+            for j in 0..self.rows.len() {
+                ds.push(self.rows.value(j, &ds) + missing[n + j]);
+            }
+            let dw: Vec<f64> = (0..all)
+                .map(|i| (target[i] - point.w[i] * ds[i]) / point.s[i] - point.w[i])
+                .collect();
+            (ds, dw)
+        };
+        let (ds, dw) = solve(&vec![0.0; all]);
+        let mu = point.mean_product();
+        let predicted = point.moved(&ds, &dw, point.reach(&ds, &dw)).mean_product();
+        let aim = mu * (predicted / mu).powi(3);
+        let target: Vec<f64> = (0..all).map(|i| aim - ds[i] * dw[i]).collect();
+        let (ds, dw) = solve(&target);
+        let reach = point.reach(&ds, &dw);
+        if reach.is_nan() || reach < 1e-10 {
+            return None;
+        }
+        Some(point.moved(&ds, &dw, (SHARE * reach).min(1.0)))
+    }
+}
+
+/// Gaps and forces of all conditions, all positive.
 struct Point {
     s: Vec<f64>,
     w: Vec<f64>,
@@ -56,47 +173,6 @@ impl Point {
     fn mean_product(&self) -> f64 {
         let sum: f64 = self.s.iter().zip(&self.w).map(|(s, w)| s * w).sum();
         sum / self.s.len() as f64
-    }
-
-    /// One predictor and one corrector; `None` where round-off leaves no step.
-    fn step(&self, h: MatRef<'_, f64>, q: &[f64]) -> Option<Self> {
-        let n = q.len();
-        let mut missing = q.to_vec();
-        for (column, &s) in h.col_iter().zip(&self.s) {
-            for (missing, h) in missing.iter_mut().zip(column.iter()) {
-                *missing += h * s;
-            }
-        }
-        for (missing, w) in missing.iter_mut().zip(&self.w) {
-            *missing -= w;
-        }
-        let mut matrix = h.to_owned();
-        for i in 0..n {
-            matrix[(i, i)] += self.w[i] / self.s[i];
-        }
-        let factor = matrix.llt(Side::Lower).ok()?;
-        let solve = |target: &[f64]| {
-            let mut ds: Vec<f64> = (0..n)
-                .map(|i| target[i] / self.s[i] - self.w[i] - missing[i])
-                .collect();
-            let column = MatMut::from_column_major_slice_mut(&mut ds, n, 1);
-            factor.solve_in_place_with_conj(Conj::No, column);
-            let dw: Vec<f64> = (0..n)
-                .map(|i| (target[i] - self.w[i] * ds[i]) / self.s[i] - self.w[i])
-                .collect();
-            (ds, dw)
-        };
-        let (ds, dw) = solve(&vec![0.0; n]);
-        let mu = self.mean_product();
-        let predicted = self.moved(&ds, &dw, self.reach(&ds, &dw)).mean_product();
-        let aim = mu * (predicted / mu).powi(3);
-        let target: Vec<f64> = (0..n).map(|i| aim - ds[i] * dw[i]).collect();
-        let (ds, dw) = solve(&target);
-        let reach = self.reach(&ds, &dw);
-        if reach.is_nan() || reach < 1e-10 {
-            return None;
-        }
-        Some(self.moved(&ds, &dw, (SHARE * reach).min(1.0)))
     }
 
     /// How far a step may go until a gap or a force is zero, at most 1/SHARE.

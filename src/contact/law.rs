@@ -2,10 +2,11 @@
 
 use faer::{Mat, MatRef};
 
+use super::dependent::DependentRows;
 use super::pair::ContactPair;
 use crate::comm::{Message, MessageReader};
 
-/// λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0: the part of S_kl that the root needs to
+/// λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0, and D t ≤ d where there is such: the part of S_kl that the root needs to
 /// solve for all pairs at once.
 #[derive(Clone, Debug)]
 pub struct PairLaw {
@@ -15,6 +16,8 @@ pub struct PairLaw {
     pub s_t_gamma: Mat<f64>,
     /// The diagonal of the matrix that H is condensed from (Pa).
     pub stiffness: Vec<f64>,
+    /// D.
+    pub rows: DependentRows,
     /// The largest displacement prescribed in the pair (m).
     pub scale: f64,
     /// The condition that each approach is the unknown of.
@@ -41,6 +44,7 @@ impl PairLaw {
         message.push_lower(pair.s_tt());
         message.push_matrix(pair.s_t_gamma());
         message.reals.extend(stiffness);
+        pair.limits().rows.pack(message);
         message.reals.push(pair.limits().scale);
     }
 
@@ -51,6 +55,7 @@ impl PairLaw {
             h: reader.lower(m),
             s_t_gamma: reader.matrix(m, traces),
             stiffness: reader.reals(m),
+            rows: DependentRows::unpack(reader),
             scale: reader.real(),
             defining: (reader.integers(m).iter()).map(|&j| j as usize).collect(),
         }

@@ -3,6 +3,8 @@
 use faer::linalg::solvers::{Llt, SolveCore};
 use faer::{Conj, Mat, MatMut, MatRef, Side};
 
+use super::dependent::{DependentRows, Ties};
+
 /// Pivot relative to its diagonal entry below which H is taken as singular.
 const SINGULAR_PIVOT: f64 = 1e-13;
 /// Diagonal entry relative to the stiffness it is condensed from below which it is round-off.
@@ -17,30 +19,44 @@ const MAX_REFINEMENTS: usize = 40;
 ///
 /// H is singular where a motion opens gaps without resistance. Springs make it definite then, and
 /// refinement takes their forces off again: what drives the motion decides how far it goes, and
-/// where nothing drives it, it stays where it is.
+/// where nothing drives it, it stays where it is. Closed dependent conditions leave fewer directions:
+/// H_NN is that of the open approaches that they don't tie.
 #[derive(Debug)]
 pub struct OpenFactor {
-    /// The open conditions, ascending.
+    /// The open approaches, ascending.
     pub open: Vec<usize>,
+    /// What the closed dependent conditions make of them.
+    pub ties: Ties,
+    /// The open approaches that aren't tied, ascending; empty where none is tied.
+    untied: Vec<usize>,
     h_nn: Mat<f64>,
     factor: Option<Llt<f64>>,
     singular: bool,
 }
 
 impl OpenFactor {
-    /// Factorizes H_NN; `stiffness` is the diagonal of the matrix that H is condensed from.
-    pub fn new(h: MatRef<'_, f64>, stiffness: &[f64], open: &[bool]) -> Self {
-        let open: Vec<usize> = (0..open.len()).filter(|&j| open[j]).collect();
+    /// Factorizes H_NN; `stiffness` is the diagonal of the matrix that H is condensed from, `open`
+    /// has a flag for every approach and one for each of `rows`.
+    pub fn new(h: MatRef<'_, f64>, stiffness: &[f64], rows: &DependentRows, open: &[bool]) -> Self {
+        let ties = Ties::new(rows, open);
+        let open: Vec<usize> = (0..stiffness.len()).filter(|&j| open[j]).collect();
+        let mut stiffness: Vec<f64> = open.iter().map(|&j| stiffness[j]).collect();
         let mut h_nn = Mat::zeros(open.len(), open.len());
-        for (b, &j) in open.iter().enumerate() {
-            for (a, &i) in open.iter().enumerate() {
-                h_nn[(a, b)] = h[(i, j)];
-            }
+        let mut untied = Vec::new();
+        if ties.ties.is_empty() {
+            gather(h, &open, &mut h_nn);
+        } else {
+            let is_pivot = |j: &usize| ties.ties.iter().any(|tie| tie.pivot == *j);
+            untied = open.iter().copied().filter(|j| !is_pivot(j)).collect();
+            (h_nn, stiffness) = tied(h, &stiffness, &open, &untied, &ties);
         }
-        let scale: Vec<f64> = (open.iter().map(|&j| scale_of(h[(j, j)], stiffness[j]))).collect();
-        let round_off = (open.iter()).any(|&j| h[(j, j)] <= SINGULAR_DIAGONAL * stiffness[j]);
+        let scale: Vec<f64> = (stiffness.iter().enumerate())
+            .map(|(a, &stiffness)| scale_of(h_nn[(a, a)], stiffness))
+            .collect();
+        let round_off = (stiffness.iter().enumerate())
+            .any(|(a, &stiffness)| h_nn[(a, a)] <= SINGULAR_DIAGONAL * stiffness);
         let regular = (!round_off).then(|| factorize(h_nn.as_ref(), &scale, 0.0));
-        let singular = !open.is_empty() && regular.as_ref().is_none_or(Option::is_none);
+        let singular = !scale.is_empty() && regular.as_ref().is_none_or(Option::is_none);
         let factor = regular.flatten().or_else(|| {
             SPRINGS
                 .iter()
@@ -48,14 +64,41 @@ impl OpenFactor {
         });
         Self {
             open,
+            ties,
+            untied,
             h_nn,
             factor,
             singular,
         }
     }
 
-    /// x ← H_NN⁻¹ x, `x` the entries of the open conditions.
+    /// x ← H_NN⁻¹ x, `x` the entries of the open approaches; with ties it is T (Tᵀ H_NN T)⁻¹ Tᵀ x
+    /// for the T that the untied ones move all by.
     pub fn solve(&self, x: &mut [f64]) {
+        if self.ties.ties.is_empty() {
+            self.solve_untied(x);
+            return;
+        }
+        // The entries of `open` and `untied` are sorted, and every tied approach is open.
+        let place = |j: usize| self.open.partition_point(|&i| i < j);
+        for tie in &self.ties.ties {
+            let held = x[place(tie.pivot)];
+            for &(i, c) in &tie.others {
+                x[place(i)] -= c * held;
+            }
+        }
+        let mut of_untied: Vec<f64> = self.untied.iter().map(|&j| x[place(j)]).collect();
+        self.solve_untied(&mut of_untied);
+        for (&j, of_untied) in self.untied.iter().zip(of_untied) {
+            x[place(j)] = of_untied;
+        }
+        for tie in &self.ties.ties {
+            let others = tie.others.iter().map(|&(i, c)| c * x[place(i)]);
+            x[place(tie.pivot)] = -others.sum::<f64>();
+        }
+    }
+
+    fn solve_untied(&self, x: &mut [f64]) {
         let Some(factor) = &self.factor else { return };
         let apply = |x: &mut [f64]| {
             let n = x.len();
@@ -85,6 +128,55 @@ impl OpenFactor {
             }
         }
     }
+}
+
+/// The rows and columns of H of `open` approaches.
+fn gather(h: MatRef<'_, f64>, open: &[usize], h_nn: &mut Mat<f64>) {
+    for (b, &j) in open.iter().enumerate() {
+        for (a, &i) in open.iter().enumerate() {
+            h_nn[(a, b)] = h[(i, j)];
+        }
+    }
+}
+
+/// Tᵀ H_NN T on the `untied` approaches, and the `stiffness` of the open ones seen from there.
+fn tied(
+    h: MatRef<'_, f64>,
+    stiffness: &[f64],
+    open: &[usize],
+    untied: &[usize],
+    ties: &Ties,
+) -> (Mat<f64>, Vec<f64>) {
+    let mut whole = Mat::zeros(open.len(), open.len());
+    gather(h, open, &mut whole);
+    let mut stiffness = stiffness.to_vec();
+    let place = |j: usize| open.partition_point(|&i| i < j);
+    for tie in &ties.ties {
+        let pivot = place(tie.pivot);
+        for &(i, c) in &tie.others {
+            let i = place(i);
+            for a in 0..open.len() {
+                let moved = c * whole[(a, pivot)];
+                whole[(a, i)] -= moved;
+            }
+            stiffness[i] += c * c * stiffness[pivot];
+        }
+    }
+    for tie in &ties.ties {
+        let pivot = place(tie.pivot);
+        for &(i, c) in &tie.others {
+            let i = place(i);
+            for b in 0..open.len() {
+                let moved = c * whole[(pivot, b)];
+                whole[(i, b)] -= moved;
+            }
+        }
+    }
+    let places: Vec<usize> = untied.iter().map(|&j| place(j)).collect();
+    let mut h_nn = Mat::zeros(untied.len(), untied.len());
+    gather(whole.as_ref(), &places, &mut h_nn);
+    let stiffness = places.iter().map(|&a| stiffness[a]).collect();
+    (h_nn, stiffness)
 }
 
 /// What an entry of H's diagonal is measured by.

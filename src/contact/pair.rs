@@ -4,6 +4,7 @@ use faer::MatRef;
 
 use super::active_set::{GapProblem, GapSolution};
 use super::approach::ApproachOf;
+use super::dependent::DependentRows;
 use super::open_factor::OpenFactor;
 use crate::schur::local::{CondensedLoad, LocalSchur, multiply_add};
 
@@ -17,12 +18,14 @@ pub struct ContactPair {
     contact: GapSolution,
 }
 
-/// The bounds t ≤ g, and the conditions that they come from.
+/// The bounds t ≤ g and D t ≤ d, and the conditions that they come from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Limits {
-    /// g of every approach: the tightest of its conditions (m).
+    /// g of every approach, the tightest of its conditions, then d of every dependent one (m).
     pub bounds: Vec<f64>,
-    /// Which condition that is, and its factor.
+    /// D.
+    pub rows: DependentRows,
+    /// Which condition each bound is, and its factor.
     tightest: Vec<(usize, f64)>,
     /// Number of conditions.
     conditions: usize,
@@ -36,29 +39,48 @@ impl Limits {
     pub fn new(approaches: usize, of: &[ApproachOf], gaps: &[f64], scale: f64) -> Self {
         let mut limits = Self {
             bounds: vec![f64::INFINITY; approaches],
+            rows: DependentRows::default(),
             tightest: vec![(0, 1.0); approaches],
             conditions: of.len(),
             scale,
         };
         for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
-            if let ApproachOf::Unknown {
-                number,
-                factor,
-                constant,
-            } = *of
-            {
-                let bound = (gap - constant) / factor;
-                if bound < limits.bounds[number] {
-                    limits.bounds[number] = bound;
-                    limits.tightest[number] = (j, factor);
+            match of {
+                &ApproachOf::Unknown {
+                    number,
+                    factor,
+                    constant,
+                } => {
+                    let bound = (gap - constant) / factor;
+                    if bound < limits.bounds[number] {
+                        limits.bounds[number] = bound;
+                        limits.tightest[number] = (j, factor);
+                    }
                 }
+                ApproachOf::Combination { terms, constant } => {
+                    limits.rows.push(terms.clone());
+                    limits.bounds.push(gap - constant);
+                    limits.tightest.push((j, 1.0));
+                }
+                ApproachOf::Prescribed(_) => {}
             }
         }
         limits
     }
 
-    fn len(&self) -> usize {
-        self.bounds.len()
+    fn approaches(&self) -> usize {
+        self.bounds.len() - self.rows.len()
+    }
+
+    /// g − t, then d − D t, 0 for the rows of D that aren't `open`.
+    fn gaps(&self, t: &[f64], open: &[bool]) -> Vec<f64> {
+        let m = t.len();
+        let mut gaps: Vec<f64> = self.bounds.iter().zip(t).map(|(g, t)| g - t).collect();
+        gaps.extend((0..self.rows.len()).map(|j| {
+            let left = self.bounds[m + j] - self.rows.value(j, t);
+            if open[m + j] { left.max(0.0) } else { 0.0 }
+        }));
+        gaps
     }
 }
 
@@ -69,13 +91,13 @@ pub struct PairResponse {
     pub reaction: Vec<f64>,
     /// Scale of the terms that each reaction is a sum of.
     pub scale: Vec<f64>,
-    /// g − t: what every approach has left (m), 0 where closed.
+    /// g − t: what every approach has left, then d − D t (m); 0 where closed.
     pub gaps: Vec<f64>,
-    /// c − H t: the contact forces where closed, round-off where open (N/m).
+    /// c − H t: what contact forces hold where closed, round-off where open (N/m).
     pub drives: Vec<f64>,
     /// Scale of the terms that each drive is a sum of.
     pub drive_scale: Vec<f64>,
-    /// Which approaches are open.
+    /// Which approaches are open, then which dependent conditions.
     pub open: Vec<bool>,
     /// Conditions that opened or closed, against what was expected or the last evaluation.
     pub changed: usize,
@@ -93,8 +115,8 @@ impl ContactPair {
         Self {
             schur,
             load,
-            open: vec![false; limits.len()],
-            contact: GapSolution::bilateral(limits.len()),
+            open: vec![false; limits.bounds.len()],
+            contact: GapSolution::bilateral(limits.approaches(), limits.bounds.len()),
             limits,
         }
     }
@@ -124,46 +146,46 @@ impl ContactPair {
     }
 
     fn traces(&self) -> usize {
-        self.schur.boundary() - self.limits.len()
+        self.schur.boundary() - self.limits.approaches()
     }
 
     /// H, on the approaches.
     pub fn s_tt(&self) -> MatRef<'_, f64> {
-        let m = self.limits.len();
+        let m = self.limits.approaches();
         self.schur.s.as_ref().submatrix(0, 0, m, m)
     }
 
     /// Approaches against traces.
     pub fn s_t_gamma(&self) -> MatRef<'_, f64> {
-        let m = self.limits.len();
+        let m = self.limits.approaches();
         self.schur.s.as_ref().submatrix(0, m, m, self.traces())
     }
 
     /// S_ΓΓ, the derivative with every contact closed (16).
     pub fn bilateral(&self) -> MatRef<'_, f64> {
-        let (m, n) = (self.limits.len(), self.traces());
+        let (m, n) = (self.limits.approaches(), self.traces());
         self.schur.s.as_ref().submatrix(m, m, n, n)
     }
 
     /// Load on the traces with every approach zero.
     pub fn bilateral_load(&self) -> &[f64] {
-        &self.load.boundary()[self.limits.len()..]
+        &self.load.boundary()[self.limits.approaches()..]
     }
 
     /// The diagonal of the matrix that H is condensed from.
     pub fn stiffness(&self) -> &[f64] {
-        &self.schur.stiffness[..self.limits.len()]
+        &self.schur.stiffness[..self.limits.approaches()]
     }
 
-    /// The bounds t ≤ g.
+    /// The bounds t ≤ g and D t ≤ d.
     pub fn limits(&self) -> &Limits {
         &self.limits
     }
 
-    /// Evaluates S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ, where t(U) ≤ g minimizes the pair's energy.
+    /// Evaluates S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ, where t(U) within the limits minimizes the pair's energy.
     /// The search begins at the conditions `expected` to be open, else at those of last time.
     pub fn evaluate(&mut self, u: &[f64], expected: Option<Vec<bool>>) -> PairResponse {
-        let m = self.limits.len();
+        let m = self.limits.approaches();
         let before = expected.unwrap_or_else(|| self.open.clone());
         let mut c = self.load.boundary()[..m].to_vec();
         let mut c_scale: Vec<f64> = c.iter().map(|f| f.abs()).collect();
@@ -180,6 +202,7 @@ impl ContactPair {
             stiffness: self.stiffness(),
             c: &c,
             c_scale: &c_scale,
+            rows: &self.limits.rows,
             bounds: &self.limits.bounds,
             scale: u.iter().fold(self.limits.scale, |m, u| m.max(u.abs())),
         }
@@ -191,9 +214,8 @@ impl ContactPair {
                 drive_scale[i] += (h * t).abs();
             }
         }
-        let gaps = self.limits.bounds.iter().zip(&contact.approaches);
         let mut response = PairResponse {
-            gaps: gaps.map(|(g, t)| g - t).collect(),
+            gaps: self.limits.gaps(&contact.approaches, &open),
             drives,
             drive_scale,
             changed: before.iter().zip(&open).filter(|(a, b)| a != b).count(),
@@ -213,7 +235,7 @@ impl ContactPair {
     fn reaction(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut reaction: Vec<f64> = self.bilateral_load().iter().map(|f| -f).collect();
         let mut scale: Vec<f64> = reaction.iter().map(|f| f.abs()).collect();
-        let m = self.limits.len();
+        let m = self.limits.approaches();
         let unknowns = self.contact.approaches.iter().chain(u);
         for (j, &x) in unknowns.enumerate() {
             for i in 0..reaction.len() {
@@ -229,12 +251,12 @@ impl ContactPair {
     pub fn derivative(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         multiply_add(self.bilateral(), x, &mut y);
-        let factor = OpenFactor::new(self.s_tt(), self.stiffness(), &self.open);
-        let mut driven = vec![0.0; self.limits.len()];
+        let factor = OpenFactor::new(self.s_tt(), self.stiffness(), &self.limits.rows, &self.open);
+        let mut driven = vec![0.0; self.limits.approaches()];
         multiply_add(self.s_t_gamma(), x, &mut driven);
         let mut opened: Vec<f64> = factor.open.iter().map(|&j| -driven[j]).collect();
         factor.solve(&mut opened);
-        let mut t = vec![0.0; self.limits.len()];
+        let mut t = vec![0.0; self.limits.approaches()];
         for (&j, opened) in factor.open.iter().zip(opened) {
             t[j] = opened;
         }
@@ -242,16 +264,16 @@ impl ContactPair {
         y
     }
 
-    /// Forces of all conditions for those of the approaches.
-    pub fn forces(&self, of_approaches: &[f64]) -> Vec<f64> {
+    /// Forces of all conditions for those of the limits.
+    pub fn forces(&self, of_limits: &[f64]) -> Vec<f64> {
         let mut forces = vec![0.0; self.limits.conditions];
-        for (force, &(condition, factor)) in of_approaches.iter().zip(&self.limits.tightest) {
+        for (force, &(condition, factor)) in of_limits.iter().zip(&self.limits.tightest) {
             forces[condition] = force / factor;
         }
         forces
     }
 
-    /// What every closed approach lacks of its bound when its conditions lack `missing`, one entry a
+    /// What every closed limit lacks of its bound when the conditions lack `missing`, one entry a
     /// condition; 0 for the open ones.
     pub fn missing(&self, missing: &[f64]) -> Vec<f64> {
         let of_condition = |&(condition, factor): &(usize, f64)| missing[condition] / factor;

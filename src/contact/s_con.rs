@@ -24,7 +24,7 @@ pub struct ConState {
 /// Totals of one evaluation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ConTotals {
-    /// Closed approaches.
+    /// Closed approaches and dependent conditions.
     pub active: usize,
     /// Those that opened or closed, against what was expected or the last evaluation.
     pub changed: usize,
@@ -67,7 +67,7 @@ impl<'a> SCon<'a> {
     }
 
     /// Evaluates all pairs whose trace changed and leaves their answers in `state`; a pair's search
-    /// begins at the approaches `expected` to be open. On the root; the other ranks
+    /// begins at the conditions `expected` to be open. On the root; the other ranks
     /// [`serve`](Self::serve).
     pub fn evaluate(
         &mut self,
@@ -206,7 +206,7 @@ impl ConState {
         }
     }
 
-    /// The sets of open approaches, pair by pair.
+    /// The sets of open approaches and dependent conditions, pair by pair.
     pub fn open(&self) -> Vec<Vec<bool>> {
         self.responses.iter().map(|r| r.open.clone()).collect()
     }
@@ -230,6 +230,7 @@ fn pack(response: &PairResponse) -> Message {
     let mut message = Message::default();
     message.integers.extend([
         response.reaction.len() as i64,
+        response.drives.len() as i64,
         response.open.len() as i64,
         response.changed as i64,
         response.steps as i64,
@@ -255,17 +256,18 @@ fn unpack(message: Message) -> PairResponse {
     let mut reader = message.read();
     let traces = reader.count();
     let approaches = reader.count();
+    let limits = reader.count();
     PairResponse {
         changed: reader.count(),
         steps: reader.count(),
         fell_back: reader.integer() != 0,
         converged: reader.integer() != 0,
-        open: (reader.integers(approaches).iter())
+        open: (reader.integers(limits).iter())
             .map(|&open| open != 0)
             .collect(),
         reaction: reader.reals(traces),
         scale: reader.reals(traces),
-        gaps: reader.reals(approaches),
+        gaps: reader.reals(limits),
         drives: reader.reals(approaches),
         drive_scale: reader.reals(approaches),
     }

@@ -7,7 +7,7 @@ use contact_dd_partition::model::{Material, Support};
 use super::block::Block;
 use super::condition::BlockCondition;
 use super::frame::{Frame, dot, support_frames};
-use crate::contact::approach::{ApproachOf, ApproachRow, Approaches, DependentCondition, Variable};
+use crate::contact::approach::{ApproachOf, ApproachRow, Approaches, OnInterface, Variable};
 use crate::schur::ordering::minimum_degree;
 use crate::schur::pattern::Cliques;
 
@@ -23,8 +23,8 @@ pub struct TraceDof {
 /// Why a block's unknowns can't be numbered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DofError {
-    /// A condition depends on several others.
-    Dependent(usize),
+    /// A condition lies on Γ.
+    OnInterface(usize),
     /// Too many unknowns for 32-bit indices.
     Size,
 }
@@ -54,7 +54,7 @@ impl Dofs {
     /// approach of each of `conditions`, then the traces on Γ.
     ///
     /// # Errors
-    /// A condition that depends on several others.
+    /// A condition that lies on Γ.
     pub fn new(
         block: &Block,
         conditions: &[BlockCondition],
@@ -75,7 +75,7 @@ impl Dofs {
             let may_go = |v: u32| !on_interface[v as usize / dim];
             let stiffness = node_stiffness(block, materials);
             Approaches::new(&rows, may_go, |v| stiffness[v as usize / dim])
-                .map_err(|DependentCondition(j)| DofError::Dependent(j))?
+                .map_err(|OnInterface(j)| DofError::OnInterface(j))?
         };
 
         let mut number = vec![u32::MAX; block.nodes() * dim];
@@ -177,7 +177,12 @@ impl Dofs {
     pub fn defining_conditions(&self) -> Vec<usize> {
         let mut defining = vec![0; self.approaches];
         for (j, of) in self.approach_of.iter().enumerate().rev() {
-            if let ApproachOf::Unknown { number, .. } = *of {
+            if let ApproachOf::Unknown {
+                number,
+                factor: 1.0,
+                constant: 0.0,
+            } = *of
+            {
                 defining[number] = j;
             }
         }
@@ -349,6 +354,7 @@ fn in_frames<'a>(
             .into_iter()
             .filter(|(_, c)| c.abs() > 1e-14 * scale)
             .collect(),
+        gap: condition.gap,
     }
 }
 

@@ -8,13 +8,15 @@
 //!
 //! is what the interface problem (14) asks of a change δ of U and τ of the approaches: r is its
 //! residual, d and s are the forces and gaps at U. Eliminating δ leaves a contact problem with
-//! H − Cᵀ A⁻¹ C in the approaches of all pairs and nothing else.
+//! H − Cᵀ A⁻¹ C in the approaches of all pairs and nothing else. Dependent conditions of a pair,
+//! D τ ≤ d − D t, stay what they are.
 
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, MatRef, Par};
 
 use super::operator::Interface;
 use crate::contact::active_set::GapProblem;
+use crate::contact::dependent::DependentRows;
 use crate::contact::law::PairLaw;
 use crate::contact::pair::PairResponse;
 use crate::contact::s_con::ConState;
@@ -31,6 +33,8 @@ pub struct CoupledContact<'a> {
     /// H − Cᵀ A⁻¹ C.
     h: MatRef<'a, f64>,
     stiffness: Vec<f64>,
+    /// D of all pairs.
+    rows: DependentRows,
     scale: f64,
 }
 
@@ -41,9 +45,9 @@ pub struct CoupledStep {
     pub u: Vec<f64>,
     /// τ.
     pub approaches: Vec<Vec<f64>>,
-    /// λ.
+    /// λ, then the forces of dependent conditions.
     pub forces: Vec<Vec<f64>>,
-    /// Which approaches are open then.
+    /// Which of both are open then.
     pub open: Vec<Vec<bool>>,
     /// Linear systems solved.
     pub steps: usize,
@@ -110,6 +114,7 @@ impl<'a> CoupledContact<'a> {
             interface,
             h: interface.condensed_laws(),
             stiffness: laws.iter().flat_map(|law| law.stiffness.clone()).collect(),
+            rows: all_rows(laws),
             scale: laws.iter().fold(0.0, |m, law| m.max(law.scale)),
         })
     }
@@ -121,10 +126,9 @@ impl<'a> CoupledContact<'a> {
         };
         let mut condensed = self.condense(r, all(|p| &p.drives), all(|p| &p.drive_scale));
         self.interface.motions.set_load(&mut condensed.c);
-        let mut open: Vec<bool> = state.open().concat();
-        let solution = self
-            .problem(&condensed, &all(|p| &p.gaps), u)
-            .solve(&mut open);
+        let mut open = self.side_by_side(state.responses.iter().map(|p| &p.open[..]));
+        let gaps = self.side_by_side(state.responses.iter().map(|p| &p.gaps[..]));
+        let solution = self.problem(&condensed, &gaps, u).solve(&mut open);
         let mut step = self.step(r, &condensed, &solution.approaches, solution.forces, &open);
         step.steps = solution.steps;
         step.fell_back = solution.fell_back;
@@ -144,10 +148,9 @@ impl<'a> CoupledContact<'a> {
         let loads = loads.concat();
         let scale = loads.iter().map(|x| x.abs()).collect();
         let condensed = self.condense(r, loads, scale);
-        let open = open.concat();
-        let trial = self
-            .problem(&condensed, &missing.concat(), &[])
-            .linear(&open);
+        let open = self.side_by_side(open.iter().map(Vec::as_slice));
+        let missing = self.side_by_side(missing.iter().map(Vec::as_slice));
+        let trial = self.problem(&condensed, &missing, &[]).linear(&open);
         self.step(r, &condensed, &trial.approaches, trial.forces, &open)
     }
 
@@ -179,6 +182,7 @@ impl<'a> CoupledContact<'a> {
             stiffness: &self.stiffness,
             c: &condensed.c,
             c_scale: &condensed.c_scale,
+            rows: &self.rows,
             bounds,
             scale: u.iter().fold(self.scale, |m, u| m.max(u.abs())),
         }
@@ -219,16 +223,38 @@ impl<'a> CoupledContact<'a> {
         }
     }
 
-    fn by_pair<T: Clone>(&self, all: &[T]) -> Vec<Vec<T>> {
-        let mut rest = all;
-        self.interface
-            .laws
-            .iter()
-            .map(|law| {
-                let (own, others) = rest.split_at(law.len());
-                rest = others;
-                own.to_vec()
-            })
-            .collect()
+    /// What every pair has of approaches, then what every pair has of dependent conditions.
+    fn side_by_side<'b, T: Copy + 'b>(
+        &self,
+        of_pairs: impl Iterator<Item = &'b [T]> + Clone,
+    ) -> Vec<T> {
+        let laws = self.interface.laws.iter();
+        let split = laws.zip(of_pairs).map(|(law, own)| own.split_at(law.len()));
+        let approaches = split.clone().flat_map(|(approaches, _)| approaches);
+        let dependent = split.flat_map(|(_, dependent)| dependent);
+        approaches.chain(dependent).copied().collect()
     }
+
+    /// What every pair has of all approaches, and of dependent conditions if these follow.
+    fn by_pair<T: Copy>(&self, all: &[T]) -> Vec<Vec<T>> {
+        let (mut approaches, mut dependent) = all.split_at(self.h.nrows());
+        let mut take = |law: &PairLaw| {
+            let (own, others) = approaches.split_at(law.len());
+            let (own_rows, other_rows) = dependent.split_at(law.rows.len().min(dependent.len()));
+            (approaches, dependent) = (others, other_rows);
+            [own, own_rows].concat()
+        };
+        self.interface.laws.iter().map(&mut take).collect()
+    }
+}
+
+/// D of all pairs, whose approaches are numbered one after the other.
+fn all_rows(laws: &[PairLaw]) -> DependentRows {
+    let mut rows = DependentRows::default();
+    let mut first = 0;
+    for law in laws {
+        rows.append(&law.rows, first);
+        first += law.len();
+    }
+    rows
 }

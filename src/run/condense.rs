@@ -44,7 +44,7 @@ pub struct CondensedBlocks {
 /// Assembles, factorizes and condenses this rank's blocks.
 ///
 /// # Errors
-/// A block that can move although its boundary is held, or conditions that depend on each other.
+/// A block that can move although its boundary is held, or a condition on Γ.
 pub fn condense_blocks(
     blocks: &BTreeMap<usize, OwnedBlock>,
     catalog: &Catalog,
@@ -146,7 +146,7 @@ fn limits(owned: &OwnedBlock, dofs: &Dofs, catalog: &Catalog) -> Result<Limits, 
     let scale = prescribed_scale(owned);
     for (j, of) in dofs.approach_of.iter().enumerate() {
         let gap = owned.conditions[j].gap;
-        if let ApproachOf::Prescribed(approach) = *of
+        if let &ApproachOf::Prescribed(approach) = of
             && approach > gap + 1e-12 * scale
         {
             let row = &owned.rows[j];
@@ -189,14 +189,14 @@ fn size(plan: &Plan, number: usize) -> Failure {
 }
 
 fn dof_failure(error: DofError, owned: &OwnedBlock, catalog: &Catalog) -> Failure {
-    let DofError::Dependent(j) = error else {
+    let DofError::OnInterface(j) = error else {
         return Failure::internal("a subdomain has more than 2^32 unknowns");
     };
     let row = &owned.rows[j];
     let contact = &catalog.contacts[row.contact as usize].name;
     Failure::input(format!(
-        "contact '{contact}': the condition between nodes {} and {} follows from several others; \
-         expected conditions that are independent of each other and of the supports",
+        "contact '{contact}': the condition between nodes {} and {} lies where subdomains are bonded; \
+         expected a partition whose interface doesn't meet contact",
         row.tag_a, row.tag_b
     ))
 }

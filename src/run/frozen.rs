@@ -89,7 +89,7 @@ impl Frozen<'_> {
                 condensed
                     .get(&b)
                     .map_or_else(Message::default, |(load, missing)| Message {
-                        integers: vec![missing.len() as i64],
+                        integers: vec![missing.len() as i64, load.boundary().len() as i64],
                         reals: [missing, load.boundary()].concat(),
                     })
             },
@@ -111,12 +111,11 @@ impl Frozen<'_> {
             .filter_map(|(b, message)| {
                 let (load, missing) = condensed.get(&b)?;
                 let mut reader = message.read();
-                let of_approaches = reader.reals(missing.len());
+                let of_limits = reader.reals(missing.len());
                 let x_b = reader.reals(load.boundary().len());
                 let change = BlockChange {
                     x: self.schur(b)?.recover(load, &x_b),
-                    forces: (self.pair(b))
-                        .map_or_else(Vec::new, |pair| pair.forces(&of_approaches)),
+                    forces: (self.pair(b)).map_or_else(Vec::new, |pair| pair.forces(&of_limits)),
                 };
                 Some((b, change))
             })
@@ -134,7 +133,7 @@ impl Frozen<'_> {
 }
 
 impl FrozenRoot<'_> {
-    /// What each block is answered: forces of its approaches, approaches, traces.
+    /// What each block is answered: forces of its limits, approaches, traces.
     fn solve(&self, plan: &Plan, gathered: Vec<Message>) -> Vec<Message> {
         let mut r = vec![0.0; self.interface.len];
         let mut loads = Vec::new();
@@ -143,9 +142,9 @@ impl FrozenRoot<'_> {
             let traces = &self.numbering.traces[b];
             let mut reader = message.read();
             if plan.pair_of(b).is_some() {
-                let approaches = reader.count();
-                missing.push(reader.reals(approaches));
-                loads.push(reader.reals(approaches));
+                let (limits, boundary) = (reader.count(), reader.count());
+                missing.push(reader.reals(limits));
+                loads.push(reader.reals(boundary - traces.len()));
             }
             for (&i, part) in traces.iter().zip(reader.reals(traces.len())) {
                 r[i as usize] += part;

@@ -101,7 +101,7 @@ type MakeCase = fn() -> Case;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 10] = [
+    let cases: [(&str, MakeCase); 11] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
@@ -122,6 +122,7 @@ fn same_results(trials: &mut Trials) {
         }),
         ("row", || Case::of(&resting::row([-1e6, 0.0], true), 6)),
         ("fallen", || Case::of(&resting::fallen(), 5)),
+        ("on_circles", || Case::of(&resting::on_circles(), 6)),
     ];
     for (name, make) in cases {
         let alone: OnceLock<(Case, BTreeMap<String, Vec<u64>>)> = OnceLock::new();

@@ -77,6 +77,24 @@ pub fn fallen() -> Model {
     square([0.0, -25e3], &text)
 }
 
+/// Two blocks on three circles each, where every node of theirs may touch several of them.
+pub fn on_circles() -> Model {
+    let mut blocks = Blocks::new();
+    let mut text = ROCK.to_owned();
+    for (name, x) in [("first", 0.0), ("second", 3.0)] {
+        blocks = blocks.rectangle(name, [x, x + 2.0], [0.0, 1.0], [9, 5]);
+        text += &format!("bodies.{name} = {{material = 'rock', body_force = [-2e3, -25e3]}}\n");
+    }
+    for (name, x) in [("first", 0.0), ("second", 3.0)] {
+        for at in [0.3, 1.1, 1.8] {
+            let circle = format!("center = [{}, -1], radius = 1", x + at);
+            let contact = obstacle(&format!("{name} at {at}"), "bottom", &circle);
+            text += &contact.replace("block bottom", &format!("{name} bottom"));
+        }
+    }
+    model(&text, blocks.mesh)
+}
+
 /// A body that its load moves ends with 4, its name and its motion.
 pub fn no_rest(trials: &mut Trials) {
     let down = [0.0, -25e3];

@@ -1,0 +1,264 @@
+//! Contact problems whose answers are known or can be checked.
+
+use faer::linalg::solvers::DenseSolveCore;
+use faer::{Mat, Side};
+
+use super::*;
+
+fn solve(h: &Mat<f64>, c: &[f64], bounds: &[f64]) -> (GapSolution, Vec<bool>) {
+    solve_with(h, c, &DependentRows::default(), bounds)
+}
+
+fn solve_with(
+    h: &Mat<f64>,
+    c: &[f64],
+    rows: &DependentRows,
+    bounds: &[f64],
+) -> (GapSolution, Vec<bool>) {
+    let mut open = vec![false; bounds.len()];
+    let c_scale: Vec<f64> = c.iter().map(|c| c.abs()).collect();
+    let stiffness: Vec<f64> = (0..c.len()).map(|j| 1.0 + h[(j, j)]).collect();
+    let problem = GapProblem {
+        h: h.as_ref(),
+        stiffness: &stiffness,
+        c,
+        c_scale: &c_scale,
+        rows,
+        bounds,
+        scale: 0.0,
+    };
+    (problem.solve(&mut open), open)
+}
+
+/// A reproducible number in (−1, 1).
+fn noise(seed: usize) -> f64 {
+    let x = (seed as f64 * 12.9898).sin() * 43758.5453;
+    2.0 * (x - x.floor()) - 1.0
+}
+
+fn assert_optimal(h: &Mat<f64>, c: &[f64], bounds: &[f64], solution: &GapSolution) {
+    let t = &solution.approaches;
+    let scale: f64 = c.iter().chain(bounds).fold(1e-300, |m, c| m.max(c.abs()));
+    for i in 0..c.len() {
+        let held: f64 = (0..c.len()).map(|j| h[(i, j)] * t[j]).sum();
+        assert!((c[i] - held - solution.forces[i]).abs() < 1e-9 * scale);
+        assert!(t[i] <= bounds[i] && solution.forces[i] >= 0.0);
+        assert!(t[i] == bounds[i] || solution.forces[i] == 0.0);
+    }
+}
+
+#[test]
+fn every_random_problem_ends_optimal() {
+    for seed in 0..300 {
+        let m = 1 + seed % 17;
+        let a = Mat::from_fn(m, m, |i, j| noise(seed * 1000 + i * 31 + j));
+        let h = &a * a.transpose() + Mat::<f64>::identity(m, m) * faer::Scale(1e-3);
+        let c: Vec<f64> = (0..m).map(|i| noise(seed * 77 + i + 5)).collect();
+        let bounds: Vec<f64> = (0..m).map(|i| noise(seed * 13 + i).max(-0.2)).collect();
+        let (solution, _) = solve(&h, &c, &bounds);
+        assert!(solution.converged);
+        assert_optimal(&h, &c, &bounds, &solution);
+    }
+}
+
+#[test]
+fn a_body_that_rests_on_three_points_needs_no_stiffness_of_its_own() {
+    // A beam on three rigid supports: H = 0 along lifting and rocking, the load presses it
+    // into its gaps.
+    let bend = [1.0, -2.0, 1.0];
+    let h = Mat::from_fn(3, 3, |i, j| bend[i] * bend[j]);
+    let (c, bounds) = ([0.2, 0.6, 0.2], [0.1, 0.3, -0.2]);
+    let (solution, _) = solve(&h, &c, &bounds);
+    assert_optimal(&h, &c, &bounds, &solution);
+}
+
+#[test]
+fn a_motion_without_resistance_is_stopped_by_the_gap_that_closes() {
+    // The load rocks a beam off its left support until nothing but its bending resists.
+    let bend = [1.0, -2.0, 1.0];
+    let h = Mat::from_fn(3, 3, |i, j| bend[i] * bend[j]);
+    let (c, bounds) = ([-0.1, 1.2, 0.1], [0.0; 3]);
+    let (solution, _) = solve(&h, &c, &bounds);
+    assert_optimal(&h, &c, &bounds, &solution);
+}
+
+#[test]
+fn a_body_that_only_round_off_pulls_away_is_left_where_it_is() {
+    // H = 0 along opening all gaps at once; the load there is what round-off left of it.
+    let bend = [1.0, -2.0, 1.0];
+    let h = Mat::from_fn(3, 3, |i, j| bend[i] * bend[j]);
+    let (c, bounds) = ([-1.0 - 1e-16, 2.0 - 1e-16, -1.0 - 1e-16], [1.0; 3]);
+    let (solution, _) = solve(&h, &c, &bounds);
+    assert!(solution.converged);
+    assert_optimal(&h, &c, &bounds, &solution);
+}
+
+/// H of a thin cantilever with `m` conditions along it: the inverse of its flexibility
+/// x²(3y − x)/6 for x ≤ y.
+fn cantilever(m: usize) -> Mat<f64> {
+    let flexibility = Mat::from_fn(m, m, |i, j| {
+        let (x, y) = ((i.min(j) + 1) as f64, (i.max(j) + 1) as f64);
+        x * x * (3.0 * y - x) / 6.0
+    });
+    let inverse = flexibility.llt(Side::Lower).unwrap().inverse();
+    Mat::from_fn(m, m, |i, j| 0.5 * (inverse[(i, j)] + inverse[(j, i)]))
+}
+
+#[test]
+fn a_thin_cantilever_over_a_rough_floor_never_cycles() {
+    let m = 24;
+    let h = cantilever(m);
+    let mut fell_back = 0;
+    for seed in 240..310 {
+        let c: Vec<f64> = (0..m).map(|i| 1e-4 * noise(seed * 91 + i)).collect();
+        let bounds: Vec<f64> = (0..m).map(|i| 0.1 * noise(seed * 17 + i).abs()).collect();
+        let (solution, _) = solve(&h, &c, &bounds);
+        assert!(solution.converged, "{seed}");
+        fell_back += usize::from(solution.fell_back);
+        let t = &solution.approaches;
+        for i in 0..m {
+            let terms = (0..m).map(|j| h[(i, j)] * t[j]);
+            let scale: f64 = terms.clone().map(f64::abs).sum();
+            let left = c[i] - terms.sum::<f64>() - solution.forces[i];
+            assert!(left.abs() <= 1e-10 * (scale + c[i].abs()));
+            assert!(t[i] == bounds[i] || solution.forces[i] == 0.0);
+        }
+    }
+    assert!(fell_back > 0, "no draw asks for the interior-point method");
+}
+
+#[test]
+fn the_interior_point_method_names_the_closed_conditions() {
+    for seed in 0..100 {
+        let m = 2 + seed % 30;
+        let a = Mat::from_fn(m, m, |i, j| noise(seed * 1000 + i * 31 + j));
+        let h = &a * a.transpose() + Mat::<f64>::identity(m, m) * faer::Scale(1e-3);
+        let c: Vec<f64> = (0..m).map(|i| noise(seed * 77 + i + 5)).collect();
+        let (_, open) = solve(&h, &c, &vec![0.0; m]);
+        let diagonal: Vec<f64> = (0..m).map(|j| h[(j, j)]).collect();
+        let (named, steps) = InGaps {
+            h: h.as_ref(),
+            q: &c,
+            scale: &diagonal,
+            rows: &DependentRows::default(),
+            e: &[],
+        }
+        .open_conditions();
+        assert_eq!(named, open);
+        assert!(steps < 30);
+    }
+}
+
+/// Fails unless the solution meets D t ≤ d and is optimal with it.
+fn assert_optimal_with(
+    h: &Mat<f64>,
+    c: &[f64],
+    rows: &DependentRows,
+    bounds: &[f64],
+    solution: &GapSolution,
+) {
+    assert!(solution.converged);
+    let m = c.len();
+    let t = &solution.approaches;
+    let scale: f64 = c.iter().chain(bounds).fold(1e-300, |m, c| m.max(c.abs()));
+    let mut left = c.to_vec();
+    rows.subtract_transposed(&solution.forces[m..], &mut left);
+    for i in 0..m {
+        let held: f64 = (0..m).map(|j| h[(i, j)] * t[j]).sum();
+        assert!((left[i] - held - solution.forces[i]).abs() < 1e-9 * scale);
+        assert!(t[i] <= bounds[i] && solution.forces[i] >= 0.0);
+        assert!(t[i] == bounds[i] || solution.forces[i] == 0.0);
+    }
+    for j in 0..rows.len() {
+        let left = bounds[m + j] - rows.value(j, t);
+        assert!(left > -1e-12 * scale && solution.forces[m + j] >= 0.0);
+        assert!(left < 1e-12 * scale || solution.forces[m + j] == 0.0);
+    }
+}
+
+/// `count` rows of up to `most` of m approaches.
+fn random_rows(seed: usize, m: usize, count: usize, most: usize) -> DependentRows {
+    let mut rows = DependentRows::default();
+    for j in 0..count {
+        let first = (seed * 7 + j * 3) % m;
+        let terms = 1 + (seed + j) % most.min(m);
+        let of_term = |k: usize| ((first + k) % m, noise(seed * 501 + j * 37 + k));
+        rows.push((0..terms).map(of_term).collect());
+    }
+    rows
+}
+
+#[test]
+fn every_random_problem_with_dependent_conditions_ends_optimal() {
+    for seed in 0..600 {
+        let m = 1 + seed % 17;
+        let a = Mat::from_fn(m, m, |i, j| noise(seed * 1000 + i * 31 + j));
+        let h = &a * a.transpose() + Mat::<f64>::identity(m, m) * faer::Scale(1e-3);
+        let c: Vec<f64> = (0..m).map(|i| noise(seed * 77 + i + 5)).collect();
+        let rows = random_rows(seed, m, 1 + seed % (2 * m), 4);
+        // Bounds that the point p meets, some of them with nothing left.
+        let p: Vec<f64> = (0..m).map(|i| noise(seed * 13 + i)).collect();
+        let slack = |k: usize| noise(seed * 19 + k).max(0.0);
+        let mut bounds: Vec<f64> = (0..m).map(|i| p[i] + slack(i)).collect();
+        bounds.extend((0..rows.len()).map(|j| rows.value(j, &p) + slack(m + j)));
+        let (solution, _) = solve_with(&h, &c, &rows, &bounds);
+        assert_optimal_with(&h, &c, &rows, &bounds, &solution);
+    }
+}
+
+#[test]
+fn a_vertex_of_more_conditions_than_directions_is_found() {
+    // Three and more lines through one point of the plane, a load into each of the sectors.
+    let h = Mat::from_fn(2, 2, |i, j| if i == j { 2.0 } else { 0.5 });
+    for count in 1..6 {
+        let mut rows = DependentRows::default();
+        for j in 0..count {
+            let angle = (j as f64 + 0.5) * std::f64::consts::FRAC_PI_2 / count as f64;
+            rows.push(vec![(0, angle.cos()), (1, angle.sin())]);
+        }
+        for k in 0..32 {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 32.0).sin_cos();
+            let bounds = vec![0.0; 2 + count];
+            let c = [cos, sin];
+            let (solution, _) = solve_with(&h, &c, &rows, &bounds);
+            assert_optimal_with(&h, &c, &rows, &bounds, &solution);
+        }
+    }
+}
+
+#[test]
+fn an_approach_may_be_bounded_from_both_sides() {
+    let h = Mat::from_fn(3, 3, |i, j| if i == j { 2.0 } else { -0.5 });
+    let mut rows = DependentRows::default();
+    rows.push(vec![(0, -1.0)]);
+    rows.push(vec![(2, -1.0)]);
+    for (c, bounds) in [
+        ([-3.0, 0.5, 0.1], [0.1, 0.2, 0.3, 0.4, 0.5]),
+        ([-3.0, -9.0, -4.0], [0.1, 0.2, 0.3, 0.4, 0.5]),
+        ([3.0, 0.5, -4.0], [0.1, 0.2, 0.3, -0.1, -0.3]),
+    ] {
+        let (solution, _) = solve_with(&h, &c, &rows, &bounds);
+        assert_optimal_with(&h, &c, &rows, &bounds, &solution);
+    }
+}
+
+#[test]
+fn a_dependent_condition_alone_holds_what_nothing_resists() {
+    // H = 0 along moving both approaches at once, which only their sum's bound stops.
+    let h = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 } else { -1.0 });
+    let mut rows = DependentRows::default();
+    rows.push(vec![(0, 0.6), (1, 0.8)]);
+    let (c, bounds) = ([1.0, 0.5], [9.0, 9.0, 0.7]);
+    let (solution, open) = solve_with(&h, &c, &rows, &bounds);
+    assert_optimal_with(&h, &c, &rows, &bounds, &solution);
+    assert_eq!(open, [true, true, false]);
+}
+
+#[test]
+fn conditions_that_contradict_each_other_have_no_solution() {
+    let h = Mat::<f64>::identity(1, 1);
+    let mut rows = DependentRows::default();
+    rows.push(vec![(0, -1.0)]);
+    let (solution, _) = solve_with(&h, &[1.0], &rows, &[0.1, -0.2]);
+    assert!(!solution.converged);
+}

@@ -1,0 +1,144 @@
+//! Conditions in terms of approaches.
+
+use super::*;
+
+fn row(terms: &[(u32, f64)], constant: f64) -> ApproachRow {
+    ApproachRow {
+        constant,
+        terms: terms.to_vec(),
+        gap: constant,
+    }
+}
+
+/// b·v for v given by the unknowns that stay and the approaches `t`.
+fn approach(row: &ApproachRow, approaches: &Approaches, v: impl Fn(u32) -> f64, t: &[f64]) -> f64 {
+    let replaced = |a: &Affine| {
+        let term = |&(variable, c): &(Variable, f64)| match variable {
+            Variable::Displacement(i) => {
+                assert!(!approaches.replaced.contains_key(&i));
+                c * v(i)
+            }
+            Variable::Approach(j) => c * t[j as usize],
+        };
+        a.constant + a.terms.iter().map(term).sum::<f64>()
+    };
+    let value = |i: u32| approaches.replaced.get(&i).map_or_else(|| v(i), replaced);
+    row.constant + row.terms.iter().map(|&(i, c)| c * value(i)).sum::<f64>()
+}
+
+#[test]
+fn a_chain_of_conditions_leaves_every_approach_what_it_is_called() {
+    // 0 against 1, 1 against 2, 2 against 0 in another direction, 3 alone.
+    let rows = vec![
+        row(&[(0, 1.0), (1, -1.0)], 0.1),
+        row(&[(1, 1.0), (2, -0.8), (5, 0.6)], 0.2),
+        row(&[(2, 1.0), (0, 0.7), (5, -0.3)], -0.3),
+        row(&[(3, -1.0)], 0.4),
+    ];
+    let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
+    let t = [0.5, 0.25, 0.125, 2.0];
+    for (row, t_j) in rows.iter().zip(t) {
+        let v = |i: u32| (f64::from(i) + 1.0).sqrt();
+        assert!((approach(row, &approaches, v, &t) - t_j).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn a_condition_given_twice_shares_its_approach() {
+    let rows = [
+        row(&[(0, 1.0), (1, -1.0)], 0.0),
+        row(&[(0, 2.0), (1, -2.0)], 0.5),
+    ];
+    let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
+    assert_eq!(approaches.len, 1);
+    let shared = ApproachOf::Unknown {
+        number: 0,
+        factor: 2.0,
+        constant: 0.5,
+    };
+    assert_eq!(approaches.of[1], shared);
+}
+
+#[test]
+fn a_condition_that_follows_from_two_others_is_their_combination() {
+    let rows = [
+        row(&[(0, 1.0), (1, -1.0)], 0.5),
+        row(&[(1, 1.0), (2, -1.0)], 0.0),
+        row(&[(0, 1.0), (2, -1.0)], 0.25),
+    ];
+    let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
+    assert_eq!(approaches.len, 2);
+    let ApproachOf::Combination { terms, constant } = &approaches.of[2] else {
+        panic!("{:?}", approaches.of[2]);
+    };
+    let t = [0.3, 0.7];
+    let value: f64 = terms.iter().map(|&(i, c)| c * t[i]).sum();
+    let v = |i: u32| f64::from(i) + 2.0;
+    let expected = approach(&rows[2], &approaches, v, &t);
+    assert!((value + constant - expected).abs() < 1e-15);
+}
+
+#[test]
+fn a_condition_from_the_other_side_is_a_negative_multiple() {
+    let rows = [row(&[(0, 1.0)], 0.0), row(&[(0, -1.0)], 0.5)];
+    let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
+    let opposite = ApproachOf::Combination {
+        terms: vec![(0, -1.0)],
+        constant: 0.5,
+    };
+    assert_eq!(approaches.of[1], opposite);
+}
+
+#[test]
+fn conditions_whose_normals_cancel_are_prescribed() {
+    let rows = [
+        row(&[(0, 1.0), (1, -1.0)], 0.0),
+        row(&[(0, 1e-14), (1, -1e-14)], 0.5),
+    ];
+    let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
+    assert_eq!(approaches.of[1], ApproachOf::Prescribed(0.5));
+}
+
+#[test]
+fn a_condition_on_the_interface_alone_is_refused() {
+    let rows = [row(&[(0, 1.0), (1, -1.0)], 0.0), row(&[(0, 1.0)], 0.0)];
+    let error = Approaches::new(&rows, |v| v != 0, |_| 1.0).unwrap_err();
+    assert_eq!(error, OnInterface(1));
+}
+
+#[test]
+fn an_unknown_on_the_interface_stays() {
+    let rows = [row(&[(0, 1.0), (1, -1.0)], 0.0)];
+    let approaches = Approaches::new(&rows, |v| v != 0, |_| 1.0).unwrap();
+    assert!(approaches.replaced.contains_key(&1));
+}
+
+#[test]
+fn the_softer_side_follows_the_stiffer_one() {
+    let rows = [row(&[(0, 1.0), (1, -1.0)], 0.0)];
+    for soft in [0, 1] {
+        let stiffness = |v| if v == soft { 1.0 } else { 1e6 };
+        let approaches = Approaches::new(&rows, |_| true, stiffness).unwrap();
+        assert!(approaches.replaced.contains_key(&soft));
+    }
+}
+
+#[test]
+fn the_tightest_of_dependent_conditions_are_unknowns() {
+    let at = |degrees: f64, gap: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let mut row = row(&[(0, cos), (1, sin)], 0.0);
+        row.gap = gap;
+        row
+    };
+    // The second and the third are nearly parallel.
+    let rows = [at(10.0, 0.3), at(50.0, 0.1), at(51.0, 0.2), at(80.0, 0.4)];
+    let approaches = Approaches::new(&rows, |_| true, |_| 1.0).unwrap();
+    assert_eq!(approaches.len, 2);
+    for (of, independent) in approaches.of.iter().zip([true, true, false, false]) {
+        assert_eq!(matches!(of, ApproachOf::Unknown { .. }), independent);
+    }
+    for value in approaches.replaced.values() {
+        assert!(value.terms.iter().all(|(_, c)| c.abs() < 2.0));
+    }
+}

@@ -1,0 +1,282 @@
+//! Conditions that depend on several approaches: D t ≤ d.
+//!
+//! Where more conditions meet at a node than it has directions, the approaches of some bound those
+//! of the others. Closed, such a condition is an equation that ties one open approach to the rest.
+
+use std::collections::HashMap;
+
+use crate::comm::{Message, MessageReader};
+
+/// What elimination leaves of a coefficient of order one that should be zero.
+const ROUND_OFF: f64 = 1e-10;
+
+/// A sum of multiples: numbers and factors.
+type Terms = Vec<(usize, f64)>;
+
+/// D, row by row.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DependentRows {
+    rows: Vec<Terms>,
+}
+
+impl DependentRows {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Appends the row Σ factor·t.
+    pub fn push(&mut self, terms: Terms) {
+        self.rows.push(terms);
+    }
+
+    /// Appends the rows of `others`, whose first approach is number `first` here.
+    pub fn append(&mut self, others: &Self, first: usize) {
+        let shifted = |row: &Terms| row.iter().map(|&(i, c)| (first + i, c)).collect();
+        self.rows.extend(others.rows.iter().map(shifted));
+    }
+
+    /// The rows.
+    pub fn iter(&self) -> impl Iterator<Item = &[(usize, f64)]> {
+        self.rows.iter().map(Vec::as_slice)
+    }
+
+    /// Approaches and factors of row j.
+    pub fn row(&self, j: usize) -> &[(usize, f64)] {
+        &self.rows[j]
+    }
+
+    /// (D t)_j.
+    pub fn value(&self, j: usize, t: &[f64]) -> f64 {
+        self.rows[j].iter().map(|&(i, c)| c * t[i]).sum()
+    }
+
+    /// Sum of the absolute factors of row j.
+    pub fn size(&self, j: usize) -> f64 {
+        self.rows[j].iter().map(|(_, c)| c.abs()).sum()
+    }
+
+    /// y ← y − Dᵀ μ; the absolute terms of each entry that this changes.
+    pub fn subtract_transposed(&self, mu: &[f64], y: &mut [f64]) -> HashMap<usize, f64> {
+        let mut scale: HashMap<usize, f64> = HashMap::new();
+        for (row, mu) in self.rows.iter().zip(mu).filter(|(_, mu)| **mu != 0.0) {
+            for &(i, c) in row {
+                y[i] -= c * mu;
+                *scale.entry(i).or_default() += (c * mu).abs();
+            }
+        }
+        scale
+    }
+
+    /// Appends this to a message.
+    pub fn pack(&self, message: &mut Message) {
+        message.integers.push(self.rows.len() as i64);
+        for row in &self.rows {
+            message.integers.push(row.len() as i64);
+            message.integers.extend(row.iter().map(|&(i, _)| i as i64));
+            message.reals.extend(row.iter().map(|&(_, c)| c));
+        }
+    }
+
+    /// This from a message.
+    pub fn unpack(reader: &mut MessageReader) -> Self {
+        let count = reader.count();
+        let row = |_| {
+            let terms = reader.count();
+            let numbers = reader.integers(terms);
+            let numbers = numbers.iter().map(|&i| i as usize);
+            numbers.zip(reader.reals(terms)).collect()
+        };
+        Self {
+            rows: (0..count).map(row).collect(),
+        }
+    }
+}
+
+/// The closed rows as equations, each solved for an open approach of its own.
+#[derive(Clone, Debug, Default)]
+pub struct Ties {
+    /// The equations; none has the pivot of another.
+    pub ties: Vec<Tie>,
+    /// Closed rows that say nothing beyond the others and the closed approaches.
+    pub idle: Vec<usize>,
+}
+
+/// t_pivot + Σ factor·t = Σ share·(d − D_C g_C), over open approaches and closed rows.
+#[derive(Clone, Debug)]
+pub struct Tie {
+    /// The approach that follows from others.
+    pub pivot: usize,
+    /// Those others.
+    pub others: Terms,
+    /// The closed rows that it is made of, and their shares.
+    shares: Terms,
+}
+
+impl Ties {
+    /// Solves the rows that aren't `open`; flags of approaches come first, then those of rows.
+    pub fn new(rows: &DependentRows, open: &[bool]) -> Self {
+        let mut ties = Self::default();
+        let m = open.len() - rows.len();
+        for (j, row) in rows.iter().enumerate().filter(|&(j, _)| !open[m + j]) {
+            let (mut terms, mut shares) = ties.remainder(row, open);
+            scale(&mut shares, -1.0);
+            add(&mut shares, j, 1.0);
+            let largest = (terms.iter().enumerate()).max_by(|(_, a), (_, b)| {
+                let (a, b) = (a.1.abs(), b.1.abs());
+                a.total_cmp(&b)
+            });
+            let Some((place, &(pivot, factor))) = largest else {
+                ties.idle.push(j);
+                continue;
+            };
+            terms.swap_remove(place);
+            scale(&mut terms, 1.0 / factor);
+            scale(&mut shares, 1.0 / factor);
+            for tie in &mut ties.ties {
+                if let Some(place) = tie.others.iter().position(|&(i, _)| i == pivot) {
+                    let (_, factor) = tie.others.swap_remove(place);
+                    add_multiple(&mut tie.others, &terms, -factor);
+                    add_multiple(&mut tie.shares, &shares, -factor);
+                }
+            }
+            ties.ties.push(Tie {
+                pivot,
+                others: terms,
+                shares,
+            });
+        }
+        ties
+    }
+
+    /// What is left of `normal` on the open approaches once the ties are taken off, and how much of
+    /// every closed row that took.
+    fn remainder(&self, normal: &[(usize, f64)], open: &[bool]) -> (Terms, Terms) {
+        let mut left: Terms = normal.iter().copied().filter(|&(i, _)| open[i]).collect();
+        let mut taken = Terms::new();
+        for tie in &self.ties {
+            if let Some(place) = left.iter().position(|&(i, _)| i == tie.pivot) {
+                let (_, factor) = left.swap_remove(place);
+                add_multiple(&mut left, &tie.others, -factor);
+                add_multiple(&mut taken, &tie.shares, factor);
+            }
+        }
+        left.retain(|(_, c)| c.abs() > ROUND_OFF);
+        (left, taken)
+    }
+
+    /// The multiples of closed rows that `normal` is on the open approaches, if it is.
+    pub fn express(&self, normal: &[(usize, f64)], open: &[bool]) -> Option<Terms> {
+        let (left, taken) = self.remainder(normal, open);
+        left.is_empty().then_some(taken)
+    }
+
+    /// Puts the pivots of `t` where the ties want them with the other open approaches zero;
+    /// `bounds` are those of approaches, then those of rows.
+    pub fn hold(&self, rows: &DependentRows, bounds: &[f64], t: &mut [f64]) {
+        let m = t.len();
+        let held = |tie: &Tie| -> f64 {
+            let of_row = |&(j, share): &(usize, f64)| share * (bounds[m + j] - rows.value(j, t));
+            tie.shares.iter().map(of_row).sum()
+        };
+        let held: Vec<f64> = self.ties.iter().map(held).collect();
+        for (tie, held) in self.ties.iter().zip(held) {
+            t[tie.pivot] = held;
+        }
+    }
+
+    /// The forces μ of `count` rows that hold what is `left` of the load on the pivots.
+    pub fn forces(&self, count: usize, left: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut forces = vec![0.0; count];
+        for tie in &self.ties {
+            let left = left(tie.pivot);
+            for &(j, share) in &tie.shares {
+                forces[j] += share * left;
+            }
+        }
+        forces
+    }
+
+    /// Scale of the terms that the force of row j is a sum of, for the `scale` of every approach.
+    pub fn force_scale(&self, j: usize, scale: impl Fn(usize) -> f64) -> f64 {
+        let of_tie = |tie: &Tie| -> f64 {
+            let share = tie.shares.iter().find(|&&(row, _)| row == j);
+            share.map_or(0.0, |(_, share)| share.abs() * scale(tie.pivot))
+        };
+        self.ties.iter().map(of_tie).sum()
+    }
+}
+
+fn scale(terms: &mut Terms, factor: f64) {
+    for (_, c) in terms {
+        *c *= factor;
+    }
+}
+
+fn add(terms: &mut Terms, number: usize, factor: f64) {
+    match terms.iter_mut().find(|(i, _)| *i == number) {
+        Some((_, c)) => *c += factor,
+        None => terms.push((number, factor)),
+    }
+}
+
+fn add_multiple(terms: &mut Terms, others: &[(usize, f64)], factor: f64) {
+    for &(i, c) in others {
+        add(terms, i, factor * c);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(rows: &[&[(usize, f64)]]) -> DependentRows {
+        DependentRows {
+            rows: rows.iter().map(|row| row.to_vec()).collect(),
+        }
+    }
+
+    #[test]
+    fn tied_approaches_meet_every_closed_row() {
+        let rows = rows(&[
+            &[(0, 0.5), (1, 0.7)],
+            &[(1, -0.4), (2, 1.0), (3, 0.2)],
+            &[(0, 1.0), (2, 0.3)],
+        ]);
+        let open = [true, true, true, false, false, false, false];
+        let bounds = [0.0, 0.0, 0.0, 0.6, 0.1, -0.2, 0.3];
+        let ties = Ties::new(&rows, &open);
+        assert!(ties.idle.is_empty());
+        let mut t = [0.0, 0.0, 0.0, 0.6];
+        ties.hold(&rows, &bounds, &mut t);
+        for j in 0..3 {
+            assert!((rows.value(j, &t) - bounds[4 + j]).abs() < 1e-15);
+        }
+        let forces = [2.0, 3.0, 5.0];
+        let mut left = [0.0; 4];
+        rows.subtract_transposed(&forces.map(|f| -f), &mut left);
+        for (found, force) in ties.forces(3, |i| left[i]).iter().zip(forces) {
+            assert!((found - force).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_row_that_follows_from_closed_ones_is_idle() {
+        let rows = rows(&[
+            &[(0, 1.0), (1, 1.0)],
+            &[(1, 1.0), (2, -1.0)],
+            &[(0, 2.0), (1, 1.0), (2, 1.0)],
+        ]);
+        let ties = Ties::new(&rows, &[true, true, true, false, false, false]);
+        assert_eq!(ties.idle, [2]);
+        let mut made_of = ties.express(rows.row(2), &[true; 3]).unwrap();
+        made_of.sort_by_key(|&(j, _)| j);
+        assert_eq!(made_of, [(0, 2.0), (1, -1.0)]);
+        assert!(ties.express(&[(0, 1.0)], &[true; 3]).is_none());
+    }
+}

@@ -1,0 +1,171 @@
+//! Contact problems with dependent conditions, where closed conditions may follow from each other.
+//!
+//! Goldfarb and Idnani's dual method: closed conditions are independent of each other and all press;
+//! one that is violated closes, its force growing from zero, and each that would have to pull on
+//! the way opens. The energy rises with every condition that closes, so that no set comes back.
+
+use super::active_set::{FORCE_TOLERANCE, GapProblem, GapSolution, Trial};
+use super::dependent::Ties;
+
+/// Share of a condition's normal in another's below which there is none.
+const NO_SHARE: f64 = 1e-10;
+
+impl GapProblem<'_> {
+    /// Opens the dependent conditions that say nothing beyond closed ones: their gaps are what these
+    /// make them.
+    pub(super) fn open_idle(&self, open: &mut [bool], trial: &Trial) {
+        for &j in &trial.ties.idle {
+            open[self.c.len() + j] = true;
+        }
+    }
+
+    /// Scale of the terms that the force of condition i is a sum of.
+    pub(super) fn force_scale(&self, i: usize, trial: &Trial) -> f64 {
+        let m = self.c.len();
+        let of_approach = |i: usize| self.scale_of(i, &trial.approaches);
+        let of_row = |j: usize| trial.ties.force_scale(j, of_approach);
+        if i >= m {
+            return of_row(i - m);
+        }
+        let held = (self.rows.iter().enumerate()).map(|(j, row)| {
+            let share = row.iter().find(|&&(approach, _)| approach == i);
+            share.map_or(0.0, |(_, share)| share.abs() * of_row(j))
+        });
+        of_approach(i) + held.sum::<f64>()
+    }
+
+    /// Closes condition k; where it follows from closed ones, the one opens in exchange whose force
+    /// vanishes first as that of k grows.
+    pub(super) fn close(&self, k: usize, open: &mut [bool], forces: &[f64]) {
+        if !self.rows.is_empty()
+            && let Some(shares) = self.shares_in(k, open, &Ties::new(self.rows, open))
+            && let Some((blocking, _)) = first_to_vanish(&shares, forces)
+        {
+            open[blocking] = true;
+        }
+        open[k] = false;
+    }
+
+    /// How much larger round-off in closed conditions is in condition k, where that follows from them.
+    pub(super) fn amplified(&self, k: usize, open: &[bool], trial: &Trial) -> f64 {
+        if self.rows.is_empty() {
+            return 0.0;
+        }
+        let shares = self.shares_in(k, open, &trial.ties).unwrap_or_default();
+        shares.iter().map(|(_, share)| share.abs()).sum()
+    }
+
+    /// Whether condition i holds its sides apart, beyond round-off.
+    fn presses(&self, i: usize, trial: &Trial) -> bool {
+        trial.forces[i] > FORCE_TOLERANCE * self.force_scale(i, trial)
+    }
+
+    /// The multiples of closed conditions' normals that the normal of k is, if it is.
+    fn shares_in(&self, k: usize, open: &[bool], ties: &Ties) -> Option<Vec<(usize, f64)>> {
+        let m = self.c.len();
+        let own = [(k, 1.0)];
+        let normal = if k < m { &own } else { self.rows.row(k - m) };
+        let of_rows = ties.express(normal, open)?;
+        let mut of_approaches = vec![0.0; m];
+        for &(i, c) in normal {
+            of_approaches[i] += c;
+        }
+        for &(j, share) in &of_rows {
+            for &(i, c) in self.rows.row(j) {
+                of_approaches[i] -= share * c;
+            }
+        }
+        let closed = (0..m).filter(|&i| !open[i] && of_approaches[i].abs() > NO_SHARE);
+        let mut shares: Vec<_> = closed.map(|i| (i, of_approaches[i])).collect();
+        shares.extend(of_rows.into_iter().map(|(j, share)| (m + j, share)));
+        Some(shares)
+    }
+
+    /// Closes violated conditions one by one until there is none, starting from those of the closed
+    /// ones that press; gives up once `limit` systems are solved.
+    pub(super) fn dual(&self, open: &mut [bool], limit: usize) -> GapSolution {
+        let mut steps = 0;
+        let mut trial = loop {
+            steps += 1;
+            let trial = self.linear(open);
+            self.open_idle(open, &trial);
+            let idle: Vec<usize> = (0..open.len())
+                .filter(|&i| !open[i] && !self.presses(i, &trial))
+                .collect();
+            if idle.is_empty() {
+                break trial;
+            }
+            for i in idle {
+                open[i] = true;
+            }
+        };
+        loop {
+            let violated = (0..open.len())
+                .filter(|&i| open[i])
+                .map(|i| (i, self.violation(i, open, &trial)))
+                .filter(|&(_, violation)| violation > 0.0)
+                .max_by(|(_, a), (_, b)| a.total_cmp(b));
+            let Some((k, _)) = violated else {
+                return self.solution(&trial, steps, true);
+            };
+            match self.press(k, open, &trial, &mut steps, limit) {
+                Some(pressed) => trial = pressed,
+                None => return self.solution(&trial, steps, false),
+            }
+        }
+    }
+
+    /// Closes the violated condition k, opening those that would have to pull; `None` where the
+    /// conditions contradict each other or too many systems are solved.
+    fn press(
+        &self,
+        k: usize,
+        open: &mut [bool],
+        from: &Trial,
+        steps: &mut usize,
+        limit: usize,
+    ) -> Option<Trial> {
+        let mut forces: Vec<f64> = from.forces.iter().map(|f| f.max(0.0)).collect();
+        loop {
+            let ties = Ties::new(self.rows, open);
+            if let Some(shares) = self.shares_in(k, open, &ties) {
+                let (blocking, growth) = first_to_vanish(&shares, &forces)?;
+                for &(i, share) in &shares {
+                    forces[i] = (forces[i] - growth * share).max(0.0);
+                }
+                forces[k] += growth;
+                forces[blocking] = 0.0;
+                open[blocking] = true;
+                continue;
+            }
+            if *steps >= limit {
+                return None;
+            }
+            *steps += 1;
+            open[k] = false;
+            let target = self.linear(open);
+            let pulling = (0..open.len()).filter(|&i| i != k && !open[i] && self.pulls(i, &target));
+            let share = |i: usize| forces[i] / (forces[i] - target.forces[i]);
+            let first = pulling
+                .map(|i| (i, share(i)))
+                .min_by(|(_, a), (_, b)| a.total_cmp(b));
+            let Some((blocking, share)) = first else {
+                return Some(target);
+            };
+            for (force, target) in forces.iter_mut().zip(&target.forces) {
+                *force = (*force + share * (target - *force)).max(0.0);
+            }
+            forces[blocking] = 0.0;
+            open[blocking] = true;
+            open[k] = true;
+        }
+    }
+}
+
+/// The condition whose force is the first to vanish when each loses its share of a growing force,
+/// and how far that can grow; `None` if none vanishes.
+fn first_to_vanish(shares: &[(usize, f64)], forces: &[f64]) -> Option<(usize, f64)> {
+    let losing = shares.iter().filter(|(_, share)| *share > NO_SHARE);
+    let growth = |&(i, share): &(usize, f64)| (i, forces[i].max(0.0) / share);
+    losing.map(growth).min_by(|(_, a), (_, b)| a.total_cmp(b))
+}
