@@ -6,8 +6,8 @@ use super::dependent::DependentRows;
 use super::pair::ContactPair;
 use crate::comm::{Message, MessageReader};
 
-/// λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0, and D t ≤ d where there is such: the part of S_kl that the root needs to
-/// solve for all pairs at once.
+/// λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0, and D t ≤ d where there is such: the part of S_kl
+/// that the root needs to solve for all pairs at once.
 #[derive(Clone, Debug)]
 pub struct PairLaw {
     /// H, on the approaches (Pa).
@@ -52,12 +52,12 @@ impl PairLaw {
     pub fn unpack(reader: &mut MessageReader, traces: usize) -> Self {
         let m = reader.count();
         Self {
+            defining: (reader.integers(m).iter()).map(|&j| j as usize).collect(),
             h: reader.lower(m),
             s_t_gamma: reader.matrix(m, traces),
             stiffness: reader.reals(m),
             rows: DependentRows::unpack(reader),
             scale: reader.real(),
-            defining: (reader.integers(m).iter()).map(|&j| j as usize).collect(),
         }
     }
 
