@@ -47,6 +47,9 @@ pub struct GapProblem<'a> {
     pub rows: &'a DependentRows,
     /// g, then d.
     pub bounds: &'a [f64],
+    /// Approaches from which open conditions go where the load drives them, and where they stay
+    /// along motions that nothing resists.
+    pub center: &'a [f64],
     /// Scale of the displacements that the approaches are differences of.
     pub scale: f64,
 }
@@ -100,11 +103,16 @@ impl GapProblem<'_> {
         let mut solution = self.pivot(&mut set, QUICK_STEPS, false);
         if !solution.converged {
             let quick = solution.steps;
-            let (mut named, named_in) = self.interior_point();
+            let (mut named, center, named_in) = self.interior_point();
+            // Where nothing resists, bodies are within their gaps there, and not just anywhere.
+            let centered = GapProblem {
+                center: &center,
+                ..*self
+            };
             solution = if self.rows.is_empty() {
-                self.pivot(&mut named, self.most_steps(), true)
+                centered.pivot(&mut named, self.most_steps(), true)
             } else {
-                self.dual(&mut named, self.most_steps())
+                centered.dual(&mut named, self.most_steps())
             };
             solution.steps += quick + named_in;
             solution.fell_back = true;
@@ -114,7 +122,8 @@ impl GapProblem<'_> {
         solution
     }
 
-    fn interior_point(&self) -> (Vec<bool>, usize) {
+    /// The open conditions and the approaches of the interior-point method, and what it cost.
+    fn interior_point(&self) -> (Vec<bool>, Vec<f64>, usize) {
         let m = self.c.len();
         let mut q = self.c.to_vec();
         for (column, &g) in self.h.col_iter().zip(self.bounds) {
@@ -128,14 +137,16 @@ impl GapProblem<'_> {
         let e: Vec<f64> = (0..self.rows.len())
             .map(|j| self.bounds[m + j] - self.rows.value(j, self.bounds))
             .collect();
-        InGaps {
+        let (open, gaps, steps) = InGaps {
             h: self.h,
             q: &q,
             scale: &scale,
             rows: self.rows,
             e: &e,
         }
-        .open_conditions()
+        .open_conditions();
+        let approaches = self.bounds.iter().zip(&gaps).map(|(g, s)| g - s);
+        (open, approaches.collect(), steps)
     }
 
     fn most_steps(&self) -> usize {
@@ -196,7 +207,13 @@ impl GapProblem<'_> {
         let m = self.c.len();
         let factor = OpenFactor::new(self.h, self.stiffness, self.rows, open);
         let mut t: Vec<f64> = (0..m)
-            .map(|j| if open[j] { 0.0 } else { self.bounds[j] })
+            .map(|j| {
+                if open[j] {
+                    self.center[j]
+                } else {
+                    self.bounds[j]
+                }
+            })
             .collect();
         factor.ties.hold(self.rows, self.bounds, &mut t);
         // What the closed conditions leave of the load.

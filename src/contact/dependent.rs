@@ -176,17 +176,21 @@ impl Ties {
         left.is_empty().then_some(taken)
     }
 
-    /// Puts the pivots of `t` where the ties want them with the other open approaches zero;
-    /// `bounds` are those of approaches, then those of rows.
+    /// Puts the pivots of `t` where the ties want them with the other approaches as they are; `bounds`
+    /// are those of approaches, then those of rows.
     pub fn hold(&self, rows: &DependentRows, bounds: &[f64], t: &mut [f64]) {
         let m = t.len();
+        for tie in &self.ties {
+            t[tie.pivot] = 0.0;
+        }
+        let t_free = t.to_vec();
         let held = |tie: &Tie| -> f64 {
-            let of_row = |&(j, share): &(usize, f64)| share * (bounds[m + j] - rows.value(j, t));
+            let of_row =
+                |&(j, share): &(usize, f64)| share * (bounds[m + j] - rows.value(j, &t_free));
             tie.shares.iter().map(of_row).sum()
         };
-        let held: Vec<f64> = self.ties.iter().map(held).collect();
-        for (tie, held) in self.ties.iter().zip(held) {
-            t[tie.pivot] = held;
+        for tie in &self.ties {
+            t[tie.pivot] = held(tie);
         }
     }
 

@@ -35,9 +35,9 @@ pub struct InGaps<'a> {
 }
 
 impl InGaps<'_> {
-    /// The conditions that are open in the solution, those of gaps first, and the number of linear
-    /// systems solved.
-    pub fn open_conditions(&self) -> (Vec<bool>, usize) {
+    /// The conditions that are open in the solution, those of gaps first, the gaps, and the number of
+    /// linear systems solved.
+    pub fn open_conditions(&self) -> (Vec<bool>, Vec<f64>, usize) {
         let n = self.q.len();
         let all = n + self.rows.len();
         // Gaps and forces become square roots of energies, so that units don't matter.
@@ -53,7 +53,7 @@ impl InGaps<'_> {
         let load = (0..n).fold(0.0, |m: f64, i| m.max((self.q[i] / root[i]).abs()));
         let load = e.iter().fold(load, |m, e| m.max(e.abs()));
         if load == 0.0 || !load.is_finite() {
-            return (vec![false; all], 0);
+            return (vec![false; all], vec![0.0; n], 0);
         }
         let problem = Scaled {
             h: Mat::from_fn(n, n, |i, j| {
@@ -76,7 +76,8 @@ impl InGaps<'_> {
             point = moved;
         }
         let open = (point.s.iter().zip(&point.w)).map(|(s, w)| s > w).collect();
-        (open, steps)
+        let gaps = (point.s.iter().zip(&root)).map(|(s, root)| s * load / root);
+        (open, gaps.collect(), steps)
     }
 }
 

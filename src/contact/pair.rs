@@ -204,6 +204,7 @@ impl ContactPair {
             c_scale: &c_scale,
             rows: &self.limits.rows,
             bounds: &self.limits.bounds,
+            center: &self.contact.approaches,
             scale: u.iter().fold(self.limits.scale, |m, u| m.max(u.abs())),
         }
         .solve(&mut open);

@@ -33,6 +33,8 @@ pub struct CoupledContact<'a> {
     /// H − Cᵀ A⁻¹ C.
     h: MatRef<'a, f64>,
     stiffness: Vec<f64>,
+    /// No change.
+    center: Vec<f64>,
     /// D of all pairs.
     rows: DependentRows,
     scale: f64,
@@ -115,6 +117,7 @@ impl<'a> CoupledContact<'a> {
             h: interface.condensed_laws(),
             stiffness: laws.iter().flat_map(|law| law.stiffness.clone()).collect(),
             rows: all_rows(laws),
+            center: vec![0.0; laws.iter().map(PairLaw::len).sum()],
             scale: laws.iter().fold(0.0, |m, law| m.max(law.scale)),
         })
     }
@@ -184,6 +187,7 @@ impl<'a> CoupledContact<'a> {
             c_scale: &condensed.c_scale,
             rows: &self.rows,
             bounds,
+            center: &self.center,
             scale: u.iter().fold(self.scale, |m, u| m.max(u.abs())),
         }
     }

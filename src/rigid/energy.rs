@@ -7,7 +7,7 @@
 use faer::Mat;
 
 /// Part of a motion, relative to all of it, that is new.
-const INDEPENDENT: f64 = 1e-10;
+const INDEPENDENT: f64 = 1e-8;
 
 /// Approaches against rigid motions: R, a row an approach and a column a motion, and the load Rᵀ c
 /// along them.

@@ -11,6 +11,9 @@ use super::kinematics::Kinematics;
 use crate::comm::{Comm, Message};
 use crate::plan::Plan;
 
+/// How far a motion moves a condition, relative to others, that is none.
+const ROUND_OFF: f64 = 1e-9;
+
 impl Scene {
     /// The conditions with these numbers against the motions that supports leave to the bodies, and
     /// the load along these.
@@ -26,7 +29,12 @@ impl Scene {
         bodies: impl Fn(usize) -> bool,
     ) -> RigidDrive {
         let rows: Vec<_> = conditions.iter().map(|&j| self.rows[j].clone()).collect();
-        let b = kinematics.rows(&rows);
+        let mut b = kinematics.rows(&rows);
+        // A motion along a side moves it nowhere but by round-off.
+        for mut row in b.row_iter_mut() {
+            let round_off = ROUND_OFF * row.amax();
+            row.apply(|entry| *entry = if entry.abs() > round_off { *entry } else { 0.0 });
+        }
         let load = kinematics.load(&self.bodies);
         let columns: Vec<usize> = (0..self.bodies.len())
             .filter(|&body| bodies(body))

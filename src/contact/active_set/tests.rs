@@ -25,6 +25,7 @@ fn solve_with(
         c_scale: &c_scale,
         rows,
         bounds,
+        center: &vec![0.0; c.len()],
         scale: 0.0,
     };
     (problem.solve(&mut open), open)
@@ -134,9 +135,9 @@ fn the_interior_point_method_names_the_closed_conditions() {
         let a = Mat::from_fn(m, m, |i, j| noise(seed * 1000 + i * 31 + j));
         let h = &a * a.transpose() + Mat::<f64>::identity(m, m) * faer::Scale(1e-3);
         let c: Vec<f64> = (0..m).map(|i| noise(seed * 77 + i + 5)).collect();
-        let (_, open) = solve(&h, &c, &vec![0.0; m]);
+        let (solution, open) = solve(&h, &c, &vec![0.0; m]);
         let diagonal: Vec<f64> = (0..m).map(|j| h[(j, j)]).collect();
-        let (named, steps) = InGaps {
+        let (named, gaps, steps) = InGaps {
             h: h.as_ref(),
             q: &c,
             scale: &diagonal,
@@ -145,6 +146,8 @@ fn the_interior_point_method_names_the_closed_conditions() {
         }
         .open_conditions();
         assert_eq!(named, open);
+        let t = solution.approaches;
+        assert!(gaps.iter().zip(&t).all(|(s, t)| (s + t).abs() < 1e-6));
         assert!(steps < 30);
     }
 }
