@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 1e-20;
 /// Share of the way to the next bound that a step takes.
 const SHARE: f64 = 0.995;
 /// Stiffness relative to the diagonal that keeps a motion that nothing resists bounded.
-const SPRING: f64 = 1e-13;
+const SPRING: f64 = 1e-15;
 
 /// The problem.
 #[derive(Clone, Copy, Debug)]

@@ -31,7 +31,8 @@ pub struct OpenFactor {
     untied: Vec<usize>,
     h_nn: Mat<f64>,
     factor: Option<Llt<f64>>,
-    singular: bool,
+    /// Whether springs were needed.
+    pub singular: bool,
 }
 
 impl OpenFactor {
