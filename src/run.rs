@@ -26,7 +26,7 @@ use self::descend::{take_out_descent, with_descent};
 use self::frozen::{Frozen, FrozenRoot};
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
-use self::refine::{check, refine};
+use self::refine::refine;
 use self::report::{Narrator, Totals};
 use self::settle::{settle_free_motions, settle_loose_motions};
 use self::write::{Fields, stresses, write_solution};
@@ -137,20 +137,20 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         root: root.map(|(outcome, (numbering, interface))| FrozenRoot {
             numbering,
             interface,
-            state: &outcome.state,
             converged: outcome.status == SweepStatus::Converged,
         }),
     };
     settle_free_motions(&frozen, &survey, &mut solutions);
-    let mut certificate = refine(&frozen, &mut solutions);
-    let condition = condition_number(&frozen);
+    let displacement = with_descent(&blocks, &solutions, &survey, catalog.dim);
+    let settled = settle_loose_motions(&frozen, &survey, &mut solutions, displacement);
+    let certificate = refine(&frozen, &mut solutions);
+    // What is loose has no stiffness that could be compared.
+    let condition = match settled.is_loose {
+        true => None,
+        false => condition_number(&frozen, &solutions),
+    };
     let stress = stresses(comm, &blocks, &solutions, catalog, &plan);
-    let mut displacement = with_descent(&blocks, &solutions, &survey, catalog.dim);
-    let settled = settle_loose_motions(&frozen, &survey, &mut solutions, &mut displacement);
-    if settled.is_some() {
-        certificate = check(&frozen, &solutions);
-    }
-    let settled = settled.unwrap_or_default();
+    let displacement = with_descent(&blocks, &solutions, &survey, catalog.dim);
     seconds.recover = lap.elapsed().as_secs_f64();
 
     // Results travel to the root subdomain by subdomain and are written as they arrive.

@@ -274,12 +274,13 @@ impl ContactPair {
         forces
     }
 
-    /// What every closed limit lacks of its bound when the conditions lack `missing`, one entry a
-    /// condition; 0 for the open ones.
-    pub fn missing(&self, missing: &[f64]) -> Vec<f64> {
-        let of_condition = |&(condition, factor): &(usize, f64)| missing[condition] / factor;
-        (self.limits.tightest.iter().zip(&self.open))
-            .map(|(tightest, &open)| if open { 0.0 } else { of_condition(tightest) })
-            .collect()
+    /// Which limits are open where these conditions are `closed`, and what every closed one lacks of
+    /// its bound when the conditions lack `missing`; 0 for the open ones.
+    pub fn frozen_limits(&self, closed: &[bool], missing: &[f64]) -> (Vec<bool>, Vec<f64>) {
+        let of_condition = |&(condition, factor): &(usize, f64)| match closed[condition] {
+            true => (false, missing[condition] / factor),
+            false => (true, 0.0),
+        };
+        self.limits.tightest.iter().map(of_condition).unzip()
     }
 }

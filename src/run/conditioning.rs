@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::frozen::{BlockLoad, Frozen};
+use super::recover::BlockSolution;
 use crate::comm::Message;
 
 /// Estimates κ = λ_max / λ_min of D^(−1/2) K D^(−1/2), K the stiffness of the whole scene with its
@@ -12,7 +13,10 @@ use crate::comm::Message;
 /// λ_min comes from two steps of the inverse power iteration, which makes the estimate a lower
 /// bound but for λ_max, whose bound is the number of unknowns of a cell. Collective; the root gets
 /// the estimate, `None` where it can't be made.
-pub fn condition_number(frozen: &Frozen<'_>) -> Option<f64> {
+pub fn condition_number(
+    frozen: &Frozen<'_>,
+    solutions: &BTreeMap<usize, BlockSolution>,
+) -> Option<f64> {
     let mut able = Message {
         integers: vec![i64::from(frozen.root.is_some_and(|root| root.can_solve()))],
         reals: Vec::new(),
@@ -29,13 +33,13 @@ pub fn condition_number(frozen: &Frozen<'_>) -> Option<f64> {
         )
     };
     let loads: BTreeMap<usize, Vec<f64>> = frozen.condensed.dofs.keys().map(start).collect();
-    let first = solve(frozen, &loads);
+    let first = solve(frozen, solutions, &loads);
     let weighted = |(&b, x): (&usize, &Vec<f64>)| {
         let product = diagonal(frozen, b).iter().zip(x).map(|(d, x)| d * x);
         (b, product.collect())
     };
     let loads: BTreeMap<usize, Vec<f64>> = first.iter().map(weighted).collect();
-    let second = solve(frozen, &loads);
+    let second = solve(frozen, solutions, &loads);
 
     // xᵀ D x and xᵀ D K⁻¹ D x, summed block by block so that ranks make no difference.
     let mut largest = 0;
@@ -66,12 +70,19 @@ pub fn condition_number(frozen: &Frozen<'_>) -> Option<f64> {
 }
 
 /// K⁻¹ `loads`, every contact frozen. Collective.
-fn solve(frozen: &Frozen<'_>, loads: &BTreeMap<usize, Vec<f64>>) -> BTreeMap<usize, Vec<f64>> {
+fn solve(
+    frozen: &Frozen<'_>,
+    solutions: &BTreeMap<usize, BlockSolution>,
+    loads: &BTreeMap<usize, Vec<f64>>,
+) -> BTreeMap<usize, Vec<f64>> {
     let load_of = |(&b, load): (&usize, &Vec<f64>)| {
-        let conditions = (frozen.blocks.get(&b)).map_or(0, |owned| owned.conditions.len());
+        let closed = solutions
+            .get(&b)
+            .map_or_else(Vec::new, |s| s.closed.clone());
         let load = BlockLoad {
             load: load.clone(),
-            missing: vec![0.0; conditions],
+            missing: vec![0.0; closed.len()],
+            closed,
         };
         (b, load)
     };

@@ -7,7 +7,7 @@ use contact_dd_partition::problem::Catalog;
 use super::condense::CondensedBlocks;
 use super::read::OwnedBlock;
 use crate::comm::{Comm, Message};
-use crate::contact::s_con::ConState;
+use crate::contact::pair::ContactPair;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
@@ -38,9 +38,7 @@ pub struct FrozenRoot<'a> {
     pub numbering: &'a Numbering,
     /// The interface problem.
     pub interface: &'a Interface,
-    /// The pairs' active sets.
-    pub state: &'a ConState,
-    /// Whether those are right.
+    /// Whether the active sets are right.
     pub converged: bool,
 }
 
@@ -56,6 +54,8 @@ impl FrozenRoot<'_> {
 pub struct BlockLoad {
     /// Force on every unknown (N/m).
     pub load: Vec<f64>,
+    /// Which of its conditions are closed.
+    pub closed: Vec<bool>,
     /// What the sides of every condition still have to approach where it is closed (m).
     pub missing: Vec<f64>,
 }
@@ -69,16 +69,44 @@ pub struct BlockChange {
     pub forces: Vec<f64>,
 }
 
+/// A load on a block, condensed, and its limits.
+struct FrozenLoad {
+    load: CondensedLoad,
+    open: Vec<bool>,
+    missing: Vec<f64>,
+}
+
+impl FrozenLoad {
+    fn pack(&self) -> Message {
+        let boundary = self.load.boundary();
+        let mut integers = vec![self.open.len() as i64, boundary.len() as i64];
+        integers.extend(self.open.iter().map(|&open| i64::from(open)));
+        Message {
+            integers,
+            reals: [&self.missing, boundary].concat(),
+        }
+    }
+}
+
 impl Frozen<'_> {
     /// The change that `loads` on the blocks of this rank, and those on the others', make to them.
     /// Collective.
     pub fn solve(&self, loads: BTreeMap<usize, BlockLoad>) -> BTreeMap<usize, BlockChange> {
-        let condensed: BTreeMap<usize, (CondensedLoad, Vec<f64>)> = loads
+        let condensed: BTreeMap<usize, FrozenLoad> = loads
             .into_iter()
             .filter_map(|(b, load)| {
-                let missing = self.pair(b).map(|pair| pair.missing(&load.missing));
-                let condensed = self.schur(b)?.condense(load.load);
-                Some((b, (condensed, missing.unwrap_or_default())))
+                let limits =
+                    (self.pair(b)).map(|pair| pair.frozen_limits(&load.closed, &load.missing));
+                let (open, missing) = limits.unwrap_or_default();
+                let load = self.schur(b)?.condense(load.load);
+                Some((
+                    b,
+                    FrozenLoad {
+                        load,
+                        open,
+                        missing,
+                    },
+                ))
             })
             .collect();
         let owners = self.plan.owners();
@@ -88,10 +116,7 @@ impl Frozen<'_> {
             |b| {
                 condensed
                     .get(&b)
-                    .map_or_else(Message::default, |(load, missing)| Message {
-                        integers: vec![missing.len() as i64, load.boundary().len() as i64],
-                        reals: [missing, load.boundary()].concat(),
-                    })
+                    .map_or_else(Message::default, FrozenLoad::pack)
             },
             |_, message| gathered.push(message),
         );
@@ -109,7 +134,7 @@ impl Frozen<'_> {
         received
             .into_iter()
             .filter_map(|(b, message)| {
-                let (load, missing) = condensed.get(&b)?;
+                let FrozenLoad { load, missing, .. } = condensed.get(&b)?;
                 let mut reader = message.read();
                 let of_limits = reader.reals(missing.len());
                 let x_b = reader.reals(load.boundary().len());
@@ -122,7 +147,7 @@ impl Frozen<'_> {
             .collect()
     }
 
-    fn pair(&self, b: usize) -> Option<&crate::contact::pair::ContactPair> {
+    fn pair(&self, b: usize) -> Option<&ContactPair> {
         self.condensed.pairs.get(&self.plan.pair_of(b)?)
     }
 
@@ -138,11 +163,13 @@ impl FrozenRoot<'_> {
         let mut r = vec![0.0; self.interface.len];
         let mut loads = Vec::new();
         let mut missing = Vec::new();
+        let mut open: Vec<Vec<bool>> = Vec::new();
         for (b, message) in gathered.into_iter().enumerate() {
             let traces = &self.numbering.traces[b];
             let mut reader = message.read();
             if plan.pair_of(b).is_some() {
                 let (limits, boundary) = (reader.count(), reader.count());
+                open.push(reader.integers(limits).iter().map(|&o| o != 0).collect());
                 missing.push(reader.reals(limits));
                 loads.push(reader.reals(boundary - traces.len()));
             }
@@ -153,7 +180,7 @@ impl FrozenRoot<'_> {
         let Some(coupled) = CoupledContact::new(self.interface) else {
             return vec![Message::default(); self.numbering.traces.len()];
         };
-        let step = coupled.solve_frozen(&r, &loads, &missing, &self.state.open());
+        let step = coupled.solve_frozen(&r, &loads, &missing, &open);
         let mut pairs = step.forces.into_iter().zip(step.approaches);
         let answer = |b: usize| {
             let mut message = Message::default();

@@ -65,7 +65,7 @@ pub(super) fn balance(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -
 }
 
 /// The certificate, on the root. Collective.
-pub fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Certificate {
+fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Certificate {
     let of_block = |b: usize| {
         let (owned, solution) = (frozen.blocks.get(&b)?, solutions.get(&b)?);
         Some(BlockCheck::new(
@@ -97,7 +97,15 @@ fn correct(frozen: &Frozen<'_>, solutions: &mut BTreeMap<usize, BlockSolution>) 
         let missing = (owned.conditions.iter())
             .map(|condition| condition.gap_left(owned.block.dim, &solution.u))
             .collect();
-        Some((b, BlockLoad { load, missing }))
+        let closed = solution.closed.clone();
+        Some((
+            b,
+            BlockLoad {
+                load,
+                closed,
+                missing,
+            },
+        ))
     };
     let loads = solutions.iter().filter_map(unbalanced).collect();
     for (b, change) in frozen.solve(loads) {

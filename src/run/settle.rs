@@ -44,26 +44,28 @@ pub fn settle_free_motions(
     motions.take_out(frozen, &coefficients.reals, displacement);
 }
 
-/// What settling loose motions came to. On the root.
+/// What settling loose motions came to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Settled {
-    /// Conditions that opened by it.
+    /// Whether there were more than those that are free whatever the contacts do; on all ranks.
+    pub is_loose: bool,
+    /// Conditions that opened by it; on the root.
     pub opened: usize,
-    /// What a user should know.
+    /// What a user should know; on the root.
     pub warnings: Vec<String>,
 }
 
 /// Of all positions that contact forces leave the bodies, gives them the one of least
 /// `displacement`, which is that of `solutions` and the way to rest; conditions that open by it are
-/// open. `None` where nothing is loose. Collective.
+/// open. Collective.
 pub fn settle_loose_motions(
     frozen: &Frozen<'_>,
     survey: &Survey,
     solutions: &mut BTreeMap<usize, BlockSolution>,
-    displacement: &mut BTreeMap<usize, Vec<f64>>,
-) -> Option<Settled> {
+    mut displacement: BTreeMap<usize, Vec<f64>>,
+) -> Settled {
     if !survey.movable {
-        return None;
+        return Settled::default();
     }
     let loose = loose_motions(frozen, survey, solutions);
     let mut message = Message::default();
@@ -73,7 +75,7 @@ pub fn settle_loose_motions(
     frozen.comm.broadcast(&mut message);
     let list = unpack_motions(&mut message.read(), BodyFrame::count(frozen.catalog.dim));
     if list.is_empty() {
-        return None;
+        return Settled::default();
     }
     let motions = Motions {
         list: &list,
@@ -88,11 +90,12 @@ pub fn settle_loose_motions(
         coefficients.reals = loose.coefficients(&products);
     }
     frozen.comm.broadcast(&mut coefficients);
-    let all = displacement.iter_mut().map(|(&b, u)| (b, u)).collect();
-    motions.take_out(frozen, &coefficients.reals, all);
     let all = solutions.iter_mut().map(|(&b, s)| (b, &mut s.u)).collect();
     motions.take_out(frozen, &coefficients.reals, all);
-    let mut settled = Settled::default();
+    let mut settled = Settled {
+        is_loose: list.len() > survey.motions.free.len(),
+        ..Settled::default()
+    };
     frozen.comm.gather(
         &frozen.plan.pair_owners(),
         |p| {
@@ -106,7 +109,7 @@ pub fn settle_loose_motions(
         |_, message| settled.opened += message.read().count(),
     );
     settled.warnings = loose.map_or_else(Vec::new, |loose| loose.warnings);
-    Some(settled)
+    settled
 }
 
 /// Opens the conditions of block b that have a gap, and counts them.
