@@ -107,7 +107,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let lap = Instant::now();
     let pair_owners = plan.pair_owners();
     let mut s_con = SCon::new(comm, &pair_owners, &mut condensed.pairs);
-    let outcome = match &interface {
+    let mut outcome = match &interface {
         Some((_, interface)) => {
             narrator.sweeps(interface);
             let mut observer = |record: &SweepRecord| narrator.sweep(interface, record);
@@ -151,6 +151,9 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     };
     let stress = stresses(comm, &blocks, &solutions, catalog, &plan);
     let displacement = with_descent(&blocks, &solutions, &survey, catalog.dim);
+    if let Some(outcome) = &mut outcome {
+        outcome.accept(&certificate);
+    }
     seconds.recover = lap.elapsed().as_secs_f64();
 
     // Results travel to the root subdomain by subdomain and are written as they arrive.
@@ -167,8 +170,8 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     seconds.total = began.elapsed().as_secs_f64();
 
     let ranks = report::collect(comm, &seconds, &plan);
-    let finished = match (root, output) {
-        (Some((outcome, (_, interface))), Some(output)) => {
+    let finished = match (&outcome, &interface, output) {
+        (Some(outcome), Some((_, interface)), Some(output)) => {
             let totals = Totals {
                 catalog,
                 plan: &plan,

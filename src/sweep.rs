@@ -12,9 +12,17 @@ use std::time::Instant;
 
 use crate::contact::s_con::{ConState, ConTotals, SCon};
 use crate::interface::operator::Interface;
+use crate::output::report::Certificate;
 
 /// Residual that is round-off and nothing else.
 const ROUND_OFF: f64 = 1e-15;
+
+/// Equilibrium and penetration of a certificate that isn't one.
+const NOT_BALANCED: f64 = 1e-10;
+/// Equilibrium that may be round-off of a scene without load.
+const ROUND_OFF_OF_TERMS: f64 = 1e-12;
+/// Equilibrium relative to the load of an answer that says nothing.
+const NOT_BALANCED_OF_LOAD: f64 = 1e-2;
 
 /// How U is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -94,8 +102,29 @@ pub struct SweepOutcome {
     pub residual: f64,
     /// Totals of the last evaluation of S_CON.
     pub totals: ConTotals,
-    /// The pairs' answers in the last evaluation of S_CON.
-    pub state: ConState,
+}
+
+impl SweepOutcome {
+    /// Takes back that the sweeps converged if the full discrete problem says otherwise: their
+    /// residual is relative to terms that may be far larger than the load.
+    pub fn accept(&mut self, certificate: &Certificate) {
+        let Certificate {
+            equilibrium,
+            equilibrium_of_load,
+            penetration,
+            ..
+        } = *certificate;
+        let unbalanced = equilibrium > NOT_BALANCED
+            || (equilibrium > ROUND_OFF_OF_TERMS && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
+        let failed = unbalanced || penetration > NOT_BALANCED || equilibrium.is_nan();
+        if failed && self.status == SweepStatus::Converged {
+            self.status = SweepStatus::NotConverged(format!(
+                "the forces on the nodes are balanced to {equilibrium:.1e} of their terms and \
+                 {equilibrium_of_load:.1e} of the largest load, and contacts penetrate by \
+                 {penetration:.1e} of the largest displacement: the scene is too badly conditioned"
+            ));
+        }
+    }
 }
 
 /// The state of the sweeps on the root.
@@ -163,7 +192,6 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             fallbacks: sweeps.fallbacks,
             residual: last.relative,
             totals: last.totals,
-            state: sweeps.state,
         }
     }
 
@@ -245,5 +273,46 @@ fn dot(x: &[f64], y: &[f64]) -> f64 {
 fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += a * x;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn status(equilibrium: f64, equilibrium_of_load: f64, penetration: f64) -> SweepStatus {
+        let mut outcome = SweepOutcome {
+            u: Vec::new(),
+            status: SweepStatus::Converged,
+            records: Vec::new(),
+            notes: Vec::new(),
+            inner_steps: 0,
+            fallbacks: Vec::new(),
+            residual: 0.0,
+            totals: ConTotals::default(),
+        };
+        outcome.accept(&Certificate {
+            equilibrium,
+            equilibrium_of_load,
+            penetration,
+            ..Certificate::default()
+        });
+        outcome.status
+    }
+
+    #[test]
+    fn an_answer_that_does_not_balance_is_not_accepted() {
+        assert_eq!(status(3e-16, 1e-13, 1e-16), SweepStatus::Converged);
+        // A stiffness ratio of 1e8, and a scene without load.
+        assert_eq!(status(2e-15, 3e-6, 1e-16), SweepStatus::Converged);
+        assert_eq!(status(1e-16, 0.8, 0.0), SweepStatus::Converged);
+        for bad in [
+            (1e-9, 1e-8, 0.0),
+            (4e-11, 0.8, 0.0),
+            (1e-16, 1e-13, 1e-9),
+            (f64::NAN, 0.0, 0.0),
+        ] {
+            assert_ne!(status(bad.0, bad.1, bad.2), SweepStatus::Converged);
+        }
     }
 }

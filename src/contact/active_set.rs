@@ -270,8 +270,8 @@ impl GapProblem<'_> {
     pub(super) fn scale_of(&self, i: usize, t: &[f64]) -> f64 {
         let row = self.h.col(i);
         let held: f64 = row.iter().zip(t).map(|(h, t)| (h * t).abs()).sum();
-        let largest = t.iter().fold(self.scale, |m, t| m.max(t.abs()));
-        self.c_scale[i] + held + STIFFNESS_SHARE * self.stiffness[i] * largest
+        let displaced = self.scale.max(t[i].abs());
+        self.c_scale[i] + held + STIFFNESS_SHARE * self.stiffness[i] * displaced
     }
 
     /// The conditions that are open with a negative gap or closed with a negative force, beyond

@@ -24,7 +24,7 @@ use crate::schur::local::multiply_add;
 
 /// Most approaches of all pairs together for which their problem is solved at once: its matrix is
 /// dense.
-pub const MAX_APPROACHES: usize = 12_000;
+pub const MAX_APPROACHES: usize = 6_000;
 
 /// The coupled contact problem.
 #[derive(Clone, Debug)]

@@ -10,6 +10,8 @@ use crate::interface::coupled::CoupledContact;
 
 /// Sweeps before another method takes over.
 const MAX_SWEEPS: usize = 20;
+/// Residual to which the other method goes.
+const FALL_BACK_TOLERANCE: f64 = 1e-13;
 
 impl Sweeps<'_, '_> {
     pub(super) fn newton(&mut self, u: &mut [f64], mut residual: Residual) -> SweepStatus {
@@ -45,6 +47,8 @@ impl Sweeps<'_, '_> {
 
     fn fall_back(&mut self, u: &mut [f64], residual: Residual, why: &str) -> SweepStatus {
         self.fell_back(&format!("{why}; anderson took over"));
+        // There may be nothing to refine with afterwards.
+        self.settings.tolerance = self.settings.tolerance.min(FALL_BACK_TOLERANCE);
         self.anderson(u, residual)
     }
 
