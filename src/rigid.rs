@@ -1,10 +1,11 @@
-//! Rigid motions: those that neither supports nor contact hold, and those by which bodies come to
-//! rest.
+//! Rigid motions: those that neither supports nor contact hold, those by which bodies come to rest,
+//! and those that are free once contacts have opened.
 //!
 //! Found from geometry alone, before anything is factorized, because a Cholesky factorization
 //! passes a free motion at a pivot of round-off. With R the rigid motions that the supports
 //! leave, a motion z is free if B R z = 0, and held by contact if B R z ≤ 0 doesn't allow it; the
-//! load balances if contact forces λ ≥ 0 with (B R)ᵀ λ = Rᵀ f exist.
+//! load balances if contact forces λ ≥ 0 with (B R)ᵀ λ = Rᵀ f exist. B R has no energy and (B R)ᵀ c
+//! is Rᵀ f in every contact problem: what round-off makes of both is taken out.
 
 pub mod analysis;
 mod columns;

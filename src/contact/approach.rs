@@ -117,6 +117,22 @@ pub enum ApproachOf {
     Prescribed(f64),
 }
 
+/// For each of `approaches` the condition that it is the unknown of.
+pub fn defining_conditions(of: &[ApproachOf], approaches: usize) -> Vec<usize> {
+    let mut defining = vec![0; approaches];
+    for (j, of) in of.iter().enumerate().rev() {
+        if let ApproachOf::Unknown {
+            number,
+            factor: 1.0,
+            constant: 0.0,
+        } = *of
+        {
+            defining[number] = j;
+        }
+    }
+    defining
+}
+
 /// A condition that has unknowns on Γ alone, which can't be replaced: its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OnInterface(pub usize);

@@ -173,22 +173,6 @@ impl Dofs {
         if direct { base[0].0 } else { NOT_DIRECT }
     }
 
-    /// For every approach the condition that it is the unknown of.
-    pub fn defining_conditions(&self) -> Vec<usize> {
-        let mut defining = vec![0; self.approaches];
-        for (j, of) in self.approach_of.iter().enumerate().rev() {
-            if let ApproachOf::Unknown {
-                number,
-                factor: 1.0,
-                constant: 0.0,
-            } = *of
-            {
-                defining[number] = j;
-            }
-        }
-        defining
-    }
-
     /// Number of unknowns.
     pub fn len(&self) -> usize {
         self.interior + self.approaches + self.traces.len()

@@ -8,7 +8,7 @@ use faer::{Mat, Par};
 
 use super::read::OwnedBlock;
 use crate::comm::{Comm, Message};
-use crate::contact::approach::ApproachOf;
+use crate::contact::approach::{ApproachOf, defining_conditions};
 use crate::contact::law::PairLaw;
 use crate::contact::pair::{ContactPair, Limits};
 use crate::error::Failure;
@@ -108,7 +108,7 @@ fn settle_rigid_motions(
     dofs: &Dofs,
     drive: &RigidDrive,
 ) {
-    let defining = dofs.defining_conditions();
+    let defining = defining_conditions(&dofs.approach_of, dofs.approaches);
     let m = defining.len();
     let columns = drive.rows.ncols();
     let of_approaches = RigidDrive {
@@ -297,7 +297,11 @@ fn pack(blocks: &CondensedBlocks, plan: &Plan, b: usize, with_laws: bool) -> Mes
         message.reals.extend(pair.bilateral_load());
         message.reals.push(pair.schur().smallest_pivot());
         if with_laws {
-            PairLaw::pack(pair, &dofs.defining_conditions(), &mut message);
+            PairLaw::pack(
+                pair,
+                &defining_conditions(&dofs.approach_of, dofs.approaches),
+                &mut message,
+            );
         }
     } else if let Some(LinearSubdomain { schur, load }) = blocks.linear.get(&b) {
         message.push_lower(schur.s.as_ref());
