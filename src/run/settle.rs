@@ -15,7 +15,7 @@ use crate::rigid::projection::MotionProducts;
 use crate::rigid::survey::{Survey, pack_motions, unpack_motions};
 
 /// A contact force, relative to the terms of the equilibrium at its nodes, that is round-off.
-const ROUND_OFF: f64 = 1e-12;
+const ROUND_OFF: f64 = 1e-14;
 /// A gap, relative to the largest displacement of its block, that is open.
 const OPENED: f64 = 1e-13;
 
