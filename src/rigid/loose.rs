@@ -49,11 +49,8 @@ impl Scene {
         for x in found.column_iter() {
             let x = x.into_owned();
             motions.push(kinematics.motion(&x));
-            warnings.push(format!(
-                "no contact force holds {}; of all positions that this leaves, the one of least \
-                 displacement is taken",
-                kinematics.described(&self.bodies, &self.names, &x)
-            ));
+            let what = kinematics.described(&self.bodies, &self.names, &x);
+            warnings.push(format!("no contact force holds {what}"));
             columns.push(x);
         }
         let z = DMatrix::from_fn(kinematics.len, columns.len(), |i, k| columns[k][i]);

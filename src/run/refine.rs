@@ -12,6 +12,8 @@ use crate::output::report::Certificate;
 
 /// Equilibrium and penetration above which a solution is refined.
 const LIMIT: f64 = 4e-15;
+/// Equilibrium and penetration that are good enough.
+const GOOD: f64 = 1e-14;
 /// Most refinements.
 const MAX_REFINEMENTS: usize = 3;
 
@@ -33,6 +35,24 @@ pub fn refine(frozen: &Frozen<'_>, solutions: &mut BTreeMap<usize, BlockSolution
         best = after;
     }
     best
+}
+
+/// Puts `nearer` solutions, refined, in the place of `solutions` unless their certificate is a worse one,
+/// and returns the certificate and whether it did. Collective.
+pub fn replace_if_as_good(
+    frozen: &Frozen<'_>,
+    solutions: &mut BTreeMap<usize, BlockSolution>,
+    mut nearer: BTreeMap<usize, BlockSolution>,
+    certificate: Certificate,
+) -> (Certificate, bool) {
+    let after = refine(frozen, &mut nearer);
+    let as_good = worst(&after) <= worst(&certificate).max(GOOD);
+    if decide(frozen, as_good) {
+        *solutions = nearer;
+        (after, true)
+    } else {
+        (certificate, false)
+    }
 }
 
 fn worst(certificate: &Certificate) -> f64 {

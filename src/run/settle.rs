@@ -55,6 +55,23 @@ pub struct Settled {
     pub warnings: Vec<String>,
 }
 
+impl Settled {
+    /// Says what became of it: whether the nearer position is `taken`.
+    pub fn conclude(&mut self, taken: bool) {
+        let end = match taken {
+            true => "of all positions that this leaves, the one of least displacement is taken",
+            false => "its position is one of many",
+        };
+        for warning in &mut self.warnings {
+            warning.push_str("; ");
+            warning.push_str(end);
+        }
+        if !taken {
+            self.opened = 0;
+        }
+    }
+}
+
 /// Of all positions that contact forces leave the bodies, gives them the one of least
 /// `displacement`, which is that of `solutions` and the way to rest; conditions that open by it are
 /// open. Collective.
