@@ -26,7 +26,7 @@ use self::descend::{take_out_descent, with_descent};
 use self::frozen::{Frozen, FrozenRoot};
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
-use self::refine::{refine, replace_if_as_good};
+use self::refine::refine;
 use self::report::{Narrator, Totals};
 use self::settle::{settle_free_motions, settle_loose_motions};
 use self::write::{Fields, stresses, write_solution};
@@ -142,16 +142,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     };
     settle_free_motions(&frozen, &survey, &mut solutions);
     let mut certificate = refine(&frozen, &mut solutions);
-    let displacement = with_descent(&blocks, &solutions, &survey, catalog.dim);
-    let mut nearer = solutions.clone();
-    let mut settled = settle_loose_motions(&frozen, &survey, &mut nearer, displacement);
-    if settled.is_loose {
-        let (after, taken) = replace_if_as_good(&frozen, &mut solutions, nearer, certificate);
-        certificate = after;
-        settled.conclude(taken);
-    } else {
-        solutions = nearer;
-    }
+    let settled = settle_loose_motions(&frozen, &survey, &mut solutions, &mut certificate);
     // What is loose has no stiffness that could be compared.
     let condition = match settled.is_loose {
         true => None,

@@ -1,6 +1,6 @@
 //! The law of a pair: what its answer to a trace follows from.
 
-use faer::{Mat, MatRef};
+use faer::Mat;
 
 use super::dependent::DependentRows;
 use super::pair::ContactPair;
@@ -59,10 +59,5 @@ impl PairLaw {
             rows: DependentRows::unpack(reader),
             scale: reader.real(),
         }
-    }
-
-    /// S_tΓ as it lies in memory.
-    pub fn s_t_gamma(&self) -> MatRef<'_, f64> {
-        self.s_t_gamma.as_ref()
     }
 }

@@ -30,8 +30,6 @@ pub struct ConTotals {
     pub changed: usize,
     /// Linear systems solved within pairs.
     pub steps: usize,
-    /// Pairs that weren't evaluated, because their trace hadn't changed.
-    pub unchanged_pairs: usize,
     /// Pairs that needed the interior-point method.
     pub fallen_back_pairs: usize,
     /// Pairs whose small problem didn't converge.
@@ -92,10 +90,7 @@ impl<'a> SCon<'a> {
         self.ask(EVALUATE, &moved, question, |p, message| {
             state.responses[p] = unpack(message);
         });
-        let mut totals = ConTotals {
-            unchanged_pairs: n - moved.len(),
-            ..ConTotals::default()
-        };
+        let mut totals = ConTotals::default();
         for (p, response) in state.responses.iter().enumerate() {
             totals.active += response.open.iter().filter(|&&open| !open).count();
             totals.failed_pairs += usize::from(!response.converged);

@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::{Catalog, Subdomain};
 
+use super::descend::with_descent;
 use super::frozen::Frozen;
 use super::recover::BlockSolution;
-use super::refine::balance;
+use super::refine::{balance, replace_if_as_good};
 use crate::comm::Message;
+use crate::output::report::Certificate;
 use crate::rigid::analysis::FreeMotion;
 use crate::rigid::loose::LooseMotions;
 use crate::rigid::motion::BodyFrame;
@@ -57,7 +59,7 @@ pub struct Settled {
 
 impl Settled {
     /// Says what became of it: whether the nearer position is `taken`.
-    pub fn conclude(&mut self, taken: bool) {
+    fn conclude(&mut self, taken: bool) {
         let end = match taken {
             true => "of all positions that this leaves, the one of least displacement is taken",
             false => "its position is one of many",
@@ -72,18 +74,37 @@ impl Settled {
     }
 }
 
-/// Of all positions that contact forces leave the bodies, gives them the one of least
-/// `displacement`, which is that of `solutions` and the way to rest; conditions that open by it are
+/// Of all positions that contact forces leave the bodies, gives them the one of least displacement,
+/// the way to rest included, unless its `certificate` is a worse one; conditions that open by it are
 /// open. Collective.
 pub fn settle_loose_motions(
     frozen: &Frozen<'_>,
     survey: &Survey,
     solutions: &mut BTreeMap<usize, BlockSolution>,
-    mut displacement: BTreeMap<usize, Vec<f64>>,
+    certificate: &mut Certificate,
 ) -> Settled {
     if !survey.movable {
         return Settled::default();
     }
+    let mut nearer = solutions.clone();
+    let mut settled = move_nearer(frozen, survey, &mut nearer);
+    if settled.is_loose {
+        let (after, taken) = replace_if_as_good(frozen, solutions, nearer, *certificate);
+        *certificate = after;
+        settled.conclude(taken);
+    } else {
+        *solutions = nearer;
+    }
+    settled
+}
+
+/// Gives the bodies the position of least displacement, whatever its certificate. Collective.
+fn move_nearer(
+    frozen: &Frozen<'_>,
+    survey: &Survey,
+    solutions: &mut BTreeMap<usize, BlockSolution>,
+) -> Settled {
+    let mut displacement = with_descent(frozen.blocks, solutions, survey, frozen.catalog.dim);
     let loose = loose_motions(frozen, survey, solutions);
     let mut message = Message::default();
     if let Some(loose) = &loose {
