@@ -170,6 +170,7 @@ mod tests {
             interface: vec![vec![0, 1], vec![1, 2], vec![0, 3], vec![2, 3], vec![0]],
             interface_nodes: 4,
             groups: vec![5],
+            hierarchy: Default::default(),
             warnings: Vec::new(),
         }
     }

@@ -3,7 +3,7 @@
 mod atoms;
 pub(crate) mod disjoint_sets;
 mod graph;
-mod multilevel;
+pub(crate) mod multilevel;
 mod prescribed;
 mod regions;
 mod share;

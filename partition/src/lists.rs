@@ -7,6 +7,14 @@ pub(crate) struct Lists<T> {
     items: Vec<T>,
 }
 
+impl<T> Lists<T> {
+    /// Lists that lie one behind the other already; each ends where the next one starts.
+    pub fn from_offsets(offsets: Vec<usize>, items: Vec<T>) -> Self {
+        debug_assert_eq!(offsets.last(), Some(&items.len()));
+        Self { offsets, items }
+    }
+}
+
 impl<T: Copy> Lists<T> {
     /// Puts each item into the list that stands before it; those of one list keep their order.
     /// O(items + lists).

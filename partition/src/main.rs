@@ -112,7 +112,11 @@ fn run(args: &Args) -> Result<(), Failure> {
     };
     let model = Model::new(&source.scene, source.mesh)?;
     let decomposition = Decomposition::new(&model, source.subdomains)?;
-    let problem = Problem::new(&model, &decomposition)?;
+    let mut problem = Problem::new(&model, &decomposition)?;
+    // The user's own partition keeps its numbers.
+    if model.prescribed_subdomains.is_none() {
+        problem = problem.in_order_of_hierarchy();
+    }
     problem.write(&source.output)?;
     report(&problem, &source.output);
     Ok(())

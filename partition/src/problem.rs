@@ -5,11 +5,14 @@
 
 pub mod build;
 mod dataset;
+pub mod hierarchy;
 mod interface;
+mod order;
 pub mod read;
 pub mod summary;
 pub mod write;
 
+use self::hierarchy::Hierarchy;
 use crate::element::Elements;
 use crate::model::{Material, PlaneState, Support};
 
@@ -143,6 +146,8 @@ pub struct Catalog {
     pub interface_nodes: usize,
     /// Number of conditions of each group in contact.
     pub groups: Vec<usize>,
+    /// The tree along which Schur complements are merged.
+    pub hierarchy: Hierarchy,
     /// Warnings of the partition tool, to be repeated in the report.
     pub warnings: Vec<String>,
 }

@@ -159,6 +159,40 @@ fn every_defect_is_named() {
             &["/subdomains/group, row 0", "-1"],
         ),
         (
+            "tree without a row for each subdomain",
+            |f| replace(f, "/hierarchy/parent", &[3], &[-1i64; 3]),
+            &["/hierarchy/parent", "3 rows", "4 subdomains"],
+        ),
+        (
+            "parent that is a subdomain",
+            |f| set(f, "/hierarchy/parent", 0, 1i64),
+            &["/hierarchy/parent, row 0", "1 is no parent", "4 to 5"],
+        ),
+        (
+            "parent before its child",
+            |f| set(f, "/hierarchy/parent", 4, 4i64),
+            &["/hierarchy/parent, row 4", "expected -1", "5 to 5"],
+        ),
+        (
+            "inner node without a child",
+            |f| replace(f, "/hierarchy/parent", &[5], &[-1i64; 5]),
+            &["/hierarchy/parent, row 4", "no child"],
+        ),
+        (
+            "group that is torn apart",
+            |f| {
+                let group: Vec<i64> = f.dataset("/subdomains/group").unwrap().read_raw().unwrap();
+                let last = group.iter().rposition(|&g| g == 0).unwrap();
+                set(f, "/hierarchy/parent", last, -1i64);
+            },
+            &["/hierarchy/parent", "of the same group"],
+        ),
+        (
+            "neighbours under two roots",
+            |f| replace(f, "/hierarchy/parent", &[4], &[-1i64; 4]),
+            &["/hierarchy/parent", "share the node", "roots"],
+        ),
+        (
             "offsets that fall",
             |f| set(f, "/interface/offset", 1, 1000i64),
             &["/interface/offset, row 1", "1000"],

@@ -1,5 +1,7 @@
 //! The graph of a mesh: atoms, and the facets between them.
 
+use crate::lists::Lists;
+
 /// A graph of atoms.
 pub(super) struct Graph {
     /// Number of cells of every atom.
@@ -8,8 +10,8 @@ pub(super) struct Graph {
     pub material: Vec<u32>,
     /// The contacts of every atom, ascending; empty unless it is a cluster.
     pub contacts: Vec<Vec<u32>>,
-    offsets: Vec<usize>,
-    edges: Vec<(u32, u32)>,
+    /// The neighbours of every atom with the weight of the facets between them.
+    pub edges: Lists<(u32, u32)>,
 }
 
 impl Graph {
@@ -42,8 +44,7 @@ impl Graph {
             cells,
             material,
             contacts,
-            offsets,
-            edges,
+            edges: Lists::from_offsets(offsets, edges),
         }
     }
 
@@ -77,8 +78,7 @@ impl Graph {
                 contacts: (atoms.iter())
                     .map(|&atom| self.contacts[atom as usize].clone())
                     .collect(),
-                offsets,
-                edges,
+                edges: Lists::from_offsets(offsets, edges),
             }
         };
         lists.iter().enumerate().map(part).collect()
@@ -91,7 +91,7 @@ impl Graph {
 
     /// The neighbours of an atom with the weight of the facets between them.
     pub fn edges(&self, atom: u32) -> &[(u32, u32)] {
-        &self.edges[self.offsets[atom as usize]..self.offsets[atom as usize + 1]]
+        self.edges.of(atom as usize)
     }
 
     /// Number of cells.

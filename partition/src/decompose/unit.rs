@@ -1,7 +1,7 @@
 //! The partition of one unit.
 
 use super::graph::Graph;
-use super::multilevel;
+use super::multilevel::Request;
 use super::regions::Regions;
 
 /// What a cluster weighs beside its cells, in shares of a subdomain's mean weight: the layers in
@@ -13,6 +13,9 @@ const SEEDS: u32 = 4;
 
 /// Atoms times tries that may be spent; large meshes need fewer tries.
 const BUDGET: usize = 1_000_000;
+
+/// How much heavier than the mean METIS may make a part, in thousandths.
+const SLACK: i32 = 40;
 
 /// METIS isn't asked for parts of fewer atoms than these.
 const FEWEST_ATOMS: usize = 8;
@@ -30,9 +33,19 @@ pub(super) fn split(graph: &Graph, count: usize) -> Vec<u32> {
     for number in 0..tries {
         let weights = weights(graph, count, LAYERS[number % LAYERS.len()]);
         let seed = (number / LAYERS.len()) as u32;
-        let parts = match multilevel {
-            true => multilevel::partition(graph, &weights, count, seed),
-            false => None,
+        let request = Request {
+            edges: &graph.edges,
+            weights: &weights,
+            parts: count,
+            shares: None,
+            slack: SLACK,
+            seed,
+        };
+        // Recursive bisection balances better, k-way cuts less and keeps parts connected.
+        let parts = match (multilevel, seed % 2) {
+            (false, _) => None,
+            (true, 0) => request.k_way(),
+            (true, _) => request.recursive(),
         };
         let parts = parts.unwrap_or_else(|| vec![0; graph.len()]);
         let mut regions = Regions::of_parts(graph, &weights, &parts);

@@ -6,6 +6,7 @@ mod scattered;
 
 use self::bodies::Bodies;
 use self::groups::Groups;
+use super::hierarchy::Hierarchy;
 use super::{
     Body, Catalog, ContactRow, ContactSummary, InterfaceNode, Problem, RowEntry, Subdomain,
     SubdomainSummary,
@@ -33,7 +34,7 @@ impl Problem {
         let mut warnings = model.warnings.clone();
         warnings.extend(groups.warning.clone());
         warnings.extend(scattered::warning(model, decomposition));
-        let catalog = Catalog {
+        let mut catalog = Catalog {
             title: model.title.clone(),
             dim: model.mesh.dim,
             plane: model.plane,
@@ -62,8 +63,10 @@ impl Problem {
                 .collect(),
             interface_nodes: owners.interface_nodes,
             groups: rows.iter().map(Vec::len).collect(),
+            hierarchy: Hierarchy::default(),
             warnings,
         };
+        catalog.hierarchy = Hierarchy::new(&catalog);
         Ok(Self {
             catalog,
             subdomains,

@@ -2,6 +2,7 @@
 
 mod catalog;
 mod header;
+mod hierarchy;
 mod materials;
 mod rows;
 mod sizes;

@@ -33,6 +33,14 @@ pub struct Summary {
     pub imbalance: f64,
     /// Number of nodes on Γ.
     pub interface_nodes: usize,
+    /// Number of merges of the hierarchy.
+    pub merges: usize,
+    /// Flops of all its fronts.
+    pub merge_flops: f64,
+    /// Dofs of its largest front.
+    pub largest_front: usize,
+    /// Estimated work under the larger child of the root with most work, over the mean of both.
+    pub uneven_halves: f64,
     /// Number of facets on Γ.
     pub cut_facets: usize,
     /// Number of contact conditions.
@@ -53,6 +61,8 @@ impl Problem {
         let copies: usize = catalog.subdomains.iter().map(|s| s.nodes).sum();
         let shared: usize = catalog.interface.iter().map(Vec::len).sum();
         let nodes = copies - shared + catalog.interface_nodes;
+        let work = catalog.hierarchy.work(catalog);
+        let front_sizes = work.fronts.iter().map(|f| f.eliminated + f.kept);
         Summary {
             nodes,
             dofs: catalog.dim * nodes,
@@ -66,6 +76,10 @@ impl Problem {
                 .count(),
             imbalance: largest.unwrap_or(0) as f64 * count as f64 / cells.max(1) as f64,
             interface_nodes: catalog.interface_nodes,
+            merges: work.fronts.len(),
+            merge_flops: work.of_fronts(),
+            largest_front: front_sizes.max().unwrap_or(0),
+            uneven_halves: catalog.hierarchy.uneven_halves(&work),
             cut_facets: self.cut_facets(),
             contact_conditions: catalog.groups.iter().sum(),
             contacts: catalog.contacts.clone(),
@@ -139,6 +153,11 @@ impl fmt::Display for Summary {
             f,
             "interface     {} nodes, {} facets cut",
             self.interface_nodes, self.cut_facets
+        )?;
+        writeln!(
+            f,
+            "hierarchy     {} merges, {:.3e} flops, largest front {} dofs, halves {:.3}",
+            self.merges, self.merge_flops, self.largest_front, self.uneven_halves
         )?;
         writeln!(f, "contact       {} conditions", self.contact_conditions)?;
         for contact in &self.contacts {

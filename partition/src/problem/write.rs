@@ -77,6 +77,9 @@ impl Problem {
         subdomains.column("body", all.iter().map(|s| s.body as i64))?;
         let group = |group: Option<usize>| group.map_or(-1, |g| g as i64);
         subdomains.column("group", all.iter().map(|s| group(s.group)))?;
+        let hierarchy = Section::new(file, "hierarchy")?;
+        let parents = catalog.hierarchy.parent.iter();
+        hierarchy.column("parent", parents.map(|p| p.map_or(-1, i64::from)))?;
         if !catalog.warnings.is_empty() {
             let root = Section::root(file)?;
             root.strings("warnings", catalog.warnings.iter().map(String::as_str))?;

@@ -2,9 +2,10 @@
 
 use super::header::Header;
 use super::sizes::Sizes;
-use super::{Offsets, materials};
+use super::{Offsets, hierarchy, materials};
 use crate::error::InputError;
 use crate::problem::dataset::Dataset;
+use crate::problem::hierarchy::Hierarchy;
 use crate::problem::{Body, Catalog, ContactSummary, SubdomainSummary};
 
 /// Reads and checks the catalog, and where the slices lie.
@@ -29,7 +30,7 @@ pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> 
         true => Dataset::column(file, "/warnings", None)?.strings()?,
         false => Vec::new(),
     };
-    let catalog = Catalog {
+    let mut catalog = Catalog {
         title: header.title,
         dim: header.dim,
         plane: header.plane,
@@ -40,8 +41,10 @@ pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> 
         interface,
         interface_nodes,
         groups: groups.windows(2).map(|w| w[1] - w[0]).collect(),
+        hierarchy: Hierarchy::default(),
         warnings,
     };
+    catalog.hierarchy = hierarchy::read(file, &catalog)?;
     let offsets = Offsets {
         points: running_sum(&sizes.points),
         cells: running_sum(&sizes.cells),
@@ -224,6 +227,7 @@ fn section(
     Dataset::column(file, datasets[0], Some(count + 1))?.offsets(rows)
 }
 
-fn is_filled(file: &hdf5::File, group: &str) -> bool {
+/// Whether the file has a group with something in it.
+pub(super) fn is_filled(file: &hdf5::File, group: &str) -> bool {
     file.link_exists(group) && !file.group(group).is_ok_and(|group| group.is_empty())
 }

@@ -1,0 +1,113 @@
+//! Blocks: the leaves of the tree, and the seams between them.
+
+use std::collections::BTreeMap;
+
+use super::work::condensation;
+use crate::lists::Lists;
+use crate::problem::Catalog;
+
+/// The linear subdomains and the groups in contact, in the order of their first subdomains.
+///
+/// All nodes of Γ that the same blocks share are one *seam*; those that lie within a block are in
+/// none.
+pub(super) struct Blocks {
+    /// The block of every subdomain.
+    pub of_subdomain: Vec<u32>,
+    /// The seams of every block, ascending.
+    pub seams: Lists<u32>,
+    /// The blocks of every seam, ascending, two at least.
+    pub sharing: Lists<u32>,
+    /// Dofs of every seam.
+    pub seam_dofs: Vec<usize>,
+    /// Dofs of every block.
+    pub dofs: Vec<f64>,
+    /// Contact conditions of every block.
+    pub conditions: Vec<usize>,
+}
+
+impl Blocks {
+    /// Finds the blocks of a problem.
+    pub fn new(catalog: &Catalog) -> Self {
+        let mut of_group = vec![None; catalog.groups.len()];
+        let mut of_subdomain = Vec::with_capacity(catalog.subdomains.len());
+        let mut dofs: Vec<f64> = Vec::new();
+        let mut conditions = Vec::new();
+        for subdomain in &catalog.subdomains {
+            let known = subdomain.group.and_then(|group| of_group[group]);
+            let block = known.unwrap_or(dofs.len() as u32);
+            if known.is_none() {
+                dofs.push(0.0);
+                conditions.push(subdomain.group.map_or(0, |group| catalog.groups[group]));
+            }
+            if let Some(group) = subdomain.group {
+                of_group[group] = Some(block);
+            }
+            dofs[block as usize] += (catalog.dim * subdomain.nodes) as f64;
+            of_subdomain.push(block);
+        }
+        let on = (of_subdomain.iter().zip(&catalog.interface))
+            .flat_map(|(&block, nodes)| nodes.iter().map(move |&node| (node, block)));
+        let mut sharing = Lists::new(catalog.interface_nodes, on);
+        sharing.sort();
+        sharing.dedup();
+        let mut of_blocks: BTreeMap<&[u32], usize> = BTreeMap::new();
+        for blocks in sharing.iter().filter(|blocks| blocks.len() > 1) {
+            *of_blocks.entry(blocks).or_default() += catalog.dim;
+        }
+        let on = (0..)
+            .zip(of_blocks.keys())
+            .flat_map(|(seam, blocks)| blocks.iter().map(move |&block| (seam, block)));
+        let sharing = Lists::new(of_blocks.len(), on.clone());
+        Self {
+            seams: Lists::new(dofs.len(), on.map(|(seam, block)| (block, seam))),
+            seam_dofs: of_blocks.values().copied().collect(),
+            of_subdomain,
+            dofs,
+            conditions,
+            sharing,
+        }
+    }
+
+    /// Number of blocks.
+    pub fn len(&self) -> usize {
+        self.dofs.len()
+    }
+
+    /// Dofs of a block that are left when its interior has been eliminated.
+    pub fn kept(&self, block: u32) -> usize {
+        let seams = self.seams.of(block as usize).iter();
+        let dofs: usize = seams.map(|&seam| self.seam_dofs[seam as usize]).sum();
+        dofs + self.conditions[block as usize]
+    }
+
+    /// Estimated flops to condense a block.
+    pub fn cost(&self, block: u32) -> f64 {
+        let kept = self.kept(block) as f64;
+        condensation((self.dofs[block as usize] - kept).max(0.0), kept)
+    }
+
+    /// The other blocks that each one shares seams with, and how many dofs these have.
+    pub fn neighbours(&self) -> Lists<(u32, u32)> {
+        let mut shared = vec![0u32; self.len()];
+        let mut offsets = vec![0];
+        let mut edges = Vec::new();
+        for block in 0..self.len() {
+            let start = edges.len();
+            for &seam in self.seams.of(block) {
+                let others = self.sharing.of(seam as usize).iter();
+                for &other in others.filter(|&&other| other as usize != block) {
+                    if shared[other as usize] == 0 {
+                        edges.push((other, 0));
+                    }
+                    shared[other as usize] += self.seam_dofs[seam as usize] as u32;
+                }
+            }
+            edges[start..].sort_unstable();
+            for (other, weight) in &mut edges[start..] {
+                *weight = std::mem::take(&mut shared[*other as usize]);
+            }
+            offsets.push(edges.len());
+        }
+        Lists::from_offsets(offsets, edges)
+    }
+}

@@ -1,0 +1,47 @@
+//! The numbers of the subdomains.
+
+use super::Problem;
+
+impl Problem {
+    /// Numbers the subdomains in the depth-first order of the hierarchy, so that what is under a
+    /// node of it is one slice of every dataset; groups by their lowest subdomain, as before.
+    #[must_use]
+    pub fn in_order_of_hierarchy(mut self) -> Self {
+        let catalog = &mut self.catalog;
+        let groups: Vec<Option<usize>> = catalog.subdomains.iter().map(|s| s.group).collect();
+        let order = catalog.hierarchy.depth_first(&groups);
+        catalog.hierarchy = catalog.hierarchy.renumbered(&order);
+        catalog.subdomains = taken(&catalog.subdomains, &order);
+        catalog.interface = taken(&catalog.interface, &order);
+
+        let mut group_order: Vec<u32> = Vec::new();
+        let mut new_group = vec![None; catalog.groups.len()];
+        for subdomain in &mut catalog.subdomains {
+            if let Some(old) = subdomain.group {
+                subdomain.group = Some(*new_group[old].get_or_insert_with(|| {
+                    group_order.push(old as u32);
+                    group_order.len() - 1
+                }));
+            }
+        }
+        catalog.groups = taken(&catalog.groups, &group_order);
+        self.rows = taken(&self.rows, &group_order);
+
+        let mut number = vec![0; order.len()];
+        for (new, &old) in (0..).zip(&order) {
+            number[old as usize] = new;
+        }
+        for entry in self.rows.iter_mut().flatten().flat_map(|r| &mut r.entries) {
+            entry.subdomain = number[entry.subdomain as usize];
+        }
+        for subdomain in &mut self.subdomains {
+            subdomain.index = number[subdomain.index] as usize;
+        }
+        self.subdomains.sort_by_key(|subdomain| subdomain.index);
+        self
+    }
+}
+
+fn taken<T: Clone>(all: &[T], order: &[u32]) -> Vec<T> {
+    order.iter().map(|&i| all[i as usize].clone()).collect()
+}

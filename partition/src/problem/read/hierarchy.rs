@@ -1,0 +1,119 @@
+//! The tree over the subdomains.
+
+use super::catalog::is_filled;
+use crate::error::InputError;
+use crate::problem::Catalog;
+use crate::problem::dataset::Dataset;
+use crate::problem::hierarchy::Hierarchy;
+
+/// Reads and checks the tree, or dissects what else the catalog holds where the file has none.
+pub(super) fn read(file: &hdf5::File, catalog: &Catalog) -> Result<Hierarchy, InputError> {
+    if !is_filled(file, "hierarchy") {
+        return Ok(Hierarchy::new(catalog));
+    }
+    let dataset = Dataset::column(file, "/hierarchy/parent", None)?;
+    let hierarchy = Hierarchy {
+        parent: read_parents(&dataset, catalog.subdomains.len())?,
+    };
+    check_groups(&dataset, &hierarchy, catalog)?;
+    check_roots(&dataset, &hierarchy, catalog)?;
+    Ok(hierarchy)
+}
+
+fn read_parents(dataset: &Dataset, subdomains: usize) -> Result<Vec<Option<u32>>, InputError> {
+    let nodes = dataset.rows();
+    if nodes < subdomains {
+        return Err(dataset.error(&format!(
+            "has {nodes} rows; expected one for each of the {subdomains} subdomains and for each inner node"
+        )));
+    }
+    let mut is_parent = vec![false; nodes];
+    let mut parents = Vec::with_capacity(nodes);
+    for (row, value) in dataset.all_integers()?.into_iter().enumerate() {
+        let least = subdomains.max(row + 1);
+        let parent = u32::try_from(value).ok();
+        match parent.filter(|&p| (least..nodes).contains(&(p as usize))) {
+            Some(parent) => is_parent[parent as usize] = true,
+            None if value == -1 => {}
+            None => {
+                let inner = match least < nodes {
+                    true => format!(" or an inner node, {least} to {}", nodes - 1),
+                    false => String::new(),
+                };
+                return Err(dataset.row_error(
+                    row,
+                    &format!("{value} is no parent; expected -1 (a root){inner}"),
+                ));
+            }
+        }
+        parents.push(parent);
+    }
+    match (subdomains..nodes).find(|&node| !is_parent[node]) {
+        Some(node) => {
+            Err(dataset.row_error(node, "the inner node has no child; expected one at least"))
+        }
+        None => Ok(parents),
+    }
+}
+
+/// All members of a group have one parent.
+fn check_groups(
+    dataset: &Dataset,
+    hierarchy: &Hierarchy,
+    catalog: &Catalog,
+) -> Result<(), InputError> {
+    let mut first = vec![None; catalog.groups.len()];
+    for (row, subdomain) in catalog.subdomains.iter().enumerate() {
+        let Some(group) = subdomain.group else {
+            continue;
+        };
+        let known = *first[group].get_or_insert(row);
+        let (parent, expected) = (hierarchy.parent[row], hierarchy.parent[known]);
+        if parent != expected {
+            let number = |parent: Option<u32>| parent.map_or(-1, i64::from);
+            return Err(dataset.row_error(
+                row,
+                &format!(
+                    "{}; expected {}, the parent of subdomain {known} of the same group",
+                    number(parent),
+                    number(expected)
+                ),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Blocks that share a node of Γ are under one root, or no front could eliminate it.
+fn check_roots(
+    dataset: &Dataset,
+    hierarchy: &Hierarchy,
+    catalog: &Catalog,
+) -> Result<(), InputError> {
+    // The members of a group are one block even where that is a root itself.
+    let mut root: Vec<usize> = (0..hierarchy.parent.len()).collect();
+    let mut first = vec![None; catalog.groups.len()];
+    for (row, subdomain) in catalog.subdomains.iter().enumerate() {
+        if let Some(group) = subdomain.group {
+            root[row] = *first[group].get_or_insert(row);
+        }
+    }
+    for node in (0..root.len()).rev() {
+        if let Some(parent) = hierarchy.parent[node] {
+            root[node] = root[parent as usize];
+        }
+    }
+    let mut under = vec![None; catalog.interface_nodes];
+    for (subdomain, list) in catalog.interface.iter().enumerate() {
+        for &number in list {
+            let (other, expected) =
+                *under[number as usize].get_or_insert((subdomain, root[subdomain]));
+            if root[subdomain] != expected {
+                return Err(dataset.error(&format!(
+                    "the subdomains {other} and {subdomain} share the node {number} of Γ, but are under different roots; expected one above both"
+                )));
+            }
+        }
+    }
+    Ok(())
+}
