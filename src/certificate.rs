@@ -16,7 +16,9 @@ const NO_LOAD: f64 = 1e-12;
 /// What a block says of its own part of the solution.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BlockCheck {
-    /// Residual on its traces, to be summed over the blocks that share them.
+    /// The number of the node on Γ and the axis of its traces.
+    trace_dofs: Vec<(u32, u32)>,
+    /// Residual on them, to be summed over the blocks that share them.
     traces: Vec<f64>,
     trace_scale: Vec<f64>,
     /// Largest residual elsewhere, along directions that are free.
@@ -29,6 +31,8 @@ pub struct BlockCheck {
     largest_load: f64,
     complementarity: f64,
     largest_displacement: f64,
+    /// Forces that the bodies' way to rest would cause if it weren't rigid.
+    pub rest_scale: f64,
     /// Sum of loads, contact forces and support reactions, and of their absolute values.
     force: [f64; 3],
     force_scale: f64,
@@ -73,7 +77,7 @@ impl BlockCheck {
             v[..dim].copy_from_slice(&values[node * dim..(node + 1) * dim]);
             v
         };
-        let mut of_trace: HashMap<u32, Vec<(f64, f64)>> = HashMap::new();
+        let mut of_trace: HashMap<u32, Vec<(u32, f64, f64)>> = HashMap::new();
         for node in 0..block.nodes() {
             let frame = frames.get(&(node as u32)).unwrap_or(&Frame::CARTESIAN);
             let residual = vector(&balance.residual, node);
@@ -92,7 +96,8 @@ impl BlockCheck {
                     self.force_scale += along.abs();
                     self.largest_load = maximum(self.largest_load, along);
                 } else if let Some(&id) = shared.get(&(node as u32)) {
-                    of_trace.entry(id).or_default().push((along, along_scale));
+                    let list = of_trace.entry(id).or_default();
+                    list.push((axis as u32, along, along_scale));
                 } else {
                     self.residual = maximum(self.residual, along);
                     self.scale = maximum(self.scale, along_scale);
@@ -101,7 +106,8 @@ impl BlockCheck {
             self.add_force(&block.points[node], &force);
         }
         for &(_, id) in &block.interface {
-            for (residual, scale) in of_trace.remove(&id).unwrap_or_default() {
+            for (axis, residual, scale) in of_trace.remove(&id).unwrap_or_default() {
+                self.trace_dofs.push((id, axis));
                 self.traces.push(residual);
                 self.trace_scale.push(scale);
             }
@@ -136,6 +142,9 @@ impl BlockCheck {
         message
             .integers
             .extend(self.shared_nodes.iter().map(|&id| i64::from(id)));
+        for &(node, axis) in &self.trace_dofs {
+            message.integers.extend([node, axis].map(i64::from));
+        }
         message.reals.extend([
             self.residual,
             self.scale,
@@ -145,6 +154,7 @@ impl BlockCheck {
             self.largest_load,
             self.complementarity,
             self.largest_displacement,
+            self.rest_scale,
             self.force_scale,
             self.moment_scale,
         ]);
@@ -166,6 +176,9 @@ impl BlockCheck {
         let vector = |reader: &mut MessageReader| [reader.real(), reader.real(), reader.real()];
         Self {
             shared_nodes,
+            trace_dofs: (0..traces)
+                .map(|_| (reader.integer() as u32, reader.integer() as u32))
+                .collect(),
             residual: reader.real(),
             scale: reader.real(),
             penetration: reader.real(),
@@ -174,6 +187,7 @@ impl BlockCheck {
             largest_load: reader.real(),
             complementarity: reader.real(),
             largest_displacement: reader.real(),
+            rest_scale: reader.real(),
             force_scale: reader.real(),
             moment_scale: reader.real(),
             force: vector(&mut reader),
@@ -185,17 +199,19 @@ impl BlockCheck {
     }
 }
 
-/// The certificate of the whole solution; `traces[b]` are the numbers on Γ of block b's traces.
-pub fn certificate(checks: &[BlockCheck], traces: &[Vec<u32>], interface: usize) -> Certificate {
+/// The certificate of the whole solution, where Γ has so many nodes of `dim` components.
+pub fn certificate(checks: &[BlockCheck], interface_nodes: usize, dim: usize) -> Certificate {
     let mut total = BlockCheck::default();
-    let mut on_interface = vec![0.0; interface];
-    let mut interface_scale = vec![0.0; interface];
+    let mut on_interface = vec![0.0; interface_nodes * dim];
+    let mut interface_scale = vec![0.0; interface_nodes * dim];
     let mut known: HashMap<u32, Vec<f64>> = HashMap::new();
     let mut jump = 0.0;
-    for (check, traces) in checks.iter().zip(traces) {
-        for ((&dof, r), s) in traces.iter().zip(&check.traces).zip(&check.trace_scale) {
-            on_interface[dof as usize] += r;
-            interface_scale[dof as usize] += s;
+    for check in checks {
+        let traces = check.trace_dofs.iter().zip(&check.traces);
+        for ((&(node, axis), r), s) in traces.zip(&check.trace_scale) {
+            let dof = node as usize * dim + axis as usize;
+            on_interface[dof] += r;
+            interface_scale[dof] += s;
         }
         total.residual = maximum(total.residual, check.residual);
         total.scale = maximum(total.scale, check.scale);
@@ -206,6 +222,7 @@ pub fn certificate(checks: &[BlockCheck], traces: &[Vec<u32>], interface: usize)
         total.complementarity = maximum(total.complementarity, check.complementarity);
         total.largest_displacement =
             maximum(total.largest_displacement, check.largest_displacement);
+        total.rest_scale = maximum(total.rest_scale, check.rest_scale);
         total.force_scale += check.force_scale;
         total.moment_scale += check.moment_scale;
         for k in 0..3 {
@@ -228,6 +245,10 @@ pub fn certificate(checks: &[BlockCheck], traces: &[Vec<u32>], interface: usize)
     }
     total.residual = maximum(total.residual, largest(&on_interface));
     total.scale = maximum(total.scale, largest(&interface_scale));
+    if total.scale < NO_LOAD * total.rest_scale {
+        // Bodies that only came to rest: what is left is round-off of their way.
+        total.scale = total.rest_scale;
+    }
     let force_scale = maximum(total.scale, total.largest_force);
     // Without load what is left of forces is round-off of the terms that they are sums of.
     let loaded = total.force_scale >= NO_LOAD * total.scale;

@@ -6,6 +6,8 @@
 mod environment;
 mod message;
 
+use std::cell::Cell;
+
 use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
@@ -24,6 +26,7 @@ const PIECE: usize = 1 << 27;
 /// All ranks of a run.
 pub struct Comm {
     world: SimpleCommunicator,
+    bytes_sent: Cell<u64>,
 }
 
 impl Comm {
@@ -71,6 +74,9 @@ impl Comm {
     }
 
     fn broadcast_from(&self, from: usize, message: &mut Message) {
+        if from == self.rank() && self.size() > 1 {
+            self.count(message);
+        }
         let process = self.world.process_at_rank(from as i32);
         let mut lengths = [message.integers.len() as u64, message.reals.len() as u64];
         process.broadcast_into(&mut lengths);
@@ -84,8 +90,20 @@ impl Comm {
         }
     }
 
+    /// What this rank has sent to others, broadcasts counted once (bytes).
+    pub fn bytes_sent(&self) -> u64 {
+        self.bytes_sent.get()
+    }
+
+    fn count(&self, message: &Message) {
+        let numbers = message.integers.len() + message.reals.len();
+        let bytes = 8 * numbers as u64;
+        self.bytes_sent.set(self.bytes_sent.get() + bytes);
+    }
+
     /// Sends a message to another rank, which receives it from this one.
     pub fn send(&self, to: usize, message: &Message) {
+        self.count(message);
         let process = self.world.process_at_rank(to as i32);
         let lengths = [message.integers.len() as u64, message.reals.len() as u64];
         process.send(&lengths);
@@ -122,17 +140,10 @@ impl Comm {
     pub fn gather(
         &self,
         owners: &[usize],
-        mut make: impl FnMut(usize) -> Message,
-        mut take: impl FnMut(usize, Message),
+        make: impl FnMut(usize) -> Message,
+        take: impl FnMut(usize, Message),
     ) {
-        for (i, &owner) in owners.iter().enumerate() {
-            match (owner == self.rank(), self.is_root()) {
-                (true, true) => take(i, make(i)),
-                (true, false) => self.send(ROOT, &make(i)),
-                (false, true) => take(i, self.receive(owner)),
-                (false, false) => {}
-            }
-        }
+        self.route(owners.iter().map(|&owner| (owner, ROOT)), make, take);
     }
 
     /// Brings one message of the root to each of `owners`, in their order. Collective.
@@ -141,14 +152,26 @@ impl Comm {
     pub fn scatter(
         &self,
         owners: &[usize],
+        make: impl FnMut(usize) -> Message,
+        take: impl FnMut(usize, Message),
+    ) {
+        self.route(owners.iter().map(|&owner| (ROOT, owner)), make, take);
+    }
+
+    /// Brings a message along each of `ways`, from one rank to another, in their order. Collective.
+    ///
+    /// `make(i)` is called where way `i` begins, `take(i, message)` where it ends.
+    pub fn route(
+        &self,
+        ways: impl IntoIterator<Item = (usize, usize)>,
         mut make: impl FnMut(usize) -> Message,
         mut take: impl FnMut(usize, Message),
     ) {
-        for (i, &owner) in owners.iter().enumerate() {
-            match (owner == self.rank(), self.is_root()) {
+        for (i, (from, to)) in ways.into_iter().enumerate() {
+            match (from == self.rank(), to == self.rank()) {
                 (true, true) => take(i, make(i)),
-                (true, false) => take(i, self.receive(ROOT)),
-                (false, true) => self.send(owner, &make(i)),
+                (true, false) => self.send(to, &make(i)),
+                (false, true) => take(i, self.receive(from)),
                 (false, false) => {}
             }
         }

@@ -6,6 +6,7 @@ pub mod dependent;
 pub mod dual;
 pub mod interior_point;
 pub mod law;
+pub mod limits;
 pub mod open_factor;
 pub mod pair;
 pub mod s_con;

@@ -1,6 +1,14 @@
-//! Who owns what: blocks, and their assignment to ranks.
+//! What is to be condensed and merged, and by whom: blocks, their hierarchy, clusters.
+
+mod assign;
+pub mod cluster;
+pub mod tree;
 
 use contact_dd_partition::problem::Catalog;
+
+use self::assign::{assign, block_cost, front_cost};
+use self::cluster::{ClusterPlan, Merging, cluster_nodes};
+use self::tree::Tree;
 
 /// A block of the problem: a linear subdomain, or a group in contact.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,8 +21,8 @@ pub struct BlockPlan {
     pub owner: usize,
 }
 
-/// The blocks in the order of their first subdomains; every sum over blocks runs in this order,
-/// whoever owns what.
+/// The blocks in the order of their first subdomains and the clusters in that of the hierarchy; every
+/// sum runs in this order, whoever owns what.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plan {
     /// Blocks.
@@ -25,12 +33,20 @@ pub struct Plan {
     pub sharing: Vec<u32>,
     /// The block of every subdomain.
     pub block_of: Vec<usize>,
+    /// The hierarchy of the blocks.
+    pub tree: Tree,
+    /// The owner of every node of the hierarchy.
+    pub node_owners: Vec<usize>,
+    /// What the interface problem is assembled from.
+    pub clusters: Vec<ClusterPlan>,
+    /// The clusters in contact.
+    pub contact: Vec<usize>,
 }
 
 impl Plan {
-    /// Assigns the blocks of `catalog` to `ranks` ranks by estimated factorization cost, the
-    /// largest first.
-    pub fn new(catalog: &Catalog, ranks: usize) -> Self {
+    /// Assigns the blocks of `catalog` and the merges of their Schur complements to `ranks` ranks
+    /// by estimated cost.
+    pub fn new(catalog: &Catalog, ranks: usize, merging: Merging) -> Self {
         let mut blocks: Vec<BlockPlan> = Vec::new();
         let mut block_of_group = vec![None; catalog.groups.len()];
         let mut block_of = Vec::with_capacity(catalog.subdomains.len());
@@ -59,50 +75,59 @@ impl Plan {
         let pairs = (0..blocks.len())
             .filter(|&b| blocks[b].group.is_some())
             .collect();
+        let tree = Tree::new(catalog, &blocks, &block_of, &sharing);
         let mut plan = Self {
             blocks,
             pairs,
             sharing,
             block_of,
+            tree,
+            node_owners: Vec::new(),
+            clusters: Vec::new(),
+            contact: Vec::new(),
         };
-        plan.assign(catalog, ranks);
+        plan.hand_out(catalog, ranks, merging);
         plan
     }
 
-    fn assign(&mut self, catalog: &Catalog, ranks: usize) {
-        let costs: Vec<f64> = self.blocks.iter().map(|b| self.cost(catalog, b)).collect();
-        let mut order: Vec<usize> = (0..costs.len()).collect();
-        order.sort_by(|&a, &b| costs[b].total_cmp(&costs[a]).then(a.cmp(&b)));
-        let mut load = vec![0.0; ranks];
-        for block in order {
-            let mut least = 0;
-            for rank in 1..ranks {
-                if load[rank] < load[least] {
-                    least = rank;
-                }
+    fn hand_out(&mut self, catalog: &Catalog, ranks: usize, merging: Merging) {
+        let clusters = cluster_nodes(&self.tree, merging);
+        let mut costs = vec![0.0; self.tree.nodes.len()];
+        for &cluster in &clusters {
+            for v in self.tree.subtree(cluster) {
+                costs[v] = self.cost(catalog, v);
             }
-            load[least] += costs[block];
-            self.blocks[block].owner = least;
         }
+        self.node_owners = assign(&self.tree, &clusters, &costs, ranks);
+        for (b, block) in self.blocks.iter_mut().enumerate() {
+            block.owner = self.node_owners[b];
+        }
+        for node in clusters {
+            let under = self.tree.subtree(node).into_iter();
+            self.clusters.push(ClusterPlan {
+                node,
+                owner: self.node_owners[node],
+                pairs: under.filter_map(|b| self.pair_of(b)).collect(),
+            });
+        }
+        self.contact = (0..self.clusters.len())
+            .filter(|&c| self.clusters[c].is_in_contact())
+            .collect();
     }
 
-    /// Estimated flops of a block's factorization: its interior as a planar graph under nested
-    /// dissection, its boundary dense.
-    fn cost(&self, catalog: &Catalog, block: &BlockPlan) -> f64 {
+    /// Estimated flops of condensing a block, or of merging what lies under an inner node.
+    fn cost(&self, catalog: &Catalog, v: usize) -> f64 {
         let dim = catalog.dim as f64;
-        let nodes: usize = block
-            .subdomains
-            .iter()
-            .map(|&s| catalog.subdomains[s].nodes)
-            .sum();
-        let boundary = interface_nodes(catalog, block)
-            .iter()
-            .filter(|&&node| self.sharing[node as usize] > 1)
-            .count();
-        let conditions = block.group.map_or(0, |g| catalog.groups[g]);
-        let interior = dim * nodes as f64;
-        let dense = dim * boundary as f64 + conditions as f64;
-        30.0 * interior.powf(1.5) + interior * dense + dense.powi(3)
+        let node = &self.tree.nodes[v];
+        let kept = dim * node.kept.len() as f64 + node.conditions as f64;
+        match self.blocks.get(v) {
+            Some(block) => {
+                let of_blocks = block.subdomains.iter();
+                let nodes: usize = of_blocks.map(|&s| catalog.subdomains[s].nodes).sum();
+                block_cost(dim * nodes as f64, kept)
+            }
+            None => front_cost(dim * node.eliminated.len() as f64, kept),
+        }
     }
 
     /// The owner of every block.
@@ -120,11 +145,48 @@ impl Plan {
         self.pairs.binary_search(&block).ok()
     }
 
-    /// The nodes of Γ that block b shares with other blocks, ascending.
-    pub fn shared_nodes(&self, catalog: &Catalog, block: usize) -> Vec<u32> {
-        let mut nodes = interface_nodes(catalog, &self.blocks[block]);
-        nodes.retain(|&node| self.sharing[node as usize] > 1);
-        nodes
+    /// The owner of every cluster.
+    pub fn cluster_owners(&self) -> Vec<usize> {
+        self.clusters.iter().map(|c| c.owner).collect()
+    }
+
+    /// The owner of every cluster in contact.
+    pub fn contact_owners(&self) -> Vec<usize> {
+        self.contact
+            .iter()
+            .map(|&c| self.clusters[c].owner)
+            .collect()
+    }
+
+    /// The place of cluster c among those in contact.
+    pub fn contact_place(&self, c: usize) -> Option<usize> {
+        self.contact.binary_search(&c).ok()
+    }
+
+    /// The cluster of every block.
+    pub fn clusters_of_blocks(&self) -> Vec<usize> {
+        let mut of = vec![0; self.blocks.len()];
+        for (c, cluster) in self.clusters.iter().enumerate() {
+            for v in self.tree.subtree(cluster.node) {
+                if let Some(of) = of.get_mut(v) {
+                    *of = c;
+                }
+            }
+        }
+        of
+    }
+
+    /// All pairs, cluster by cluster.
+    pub fn pairs_by_cluster(&self) -> Vec<usize> {
+        self.clusters.iter().flat_map(|c| c.pairs.clone()).collect()
+    }
+
+    /// From the owner of every pair to that of its cluster, cluster by cluster.
+    pub fn ways_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.clusters.iter().flat_map(|cluster| {
+            let pairs = cluster.pairs.iter();
+            pairs.map(|&p| (self.blocks[self.pairs[p]].owner, cluster.owner))
+        })
     }
 }
 
@@ -143,6 +205,7 @@ fn interface_nodes(catalog: &Catalog, block: &BlockPlan) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use contact_dd_partition::model::PlaneState;
+    use contact_dd_partition::problem::hierarchy::Hierarchy;
     use contact_dd_partition::problem::{Body, SubdomainSummary};
 
     use super::*;
@@ -170,14 +233,20 @@ mod tests {
             interface: vec![vec![0, 1], vec![1, 2], vec![0, 3], vec![2, 3], vec![0]],
             interface_nodes: 4,
             groups: vec![5],
-            hierarchy: Default::default(),
+            hierarchy: Hierarchy {
+                parent: [6, 5, 6, 5, 5, 7, 7]
+                    .map(Some)
+                    .into_iter()
+                    .chain([None])
+                    .collect(),
+            },
             warnings: Vec::new(),
         }
     }
 
     #[test]
     fn every_subdomain_lies_in_one_block_and_groups_stay_together() {
-        let plan = Plan::new(&catalog(), 3);
+        let plan = Plan::new(&catalog(), 3, Merging::All);
         assert_eq!(plan.block_of, [0, 1, 2, 1, 3]);
         assert_eq!(plan.blocks[1].subdomains, [1, 3]);
         assert_eq!((plan.pairs.clone(), plan.pair_of(1)), (vec![1], Some(0)));
@@ -186,17 +255,17 @@ mod tests {
     #[test]
     fn a_node_that_only_members_of_a_group_share_is_not_on_the_interface() {
         let catalog = catalog();
-        let plan = Plan::new(&catalog, 1);
-        assert_eq!(plan.shared_nodes(&catalog, 1), [1, 3]);
+        let plan = Plan::new(&catalog, 1, Merging::All);
+        assert_eq!(plan.tree.nodes[1].kept, [1, 3]);
         assert_eq!(plan.sharing, [3, 2, 1, 2]);
     }
 
     #[test]
     fn blocks_and_their_order_do_not_depend_on_the_number_of_ranks() {
         let catalog = catalog();
-        let one = Plan::new(&catalog, 1);
+        let one = Plan::new(&catalog, 1, Merging::All);
         for ranks in 2..8 {
-            let plan = Plan::new(&catalog, ranks);
+            let plan = Plan::new(&catalog, ranks, Merging::All);
             for (a, b) in one.blocks.iter().zip(&plan.blocks) {
                 assert_eq!(a.subdomains, b.subdomains);
                 assert!(b.owner < ranks);
@@ -205,9 +274,35 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_block_gets_a_rank_of_its_own() {
-        let plan = Plan::new(&catalog(), 2);
-        let alone = plan.blocks[3].owner;
-        assert_eq!(plan.blocks.iter().filter(|b| b.owner == alone).count(), 1);
+    fn a_node_of_the_hierarchy_eliminates_what_only_its_blocks_share() {
+        let plan = Plan::new(&catalog(), 1, Merging::All);
+        let eliminated: Vec<&[u32]> = (4..7).map(|v| &plan.tree.nodes[v].eliminated[..]).collect();
+        assert_eq!(eliminated, [&[][..], &[], &[0, 1, 3]]);
+        assert_eq!(plan.tree.nodes[5].kept, [0, 1, 3]);
+        assert_eq!(
+            (plan.tree.nodes[4].groups, plan.tree.nodes[6].conditions),
+            (1, 5)
+        );
+    }
+
+    #[test]
+    fn what_picard_merges_has_no_contact() {
+        let clusters = |merging| -> Vec<usize> {
+            let plan = Plan::new(&catalog(), 2, merging);
+            plan.clusters.iter().map(|c| c.node).collect()
+        };
+        assert_eq!(clusters(Merging::All), [4, 5]);
+        assert_eq!(clusters(Merging::Linear), [1, 3, 5]);
+    }
+
+    #[test]
+    fn subtrees_are_split_until_ranks_have_about_the_same_to_do() {
+        let plan = Plan::new(&catalog(), 2, Merging::All);
+        let nodes = [40, 60, 20, 90];
+        let of_rank = |rank: usize| -> usize {
+            let own = (0..4).filter(|&b| plan.blocks[b].owner == rank);
+            own.map(|b| nodes[b]).sum()
+        };
+        assert_eq!((of_rank(0), of_rank(1)), (110, 100));
     }
 }

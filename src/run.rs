@@ -2,15 +2,20 @@
 //!
 //! read → assemble → condense → S_0 at the root → sweeps → recover → certificate → write
 
+mod clusters;
 pub mod condense;
 pub mod conditioning;
+mod conditions;
 mod descend;
 pub mod frozen;
+pub mod interface;
+pub mod merge;
 pub mod read;
 pub mod recover;
 pub mod refine;
 mod report;
 pub mod settle;
+pub mod substitute;
 pub mod write;
 
 use std::collections::BTreeMap;
@@ -20,15 +25,18 @@ use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::read::ProblemFile;
 use faer::Par;
 
-use self::condense::{assemble_interface, condense_blocks};
+use self::condense::Condensation;
 use self::conditioning::condition_number;
 use self::descend::{take_out_descent, with_descent};
 use self::frozen::{Frozen, FrozenRoot};
+use self::interface::assemble_interface;
+use self::merge::condense_clusters;
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
 use self::refine::refine;
 use self::report::{Narrator, Totals};
 use self::settle::{settle_free_motions, settle_loose_motions};
+use self::substitute::Factors;
 use self::write::{Fields, stresses, write_solution};
 use crate::comm::{Comm, Message, phase};
 use crate::contact::s_con::SCon;
@@ -71,7 +79,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     comm.agree(settings.check_paths())?;
     let file = comm.agree(ProblemFile::open(&settings.problem).map_err(Failure::from))?;
     let catalog = file.catalog();
-    let plan = Plan::new(catalog, comm.size());
+    let plan = Plan::new(catalog, comm.size(), settings.merging());
     let mut blocks = comm.agree(read_blocks(comm, &file, &plan))?;
     narrator.problem(catalog, &plan);
 
@@ -86,12 +94,17 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     take_out_descent(&mut blocks, &survey, catalog.dim);
     seconds.read = began.elapsed().as_secs_f64();
 
-    // S_i of the linear subdomains, (11), and S_kl of the pairs, (12).
+    // S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy.
     phase("factorizing");
     let progress = Progress::factorization(blocks.len(), settings.quiet || !comm.is_root());
-    let condensed = condense_blocks(&blocks, catalog, &plan, &survey, &progress, par);
+    let condensation = Condensation {
+        catalog,
+        plan: &plan,
+        pins: &survey.motions.pins,
+        par,
+    };
+    let mut condensed = condense_clusters(comm, &condensation, &blocks, &survey, &progress)?;
     progress.finish();
-    let mut condensed = comm.agree(condensed)?;
     [seconds.assemble, seconds.factorize] = condensed.seconds;
 
     // The root assembles S_0 and F, (15), and the bilateral operator.
@@ -105,7 +118,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17).
     phase("sweeping");
     let lap = Instant::now();
-    let pair_owners = plan.pair_owners();
+    let pair_owners = plan.contact_owners();
     let mut s_con = SCon::new(comm, &pair_owners, &mut condensed.pairs);
     let mut outcome = match &interface {
         Some((_, interface)) => {
@@ -127,13 +140,19 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let lap = Instant::now();
     let root = outcome.as_ref().zip(interface.as_ref());
     let trace_of_root = root.map(|(o, (numbering, _))| (&o.u[..], &numbering.traces[..]));
-    let mut solutions = recover(comm, &condensed, &plan, trace_of_root);
+    let factors = Factors {
+        comm,
+        plan: &plan,
+        condensed: &condensed,
+    };
+    let mut solutions = recover(factors, trace_of_root);
     let frozen = Frozen {
         comm,
         blocks: &blocks,
         condensed: &condensed,
         catalog,
         plan: &plan,
+        descent: survey.longest_descent(),
         root: root.map(|(outcome, (numbering, interface))| FrozenRoot {
             numbering,
             interface,
@@ -176,7 +195,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
                 plan: &plan,
                 outcome,
                 active: outcome.totals.active - settled.opened,
-                interface_dofs: interface.len,
+                interface_dofs: interface.len + interface.eliminated,
                 smallest_pivot: interface.smallest_pivot(),
                 certificate,
                 condition,

@@ -6,6 +6,7 @@ use clap::Parser;
 
 use crate::error::Failure;
 use crate::output::default_result_path;
+use crate::plan::cluster::Merging;
 use crate::sweep::{Method, SweepSettings};
 
 /// Solves unilateral contact problems by domain decomposition after J. Daněk.
@@ -97,6 +98,15 @@ impl Settings {
             tolerance: self.tolerance,
             max_sweeps: self.max_sweeps,
             relaxation: self.relaxation,
+        }
+    }
+
+    /// What becomes of contact when Schur complements are merged: picard inverts S_0 alone, which has
+    /// to be that of all linear subdomains.
+    pub fn merging(&self) -> Merging {
+        match self.method {
+            Method::Picard => Merging::Linear,
+            Method::Newton | Method::Anderson => Merging::All,
         }
     }
 

@@ -1,5 +1,6 @@
 //! Starting MPI, and what happens when a rank panics.
 
+use std::cell::Cell;
 use std::sync::{Mutex, PoisonError};
 
 use mpi::environment::Universe;
@@ -25,6 +26,7 @@ impl World {
     pub fn comm(&self) -> Comm {
         Comm {
             world: self.universe.world(),
+            bytes_sent: Cell::new(0),
         }
     }
 }

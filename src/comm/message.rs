@@ -16,19 +16,18 @@ impl Message {
     ///
     /// faer pads its columns, so that a matrix can't be sent as it lies in memory.
     pub fn push_lower(&mut self, matrix: MatRef<'_, f64>) {
+        let n = matrix.nrows();
+        self.reals.reserve(n * (n + 1) / 2);
         for j in 0..matrix.ncols() {
-            for i in j..matrix.nrows() {
-                self.reals.push(matrix[(i, j)]);
-            }
+            self.reals.extend(matrix.col(j).subrows(j, n - j).iter());
         }
     }
 
     /// Appends a matrix, column after column.
     pub fn push_matrix(&mut self, matrix: MatRef<'_, f64>) {
-        for j in 0..matrix.ncols() {
-            for i in 0..matrix.nrows() {
-                self.reals.push(matrix[(i, j)]);
-            }
+        self.reals.reserve(matrix.nrows() * matrix.ncols());
+        for column in matrix.col_iter() {
+            self.reals.extend(column.iter());
         }
     }
 }
@@ -77,14 +76,26 @@ impl MessageReader {
         self.reals.by_ref().take(n).collect()
     }
 
-    /// The next symmetric matrix of size `n`, sent as its lower triangle.
+    /// The lower triangle of the next symmetric matrix of size `n`; the upper one is zero.
     pub fn lower(&mut self, n: usize) -> Mat<f64> {
         let mut matrix = Mat::zeros(n, n);
         for j in 0..n {
-            for i in j..n {
-                let value = self.real();
-                matrix[(i, j)] = value;
-                matrix[(j, i)] = value;
+            for (a, value) in matrix.col_as_slice_mut(j)[j..]
+                .iter_mut()
+                .zip(&mut self.reals)
+            {
+                *a = value;
+            }
+        }
+        matrix
+    }
+
+    /// The next symmetric matrix of size `n`, sent as its lower triangle.
+    pub fn symmetric(&mut self, n: usize) -> Mat<f64> {
+        let mut matrix = self.lower(n);
+        for j in 0..n {
+            for i in j + 1..n {
+                matrix[(j, i)] = matrix[(i, j)];
             }
         }
         matrix
@@ -115,6 +126,6 @@ mod tests {
         message.push_lower(symmetric.as_ref());
         let mut reader = message.read();
         assert_eq!(reader.matrix(3, 5), full);
-        assert_eq!(reader.lower(4), symmetric);
+        assert_eq!(reader.symmetric(4), symmetric);
     }
 }

@@ -35,11 +35,11 @@ impl PairLaw {
         self.stiffness.is_empty()
     }
 
-    /// Appends the law of `pair`, whose approaches are unknowns of these `defining` conditions, to a
-    /// message.
-    pub fn pack(pair: &ContactPair, defining: &[usize], message: &mut Message) {
+    /// Appends the law of `pair` to a message.
+    pub fn pack(pair: &ContactPair, message: &mut Message) {
         let stiffness = pair.stiffness();
         message.integers.push(stiffness.len() as i64);
+        let defining = &pair.limits().defining;
         message.integers.extend(defining.iter().map(|&j| j as i64));
         message.push_lower(pair.s_tt());
         message.push_matrix(pair.s_t_gamma());
@@ -53,7 +53,7 @@ impl PairLaw {
         let m = reader.count();
         Self {
             defining: (reader.integers(m).iter()).map(|&j| j as usize).collect(),
-            h: reader.lower(m),
+            h: reader.symmetric(m),
             s_t_gamma: reader.matrix(m, traces),
             stiffness: reader.reals(m),
             rows: DependentRows::unpack(reader),

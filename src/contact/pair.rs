@@ -3,85 +3,20 @@
 use faer::MatRef;
 
 use super::active_set::{GapProblem, GapSolution};
-use super::approach::ApproachOf;
-use super::dependent::DependentRows;
+use super::limits::Limits;
 use super::open_factor::OpenFactor;
-use crate::schur::local::{CondensedLoad, LocalSchur, multiply_add};
+use crate::schur::condensed::Condensed;
+use crate::schur::local::multiply_add;
 
-/// A group of subdomains in contact, condensed onto its approaches t and its traces U on Γ.
+/// Subdomains in contact, with what else is merged with them, condensed onto their approaches t and
+/// their traces U on Γ.
 #[derive(Debug)]
 pub struct ContactPair {
-    schur: LocalSchur,
-    load: CondensedLoad,
+    /// S on [t | U], both triangles.
+    condensed: Condensed,
     limits: Limits,
     open: Vec<bool>,
     contact: GapSolution,
-}
-
-/// The bounds t ≤ g and D t ≤ d, and the conditions that they come from.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Limits {
-    /// g of every approach, the tightest of its conditions, then d of every dependent one (m).
-    pub bounds: Vec<f64>,
-    /// D.
-    pub rows: DependentRows,
-    /// Which condition each bound is, and its factor.
-    tightest: Vec<(usize, f64)>,
-    /// Number of conditions.
-    conditions: usize,
-    /// The largest displacement prescribed in the pair, initial gaps among them (m).
-    pub scale: f64,
-}
-
-impl Limits {
-    /// The bounds on `approaches` unknowns that conditions with these `gaps` make; `scale` bounds
-    /// the displacements that are prescribed.
-    pub fn new(approaches: usize, of: &[ApproachOf], gaps: &[f64], scale: f64) -> Self {
-        let mut limits = Self {
-            bounds: vec![f64::INFINITY; approaches],
-            rows: DependentRows::default(),
-            tightest: vec![(0, 1.0); approaches],
-            conditions: of.len(),
-            scale,
-        };
-        for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
-            match of {
-                &ApproachOf::Unknown {
-                    number,
-                    factor,
-                    constant,
-                } => {
-                    let bound = (gap - constant) / factor;
-                    if bound < limits.bounds[number] {
-                        limits.bounds[number] = bound;
-                        limits.tightest[number] = (j, factor);
-                    }
-                }
-                ApproachOf::Combination { terms, constant } => {
-                    limits.rows.push(terms.clone());
-                    limits.bounds.push(gap - constant);
-                    limits.tightest.push((j, 1.0));
-                }
-                ApproachOf::Prescribed(_) => {}
-            }
-        }
-        limits
-    }
-
-    fn approaches(&self) -> usize {
-        self.bounds.len() - self.rows.len()
-    }
-
-    /// g − t, then d − D t, 0 for the rows of D that aren't `open`.
-    fn gaps(&self, t: &[f64], open: &[bool]) -> Vec<f64> {
-        let m = t.len();
-        let mut gaps: Vec<f64> = self.bounds.iter().zip(t).map(|(g, t)| g - t).collect();
-        gaps.extend((0..self.rows.len()).map(|j| {
-            let left = self.bounds[m + j] - self.rows.value(j, t);
-            if open[m + j] { left.max(0.0) } else { 0.0 }
-        }));
-        gaps
-    }
 }
 
 /// One evaluation of S_kl.
@@ -110,11 +45,10 @@ pub struct PairResponse {
 }
 
 impl ContactPair {
-    /// A pair whose first boundary unknowns are the approaches within `limits`, bilateral at first.
-    pub fn new(schur: LocalSchur, load: CondensedLoad, limits: Limits) -> Self {
+    /// A pair whose approaches lie within `limits`, bilateral at first; both triangles of S are filled.
+    pub fn new(condensed: Condensed, limits: Limits) -> Self {
         Self {
-            schur,
-            load,
+            condensed,
             open: vec![false; limits.bounds.len()],
             contact: GapSolution::bilateral(limits.approaches(), limits.bounds.len()),
             limits,
@@ -122,13 +56,8 @@ impl ContactPair {
     }
 
     /// Its Schur complement.
-    pub fn schur(&self) -> &LocalSchur {
-        &self.schur
-    }
-
-    /// Its condensed load.
-    pub fn load(&self) -> &CondensedLoad {
-        &self.load
+    pub fn condensed(&self) -> &Condensed {
+        &self.condensed
     }
 
     /// Approaches of the last evaluation (m).
@@ -138,43 +67,42 @@ impl ContactPair {
 
     /// Force of every condition in the last evaluation, and whether it was closed.
     pub fn conditions(&self) -> (Vec<f64>, Vec<bool>) {
-        let mut closed = vec![false; self.limits.conditions];
-        for (&(condition, _), open) in self.limits.tightest.iter().zip(&self.open) {
-            closed[condition] = !open;
-        }
-        (self.forces(&self.contact.forces), closed)
+        (
+            self.limits.forces(&self.contact.forces),
+            self.limits.closed(&self.open),
+        )
     }
 
     fn traces(&self) -> usize {
-        self.schur.boundary() - self.limits.approaches()
+        self.condensed.s.nrows() - self.limits.approaches()
     }
 
     /// H, on the approaches.
     pub fn s_tt(&self) -> MatRef<'_, f64> {
         let m = self.limits.approaches();
-        self.schur.s.as_ref().submatrix(0, 0, m, m)
+        self.condensed.s.as_ref().submatrix(0, 0, m, m)
     }
 
     /// Approaches against traces.
     pub fn s_t_gamma(&self) -> MatRef<'_, f64> {
         let m = self.limits.approaches();
-        self.schur.s.as_ref().submatrix(0, m, m, self.traces())
+        self.condensed.s.as_ref().submatrix(0, m, m, self.traces())
     }
 
     /// S_ΓΓ, the derivative with every contact closed (16).
     pub fn bilateral(&self) -> MatRef<'_, f64> {
         let (m, n) = (self.limits.approaches(), self.traces());
-        self.schur.s.as_ref().submatrix(m, m, n, n)
+        self.condensed.s.as_ref().submatrix(m, m, n, n)
     }
 
     /// Load on the traces with every approach zero.
     pub fn bilateral_load(&self) -> &[f64] {
-        &self.load.boundary()[self.limits.approaches()..]
+        &self.condensed.load[self.limits.approaches()..]
     }
 
     /// The diagonal of the matrix that H is condensed from.
     pub fn stiffness(&self) -> &[f64] {
-        &self.schur.stiffness[..self.limits.approaches()]
+        &self.condensed.stiffness[..self.limits.approaches()]
     }
 
     /// The bounds t ≤ g and D t ≤ d.
@@ -187,13 +115,14 @@ impl ContactPair {
     pub fn evaluate(&mut self, u: &[f64], expected: Option<Vec<bool>>) -> PairResponse {
         let m = self.limits.approaches();
         let before = expected.unwrap_or_else(|| self.open.clone());
-        let mut c = self.load.boundary()[..m].to_vec();
+        let mut c = self.condensed.load[..m].to_vec();
         let mut c_scale: Vec<f64> = c.iter().map(|f| f.abs()).collect();
-        for (column, &u_j) in self.s_t_gamma().col_iter().zip(u) {
-            for (i, s) in column.iter().enumerate() {
+        for (j, &u_j) in u.iter().enumerate() {
+            let column = self.condensed.s.col_as_slice(m + j);
+            for ((c, scale), s) in c.iter_mut().zip(&mut c_scale).zip(column) {
                 let term = s * u_j;
-                c[i] -= term;
-                c_scale[i] += term.abs();
+                *c -= term;
+                *scale += term.abs();
             }
         }
         let mut open = before.clone();
@@ -239,10 +168,11 @@ impl ContactPair {
         let m = self.limits.approaches();
         let unknowns = self.contact.approaches.iter().chain(u);
         for (j, &x) in unknowns.enumerate() {
-            for i in 0..reaction.len() {
-                let term = self.schur.s[(m + i, j)] * x;
-                reaction[i] += term;
-                scale[i] += term.abs();
+            let column = &self.condensed.s.col_as_slice(j)[m..];
+            for ((reaction, scale), s) in reaction.iter_mut().zip(&mut scale).zip(column) {
+                let term = s * x;
+                *reaction += term;
+                *scale += term.abs();
             }
         }
         (reaction, scale)
@@ -263,24 +193,5 @@ impl ContactPair {
         }
         multiply_add(self.s_t_gamma().transpose(), &t, &mut y);
         y
-    }
-
-    /// Forces of all conditions for those of the limits.
-    pub fn forces(&self, of_limits: &[f64]) -> Vec<f64> {
-        let mut forces = vec![0.0; self.limits.conditions];
-        for (force, &(condition, factor)) in of_limits.iter().zip(&self.limits.tightest) {
-            forces[condition] = force / factor;
-        }
-        forces
-    }
-
-    /// Which limits are open where these conditions are `closed`, and what every closed one lacks of
-    /// its bound when the conditions lack `missing`; 0 for the open ones.
-    pub fn frozen_limits(&self, closed: &[bool], missing: &[f64]) -> (Vec<bool>, Vec<f64>) {
-        let of_condition = |&(condition, factor): &(usize, f64)| match closed[condition] {
-            true => (false, missing[condition] / factor),
-            false => (true, 0.0),
-        };
-        self.limits.tightest.iter().map(of_condition).unzip()
     }
 }

@@ -15,7 +15,7 @@ use crate::schur::pattern::{LowerPattern, SparseSymmetric};
 /// Pivot relative to its diagonal entry below which an operator is singular.
 const SINGULAR_PIVOT: f64 = 1e-13;
 
-/// What a block contributes to the interface problem.
+/// What a cluster contributes to the interface problem.
 #[derive(Clone, Debug)]
 pub struct Contribution {
     /// Its Schur complement on its traces, with every contact closed.
@@ -24,6 +24,8 @@ pub struct Contribution {
     pub load: Vec<f64>,
     /// The smallest pivot of its interior relative to its diagonal entry.
     pub smallest_pivot: f64,
+    /// Number of unknowns on Γ that were eliminated within it.
+    pub eliminated: usize,
     /// The law of a pair; `None` for a linear subdomain, and where all pairs have too many
     /// approaches to be solved for at once.
     pub law: Option<PairLaw>,
@@ -32,8 +34,10 @@ pub struct Contribution {
 /// The interface problem S_0 U + S_CON(U) = F, (14), as the root holds it.
 #[derive(Debug)]
 pub struct Interface {
-    /// Number of unknowns on Γ.
+    /// Number of unknowns on Γ that clusters share.
     pub len: usize,
+    /// Number of those that were eliminated within clusters.
+    pub eliminated: usize,
     /// Number of those that no pair has; they come first.
     pub linear: usize,
     /// The traces of every pair.
@@ -87,9 +91,11 @@ impl Interface {
         let mut f_bilateral = vec![0.0; n];
         let mut f_scale = vec![0.0; n];
         let mut smallest_pivot = f64::INFINITY;
+        let mut eliminated = 0;
         for ((part, traces), &is_pair) in contributions.into_iter().zip(&numbering.traces).zip(pair)
         {
             smallest_pivot = smallest_pivot.min(part.smallest_pivot);
+            eliminated += part.eliminated;
             let load_of_kind = if is_pair { &mut f_bilateral } else { &mut f };
             for (&dof, load) in traces.iter().zip(&part.load) {
                 load_of_kind[dof as usize] += load;
@@ -114,6 +120,7 @@ impl Interface {
             })?;
         Ok(Self {
             len: n,
+            eliminated,
             linear: numbering.linear,
             pair_traces,
             motions: RigidBasis::new(motions, &stiffness_of(&laws)),

@@ -98,6 +98,8 @@ pub struct RankReport {
     pub seconds: PhaseSeconds,
     /// Its peak resident memory (bytes).
     pub peak_memory_bytes: u64,
+    /// What it sent to other ranks, broadcasts counted once (bytes).
+    pub bytes_sent: u64,
     /// Number of subdomains that it owns.
     pub subdomains: usize,
 }
@@ -235,7 +237,7 @@ mod tests {
         ];
         assert_eq!(keys(&value["seconds"]), phases);
         let mut of_rank = phases.to_vec();
-        of_rank.extend(["peak_memory_bytes", "subdomains"]);
+        of_rank.extend(["bytes_sent", "peak_memory_bytes", "subdomains"]);
         of_rank.sort_unstable();
         assert_eq!(keys(&value["per_rank"][0]), of_rank);
         assert_eq!(

@@ -296,6 +296,7 @@ mod tests {
                 ..PhaseSeconds::default()
             },
             peak_memory_bytes: 3 << 20,
+            bytes_sent: 0,
             subdomains: 1,
         };
         let table = printed(|out| timing(out, &[rank(1.0), rank(2.0), rank(6.0)]));

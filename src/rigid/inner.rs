@@ -1,13 +1,13 @@
-//! Contact conditions against the rigid motions of the bodies that lie wholly in a pair.
+//! Contact conditions against the rigid motions of the bodies that lie wholly in a cluster.
 
 use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 use faer::Mat;
 
-use super::analysis::Scene;
+use super::analysis::{Pin, RigidRow, Scene};
 use super::energy::RigidDrive;
-use super::kinematics::Kinematics;
+use super::kinematics::{Kinematics, null_space};
 use crate::comm::{Comm, Message};
 use crate::plan::Plan;
 
@@ -19,13 +19,16 @@ impl Scene {
     /// the load along these.
     pub fn against(&self, conditions: &[usize]) -> RigidDrive {
         let kinematics = Kinematics::new(self.dim, &self.bodies);
-        self.drive(&kinematics, conditions, |_| true)
+        self.drive(&kinematics, conditions, &[], |_| true)
     }
 
+    /// The same for the motions of some `bodies` alone, as far as they leave the `pins` where they are:
+    /// others may hold a body's neighbours, and then it costs energy to move its pin.
     fn drive(
         &self,
         kinematics: &Kinematics,
         conditions: &[usize],
+        pins: &[Pin],
         bodies: impl Fn(usize) -> bool,
     ) -> RigidDrive {
         let rows: Vec<_> = conditions.iter().map(|&j| self.rows[j].clone()).collect();
@@ -35,50 +38,77 @@ impl Scene {
             let round_off = ROUND_OFF * row.amax();
             row.apply(|entry| *entry = if entry.abs() > round_off { *entry } else { 0.0 });
         }
-        let load = kinematics.load(&self.bodies);
         let columns: Vec<usize> = (0..self.bodies.len())
             .filter(|&body| bodies(body))
             .flat_map(|body| kinematics.unknowns(body))
             .collect();
+        let (mut rows, mut load) = (b.select_columns(&columns), kinematics.load(&self.bodies));
+        load = load.select_rows(&columns);
+        let pinned = kinematics.rows(
+            &pins
+                .iter()
+                .filter_map(|pin| self.pin_row(pin))
+                .collect::<Vec<_>>(),
+        );
+        let pinned = pinned.select_columns(&columns);
+        if pinned.iter().any(|&p| p != 0.0) {
+            let kept = null_space(&pinned);
+            (rows, load) = (rows * &kept, kept.transpose() * load);
+        }
         RigidDrive {
-            rows: Mat::from_fn(rows.len(), columns.len(), |i, k| b[(i, columns[k])]),
-            load: columns.iter().map(|&k| load[k]).collect(),
+            rows: Mat::from_fn(rows.nrows(), rows.ncols(), |i, k| rows[(i, k)]),
+            load: load.iter().copied().collect(),
         }
     }
 
-    /// The number of the first condition of every pair, and that of all.
-    pub fn first_conditions(&self) -> Vec<usize> {
-        let mut first = vec![0];
-        for count in &self.conditions {
-            first.push(first[first.len() - 1] + count);
-        }
-        first
+    /// How motions move a pin.
+    fn pin_row(&self, pin: &Pin) -> Option<RigidRow> {
+        self.bodies.iter().enumerate().find_map(|(b, body)| {
+            let mut nodes = body.candidates.iter();
+            let (.., x) = nodes.find(|(s, n, _)| (*s, *n) == (pin.subdomain, pin.node))?;
+            let axis = std::array::from_fn(|k| f64::from(k == pin.component as usize));
+            Some(RigidRow {
+                bodies: vec![(b, body.frame.action(self.dim, x, &axis))],
+                gap: 0.0,
+            })
+        })
+    }
+
+    /// The numbers of the conditions of these pairs.
+    pub fn conditions_of(&self, pairs: &[usize]) -> Vec<usize> {
+        let of_pair = |&p: &usize| {
+            let first: usize = self.conditions[..p].iter().sum();
+            first..first + self.conditions[p]
+        };
+        pairs.iter().flat_map(of_pair).collect()
     }
 }
 
-/// For every pair of this rank, its conditions against the motions of the bodies wholly in it.
-/// Collective; `scene` counts on the root alone.
+/// For every cluster in contact of this rank, its conditions against the motions of the bodies wholly
+/// in it that leave the `pins` where they are. Collective; `scene` counts on the root alone.
 pub(super) fn inner_motions(
     comm: &Comm,
     scene: &Scene,
+    pins: &[Pin],
     catalog: &Catalog,
     plan: &Plan,
 ) -> BTreeMap<usize, RigidDrive> {
     let mut home: Vec<Option<usize>> = vec![None; catalog.bodies.len()];
-    let mut scattered = vec![false; catalog.bodies.len()];
+    let mut elsewhere = vec![false; catalog.bodies.len()];
+    let clusters = plan.clusters_of_blocks();
     for (subdomain, &block) in catalog.subdomains.iter().zip(&plan.block_of) {
-        let known = home[subdomain.body].get_or_insert(block);
-        scattered[subdomain.body] |= *known != block;
+        let known = home[subdomain.body].get_or_insert(clusters[block]);
+        elsewhere[subdomain.body] |= *known != clusters[block];
     }
-    let first = scene.first_conditions();
     let kinematics = Kinematics::new(scene.dim, &scene.bodies);
     let mut motions = BTreeMap::new();
     comm.scatter(
-        &plan.pair_owners(),
+        &plan.contact_owners(),
         |p| {
-            let conditions: Vec<usize> = (first[p]..first[p + 1]).collect();
-            let within = |body: usize| !scattered[body] && home[body] == Some(plan.pairs[p]);
-            let drive = scene.drive(&kinematics, &conditions, within);
+            let cluster = plan.contact[p];
+            let conditions = scene.conditions_of(&plan.clusters[cluster].pairs);
+            let within = |body: usize| !elsewhere[body] && home[body] == Some(cluster);
+            let drive = scene.drive(&kinematics, &conditions, pins, within);
             let mut message = Message {
                 integers: vec![drive.rows.nrows() as i64, drive.rows.ncols() as i64],
                 reals: drive.load,

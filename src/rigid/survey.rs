@@ -24,13 +24,21 @@ pub struct Survey {
     pub motions: RigidMotions,
     /// The rigid motion by which every body comes to rest.
     pub descent: Vec<Vec<f64>>,
-    /// For every pair of this rank, its conditions against the motions that supports leave to the
-    /// bodies that lie wholly in it: what moves them costs the pair no energy.
+    /// For every cluster in contact of this rank, its conditions against the motions that supports
+    /// leave to the bodies that lie wholly in it: what moves them costs the cluster no energy.
     pub inner_motions: BTreeMap<usize, RigidDrive>,
     /// Whether supports leave any rigid motion to any body.
     pub movable: bool,
     /// What all this follows from, on the root.
     pub scene: Option<Scene>,
+}
+
+impl Survey {
+    /// The longest way of a body to rest (m).
+    pub fn longest_descent(&self) -> f64 {
+        let motions = self.descent.iter().flatten();
+        motions.fold(0.0, |longest, z| longest.max(z.abs()))
+    }
 }
 
 /// Finds the free rigid motions of the scene, and those by which its bodies come to rest.
@@ -87,8 +95,8 @@ pub fn survey(
     comm.broadcast(&mut message);
     Ok(Survey {
         frames,
+        inner_motions: inner_motions(comm, &scene, &motions.pins, catalog, plan),
         motions,
-        inner_motions: inner_motions(comm, &scene, catalog, plan),
         movable: message.integers.first() == Some(&1),
         descent: message.reals.chunks(modes).map(<[f64]>::to_vec).collect(),
         scene: comm.is_root().then_some(scene),

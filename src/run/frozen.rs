@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::condense::CondensedBlocks;
+use super::merge::CondensedBlocks;
 use super::read::OwnedBlock;
+use super::substitute::Factors;
 use crate::comm::{Comm, Message};
-use crate::contact::pair::ContactPair;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
 use crate::plan::Plan;
-use crate::schur::local::{CondensedLoad, LocalSchur};
+use crate::schur::local::CondensedLoad;
 
 /// What a rank holds of the frozen problem.
 #[derive(Clone, Copy)]
@@ -27,6 +27,8 @@ pub struct Frozen<'a> {
     pub catalog: &'a Catalog,
     /// Who owns what.
     pub plan: &'a Plan,
+    /// The longest way of a body to rest (m).
+    pub descent: f64,
     /// What the root holds besides.
     pub root: Option<FrozenRoot<'a>>,
 }
@@ -41,6 +43,9 @@ pub struct FrozenRoot<'a> {
     /// Whether the active sets are right.
     pub converged: bool,
 }
+
+/// Which limits of a cluster are open, and what the others still have to approach (m).
+type FrozenLimits = (Vec<bool>, Vec<f64>);
 
 impl FrozenRoot<'_> {
     /// Whether the pairs' approaches can be solved for at once.
@@ -69,105 +74,133 @@ pub struct BlockChange {
     pub forces: Vec<f64>,
 }
 
-/// A load on a block, condensed, and its limits.
-struct FrozenLoad {
-    load: CondensedLoad,
-    open: Vec<bool>,
-    missing: Vec<f64>,
-}
-
-impl FrozenLoad {
-    fn pack(&self) -> Message {
-        let boundary = self.load.boundary();
-        let mut integers = vec![self.open.len() as i64, boundary.len() as i64];
-        integers.extend(self.open.iter().map(|&open| i64::from(open)));
-        Message {
-            integers,
-            reals: [&self.missing, boundary].concat(),
+impl<'a> Frozen<'a> {
+    /// The factors.
+    pub fn factors(&self) -> Factors<'a> {
+        Factors {
+            comm: self.comm,
+            plan: self.plan,
+            condensed: self.condensed,
         }
     }
-}
 
-impl Frozen<'_> {
     /// The change that `loads` on the blocks of this rank, and those on the others', make to them.
     /// Collective.
     pub fn solve(&self, loads: BTreeMap<usize, BlockLoad>) -> BTreeMap<usize, BlockChange> {
-        let condensed: BTreeMap<usize, FrozenLoad> = loads
-            .into_iter()
-            .filter_map(|(b, load)| {
-                let limits =
-                    (self.pair(b)).map(|pair| pair.frozen_limits(&load.closed, &load.missing));
-                let (open, missing) = limits.unwrap_or_default();
-                let load = self.schur(b)?.condense(load.load);
-                Some((
-                    b,
-                    FrozenLoad {
-                        load,
-                        open,
-                        missing,
-                    },
-                ))
+        let factors = self.factors();
+        let mut conditions: BTreeMap<usize, Message> = BTreeMap::new();
+        let mut on_blocks: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        for (b, load) in loads {
+            on_blocks.insert(b, load.load);
+            let message = Message {
+                integers: load
+                    .closed
+                    .iter()
+                    .map(|&closed| i64::from(closed))
+                    .collect(),
+                reals: load.missing,
+            };
+            conditions.insert(b, message);
+        }
+        let limits = self.limits(factors.collect_conditions(conditions));
+        let condensed = factors.condense(on_blocks);
+        let (forces, boundaries) = self.solve_interface(&limits, &condensed);
+        let mut forces = factors.spread_conditions(forces);
+        let recovered = factors.recover(&condensed, boundaries);
+        (recovered.into_iter())
+            .map(|(b, x)| {
+                let forces = forces.remove(&b).unwrap_or_default().reals;
+                (b, BlockChange { x, forces })
             })
-            .collect();
-        let owners = self.plan.owners();
+            .collect()
+    }
+
+    /// For every cluster in contact of this rank, which limits are open and what the others lack.
+    fn limits(&self, conditions: BTreeMap<usize, Vec<Message>>) -> BTreeMap<usize, FrozenLimits> {
+        let mut limits = BTreeMap::new();
+        for (p, messages) in conditions {
+            let closed = messages.iter().flat_map(|m| &m.integers);
+            let closed: Vec<bool> = closed.map(|&closed| closed != 0).collect();
+            let missing: Vec<f64> = messages.iter().flat_map(|m| m.reals.clone()).collect();
+            if let Some(pair) = self.condensed.pairs.get(&p) {
+                limits.insert(p, pair.limits().frozen(&closed, &missing));
+            }
+        }
+        limits
+    }
+
+    /// Brings the clusters' loads and limits to the root, and what it answers back: forces of the
+    /// conditions of clusters in contact, and unknowns on the boundary of every cluster's node.
+    fn solve_interface(
+        &self,
+        limits: &BTreeMap<usize, FrozenLimits>,
+        condensed: &BTreeMap<usize, CondensedLoad>,
+    ) -> (BTreeMap<usize, Message>, BTreeMap<usize, Vec<f64>>) {
+        let plan = self.plan;
+        let owners = plan.cluster_owners();
+        let of_cluster = |c: usize| {
+            plan.contact_place(c)
+                .and_then(|p| Some((p, limits.get(&p)?)))
+        };
+        let boundary = |c: usize| {
+            let load = condensed.get(&plan.clusters[c].node);
+            load.map_or(&[][..], CondensedLoad::boundary)
+        };
         let mut gathered: Vec<Message> = Vec::new();
         self.comm.gather(
             &owners,
-            |b| {
-                condensed
-                    .get(&b)
-                    .map_or_else(Message::default, FrozenLoad::pack)
+            |c| {
+                let mut message = Message::default();
+                let boundary = boundary(c);
+                if let Some((_, (open, missing))) = of_cluster(c) {
+                    message.integers = vec![open.len() as i64, boundary.len() as i64];
+                    message
+                        .integers
+                        .extend(open.iter().map(|&open| i64::from(open)));
+                    message.reals.extend(missing);
+                }
+                message.reals.extend(boundary);
+                message
             },
             |_, message| gathered.push(message),
         );
         let mut answers = self
             .root
-            .map_or_else(Vec::new, |root| root.solve(self.plan, gathered));
-        let mut received: BTreeMap<usize, Message> = BTreeMap::new();
+            .map_or_else(Vec::new, |root| root.solve(plan, gathered));
+        let mut forces = BTreeMap::new();
+        let mut boundaries = BTreeMap::new();
         self.comm.scatter(
             &owners,
-            |b| std::mem::take(&mut answers[b]),
-            |b, message| {
-                received.insert(b, message);
+            |c| std::mem::take(&mut answers[c]),
+            |c, message| {
+                let mut reader = message.read();
+                if let Some((p, (_, missing))) = of_cluster(c)
+                    && let Some(pair) = self.condensed.pairs.get(&p)
+                {
+                    let of_limits = reader.reals(missing.len());
+                    let reals = pair.limits().forces(&of_limits);
+                    let integers = vec![0; reals.len()];
+                    forces.insert(p, Message { integers, reals });
+                }
+                let x = reader.reals(boundary(c).len());
+                boundaries.insert(plan.clusters[c].node, x);
             },
         );
-        received
-            .into_iter()
-            .filter_map(|(b, message)| {
-                let FrozenLoad { load, missing, .. } = condensed.get(&b)?;
-                let mut reader = message.read();
-                let of_limits = reader.reals(missing.len());
-                let x_b = reader.reals(load.boundary().len());
-                let change = BlockChange {
-                    x: self.schur(b)?.recover(load, &x_b),
-                    forces: (self.pair(b)).map_or_else(Vec::new, |pair| pair.forces(&of_limits)),
-                };
-                Some((b, change))
-            })
-            .collect()
-    }
-
-    fn pair(&self, b: usize) -> Option<&ContactPair> {
-        self.condensed.pairs.get(&self.plan.pair_of(b)?)
-    }
-
-    fn schur(&self, b: usize) -> Option<&LocalSchur> {
-        let linear = self.condensed.linear.get(&b).map(|linear| &linear.schur);
-        linear.or_else(|| self.pair(b).map(|pair| pair.schur()))
+        (forces, boundaries)
     }
 }
 
 impl FrozenRoot<'_> {
-    /// What each block is answered: forces of its limits, approaches, traces.
+    /// What each cluster is answered: forces of its limits, approaches, traces.
     fn solve(&self, plan: &Plan, gathered: Vec<Message>) -> Vec<Message> {
         let mut r = vec![0.0; self.interface.len];
         let mut loads = Vec::new();
         let mut missing = Vec::new();
         let mut open: Vec<Vec<bool>> = Vec::new();
-        for (b, message) in gathered.into_iter().enumerate() {
-            let traces = &self.numbering.traces[b];
+        for (c, message) in gathered.into_iter().enumerate() {
+            let traces = &self.numbering.traces[c];
             let mut reader = message.read();
-            if plan.pair_of(b).is_some() {
+            if plan.contact_place(c).is_some() {
                 let (limits, boundary) = (reader.count(), reader.count());
                 open.push(reader.integers(limits).iter().map(|&o| o != 0).collect());
                 missing.push(reader.reals(limits));
@@ -182,15 +215,15 @@ impl FrozenRoot<'_> {
         };
         let step = coupled.solve_frozen(&r, &loads, &missing, &open);
         let mut pairs = step.forces.into_iter().zip(step.approaches);
-        let answer = |b: usize| {
+        let answer = |c: usize| {
             let mut message = Message::default();
-            if plan.pair_of(b).is_some()
+            if plan.contact_place(c).is_some()
                 && let Some((forces, approaches)) = pairs.next()
             {
                 message.reals.extend(forces);
                 message.reals.extend(approaches);
             }
-            let traces = self.numbering.traces[b].iter();
+            let traces = self.numbering.traces[c].iter();
             message.reals.extend(traces.map(|&i| step.u[i as usize]));
             message
         };

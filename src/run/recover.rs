@@ -2,9 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::condense::CondensedBlocks;
-use crate::comm::{Comm, Message};
-use crate::plan::Plan;
+use super::substitute::Factors;
+use crate::comm::Message;
 
 /// The solution on a block.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,56 +16,64 @@ pub struct BlockSolution {
     pub closed: Vec<bool>,
 }
 
-/// Sends every block its part of U and recovers its interior. Collective; `root` holds U and the
-/// numbers of every block's traces.
+/// Sends every cluster its part of U and recovers its interior. Collective; `root` holds U and the
+/// numbers of every cluster's traces.
 pub fn recover(
-    comm: &Comm,
-    blocks: &CondensedBlocks,
-    plan: &Plan,
+    factors: Factors<'_>,
     root: Option<(&[f64], &[Vec<u32>])>,
 ) -> BTreeMap<usize, BlockSolution> {
-    let mut traces: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    let Factors {
+        comm,
+        plan,
+        condensed,
+    } = factors;
+    let mut boundaries: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     comm.scatter(
-        &plan.owners(),
-        |b| Message {
+        &plan.cluster_owners(),
+        |c| Message {
             integers: Vec::new(),
             reals: root.map_or_else(Vec::new, |(u, numbers)| {
-                numbers[b].iter().map(|&i| u[i as usize]).collect()
+                numbers[c].iter().map(|&i| u[i as usize]).collect()
             }),
         },
-        |b, message| {
-            traces.insert(b, message.reals);
+        |c, message| {
+            let pair = plan.contact_place(c).and_then(|p| condensed.pairs.get(&p));
+            let mut x = pair.map_or_else(Vec::new, |pair| pair.approaches().to_vec());
+            x.extend(message.reals);
+            boundaries.insert(plan.clusters[c].node, x);
         },
     );
-    traces
+    let mut conditions = conditions(factors);
+    factors
+        .recover(&condensed.loads, boundaries)
         .into_iter()
-        .filter_map(|(b, u)| Some((b, recover_block(blocks, plan, b, &u)?)))
+        .filter_map(|(b, x)| {
+            let (forces, closed) = conditions.remove(&b).unwrap_or_default();
+            let solution = BlockSolution {
+                u: condensed.dofs.get(&b)?.displacement(&x),
+                forces,
+                closed,
+            };
+            Some((b, solution))
+        })
         .collect()
 }
 
-fn recover_block(
-    blocks: &CondensedBlocks,
-    plan: &Plan,
-    b: usize,
-    u: &[f64],
-) -> Option<BlockSolution> {
-    let dofs = blocks.dofs.get(&b)?;
-    if let Some(linear) = blocks.linear.get(&b) {
-        let x = linear.schur.recover(&linear.load, u);
-        return Some(BlockSolution {
-            u: dofs.displacement(&x),
-            forces: Vec::new(),
-            closed: Vec::new(),
-        });
-    }
-    let pair = blocks.pairs.get(&plan.pair_of(b)?)?;
-    let mut x_b = pair.approaches().to_vec();
-    x_b.extend_from_slice(u);
-    let x = pair.schur().recover(pair.load(), &x_b);
-    let (forces, closed) = pair.conditions();
-    Some(BlockSolution {
-        u: dofs.displacement(&x),
-        forces,
-        closed,
-    })
+/// Forces of the conditions of every block, and which are closed, from the clusters that know.
+fn conditions(factors: Factors<'_>) -> BTreeMap<usize, (Vec<f64>, Vec<bool>)> {
+    let pairs = factors.condensed.pairs.iter();
+    let of_clusters = pairs.map(|(&p, pair)| {
+        let (forces, closed) = pair.conditions();
+        let message = Message {
+            integers: closed.iter().map(|&closed| i64::from(closed)).collect(),
+            reals: forces,
+        };
+        (p, message)
+    });
+    let of_blocks = factors.spread_conditions(of_clusters.collect());
+    let split = |(b, message): (usize, Message)| {
+        let closed = message.integers.iter().map(|&closed| closed != 0).collect();
+        (b, (message.reals, closed))
+    };
+    of_blocks.into_iter().map(split).collect()
 }

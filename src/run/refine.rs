@@ -88,13 +88,16 @@ pub(super) fn balance(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -
 fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Certificate {
     let of_block = |b: usize| {
         let (owned, solution) = (frozen.blocks.get(&b)?, solutions.get(&b)?);
-        Some(BlockCheck::new(
+        let mut check = BlockCheck::new(
             &owned.block,
             &owned.conditions,
             &balance(frozen, b, solution)?,
             &solution.u,
             &solution.forces,
-        ))
+        );
+        let stiffness = frozen.condensed.diagonals.get(&b)?.iter().copied();
+        check.rest_scale = frozen.descent * stiffness.fold(0.0, f64::max);
+        Some(check)
     };
     let mut checks = Vec::new();
     frozen.comm.gather(
@@ -102,9 +105,10 @@ fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Cer
         |b| of_block(b).map_or_else(Message::default, |check| check.pack()),
         |_, message| checks.push(BlockCheck::unpack(message)),
     );
-    frozen.root.map_or_else(Certificate::default, |root| {
-        certificate(&checks, &root.numbering.traces, root.interface.len)
-    })
+    match frozen.root {
+        Some(_) => certificate(&checks, frozen.catalog.interface_nodes, frozen.catalog.dim),
+        None => Certificate::default(),
+    }
 }
 
 /// Adds the solution of the linear problem whose load is what `solutions` leave unbalanced.

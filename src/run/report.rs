@@ -166,7 +166,7 @@ pub fn collect(comm: &Comm, seconds: &PhaseSeconds, plan: &Plan) -> Vec<RankRepo
         .map(|b| b.subdomains.len() as i64)
         .sum();
     let mut message = Message {
-        integers: vec![peak_memory_bytes() as i64, owned],
+        integers: vec![peak_memory_bytes() as i64, comm.bytes_sent() as i64, owned],
         reals: vec![seconds.total],
     };
     message
@@ -178,6 +178,7 @@ pub fn collect(comm: &Comm, seconds: &PhaseSeconds, plan: &Plan) -> Vec<RankRepo
             let mut reader = message.read();
             RankReport {
                 peak_memory_bytes: reader.integer() as u64,
+                bytes_sent: reader.integer() as u64,
                 subdomains: reader.count(),
                 seconds: PhaseSeconds {
                     total: reader.real(),

@@ -38,11 +38,6 @@ impl LocalSchur {
         })
     }
 
-    /// Size of B.
-    pub fn boundary(&self) -> usize {
-        self.s.nrows()
-    }
-
     /// The smallest pivot of K_II relative to its diagonal.
     pub fn smallest_pivot(&self) -> f64 {
         self.factor.smallest_pivot()
@@ -74,24 +69,20 @@ pub struct CondensedLoad {
 }
 
 impl CondensedLoad {
+    /// A load whose first `interior` entries stay behind.
+    pub fn new(y: Vec<f64>, interior: usize) -> Self {
+        Self { y, interior }
+    }
+
+    /// What stays behind on I.
+    pub fn interior(&self) -> &[f64] {
+        &self.y[..self.interior]
+    }
+
     /// The load on B.
     pub fn boundary(&self) -> &[f64] {
         &self.y[self.interior..]
     }
-
-    /// The load on B, to be corrected.
-    pub fn boundary_mut(&mut self) -> &mut [f64] {
-        &mut self.y[self.interior..]
-    }
-}
-
-/// A subdomain without contact: S_i and its condensed load.
-#[derive(Debug)]
-pub struct LinearSubdomain {
-    /// S_i.
-    pub schur: LocalSchur,
-    /// Its load.
-    pub load: CondensedLoad,
 }
 
 /// y ← y + A x.

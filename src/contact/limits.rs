@@ -1,0 +1,214 @@
+//! What bounds the approaches of a pair.
+
+use super::approach::{ApproachOf, defining_conditions};
+use super::dependent::DependentRows;
+use crate::comm::{Message, MessageReader};
+
+/// The bounds t ≤ g and D t ≤ d, and the conditions that they come from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Limits {
+    /// g of every approach, the tightest of its conditions, then d of every dependent one (m).
+    pub bounds: Vec<f64>,
+    /// D.
+    pub rows: DependentRows,
+    /// Which condition each bound is, and its factor.
+    tightest: Vec<(usize, f64)>,
+    /// The condition that each approach is the unknown of.
+    pub defining: Vec<usize>,
+    /// Number of conditions.
+    pub conditions: usize,
+    /// The largest displacement prescribed in the pair, initial gaps among them (m).
+    pub scale: f64,
+}
+
+impl Limits {
+    /// The bounds on `approaches` unknowns that conditions with these `gaps` make; `scale` bounds
+    /// the displacements that are prescribed.
+    pub fn new(approaches: usize, of: &[ApproachOf], gaps: &[f64], scale: f64) -> Self {
+        let mut limits = Self {
+            bounds: vec![f64::INFINITY; approaches],
+            rows: DependentRows::default(),
+            tightest: vec![(0, 1.0); approaches],
+            defining: defining_conditions(of, approaches),
+            conditions: of.len(),
+            scale,
+        };
+        for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
+            match of {
+                &ApproachOf::Unknown {
+                    number,
+                    factor,
+                    constant,
+                } => {
+                    let bound = (gap - constant) / factor;
+                    if bound < limits.bounds[number] {
+                        limits.bounds[number] = bound;
+                        limits.tightest[number] = (j, factor);
+                    }
+                }
+                ApproachOf::Combination { terms, constant } => {
+                    limits.rows.push(terms.clone());
+                    limits.bounds.push(gap - constant);
+                    limits.tightest.push((j, 1.0));
+                }
+                ApproachOf::Prescribed(_) => {}
+            }
+        }
+        limits
+    }
+
+    /// Number of approaches.
+    pub fn approaches(&self) -> usize {
+        self.bounds.len() - self.rows.len()
+    }
+
+    /// g − t, then d − D t, 0 for the rows of D that aren't `open`.
+    pub(super) fn gaps(&self, t: &[f64], open: &[bool]) -> Vec<f64> {
+        let m = t.len();
+        let mut gaps: Vec<f64> = self.bounds.iter().zip(t).map(|(g, t)| g - t).collect();
+        gaps.extend((0..self.rows.len()).map(|j| {
+            let left = self.bounds[m + j] - self.rows.value(j, t);
+            if open[m + j] { left.max(0.0) } else { 0.0 }
+        }));
+        gaps
+    }
+
+    /// The limits of several pairs as those of one, whose approaches, dependent conditions and
+    /// conditions follow each other in the same order.
+    pub fn join(pairs: &[Self]) -> Self {
+        let mut all = Self::default();
+        let mut dependent = (Vec::new(), Vec::new());
+        for pair in pairs {
+            let m = pair.approaches();
+            let shifted =
+                |&(condition, factor): &(usize, f64)| (all.conditions + condition, factor);
+            let (own, rows) = pair.tightest.split_at(m);
+            all.rows.append(&pair.rows, all.bounds.len());
+            dependent.0.extend(&pair.bounds[m..]);
+            dependent.1.extend(rows.iter().map(shifted));
+            all.bounds.extend(&pair.bounds[..m]);
+            all.tightest.extend(own.iter().map(shifted));
+            all.defining
+                .extend(pair.defining.iter().map(|j| all.conditions + j));
+            all.conditions += pair.conditions;
+            all.scale = all.scale.max(pair.scale);
+        }
+        all.bounds.append(&mut dependent.0);
+        all.tightest.append(&mut dependent.1);
+        all
+    }
+
+    /// Forces of all conditions for those of the limits.
+    pub fn forces(&self, of_limits: &[f64]) -> Vec<f64> {
+        let mut forces = vec![0.0; self.conditions];
+        for (force, &(condition, factor)) in of_limits.iter().zip(&self.tightest) {
+            forces[condition] = force / factor;
+        }
+        forces
+    }
+
+    /// Which conditions are closed where these limits are `open`.
+    pub fn closed(&self, open: &[bool]) -> Vec<bool> {
+        let mut closed = vec![false; self.conditions];
+        for (&(condition, _), open) in self.tightest.iter().zip(open) {
+            closed[condition] = !open;
+        }
+        closed
+    }
+
+    /// Which limits are open where these conditions are `closed`, and what every closed one lacks of
+    /// its bound when the conditions lack `missing`; 0 for the open ones.
+    pub fn frozen(&self, closed: &[bool], missing: &[f64]) -> (Vec<bool>, Vec<f64>) {
+        let of_condition = |&(condition, factor): &(usize, f64)| match closed[condition] {
+            true => (false, missing[condition] / factor),
+            false => (true, 0.0),
+        };
+        self.tightest.iter().map(of_condition).unzip()
+    }
+
+    /// Appends them to a message.
+    pub fn pack(&self, message: &mut Message) {
+        let counts = [self.approaches(), self.bounds.len(), self.conditions];
+        message.integers.extend(counts.map(|n| n as i64));
+        message.reals.extend(&self.bounds);
+        for &(condition, factor) in &self.tightest {
+            message.integers.push(condition as i64);
+            message.reals.push(factor);
+        }
+        message
+            .integers
+            .extend(self.defining.iter().map(|&j| j as i64));
+        message.reals.push(self.scale);
+        self.rows.pack(message);
+    }
+
+    /// From a message.
+    pub fn unpack(reader: &mut MessageReader) -> Self {
+        let (approaches, bounds) = (reader.count(), reader.count());
+        Self {
+            conditions: reader.count(),
+            bounds: reader.reals(bounds),
+            tightest: (0..bounds)
+                .map(|_| (reader.count(), reader.real()))
+                .collect(),
+            defining: (0..approaches).map(|_| reader.count()).collect(),
+            scale: reader.real(),
+            rows: DependentRows::unpack(reader),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unknown(number: usize, factor: f64) -> ApproachOf {
+        ApproachOf::Unknown {
+            number,
+            factor,
+            constant: 0.0,
+        }
+    }
+
+    fn limits(gap: f64) -> Limits {
+        let combination = ApproachOf::Combination {
+            terms: vec![(0, 1.0), (1, -2.0)],
+            constant: 0.5,
+        };
+        let of = [
+            unknown(0, 1.0),
+            combination,
+            unknown(1, 1.0),
+            unknown(1, 2.0),
+        ];
+        Limits::new(2, &of, &[gap, 3.0, 8.0, 6.0], 0.1)
+    }
+
+    #[test]
+    fn the_tightest_condition_bounds_an_approach() {
+        let limits = limits(1.0);
+        assert_eq!(limits.bounds, [1.0, 3.0, 2.5]);
+        assert_eq!(limits.forces(&[7.0, 8.0, 9.0]), [7.0, 9.0, 0.0, 4.0]);
+        assert_eq!(
+            limits.closed(&[false, true, false]),
+            [true, true, false, false]
+        );
+    }
+
+    #[test]
+    fn pairs_that_are_joined_keep_their_conditions() {
+        let joined = Limits::join(&[limits(1.0), limits(2.0)]);
+        assert_eq!(joined.bounds, [1.0, 3.0, 2.0, 3.0, 2.5, 2.5]);
+        assert_eq!(joined.defining, [0, 2, 4, 6]);
+        assert_eq!(joined.rows.row(1), [(2, 1.0), (3, -2.0)]);
+        let forces = joined.forces(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(forces, [1.0, 5.0, 0.0, 1.0, 3.0, 6.0, 0.0, 2.0]);
+    }
+
+    #[test]
+    fn limits_arrive_as_they_were_sent() {
+        let mut message = Message::default();
+        limits(1.5).pack(&mut message);
+        assert_eq!(Limits::unpack(&mut message.read()), limits(1.5));
+    }
+}

@@ -1,0 +1,46 @@
+//! Clusters: what the sweeps see as one block.
+
+use super::tree::Tree;
+
+/// Most contact conditions in a cluster of several groups: its law is dense.
+const MAX_CONDITIONS: usize = 2_000;
+
+/// What becomes of groups in contact when Schur complements are merged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Merging {
+    /// A cluster may hold groups: S_CON is that of the groups with what is around them.
+    All,
+    /// Only linear subdomains are merged: S_0 and S_CON are those of the paper, (15).
+    Linear,
+}
+
+/// The blocks under one node of the hierarchy, condensed onto what other clusters share and onto
+/// their own contacts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ClusterPlan {
+    /// The node.
+    pub node: usize,
+    /// The rank that owns the node.
+    pub owner: usize,
+    /// Its groups, by their place among all pairs, in the order in which they are merged.
+    pub pairs: Vec<usize>,
+}
+
+impl ClusterPlan {
+    /// Whether anything in it is in contact.
+    pub fn is_in_contact(&self) -> bool {
+        !self.pairs.is_empty()
+    }
+}
+
+/// The nodes of `tree` that are clusters. Its roots are left to the interface problem.
+pub(super) fn cluster_nodes(tree: &Tree, merging: Merging) -> Vec<usize> {
+    tree.highest(|v| {
+        let node = &tree.nodes[v];
+        let may_hold_contact = match merging {
+            Merging::All => node.groups <= 1 || node.conditions <= MAX_CONDITIONS,
+            Merging::Linear => node.groups == 0,
+        };
+        node.parent.is_some() && may_hold_contact
+    })
+}

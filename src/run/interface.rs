@@ -1,0 +1,135 @@
+//! Bringing the clusters together at the root: Γ, S_0, F and the bilateral operator.
+
+use contact_dd_partition::problem::Catalog;
+use faer::Par;
+
+use super::merge::CondensedBlocks;
+use crate::comm::{Comm, Message};
+use crate::contact::law::PairLaw;
+use crate::error::Failure;
+use crate::fem::dofs::TraceDof;
+use crate::interface::coupled::MAX_APPROACHES;
+use crate::interface::numbering::Numbering;
+use crate::interface::operator::{Contribution, Interface};
+use crate::plan::Plan;
+use crate::rigid::energy::RigidDrive;
+use crate::rigid::survey::Survey;
+use crate::schur::condensed::Condensed;
+
+/// Numbers what clusters share of Γ and assembles S_0, F and the bilateral operator on the root. Collective; the other
+/// ranks get nothing.
+///
+/// # Errors
+/// Supports that differ between subdomains, or a singular bilateral problem.
+pub fn assemble_interface(
+    comm: &Comm,
+    blocks: &CondensedBlocks,
+    catalog: &Catalog,
+    plan: &Plan,
+    survey: &Survey,
+    par: Par,
+) -> Result<Option<(Numbering, Interface)>, Failure> {
+    let with_laws = with_laws(catalog);
+    let mut traces: Vec<Vec<TraceDof>> = Vec::new();
+    let mut contributions: Vec<Contribution> = Vec::new();
+    comm.gather(
+        &plan.cluster_owners(),
+        |c| pack(blocks, plan, c, with_laws),
+        |_, message| {
+            let (list, contribution) = unpack(message);
+            traces.push(list);
+            contributions.push(contribution);
+        },
+    );
+    if !comm.is_root() {
+        return Ok(None);
+    }
+    let nodes = plan
+        .clusters
+        .iter()
+        .map(|c| &plan.tree.nodes[c.node].kept[..]);
+    let in_contact: Vec<bool> = plan.clusters.iter().map(|c| c.is_in_contact()).collect();
+    let traces: Vec<&[TraceDof]> = traces.iter().map(Vec::as_slice).collect();
+    let numbering = Numbering::new(&traces, &nodes.collect::<Vec<_>>(), &in_contact)?;
+    let motions = motions_of_approaches(survey, plan, &contributions);
+    let interface = Interface::new(&numbering, contributions, &in_contact, &motions, par)?;
+    Ok(Some((numbering, interface)))
+}
+
+/// The approaches of all pairs against the motions that supports leave to the bodies.
+fn motions_of_approaches(
+    survey: &Survey,
+    plan: &Plan,
+    contributions: &[Contribution],
+) -> RigidDrive {
+    let Some(scene) = survey.scene.as_ref().filter(|_| survey.movable) else {
+        return RigidDrive::default();
+    };
+    let laws = contributions.iter().filter_map(|c| c.law.as_ref());
+    let defining: Vec<usize> = laws
+        .zip(&plan.contact)
+        .flat_map(|(law, &c)| {
+            let conditions = scene.conditions_of(&plan.clusters[c].pairs);
+            law.defining.iter().map(move |&j| conditions[j])
+        })
+        .collect();
+    scene.against(&defining)
+}
+
+/// Whether the pairs have few enough conditions for the root to solve for all of them at once.
+fn with_laws(catalog: &Catalog) -> bool {
+    let conditions: usize = catalog.contacts.iter().map(|c| c.conditions).sum();
+    conditions <= MAX_APPROACHES
+}
+
+fn pack(blocks: &CondensedBlocks, plan: &Plan, c: usize, with_laws: bool) -> Message {
+    let mut message = Message::default();
+    if let Some(linear) = blocks.linear.get(&c) {
+        pack_head(linear, false, &mut message);
+        message.push_lower(linear.s.as_ref());
+        message.reals.extend(&linear.load);
+    } else if let Some(pair) = plan.contact_place(c).and_then(|p| blocks.pairs.get(&p)) {
+        pack_head(pair.condensed(), with_laws, &mut message);
+        message.push_lower(pair.bilateral());
+        message.reals.extend(pair.bilateral_load());
+        if with_laws {
+            PairLaw::pack(pair, &mut message);
+        }
+    }
+    message
+}
+
+fn pack_head(condensed: &Condensed, has_law: bool, message: &mut Message) {
+    message.integers.extend([
+        condensed.traces.len() as i64,
+        i64::from(has_law),
+        condensed.eliminated as i64,
+    ]);
+    for dof in &condensed.traces {
+        message
+            .integers
+            .extend([i64::from(dof.node), i64::from(dof.axis)]);
+    }
+    message.reals.push(condensed.smallest_pivot);
+}
+
+fn unpack(message: Message) -> (Vec<TraceDof>, Contribution) {
+    let mut reader = message.read();
+    let n = reader.count();
+    let has_law = reader.integer() != 0;
+    let eliminated = reader.count();
+    let traces = (0..n)
+        .map(|_| TraceDof {
+            node: reader.integer() as u32,
+            axis: reader.integer() as u32,
+        })
+        .collect();
+    let contribution = Contribution {
+        eliminated,
+        smallest_pivot: reader.real(),
+        s: reader.symmetric(n),
+        load: reader.reals(n),
+        law: has_law.then(|| PairLaw::unpack(&mut reader, n)),
+    };
+    (traces, contribution)
+}

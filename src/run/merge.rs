@@ -1,0 +1,249 @@
+//! Up the hierarchy: blocks are condensed and merged until the clusters are left.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use super::clusters::take_clusters;
+use super::condense::Condensation;
+use super::read::OwnedBlock;
+use crate::comm::{Comm, Message};
+use crate::contact::limits::Limits;
+use crate::contact::pair::ContactPair;
+use crate::error::Failure;
+use crate::fem::dofs::{Dofs, TraceDof};
+use crate::interface::numbering::check_agreement;
+use crate::output::progress::Progress;
+use crate::rigid::survey::Survey;
+use crate::schur::condensed::Condensed;
+use crate::schur::local::{CondensedLoad, LocalSchur};
+use crate::schur::merge::{LooseTrace, Merge};
+
+/// What this rank has of the condensed blocks and of what they were merged into.
+#[derive(Debug, Default)]
+pub struct CondensedBlocks {
+    /// The unknowns of every block.
+    pub dofs: BTreeMap<usize, Dofs>,
+    /// The diagonal of every block's stiffness (Pa).
+    pub diagonals: BTreeMap<usize, Vec<f64>>,
+    /// The factor of every block.
+    pub factors: BTreeMap<usize, LocalSchur>,
+    /// The merge at every inner node of the hierarchy.
+    pub merges: BTreeMap<usize, Merge>,
+    /// The condensed load of every node of the hierarchy.
+    pub loads: BTreeMap<usize, CondensedLoad>,
+    /// The bounds on the approaches of every pair, where its block is.
+    pub limits: BTreeMap<usize, Limits>,
+    /// T: the clusters without contact, by their place among all.
+    pub linear: BTreeMap<usize, Condensed>,
+    /// ϑ: the clusters in contact, by their place among those.
+    pub pairs: BTreeMap<usize, ContactPair>,
+    /// Time for assembling and for factorizing (s).
+    pub seconds: [f64; 2],
+}
+
+/// Condenses the `blocks` of this rank and merges them, and what other ranks send, up to the
+/// clusters. Collective.
+///
+/// # Errors
+/// A part that can move although its boundary is held, a condition on Γ, or supports that differ
+/// between subdomains.
+pub fn condense_clusters(
+    comm: &Comm,
+    condensation: &Condensation<'_>,
+    blocks: &BTreeMap<usize, OwnedBlock>,
+    survey: &Survey,
+    progress: &Progress,
+) -> Result<CondensedBlocks, Failure> {
+    let plan = condensation.plan;
+    let mut merging = Merging {
+        comm,
+        condensation,
+        blocks,
+        condensed: CondensedBlocks::default(),
+        waiting: BTreeMap::new(),
+    };
+    let (alone, across) = merging.nodes();
+    // First what needs no other rank, depth first, so that little waits at a time.
+    let own = alone.into_iter().try_for_each(|v| {
+        merging.own_node(v)?;
+        if v < plan.blocks.len() {
+            progress.advance();
+        }
+        Ok(())
+    });
+    comm.agree(own)?;
+    let mut merged = Ok(());
+    for v in across {
+        let result = merging.node_across_ranks(v);
+        merged = merged.and(result);
+    }
+    comm.agree(merged)?;
+    let Merging {
+        mut condensed,
+        waiting,
+        ..
+    } = merging;
+    take_clusters(comm, plan, survey, waiting, &mut condensed);
+    Ok(condensed)
+}
+
+/// The merges of this rank.
+struct Merging<'a> {
+    comm: &'a Comm,
+    condensation: &'a Condensation<'a>,
+    blocks: &'a BTreeMap<usize, OwnedBlock>,
+    condensed: CondensedBlocks,
+    /// Nodes that are condensed and not merged yet.
+    waiting: BTreeMap<usize, Condensed>,
+}
+
+impl Merging<'_> {
+    /// The nodes of clusters under which everything is this rank's, depth first, and, on all ranks
+    /// the same, those with parts of several ranks.
+    fn nodes(&self) -> (Vec<usize>, Vec<usize>) {
+        let plan = self.condensation.plan;
+        let (mut alone, mut across) = (Vec::new(), Vec::new());
+        let mut is_whole = vec![true; plan.tree.nodes.len()];
+        for cluster in &plan.clusters {
+            for v in plan.tree.subtree(cluster.node) {
+                let owner = plan.node_owners[v];
+                let children = &plan.tree.nodes[v].children;
+                is_whole[v] = (children.iter())
+                    .all(|&child| is_whole[child] && plan.node_owners[child] == owner);
+                match is_whole[v] {
+                    true if owner == self.comm.rank() => alone.push(v),
+                    true => {}
+                    false => across.push(v),
+                }
+            }
+        }
+        (alone, across)
+    }
+
+    /// Condenses a block or merges the children of an inner node, all of them this rank's.
+    fn own_node(&mut self, v: usize) -> Result<(), Failure> {
+        if let Some(owned) = self.blocks.get(&v) {
+            let of_block = self.condensation.condense(v, owned, &mut self.condensed)?;
+            self.waiting.insert(v, of_block);
+            return Ok(());
+        }
+        let children = &self.condensation.plan.tree.nodes[v].children;
+        let waiting = children
+            .iter()
+            .filter_map(|child| self.waiting.remove(child));
+        let children = waiting.collect();
+        self.merge(v, children)
+    }
+
+    /// Merges the children of an inner node, which come from several ranks. Collective.
+    fn node_across_ranks(&mut self, v: usize) -> Result<(), Failure> {
+        let plan = self.condensation.plan;
+        let (me, owner) = (self.comm.rank(), plan.node_owners[v]);
+        let children = &plan.tree.nodes[v].children;
+        let mut arrived = Vec::new();
+        for child in children {
+            match (plan.node_owners[*child], owner == me) {
+                (of_child, true) if of_child == me => arrived.extend(self.waiting.remove(child)),
+                (of_child, true) => arrived.extend(unpack(self.comm.receive(of_child))),
+                (of_child, false) if of_child == me => {
+                    let waiting = self.waiting.remove(child);
+                    self.comm
+                        .send(owner, &waiting.map_or_else(Message::default, pack));
+                }
+                _ => {}
+            }
+        }
+        // A child that failed isn't there; its owner says why.
+        if owner == me && arrived.len() == children.len() {
+            self.merge(v, arrived)?;
+        }
+        Ok(())
+    }
+
+    fn merge(&mut self, v: usize, children: Vec<Condensed>) -> Result<(), Failure> {
+        let began = Instant::now();
+        let plan = self.condensation.plan;
+        let node = &plan.tree.nodes[v];
+        let traces: Vec<&[TraceDof]> = children.iter().map(|c| &c.traces[..]).collect();
+        let kept = node
+            .children
+            .iter()
+            .map(|&child| &plan.tree.nodes[child].kept[..]);
+        check_agreement(&traces, &kept.collect::<Vec<_>>())?;
+        let (merge, condensed, load) =
+            Merge::new(children, &node.eliminated, self.condensation.par)
+                .map_err(|LooseTrace(dof)| self.moves(v, dof))?;
+        self.condensed.merges.insert(v, merge);
+        self.condensed.loads.insert(v, load);
+        self.waiting.insert(v, condensed);
+        self.condensed.seconds[1] += began.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    fn moves(&self, v: usize, dof: TraceDof) -> Failure {
+        let plan = self.condensation.plan;
+        let blocks = plan
+            .tree
+            .subtree(v)
+            .into_iter()
+            .filter(|&b| b < plan.blocks.len());
+        let subdomains: Vec<usize> = blocks
+            .flat_map(|b| plan.blocks[b].subdomains.clone())
+            .collect();
+        let first = subdomains.iter().min().copied().unwrap_or_default();
+        let body = self.condensation.catalog.subdomains[first].body;
+        Failure::ill_posed(format!(
+            "body '{}': its {} subdomains around subdomain {first} can move although their boundary \
+             is held (found at node {} of /interface/interface); expected supports or contact that \
+             hold them",
+            self.condensation.catalog.bodies[body].name,
+            subdomains.len(),
+            dof.node
+        ))
+    }
+}
+
+/// What a node sends to the owner of its parent.
+fn pack(condensed: Condensed) -> Message {
+    let mut message = Message::default();
+    message.integers.extend(
+        [
+            condensed.approaches,
+            condensed.traces.len(),
+            condensed.eliminated,
+        ]
+        .map(|n| n as i64),
+    );
+    for dof in &condensed.traces {
+        let [node, axis] = [dof.node, dof.axis].map(i64::from);
+        message.integers.extend([node, axis]);
+    }
+    message.reals.push(condensed.smallest_pivot);
+    message.reals.extend(&condensed.load);
+    message.reals.extend(&condensed.stiffness);
+    message.push_lower(condensed.s.as_ref());
+    message
+}
+
+fn unpack(message: Message) -> Option<Condensed> {
+    if message.integers.is_empty() {
+        return None;
+    }
+    let mut reader = message.read();
+    let (approaches, traces, eliminated) = (reader.count(), reader.count(), reader.count());
+    let n = approaches + traces;
+    Some(Condensed {
+        approaches,
+        traces: (0..traces)
+            .map(|_| TraceDof {
+                node: reader.integer() as u32,
+                axis: reader.integer() as u32,
+            })
+            .collect(),
+        eliminated,
+        smallest_pivot: reader.real(),
+        load: reader.reals(n),
+        stiffness: reader.reals(n),
+        s: reader.lower(n),
+    })
+}

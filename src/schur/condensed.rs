@@ -1,0 +1,35 @@
+//! A node of the hierarchy, condensed.
+
+use faer::Mat;
+
+use crate::fem::dofs::TraceDof;
+
+/// The Schur complement of a node of the hierarchy on what it keeps: approaches, then traces on Γ.
+#[derive(Clone, Debug)]
+pub struct Condensed {
+    /// Number of approaches.
+    pub approaches: usize,
+    /// Its unknowns on Γ, ascending.
+    pub traces: Vec<TraceDof>,
+    /// S (Pa); only the lower triangle counts.
+    pub s: Mat<f64>,
+    /// The condensed load (N/m).
+    pub load: Vec<f64>,
+    /// The diagonal of the matrix that S is condensed from (Pa).
+    pub stiffness: Vec<f64>,
+    /// The smallest pivot of what was eliminated, relative to its diagonal entry.
+    pub smallest_pivot: f64,
+    /// Number of unknowns on Γ that were eliminated.
+    pub eliminated: usize,
+}
+
+impl Condensed {
+    /// Makes both triangles of S count.
+    pub fn fill_upper_triangle(&mut self) {
+        for j in 0..self.s.ncols() {
+            for i in j + 1..self.s.nrows() {
+                self.s[(j, i)] = self.s[(i, j)];
+            }
+        }
+    }
+}

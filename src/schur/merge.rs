@@ -1,0 +1,280 @@
+//! A merge: the Schur complements of a node's children in the hierarchy become its own.
+//!
+//! With the children's S added up over [E | K], E what is eliminated and K what is kept,
+//!
+//! ```text
+//! A = Σ R_cᵀ S_c R_c,    A_EE = L_E L_Eᵀ,    P = A_KE L_E⁻ᵀ,    S = A_KK − P Pᵀ
+//! ```
+//!
+//! are dense: the multifrontal method of Duff and Reid, with the blocks as its leaves.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{
+    LltError, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
+};
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Accum, Mat, Par};
+
+use super::condensed::Condensed;
+use super::local::CondensedLoad;
+use crate::fem::dofs::TraceDof;
+
+/// What a merge leaves behind for solving.
+#[derive(Debug)]
+pub struct Merge {
+    eliminated: usize,
+    /// L_E above P.
+    columns: Mat<f64>,
+    /// Where the boundary of every child is found among [E | K].
+    places: Vec<Vec<u32>>,
+}
+
+/// Why Schur complements can't be merged: this unknown can move although all that is kept is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LooseTrace(pub TraceDof);
+
+/// Indices of a child's boundary that follow one another in [E | K], too.
+struct Run {
+    from: usize,
+    to: usize,
+    len: usize,
+}
+
+impl Merge {
+    /// Merges `children`, in their order, and eliminates the unknowns at the nodes of Γ that are
+    /// `eliminated`, ascending.
+    ///
+    /// # Errors
+    /// A_EE isn't positive definite.
+    pub fn new(
+        children: Vec<Condensed>,
+        eliminated: &[u32],
+        par: Par,
+    ) -> Result<(Self, Condensed, CondensedLoad), LooseTrace> {
+        let (gone, traces) = union_of_traces(&children, eliminated);
+        let approaches = children.iter().map(|c| c.approaches).sum();
+        let e = gone.len();
+        let k = approaches + traces.len();
+        let mut columns = Mat::<f64>::zeros(e + k, e);
+        let mut s = Mat::<f64>::zeros(k, k);
+        let mut load = vec![0.0; e + k];
+        let mut stiffness = vec![0.0; e + k];
+        let mut places = Vec::with_capacity(children.len());
+        let mut smallest_pivot = f64::INFINITY;
+        let mut eliminated_before = 0;
+        let mut first_approach = e;
+        for child in children {
+            let place = places_of(&child, first_approach, &gone, &traces, e + approaches);
+            first_approach += child.approaches;
+            for ((&to, f), d) in place.iter().zip(&child.load).zip(&child.stiffness) {
+                load[to as usize] += f;
+                stiffness[to as usize] += d;
+            }
+            add(&child.s, &place, e, &mut columns, &mut s);
+            smallest_pivot = smallest_pivot.min(child.smallest_pivot);
+            eliminated_before += child.eliminated;
+            places.push(place);
+        }
+        let mut merge = Self {
+            eliminated: e,
+            columns,
+            places,
+        };
+        merge
+            .eliminate(&mut s, par)
+            .map_err(|j| LooseTrace(gone[j]))?;
+        for (j, d) in stiffness[..e].iter().enumerate() {
+            smallest_pivot = smallest_pivot.min(merge.columns[(j, j)].powi(2) / d);
+        }
+        merge.forward(&mut load);
+        let condensed = Condensed {
+            approaches,
+            traces,
+            s,
+            load: load[e..].to_vec(),
+            stiffness: stiffness[e..].to_vec(),
+            smallest_pivot,
+            eliminated: eliminated_before + e,
+        };
+        Ok((merge, condensed, CondensedLoad::new(load, e)))
+    }
+
+    /// Factorizes A_EE and takes P Pᵀ off A_KK.
+    fn eliminate(&mut self, s: &mut Mat<f64>, par: Par) -> Result<(), usize> {
+        let (e, k) = (self.eliminated, s.nrows());
+        let (mut top, mut below) = self.columns.as_mut().split_at_row_mut(e);
+        let mut memory =
+            MemBuffer::new(cholesky_in_place_scratch::<f64>(e, par, Default::default()));
+        cholesky_in_place(
+            top.as_mut(),
+            LltRegularization::default(),
+            par,
+            MemStack::new(&mut memory),
+            Default::default(),
+        )
+        .map_err(|LltError::NonPositivePivot { index }| index)?;
+        if k == 0 {
+            return Ok(());
+        }
+        solve_lower_triangular_in_place(top.as_ref(), below.as_mut().transpose_mut(), par);
+        triangular::matmul(
+            s.as_mut(),
+            BlockStructure::TriangularLower,
+            Accum::Add,
+            below.as_ref(),
+            BlockStructure::Rectangular,
+            below.as_ref().transpose(),
+            BlockStructure::Rectangular,
+            -1.0,
+            par,
+        );
+        Ok(())
+    }
+
+    /// Condenses the loads on the children's boundaries, in their order.
+    pub fn condense(&self, loads: &[&[f64]]) -> CondensedLoad {
+        let mut load = vec![0.0; self.columns.nrows()];
+        for (place, of_child) in self.places.iter().zip(loads) {
+            for (&to, f) in place.iter().zip(*of_child) {
+                load[to as usize] += f;
+            }
+        }
+        self.forward(&mut load);
+        CondensedLoad::new(load, self.eliminated)
+    }
+
+    /// The unknowns on the children's boundaries for the unknowns `x_k` that are kept.
+    pub fn recover(&self, load: &CondensedLoad, x_k: &[f64]) -> Vec<Vec<f64>> {
+        let e = self.eliminated;
+        let mut x = load.interior().to_vec();
+        x.extend_from_slice(x_k);
+        for j in (0..e).rev() {
+            let column = self.columns.col_as_slice(j);
+            let (above, below) = x.split_at_mut(j + 1);
+            let sum: f64 = dot(&column[j + 1..], below);
+            above[j] = (above[j] - sum) / column[j];
+        }
+        let of_child = |place: &Vec<u32>| place.iter().map(|&i| x[i as usize]).collect();
+        self.places.iter().map(of_child).collect()
+    }
+
+    /// x_E ← L_E⁻¹ x_E and x_K ← x_K − P x_E.
+    fn forward(&self, x: &mut [f64]) {
+        for j in 0..self.eliminated {
+            let column = self.columns.col_as_slice(j);
+            let (above, below) = x.split_at_mut(j + 1);
+            above[j] /= column[j];
+            let x_j = above[j];
+            for (x, l) in below.iter_mut().zip(&column[j + 1..]) {
+                *x -= l * x_j;
+            }
+        }
+    }
+}
+
+/// Σ a b in eight interleaved sums, which a processor can add at once.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let (a_lanes, b_lanes) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest: f64 = a_lanes
+        .remainder()
+        .iter()
+        .zip(b_lanes.remainder())
+        .map(|(a, b)| a * b)
+        .sum();
+    let mut sums = [0.0; LANES];
+    for (a, b) in a_lanes.zip(b_lanes) {
+        for lane in 0..LANES {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
+/// The traces of all children, each once, ascending: those at `eliminated` nodes, and the others.
+fn union_of_traces(children: &[Condensed], eliminated: &[u32]) -> (Vec<TraceDof>, Vec<TraceDof>) {
+    let mut all: Vec<TraceDof> = children
+        .iter()
+        .flat_map(|c| c.traces.iter().copied())
+        .collect();
+    all.sort_unstable();
+    all.dedup();
+    let mut next = eliminated.iter().peekable();
+    all.into_iter().partition(|dof| {
+        while next.next_if(|&&node| node < dof.node).is_some() {}
+        next.peek().is_some_and(|&&node| node == dof.node)
+    })
+}
+
+/// Where the boundary of `child` is found: approaches from `first_approach` on, traces among those
+/// that are `gone`, which come first, or those that are kept, from `first_kept` on.
+fn places_of(
+    child: &Condensed,
+    first_approach: usize,
+    gone: &[TraceDof],
+    kept: &[TraceDof],
+    first_kept: usize,
+) -> Vec<u32> {
+    let approaches = (0..child.approaches).map(|j| (first_approach + j) as u32);
+    let (mut in_gone, mut in_kept) = (0, 0);
+    let traces = child.traces.iter().map(|dof| {
+        // All three lists ascend, and the trace is in one of the two.
+        while gone.get(in_gone).is_some_and(|other| other < dof) {
+            in_gone += 1;
+        }
+        while kept.get(in_kept).is_some_and(|other| other < dof) {
+            in_kept += 1;
+        }
+        match gone.get(in_gone) == Some(dof) {
+            true => in_gone as u32,
+            false => (first_kept + in_kept) as u32,
+        }
+    });
+    approaches.chain(traces).collect()
+}
+
+/// Maximal runs of `place`, none of which reaches across the first `e` indices.
+fn runs(place: &[u32], e: usize) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (from, &to) in place.iter().enumerate() {
+        let to = to as usize;
+        match runs.last_mut() {
+            Some(run) if run.to + run.len == to && to != e => run.len += 1,
+            _ => runs.push(Run { from, to, len: 1 }),
+        }
+    }
+    runs
+}
+
+/// Adds a child's S, the lower triangle, to the lower triangle of A.
+fn add(of_child: &Mat<f64>, place: &[u32], e: usize, columns: &mut Mat<f64>, s: &mut Mat<f64>) {
+    let runs = runs(place, e);
+    for (j, &to) in place.iter().enumerate() {
+        let from = of_child.col_as_slice(j);
+        let to = to as usize;
+        for run in runs.iter().filter(|run| run.from + run.len > j) {
+            // The part of the run on and below the diagonal of the child.
+            let skipped = j.saturating_sub(run.from);
+            let values = &from[run.from + skipped..run.from + run.len];
+            let row = run.to + skipped;
+            if to >= e && row < e {
+                // Above the diagonal of A: it belongs to the other side.
+                for (i, value) in values.iter().enumerate() {
+                    columns[(to, row + i)] += value;
+                }
+                continue;
+            }
+            let target = match to < e {
+                true => &mut columns.col_as_slice_mut(to)[row..],
+                false => &mut s.col_as_slice_mut(to - e)[row - e..],
+            };
+            for (a, value) in target.iter_mut().zip(values) {
+                *a += value;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

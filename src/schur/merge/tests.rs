@@ -1,0 +1,112 @@
+use faer::Side;
+use faer::linalg::solvers::Solve;
+
+use super::*;
+
+fn trace(node: u32) -> TraceDof {
+    TraceDof { node, axis: 0 }
+}
+
+/// A symmetric positive definite matrix.
+fn spd(n: usize, seed: usize) -> Mat<f64> {
+    Mat::from_fn(n, n, |i, j| {
+        let (a, b) = (i.max(j), i.min(j));
+        let off = ((3 * a + 7 * b + seed) as f64).sin();
+        off + if i == j { 2.0 * n as f64 } else { 0.0 }
+    })
+}
+
+fn child(approaches: usize, nodes: &[u32], seed: usize) -> Condensed {
+    let n = approaches + nodes.len();
+    let s = spd(n, seed);
+    Condensed {
+        approaches,
+        traces: nodes.iter().map(|&node| trace(node)).collect(),
+        load: (0..n).map(|i| ((i + seed) as f64).cos()).collect(),
+        stiffness: (0..n).map(|i| s[(i, i)]).collect(),
+        s,
+        smallest_pivot: 1.0,
+        eliminated: 0,
+    }
+}
+
+/// Two children and their sum over [0..9 | approaches of the first | of the second].
+fn example() -> (Vec<Condensed>, Mat<f64>, Vec<f64>) {
+    let children = vec![
+        child(2, &[0, 2, 3, 5, 7, 8], 1),
+        child(1, &[1, 2, 4, 5, 6, 7], 2),
+    ];
+    let names = |c: &Condensed, first: usize| -> Vec<usize> {
+        let approaches = (0..c.approaches).map(move |j| 9 + first + j);
+        approaches
+            .chain(c.traces.iter().map(|t| t.node as usize))
+            .collect()
+    };
+    let mut a = Mat::zeros(12, 12);
+    let mut f = vec![0.0; 12];
+    for (c, first) in children.iter().zip([0, 2]) {
+        let name = names(c, first);
+        for (i, &to) in name.iter().enumerate() {
+            f[to] += c.load[i];
+            for (j, &column) in name.iter().enumerate() {
+                a[(to, column)] += c.s[(i, j)];
+            }
+        }
+    }
+    (children, a, f)
+}
+
+#[test]
+fn a_merge_is_the_schur_complement_of_the_sum() {
+    let (children, a, f) = example();
+    let (_, condensed, _) = Merge::new(children, &[2, 5, 7], Par::Seq).unwrap();
+    let gone = [2, 5, 7];
+    let kept = [9, 10, 11, 0, 1, 3, 4, 6, 8];
+    let part = |rows: &[usize], columns: &[usize]| {
+        Mat::from_fn(rows.len(), columns.len(), |i, j| a[(rows[i], columns[j])])
+    };
+    let solved = part(&gone, &gone).llt(Side::Lower).unwrap();
+    let exact = part(&kept, &kept) - part(&kept, &gone) * solved.solve(part(&gone, &kept));
+    let f_gone = Mat::from_fn(3, 1, |i, _| f[gone[i]]);
+    let taken = part(&kept, &gone) * solved.solve(f_gone);
+    assert_eq!((condensed.approaches, condensed.traces.len()), (3, 6));
+    for i in 0..9 {
+        assert!((condensed.load[i] - (f[kept[i]] - taken[(i, 0)])).abs() < 1e-14);
+        for j in 0..=i {
+            assert!((condensed.s[(i, j)] - exact[(i, j)]).abs() < 1e-13);
+        }
+    }
+}
+
+#[test]
+fn what_is_recovered_solves_the_sum() {
+    let (children, a, f) = example();
+    let loads: Vec<Vec<f64>> = children.iter().map(|c| c.load.clone()).collect();
+    let exact = a
+        .llt(Side::Lower)
+        .unwrap()
+        .solve(Mat::from_fn(12, 1, |i, _| f[i]));
+    let (merge, _, load) = Merge::new(children, &[2, 5, 7], Par::Seq).unwrap();
+    let again = merge.condense(&loads.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    assert_eq!(load.boundary(), again.boundary());
+    let kept: Vec<f64> = [9, 10, 11, 0, 1, 3, 4, 6, 8]
+        .map(|i| exact[(i, 0)])
+        .to_vec();
+    let x = merge.recover(&load, &kept);
+    for (x, node) in x[1].iter().zip([11, 1, 2, 4, 5, 6, 7]) {
+        assert!((x - exact[(node, 0)]).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn an_unknown_that_nothing_holds_is_named() {
+    let mut children = vec![child(0, &[1, 2], 3), child(0, &[2, 4], 4)];
+    for c in &mut children {
+        c.s[(
+            usize::from(c.traces[0] == trace(1)),
+            usize::from(c.traces[0] == trace(1)),
+        )] = -50.0;
+    }
+    let error = Merge::new(children, &[2], Par::Seq).unwrap_err();
+    assert_eq!(error, LooseTrace(trace(2)));
+}
