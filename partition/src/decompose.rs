@@ -59,7 +59,8 @@ impl Decomposition {
             return prescribed::take(model, &topology, subdomain, count);
         }
         let atoms = Atoms::new(model, &topology);
-        let units = Units::new(&atoms.graph);
+        let cells = atoms.graph.cell_weights();
+        let units = Units::new(&atoms.graph, &cells);
         let (least, most) = (units.pieces(), atoms.graph.len());
         let count = count.unwrap_or_else(|| suitable(model, &atoms, &units).clamp(least, most));
         if !(least..=most).contains(&count) {
