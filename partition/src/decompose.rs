@@ -16,8 +16,12 @@ use crate::error::InputError;
 use crate::mesh::topology::Topology;
 use crate::model::Model;
 
-/// Dofs of a subdomain where the user doesn't say how many subdomains there should be.
-const DOFS: usize = 20_000;
+/// Dofs of a subdomain where the user doesn't say how many subdomains there should be: many small
+/// ones, merged along the hierarchy, take less time than few large ones.
+const DOFS: usize = 2_000;
+
+/// Dofs up to which a mesh is split no further than contact and materials ask for.
+const SMALL: usize = 20_000;
 
 /// Subdomains without contact that there are beside those in contact, at least.
 const LINEAR: usize = 4;
@@ -55,7 +59,8 @@ impl Decomposition {
             return prescribed::take(model, &topology, subdomain, count);
         }
         let atoms = Atoms::new(model, &topology);
-        let units = Units::new(&atoms.graph);
+        let cells = atoms.graph.cell_weights();
+        let units = Units::new(&atoms.graph, &cells);
         let (least, most) = (units.pieces(), atoms.graph.len());
         let count = count.unwrap_or_else(|| suitable(model, &atoms, &units).clamp(least, most));
         if !(least..=most).contains(&count) {
@@ -89,5 +94,6 @@ fn suitable(model: &Model, atoms: &Atoms, units: &Units) -> usize {
         many if many > MATERIALS => 1,
         few => few,
     };
-    dofs.div_ceil(DOFS).max(with_contact).max(with_materials)
+    let for_speed = if dofs > SMALL { dofs.div_ceil(DOFS) } else { 1 };
+    for_speed.max(with_contact).max(with_materials)
 }

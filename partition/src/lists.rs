@@ -50,6 +50,11 @@ impl<T: Copy> Lists<T> {
         &self.items[self.offsets[list]..self.offsets[list + 1]]
     }
 
+    /// The items of all lists in order.
+    pub fn items_mut(&mut self) -> &mut [T] {
+        &mut self.items
+    }
+
     /// The lists in order.
     pub fn iter(&self) -> impl Iterator<Item = &[T]> + Clone {
         (0..self.len()).map(|list| self.of(list))

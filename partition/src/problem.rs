@@ -9,6 +9,8 @@ pub mod hierarchy;
 mod interface;
 mod order;
 pub mod read;
+mod slab;
+mod strings;
 pub mod summary;
 pub mod write;
 

@@ -252,6 +252,14 @@ fn without_a_count_small_scenes_have_every_side_apart() {
     assert_eq!(of(&stacked(2, 9, 9)), 6);
     assert_eq!(of(&cracked(16, &[(0, 5), (11, 16)])), 8);
     assert_eq!(of(&stacked(1, 1, 1)), 1);
+    assert_eq!(of(&stacked(1, 99, 99)), 1);
+}
+
+#[test]
+fn without_a_count_large_scenes_have_subdomains_of_two_thousand_dofs() {
+    let model = stacked(1, 120, 110);
+    let decomposition = Decomposition::new(&model, None).unwrap();
+    assert_eq!(decomposition.count, (2 * 121 * 111usize).div_ceil(2000));
 }
 
 #[test]

@@ -65,6 +65,30 @@ fn what_is_written_is_read() {
 }
 
 #[test]
+fn a_slab_of_subdomains_is_what_they_are_one_by_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = shuffled(&stacked(3, 6, 3), 4);
+    let problem = Problem::new(&model, &halves(&model, 3.0)).unwrap();
+    let file = written(&problem, folder.path());
+    for range in [0..6, 2..5, 5..6, 3..3] {
+        let slab = file.subdomains(range.clone()).unwrap();
+        let singly: Vec<_> = range.map(|i| file.subdomain(i).unwrap()).collect();
+        assert_eq!(slab, singly);
+    }
+    for range in [4..7, 9..11] {
+        let message = file.subdomains(range).unwrap_err().to_string();
+        assert!(message.contains("there is no subdomain"), "{message}");
+    }
+    for index in [6, usize::MAX] {
+        let message = file.subdomain(index).unwrap_err().to_string();
+        assert!(
+            message.starts_with(folder.path().to_str().unwrap()),
+            "{message}"
+        );
+    }
+}
+
+#[test]
 fn every_force_arrives_once_and_every_support_everywhere() {
     let model = shuffled(&stacked(2, 6, 3), 1);
     let problem = Problem::new(&model, &halves(&model, 3.0)).unwrap();

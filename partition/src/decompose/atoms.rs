@@ -27,17 +27,18 @@ impl Atoms {
         let around = Around::new(model);
         let (of_cell, count) = contract(model, topology, &around);
         let mut cells = vec![0; count];
-        let mut edges = Vec::with_capacity(3 * of_cell.len());
-        for (cell, &a) in of_cell.iter().enumerate() {
-            cells[a as usize] += 1;
-            for &next in topology.neighbours(cell) {
-                let b = of_cell[next as usize];
-                if a != b {
-                    let same = model.cell_material[cell] == model.cell_material[next as usize];
-                    edges.push((a, b, if same { SAME_MATERIAL } else { 1 }));
-                }
-            }
+        for &atom in &of_cell {
+            cells[atom as usize] += 1;
         }
+        let atom_of = &of_cell;
+        let edges = of_cell.iter().enumerate().flat_map(|(cell, &a)| {
+            let others = topology.neighbours(cell).iter().map(|&next| next as usize);
+            let others = others.filter(move |&next| atom_of[next] != a);
+            others.map(move |next| {
+                let same = model.cell_material[cell] == model.cell_material[next];
+                (a, (atom_of[next], if same { SAME_MATERIAL } else { 1 }))
+            })
+        });
         let mut contacts: Vec<Vec<u32>> = vec![Vec::new(); count];
         for &(node, cell) in &around.cells {
             let list = &mut contacts[of_cell[cell as usize] as usize];
@@ -49,8 +50,8 @@ impl Atoms {
         }
         let material = materials(model, &of_cell, count);
         Self {
-            of_cell,
             graph: Graph::new(cells, material, contacts, edges),
+            of_cell,
         }
     }
 

@@ -15,30 +15,24 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// Makes a graph of directed edges (from, to, weight), both directions of each given; those
+    /// Makes a graph of directed edges (from, (to, weight)), both directions of each given; those
     /// that occur more than once add up.
     pub fn new(
         cells: Vec<u32>,
         material: Vec<u32>,
         contacts: Vec<Vec<u32>>,
-        mut directed: Vec<(u32, u32, u32)>,
+        directed: impl Iterator<Item = (u32, (u32, u32))> + Clone,
     ) -> Self {
-        directed.sort_unstable();
-        let mut offsets = vec![0; cells.len() + 1];
-        let mut edges: Vec<(u32, u32)> = Vec::with_capacity(directed.len());
-        let mut last = None;
-        for (from, to, weight) in directed {
-            match edges.last_mut() {
-                Some(edge) if last == Some((from, to)) => edge.1 += weight,
-                _ => {
-                    edges.push((to, weight));
-                    offsets[from as usize + 1] += 1;
-                }
+        let mut all = Lists::new(cells.len(), directed);
+        all.sort();
+        let mut offsets = Vec::with_capacity(cells.len() + 1);
+        let mut edges: Vec<(u32, u32)> = Vec::new();
+        offsets.push(0);
+        for list in all.iter() {
+            for same in list.chunk_by(|a, b| a.0 == b.0) {
+                edges.push((same[0].0, same.iter().map(|&(_, weight)| weight).sum()));
             }
-            last = Some((from, to));
-        }
-        for atom in 0..cells.len() {
-            offsets[atom + 1] += offsets[atom];
+            offsets.push(edges.len());
         }
         Self {
             cells,
@@ -92,6 +86,11 @@ impl Graph {
     /// The neighbours of an atom with the weight of the facets between them.
     pub fn edges(&self, atom: u32) -> &[(u32, u32)] {
         self.edges.of(atom as usize)
+    }
+
+    /// The numbers of cells as weights.
+    pub fn cell_weights(&self) -> Vec<u64> {
+        self.cells.iter().map(|&n| u64::from(n)).collect()
     }
 
     /// Number of cells.

@@ -63,6 +63,16 @@ impl<'g> Regions<'g> {
         &self.members
     }
 
+    /// The region of an atom.
+    pub fn region(&self, atom: u32) -> u32 {
+        self.of[atom as usize]
+    }
+
+    /// The atoms of every region.
+    pub fn into_members(self) -> Vec<Vec<u32>> {
+        self.members
+    }
+
     /// Merges or divides regions until there are exactly `count`, at least one and at most as many
     /// as atoms; every cluster gets a region of its own where `count` allows.
     pub fn adjust(&mut self, count: usize) {

@@ -8,11 +8,11 @@ use super::regions::Regions;
 /// contact become thinner and their subdomains cheaper, as all of a pair is factorized together.
 const LAYERS: [f64; 3] = [0.5, 0.65, 0.4];
 
-/// Number of seeds tried with each.
-const SEEDS: u32 = 4;
+/// Number of tries with each: every other one by recursive bisection, the rest k-way.
+const SEEDS: usize = 4;
 
-/// Atoms times tries that may be spent; large meshes need fewer tries.
-const BUDGET: usize = 1_000_000;
+/// Atoms times tries times doublings of parts that may be spent; large meshes need fewer tries.
+const BUDGET: usize = 5_000_000;
 
 /// How much heavier than the mean METIS may make a part, in thousandths.
 const SLACK: i32 = 40;
@@ -28,24 +28,25 @@ pub(super) fn split(graph: &Graph, count: usize) -> Vec<u32> {
     }
     let multilevel = graph.len() >= FEWEST_ATOMS * count;
     let seeds = if multilevel { SEEDS } else { 1 };
-    let tries = (BUDGET / graph.len()).clamp(2, LAYERS.len() * seeds as usize);
+    let doublings = 1 + count.ilog2() as usize;
+    let tries = (BUDGET / (graph.len() * doublings)).clamp(1, LAYERS.len() * seeds);
     let mut best: Option<(Score, Vec<u32>)> = None;
     for number in 0..tries {
         let weights = weights(graph, count, LAYERS[number % LAYERS.len()]);
-        let seed = (number / LAYERS.len()) as u32;
         let request = Request {
             edges: &graph.edges,
             weights: &weights,
             parts: count,
             shares: None,
             slack: SLACK,
-            seed,
+            seed: number as u32,
         };
-        // Recursive bisection balances better, k-way cuts less and keeps parts connected.
-        let parts = match (multilevel, seed % 2) {
+        // The boundaries of recursive bisection run straight through the whole unit, so that the
+        // hierarchy has smaller fronts; k-way cuts less where there are few parts.
+        let parts = match (multilevel, number % 2) {
             (false, _) => None,
-            (true, 0) => request.k_way(),
-            (true, _) => request.recursive(),
+            (true, 0) => request.recursive(),
+            (true, _) => request.k_way(),
         };
         let parts = parts.unwrap_or_else(|| vec![0; graph.len()]);
         let mut regions = Regions::of_parts(graph, &weights, &parts);
@@ -58,13 +59,18 @@ pub(super) fn split(graph: &Graph, count: usize) -> Vec<u32> {
     best.map_or_else(Vec::new, |(_, parts)| parts)
 }
 
-/// The cells of every atom, and what a cluster weighs beside them.
+/// The cells of every atom, and what a cluster weighs beside them: no more than one subdomain, or
+/// METIS would plan several where there is one atom.
 fn weights(graph: &Graph, count: usize, layer: f64) -> Vec<u64> {
-    let extra = (layer * graph.size() as f64 / count as f64).round() as u64;
+    let mean = graph.size() as f64 / count as f64;
+    let extra = (layer * mean).round() as u64;
     (0..graph.len() as u32)
         .map(|atom| {
-            let cluster = if graph.is_cluster(atom) { extra } else { 0 };
-            u64::from(graph.cells[atom as usize]) + cluster
+            let cells = u64::from(graph.cells[atom as usize]);
+            match graph.is_cluster(atom) {
+                true => (cells + extra).min(mean as u64).max(1),
+                false => cells,
+            }
         })
         .collect()
 }

@@ -56,6 +56,11 @@ impl ElementKind {
     /// ∫ det ∂x/∂ξ dξ of a cell that fills its space: its length, area or volume, with the sign of
     /// its orientation (m^dim).
     pub fn measure(self, at: &[[f64; 3]]) -> f64 {
+        // One for every cell of a mesh: without a rule on the heap where the map is affine.
+        if let (Self::Triangle3, [a, b, c]) = (self, at) {
+            let (t, s) = (difference(*b, *a), difference(*c, *a));
+            return 0.5 * (t[0] * s[1] - t[1] * s[0]);
+        }
         let rule = self.quadrature(1);
         let points = rule.points.iter().zip(&rule.weights);
         points.map(|(&xi, w)| w * self.jacobian(at, xi)).sum()

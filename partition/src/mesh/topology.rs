@@ -102,11 +102,12 @@ impl Topology {
 
 fn key(nodes: impl Iterator<Item = u32>) -> Key {
     let mut key = [u32::MAX; CORNERS];
-    for node in nodes {
-        let place = key.partition_point(|&other| other < node);
-        if place < CORNERS {
-            key[place..].rotate_right(1);
-            key[place] = node;
+    for mut node in nodes {
+        // Each node goes where it belongs and pushes the larger ones on.
+        for place in &mut key {
+            if node < *place {
+                std::mem::swap(place, &mut node);
+            }
         }
     }
     key

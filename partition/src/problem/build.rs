@@ -14,6 +14,7 @@ use super::{
 use crate::decompose::Decomposition;
 use crate::element::Elements;
 use crate::error::InputError;
+use crate::lists::Lists;
 use crate::model::Model;
 
 impl Problem {
@@ -79,7 +80,7 @@ impl Problem {
 struct Owners {
     count: usize,
     /// For every node its subdomains, ascending, with its local number.
-    of: Vec<Vec<(u32, u32)>>,
+    of: Lists<(u32, u32)>,
     /// For every node its number on Γ.
     interface: Vec<Option<u32>>,
     interface_nodes: usize,
@@ -95,33 +96,29 @@ impl Owners {
                 model.mesh.cells.len()
             )));
         }
-        let mut of: Vec<Vec<(u32, u32)>> = vec![Vec::new(); model.mesh.points.len()];
-        for ((_, nodes), &s) in model.mesh.cells.iter().zip(subdomain) {
-            if s as usize >= *count {
-                return Err(InputError::new(format!(
-                    "the partition has {count} subdomains but names number {s}"
-                )));
-            }
-            for &node in nodes {
-                let list = &mut of[node as usize];
-                if let Err(place) = list.binary_search_by_key(&s, |&(owner, _)| owner) {
-                    list.insert(place, (s, 0));
-                }
-            }
+        if let Some(s) = subdomain.iter().find(|&&s| s as usize >= *count) {
+            return Err(InputError::new(format!(
+                "the partition has {count} subdomains but names number {s}"
+            )));
         }
+        let corners = (model.mesh.cells.iter().zip(subdomain))
+            .flat_map(|((_, nodes), &s)| nodes.iter().map(move |&node| (node, (s, 0))));
+        let mut of = Lists::new(model.mesh.points.len(), corners);
+        of.sort();
+        of.dedup();
         let mut sizes = vec![0u32; *count];
         let mut interface = vec![None; of.len()];
         let mut interface_nodes = 0;
-        for (node, list) in of.iter_mut().enumerate() {
-            if list.len() > 1 {
-                interface[node] = Some(interface_nodes);
+        for (node, on) in interface.iter_mut().enumerate() {
+            if of.of(node).len() > 1 {
+                *on = Some(interface_nodes);
                 interface_nodes += 1;
             }
-            for (owner, local) in list {
-                let size = &mut sizes[*owner as usize];
-                *local = *size;
-                *size += 1;
-            }
+        }
+        for (owner, local) in of.items_mut() {
+            let size = &mut sizes[*owner as usize];
+            *local = *size;
+            *size += 1;
         }
         if let Some(empty) = sizes.iter().position(|&size| size == 0) {
             return Err(InputError::new(format!("subdomain {empty} has no cells")));
@@ -136,7 +133,7 @@ impl Owners {
 
     /// Local number of a node in a subdomain that has it.
     fn local(&self, node: u32, subdomain: u32) -> u32 {
-        let list = &self.of[node as usize];
+        let list = self.of.of(node as usize);
         list.iter()
             .find(|&&(owner, _)| owner == subdomain)
             .map_or(u32::MAX, |&(_, local)| local)
@@ -195,13 +192,13 @@ fn cut(
         subdomain.cell_material.push(model.cell_material[cell]);
     }
     for support in &model.supports {
-        for &(owner, node) in &owners.of[support.node as usize] {
+        for &(owner, node) in owners.of.of(support.node as usize) {
             let supports = &mut subdomains[owner as usize].supports;
             supports.push(crate::model::Support { node, ..*support });
         }
     }
     for &(node, force) in &model.forces {
-        if let Some(&(owner, node)) = owners.of[node as usize].first() {
+        if let Some(&(owner, node)) = owners.of.of(node as usize).first() {
             subdomains[owner as usize].forces.push((node, force));
         }
     }
@@ -217,7 +214,7 @@ fn gather_rows(model: &Model, owners: &Owners, groups: &Groups) -> Vec<Vec<Conta
                 .entries
                 .iter()
                 .filter_map(|&(node, coefficient)| {
-                    let &(subdomain, node) = owners.of[node as usize].first()?;
+                    let &(subdomain, node) = owners.of.of(node as usize).first()?;
                     Some(RowEntry {
                         subdomain,
                         node,

@@ -2,12 +2,10 @@
 
 use std::ops::Range;
 
-use hdf5::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenUnicode};
+use hdf5::types::TypeDescriptor;
 
+use super::strings::read_strings;
 use crate::error::InputError;
-
-/// Longest fixed-length string that is read (bytes).
-const LONGEST_FIXED: usize = 1024;
 
 /// The best compression that HDF5's deflate reaches; a dataset that declares more isn't there.
 const LARGEST_RATIO: u64 = 1100;
@@ -107,22 +105,28 @@ impl Dataset {
         what: &str,
     ) -> Result<Vec<u32>, InputError> {
         let start = rows.start;
-        self.integers(rows)?
-            .into_iter()
-            .enumerate()
-            .map(|(row, value)| {
-                u32::try_from(value)
-                    .ok()
-                    .filter(|&index| (index as usize) < count)
-                    .ok_or_else(|| {
-                        let expected = match count {
-                            0 => "there is none".to_owned(),
-                            _ => format!("expected 0 to {}", count - 1),
-                        };
-                        self.row_error(start + row, &format!("{value} is no {what}; {expected}"))
-                    })
+        self.indices_of(&self.integers(rows)?, start, count, what)
+    }
+
+    /// Makes integers that stand from row `start` on indices of `what` below `count`.
+    pub fn indices_of(
+        &self,
+        values: &[i64],
+        start: usize,
+        count: usize,
+        what: &str,
+    ) -> Result<Vec<u32>, InputError> {
+        let index = |(row, &value): (usize, &i64)| {
+            let index = u32::try_from(value).ok();
+            index.filter(|&i| (i as usize) < count).ok_or_else(|| {
+                let expected = match count {
+                    0 => "there is none".to_owned(),
+                    _ => format!("expected 0 to {}", count - 1),
+                };
+                self.row_error(start + row, &format!("{value} is no {what}; {expected}"))
             })
-            .collect()
+        };
+        values.iter().enumerate().map(index).collect()
     }
 
     /// Reads a table of offsets that rises from 0 to `end`.
@@ -195,6 +199,12 @@ impl Dataset {
     ) -> Result<Vec<[f64; 3]>, InputError> {
         let start = rows.start;
         let vectors = self.vectors(rows, width)?;
+        self.check_unit(&vectors, start)?;
+        Ok(vectors)
+    }
+
+    /// Checks that vectors that stand from row `start` on have the length 1.
+    pub fn check_unit(&self, vectors: &[[f64; 3]], start: usize) -> Result<(), InputError> {
         for (row, vector) in vectors.iter().enumerate() {
             let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
             if (length - 1.0).abs() > super::UNIT_TOLERANCE {
@@ -204,7 +214,7 @@ impl Dataset {
                 ));
             }
         }
-        Ok(vectors)
+        Ok(())
     }
 
     /// Reads all strings, of variable or fixed length.
@@ -265,41 +275,5 @@ impl Dataset {
                 stored.min(file_size)
             ))),
         }
-    }
-}
-
-/// Reads the strings of a dataset or attribute.
-pub(super) fn read_strings(container: &hdf5::Container) -> Result<Vec<String>, String> {
-    let text = |bytes: &[u8]| {
-        String::from_utf8(bytes.to_vec()).map_err(|_| "holds a string that isn't UTF-8".to_owned())
-    };
-    let failed = |reason: hdf5::Error| format!("can't be read: {reason}");
-    if container.size() == 0 {
-        return Ok(Vec::new());
-    }
-    let descriptor = container
-        .dtype()
-        .and_then(|dtype| dtype.to_descriptor())
-        .map_err(failed)?;
-    match descriptor {
-        TypeDescriptor::VarLenUnicode => {
-            let raw = container.read_raw::<VarLenUnicode>().map_err(failed)?;
-            raw.iter().map(|s| text(s.as_bytes())).collect()
-        }
-        TypeDescriptor::VarLenAscii => {
-            let raw = container.read_raw::<VarLenAscii>().map_err(failed)?;
-            raw.iter().map(|s| text(s.as_bytes())).collect()
-        }
-        TypeDescriptor::FixedUnicode(size) if size <= LONGEST_FIXED => {
-            let raw = container.read_raw::<FixedUnicode<LONGEST_FIXED>>();
-            let raw = raw.map_err(failed)?;
-            raw.iter().map(|s| text(s.as_bytes())).collect()
-        }
-        TypeDescriptor::FixedAscii(size) if size <= LONGEST_FIXED => {
-            let raw = container.read_raw::<FixedAscii<LONGEST_FIXED>>();
-            let raw = raw.map_err(failed)?;
-            raw.iter().map(|s| text(s.as_bytes())).collect()
-        }
-        other => Err(format!("holds {other}; expected strings")),
     }
 }

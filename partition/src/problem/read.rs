@@ -6,8 +6,10 @@ mod hierarchy;
 mod materials;
 mod rows;
 mod sizes;
+mod slabs;
 mod subdomain;
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::dataset::Dataset;
@@ -21,6 +23,8 @@ pub struct ProblemFile {
     file: hdf5::File,
     catalog: Catalog,
     offsets: Offsets,
+    /// How many subdomains have each node of Γ.
+    sharing: Vec<u32>,
 }
 
 /// Where the slice of every subdomain and group starts and ends.
@@ -64,7 +68,12 @@ impl ProblemFile {
                 ))
             })?;
         let (catalog, offsets) = catalog::read(&file)?;
+        let mut sharing = vec![0; catalog.interface_nodes];
+        for &number in catalog.interface.iter().flatten() {
+            sharing[number as usize] += 1;
+        }
         Ok(Self {
+            sharing,
             path: path.to_path_buf(),
             file,
             catalog,
@@ -82,7 +91,18 @@ impl ProblemFile {
     /// # Errors
     /// The dataset and the row that isn't what it should be.
     pub fn subdomain(&self, index: usize) -> Result<Subdomain, InputError> {
-        self.read_subdomain(index)
+        let mut one = self.subdomains(index..index.saturating_add(1))?;
+        one.pop().ok_or_else(|| {
+            InputError::new(format!("there is no subdomain {index}")).in_file(&self.path)
+        })
+    }
+
+    /// Reads and checks the slices of consecutive subdomains, each dataset in one go.
+    ///
+    /// # Errors
+    /// The dataset and the row that isn't what it should be.
+    pub fn subdomains(&self, range: Range<usize>) -> Result<Vec<Subdomain>, InputError> {
+        self.read_subdomains(range)
             .map_err(|error| error.in_file(&self.path))
     }
 
@@ -102,9 +122,7 @@ impl ProblemFile {
     pub fn problem(&self) -> Result<Problem, InputError> {
         let problem = Problem {
             catalog: self.catalog.clone(),
-            subdomains: (0..self.catalog.subdomains.len())
-                .map(|index| self.subdomain(index))
-                .collect::<Result<_, _>>()?,
+            subdomains: self.subdomains(0..self.catalog.subdomains.len())?,
             rows: (0..self.catalog.groups.len())
                 .map(|group| self.rows(group))
                 .collect::<Result<_, _>>()?,

@@ -66,8 +66,17 @@ pub(super) fn groups(mut listed: Vec<i64>) -> Vec<i64> {
 pub(super) struct Nodes {
     pub(super) tags: Vec<i64>,
     pub(super) points: Vec<[f64; 3]>,
-    index: HashMap<i64, u32>,
+    /// Index of every tag from 0 up to a multiple of their number, `NONE` where there is no node.
+    dense: Vec<u32>,
+    /// Index of the other tags.
+    sparse: HashMap<i64, u32>,
 }
+
+/// No node.
+const NONE: u32 = u32::MAX;
+
+/// Entries of the table of tags for every declared node, at most.
+const SPREAD: usize = 4;
 
 impl Nodes {
     pub(super) fn is_empty(&self) -> bool {
@@ -77,7 +86,10 @@ impl Nodes {
     pub(super) fn reserve(&mut self, count: usize) {
         self.tags.reserve(count);
         self.points.reserve(count);
-        self.index.reserve(count);
+        // A tag is looked for in one table only, so this one never grows.
+        if self.is_empty() && self.dense.is_empty() {
+            self.dense.resize(SPREAD * (count + 1), NONE);
+        }
     }
 
     /// Appends a node.
@@ -87,10 +99,18 @@ impl Nodes {
         tag: i64,
         point: [f64; 3],
     ) -> Result<(), InputError> {
-        let Ok(index) = u32::try_from(self.tags.len()) else {
+        let index = u32::try_from(self.tags.len()).ok();
+        let Some(index) = index.filter(|&index| index != NONE) else {
             return Err(cursor.error("more than 4 294 967 295 nodes aren't supported"));
         };
-        if self.index.insert(tag, index).is_some() {
+        let before = match usize::try_from(tag)
+            .ok()
+            .and_then(|t| self.dense.get_mut(t))
+        {
+            Some(entry) => std::mem::replace(entry, index) != NONE,
+            None => self.sparse.insert(tag, index).is_some(),
+        };
+        if before {
             return Err(cursor.error(format!("the node tag {tag} occurs twice")));
         }
         self.tags.push(tag);
@@ -100,7 +120,9 @@ impl Nodes {
 
     /// The index of the node `tag`, which `element` uses.
     pub(super) fn find(&self, cursor: &Cursor, element: i64, tag: i64) -> Result<u32, InputError> {
-        self.index.get(&tag).copied().ok_or_else(|| {
+        let dense = usize::try_from(tag).ok().and_then(|t| self.dense.get(t));
+        let found = dense.or_else(|| self.sparse.get(&tag)).copied();
+        found.filter(|&index| index != NONE).ok_or_else(|| {
             let reason = match self.is_empty() {
                 true => "expected $Nodes before $Elements".into(),
                 false => format!("element {element} names node {tag}, which isn't among $Nodes"),

@@ -6,6 +6,7 @@ use super::content::{Block, Content, Nodes};
 use super::names;
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
+use crate::lists::Lists;
 use crate::mesh::{Group, Mesh};
 
 /// z that counts as constant, relative to the extent of the mesh.
@@ -47,8 +48,11 @@ pub(super) fn mesh(content: Content) -> Result<Mesh, InputError> {
         ..Mesh::default()
     };
     let index = keep_nodes(&content.nodes, &cells, &mut mesh)?;
+    let mut nodes = Vec::new();
     for cell in &cells.elements {
-        mesh.cells.push(cell.kind, &renumbered(cell.nodes, &index));
+        nodes.clear();
+        nodes.extend(cell.nodes.iter().filter_map(|&node| index[node as usize]));
+        mesh.cells.push(cell.kind, &nodes);
         mesh.cell_tags.push(cell.tag);
     }
     mesh.orient_cells()?;
@@ -91,16 +95,21 @@ fn listed(blocks: &[Block], dim: usize) -> Vec<Listed<'_>> {
 
 /// Merges elements that are listed once for each of their groups: those with the same nodes.
 fn distinct(mut listed: Vec<Listed<'_>>) -> Result<Distinct<'_>, InputError> {
-    listed.sort_by_key(|e| e.tag);
-    let mut by_nodes: HashMap<Box<[u32]>, u32> = HashMap::with_capacity(listed.len());
+    if !listed.is_sorted_by_key(|e| e.tag) {
+        listed.sort_by_key(|e| e.tag);
+    }
+    let first = first_of_same(&listed);
+    let mut places: Vec<u32> = Vec::with_capacity(listed.len());
     let mut elements: Vec<Listed> = Vec::with_capacity(listed.len());
     let mut groups: BTreeMap<i64, Vec<u32>> = BTreeMap::new();
-    for element in listed {
-        let mut key: Box<[u32]> = element.nodes.into();
-        key.sort_unstable();
-        let fresh = elements.len() as u32;
-        let place = *by_nodes.entry(key).or_insert(fresh);
-        if place == fresh {
+    for (number, element) in listed.into_iter().enumerate() {
+        let is_first = first[number] as usize == number;
+        let place = match is_first {
+            true => elements.len() as u32,
+            false => places[first[number] as usize],
+        };
+        places.push(place);
+        if is_first {
             if elements.last().is_some_and(|last| last.tag == element.tag) {
                 return Err(InputError::new(format!(
                     "the element tag {} occurs twice, with different nodes",
@@ -120,6 +129,37 @@ fn distinct(mut listed: Vec<Listed<'_>>) -> Result<Distinct<'_>, InputError> {
     Ok(Distinct { elements, groups })
 }
 
+/// For every element the first one that has the same nodes, in any order.
+fn first_of_same(listed: &[Listed]) -> Vec<u32> {
+    let nodes = listed.iter().flat_map(|e| e.nodes).max();
+    let nodes = nodes.map_or(0, |&n| n as usize + 1);
+    let by_lowest = (0..).zip(listed).filter_map(|(number, element)| {
+        let lowest = element.nodes.iter().min()?;
+        Some((*lowest, (number, sum(element.nodes))))
+    });
+    let mut first: Vec<u32> = (0..listed.len() as u32).collect();
+    let mut alike = Vec::new();
+    for list in Lists::new(nodes, by_lowest).iter() {
+        alike.clear();
+        // Those of one sum of nodes alone can be the same.
+        alike.extend(list.iter().map(|&(number, sum)| (sum, number)));
+        alike.sort_unstable();
+        for same in alike.chunk_by(|a, b| a.0 == b.0).filter(|c| c.len() > 1) {
+            let mut known: HashMap<Box<[u32]>, u32> = HashMap::new();
+            for &(_, number) in same {
+                let mut key: Box<[u32]> = listed[number as usize].nodes.into();
+                key.sort_unstable();
+                first[number as usize] = *known.entry(key).or_insert(number);
+            }
+        }
+    }
+    first
+}
+
+fn sum(nodes: &[u32]) -> u64 {
+    nodes.iter().map(|&node| u64::from(node)).sum()
+}
+
 /// Gives `mesh` the nodes that `cells` use, in ascending order of tags, and returns the index
 /// there of every node of the file.
 fn keep_nodes(
@@ -132,7 +172,9 @@ fn keep_nodes(
         used[node as usize] = true;
     }
     let mut kept: Vec<usize> = (0..used.len()).filter(|&node| used[node]).collect();
-    kept.sort_by_key(|&node| nodes.tags[node]);
+    if !kept.is_sorted_by_key(|&node| nodes.tags[node]) {
+        kept.sort_by_key(|&node| nodes.tags[node]);
+    }
     let mut index = vec![None; used.len()];
     for &node in &kept {
         index[node] = Some(mesh.points.len() as u32);

@@ -33,7 +33,7 @@ impl Groups {
                 let nodes = condition.entries.iter().map(|&(node, _)| node);
                 let linked: Vec<u32> = nodes
                     .clone()
-                    .flat_map(|node| &owners.of[node as usize])
+                    .flat_map(|node| owners.of.of(node as usize))
                     .map(|&(owner, _)| owner)
                     .collect();
                 let Some(&first) = linked.first() else {
@@ -47,7 +47,7 @@ impl Groups {
                     sets.unite(first, other);
                     in_contact[other as usize] = true;
                 }
-                meeting.extend(nodes.filter(|&n| owners.of[n as usize].len() > 1));
+                meeting.extend(nodes.filter(|&n| owners.of.of(n as usize).len() > 1));
             }
         }
         let mut group_of_root = vec![None; owners.count];

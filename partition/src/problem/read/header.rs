@@ -2,7 +2,7 @@
 
 use crate::error::InputError;
 use crate::model::PlaneState;
-use crate::problem::dataset::read_strings;
+use crate::problem::strings::read_strings;
 use crate::problem::{FORMAT, VERSION};
 
 /// What the attributes of the file say.

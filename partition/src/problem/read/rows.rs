@@ -127,22 +127,14 @@ impl ProblemFile {
         let members: Vec<usize> = (0..catalog.subdomains.len())
             .filter(|&i| catalog.subdomains[i].group == Some(group))
             .collect();
-        let mut outside: HashMap<u32, bool> = members
-            .iter()
-            .flat_map(|&i| &catalog.interface[i])
-            .map(|&number| (number, false))
-            .collect();
-        for (i, list) in catalog.interface.iter().enumerate() {
-            if catalog.subdomains[i].group != Some(group) {
-                for number in list {
-                    outside.entry(*number).and_modify(|o| *o = true);
-                }
-            }
+        let mut inside: HashMap<u32, u32> = HashMap::new();
+        for &number in members.iter().flat_map(|&i| &catalog.interface[i]) {
+            *inside.entry(number).or_default() += 1;
         }
         let mut foreign = HashSet::new();
         for &i in &members {
-            for on in self.read_interface(i, catalog.subdomains[i].nodes)? {
-                if outside.get(&on.interface) == Some(&true) {
+            for on in self.read_interface(i)? {
+                if inside.get(&on.interface) != Some(&self.sharing[on.interface as usize]) {
                     foreign.insert((i as u32, on.node));
                 }
             }

@@ -4,47 +4,58 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 use super::ProblemFile;
+use super::slabs::{Slabs, interface};
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::model::Support;
+use crate::problem::slab::Slab;
 use crate::problem::{InterfaceNode, Subdomain, UNIT_TOLERANCE};
 
 impl ProblemFile {
-    pub(super) fn read_subdomain(&self, index: usize) -> Result<Subdomain, InputError> {
-        let Some(summary) = self.catalog.subdomains.get(index) else {
-            return Err(InputError::new(format!("there is no subdomain {index}")));
-        };
+    pub(super) fn read_subdomains(
+        &self,
+        range: Range<usize>,
+    ) -> Result<Vec<Subdomain>, InputError> {
+        let count = self.catalog.subdomains.len();
+        if range.end > count && !range.is_empty() {
+            let missing = range.start.max(count);
+            return Err(InputError::new(format!("there is no subdomain {missing}")));
+        }
+        if range.is_empty() {
+            return Ok(Vec::new());
+        }
+        let slabs = Slabs::read(self, range.clone())?;
+        range.map(|index| self.take(&slabs, index)).collect()
+    }
+
+    fn take(&self, slabs: &Slabs, index: usize) -> Result<Subdomain, InputError> {
         let nodes = slice(&self.offsets.points, index);
-        let cells = slice(&self.offsets.cells, index);
-        let points = self.read_points(nodes.clone())?;
-        let elements = self.read_cells(index, &points)?;
+        let points = self.take_points(slabs, nodes.clone())?;
+        let elements = self.take_cells(slabs, index, &points)?;
         Ok(Subdomain {
             index,
-            body: summary.body,
-            node_tags: self.read_node_tags(nodes)?,
-            cell_material: self.column("/VTKHDF/CellData/Material")?.indices(
-                cells,
+            body: self.catalog.subdomains[index].body,
+            node_tags: take_node_tags(slabs, nodes)?,
+            cell_material: slabs.materials.indices(
+                slice(&self.offsets.cells, index),
                 self.catalog.materials.len(),
                 "material",
             )?,
-            supports: self.read_supports(index, points.len())?,
-            forces: self.read_forces(index, points.len())?,
-            interface: self.read_interface(index, points.len())?,
+            supports: self.take_supports(slabs, index, points.len())?,
+            forces: self.take_forces(slabs, index, points.len())?,
+            interface: self.take_interface(slabs.interface.as_ref(), index)?,
             points,
             cells: elements,
         })
     }
 
-    fn read_points(&self, rows: Range<usize>) -> Result<Vec<[f64; 3]>, InputError> {
-        let dataset = self.table("/VTKHDF/Points", 3)?;
+    fn take_points(&self, slabs: &Slabs, rows: Range<usize>) -> Result<Vec<[f64; 3]>, InputError> {
         let start = rows.start;
-        let points = dataset.vectors(rows, 3)?;
+        let points = slabs.points.vectors(rows);
         let dim = self.catalog.dim;
-        match points
-            .iter()
-            .position(|p| p[dim..].iter().any(|&x| x != 0.0))
-        {
-            Some(row) => Err(dataset.row_error(
+        let beside = |p: &[f64; 3]| p[dim..].iter().any(|&x| x != 0.0);
+        match points.iter().position(beside) {
+            Some(row) => Err(slabs.points.dataset.row_error(
                 start + row,
                 &format!("expected 0 beyond the first {dim} coordinates"),
             )),
@@ -52,37 +63,26 @@ impl ProblemFile {
         }
     }
 
-    fn read_node_tags(&self, rows: Range<usize>) -> Result<Vec<i64>, InputError> {
-        let dataset = self.column("/VTKHDF/PointData/GlobalNodeId")?;
-        let start = rows.start;
-        let tags = dataset.integers(rows)?;
-        let mut seen = HashSet::with_capacity(tags.len());
-        match tags.iter().position(|&tag| tag < 0 || !seen.insert(tag)) {
-            Some(row) => Err(dataset.row_error(
-                start + row,
-                &format!(
-                    "tag {}; expected tags ≥ 0, each once in a subdomain",
-                    tags[row]
-                ),
-            )),
-            None => Ok(tags),
-        }
-    }
-
-    fn read_cells(&self, index: usize, points: &[[f64; 3]]) -> Result<Elements, InputError> {
+    fn take_cells(
+        &self,
+        slabs: &Slabs,
+        index: usize,
+        points: &[[f64; 3]],
+    ) -> Result<Elements, InputError> {
         let rows = slice(&self.offsets.cells, index);
         let entries = slice(&self.offsets.connectivity, index);
-        let types = self.column("/VTKHDF/Types")?;
-        let connectivity = self.column("/VTKHDF/Connectivity")?;
-        let nodes = connectivity.indices(entries.clone(), points.len(), "node of its subdomain")?;
-        let table = self.column("/VTKHDF/Offsets")?;
+        let (types, connectivity) = (&slabs.types.dataset, &slabs.connectivity.dataset);
+        let nodes =
+            (slabs.connectivity).indices(entries.clone(), points.len(), "node of its subdomain")?;
         // Each of the subdomains before this one has an offset more than cells.
         let first = rows.start + index;
-        let offsets = table.integers(first..first + rows.len() + 1)?;
+        let table = &slabs.offsets.dataset;
+        let offsets = slabs.offsets.rows(first..first + rows.len() + 1);
         let mut elements = Elements::default();
+        let mut at_corners = Vec::new();
         let mut used = vec![false; points.len()];
         let mut at = 0;
-        for (cell, code) in types.integers(rows.clone())?.into_iter().enumerate() {
+        for (cell, &code) in slabs.types.rows(rows.clone()).iter().enumerate() {
             let kind = u8::try_from(code)
                 .ok()
                 .and_then(|code| ElementKind::from_vtk(code).ok())
@@ -110,7 +110,8 @@ impl ProblemFile {
                     &format!("offset {end}; expected at most {}", nodes.len()),
                 ));
             };
-            let at_corners: Vec<_> = corners.iter().map(|&n| points[n as usize]).collect();
+            at_corners.clear();
+            at_corners.extend(corners.iter().map(|&n| points[n as usize]));
             let size = kind.measure(&at_corners);
             if !(size > 0.0 && size.is_finite()) {
                 return Err(connectivity.row_error(
@@ -142,28 +143,28 @@ impl ProblemFile {
         }
     }
 
-    fn read_supports(&self, index: usize, nodes: usize) -> Result<Vec<Support>, InputError> {
+    fn take_supports(
+        &self,
+        slabs: &Slabs,
+        index: usize,
+        nodes: usize,
+    ) -> Result<Vec<Support>, InputError> {
         let rows = slice(&self.offsets.supports, index);
-        if rows.is_empty() {
+        let Some(slab) = slabs.supports.as_ref().filter(|_| !rows.is_empty()) else {
             return Ok(Vec::new());
-        }
+        };
         let dim = self.catalog.dim;
-        let node = self.column("/support/node")?;
-        let direction = self.table("/support/direction", dim)?;
-        let value = self.column("/support/value")?;
-        let total = node.rows();
-        let (direction, value) = (
-            direction.shaped(Some(total), &[dim])?,
-            value.shaped(Some(total), &[])?,
-        );
-        let nodes_of = node.indices(rows.clone(), nodes, "node of its subdomain")?;
-        let directions = direction.unit_vectors(rows.clone(), dim)?;
-        let values = value.floats(rows.clone())?;
+        let (node, direction) = (&slab.node.dataset, &slab.direction.dataset);
+        let nodes_of = slab
+            .node
+            .indices(rows.clone(), nodes, "node of its subdomain")?;
+        let directions = slab.direction.vectors(rows.clone());
+        let values = slab.value.rows(rows.clone());
         let mut supports: Vec<Support> = Vec::with_capacity(rows.len());
         for ((at, &node_of), (&d, &value)) in nodes_of
             .iter()
             .enumerate()
-            .zip(directions.iter().zip(&values))
+            .zip(directions.iter().zip(values))
         {
             for before in supports.iter().rev().take_while(|s| s.node >= node_of) {
                 if before.node > node_of {
@@ -188,43 +189,48 @@ impl ProblemFile {
         Ok(supports)
     }
 
-    fn read_forces(&self, index: usize, nodes: usize) -> Result<Vec<(u32, [f64; 3])>, InputError> {
+    fn take_forces(
+        &self,
+        slabs: &Slabs,
+        index: usize,
+        nodes: usize,
+    ) -> Result<Vec<(u32, [f64; 3])>, InputError> {
         let rows = slice(&self.offsets.forces, index);
-        if rows.is_empty() {
+        let Some(slab) = slabs.forces.as_ref().filter(|_| !rows.is_empty()) else {
             return Ok(Vec::new());
-        }
-        let dim = self.catalog.dim;
-        let node = self.column("/force/node")?;
-        let value = self
-            .table("/force/value", dim)?
-            .shaped(Some(node.rows()), &[dim])?;
-        let nodes_of = node.indices(rows.clone(), nodes, "node of its subdomain")?;
+        };
+        let nodes_of = slab
+            .node
+            .indices(rows.clone(), nodes, "node of its subdomain")?;
         if let Some(at) = nodes_of.windows(2).position(|w| w[0] >= w[1]) {
-            return Err(node.row_error(
+            return Err(slab.node.dataset.row_error(
                 rows.start + at + 1,
                 "expected the nodes of a subdomain in strictly ascending order",
             ));
         }
-        Ok(nodes_of
-            .into_iter()
-            .zip(value.vectors(rows, dim)?)
-            .collect())
+        Ok(nodes_of.into_iter().zip(slab.value.vectors(rows)).collect())
     }
 
-    pub(super) fn read_interface(
+    /// The nodes of Γ of one subdomain.
+    pub(super) fn read_interface(&self, index: usize) -> Result<Vec<InterfaceNode>, InputError> {
+        self.take_interface(interface(self, index..index + 1)?.as_ref(), index)
+    }
+
+    fn take_interface(
         &self,
+        slab: Option<&Slab<i64>>,
         index: usize,
-        nodes: usize,
     ) -> Result<Vec<InterfaceNode>, InputError> {
         let rows = slice(&self.offsets.interface, index);
-        if rows.is_empty() {
+        let Some(slab) = slab.filter(|_| !rows.is_empty()) else {
             return Ok(Vec::new());
-        }
-        let node = self.column("/interface/node")?;
-        let nodes_of = node.indices(rows.clone(), nodes, "node of its subdomain")?;
-        let mut seen = HashSet::with_capacity(nodes_of.len());
-        if let Some(at) = nodes_of.iter().position(|n| !seen.insert(n)) {
-            return Err(node.row_error(rows.start + at, "the node was named before"));
+        };
+        let nodes = self.catalog.subdomains[index].nodes;
+        let nodes_of = slab.indices(rows.clone(), nodes, "node of its subdomain")?;
+        let mut seen = vec![false; nodes];
+        let twice = |&node: &u32| std::mem::replace(&mut seen[node as usize], true);
+        if let Some(at) = nodes_of.iter().position(twice) {
+            return Err((slab.dataset).row_error(rows.start + at, "the node was named before"));
         }
         Ok(nodes_of
             .into_iter()
@@ -232,6 +238,26 @@ impl ProblemFile {
             .map(|(node, &interface)| InterfaceNode { node, interface })
             .collect())
     }
+}
+
+fn take_node_tags(slabs: &Slabs, rows: Range<usize>) -> Result<Vec<i64>, InputError> {
+    let start = rows.start;
+    let tags = slabs.tags.rows(rows).to_vec();
+    let mut sorted = tags.clone();
+    sorted.sort_unstable();
+    if sorted.first().is_none_or(|&tag| tag >= 0) && sorted.windows(2).all(|w| w[0] < w[1]) {
+        return Ok(tags);
+    }
+    let mut seen = HashSet::new();
+    let wrong = |&tag: &i64| tag < 0 || !seen.insert(tag);
+    let row = tags.iter().position(wrong).unwrap_or_default();
+    Err(slabs.tags.dataset.row_error(
+        start + row,
+        &format!(
+            "tag {}; expected tags ≥ 0, each once in a subdomain",
+            tags[row]
+        ),
+    ))
 }
 
 /// The rows of entry `index` in a table of offsets.

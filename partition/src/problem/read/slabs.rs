@@ -1,0 +1,105 @@
+//! What the file holds of consecutive subdomains, each dataset read once.
+
+use std::ops::Range;
+
+use super::ProblemFile;
+use crate::error::InputError;
+use crate::problem::slab::Slab;
+
+/// The slices of consecutive subdomains, whose values aren't checked against each other yet.
+pub(super) struct Slabs {
+    pub points: Slab<f64>,
+    pub tags: Slab<i64>,
+    pub types: Slab<i64>,
+    pub connectivity: Slab<i64>,
+    pub offsets: Slab<i64>,
+    pub materials: Slab<i64>,
+    pub supports: Option<Supports>,
+    pub forces: Option<Forces>,
+    pub interface: Option<Slab<i64>>,
+}
+
+/// Supports of consecutive subdomains.
+pub(super) struct Supports {
+    pub node: Slab<i64>,
+    pub direction: Slab<f64>,
+    pub value: Slab<f64>,
+}
+
+/// Nodal forces of consecutive subdomains.
+pub(super) struct Forces {
+    pub node: Slab<i64>,
+    pub value: Slab<f64>,
+}
+
+impl Slabs {
+    /// Reads the slices of `subdomains`.
+    pub fn read(file: &ProblemFile, subdomains: Range<usize>) -> Result<Self, InputError> {
+        let rows = |offsets: &[usize]| offsets[subdomains.start]..offsets[subdomains.end];
+        let points = rows(&file.offsets.points);
+        let cells = rows(&file.offsets.cells);
+        // Each of the subdomains before has an offset more than cells.
+        let ends = cells.start + subdomains.start..cells.end + subdomains.end;
+        let integers = |name, rows| Slab::integers(file.column(name)?, rows);
+        Ok(Self {
+            points: Slab::floats(file.table("/VTKHDF/Points", 3)?, points.clone(), 3)?,
+            tags: integers("/VTKHDF/PointData/GlobalNodeId", points)?,
+            types: integers("/VTKHDF/Types", cells.clone())?,
+            connectivity: integers("/VTKHDF/Connectivity", rows(&file.offsets.connectivity))?,
+            offsets: integers("/VTKHDF/Offsets", ends)?,
+            materials: integers("/VTKHDF/CellData/Material", cells)?,
+            supports: Supports::read(file, rows(&file.offsets.supports))?,
+            forces: Forces::read(file, rows(&file.offsets.forces))?,
+            interface: interface(file, subdomains.clone())?,
+        })
+    }
+}
+
+impl Supports {
+    fn read(file: &ProblemFile, rows: Range<usize>) -> Result<Option<Self>, InputError> {
+        if rows.is_empty() {
+            return Ok(None);
+        }
+        let dim = file.catalog.dim;
+        let node = file.column("/support/node")?;
+        let direction = file.table("/support/direction", dim)?;
+        let value = file.column("/support/value")?;
+        let total = Some(node.rows());
+        let direction = direction.shaped(total, &[dim])?;
+        let value = value.shaped(total, &[])?;
+        Ok(Some(Self {
+            node: Slab::integers(node, rows.clone())?,
+            direction: Slab::unit_vectors(direction, rows.clone(), dim)?,
+            value: Slab::floats(value, rows, 1)?,
+        }))
+    }
+}
+
+impl Forces {
+    fn read(file: &ProblemFile, rows: Range<usize>) -> Result<Option<Self>, InputError> {
+        if rows.is_empty() {
+            return Ok(None);
+        }
+        let dim = file.catalog.dim;
+        let node = file.column("/force/node")?;
+        let value = file.table("/force/value", dim)?;
+        let value = value.shaped(Some(node.rows()), &[dim])?;
+        Ok(Some(Self {
+            node: Slab::integers(node, rows.clone())?,
+            value: Slab::floats(value, rows, dim)?,
+        }))
+    }
+}
+
+/// The nodes of Γ of consecutive subdomains; `None` where there are none.
+pub(super) fn interface(
+    file: &ProblemFile,
+    subdomains: Range<usize>,
+) -> Result<Option<Slab<i64>>, InputError> {
+    let offsets = &file.offsets.interface;
+    let rows = offsets[subdomains.start]..offsets[subdomains.end];
+    if rows.is_empty() {
+        return Ok(None);
+    }
+    Slab::integers(file.column("/interface/node")?, rows).map(Some)
+}
