@@ -25,7 +25,7 @@ def count(text):
 def name_of(dofs):
     for factor, letter in ((1_000_000, "M"), (1_000, "k")):
         if dofs >= factor:
-            return f"{dofs / factor:.3g}{letter}"
+            return f"{float(f'{dofs / factor:.3g}'):g}{letter}"
     return str(dofs)
 
 
@@ -34,7 +34,7 @@ def say(text):
 
 
 def default_programs():
-    return pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "release"
+    return pathlib.Path(os.environ.get("CARGO_TARGET_DIR") or ROOT / "target") / "release"
 
 
 def call(command):
