@@ -223,12 +223,12 @@ class Rates:
     readers: int
 
 
-def measured_rates(tree, report, arguments, front_flop):
+def measured_rates(tree, report, arguments, leaf_seconds, front_flop):
     seconds = report["seconds"]
     dofs = report["dofs"]
     leaf_dofs = tree.dofs.sum()
     return Rates(
-        leaf_flop=seconds["factorize"] / tree.leaf_flops().sum(),
+        leaf_flop=leaf_seconds / tree.leaf_flops().sum(),
         front_flop=front_flop,
         leaf_dof=seconds["assemble"] / leaf_dofs,
         recover_dof=seconds["recover"] / leaf_dofs,
@@ -471,6 +471,8 @@ def main():
                         help="ranks that the file system serves at full speed at once (default: %(default)s)")
     parser.add_argument("--front-gflops", type=float,
                         help="speed of a front (default: the report's, or a dense one's here without hierarchy)")
+    parser.add_argument("--fronts-in", choices=["interface", "factorize"], default="interface",
+                        help="phase of the report that holds the fronts (default: %(default)s)")
     parser.add_argument("--weak", type=float, help="dofs for each rank of the growing problem "
                         "(default: those of the problem on 64 ranks)")
     parser.add_argument("--leaves-per-rank", type=int, default=2, help="of the growing problem (default: 2)")
@@ -484,13 +486,18 @@ def main():
     if report["ranks"] != 1:
         parser.error(f"{arguments.report}: the report has to be of a run on one rank")
     tree, origin = read_tree(arguments.problem)
+    seconds = report["seconds"]
+    flops = tree.front_flops().sum()
+    leaf_seconds = seconds["factorize"]
     if arguments.front_gflops:
         front_flop, source = 1e-9 / arguments.front_gflops, "given"
-    elif origin.startswith("the problem") and report["seconds"]["interface"] > 0:
-        front_flop, source = report["seconds"]["interface"] / tree.front_flops().sum(), "from the report"
+    elif arguments.fronts_in == "interface" and origin.startswith("the problem") and flops > 0:
+        front_flop, source = seconds["interface"] / flops, "from the report"
     else:
         front_flop, source = dense_flop(), "of a dense front here"
-    rates = measured_rates(tree, report, arguments, front_flop)
+    if arguments.fronts_in == "factorize":
+        leaf_seconds = max(leaf_seconds - front_flop * flops, 0.1 * leaf_seconds)
+    rates = measured_rates(tree, report, arguments, leaf_seconds, front_flop)
     root = len(tree.parent) - 1
     print(
         f"Tree: {origin}; {tree.leaves} leaves, {len(tree.parent) - tree.leaves} fronts, "
