@@ -215,17 +215,25 @@ class Pardiso:
         return {**self.seconds, "total": sum(self.seconds.values()), "memory": self.memory}
 
 
-def fastest(system, threads):
-    """PARDISO's choice that solves the linear problem soonest here, and the seconds of all; the
-    better of two tries each, after one that starts the threads."""
+def tried(system, threads):
+    """What the linear problem needs by each of PARDISO's choices: the better of two tries, after one
+    that starts the threads."""
     linear(system, threads, next(iter(Pardiso.CHOICES)))
-    seconds = {
-        choice: min(linear(system, threads, choice)[0]["total"] for _ in range(2))
+    return {
+        choice: min((linear(system, threads, choice)[0] for _ in range(2)), key=lambda r: r["total"])
         for choice in Pardiso.CHOICES
         # Its ways to factorize differ with several threads only.
         if threads > 1 or "classic" in choice or "minimum degree, two" in choice
     }
-    return min(seconds, key=seconds.get), seconds
+
+
+def fastest(results, steps=1):
+    """The choice that is soonest done with so many factorizations of one pattern."""
+    return min(
+        results,
+        key=lambda choice: results[choice]["symbolic"]
+        + steps * (results[choice]["factor"] + results[choice]["solve"]),
+    )
 
 
 def linear(system, threads, choice):
