@@ -7,6 +7,7 @@ ratios, a time the median of the times.
 import argparse
 import json
 import math
+import os
 import pathlib
 import statistics
 import sys
@@ -255,6 +256,8 @@ def main():
         return
 
     measured = {"date": time.strftime("%Y-%m-%d"), "machine": runs.machine(), "mkl": mkl_version(), "sizes": []}
+    if os.getloadavg()[0] > 0.7 * len(os.sched_getaffinity(0)):
+        runs.say(f"bench: the machine is busy (load {os.getloadavg()[0]:.1f}): times and ratios will be off")
     runs.FOLDER.mkdir(parents=True, exist_ok=True)
     for size in arguments.sizes.split(","):
         measured["sizes"].append(measure(runs.count(size), arguments))
