@@ -216,15 +216,19 @@ class Pardiso:
 
 
 def tried(system, threads):
-    """What the linear problem needs by each of PARDISO's choices: the better of two tries, after one
-    that starts the threads."""
+    """What the linear problem needs by each of PARDISO's choices, after a try that starts the
+    threads; where it is short, the best of three."""
     linear(system, threads, next(iter(Pardiso.CHOICES)))
-    return {
-        choice: min((linear(system, threads, choice)[0] for _ in range(2)), key=lambda r: r["total"])
-        for choice in Pardiso.CHOICES
+    results = {}
+    for choice in Pardiso.CHOICES:
         # Its ways to factorize differ with several threads only.
-        if threads > 1 or "classic" in choice or "minimum degree, two" in choice
-    }
+        if threads == 1 and "two-level" in choice and choice != "minimum degree, two-level":
+            continue
+        results[choice], _ = linear(system, threads, choice)
+        if results[choice]["total"] < 1:
+            again = [linear(system, threads, choice)[0] for _ in range(2)]
+            results[choice] = min([results[choice], *again], key=lambda result: result["total"])
+    return results
 
 
 def fastest(results, steps=1):
