@@ -401,15 +401,19 @@ def print_table(rows):
 
 
 def bottleneck(name, all_times):
-    at = next((ranks for ranks, times in all_times if times["serial"] > times["solve"] / 2), None)
-    whole = next(
-        (ranks for ranks, times in all_times if times["serial"] + times["write"] > times["total"] / 2), None
-    )
-    print(
-        f"{name}: the root's front and sweeps are more than half of the solve phases "
-        f"{f'from {at} ranks on' if at else f'nowhere up to {all_times[-1][0]} ranks'}; with its writing they are "
-        f"more than half of the whole run {f'from {whole} ranks on' if whole else 'nowhere'}.\n"
-    )
+    """From how many ranks on the parts that don't get less with more of them are more than half."""
+    parts = [
+        ("the root's front and sweeps", ("root", "sweeps"), "solve", "solve phases"),
+        ("they and the fronts on the way to the root", ("root", "sweeps", "merges"), "solve", "solve phases"),
+        ("the root's front, sweeps and writing", ("root", "sweeps", "write"), "total", "whole run"),
+    ]
+    said = []
+    for words, keys, of, whole in parts:
+        half = (n for n, times in all_times if sum(times[key] for key in keys) > times[of] / 2)
+        at = next(half, None)
+        where = f"from {at} ranks on" if at else f"nowhere up to {all_times[-1][0]} ranks"
+        said.append(f"{words} are more than half of the {whole} {where}")
+    print(f"{name} scaling: {'; '.join(said)}.\n")
 
 
 def compare(path, report, strong):
