@@ -543,7 +543,7 @@ def main():
     print("### Weak scaling, predicted\n")
     first = weak_times[0][1]
     print_table([row(n, per_rank * n, t, first, lambda s: s) for n, t in weak_times])
-    doubled = [1 << i for i in range(21)]
+    doubled = [1 << i for i in range(1, 21)]
     bottleneck("Strong", [(n, strong(n)) for n in doubled if n <= 2 * tree.leaves])
     bottleneck("Weak", [(n, weak(n)) for n in doubled if n <= 16384])
     if arguments.svg:
