@@ -1,0 +1,268 @@
+"""Measures contact-dd-mpi against PARDISO and CHOLMOD on the granite block; run it by scripts/bench.
+
+Every repetition runs all of them one after the other; a ratio is the median of the repetitions'
+ratios, a time the median of the times.
+"""
+
+import argparse
+import json
+import math
+import os
+import pathlib
+import statistics
+import sys
+import time
+
+import reference
+import runs
+from runs import PHASES, SOLVE_PHASES
+
+TWO = "2 ranks"
+ONE = "1 rank"
+PARDISO = "PARDISO, 2 threads"
+PARDISO_ONE = "PARDISO, 1 thread"
+CHOLMOD = "CHOLMOD, 1 thread"
+ACTIVE_SET = "active set on PARDISO, 2 threads"
+# Factorizations of the active set, for the choice of what suits it.
+TYPICAL_STEPS = 8
+# The solver's agreement with the references, as the difference of displacements: more than the
+# condition makes of round-off would be another solution.
+LARGEST_DIFFERENCE = 1e-8
+
+
+def measure(dofs, arguments):
+    """All runs of one size."""
+    path = runs.problem(dofs, arguments.programs, arguments.subdomains)
+    runs.say(f"{runs.name_of(dofs)}: assembling the references' matrix")
+    system = reference.System(path)
+    conditions = reference.Conditions(system)
+    cholmod = reference.Cholmod(system, runs.FOLDER)
+    results = {threads: reference.tried(system, threads) for threads in (1, 2)}
+    choices = {
+        PARDISO_ONE: reference.fastest(results[1]),
+        PARDISO: reference.fastest(results[2]),
+        ACTIVE_SET: reference.fastest(results[2], TYPICAL_STEPS),
+    }
+    for name, choice in choices.items():
+        runs.say(f"{runs.name_of(dofs)}: {name}: {choice} is the fastest")
+
+    result = runs.FOLDER / "result.vtkhdf"
+    size = {"dofs": dofs, "choices": choices, "tried": results, "repetitions": []}
+    for repetition in range(arguments.repeat):
+        taken = {}
+        for name, ranks in ((ONE, 1), (TWO, 2)):
+            taken[name] = runs.solve(path, ranks, arguments.programs, result)
+        taken[PARDISO_ONE], _ = reference.linear(system, 1, choices[PARDISO_ONE])
+        taken[PARDISO], u = reference.linear(system, 2, choices[PARDISO])
+        taken[CHOLMOD], v = cholmod.linear()
+        taken[ACTIVE_SET], w = reference.active_set(conditions, 2, choices[ACTIVE_SET])
+        if repetition == 0:
+            size["checks"] = {
+                "residual of PARDISO": system.residual(u),
+                "residual of CHOLMOD": system.residual(v),
+                "difference to the active set": system.difference(w, result),
+                "closed": [taken[TWO]["active_contacts"], taken[ACTIVE_SET]["closed"]],
+            }
+            runs.say(f"{runs.name_of(dofs)}: {checked(size['checks'])}")
+        size["repetitions"].append(taken)
+        runs.say(
+            f"{runs.name_of(dofs)}, {repetition + 1} of {arguments.repeat}: "
+            + ", ".join(f"{name} {seconds(taken[name]):.3f} s" for name in taken)
+        )
+    cholmod.free()
+    result.unlink()
+    return size
+
+
+def seconds(taken, phase="total"):
+    """Seconds of a phase, of a run of ours or of a reference."""
+    return taken.get("seconds", taken)[phase]
+
+
+def median(size, name, phase="total"):
+    return statistics.median(seconds(taken[name], phase) for taken in size["repetitions"])
+
+
+def ratio(size, ours, phase, theirs, their_phase="total"):
+    """Median of the repetitions' ratios."""
+    return statistics.median(
+        seconds(taken[ours], phase) / seconds(taken[theirs], their_phase)
+        for taken in size["repetitions"]
+    )
+
+
+def checked(checks):
+    """What the checks of the answers say; ends where one is wrong."""
+    ours, theirs = checks["closed"]
+    difference = checks["difference to the active set"]
+    text = (
+        f"our displacements differ by {difference:.1e} of the largest from the active set's "
+        f"({ours} and {theirs} closed); backward error of PARDISO {checks['residual of PARDISO']:.0e}, "
+        f"of CHOLMOD {checks['residual of CHOLMOD']:.0e}"
+    )
+    if not difference < LARGEST_DIFFERENCE:
+        sys.exit(f"bench: one of the answers is wrong: {text}")
+    return text
+
+
+def targets(sizes):
+    """Rows of the table of targets; `sizes` by their name."""
+    rows = []
+
+    def row(words, limit, value):
+        rows.append([words, f"≤ {limit:g}", f"{value:.2f}", "yes" if value <= limit else "no"])
+
+    def of(name, words, limit, value):
+        if name in sizes:
+            row(f"{words}, {name}", limit, value(sizes[name]))
+
+    whole = "whole run, file to file, over PARDISO's linear solve in memory"
+    of("500k", whole, 1.0, lambda size: ratio(size, TWO, "total", PARDISO))
+    of("2M", whole, 0.8, lambda size: ratio(size, TWO, "total", PARDISO))
+    of("80k", "solve phases over PARDISO's linear solve", 1.0,
+       lambda size: ratio(size, TWO, "solve", PARDISO))
+    of("500k", "whole run over the active set on PARDISO", 0.6,
+       lambda size: ratio(size, TWO, "total", ACTIVE_SET))
+    for name in sizes:
+        of(name, "all sweeps over the factorization", 0.10,
+           lambda size: ratio(size, TWO, "sweeps", TWO, "factorize"))
+    of("500k", "solve phases, 2 ranks over 1", 0.6, lambda size: ratio(size, TWO, "solve", ONE, "solve"))
+    if "80k" in sizes and "2M" in sizes:
+        small, large = sizes["80k"], sizes["2M"]
+        growth = median(large, TWO) / median(small, TWO)
+        dofs = actual(large) / actual(small)
+        row("exponent of the total time in dofs, 80k to 2M", 1.2, math.log(growth) / math.log(dofs))
+    return rows
+
+
+def actual(size):
+    return size["repetitions"][0][TWO]["dofs"]
+
+
+def table(heads, rows, markdown):
+    """A table as text or in Markdown; all columns but the first are numbers."""
+    rows = [[str(cell) for cell in row] for row in rows]
+    widths = [max(len(row[i]) for row in [heads, *rows]) for i in range(len(heads))]
+
+    def line(row):
+        cells = [row[0].ljust(widths[0])] + [c.rjust(w) for c, w in zip(row[1:], widths[1:])]
+        return "| " + " | ".join(cells) + " |" if markdown else "  ".join(cells).rstrip()
+
+    if markdown:
+        rule = "|" + "|".join(["-" * (widths[0] + 2)] + ["-" * (w + 1) + ":" for w in widths[1:]]) + "|"
+    else:
+        rule = "  ".join("-" * w for w in widths)
+    return "\n".join([line(heads), rule, *map(line, rows)]) + "\n"
+
+
+def show(measured, markdown):
+    """All tables."""
+    sizes = {runs.name_of(size["dofs"]): size for size in measured["sizes"]}
+    repeat = len(measured["sizes"][0]["repetitions"])
+
+    def heading(text):
+        print(f"### {text}\n" if markdown else f"{text}\n")
+
+    first = measured["sizes"][0]["repetitions"][0]
+    print(
+        f"{measured['date']}, {measured['machine']}. MKL {measured['mkl']}, "
+        f"CHOLMOD {first[CHOLMOD]['version']} with {first[CHOLMOD]['blas']}. "
+        f"Medians of {repeat}, times in s.\n"
+    )
+    rows = targets(sizes)
+    if rows:
+        heading("Targets, 2 ranks")
+        print(table(["ratio", "target", "measured", "met"], rows, markdown))
+
+    heading("Overview")
+    heads = ["dofs", "whole run, 1 rank", "2 ranks", "solve phases, 1 rank", "2 ranks", "PARDISO, 1 thread",
+             "2 threads", "CHOLMOD, 1 thread", "active set, 2 threads", "whole run / PARDISO", "memory, GB",
+             "of PARDISO"]
+    rows = [
+        [
+            f"{actual(size):,}".replace(",", " "),
+            *(f"{median(size, name, phase):.3f}" for phase in ("total", "solve") for name in (ONE, TWO)),
+            *(f"{median(size, name):.3f}" for name in (PARDISO_ONE, PARDISO, CHOLMOD, ACTIVE_SET)),
+            f"{ratio(size, TWO, 'total', PARDISO):.2f}",
+            f"{memory(size, TWO):.2f}",
+            f"{memory(size, PARDISO):.2f}",
+        ]
+        for size in sizes.values()
+    ]
+    print(table(heads, rows, markdown))
+
+    for name, size in sizes.items():
+        show_size(name, size, heading, markdown)
+
+
+def memory(size, name):
+    """GB, at the peak; of ours over all ranks."""
+    taken = [repetition[name] for repetition in size["repetitions"]]
+    return max(one.get("peak_memory_bytes", one.get("memory")) for one in taken) / 1e9
+
+
+def show_size(name, size, heading, markdown):
+    run = size["repetitions"][0][TWO]
+    heading(name)
+    print(
+        f"{run['dofs']} dofs, {run['subdomains']} subdomains, {run['interface_dofs']} dofs on Γ, "
+        f"{run['active_contacts']} of {run['contact_conditions']} conditions closed, {run['sweeps']} sweeps "
+        f"with {run['inner_steps']} inner steps; the active set on PARDISO takes "
+        f"{size['repetitions'][0][ACTIVE_SET]['steps']} steps. PARDISO's choices: {size['choices'][PARDISO_ONE]} with 1 "
+        f"thread, {size['choices'][PARDISO]} with 2, {size['choices'][ACTIVE_SET]} for the active set. Checked: {checked(size['checks'])}.\n"
+    )
+    parts = {**{phase: phase for phase in PHASES}, "solve": f"{SOLVE_PHASES[0]} to {SOLVE_PHASES[-1]}",
+             "total": "whole run", "wall": "with the launcher"}
+    rows = [
+        [words, f"{median(size, ONE, phase):.4f}", f"{median(size, TWO, phase):.4f}",
+         f"{ratio(size, TWO, phase, ONE, phase):.2f}", f"{ratio(size, TWO, phase, PARDISO):.2f}"]
+        for phase, words in parts.items()
+    ]
+    rows.append(["peak memory, GB", f"{memory(size, ONE):.2f}", f"{memory(size, TWO):.2f}",
+                 f"{memory(size, TWO) / memory(size, ONE):.2f}", f"{memory(size, TWO) / memory(size, PARDISO):.2f}"])
+    print(table(["phase", ONE, TWO, "2 ranks / 1 rank", "2 ranks / PARDISO, 2 threads"], rows, markdown))
+
+    rows = []
+    for other, ours in ((PARDISO_ONE, ONE), (PARDISO, TWO), (CHOLMOD, ONE), (ACTIVE_SET, TWO)):
+        rows.append([
+            other, *(f"{median(size, other, part):.4f}" for part in ("symbolic", "factor", "solve", "total")),
+            f"{memory(size, other):.2f}", ours, f"{ratio(size, ours, 'total', other):.2f}",
+            f"{ratio(size, ours, 'solve', other):.2f}",
+        ])
+    heads = ["reference", "symbolic", "factor", "solve", "total", "memory, GB", "ours with",
+             "whole run / it", "solve phases / it"]
+    print(table(heads, rows, markdown))
+
+
+def mkl_version():
+    from importlib.metadata import version
+
+    return version("mkl")
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="bench", description=__doc__.splitlines()[0])
+    parser.add_argument("--sizes", default="5k,80k,500k,2M", help="dofs, by commas (default: %(default)s)")
+    parser.add_argument("--repeat", type=int, default=5, help="repetitions (default: %(default)s)")
+    parser.add_argument("--subdomains", type=int, help="of the problem (default: what suits the size)")
+    parser.add_argument("--programs", type=pathlib.Path, default=runs.default_programs(),
+                        help="folder of the two programs, which are then not built")
+    parser.add_argument("--markdown", action="store_true", help="tables in Markdown")
+    parser.add_argument("--tables", type=pathlib.Path, metavar="FILE",
+                        help="measures nothing, prints the tables of an earlier measurements.json")
+    arguments = parser.parse_args()
+    if arguments.tables:
+        show(json.loads(arguments.tables.read_text()), arguments.markdown)
+        return
+
+    measured = {"date": time.strftime("%Y-%m-%d"), "machine": runs.machine(), "mkl": mkl_version(), "sizes": []}
+    if os.getloadavg()[0] > 0.7 * len(os.sched_getaffinity(0)):
+        runs.say(f"bench: the machine is busy (load {os.getloadavg()[0]:.1f}): times and ratios will be off")
+    runs.FOLDER.mkdir(parents=True, exist_ok=True)
+    for size in arguments.sizes.split(","):
+        measured["sizes"].append(measure(runs.count(size), arguments))
+        (runs.FOLDER / "measurements.json").write_text(json.dumps(measured, indent=1))
+    show(measured, arguments.markdown)
+
+
+main()

@@ -1,0 +1,178 @@
+"""Strong and weak scaling of contact-dd-mpi on the granite block; run it by scripts/scaling.
+
+Every run leaves its report in FOLDER/reports; scaling.csv and scaling.svg are made from all reports
+that are there, so that runs may be added later or come from several jobs.
+"""
+
+import argparse
+import csv
+import json
+import os
+import pathlib
+import statistics
+import sys
+
+import runs
+from runs import PHASES
+
+COLORS = dict(zip(PHASES, ["#9aa5b1", "#5b8ff9", "#1f5fa8", "#d62728", "#ff9d4d", "#3a9d5d", "#6b7785"]))
+
+
+def ranks_up_to(most):
+    """1, 2, 4, ... and `most`."""
+    counts = [1 << i for i in range(most.bit_length()) if 1 << i <= most]
+    return counts if counts[-1] == most else [*counts, most]
+
+
+def problem_of(kind, ranks, arguments):
+    if kind == "strong":
+        if arguments.problem:
+            return arguments.problem
+        return runs.problem(arguments.strong, arguments.programs, arguments.subdomains)
+    subdomains = arguments.subdomains_per_rank and arguments.subdomains_per_rank * ranks
+    return runs.problem(arguments.weak * ranks, arguments.programs, subdomains)
+
+
+def measure(kind, ranks, repetition, arguments):
+    path = problem_of(kind, ranks, arguments)
+    name = f"{kind}-{ranks}-{repetition}"
+    result = arguments.folder / f"{name}.vtkhdf"
+    run = runs.solve(path, ranks, arguments.programs, result, ["--threads", arguments.threads])
+    result.unlink()
+    run["scaling"] = {"kind": kind, "repetition": repetition}
+    reports = arguments.folder / "reports"
+    reports.mkdir(exist_ok=True)
+    (reports / f"{name}.json").write_text(json.dumps(run, indent=1))
+    runs.say(f"{kind}, {ranks} ranks, repetition {repetition}: {run['seconds']['total']:.3f} s")
+
+
+def collect(folder):
+    """A row for each kind and number of ranks: medians over the repetitions."""
+    groups = {}
+    for path in sorted((folder / "reports").glob("*.json")):
+        run = json.loads(path.read_text())
+        groups.setdefault((run["scaling"]["kind"], run["ranks"]), []).append(run)
+    if not groups:
+        sys.exit(f"scaling: no reports in {folder / 'reports'}")
+    rows = []
+    for (kind, ranks), group in sorted(groups.items()):
+        sent = [[rank.get("bytes_sent") for rank in run["per_rank"]] for run in group]
+        known = all(None not in bytes_of for bytes_of in sent)
+        middle = {
+            key: statistics.median(run["seconds"][key] for run in group)
+            for key in [*PHASES, "solve", "total", "wall"]
+        }
+        rows.append({
+            "kind": kind,
+            "ranks": ranks,
+            "threads": group[0]["threads"],
+            **{key: group[0][key] for key in ("dofs", "subdomains", "interface_dofs", "contact_conditions")},
+            "repetitions": len(group),
+            **{key: round(value, 6) for key, value in middle.items()},
+            "bytes_sent": round(statistics.median(map(sum, sent))) if known else "",
+            "bytes_sent_by_largest": round(statistics.median(map(max, sent))) if known else "",
+            "peak_memory_bytes": max(run["peak_memory_bytes"] for run in group),
+        })
+    for row in rows:
+        first = next(other for other in rows if other["kind"] == row["kind"])
+        for key in ("solve", "total"):
+            ideal = first[key]
+            if row["kind"] == "strong":
+                ideal *= first["ranks"] / row["ranks"]
+            row[f"efficiency_{key}"] = round(ideal / row[key], 4)
+    return rows
+
+
+def write_csv(rows, path):
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    print(path)
+
+
+def draw(rows, path):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "scaling", "font.size": 9})
+    kinds = [kind for kind in ("strong", "weak") if any(row["kind"] == kind for row in rows)]
+    figure, panels = plt.subplots(
+        1, len(kinds), figsize=(4.9 * len(kinds), 4.4), layout="constrained", squeeze=False
+    )
+    for kind, axes in zip(kinds, panels[0]):
+        own = [row for row in rows if row["kind"] == kind]
+        ranks = [row["ranks"] for row in own]
+        for phase in PHASES:
+            values = [max(row[phase], 1e-6) for row in own]
+            axes.plot(ranks, values, "o-", ms=2.5, lw=0.9, color=COLORS[phase], label=phase)
+        axes.plot(ranks, [row["total"] for row in own], "ko-", ms=4, lw=1.8, label="total")
+        first = own[0]
+        power = 1 if kind == "strong" else 0
+        ideal = [first["total"] * (first["ranks"] / count) ** power for count in ranks]
+        axes.plot(ranks, ideal, "k--", lw=1, label="ideal")
+        size = first["dofs"]
+        share = "in all" if kind == "strong" else f"on {first['ranks']} rank" + "s" * (first["ranks"] > 1)
+        axes.set_title(f"{kind.capitalize()} scaling, {runs.name_of(size)} dofs {share}")
+        axes.set_xscale("log", base=2)
+        axes.set_yscale("log")
+        axes.set_xticks(ranks, [str(count) for count in ranks])
+        axes.minorticks_off()
+        axes.set_xlabel("ranks")
+        axes.set_ylabel("s, slowest rank")
+        axes.grid(alpha=0.25, lw=0.5)
+        axes.spines[["top", "right"]].set_visible(False)
+    handles, labels = panels[0][0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncol=5, frameon=False)
+    figure.savefig(path, metadata={"Date": None})
+    print(path)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="scaling", description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path, help="for reports/, scaling.csv and scaling.svg")
+    parser.add_argument("--ranks", help="numbers of ranks, by commas (default: 1, 2, 4, ... all cores)")
+    parser.add_argument("--strong", type=runs.count, default=500_000, metavar="DOFS",
+                        help="dofs of the fixed problem (default: 500k)")
+    parser.add_argument("--weak", type=runs.count, default=250_000, metavar="DOFS",
+                        help="dofs for each rank (default: 250k)")
+    parser.add_argument("--only", choices=["strong", "weak"], help="only this kind")
+    parser.add_argument("--repeat", type=int, default=5, help="repetitions (default: %(default)s)")
+    parser.add_argument("--repetition", type=int, help="only this one of them, for a job of an array")
+    parser.add_argument("--threads", type=int, default=1, help="of each rank (default: 1)")
+    parser.add_argument("--subdomains", type=int, help="of the fixed problem (default: what suits its size)")
+    parser.add_argument("--subdomains-per-rank", type=int, help="of the growing one (default: likewise)")
+    parser.add_argument("--problem", type=pathlib.Path, help="problem file for strong scaling, nothing else")
+    parser.add_argument("--programs", type=pathlib.Path, default=runs.default_programs(),
+                        help="folder of the two programs, which are then not built")
+    parser.add_argument("--prepare", action="store_true", help="makes the problem files, runs nothing")
+    parser.add_argument("--collect", action="store_true", help="runs nothing, makes CSV and SVG of the reports")
+    arguments = parser.parse_args()
+    arguments.folder.mkdir(parents=True, exist_ok=True)
+
+    if not arguments.collect:
+        cores = len(os.sched_getaffinity(0))
+        ranks = [int(n) for n in arguments.ranks.split(",")] if arguments.ranks else ranks_up_to(cores)
+        kinds = [arguments.only] if arguments.only else ["strong", "weak"]
+        if arguments.problem:
+            kinds = ["strong"]
+        for kind, count in ((kind, count) for kind in kinds for count in ranks):
+            problem_of(kind, count, arguments)
+        if arguments.prepare:
+            return
+        chosen = [arguments.repetition] if arguments.repetition else range(1, arguments.repeat + 1)
+        # All of them in turn, so that a disturbance of the machine doesn't hit one number of ranks.
+        for repetition in chosen:
+            for kind in kinds:
+                for count in ranks:
+                    measure(kind, count, repetition, arguments)
+    if arguments.repetition and not arguments.collect:
+        return
+    rows = collect(arguments.folder)
+    write_csv(rows, arguments.folder / "scaling.csv")
+    draw(rows, arguments.folder / "scaling.svg")
+
+
+main()
