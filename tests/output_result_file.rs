@@ -5,33 +5,50 @@
 use std::fs;
 use std::path::Path;
 
-use contact_dd_mpi::output::result::{ContactResult, ConvergenceRow, SubdomainResult};
-use contact_dd_mpi::output::vtkhdf::{Layout, PartitionSize, ResultFile};
-use contact_dd_partition::element::{ElementKind, Elements};
+use contact_dd_mpi::output::result::{
+    ContactResult, ConvergenceRow, PartitionSize, SubdomainResults,
+};
+use contact_dd_mpi::output::vtkhdf::{Layout, ResultFile};
 use contact_dd_partition::problem::ContactSummary;
 use hdf5::File;
 
-/// A strip of `cells` triangles whose every number tells where it belongs.
-fn subdomain(index: usize, cells: usize) -> SubdomainResult {
-    let nodes = if cells == 0 { 0 } else { cells + 2 };
-    let value = |node: usize, component: usize| (1000 * index + 10 * node + component) as f64;
-    let six = |i: usize| std::array::from_fn(|c| value(i, c));
-    let three = |i: usize| std::array::from_fn(|c| value(i, c));
-    let mut elements = Elements::default();
-    for cell in 0..cells as u32 {
-        elements.push(ElementKind::Triangle3, &[cell, cell + 1, cell + 2]);
+/// Strips of triangles, the first of them subdomain `first`, with `cells` cells each; every number
+/// tells where it belongs.
+fn strips(first: usize, cells: &[usize]) -> SubdomainResults {
+    let mut results = SubdomainResults {
+        first,
+        ..SubdomainResults::default()
+    };
+    for (index, &cells) in (first..).zip(cells) {
+        let size = size(cells);
+        let value = |row: usize, component: usize| (1000 * index + 10 * row + component) as f64;
+        let three = |row: usize| std::array::from_fn(|c| value(row, c));
+        let six = |row: usize| std::array::from_fn(|c| value(row, c));
+        let tag = |node: usize| (100 * index + node) as i64;
+        results.sizes.push(size);
+        results.points.extend((0..size.points).map(three));
+        results.node_tags.extend((0..size.points).map(tag));
+        results.displacement.extend((0..size.points).map(three));
+        results.nodal_stress.extend((0..size.points).map(six));
+        let triangle = |cell: i64| [cell, cell + 1, cell + 2];
+        let triangles = (0..cells as i64).flat_map(triangle);
+        results.connectivity.extend(triangles);
+        let offsets = (0..=cells as i64).map(|cell| 3 * cell);
+        results.offsets.extend(offsets);
+        results.types.extend(vec![5; cells]);
+        results.materials.extend(vec![index as i32 % 2; cells]);
+        results.cell_stress.extend((0..cells).map(six));
+        results.principal.extend((0..cells).map(three));
+        results.von_mises.extend((0..cells).map(|c| value(c, 0)));
     }
-    SubdomainResult {
-        index,
-        points: (0..nodes).map(three).collect(),
-        node_tags: (0..nodes).map(|n| (100 * index + n) as i64).collect(),
-        cells: elements,
-        cell_material: vec![index as u32 % 2; cells],
-        displacement: (0..nodes).map(three).collect(),
-        nodal_stress: (0..nodes).map(six).collect(),
-        cell_stress: (0..cells).map(six).collect(),
-        principal: (0..cells).map(three).collect(),
-        von_mises: (0..cells).map(|c| value(c, 0)).collect(),
+    results
+}
+
+fn size(cells: usize) -> PartitionSize {
+    PartitionSize {
+        points: if cells == 0 { 0 } else { cells + 2 },
+        cells,
+        connectivity: 3 * cells,
     }
 }
 
@@ -50,32 +67,24 @@ fn row(contact: usize, place: usize) -> ContactResult {
     }
 }
 
-fn layout(subdomains: &[SubdomainResult], conditions: &[usize]) -> Layout {
-    let size = |subdomain: &SubdomainResult| PartitionSize {
-        points: subdomain.points.len(),
-        cells: subdomain.cells.len(),
-        connectivity: subdomain.cells.connectivity().len(),
-    };
+fn layout(cells: &[usize], conditions: &[usize]) -> Layout {
     let contact = |(c, &conditions): (usize, &usize)| ContactSummary {
         name: format!("crack {c}"),
         conditions,
     };
     Layout {
-        partitions: subdomains.iter().map(size).collect(),
+        partitions: cells.iter().map(|&cells| size(cells)).collect(),
         contacts: conditions.iter().enumerate().map(contact).collect(),
     }
 }
 
-/// Subdomains in the order of `order`, contact rows back to front in two portions.
-fn write(path: &Path, cells: &[usize], order: &[usize], report: &str) {
-    let subdomains: Vec<_> = cells
-        .iter()
-        .enumerate()
-        .map(|(i, &c)| subdomain(i, c))
-        .collect();
-    let mut file = ResultFile::create(path, &layout(&subdomains, &[5, 0, 2])).unwrap();
-    for &index in order {
-        file.write_subdomain(&subdomains[index]).unwrap();
+/// Runs of subdomains (the first one, and how many) in the order of `runs`, contact rows back to
+/// front in two portions.
+fn write(path: &Path, cells: &[usize], runs: &[(usize, usize)], report: &str) {
+    let mut file = ResultFile::create(path, &layout(cells, &[5, 0, 2])).unwrap();
+    for &(first, count) in runs {
+        file.write_subdomains(&strips(first, &cells[first..first + count]))
+            .unwrap();
     }
     file.write_contacts(&[row(2, 1), row(0, 4), row(0, 1), row(0, 0)])
         .unwrap();
@@ -94,40 +103,90 @@ fn column<T: hdf5::H5Type>(file: &File, name: &str) -> Vec<T> {
     file.dataset(name).unwrap().read_raw().unwrap()
 }
 
+/// Every single subdomain, in their order.
+fn one_by_one(cells: &[usize]) -> Vec<(usize, usize)> {
+    (0..cells.len()).map(|s| (s, 1)).collect()
+}
+
 #[test]
-fn the_order_of_arrival_leaves_no_trace() {
+fn neither_the_order_of_arrival_nor_the_cuts_leave_a_trace() {
     let folder = tempfile::tempdir().unwrap();
     let cells = [3, 0, 1, 2];
-    let (forward, backward) = (
-        folder.path().join("forward"),
-        folder.path().join("backward"),
-    );
-    write(&forward, &cells, &[0, 1, 2, 3], "{}");
-    write(&backward, &cells, &[3, 1, 0, 2], "{}");
-    let (forward, backward) = (File::open(forward).unwrap(), File::open(backward).unwrap());
-    for name in [
-        "Points",
-        "PointData/Displacement",
-        "PointData/Stress",
-        "CellData/Stress",
+    let first = folder.path().join("first");
+    write(&first, &cells, &one_by_one(&cells), "{}");
+    let first = File::open(first).unwrap();
+    for (name, runs) in [
+        ("backward", vec![(3, 1), (1, 1), (0, 1), (2, 1)]),
+        ("two runs", vec![(2, 2), (0, 2)]),
+        ("nothing in a run", vec![(1, 1), (4, 0), (2, 2), (0, 1)]),
+        ("at once", vec![(0, 4)]),
     ] {
-        let name = format!("VTKHDF/{name}");
-        assert_eq!(
-            column::<f64>(&forward, &name),
-            column::<f64>(&backward, &name)
-        );
+        let other = folder.path().join(name);
+        write(&other, &cells, &runs, "{}");
+        let other = File::open(other).unwrap();
+        for array in [
+            "Points",
+            "PointData/Displacement",
+            "PointData/Stress",
+            "CellData/Stress",
+            "CellData/PrincipalStress",
+            "CellData/VonMises",
+        ] {
+            let array = format!("VTKHDF/{array}");
+            let (first, other) = (column::<f64>(&first, &array), column::<f64>(&other, &array));
+            assert_eq!(first, other, "{array} of '{name}'");
+        }
+        for array in [
+            "Connectivity",
+            "Offsets",
+            "Types",
+            "PointData/GlobalNodeId",
+            "CellData/Subdomain",
+            "CellData/Material",
+        ] {
+            let array = format!("VTKHDF/{array}");
+            let (first, other) = (column::<i64>(&first, &array), column::<i64>(&other, &array));
+            assert_eq!(first, other, "{array} of '{name}'");
+        }
     }
-    for name in [
-        "Connectivity",
-        "Offsets",
-        "PointData/GlobalNodeId",
-        "CellData/Subdomain",
+}
+
+#[test]
+fn slabs_hold_all_subdomains_in_order_and_none_holds_many_nodes_of_several() {
+    let folder = tempfile::tempdir().unwrap();
+    let cells = [0, 100, 20_000, 7, 0, 5_000, 5_000, 5_000, 5_000, 50, 50];
+    let path = folder.path().join("result.vtkhdf");
+    let file = ResultFile::create(&path, &layout(&cells, &[])).unwrap();
+    let slabs = file.slabs();
+    let held: Vec<usize> = slabs.iter().cloned().flatten().collect();
+    assert_eq!(held, (0..cells.len()).collect::<Vec<_>>());
+    assert!(slabs.contains(&(2..3)), "{slabs:?}");
+    assert_eq!(slabs.len(), 4, "{slabs:?}");
+}
+
+#[test]
+fn numbers_have_the_same_types_in_the_file_as_in_memory() {
+    use hdf5::types::{FloatSize, IntSize, TypeDescriptor};
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("result.vtkhdf");
+    write(&path, &[2], &[(0, 1)], "{}");
+    let grid = File::open(&path).unwrap().group("VTKHDF").unwrap();
+    for (array, kind) in [
+        ("Points", TypeDescriptor::Float(FloatSize::U8)),
+        ("Connectivity", TypeDescriptor::Integer(IntSize::U8)),
+        ("Offsets", TypeDescriptor::Integer(IntSize::U8)),
+        ("Types", TypeDescriptor::Unsigned(IntSize::U1)),
+        (
+            "PointData/GlobalNodeId",
+            TypeDescriptor::Integer(IntSize::U8),
+        ),
+        ("PointData/Stress", TypeDescriptor::Float(FloatSize::U8)),
+        ("CellData/Subdomain", TypeDescriptor::Integer(IntSize::U4)),
+        ("CellData/Material", TypeDescriptor::Integer(IntSize::U4)),
+        ("CellData/VonMises", TypeDescriptor::Float(FloatSize::U8)),
     ] {
-        let name = format!("VTKHDF/{name}");
-        assert_eq!(
-            column::<i64>(&forward, &name),
-            column::<i64>(&backward, &name)
-        );
+        let stored = grid.dataset(array).unwrap().dtype().unwrap();
+        assert_eq!(stored.to_descriptor().unwrap(), kind, "{array}");
     }
 }
 
@@ -136,7 +195,7 @@ fn every_partition_is_a_slice_that_stands_for_itself() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("result.vtkhdf");
     let cells = [3, 0, 1, 2];
-    write(&path, &cells, &[2, 0, 3, 1], "{}");
+    write(&path, &cells, &[(2, 1), (0, 2), (3, 1)], "{}");
     let file = File::open(&path).unwrap();
     let grid = |name: &str| column::<i64>(&file, &format!("VTKHDF/{name}"));
     assert_eq!(grid("NumberOfPoints"), [5, 0, 3, 4]);
@@ -160,7 +219,7 @@ fn every_partition_is_a_slice_that_stands_for_itself() {
 fn contact_rows_find_their_places() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("result.vtkhdf");
-    write(&path, &[1], &[0], "{}");
+    write(&path, &[1], &[(0, 1)], "{}");
     let file = File::open(&path).unwrap();
     assert_eq!(
         column::<i64>(&file, "contact/crack 0/node_a"),
@@ -186,7 +245,7 @@ fn contact_rows_find_their_places() {
 fn the_type_attribute_leaves_no_room_for_a_terminator() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("result.vtkhdf");
-    write(&path, &[1], &[0], "{}");
+    write(&path, &[1], &[(0, 1)], "{}");
     let grid = File::open(&path).unwrap().group("VTKHDF").unwrap();
     let kind = grid.attr("Type").unwrap();
     assert_eq!(kind.dtype().unwrap().size(), "UnstructuredGrid".len());
@@ -203,7 +262,7 @@ fn a_report_may_be_longer_than_an_attribute_of_fixed_length() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("result.vtkhdf");
     let report = format!("{{\"warnings\": [\"{}\"]}}", "Γ".repeat(100_000));
-    write(&path, &[1], &[0], &report);
+    write(&path, &[1], &[(0, 1)], &report);
     let file = File::open(&path).unwrap();
     let read: hdf5::types::VarLenUnicode = file.attr("report").unwrap().read_scalar().unwrap();
     assert_eq!(read.as_str(), report);
@@ -214,10 +273,10 @@ fn what_is_not_whole_replaces_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("result.vtkhdf");
     fs::write(&path, "the result of yesterday").unwrap();
-    let subdomains = [subdomain(0, 1), subdomain(1, 2)];
+    let cells = [1, 2];
 
-    let mut file = ResultFile::create(&path, &layout(&subdomains, &[])).unwrap();
-    file.write_subdomain(&subdomains[1]).unwrap();
+    let mut file = ResultFile::create(&path, &layout(&cells, &[])).unwrap();
+    file.write_subdomains(&strips(1, &[2])).unwrap();
     let error = file.finish("{}").unwrap_err().to_string();
     assert!(
         error.contains("result.vtkhdf") && error.contains("subdomain 0 is missing"),
@@ -232,7 +291,7 @@ fn what_is_not_whole_replaces_nothing() {
         "{error}"
     );
 
-    drop(ResultFile::create(&path, &layout(&subdomains, &[])).unwrap());
+    drop(ResultFile::create(&path, &layout(&cells, &[])).unwrap());
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
         "the result of yesterday"
@@ -244,12 +303,20 @@ fn what_is_not_whole_replaces_nothing() {
 fn what_has_no_place_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("result.vtkhdf");
-    let mut file = ResultFile::create(&path, &layout(&[subdomain(0, 2)], &[2])).unwrap();
-    assert!(file.write_subdomain(&subdomain(1, 2)).is_err());
-    let mut short = subdomain(0, 2);
+    let mut file = ResultFile::create(&path, &layout(&[2, 3], &[2])).unwrap();
+    let mut refused = |results: SubdomainResults, words: &str| {
+        let error = file.write_subdomains(&results).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    };
+    refused(strips(2, &[2]), "subdomain 2 of 2 has no place");
+    refused(strips(1, &[3, 1]), "subdomain 2 of 2 has no place");
+    refused(strips(0, &[2, 2]), "subdomain 1 has 4 points; expected 5");
+    let mut short = strips(0, &[2]);
     short.displacement.pop();
-    let error = file.write_subdomain(&short).unwrap_err().to_string();
-    assert!(error.contains("3 displacements; expected 4"), "{error}");
+    refused(short, "subdomain 0 has 3 displacements; expected 4");
+    let mut short = strips(0, &[2, 3]);
+    short.offsets.pop();
+    refused(short, "subdomains 0 to 1 have 6 offsets; expected 7");
     assert!(file.write_contacts(&[row(1, 0)]).is_err());
     assert!(file.write_contacts(&[row(0, 1), row(0, 2)]).is_err());
 }
@@ -258,8 +325,8 @@ fn what_has_no_place_is_refused() {
 fn a_finished_file_replaces_the_one_before() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("result.vtkhdf");
-    write(&path, &[1], &[0], "{}");
-    write(&path, &[4], &[0], "{}");
+    write(&path, &[1], &[(0, 1)], "{}");
+    write(&path, &[4], &[(0, 1)], "{}");
     let file = File::open(&path).unwrap();
     assert_eq!(column::<i64>(&file, "VTKHDF/NumberOfCells"), [4]);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);

@@ -1,33 +1,85 @@
 //! What the ranks hand over to be written.
 
-use contact_dd_partition::element::Elements;
+/// How much room a subdomain takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PartitionSize {
+    /// Number of nodes.
+    pub points: usize,
+    /// Number of cells.
+    pub cells: usize,
+    /// Sum of the number of nodes over all cells.
+    pub connectivity: usize,
+}
 
-/// The solution on one subdomain.
+/// The solution on consecutive subdomains: each list holds what belongs to the first one, then
+/// what belongs to the next, in the types that the file has.
 ///
-/// Stresses are (Pa) in the order XX, YY, ZZ, XY, YZ, XZ; vectors that belong to nodes have one
-/// entry for each of `points`, those that belong to cells one for each of `cells`.
+/// Stresses are (Pa) in the order XX, YY, ZZ, XY, YZ, XZ.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SubdomainResult {
-    /// Number of the subdomain.
-    pub index: usize,
-    /// Undeformed coordinates of its nodes (m).
+pub struct SubdomainResults {
+    /// Number of the first subdomain.
+    pub first: usize,
+    /// Size of each.
+    pub sizes: Vec<PartitionSize>,
+    /// Undeformed coordinates of the nodes (m).
     pub points: Vec<[f64; 3]>,
     /// The mesh file's tag of each node.
     pub node_tags: Vec<i64>,
-    /// Cells, by node of the subdomain.
-    pub cells: Elements,
-    /// Index of its material for every cell.
-    pub cell_material: Vec<u32>,
     /// Displacement of the nodes (m).
     pub displacement: Vec<[f64; 3]>,
     /// Stress recovered at the nodes.
     pub nodal_stress: Vec<[f64; 6]>,
+    /// Nodes of the cells, numbered within their subdomain.
+    pub connectivity: Vec<i64>,
+    /// For every subdomain the start of each of its cells in its part of `connectivity`, and the
+    /// end: one more than cells.
+    pub offsets: Vec<i64>,
+    /// VTK's number of the type of every cell.
+    pub types: Vec<u8>,
+    /// Index of its material for every cell.
+    pub materials: Vec<i32>,
     /// Stress of the cells.
     pub cell_stress: Vec<[f64; 6]>,
     /// Principal stresses of the cells, descending (Pa).
     pub principal: Vec<[f64; 3]>,
     /// Von Mises stress of the cells (Pa).
     pub von_mises: Vec<f64>,
+}
+
+impl SubdomainResults {
+    /// Empties all lists for subdomains from `first` on. Their memory stays: fresh pages cost as
+    /// much as what is written into them.
+    pub fn restart(&mut self, first: usize) {
+        // Every list by its name, so that none can be forgotten.
+        let Self {
+            first: start,
+            sizes,
+            points,
+            node_tags,
+            displacement,
+            nodal_stress,
+            connectivity,
+            offsets,
+            types,
+            materials,
+            cell_stress,
+            principal,
+            von_mises,
+        } = self;
+        *start = first;
+        sizes.clear();
+        points.clear();
+        node_tags.clear();
+        displacement.clear();
+        nodal_stress.clear();
+        connectivity.clear();
+        offsets.clear();
+        types.clear();
+        materials.clear();
+        cell_stress.clear();
+        principal.clear();
+        von_mises.clear();
+    }
 }
 
 /// The solution at one contact condition.

@@ -1,12 +1,13 @@
 //! The result file: `/VTKHDF`, `/contact`, `/convergence` and the attribute `report`.
 //!
 //! Every subdomain and every contact condition has its place from the start, so each is written
-//! when it arrives, in any order, and nothing else of its kind is in memory.
+//! when it arrives, in any order; subdomains in slabs, so that one slab at a time is in memory.
 
 mod column;
 mod contact_table;
 mod grid;
 
+use std::ops::Range;
 use std::path::Path;
 
 use contact_dd_partition::destination::Destination;
@@ -17,18 +18,7 @@ use hdf5::types::VarLenUnicode;
 
 use self::contact_table::ContactTables;
 use self::grid::Grid;
-use super::result::{ContactResult, ConvergenceRow, SubdomainResult};
-
-/// How much room a subdomain takes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PartitionSize {
-    /// Number of nodes.
-    pub points: usize,
-    /// Number of cells.
-    pub cells: usize,
-    /// Sum of the number of nodes over all cells.
-    pub connectivity: usize,
-}
+use super::result::{ContactResult, ConvergenceRow, PartitionSize, SubdomainResults};
 
 /// How much room everything takes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -100,13 +90,18 @@ impl ResultFile {
         }
     }
 
-    /// Writes what belongs to one subdomain.
+    /// The runs of subdomains that are best written at once: all subdomains, in their order.
+    pub fn slabs(&self) -> Vec<Range<usize>> {
+        self.grid.slabs()
+    }
+
+    /// Writes what belongs to consecutive subdomains.
     ///
     /// # Errors
-    /// The file can't be written, or `result` doesn't have the sizes of the layout.
-    pub fn write_subdomain(&mut self, result: &SubdomainResult) -> Result<(), OutputError> {
+    /// The file can't be written, or `results` doesn't have the sizes of the layout.
+    pub fn write_subdomains(&mut self, results: &SubdomainResults) -> Result<(), OutputError> {
         self.grid
-            .write(result)
+            .write(results)
             .map_err(|error| failure(&self.destination, &error))
     }
 

@@ -1,17 +1,18 @@
 //! Stresses, and the results on their way to the root and into the file.
 
+mod parcel;
+
 use std::collections::{BTreeMap, HashMap};
 
-use contact_dd_partition::element::{ElementKind, Elements};
 use contact_dd_partition::error::OutputError;
 use contact_dd_partition::problem::Catalog;
 
+use self::parcel::{Parcel, pack, unpack};
 use super::read::OwnedBlock;
 use super::recover::BlockSolution;
-use crate::comm::{Comm, Message, MessageReader};
-use crate::fem::elasticity::{principal_stresses, von_mises};
+use crate::comm::{Comm, Message, ROOT};
 use crate::fem::stress::{BlockStress, StressSum};
-use crate::output::result::{ContactResult, SubdomainResult};
+use crate::output::result::{ContactResult, SubdomainResults};
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
 
@@ -97,8 +98,10 @@ pub struct Fields<'a> {
     pub stress: &'a BTreeMap<usize, BlockStress>,
 }
 
-/// Streams all subdomains and contact rows to the root, which writes each as it arrives.
-/// Collective; `file` is the root's.
+/// Streams all subdomains and contact rows to the root, which writes a slab of subdomains as soon
+/// as it is complete. Collective; `file` is the root's.
+///
+/// The slabs don't depend on who owns what: the same calls write the same numbers on any ranks.
 ///
 /// # Errors
 /// The file can't be written. All messages have arrived even then.
@@ -109,30 +112,37 @@ pub fn write_solution(
     plan: &Plan,
     mut file: Option<&mut ResultFile>,
 ) -> Result<(), OutputError> {
+    let slabs = file.as_ref().map_or(Vec::new(), |file| file.slabs());
     let mut failed = Ok(());
     let mut write = |write: &mut dyn FnMut(&mut ResultFile) -> Result<(), OutputError>| {
         if let (Some(file), Ok(())) = (file.as_deref_mut(), &failed) {
             failed = write(file);
         }
     };
-    let owner_of = |s: usize| plan.blocks[plan.block_of[s]].owner;
-    let owners: Vec<usize> = (0..plan.block_of.len()).map(owner_of).collect();
+    let parcels = Parcel::cut(comm, &slabs, plan);
+    let owners: Vec<usize> = parcels.iter().map(|parcel| parcel.owner).collect();
+    let (mut sent, mut slab) = (SubdomainResults::default(), SubdomainResults::default());
     comm.gather(
         &owners,
-        |s| {
-            let b = plan.block_of[s];
-            let (Some(owned), Some(displacement), Some(stress)) = (
-                blocks.get(&b),
-                fields.displacement.get(&b),
-                fields.stress.get(&b),
-            ) else {
+        |p| {
+            // What is the root's own needs no message.
+            if comm.is_root() {
                 return Message::default();
-            };
-            pack_subdomain(owned, displacement, stress, s)
+            }
+            sent.restart(parcels[p].subdomains.start);
+            parcels[p].append_to(&mut sent, blocks, fields, plan);
+            pack(&sent)
         },
-        |s, message| {
-            let result = unpack_subdomain(s, message);
-            write(&mut |file| file.write_subdomain(&result));
+        |p, message| {
+            let parcel = &parcels[p];
+            match parcel.owner {
+                ROOT => parcel.append_to(&mut slab, blocks, fields, plan),
+                _ => unpack(&message, &mut slab),
+            }
+            if parcel.ends_slab {
+                write(&mut |file| file.write_subdomains(&slab));
+                slab.restart(parcel.subdomains.end);
+            }
         },
     );
     comm.gather(
@@ -150,78 +160,6 @@ pub fn write_solution(
         },
     );
     failed
-}
-
-fn pack_subdomain(
-    owned: &OwnedBlock,
-    displacement: &[f64],
-    stress: &BlockStress,
-    index: usize,
-) -> Message {
-    let block = &owned.block;
-    let mut message = Message::default();
-    let Some(m) = block.member(index) else {
-        return message;
-    };
-    let member = &block.members[m];
-    let first_cell: usize = block.members[..m].iter().map(|o| o.cells.len()).sum();
-    let cells = &stress.cells[first_cell..first_cell + member.cells.len()];
-    let integers = &mut message.integers;
-    integers.extend([member.points.len() as i64, member.cells.len() as i64]);
-    integers.extend(&member.node_tags);
-    for (e, (kind, nodes)) in member.cells.iter().enumerate() {
-        integers.extend([i64::from(kind.vtk()), i64::from(member.cell_material[e])]);
-        integers.extend(nodes.iter().map(|&n| i64::from(n)));
-    }
-    let reals = &mut message.reals;
-    reals.extend(member.points.iter().flatten());
-    for &node in &block.node_of[m] {
-        let start = node as usize * block.dim;
-        let mut u = [0.0; 3];
-        u[..block.dim].copy_from_slice(&displacement[start..start + block.dim]);
-        reals.extend(u);
-    }
-    reals.extend(stress.at_nodes(block, m).iter().flatten());
-    reals.extend(cells.iter().flatten());
-    reals.extend(cells.iter().flat_map(principal_stresses));
-    reals.extend(cells.iter().map(von_mises));
-    message
-}
-
-fn unpack_subdomain(index: usize, message: Message) -> SubdomainResult {
-    fn tuples<const N: usize>(reader: &mut MessageReader, n: usize) -> Vec<[f64; N]> {
-        (0..n)
-            .map(|_| std::array::from_fn(|_| reader.real()))
-            .collect()
-    }
-    let mut reader = message.read();
-    let (n, m) = (reader.count(), reader.count());
-    let node_tags = reader.integers(n);
-    let mut cells = Elements::default();
-    let mut cell_material = Vec::with_capacity(m);
-    for _ in 0..m {
-        // The owner sent a kind that it has read as one.
-        let kind = ElementKind::from_vtk(reader.integer() as u8).unwrap_or(ElementKind::Triangle3);
-        cell_material.push(reader.integer() as u32);
-        let nodes: Vec<u32> = reader
-            .integers(kind.nodes())
-            .iter()
-            .map(|&n| n as u32)
-            .collect();
-        cells.push(kind, &nodes);
-    }
-    SubdomainResult {
-        index,
-        points: tuples(&mut reader, n),
-        node_tags,
-        cells,
-        cell_material,
-        displacement: tuples(&mut reader, n),
-        nodal_stress: tuples(&mut reader, n),
-        cell_stress: tuples(&mut reader, m),
-        principal: tuples(&mut reader, m),
-        von_mises: reader.reals(m),
-    }
 }
 
 fn pack_contacts(owned: &OwnedBlock, solution: &BlockSolution) -> Message {

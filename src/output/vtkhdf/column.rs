@@ -1,12 +1,11 @@
 //! One dataset: an array with a row for each node, cell or condition.
 
-use hdf5::{Group, H5Type, Result};
+use hdf5::{Dataset, Group, H5Type, Result};
 use ndarray::{ArrayView1, ArrayView2};
 
 /// A column of `rows` rows to be filled later.
-pub(super) fn empty<T: H5Type>(group: &Group, name: &str, rows: usize) -> Result<()> {
-    group.new_dataset::<T>().shape(rows).create(name)?;
-    Ok(())
+pub(super) fn empty<T: H5Type>(group: &Group, name: &str, rows: usize) -> Result<Dataset> {
+    group.new_dataset::<T>().shape(rows).create(name)
 }
 
 /// A table of `rows` rows of `width` numbers to be filled later.
@@ -15,9 +14,8 @@ pub(super) fn empty_table<T: H5Type>(
     name: &str,
     rows: usize,
     width: usize,
-) -> Result<()> {
-    group.new_dataset::<T>().shape((rows, width)).create(name)?;
-    Ok(())
+) -> Result<Dataset> {
+    group.new_dataset::<T>().shape((rows, width)).create(name)
 }
 
 /// A column that is filled at once.
@@ -27,25 +25,19 @@ pub(super) fn whole<T: H5Type>(
     values: impl Iterator<Item = T>,
 ) -> Result<()> {
     let values: Vec<T> = values.collect();
-    empty::<T>(group, name, values.len())?;
-    fill(group, name, 0, &values)
+    fill(&empty::<T>(group, name, values.len())?, 0, &values)
 }
 
 /// Fills a column from row `start` on.
-pub(super) fn fill<T: H5Type>(group: &Group, name: &str, start: usize, values: &[T]) -> Result<()> {
-    group
-        .dataset(name)?
-        .write_slice(ArrayView1::from(values), start..start + values.len())
+pub(super) fn fill<T: H5Type>(column: &Dataset, start: usize, values: &[T]) -> Result<()> {
+    column.write_slice(ArrayView1::from(values), start..start + values.len())
 }
 
 /// Fills a table from row `start` on.
 pub(super) fn fill_table<T: H5Type, const N: usize>(
-    group: &Group,
-    name: &str,
+    table: &Dataset,
     start: usize,
     rows: &[[T; N]],
 ) -> Result<()> {
-    group
-        .dataset(name)?
-        .write_slice(ArrayView2::from(rows), (start..start + rows.len(), ..))
+    table.write_slice(ArrayView2::from(rows), (start..start + rows.len(), ..))
 }

@@ -1,7 +1,7 @@
 //! `/contact/<name>/`: one row for each contact condition.
 
 use contact_dd_partition::problem::ContactSummary;
-use hdf5::{File, Group, Result};
+use hdf5::{Dataset, File, Group, Result};
 
 use super::super::result::ContactResult;
 use super::column;
@@ -15,7 +15,14 @@ pub(super) struct ContactTables {
 #[derive(Debug)]
 struct Table {
     name: String,
-    group: Group,
+    node_a: Dataset,
+    node_b: Dataset,
+    position: Dataset,
+    normal: Dataset,
+    gap: Dataset,
+    force: Dataset,
+    pressure: Dataset,
+    status: Dataset,
     written: Vec<bool>,
 }
 
@@ -64,19 +71,19 @@ impl Table {
         let group = parent
             .create_group(name)
             .map_err(|error| format!("contact '{name}': {error}"))?;
-        for name in ["node_a", "node_b"] {
-            column::empty::<i64>(&group, name, rows)?;
-        }
-        for name in ["position", "normal"] {
-            column::empty_table::<f64>(&group, name, rows, 3)?;
-        }
-        for name in ["gap", "force", "pressure"] {
-            column::empty::<f64>(&group, name, rows)?;
-        }
-        column::empty::<u8>(&group, "status", rows)?;
+        let tags = |name| column::empty::<i64>(&group, name, rows);
+        let vectors = |name| column::empty_table::<f64>(&group, name, rows, 3);
+        let reals = |name| column::empty::<f64>(&group, name, rows);
         Ok(Self {
             name: name.clone(),
-            group,
+            node_a: tags("node_a")?,
+            node_b: tags("node_b")?,
+            position: vectors("position")?,
+            normal: vectors("normal")?,
+            gap: reals("gap")?,
+            force: reals("force")?,
+            pressure: reals("pressure")?,
+            status: column::empty::<u8>(&group, "status", rows)?,
             written: vec![false; rows],
         })
     }
@@ -89,25 +96,24 @@ impl Table {
             let rows = self.written.len();
             return Err(format!("contact '{name}' has {rows} conditions, none at {last}").into());
         };
-        let group = &self.group;
-        let column = |name, of: fn(&ContactResult) -> f64| {
-            column::fill(group, name, start, &run.iter().map(of).collect::<Vec<_>>())
+        let tags = |column, of: fn(&ContactResult) -> i64| {
+            column::fill(column, start, &run.iter().map(of).collect::<Vec<_>>())
         };
-        let tags = |name, of: fn(&ContactResult) -> i64| {
-            column::fill(group, name, start, &run.iter().map(of).collect::<Vec<_>>())
+        let vectors = |table, of: fn(&ContactResult) -> [f64; 3]| {
+            column::fill_table(table, start, &run.iter().map(of).collect::<Vec<_>>())
         };
-        let vectors = |name, of: fn(&ContactResult) -> [f64; 3]| {
-            column::fill_table(group, name, start, &run.iter().map(of).collect::<Vec<_>>())
+        let reals = |column, of: fn(&ContactResult) -> f64| {
+            column::fill(column, start, &run.iter().map(of).collect::<Vec<_>>())
         };
-        tags("node_a", |row| row.tag_a)?;
-        tags("node_b", |row| row.tag_b)?;
-        vectors("position", |row| row.position)?;
-        vectors("normal", |row| row.normal)?;
-        column("gap", |row| row.gap)?;
-        column("force", |row| row.force)?;
-        column("pressure", |row| row.pressure)?;
+        tags(&self.node_a, |row| row.tag_a)?;
+        tags(&self.node_b, |row| row.tag_b)?;
+        vectors(&self.position, |row| row.position)?;
+        vectors(&self.normal, |row| row.normal)?;
+        reals(&self.gap, |row| row.gap)?;
+        reals(&self.force, |row| row.force)?;
+        reals(&self.pressure, |row| row.pressure)?;
         let status: Vec<u8> = run.iter().map(|row| u8::from(row.closed)).collect();
-        column::fill(group, "status", start, &status)?;
+        column::fill(&self.status, start, &status)?;
         written.fill(true);
         Ok(())
     }

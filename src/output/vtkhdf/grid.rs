@@ -1,11 +1,18 @@
 //! `/VTKHDF`: an UnstructuredGrid of VTK's HDF format 2.0 with one partition a subdomain.
 
-use hdf5::types::FixedAscii;
-use hdf5::{Error, File, Group, Result};
+use std::iter::repeat_n;
+use std::ops::Range;
 
-use super::super::result::SubdomainResult;
-use super::PartitionSize;
+use hdf5::types::FixedAscii;
+use hdf5::{Dataset, File, Group, Result};
+
+use super::super::result::{PartitionSize, SubdomainResults};
 use super::column;
+
+/// Most nodes of a slab of more than one subdomain. With its cells it is about 6 MB, which is still
+/// in the cache when it is written and doesn't count beside what the root holds anyway; yet its
+/// columns of numbers are past the 64 KiB up to which HDF5 reads from a file where it writes.
+const SLAB_POINTS: usize = 1 << 14;
 
 /// The length is that of the word: null-padded, with no room for the terminator over which VTK's
 /// reader trips.
@@ -14,12 +21,28 @@ type GridType = FixedAscii<16>;
 /// The grid, and which subdomains have been written.
 #[derive(Debug)]
 pub(super) struct Grid {
-    group: Group,
-    points: Group,
-    cells: Group,
+    arrays: Arrays,
     sizes: Vec<PartitionSize>,
     starts: Vec<PartitionSize>,
     written: Vec<bool>,
+}
+
+/// Every array that is filled slab by slab; to find one by its name costs as much as to write a
+/// small subdomain.
+#[derive(Debug)]
+struct Arrays {
+    points: Dataset,
+    node_tags: Dataset,
+    displacement: Dataset,
+    nodal_stress: Dataset,
+    connectivity: Dataset,
+    offsets: Dataset,
+    types: Dataset,
+    subdomains: Dataset,
+    materials: Dataset,
+    cell_stress: Dataset,
+    principal: Dataset,
+    von_mises: Dataset,
 }
 
 impl Grid {
@@ -54,73 +77,44 @@ impl Grid {
             end.cells += size.cells;
             end.connectivity += size.connectivity;
         }
-
-        column::empty_table::<f64>(&group, "Points", end.points, 3)?;
-        column::empty::<i64>(&group, "Connectivity", end.connectivity)?;
-        column::empty::<i64>(&group, "Offsets", end.cells + sizes.len())?;
-        column::empty::<u8>(&group, "Types", end.cells)?;
-
-        let points = group.create_group("PointData")?;
-        column::empty::<i64>(&points, "GlobalNodeId", end.points)?;
-        column::empty_table::<f64>(&points, "Displacement", end.points, 3)?;
-        column::empty_table::<f64>(&points, "Stress", end.points, 6)?;
-
-        let cells = group.create_group("CellData")?;
-        column::empty::<i32>(&cells, "Subdomain", end.cells)?;
-        column::empty::<i32>(&cells, "Material", end.cells)?;
-        column::empty_table::<f64>(&cells, "Stress", end.cells, 6)?;
-        column::empty_table::<f64>(&cells, "PrincipalStress", end.cells, 3)?;
-        column::empty::<f64>(&cells, "VonMises", end.cells)?;
-
         Ok(Self {
-            group,
-            points,
-            cells,
+            arrays: Arrays::create(&group, end, sizes.len())?,
             sizes: sizes.to_vec(),
             starts,
             written: vec![false; sizes.len()],
         })
     }
 
-    /// Writes one partition.
-    pub(super) fn write(&mut self, result: &SubdomainResult) -> Result<()> {
-        let index = result.index;
-        let Some(&size) = self.sizes.get(index) else {
-            let count = self.sizes.len();
+    /// Runs of subdomains of at most [`SLAB_POINTS`] nodes together, or of a single larger one.
+    pub(super) fn slabs(&self) -> Vec<Range<usize>> {
+        let mut slabs: Vec<Range<usize>> = Vec::new();
+        let mut points = 0;
+        for (index, size) in self.sizes.iter().enumerate() {
+            points += size.points;
+            match slabs.last_mut() {
+                Some(slab) if points <= SLAB_POINTS => slab.end = index + 1,
+                _ => {
+                    slabs.push(index..index + 1);
+                    points = size.points;
+                }
+            }
+        }
+        slabs
+    }
+
+    /// Writes consecutive partitions.
+    pub(super) fn write(&mut self, results: &SubdomainResults) -> Result<()> {
+        let first = results.first;
+        let end = first + results.sizes.len();
+        let Some(sizes) = self.sizes.get(first..end) else {
+            let (count, index) = (self.sizes.len(), first.max(self.sizes.len()));
             return Err(format!("subdomain {index} of {count} has no place").into());
         };
-        check_sizes(result, size)?;
-
-        let start = self.starts[index];
-        let connectivity = widened(result.cells.connectivity());
-        column::fill(
-            &self.group,
-            "Connectivity",
-            start.connectivity,
-            &connectivity,
-        )?;
-        // Each partition has an offset more than cells.
-        let offsets: Vec<i64> = result.cells.offsets().iter().map(|&o| o as i64).collect();
-        column::fill(&self.group, "Offsets", start.cells + index, &offsets)?;
-        let types: Vec<u8> = result.cells.iter().map(|(kind, _)| kind.vtk()).collect();
-        column::fill(&self.group, "Types", start.cells, &types)?;
-        column::fill_table(&self.group, "Points", start.points, &result.points)?;
-
-        let points = &self.points;
-        column::fill(points, "GlobalNodeId", start.points, &result.node_tags)?;
-        column::fill_table(points, "Displacement", start.points, &result.displacement)?;
-        column::fill_table(points, "Stress", start.points, &result.nodal_stress)?;
-
-        let cells = &self.cells;
-        let subdomain = vec![index as i64; size.cells];
-        column::fill(cells, "Subdomain", start.cells, &subdomain)?;
-        let material = widened(&result.cell_material);
-        column::fill(cells, "Material", start.cells, &material)?;
-        column::fill_table(cells, "Stress", start.cells, &result.cell_stress)?;
-        column::fill_table(cells, "PrincipalStress", start.cells, &result.principal)?;
-        column::fill(cells, "VonMises", start.cells, &result.von_mises)?;
-
-        self.written[index] = true;
+        check_sizes(results, sizes)?;
+        if let Some(&start) = self.starts.get(first) {
+            self.arrays.fill(results, start)?;
+        }
+        self.written[first..end].fill(true);
         Ok(())
     }
 
@@ -133,33 +127,104 @@ impl Grid {
     }
 }
 
-fn widened(values: &[u32]) -> Vec<i64> {
-    values.iter().map(|&value| i64::from(value)).collect()
+impl Arrays {
+    /// Makes them for `partitions` partitions of the size `total` together.
+    fn create(group: &Group, total: PartitionSize, partitions: usize) -> Result<Self> {
+        let points = group.create_group("PointData")?;
+        let cells = group.create_group("CellData")?;
+        Ok(Self {
+            points: column::empty_table::<f64>(group, "Points", total.points, 3)?,
+            connectivity: column::empty::<i64>(group, "Connectivity", total.connectivity)?,
+            offsets: column::empty::<i64>(group, "Offsets", total.cells + partitions)?,
+            types: column::empty::<u8>(group, "Types", total.cells)?,
+
+            node_tags: column::empty::<i64>(&points, "GlobalNodeId", total.points)?,
+            displacement: column::empty_table::<f64>(&points, "Displacement", total.points, 3)?,
+            nodal_stress: column::empty_table::<f64>(&points, "Stress", total.points, 6)?,
+
+            subdomains: column::empty::<i32>(&cells, "Subdomain", total.cells)?,
+            materials: column::empty::<i32>(&cells, "Material", total.cells)?,
+            cell_stress: column::empty_table::<f64>(&cells, "Stress", total.cells, 6)?,
+            principal: column::empty_table::<f64>(&cells, "PrincipalStress", total.cells, 3)?,
+            von_mises: column::empty::<f64>(&cells, "VonMises", total.cells)?,
+        })
+    }
+
+    /// Writes partitions, the first of which starts at `start`.
+    fn fill(&self, results: &SubdomainResults, start: PartitionSize) -> Result<()> {
+        let (points, cells) = (start.points, start.cells);
+        column::fill_table(&self.points, points, &results.points)?;
+        column::fill(
+            &self.connectivity,
+            start.connectivity,
+            &results.connectivity,
+        )?;
+        // Each partition before has an offset more than cells.
+        column::fill(&self.offsets, cells + results.first, &results.offsets)?;
+        column::fill(&self.types, cells, &results.types)?;
+
+        column::fill(&self.node_tags, points, &results.node_tags)?;
+        column::fill_table(&self.displacement, points, &results.displacement)?;
+        column::fill_table(&self.nodal_stress, points, &results.nodal_stress)?;
+
+        let subdomains: Vec<i32> = (results.first as i32..)
+            .zip(&results.sizes)
+            .flat_map(|(index, size)| repeat_n(index, size.cells))
+            .collect();
+        column::fill(&self.subdomains, cells, &subdomains)?;
+        column::fill(&self.materials, cells, &results.materials)?;
+        column::fill_table(&self.cell_stress, cells, &results.cell_stress)?;
+        column::fill_table(&self.principal, cells, &results.principal)?;
+        column::fill(&self.von_mises, cells, &results.von_mises)
+    }
 }
 
-fn check_sizes(result: &SubdomainResult, size: PartitionSize) -> Result<()> {
-    let index = result.index;
-    for (name, found, expected) in [
-        ("points", result.points.len(), size.points),
-        ("node tags", result.node_tags.len(), size.points),
-        ("displacements", result.displacement.len(), size.points),
-        ("nodal stresses", result.nodal_stress.len(), size.points),
-        ("cells", result.cells.len(), size.cells),
-        (
-            "connectivity",
-            result.cells.connectivity().len(),
-            size.connectivity,
-        ),
-        ("materials", result.cell_material.len(), size.cells),
-        ("cell stresses", result.cell_stress.len(), size.cells),
-        ("principal stresses", result.principal.len(), size.cells),
-        ("von Mises stresses", result.von_mises.len(), size.cells),
-    ] {
-        if found != expected {
-            return Err(Error::from(format!(
-                "subdomain {index} has {found} {name}; expected {expected}"
-            )));
+/// Checks that each partition has the size in `sizes`, and that the lists hold what these say.
+fn check_sizes(results: &SubdomainResults, sizes: &[PartitionSize]) -> Result<()> {
+    let check = |whose: &str, checks: &[(&str, usize, usize)]| match checks
+        .iter()
+        .find(|(_, found, expected)| found != expected)
+    {
+        Some((name, found, expected)) => {
+            Err(format!("{whose} {found} {name}; expected {expected}").into())
         }
+        None => Ok(()),
+    };
+    for (index, (found, expected)) in (results.first..).zip(results.sizes.iter().zip(sizes)) {
+        check(
+            &format!("subdomain {index} has"),
+            &[
+                ("points", found.points, expected.points),
+                ("cells", found.cells, expected.cells),
+                ("connectivity", found.connectivity, expected.connectivity),
+            ],
+        )?;
     }
-    Ok(())
+    let sum = |of: fn(&PartitionSize) -> usize| sizes.iter().map(of).sum();
+    let (points, cells) = (sum(|size| size.points), sum(|size| size.cells));
+    let connectivity = sum(|size| size.connectivity);
+    let whose = match sizes.len() {
+        0 | 1 => format!("subdomain {} has", results.first),
+        n => format!(
+            "subdomains {} to {} have",
+            results.first,
+            results.first + n - 1
+        ),
+    };
+    check(
+        &whose,
+        &[
+            ("points", results.points.len(), points),
+            ("node tags", results.node_tags.len(), points),
+            ("displacements", results.displacement.len(), points),
+            ("nodal stresses", results.nodal_stress.len(), points),
+            ("connectivity", results.connectivity.len(), connectivity),
+            ("offsets", results.offsets.len(), cells + sizes.len()),
+            ("cell types", results.types.len(), cells),
+            ("materials", results.materials.len(), cells),
+            ("cell stresses", results.cell_stress.len(), cells),
+            ("principal stresses", results.principal.len(), cells),
+            ("von Mises stresses", results.von_mises.len(), cells),
+        ],
+    )
 }

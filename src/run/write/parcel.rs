@@ -1,0 +1,252 @@
+//! Consecutive subdomains of one owner: what travels to the root in one message.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use super::Fields;
+use crate::comm::{Comm, Message};
+use crate::fem::block::Block;
+use crate::fem::elasticity::{principal_stresses, von_mises};
+use crate::fem::stress::BlockStress;
+use crate::output::result::{PartitionSize, SubdomainResults};
+use crate::plan::Plan;
+use crate::run::read::OwnedBlock;
+
+/// A slab of the result file, or a part of one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Parcel {
+    /// Its subdomains.
+    pub subdomains: Range<usize>,
+    /// The rank that owns them all.
+    pub owner: usize,
+    /// Whether its slab is complete with it.
+    pub ends_slab: bool,
+}
+
+impl Parcel {
+    /// Cuts the root's `slabs` where the owner changes. Collective.
+    pub(super) fn cut(comm: &Comm, slabs: &[Range<usize>], plan: &Plan) -> Vec<Self> {
+        let mut ends = Message {
+            integers: slabs.iter().map(|slab| slab.end as i64).collect(),
+            reals: Vec::new(),
+        };
+        comm.broadcast(&mut ends);
+        let ends = ends.integers.iter().map(|&end| end as usize);
+        cut(ends, |s| plan.blocks[plan.block_of[s]].owner)
+    }
+
+    /// Appends what was found on its subdomains; called on their owner.
+    pub(super) fn append_to(
+        &self,
+        results: &mut SubdomainResults,
+        blocks: &BTreeMap<usize, OwnedBlock>,
+        fields: Fields<'_>,
+        plan: &Plan,
+    ) {
+        for index in self.subdomains.clone() {
+            let b = plan.block_of[index];
+            let block = blocks.get(&b).map(|owned| &owned.block);
+            let member = block.and_then(|block| Some((block, block.member(index)?)));
+            let found = fields.displacement.get(&b).zip(fields.stress.get(&b));
+            match member.zip(found) {
+                Some(((block, m), (displacement, stress))) => {
+                    append_member(results, block, m, displacement, stress);
+                }
+                // It takes its place without any content, so that the file names it.
+                None => results.sizes.push(PartitionSize::default()),
+            }
+        }
+    }
+}
+
+fn cut(slab_ends: impl Iterator<Item = usize>, owner: impl Fn(usize) -> usize) -> Vec<Parcel> {
+    let mut parcels = Vec::new();
+    let mut start = 0;
+    for slab_end in slab_ends {
+        while start < slab_end {
+            let rank = owner(start);
+            let end = (start..slab_end)
+                .find(|&s| owner(s) != rank)
+                .unwrap_or(slab_end);
+            parcels.push(Parcel {
+                subdomains: start..end,
+                owner: rank,
+                ends_slab: end == slab_end,
+            });
+            start = end;
+        }
+    }
+    parcels
+}
+
+/// Appends the solution on member `m` of a block.
+fn append_member(
+    results: &mut SubdomainResults,
+    block: &Block,
+    m: usize,
+    displacement: &[f64],
+    stress: &BlockStress,
+) {
+    let member = &block.members[m];
+    let first_cell: usize = block.members[..m].iter().map(|o| o.cells.len()).sum();
+    let cells = &stress.cells[first_cell..first_cell + member.cells.len()];
+    let displacement_at = |&node: &u32| {
+        let start = node as usize * block.dim;
+        let mut u = [0.0; 3];
+        u[..block.dim].copy_from_slice(&displacement[start..start + block.dim]);
+        u
+    };
+    results.sizes.push(PartitionSize {
+        points: member.points.len(),
+        cells: member.cells.len(),
+        connectivity: member.cells.connectivity().len(),
+    });
+    results.points.extend_from_slice(&member.points);
+    results.node_tags.extend_from_slice(&member.node_tags);
+    results
+        .displacement
+        .extend(block.node_of[m].iter().map(displacement_at));
+    results.nodal_stress.extend(stress.at_nodes(block, m));
+    let connectivity = member.cells.connectivity().iter();
+    results
+        .connectivity
+        .extend(connectivity.map(|&n| i64::from(n)));
+    let offsets = member.cells.offsets().iter();
+    results.offsets.extend(offsets.map(|&o| o as i64));
+    let types = member.cells.iter().map(|(kind, _)| kind.vtk());
+    results.types.extend(types);
+    let materials = member.cell_material.iter();
+    results.materials.extend(materials.map(|&m| m as i32));
+    results.cell_stress.extend_from_slice(cells);
+    results
+        .principal
+        .extend(cells.iter().map(principal_stresses));
+    results.von_mises.extend(cells.iter().map(von_mises));
+}
+
+/// The results as they travel: list after list.
+pub(super) fn pack(results: &SubdomainResults) -> Message {
+    let mut message = Message::default();
+    let integers = &mut message.integers;
+    integers.push(results.sizes.len() as i64);
+    for size in &results.sizes {
+        let counts = [size.points, size.cells, size.connectivity];
+        integers.extend(counts.map(|count| count as i64));
+    }
+    integers.extend_from_slice(&results.node_tags);
+    integers.extend_from_slice(&results.connectivity);
+    integers.extend_from_slice(&results.offsets);
+    integers.extend(results.types.iter().map(|&kind| i64::from(kind)));
+    integers.extend(results.materials.iter().map(|&m| i64::from(m)));
+    let reals = &mut message.reals;
+    reals.extend_from_slice(results.points.as_flattened());
+    reals.extend_from_slice(results.displacement.as_flattened());
+    reals.extend_from_slice(results.nodal_stress.as_flattened());
+    reals.extend_from_slice(results.cell_stress.as_flattened());
+    reals.extend_from_slice(results.principal.as_flattened());
+    reals.extend_from_slice(&results.von_mises);
+    message
+}
+
+/// Appends what another rank has packed. The sender is the same program, so what is taken is
+/// there; from a list that is too short nothing is taken.
+pub(super) fn unpack(message: &Message, results: &mut SubdomainResults) {
+    let mut integers = &message.integers[..];
+    let count = take(&mut integers, 1).first().map_or(0, |&n| n as usize);
+    let mut total = PartitionSize::default();
+    for size in take(&mut integers, 3 * count).chunks_exact(3) {
+        let size = PartitionSize {
+            points: size[0] as usize,
+            cells: size[1] as usize,
+            connectivity: size[2] as usize,
+        };
+        total.points += size.points;
+        total.cells += size.cells;
+        total.connectivity += size.connectivity;
+        results.sizes.push(size);
+    }
+    let (points, cells) = (total.points, total.cells);
+    let integers = &mut integers;
+    results.node_tags.extend_from_slice(take(integers, points));
+    let connectivity = take(integers, total.connectivity);
+    results.connectivity.extend_from_slice(connectivity);
+    let offsets = take(integers, cells + count);
+    results.offsets.extend_from_slice(offsets);
+    let types = take(integers, cells).iter();
+    results.types.extend(types.map(|&kind| kind as u8));
+    let materials = take(integers, cells).iter();
+    results.materials.extend(materials.map(|&m| m as i32));
+    let reals = &mut &message.reals[..];
+    results.points.extend_from_slice(tuples(reals, points));
+    results
+        .displacement
+        .extend_from_slice(tuples(reals, points));
+    results
+        .nodal_stress
+        .extend_from_slice(tuples(reals, points));
+    results.cell_stress.extend_from_slice(tuples(reals, cells));
+    results.principal.extend_from_slice(tuples(reals, cells));
+    results.von_mises.extend_from_slice(take(reals, cells));
+}
+
+fn take<'a, T>(list: &mut &'a [T], n: usize) -> &'a [T] {
+    list.split_off(..n).unwrap_or_default()
+}
+
+fn tuples<'a, const N: usize>(list: &mut &'a [f64], n: usize) -> &'a [[f64; N]] {
+    take(list, N * n).as_chunks().0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parcels_end_where_a_slab_ends_or_the_owner_changes() {
+        let owners = [0, 0, 1, 1, 1, 0];
+        let parcels = cut([4, 6].into_iter(), |s| owners[s]);
+        let parcel = |subdomains, owner, ends_slab| Parcel {
+            subdomains,
+            owner,
+            ends_slab,
+        };
+        assert_eq!(
+            parcels,
+            [
+                parcel(0..2, 0, false),
+                parcel(2..4, 1, true),
+                parcel(4..5, 1, false),
+                parcel(5..6, 0, true),
+            ]
+        );
+    }
+
+    #[test]
+    fn results_arrive_as_they_were_sent() {
+        let three = |n: u32| vec![[f64::from(n), 0.5, -1.0]; n as usize];
+        let six = |n: u32| vec![[f64::from(n), 1.0, 2.0, 3.0, 4.0, 5.0]; n as usize];
+        let size = |points, cells, connectivity| PartitionSize {
+            points,
+            cells,
+            connectivity,
+        };
+        let sent = SubdomainResults {
+            first: 0,
+            sizes: vec![size(3, 1, 3), size(0, 0, 0), size(4, 2, 6)],
+            points: three(7),
+            node_tags: (10..17).collect(),
+            displacement: three(7),
+            nodal_stress: six(7),
+            connectivity: vec![0, 1, 2, 0, 1, 2, 1, 2, 3],
+            offsets: vec![0, 3, 0, 0, 3, 6],
+            types: vec![5; 3],
+            materials: vec![0, 1, 1],
+            cell_stress: six(3),
+            principal: three(3),
+            von_mises: vec![7.0, 8.0, 9.0],
+        };
+        let mut arrived = SubdomainResults::default();
+        unpack(&pack(&sent), &mut arrived);
+        assert_eq!(arrived, sent);
+    }
+}
