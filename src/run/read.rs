@@ -1,15 +1,19 @@
 //! Reading: every rank takes its own blocks from the problem file.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
-use contact_dd_partition::problem::ContactRow;
 use contact_dd_partition::problem::read::ProblemFile;
+use contact_dd_partition::problem::{ContactRow, Subdomain};
 
 use crate::comm::Comm;
 use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;
 use crate::plan::Plan;
+
+/// Most subdomains that are read at once: what HDF5 hands over is there twice for a while.
+const AT_ONCE: usize = 64;
 
 /// A block as it was read.
 #[derive(Clone, Debug)]
@@ -32,16 +36,16 @@ pub fn read_blocks(
     plan: &Plan,
 ) -> Result<BTreeMap<usize, OwnedBlock>, Failure> {
     let dim = file.catalog().dim;
+    let mut subdomains = read_subdomains(comm, file, plan)?;
     let mut blocks = BTreeMap::new();
     for (number, of_plan) in plan.blocks.iter().enumerate() {
         if of_plan.owner != comm.rank() {
             continue;
         }
-        let members = of_plan
-            .subdomains
-            .iter()
-            .map(|&index| file.subdomain(index))
-            .collect::<Result<Vec<_>, _>>()?;
+        let members = of_plan.subdomains.iter();
+        let members = members
+            .filter_map(|index| subdomains.remove(index))
+            .collect();
         let rows = of_plan
             .group
             .map(|group| file.rows(group))
@@ -62,4 +66,27 @@ pub fn read_blocks(
         );
     }
     Ok(blocks)
+}
+
+/// The subdomains of this rank, those that follow one another in the file read at once.
+fn read_subdomains(
+    comm: &Comm,
+    file: &ProblemFile,
+    plan: &Plan,
+) -> Result<BTreeMap<usize, Subdomain>, Failure> {
+    let owner = |s: usize| plan.blocks[plan.block_of[s]].owner;
+    let own = (0..plan.block_of.len()).filter(|&s| owner(s) == comm.rank());
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for s in own {
+        match runs.last_mut() {
+            Some(run) if run.end == s && run.len() < AT_ONCE => run.end += 1,
+            _ => runs.push(s..s + 1),
+        }
+    }
+    let mut subdomains = BTreeMap::new();
+    for run in runs {
+        let read = file.subdomains(run.clone())?;
+        subdomains.extend(run.zip(read));
+    }
+    Ok(subdomains)
 }
