@@ -34,7 +34,8 @@ pub struct Work {
 impl Work {
     /// Flops of all fronts.
     pub fn of_fronts(&self) -> f64 {
-        self.fronts.iter().map(Front::flops).sum()
+        // The empty sum of floats is −0.
+        self.fronts.iter().map(Front::flops).fold(0.0, |a, b| a + b)
     }
 }
 
