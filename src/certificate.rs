@@ -6,8 +6,8 @@ use crate::comm::{Message, MessageReader};
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;
-use crate::fem::dofs::supported_frames;
 use crate::fem::frame::{Frame, dot};
+use crate::fem::node_frames::supported_frames;
 use crate::output::report::Certificate;
 
 /// Sum of forces, relative to the terms that they are sums of, that is no load.
@@ -71,20 +71,36 @@ impl BlockCheck {
     fn equilibrium(&mut self, block: &Block, balance: &Balance) {
         let dim = block.dim;
         let frames = supported_frames(block);
-        let shared: HashMap<u32, u32> = block.interface.iter().copied().collect();
+        let mut frames = frames.iter().peekable();
+        let mut is_shared = vec![false; block.nodes()];
+        for &(node, _) in &block.interface {
+            is_shared[node as usize] = true;
+        }
+        // Residual and scale along the free axes of nodes on Γ, in the order of nodes.
+        let mut of_trace = Vec::new();
+        let mut first_trace = vec![
+            0..0;
+            if block.interface.is_empty() {
+                0
+            } else {
+                block.nodes()
+            }
+        ];
         let vector = |values: &[f64], node: usize| {
             let mut v = [0.0; 3];
             v[..dim].copy_from_slice(&values[node * dim..(node + 1) * dim]);
             v
         };
-        let mut of_trace: HashMap<u32, Vec<(u32, f64, f64)>> = HashMap::new();
         for node in 0..block.nodes() {
-            let frame = frames.get(&(node as u32)).unwrap_or(&Frame::CARTESIAN);
+            let frame = frames
+                .next_if(|(supported, _)| **supported as usize == node)
+                .map_or(&Frame::CARTESIAN, |(_, frame)| frame);
             let residual = vector(&balance.residual, node);
             let scale = vector(&balance.scale, node);
             let mut force = vector(&balance.external, node);
             self.force_scale += force.iter().map(|f| f.abs()).sum::<f64>();
             self.largest_load = force.iter().fold(self.largest_load, |m, &f| maximum(m, f));
+            let first = of_trace.len();
             for axis in 0..dim {
                 let axes = &frame.axes[axis];
                 let along = dot(axes, &residual);
@@ -95,18 +111,20 @@ impl BlockCheck {
                     }
                     self.force_scale += along.abs();
                     self.largest_load = maximum(self.largest_load, along);
-                } else if let Some(&id) = shared.get(&(node as u32)) {
-                    let list = of_trace.entry(id).or_default();
-                    list.push((axis as u32, along, along_scale));
+                } else if is_shared[node] {
+                    of_trace.push((axis as u32, along, along_scale));
                 } else {
                     self.residual = maximum(self.residual, along);
                     self.scale = maximum(self.scale, along_scale);
                 }
             }
+            if is_shared[node] {
+                first_trace[node] = first..of_trace.len();
+            }
             self.add_force(&block.points[node], &force);
         }
-        for &(_, id) in &block.interface {
-            for (axis, residual, scale) in of_trace.remove(&id).unwrap_or_default() {
+        for &(node, id) in &block.interface {
+            for &(axis, residual, scale) in &of_trace[first_trace[node as usize].clone()] {
                 self.trace_dofs.push((id, axis));
                 self.traces.push(residual);
                 self.trace_scale.push(scale);

@@ -3,8 +3,12 @@
 pub mod assembly;
 pub mod balance;
 pub mod block;
+mod bounds;
 pub mod condition;
 pub mod dofs;
 pub mod elasticity;
+mod elimination;
 pub mod frame;
+pub mod node_frames;
+mod sites;
 pub mod stress;

@@ -1,9 +1,15 @@
-//! Local Schur complements: ordering, factorization with the boundary last, condensation and
-//! recovery. The only importer of faer's sparse API.
+//! Local Schur complements: ordering, sparse factorization with the boundary last, condensation and
+//! recovery.
 
 pub mod condensed;
+mod dissection;
 pub mod factor;
+mod front;
+mod fronts;
+mod graph;
 pub mod local;
 pub mod merge;
 pub mod ordering;
+mod panel;
 pub mod pattern;
+mod supernodes;

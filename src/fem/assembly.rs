@@ -4,8 +4,8 @@ use contact_dd_partition::model::Material;
 
 use super::block::Block;
 use super::dofs::Dofs;
-use super::elasticity::{MAX_NODES, stiffness};
-use crate::schur::pattern::{Cliques, LowerPattern, SparseSymmetric};
+use super::elasticity::{ElementMatrix, MAX_NODES};
+use crate::schur::pattern::{LowerPattern, SparseSymmetric};
 
 /// Tᵀ K T and Tᵀ (f − K c) of a block, for u = T x + c.
 #[derive(Clone, Debug)]
@@ -41,13 +41,13 @@ pub fn assemble(
     pins: &[(u32, usize)],
 ) -> Option<BlockSystem> {
     let cliques = dofs.cliques(block);
-    let pattern = LowerPattern::new(dofs.len(), &cliques)?;
+    let pattern = LowerPattern::of_sites(dofs.site_starts(), &cliques)?;
     let mut system = BlockSystem {
         stiffness: SparseSymmetric::zeros(pattern),
         load: vec![0.0; dofs.len()],
     };
     dofs.add_load(&nodal_forces(block), &mut system.load);
-    scatter(block, dofs, materials, &cliques, &mut system);
+    scatter(block, dofs, materials, &mut system);
     for &(node, component) in pins {
         pin(dofs, node, component, &mut system);
     }
@@ -71,34 +71,25 @@ fn pin(dofs: &Dofs, node: u32, component: usize, system: &mut BlockSystem) {
     }
 }
 
-fn scatter(
-    block: &Block,
-    dofs: &Dofs,
-    materials: &[Material],
-    cliques: &Cliques,
-    system: &mut BlockSystem,
-) {
+fn scatter(block: &Block, dofs: &Dofs, materials: &[Material], system: &mut BlockSystem) {
     let dim = block.dim;
     let mut nodes = Vec::with_capacity(MAX_NODES);
     let mut points = Vec::with_capacity(MAX_NODES);
-    let mut direct = Vec::with_capacity(dim * MAX_NODES);
-    for (e, cell) in block.cells().enumerate() {
+    let mut direct = Vec::with_capacity(MAX_NODES);
+    let mut k = ElementMatrix::default();
+    for cell in block.cells() {
         nodes.clear();
         nodes.extend(cell.nodes());
         points.clear();
         points.extend(nodes.iter().map(|&n| block.points[n as usize]));
-        let k = stiffness(cell.kind, &points, &materials[cell.material].stiffness);
+        k.set(cell.kind, &points, &materials[cell.material].stiffness);
         direct.clear();
-        for &node in &nodes {
-            if let Some(first) = dofs.direct(node) {
-                direct.extend(first..first + dim as u32);
-            }
-        }
-        if direct.len() == dim * nodes.len() {
-            system.stiffness.add(&direct, |a, b| k[a][b]);
+        direct.extend(nodes.iter().filter_map(|&node| dofs.direct(node)));
+        if direct.len() == nodes.len() {
+            system.stiffness.add_runs(&direct, dim, |a, b| k.row(a)[b]);
             continue;
         }
-        let unknowns = cliques.get(e);
+        let unknowns = &dofs.unknowns(&nodes);
         let rows: Vec<(Vec<f64>, f64)> = nodes
             .iter()
             .flat_map(|&node| (0..dim).map(move |component| (node, component)))
@@ -114,7 +105,7 @@ fn scatter(
             .collect();
         let n = rows.len();
         let t = nalgebra::DMatrix::from_fn(n, unknowns.len(), |i, j| rows[i].0[j]);
-        let k = nalgebra::DMatrix::from_fn(n, n, |i, j| k[i][j]);
+        let k = nalgebra::DMatrix::from_fn(n, n, |i, j| k.row(i)[j]);
         let c = nalgebra::DVector::from_fn(n, |i, _| rows[i].1);
         let reduced = t.transpose() * &k * &t;
         let load = t.transpose() * (&k * c);

@@ -5,7 +5,7 @@ use contact_dd_partition::model::Material;
 use super::assembly::nodal_forces;
 use super::block::Block;
 use super::condition::BlockCondition;
-use super::elasticity::{MAX_NODES, stiffness};
+use super::elasticity::{ElementMatrix, MAX_NODES};
 
 /// f − K u − Bᵀλ of a block and the scale of its terms, node by node (N/m).
 #[derive(Clone, Debug)]
@@ -41,21 +41,28 @@ impl Balance {
         }
         let mut residual = external.clone();
         let mut points = Vec::with_capacity(MAX_NODES);
-        let mut rows = Vec::with_capacity(dim * MAX_NODES);
+        let mut u_e = Vec::with_capacity(dim * MAX_NODES);
+        let mut k = ElementMatrix::default();
         for cell in block.cells() {
             points.clear();
-            rows.clear();
+            u_e.clear();
             for node in cell.nodes() {
                 let node = node as usize;
                 points.push(block.points[node]);
-                rows.extend(dim * node..dim * (node + 1));
+                u_e.extend_from_slice(&u[dim * node..dim * (node + 1)]);
             }
-            let k = stiffness(cell.kind, &points, &materials[cell.material].stiffness);
-            for (i, &row) in rows.iter().enumerate() {
-                for (j, &column) in rows.iter().enumerate() {
-                    let term = k[i][j] * u[column];
-                    residual[row] -= term;
-                    scale[row] += term.abs();
+            k.set(cell.kind, &points, &materials[cell.material].stiffness);
+            for (a, node) in cell.nodes().enumerate() {
+                for component in 0..dim {
+                    let (mut sum, mut absolute) = (0.0, 0.0);
+                    for (k, u) in k.row(dim * a + component).iter().zip(&u_e) {
+                        let term = k * u;
+                        sum += term;
+                        absolute += term.abs();
+                    }
+                    let row = dim * node as usize + component;
+                    residual[row] -= sum;
+                    scale[row] += absolute;
                 }
             }
         }

@@ -2,13 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::model::{Material, Support};
+use contact_dd_partition::model::Material;
 
 use super::block::Block;
+use super::bounds::approaches;
 use super::condition::BlockCondition;
-use super::frame::{Frame, dot, support_frames};
-use crate::contact::approach::{ApproachOf, ApproachRow, Approaches, OnInterface, Variable};
-use crate::schur::ordering::minimum_degree;
+use super::elimination::elimination_order;
+use super::frame::Frame;
+use super::node_frames::NodeFrames;
+use super::sites::Sites;
+use crate::contact::approach::{ApproachOf, Approaches, OnInterface, Variable};
 use crate::schur::pattern::Cliques;
 
 /// An unknown on Γ: the node's number on Γ and the axis of its frame.
@@ -37,6 +40,7 @@ pub struct Dofs {
     terms: Vec<(u32, f64)>,
     constants: Vec<f64>,
     first: Vec<u32>,
+    sites: Sites,
     /// Number of interior unknowns I.
     pub interior: usize,
     /// Number of approaches; approach j is unknown `interior + j`.
@@ -54,76 +58,106 @@ impl Dofs {
     /// approach of each of `conditions`, then the traces on Γ.
     ///
     /// # Errors
-    /// A condition that lies on Γ.
+    /// A condition that lies on Γ, or too many unknowns.
     pub fn new(
         block: &Block,
         conditions: &[BlockCondition],
         materials: &[Material],
     ) -> Result<Self, DofError> {
         let dim = block.dim;
-        let frames = frames(block, conditions);
-        let frame = |node: u32| frames.get(&node).unwrap_or(&Frame::CARTESIAN);
+        if block.nodes() * dim >= u32::MAX as usize {
+            return Err(DofError::Size);
+        }
+        let frames = NodeFrames::new(block, conditions);
         let mut on_interface = vec![false; block.nodes()];
         for &(node, _) in &block.interface {
             on_interface[node as usize] = true;
         }
-        let approaches = {
-            let rows: Vec<_> = conditions
-                .iter()
-                .map(|c| in_frames(c, frame, dim))
-                .collect();
-            let may_go = |v: u32| !on_interface[v as usize / dim];
-            let stiffness = node_stiffness(block, materials);
-            Approaches::new(&rows, may_go, |v| stiffness[v as usize / dim])
-                .map_err(|OnInterface(j)| DofError::OnInterface(j))?
-        };
-
-        let mut number = vec![u32::MAX; block.nodes() * dim];
-        let is_interior = |node: u32, axis: usize| {
-            !on_interface[node as usize]
-                && frame(node).prescribed[axis].is_none()
-                && !approaches
-                    .replaced
-                    .contains_key(&(node * dim as u32 + axis as u32))
-        };
-        let mut interior = 0u32;
-        for node in elimination_order(block, &approaches, is_interior)? {
+        let approaches = approaches(block, conditions, materials, &frames, &on_interface)
+            .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
+        let mut is_free = vec![true; block.nodes() * dim];
+        for (node, frame) in frames.special() {
             for axis in 0..dim {
-                if is_interior(node, axis) {
-                    number[node as usize * dim + axis] = interior;
-                    interior += 1;
-                }
+                is_free[node as usize * dim + axis] = frame.prescribed[axis].is_none();
             }
         }
-        let mut next = interior + approaches.len as u32;
+        for &raw in approaches.replaced.keys() {
+            is_free[raw as usize] = false;
+        }
+
+        let mut number = vec![u32::MAX; block.nodes() * dim];
+        let mut sites = Sites::new(block.nodes());
+        for node in elimination_order(block, &approaches, |node| {
+            let axes = node as usize * dim..(node as usize + 1) * dim;
+            !on_interface[node as usize] && is_free[axes].contains(&true)
+        }) {
+            sites.of_node[node as usize] = sites.len() as u32;
+            for axis in 0..dim {
+                let raw = node as usize * dim + axis;
+                if is_free[raw] {
+                    number[raw] = sites.unknown();
+                }
+            }
+            sites.end();
+        }
+        let interior = sites.next as usize;
+        for _ in 0..approaches.len {
+            sites.unknown();
+            sites.end();
+        }
         let mut traces = Vec::new();
         for &(node, id) in &block.interface {
+            sites.of_node[node as usize] = sites.len() as u32;
             for axis in 0..dim {
-                if frame(node).prescribed[axis].is_none() {
-                    number[node as usize * dim + axis] = next;
-                    next += 1;
+                let raw = node as usize * dim + axis;
+                if is_free[raw] {
+                    number[raw] = sites.unknown();
                     traces.push(TraceDof {
                         node: id,
                         axis: axis as u32,
                     });
                 }
             }
+            sites.end();
         }
         let mut dofs = Self {
             dim,
-            offsets: vec![0],
+            offsets: Vec::with_capacity(number.len() + 1),
             terms: Vec::with_capacity(number.len()),
             constants: Vec::with_capacity(number.len()),
             first: Vec::with_capacity(block.nodes()),
-            interior: interior as usize,
+            sites,
+            interior,
             approaches: approaches.len,
             approach_of: approaches.of.clone(),
             traces,
         };
+        dofs.offsets.push(0);
+        let mut is_replaced = vec![false; block.nodes()];
+        for &raw in approaches.replaced.keys() {
+            is_replaced[raw as usize / dim] = true;
+        }
         for node in 0..block.nodes() as u32 {
-            dofs.push_node(node, frame(node), &number, &approaches);
+            match frames.of(node) {
+                None if !is_replaced[node as usize] => dofs.push_direct(node, &number),
+                frame => {
+                    let frame = frame.unwrap_or(&Frame::CARTESIAN);
+                    dofs.push_node(node, frame, &number, &approaches);
+                }
+            }
         }
         Ok(dofs)
+    }
+
+    /// Appends the rows of T and c for a node whose components are unknowns.
+    fn push_direct(&mut self, node: u32, number: &[u32]) {
+        let raw = node as usize * self.dim;
+        for &dof in &number[raw..raw + self.dim] {
+            self.terms.push((dof, 1.0));
+            self.constants.push(0.0);
+            self.offsets.push(self.terms.len() as u32);
+        }
+        self.first.push(number[raw]);
     }
 
     /// Appends the rows of T and c for `node`.
@@ -229,15 +263,26 @@ impl Dofs {
         }
     }
 
-    /// The unknowns of every cell of `block`, each once, ascending.
+    /// Where the pattern's sites begin: runs of unknowns that the same cells have, those of a node
+    /// or an approach.
+    pub fn site_starts(&self) -> &[u32] {
+        &self.sites.starts
+    }
+
+    /// The sites of every cell of `block`.
     pub fn cliques(&self, block: &Block) -> Cliques {
         let mut cliques = Cliques::default();
         let mut list = Vec::new();
         for cell in block.cells() {
             list.clear();
             for node in cell.nodes() {
+                if self.first[node as usize] != NOT_DIRECT {
+                    list.push(self.sites.of_node[node as usize]);
+                    continue;
+                }
                 for component in 0..self.dim {
-                    list.extend(self.terms(node, component).iter().map(|&(dof, _)| dof));
+                    let terms = self.terms(node, component);
+                    list.extend(terms.iter().map(|&(dof, _)| self.sites.of(dof)));
                 }
             }
             list.sort_unstable();
@@ -246,140 +291,18 @@ impl Dofs {
         }
         cliques
     }
-}
 
-/// The frames of a block's supported nodes.
-pub fn supported_frames(block: &Block) -> BTreeMap<u32, Frame> {
-    let supports: Vec<Support> = block
-        .members
-        .iter()
-        .zip(&block.node_of)
-        .flat_map(|(member, node_of)| {
-            member.supports.iter().map(|s| Support {
-                node: node_of[s.node as usize],
-                ..*s
-            })
-        })
-        .collect();
-    support_frames(&without_repetition(supports), block.dim)
-}
-
-/// The stiffest material around every node (Pa).
-fn node_stiffness(block: &Block, materials: &[Material]) -> Vec<f64> {
-    let mut stiffness = vec![0.0; block.nodes()];
-    for cell in block.cells() {
-        let modulus = materials[cell.material].stiffness[0][0];
-        for node in cell.nodes() {
-            let of_node: &mut f64 = &mut stiffness[node as usize];
-            *of_node = of_node.max(modulus);
-        }
-    }
-    stiffness
-}
-
-/// Frames of supported nodes, and of nodes with a condition along the first one's normal.
-fn frames(block: &Block, conditions: &[BlockCondition]) -> BTreeMap<u32, Frame> {
-    let mut frames = supported_frames(block);
-    let shared: std::collections::BTreeSet<u32> =
-        block.interface.iter().map(|&(node, _)| node).collect();
-    for condition in conditions {
-        for &(node, coefficient) in &condition.entries {
-            let norm = dot(&coefficient, &coefficient).sqrt();
-            if norm > 0.0 && !shared.contains(&node) {
-                let direction = coefficient.map(|c| c / norm);
-                frames
-                    .entry(node)
-                    .or_insert_with(|| Frame::along(&[direction], block.dim));
-            }
-        }
-    }
-    frames
-}
-
-/// Supports of nodes that several members share, once.
-fn without_repetition(supports: Vec<Support>) -> Vec<Support> {
-    let mut kept: BTreeMap<u32, Vec<Support>> = BTreeMap::new();
-    for support in supports {
-        let rows = kept.entry(support.node).or_default();
-        if !rows.contains(&support) {
-            rows.push(support);
-        }
-    }
-    kept.into_values().flatten().collect()
-}
-
-/// A condition in terms of components along the axes of its nodes' frames.
-fn in_frames<'a>(
-    condition: &BlockCondition,
-    frame: impl Fn(u32) -> &'a Frame,
-    dim: usize,
-) -> ApproachRow {
-    let mut constant = 0.0;
-    let mut row: BTreeMap<u32, f64> = BTreeMap::new();
-    for (node, coefficient) in &condition.entries {
-        let frame = frame(*node);
-        for axis in 0..dim {
-            let along = dot(coefficient, &frame.axes[axis]);
-            match frame.prescribed[axis] {
-                Some(value) => constant += along * value,
-                None => *row.entry(node * dim as u32 + axis as u32).or_default() += along,
-            }
-        }
-    }
-    // A frame along the condition's own normal leaves round-off on its other axes.
-    let scale = condition
-        .entries
-        .iter()
-        .map(|(_, c)| dot(c, c).sqrt())
-        .fold(0.0, f64::max);
-    ApproachRow {
-        constant,
-        terms: row
-            .into_iter()
-            .filter(|(_, c)| c.abs() > 1e-14 * scale)
-            .collect(),
-        gap: condition.gap,
-    }
-}
-
-/// The order in which nodes with interior unknowns are eliminated.
-fn elimination_order(
-    block: &Block,
-    approaches: &Approaches,
-    is_interior: impl Fn(u32, usize) -> bool,
-) -> Result<Vec<u32>, DofError> {
-    let dim = block.dim;
-    let mut site = vec![u32::MAX; block.nodes()];
-    let mut nodes = Vec::new();
-    for node in 0..block.nodes() as u32 {
-        if (0..dim).any(|axis| is_interior(node, axis)) {
-            site[node as usize] = nodes.len() as u32;
-            nodes.push(node);
-        }
-    }
-    let mut partners: Vec<Vec<u32>> = vec![Vec::new(); block.nodes()];
-    for (&raw, value) in &approaches.replaced {
-        for &(variable, _) in &value.terms {
-            if let Variable::Displacement(v) = variable {
-                partners[raw as usize / dim].push(v / dim as u32);
-            }
-        }
-    }
-    let mut cliques = Cliques::default();
-    let mut list = Vec::new();
-    for cell in block.cells() {
-        list.clear();
-        for node in cell.nodes() {
-            list.push(site[node as usize]);
-            list.extend(partners[node as usize].iter().map(|&p| site[p as usize]));
-        }
+    /// The unknowns of a cell, each once, ascending.
+    pub fn unknowns(&self, nodes: &[u32]) -> Vec<u32> {
+        let mut list: Vec<u32> = nodes
+            .iter()
+            .flat_map(|&node| (0..self.dim).flat_map(move |c| self.terms(node, c)))
+            .map(|&(dof, _)| dof)
+            .collect();
         list.sort_unstable();
         list.dedup();
-        list.retain(|&s| s != u32::MAX);
-        cliques.push(list.iter().copied());
+        list
     }
-    let order = minimum_degree(nodes.len(), &cliques).ok_or(DofError::Size)?;
-    Ok(order.into_iter().map(|s| nodes[s as usize]).collect())
 }
 
 #[cfg(test)]

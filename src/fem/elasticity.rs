@@ -98,44 +98,81 @@ pub fn stress(material: &Material, plane: PlaneState, strain: &[f64; 3]) -> [f64
     [row(&c[0]), row(&c[1]), zz, row(&c[2]), 0.0, 0.0]
 }
 
-/// An element's stiffness, row after row.
-pub type ElementMatrix = [[f64; MAX_DOFS]; MAX_DOFS];
+/// An element's stiffness, both triangles.
+#[derive(Clone, Debug)]
+pub struct ElementMatrix {
+    order: usize,
+    values: [f64; MAX_DOFS * MAX_DOFS],
+}
 
-/// K_e = ∫ Bᵀ C B over an element of unit thickness (Pa), dofs node by node.
-pub fn stiffness(kind: ElementKind, points: &[[f64; 3]], c: &[[f64; 3]; 3]) -> ElementMatrix {
-    let mut k = [[0.0; MAX_DOFS]; MAX_DOFS];
-    let n = kind.nodes();
-    for point in stiffness_points(kind, points) {
-        // Columns of C B: the stress that a unit displacement of one dof causes.
-        let mut cb = [[0.0; 3]; MAX_DOFS];
-        for i in 0..n {
-            let [gx, gy] = point.gradients[i];
-            for r in 0..3 {
-                cb[2 * i][r] = c[r][0] * gx + c[r][2] * gy;
-                cb[2 * i + 1][r] = c[r][1] * gy + c[r][2] * gx;
+impl Default for ElementMatrix {
+    fn default() -> Self {
+        Self {
+            order: 0,
+            values: [0.0; MAX_DOFS * MAX_DOFS],
+        }
+    }
+}
+
+impl ElementMatrix {
+    /// Its row `i`.
+    pub fn row(&self, i: usize) -> &[f64] {
+        &self.values[i * self.order..(i + 1) * self.order]
+    }
+
+    /// Its rows.
+    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        (0..self.order).map(|i| self.row(i))
+    }
+
+    /// Becomes K_e = ∫ Bᵀ C B over an element of unit thickness (Pa), dofs node by node.
+    pub fn set(&mut self, kind: ElementKind, points: &[[f64; 3]], c: &[[f64; 3]; 3]) {
+        self.order = 2 * kind.nodes();
+        self.values[..self.order * self.order].fill(0.0);
+        for point in stiffness_points(kind, points) {
+            match kind {
+                // The compiler unrolls what it knows the size of.
+                ElementKind::Triangle3 => self.add_lower(3, &point, c),
+                _ => self.add_lower(kind.nodes(), &point, c),
             }
         }
-        for i in 0..n {
-            let [gx, gy] = point.gradients[i];
-            for j in 0..2 * n {
-                let s = &cb[j];
-                k[2 * i][j] += point.weight * (gx * s[0] + gy * s[2]);
-                k[2 * i + 1][j] += point.weight * (gy * s[1] + gx * s[2]);
+        // Symmetric to the last bit, so that assembling one triangle is assembling both.
+        for i in 0..self.order {
+            for j in 0..i {
+                self.values[j * self.order + i] = self.values[i * self.order + j];
             }
         }
     }
-    // Symmetric to the last bit, so that assembling one triangle is assembling both.
-    for i in 0..2 * n {
-        let (above, below) = k.split_at_mut(i);
-        for (j, row) in above.iter_mut().enumerate() {
-            row[i] = below[0][j];
+
+    /// Adds the lower triangle of a point's contribution.
+    #[inline(always)]
+    fn add_lower(&mut self, nodes: usize, point: &PointGradients, c: &[[f64; 3]; 3]) {
+        let order = 2 * nodes;
+        for j in 0..nodes {
+            let [gx, gy] = point.gradients[j];
+            // The stress that a unit displacement of either component causes.
+            let x = [0, 1, 2].map(|r| c[r][0] * gx + c[r][2] * gy);
+            let y = [0, 1, 2].map(|r| c[r][1] * gy + c[r][2] * gx);
+            for i in j..nodes {
+                let [gx, gy] = point.gradients[i];
+                for (column, s) in [(2 * j, x), (2 * j + 1, y)] {
+                    let k = &mut self.values[2 * i * order + column..];
+                    k[0] += point.weight * (gx * s[0] + gy * s[2]);
+                    k[order] += point.weight * (gy * s[1] + gx * s[2]);
+                }
+            }
         }
     }
-    k
 }
 
 /// (σ_1 ≥ σ_2 ≥ σ_3) of a stress (XX, YY, ZZ, XY, YZ, XZ).
 pub fn principal_stresses(s: &[f64; 6]) -> [f64; 3] {
+    if s[4] == 0.0 && s[5] == 0.0 {
+        let (mean, radius) = (0.5 * (s[0] + s[1]), (0.5 * (s[0] - s[1])).hypot(s[3]));
+        let mut values = [mean + radius, mean - radius, s[2]];
+        values.sort_unstable_by(|a, b| b.total_cmp(a));
+        return values;
+    }
     let matrix = nalgebra::Matrix3::new(s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]);
     let values = matrix.symmetric_eigenvalues();
     let mut values = [values[0], values[1], values[2]];
@@ -166,6 +203,12 @@ mod tests {
         }
     }
 
+    fn stiffness() -> ElementMatrix {
+        let mut k = ElementMatrix::default();
+        k.set(ElementKind::Triangle3, &POINTS, &C);
+        k
+    }
+
     #[test]
     fn a_linear_displacement_has_its_own_strain() {
         let u: Vec<f64> = POINTS
@@ -182,23 +225,23 @@ mod tests {
 
     #[test]
     fn stiffness_is_symmetric_and_rigid_motions_cost_nothing() {
-        let k = stiffness(ElementKind::Triangle3, &POINTS, &C);
+        let k = stiffness();
         let rotation: Vec<f64> = POINTS.iter().flat_map(|x| [-x[1], x[0]]).collect();
-        for (i, row) in k.iter().enumerate().take(6) {
+        for (i, row) in k.rows().enumerate() {
             let force: f64 = row.iter().zip(&rotation).map(|(k, u)| k * u).sum();
             let push: f64 = row.iter().step_by(2).sum();
             assert!(force.abs() < 1e-14 && push.abs() < 1e-14);
-            assert!(k.iter().zip(row).all(|(column, k)| column[i] == *k));
+            assert!(k.rows().zip(row).all(|(column, k)| column[i] == *k));
         }
     }
 
     #[test]
     fn the_energy_is_half_stress_times_strain_times_area() {
         let u = [0.3, -0.1, 0.2, 0.5, -0.4, 0.1];
-        let k = stiffness(ElementKind::Triangle3, &POINTS, &C);
+        let k = stiffness();
         let energy: f64 = (0..6)
             .flat_map(|i| (0..6).map(move |j| (i, j)))
-            .map(|(i, j)| u[i] * k[i][j] * u[j])
+            .map(|(i, j)| u[i] * k.row(i)[j] * u[j])
             .sum();
         let exact: f64 = stiffness_points(ElementKind::Triangle3, &POINTS)
             .map(|point| {

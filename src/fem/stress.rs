@@ -1,8 +1,6 @@
 //! Stresses: per cell, and recovered at nodes as the mean over the cells around them, weighted by
 //! their area; across Γ, but never across a contact or a change of material.
 
-use std::collections::BTreeMap;
-
 use contact_dd_partition::model::{Material, PlaneState};
 
 use super::block::Block;
@@ -37,16 +35,25 @@ impl StressSum {
 pub struct BlockStress {
     /// Of every cell, member by member (Pa).
     pub cells: Vec<[f64; 6]>,
-    /// Around every node, by material.
-    sums: BTreeMap<u32, Vec<StressSum>>,
+    /// Its materials, ascending.
+    materials: Vec<u32>,
+    /// Around every node, for each of the materials.
+    sums: Vec<Vec<StressSum>>,
 }
 
 impl BlockStress {
     /// The stresses for displacements `u`, node by node.
     pub fn new(block: &Block, materials: &[Material], plane: PlaneState, u: &[f64]) -> Self {
         let dim = block.dim;
-        let mut cells = Vec::new();
-        let mut sums: BTreeMap<u32, Vec<StressSum>> = BTreeMap::new();
+        let mut present: Vec<u32> = (block.members.iter())
+            .flat_map(|member| &member.cell_material)
+            .copied()
+            .collect();
+        present.sort_unstable();
+        present.dedup();
+        let mut sums = vec![vec![StressSum::default(); block.nodes()]; present.len()];
+        let count = block.members.iter().map(|m| m.cells.len()).sum();
+        let mut cells = Vec::with_capacity(count);
         let mut points = Vec::with_capacity(MAX_NODES);
         let mut u_e = Vec::with_capacity(dim * MAX_NODES);
         for cell in block.cells() {
@@ -66,14 +73,17 @@ impl BlockStress {
                 });
             }
             cells.push(sum.mean());
-            let around = sums
-                .entry(cell.material as u32)
-                .or_insert_with(|| vec![StressSum::default(); block.nodes()]);
-            for node in cell.nodes() {
-                around[node as usize].add(&sum);
+            if let Ok(place) = present.binary_search(&(cell.material as u32)) {
+                for node in cell.nodes() {
+                    sums[place][node as usize].add(&sum);
+                }
             }
         }
-        Self { cells, sums }
+        Self {
+            cells,
+            materials: present,
+            sums,
+        }
     }
 
     /// What this block knows of the surroundings of the nodes it shares: number on Γ, material,
@@ -83,8 +93,7 @@ impl BlockStress {
         block: &'a Block,
     ) -> impl Iterator<Item = (u32, u32, StressSum)> + 'a {
         block.interface.iter().flat_map(move |&(node, id)| {
-            self.sums
-                .iter()
+            (self.materials.iter().zip(&self.sums))
                 .map(move |(&material, around)| (id, material, around[node as usize]))
                 .filter(|(_, _, sum)| sum.area > 0.0)
         })
@@ -95,7 +104,7 @@ impl BlockStress {
     pub fn set_shared(&mut self, block: &Block, totals: &[StressSum]) {
         let mut totals = totals.iter();
         for &(node, _) in &block.interface {
-            for around in self.sums.values_mut() {
+            for around in &mut self.sums {
                 let sum = &mut around[node as usize];
                 if sum.area > 0.0
                     && let Some(total) = totals.next()
@@ -121,9 +130,9 @@ impl BlockStress {
             .iter()
             .zip(&material)
             .map(|(&node, material)| {
-                self.sums
-                    .get(material)
-                    .map_or([0.0; 6], |around| around[node as usize].mean())
+                self.materials
+                    .binary_search(material)
+                    .map_or([0.0; 6], |place| self.sums[place][node as usize].mean())
             })
             .collect()
     }

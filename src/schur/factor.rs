@@ -1,22 +1,16 @@
-//! Sparse Cholesky with the boundary ordered last.
+//! Sparse Cholesky with the boundary ordered last, by fronts.
 //!
 //! K = L Lᵀ with the unknowns ordered [I | B] holds everything: L_II serves the interior solves,
-//! and the trailing block is the Schur complement, S_BB = K_BB − K_BI K_II⁻¹ K_IB = L_BB L_BBᵀ.
+//! L_BI condenses loads, and what the interior's fronts leave to B is the Schur complement,
+//! S_BB = K_BB − K_BI K_II⁻¹ K_IB.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
-use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::sparse::linalg::cholesky::simplicial;
-use faer::sparse::linalg::cholesky::supernodal::{
-    SymbolicSupernodalCholesky, factorize_supernodal_numeric_llt,
-    factorize_supernodal_numeric_llt_scratch, factorize_supernodal_symbolic_cholesky,
-    factorize_supernodal_symbolic_cholesky_scratch,
-};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::{Mat, MatMut, Par};
 
+use super::front;
+use super::fronts::Fronts;
+use super::panel::Panel;
 use super::pattern::SparseSymmetric;
+use super::supernodes::Supernodes;
 
 /// Why a matrix couldn't be factorized.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -32,7 +26,7 @@ pub enum FactorError {
 /// The Cholesky factor of a matrix whose last unknowns are its boundary B.
 #[derive(Debug)]
 pub struct BoundaryLastCholesky {
-    symbolic: SymbolicSupernodalCholesky<u32>,
+    supernodes: Supernodes,
     values: Vec<f64>,
     interior: usize,
     smallest_pivot: f64,
@@ -58,44 +52,9 @@ impl BoundaryLastCholesky {
             let diagonal = matrix.pattern.column(j).start;
             matrix.values[diagonal] += s;
         }
-        let symbolic = symbolic(&matrix)?;
-        let lower = SparseColMatRef::new(
-            SymbolicSparseColMatRef::new_checked(
-                n,
-                n,
-                &matrix.pattern.columns,
-                None,
-                &matrix.pattern.rows,
-            ),
-            &matrix.values,
-        );
-        let mut values = Vec::new();
-        values
-            .try_reserve_exact(symbolic.len_val())
-            .map_err(|_| FactorError::Size)?;
-        values.resize(symbolic.len_val(), 0.0);
-        let scratch = factorize_supernodal_numeric_llt_scratch::<u32, f64>(
-            &symbolic,
-            par,
-            Default::default(),
-        );
-        let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::Size)?;
-        factorize_supernodal_numeric_llt(
-            &mut values,
-            lower,
-            LltRegularization::default(),
-            &symbolic,
-            par,
-            MemStack::new(&mut memory),
-            Default::default(),
-        )
-        .map_err(|LltError::NonPositivePivot { index }| FactorError::Pivot(index))?;
-        let mut factor = Self {
-            symbolic,
-            values,
-            interior,
-            smallest_pivot: f64::INFINITY,
-        };
+        let mut nothing = Mat::new();
+        let mut factor = Self::eliminate(&matrix, n, nothing.as_mut(), par)?;
+        factor.interior = interior;
         let unshifted = if shift.iter().all(|&s| s == 0.0) {
             n
         } else {
@@ -105,6 +64,56 @@ impl BoundaryLastCholesky {
         Ok(factor)
     }
 
+    /// Factorizes the first `interior` columns of `matrix` alone and returns S_BB, both triangles,
+    /// with them; there is no L_BB to solve with.
+    ///
+    /// # Errors
+    /// K_II isn't positive definite, or the factor is too large.
+    pub fn condense(
+        matrix: &SparseSymmetric,
+        interior: usize,
+        par: Par,
+    ) -> Result<(Self, Mat<f64>), FactorError> {
+        let m = matrix.pattern.n() - interior;
+        let mut s = Mat::zeros(m, m);
+        for j in 0..m {
+            let column = matrix.pattern.column(interior + j);
+            for (place, &i) in column.zip(matrix.pattern.rows_of(interior + j)) {
+                s[(i as usize - interior, j)] = matrix.values[place];
+            }
+        }
+        let mut factor = Self::eliminate(matrix, interior, s.as_mut(), par)?;
+        factor.smallest_pivot = factor.find_smallest_pivot(matrix, interior);
+        for j in 0..m {
+            for i in j + 1..m {
+                s[(j, i)] = s[(i, j)];
+            }
+        }
+        Ok((factor, s))
+    }
+
+    /// Eliminates the first `count` unknowns and adds what they leave to the lower triangle of
+    /// `rest`.
+    fn eliminate(
+        matrix: &SparseSymmetric,
+        count: usize,
+        rest: MatMut<'_, f64>,
+        par: Par,
+    ) -> Result<Self, FactorError> {
+        let supernodes = Supernodes::new(&matrix.pattern, count);
+        let mut values = Vec::new();
+        values
+            .try_reserve_exact(supernodes.values())
+            .map_err(|_| FactorError::Size)?;
+        Fronts::new(matrix, &supernodes, count).run(&mut values, rest, par)?;
+        Ok(Self {
+            supernodes,
+            values,
+            interior: count,
+            smallest_pivot: f64::INFINITY,
+        })
+    }
+
     /// The smallest pivot relative to its diagonal entry, min L_jj² / K_jj, of I or, where B wasn't
     /// shifted, of all unknowns: how close the matrix is to a singular one whatever its scaling.
     pub fn smallest_pivot(&self) -> f64 {
@@ -112,11 +121,11 @@ impl BoundaryLastCholesky {
     }
 
     fn find_smallest_pivot(&self, matrix: &SparseSymmetric, count: usize) -> f64 {
-        let diagonal = matrix.diagonal();
         let mut smallest = f64::INFINITY;
         for panel in self.panels() {
             for j in 0..panel.columns_before(count) {
-                let pivot = panel.column(j)[j].powi(2) / diagonal[panel.start + j];
+                let diagonal = matrix.pattern.column(panel.start + j).start;
+                let pivot = panel.column(j)[j].powi(2) / matrix.values[diagonal];
                 smallest = smallest.min(pivot);
             }
         }
@@ -124,46 +133,25 @@ impl BoundaryLastCholesky {
     }
 
     fn panels(&self) -> impl DoubleEndedIterator<Item = Panel<'_>> {
-        let begin = self.symbolic.supernode_begin();
-        let end = self.symbolic.supernode_end();
-        let places = self.symbolic.col_ptr_for_val();
-        (0..self.symbolic.n_supernodes()).map(move |s| Panel {
-            start: begin[s] as usize,
-            columns: (end[s] - begin[s]) as usize,
-            below: self.symbolic.supernode(s).pattern(),
-            values: &self.values[places[s] as usize..places[s + 1] as usize],
+        (0..self.supernodes.len()).map(|s| {
+            let columns = self.supernodes.columns(s);
+            Panel {
+                start: columns.start,
+                columns: columns.len(),
+                below: self.supernodes.below(s),
+                values: &self.values[self.supernodes.places(s)],
+            }
         })
     }
 
     /// S_BB = L_BB L_BBᵀ less the `shift` it was factorized with; both triangles are filled.
     pub fn schur_complement(&self, shift: &[f64], par: Par) -> Mat<f64> {
-        let n = self.interior + shift.len();
-        let mut l_bb = Mat::<f64>::zeros(shift.len(), shift.len());
+        let m = shift.len();
+        let mut l_bb = Mat::<f64>::zeros(m, m);
         for panel in self.panels() {
-            for j in panel.columns_before(self.interior)..panel.columns {
-                let column = panel.column(j);
-                let to = panel.start + j - self.interior;
-                for i in j..panel.columns {
-                    l_bb[(panel.start + i - self.interior, to)] = column[i];
-                }
-                for (&i, &value) in panel.below.iter().zip(&column[panel.columns..]) {
-                    l_bb[(i as usize - self.interior, to)] = value;
-                }
-            }
+            panel.copy_boundary(self.interior, &mut l_bb);
         }
-        let m = n - self.interior;
-        let mut s = Mat::<f64>::zeros(m, m);
-        triangular::matmul(
-            s.as_mut(),
-            BlockStructure::TriangularLower,
-            Accum::Replace,
-            l_bb.as_ref(),
-            BlockStructure::TriangularLower,
-            l_bb.transpose(),
-            BlockStructure::TriangularUpper,
-            1.0,
-            par,
-        );
+        let mut s = front::square(&l_bb, par);
         for j in 0..m {
             s[(j, j)] -= shift[j];
             for i in j + 1..m {
@@ -180,44 +168,16 @@ impl BoundaryLastCholesky {
 
     /// The same with the first `count` unknowns in the place of I.
     fn forward_before(&self, count: usize, x: &mut [f64]) {
+        let mut work = Vec::new();
         for panel in self.panels() {
-            for j in 0..panel.columns_before(count) {
-                let column = panel.column(j);
-                let xj = x[panel.start + j] / column[j];
-                x[panel.start + j] = xj;
-                let (top, bottom) = column.split_at(panel.columns);
-                let inside = panel.start + j + 1..panel.start + panel.columns;
-                for (xi, l) in x[inside].iter_mut().zip(&top[j + 1..]) {
-                    *xi -= l * xj;
-                }
-                for (&i, l) in panel.below.iter().zip(bottom) {
-                    x[i as usize] -= l * xj;
-                }
-            }
+            panel.forward(panel.columns_before(count), x, &mut work);
         }
     }
 
     /// X ← L_BB⁻¹ X, where X has a row for every unknown of B. Only where B wasn't shifted.
     pub fn forward_boundary(&self, mut x: MatMut<'_, f64>, par: Par) {
         for panel in self.panels() {
-            let skipped = panel.columns_before(self.interior);
-            let (first, count) = (panel.start + skipped, panel.columns - skipped);
-            if count == 0 {
-                continue;
-            }
-            let rows = panel.columns + panel.below.len();
-            let values = MatRef::from_column_major_slice(panel.values, rows, panel.columns);
-            let own = values.submatrix(skipped, skipped, count, count);
-            let mut top = x.as_mut().subrows_mut(first - self.interior, count);
-            solve_lower_triangular_in_place(own, top.as_mut(), par);
-            let below = values.submatrix(panel.columns, skipped, panel.below.len(), count);
-            let product = below * top.as_ref();
-            for (&i, row) in panel.below.iter().zip(product.row_iter()) {
-                let to = x.as_mut().row_mut(i as usize - self.interior);
-                for (x, p) in to.iter_mut().zip(row.iter()) {
-                    *x -= p;
-                }
-            }
+            panel.forward_boundary(self.interior, x.as_mut(), par);
         }
     }
 
@@ -227,65 +187,23 @@ impl BoundaryLastCholesky {
         self.backward_before(self.interior, x);
     }
 
-    /// x ← K⁻¹ x. Only where B wasn't shifted.
+    /// x ← K⁻¹ x. Only where B was factorized and not shifted.
     pub fn solve(&self, x: &mut [f64]) {
+        debug_assert_eq!(
+            self.supernodes.begin.last().copied().unwrap_or(0) as usize,
+            x.len()
+        );
         self.forward_before(x.len(), x);
         self.backward_before(x.len(), x);
     }
 
     /// `backward` with the first `count` unknowns in the place of I.
     fn backward_before(&self, count: usize, x: &mut [f64]) {
+        let mut work = Vec::new();
         for panel in self.panels().rev() {
-            for j in (0..panel.columns_before(count)).rev() {
-                let column = panel.column(j);
-                let (top, bottom) = column.split_at(panel.columns);
-                let inside = panel.start + j + 1..panel.start + panel.columns;
-                let mut sum = x[panel.start + j];
-                for (xi, l) in x[inside].iter().zip(&top[j + 1..]) {
-                    sum -= l * xi;
-                }
-                for (&i, l) in panel.below.iter().zip(bottom) {
-                    sum -= l * x[i as usize];
-                }
-                x[panel.start + j] = sum / column[j];
-            }
+            panel.backward(panel.columns_before(count), x, &mut work);
         }
     }
-}
-
-/// The columns of one supernode: a dense lower trapezoid over its own rows and those `below`.
-struct Panel<'a> {
-    start: usize,
-    columns: usize,
-    below: &'a [u32],
-    values: &'a [f64],
-}
-
-impl<'a> Panel<'a> {
-    fn column(&self, j: usize) -> &'a [f64] {
-        let rows = self.columns + self.below.len();
-        &self.values[j * rows..(j + 1) * rows]
-    }
-
-    /// How many of its columns are among the first `count`; a supernode may reach from I into B.
-    fn columns_before(&self, count: usize) -> usize {
-        count.saturating_sub(self.start).min(self.columns)
-    }
-}
-
-fn symbolic(matrix: &SparseSymmetric) -> Result<SymbolicSupernodalCholesky<u32>, FactorError> {
-    let n = matrix.pattern.n();
-    let (columns, rows) = matrix.pattern.upper();
-    let upper = SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &rows);
-    let mut parents = vec![0i32; n];
-    let mut counts = vec![0u32; n];
-    let scratch = simplicial::prefactorize_symbolic_cholesky_scratch::<u32>(n, rows.len())
-        .or(factorize_supernodal_symbolic_cholesky_scratch::<u32>(n));
-    let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::Size)?;
-    let stack = MemStack::new(&mut memory);
-    let tree = simplicial::prefactorize_symbolic_cholesky(&mut parents, &mut counts, upper, stack);
-    factorize_supernodal_symbolic_cholesky(upper, tree, &counts, stack, Default::default())
-        .map_err(|_| FactorError::Size)
 }
 
 #[cfg(test)]

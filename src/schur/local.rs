@@ -24,17 +24,15 @@ impl LocalSchur {
     /// # Errors
     /// K_II isn't positive definite: the block can move with its boundary held.
     pub fn new(system: &BlockSystem, interior: usize, par: Par) -> Result<Self, FactorError> {
-        let stiffness = &system.stiffness;
-        // S_BB of a floating block is singular; a shift of K_BB by its own diagonal keeps the
-        // factorization regular and costs no accuracy that K_BB itself has.
-        let shift: Vec<f64> = stiffness.diagonal()[interior..].to_vec();
-        let factor = BoundaryLastCholesky::new(stiffness.clone(), interior, &shift, par)?;
-        let s = factor.schur_complement(&shift, par);
+        let (factor, s) = BoundaryLastCholesky::condense(&system.stiffness, interior, par)?;
+        let stiffness = (interior..system.stiffness.pattern.n())
+            .map(|j| system.stiffness.values[system.stiffness.pattern.column(j).start])
+            .collect();
         Ok(Self {
             factor,
             interior,
             s,
-            stiffness: shift,
+            stiffness,
         })
     }
 

@@ -1,62 +1,41 @@
 //! Fill-reducing elimination orders.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::amd;
+use super::dissection::dissect;
+use super::graph::Graph;
+use super::pattern::Cliques;
 
-use super::pattern::{Cliques, LowerPattern};
-
-/// The order in which `n` sites that are connected by `cliques` are eliminated: approximate
-/// minimum degree, postordered so that the factor falls into supernodes.
+/// The order in which sites at `points`, connected by `cliques`, are eliminated: nested dissection,
+/// postordered so that the factor falls into supernodes.
 ///
-/// Returns site by site what comes first; `None` where the graph is too large for 32-bit indices.
-pub fn minimum_degree(n: usize, cliques: &Cliques) -> Option<Vec<u32>> {
-    let pattern = LowerPattern::new(n, cliques)?;
-    let (columns, rows) = pattern.upper();
-    let graph = SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &rows);
-    let mut order = vec![0u32; n];
-    let mut place = vec![0u32; n];
-    let mut memory = MemBuffer::try_new(amd::order_scratch::<u32>(n, rows.len())).ok()?;
-    amd::order(
-        &mut order,
-        &mut place,
-        graph,
-        amd::Control::default(),
-        MemStack::new(&mut memory),
-    )
-    .ok()?;
-    let parents = elimination_tree(&pattern, &order, &place);
-    Some(
-        postorder(&parents)
-            .into_iter()
-            .map(|j| order[j as usize])
-            .collect(),
-    )
+/// Returns site by site what comes first.
+pub fn nested_dissection(points: &[[f64; 3]], cliques: &Cliques) -> Vec<u32> {
+    let graph = Graph::new(points.len(), cliques);
+    let order = dissect(&graph, points);
+    let parents = elimination_tree(&graph, &order);
+    postorder(&parents)
+        .into_iter()
+        .map(|j| order[j as usize])
+        .collect()
 }
 
 const NO_PARENT: u32 = u32::MAX;
 
-/// Liu's elimination tree of the permuted graph, by path compression.
-fn elimination_tree(pattern: &LowerPattern, order: &[u32], place: &[u32]) -> Vec<u32> {
-    let n = pattern.n();
-    let mut earlier: Vec<Vec<u32>> = vec![Vec::new(); n];
-    for j in 0..n {
-        for &i in &pattern.rows_of(j)[1..] {
-            let (a, b) = (place[i as usize], place[j]);
-            earlier[a.max(b) as usize].push(a.min(b));
-        }
+/// Liu's elimination tree of a graph that is eliminated in this `order`, by path compression.
+fn elimination_tree(graph: &Graph, order: &[u32]) -> Vec<u32> {
+    let mut place = vec![0; order.len()];
+    for (k, &site) in order.iter().enumerate() {
+        place[site as usize] = k as u32;
     }
-    debug_assert_eq!(order.len(), n);
-    let mut parents = vec![NO_PARENT; n];
-    let mut ancestors = vec![NO_PARENT; n];
-    for (k, list) in earlier.iter().enumerate() {
-        for &start in list {
-            let mut i = start;
-            while i != NO_PARENT && i != k as u32 {
-                let next = ancestors[i as usize];
-                ancestors[i as usize] = k as u32;
+    let mut parents = vec![NO_PARENT; order.len()];
+    let mut ancestors = vec![NO_PARENT; order.len()];
+    for (k, &site) in order.iter().enumerate() {
+        let k = k as u32;
+        let earlier = graph.of(site).iter().map(|&i| place[i as usize]);
+        for mut i in earlier.filter(|&i| i < k) {
+            while i != NO_PARENT && i != k {
+                let next = std::mem::replace(&mut ancestors[i as usize], k);
                 if next == NO_PARENT {
-                    parents[i as usize] = k as u32;
+                    parents[i as usize] = k;
                 }
                 i = next;
             }
@@ -98,19 +77,14 @@ fn postorder(parents: &[u32]) -> Vec<u32> {
 mod tests {
     use super::*;
 
-    fn path(n: usize) -> Cliques {
+    #[test]
+    fn the_tree_of_a_path_that_is_eliminated_from_its_ends() {
         let mut cliques = Cliques::default();
-        for i in 0..n as u32 - 1 {
+        for i in 0..4 {
             cliques.push([i, i + 1]);
         }
-        cliques
-    }
-
-    #[test]
-    fn an_order_holds_every_site_once() {
-        let mut order = minimum_degree(50, &path(50)).unwrap();
-        order.sort_unstable();
-        assert_eq!(order, (0..50).collect::<Vec<u32>>());
+        let parents = elimination_tree(&Graph::new(5, &cliques), &[0, 4, 1, 3, 2]);
+        assert_eq!(parents, [2, 3, 4, 4, NO_PARENT]);
     }
 
     #[test]
@@ -127,6 +101,6 @@ mod tests {
 
     #[test]
     fn an_empty_graph_has_an_empty_order() {
-        assert_eq!(minimum_degree(0, &Cliques::default()), Some(vec![]));
+        assert!(nested_dissection(&[], &Cliques::default()).is_empty());
     }
 }

@@ -49,7 +49,7 @@ impl Cliques {
     }
 
     /// For each of `n` unknowns the lists that hold it, as offsets and list numbers.
-    fn transposed(&self, n: usize) -> (Vec<usize>, Vec<u32>) {
+    pub(super) fn transposed(&self, n: usize) -> (Vec<usize>, Vec<u32>) {
         let mut offsets = vec![0; n + 1];
         for &i in &self.members {
             offsets[i as usize + 1] += 1;
@@ -104,6 +104,31 @@ impl LowerPattern {
         Some(Self { columns, rows })
     }
 
+    /// The pattern of a sum of dense matrices over `cliques` of sites, each of which is a run of
+    /// unknowns: site s is unknowns `starts[s]..starts[s + 1]`, at least one.
+    ///
+    /// Returns `None` where it has more than 2³² entries.
+    pub fn of_sites(starts: &[u32], cliques: &Cliques) -> Option<Self> {
+        let sites = Self::new(starts.len() - 1, cliques)?;
+        let n = starts.last().map_or(0, |&n| n as usize);
+        let mut columns = Vec::with_capacity(n + 1);
+        let mut rows: Vec<u32> = Vec::with_capacity(5 * sites.len());
+        columns.push(0);
+        for s in 0..sites.n() {
+            let first = rows.len();
+            for &t in sites.rows_of(s) {
+                rows.extend(starts[t as usize]..starts[t as usize + 1]);
+            }
+            let end = rows.len();
+            columns.push(u32::try_from(end).ok()?);
+            for skipped in 1..(starts[s + 1] - starts[s]) as usize {
+                rows.extend_from_within(first + skipped..end);
+                columns.push(u32::try_from(rows.len()).ok()?);
+            }
+        }
+        Some(Self { columns, rows })
+    }
+
     /// Number of unknowns.
     pub fn n(&self) -> usize {
         self.columns.len() - 1
@@ -127,27 +152,6 @@ impl LowerPattern {
     /// The rows of column `j`, ascending from the diagonal.
     pub fn rows_of(&self, j: usize) -> &[u32] {
         &self.rows[self.column(j)]
-    }
-
-    /// The pattern of the transpose: the upper triangle by columns.
-    pub(super) fn upper(&self) -> (Vec<u32>, Vec<u32>) {
-        let n = self.n();
-        let mut columns = vec![0u32; n + 1];
-        for &i in &self.rows {
-            columns[i as usize + 1] += 1;
-        }
-        for i in 0..n {
-            columns[i + 1] += columns[i];
-        }
-        let mut next = columns.clone();
-        let mut rows = vec![0u32; self.rows.len()];
-        for j in 0..n {
-            for &i in self.rows_of(j) {
-                rows[next[i as usize] as usize] = j as u32;
-                next[i as usize] += 1;
-            }
-        }
-        (columns, rows)
     }
 }
 
@@ -179,6 +183,30 @@ impl SparseSymmetric {
                 }
                 if let Ok(place) = rows.binary_search(&i) {
                     self.values[range.start + place] += entry(a, b);
+                }
+            }
+        }
+    }
+
+    /// Adds a dense symmetric matrix over runs of `width` unknowns that begin at `firsts`, all of
+    /// them sites of the pattern; `entry` is asked as [`add`](Self::add) asks it.
+    pub fn add_runs(&mut self, firsts: &[u32], width: usize, entry: impl Fn(usize, usize) -> f64) {
+        for (q, &j) in firsts.iter().enumerate() {
+            let range = self.pattern.column(j as usize);
+            for (p, &i) in firsts.iter().enumerate() {
+                if i < j {
+                    continue;
+                }
+                let rows = &self.pattern.rows[range.clone()];
+                let Some(offset) = rows.iter().position(|&row| row == i) else {
+                    continue;
+                };
+                for b in 0..width {
+                    // Each column of a run begins a row later than the one before.
+                    let column = self.pattern.columns[j as usize + b] as usize + offset;
+                    for a in if i == j { b } else { 0 }..width {
+                        self.values[column + a - b] += entry(p * width + a, q * width + b);
+                    }
                 }
             }
         }

@@ -1,0 +1,155 @@
+//! The kernels of a run, each by itself: `cargo bench --bench kernels`.
+
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    reason = "a benchmark that can't go on has failed"
+)]
+
+mod scene;
+
+use std::hint::black_box;
+use std::time::Duration;
+
+use contact_dd_mpi::certificate::BlockCheck;
+use contact_dd_mpi::contact::limits::Limits;
+use contact_dd_mpi::contact::pair::ContactPair;
+use contact_dd_mpi::fem::assembly::assemble;
+use contact_dd_mpi::fem::balance::Balance;
+use contact_dd_mpi::fem::dofs::Dofs;
+use contact_dd_mpi::fem::stress::BlockStress;
+use contact_dd_mpi::interface::numbering::Numbering;
+use contact_dd_mpi::interface::operator::{Contribution, Interface};
+use contact_dd_mpi::rigid::energy::RigidDrive;
+use contact_dd_mpi::schur::condensed::Condensed;
+use contact_dd_mpi::schur::local::LocalSchur;
+use contact_dd_mpi::schur::merge::Merge;
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use faer::Par;
+
+use scene::Scene;
+
+/// One linear subdomain of about 2 000 and of about 20 000 dofs.
+fn subdomain(c: &mut Criterion) {
+    for (refine, count, size) in [(2, 40, "2k"), (3, 16, "20k")] {
+        let scene = Scene::granite(refine, count);
+        let b = scene.largest_linear();
+        let (block, conditions) = &scene.blocks[b];
+        let materials = scene.materials();
+        let (dofs, system) = scene.assembled(b);
+        let (_, schur, load) = scene.condensed(b);
+        let x_b = vec![1e-3; load.boundary().len()];
+        let u = dofs.displacement(&schur.recover(&load, &x_b));
+        let balance = Balance::new(block, conditions, materials, &u, &[]);
+
+        let mut group = c.benchmark_group(format!("subdomain {size}"));
+        group.bench_function("number unknowns", |bench| {
+            bench.iter(|| Dofs::new(block, conditions, materials).unwrap());
+        });
+        group.bench_function("assemble", |bench| {
+            bench.iter(|| assemble(block, &dofs, materials, &[]).unwrap());
+        });
+        group.bench_function("factorize and condense", |bench| {
+            bench.iter(|| LocalSchur::new(&system, dofs.interior, Par::Seq).unwrap());
+        });
+        group.bench_function("recover", |bench| {
+            bench.iter(|| dofs.displacement(&schur.recover(&load, black_box(&x_b))));
+        });
+        group.bench_function("certificate", |bench| {
+            bench.iter(|| Balance::new(block, conditions, materials, black_box(&u), &[]));
+        });
+        group.bench_function("certificate, check", |bench| {
+            bench.iter(|| BlockCheck::new(block, conditions, &balance, black_box(&u), &[]));
+        });
+        group.bench_function("stresses", |bench| {
+            bench.iter(|| BlockStress::new(block, materials, scene.catalog.plane, black_box(&u)));
+        });
+        group.finish();
+    }
+}
+
+/// One evaluation of S_CON by a pair.
+fn pair(c: &mut Criterion) {
+    let scene = Scene::granite(1, 20);
+    let b = scene.plan.pairs[0];
+    let (dofs, ..) = scene.condensed(b);
+    let gaps: Vec<f64> = scene.blocks[b].1.iter().map(|c| c.gap).collect();
+    let limits = Limits::new(dofs.approaches, &dofs.approach_of, &gaps, 0.0);
+    let mut condensed = scene.of_block(b);
+    condensed.fill_upper_triangle();
+    let u = vec![0.0; condensed.traces.len()];
+    let mut pair = ContactPair::new(condensed, limits);
+    c.bench_function("S_CON of a pair", |bench| {
+        bench.iter(|| pair.evaluate(black_box(&u), None));
+    });
+}
+
+/// The merge with most unknowns of a hierarchy of 40 subdomains.
+fn merge(c: &mut Criterion) {
+    let scene = Scene::granite(2, 40);
+    let blocks = scene.blocks.len();
+    let nodes = &scene.plan.tree.nodes;
+    let of_blocks = |v: &usize| nodes[*v].children.iter().all(|&child| child < blocks);
+    let inner = (blocks..nodes.len()).filter(of_blocks);
+    let v = inner.max_by_key(|&v| nodes[v].kept.len()).unwrap();
+    let children = || -> Vec<Condensed> {
+        let children = nodes[v].children.iter();
+        children.map(|&child| scene.of_block(child)).collect()
+    };
+    c.bench_function("merge", |bench| {
+        bench.iter_batched(
+            children,
+            |children| Merge::new(children, &nodes[v].eliminated, Par::Seq).unwrap(),
+            BatchSize::LargeInput,
+        );
+    });
+}
+
+/// S_0 of all subdomains with its factor.
+fn interface(c: &mut Criterion) {
+    let scene = Scene::granite(1, 20);
+    let blocks = scene.blocks.len();
+    let is_pair: Vec<bool> = (0..blocks)
+        .map(|b| scene.plan.pair_of(b).is_some())
+        .collect();
+    let condensed: Vec<Condensed> = (0..blocks).map(|b| scene.of_block(b)).collect();
+    let traces: Vec<_> = condensed.iter().map(|c| &c.traces[..]).collect();
+    let nodes: Vec<_> = (0..blocks)
+        .map(|b| &scene.plan.tree.nodes[b].kept[..])
+        .collect();
+    let numbering = Numbering::new(&traces, &nodes, &is_pair).unwrap();
+    c.bench_function("S_0", |bench| {
+        bench.iter_batched(
+            || condensed.iter().map(contribution).collect(),
+            |parts| {
+                let motions = RigidDrive::default();
+                Interface::new(&numbering, parts, &is_pair, &motions, Par::Seq).unwrap()
+            },
+            BatchSize::LargeInput,
+        );
+    });
+}
+
+/// What a block brings to Γ with its approaches, which come first on its boundary, at 0.
+fn contribution(condensed: &Condensed) -> Contribution {
+    let (m, n) = (condensed.approaches, condensed.traces.len());
+    let mut condensed = condensed.clone();
+    condensed.fill_upper_triangle();
+    Contribution {
+        s: condensed.s.submatrix(m, m, n, n).to_owned(),
+        load: condensed.load[m..].to_vec(),
+        smallest_pivot: condensed.smallest_pivot,
+        eliminated: 0,
+        law: None,
+    }
+}
+
+criterion_group! {
+    name = kernels;
+    config = Criterion::default()
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1));
+    targets = subdomain, merge, pair, interface
+}
+criterion_main!(kernels);

@@ -1,0 +1,90 @@
+//! The blocks of a built-in scene, as one rank would have them.
+
+use contact_dd_mpi::fem::assembly::{BlockSystem, assemble};
+use contact_dd_mpi::fem::block::Block;
+use contact_dd_mpi::fem::condition::BlockCondition;
+use contact_dd_mpi::fem::dofs::Dofs;
+use contact_dd_mpi::plan::Plan;
+use contact_dd_mpi::plan::cluster::Merging;
+use contact_dd_mpi::schur::condensed::Condensed;
+use contact_dd_mpi::schur::local::{CondensedLoad, LocalSchur};
+use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::example;
+use contact_dd_partition::model::{Material, Model};
+use contact_dd_partition::problem::{Catalog, Problem};
+use faer::Par;
+
+/// A scene cut into subdomains.
+pub struct Scene {
+    pub catalog: Catalog,
+    pub plan: Plan,
+    pub blocks: Vec<(Block, Vec<BlockCondition>)>,
+}
+
+impl Scene {
+    /// The granite scene, its cells cut in four `refine` times, in `count` subdomains.
+    pub fn granite(refine: u32, count: usize) -> Self {
+        let (scene, mesh) = example::find("granite").unwrap().make(refine).unwrap();
+        let model = Model::new(&scene, mesh).unwrap();
+        let decomposition = Decomposition::new(&model, Some(count)).unwrap();
+        let problem = Problem::new(&model, &decomposition).unwrap();
+        let plan = Plan::new(&problem.catalog, 1, Merging::All);
+        let blocks = (plan.blocks.iter())
+            .map(|of_plan| {
+                let members = of_plan.subdomains.iter();
+                let members = members.map(|&s| problem.subdomains[s].clone()).collect();
+                let shared = |node: u32| plan.sharing[node as usize] > 1;
+                let block = Block::new(members, problem.catalog.dim, shared);
+                let rows = of_plan.group.map_or(&[][..], |g| &problem.rows[g]);
+                let conditions = rows.iter().map(|row| BlockCondition::new(&block, row));
+                let conditions = conditions.collect();
+                (block, conditions)
+            })
+            .collect();
+        Self {
+            catalog: problem.catalog,
+            plan,
+            blocks,
+        }
+    }
+
+    pub fn materials(&self) -> &[Material] {
+        &self.catalog.materials
+    }
+
+    /// The largest linear subdomain.
+    pub fn largest_linear(&self) -> usize {
+        let linear = (0..self.blocks.len()).filter(|&b| self.plan.blocks[b].group.is_none());
+        linear.max_by_key(|&b| self.blocks[b].0.nodes()).unwrap()
+    }
+
+    /// A block's unknowns, stiffness and load.
+    pub fn assembled(&self, b: usize) -> (Dofs, BlockSystem) {
+        let (block, conditions) = &self.blocks[b];
+        let dofs = Dofs::new(block, conditions, self.materials()).unwrap();
+        let system = assemble(block, &dofs, self.materials(), &[]).unwrap();
+        (dofs, system)
+    }
+
+    /// A block condensed onto its boundary.
+    pub fn condensed(&self, b: usize) -> (Dofs, LocalSchur, CondensedLoad) {
+        let (dofs, system) = self.assembled(b);
+        let schur = LocalSchur::new(&system, dofs.interior, Par::Seq).unwrap();
+        let load = schur.condense(system.load);
+        (dofs, schur, load)
+    }
+
+    /// The same as what a merge takes.
+    pub fn of_block(&self, b: usize) -> Condensed {
+        let (dofs, schur, load) = self.condensed(b);
+        Condensed {
+            approaches: dofs.approaches,
+            traces: dofs.traces.clone(),
+            smallest_pivot: schur.smallest_pivot(),
+            load: load.boundary().to_vec(),
+            stiffness: schur.stiffness,
+            s: schur.s,
+            eliminated: 0,
+        }
+    }
+}

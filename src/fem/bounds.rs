@@ -1,0 +1,83 @@
+//! The contact conditions of a block as bounds on approaches.
+
+use std::collections::BTreeMap;
+
+use contact_dd_partition::model::Material;
+
+use super::block::Block;
+use super::condition::BlockCondition;
+use super::frame::{Frame, dot};
+use super::node_frames::NodeFrames;
+use crate::contact::approach::{ApproachRow, Approaches, OnInterface};
+
+/// The approaches of `conditions`.
+///
+/// # Errors
+/// A condition that lies on Γ.
+pub(super) fn approaches(
+    block: &Block,
+    conditions: &[BlockCondition],
+    materials: &[Material],
+    frames: &NodeFrames,
+    on_interface: &[bool],
+) -> Result<Approaches, OnInterface> {
+    if conditions.is_empty() {
+        return Ok(Approaches::default());
+    }
+    let dim = block.dim;
+    let frame = |node: u32| frames.of(node).unwrap_or(&Frame::CARTESIAN);
+    let rows: Vec<_> = conditions
+        .iter()
+        .map(|c| in_frames(c, frame, dim))
+        .collect();
+    let may_go = |v: u32| !on_interface[v as usize / dim];
+    let stiffness = node_stiffness(block, materials);
+    Approaches::new(&rows, may_go, |v| stiffness[v as usize / dim])
+}
+
+/// The stiffest material around every node (Pa).
+fn node_stiffness(block: &Block, materials: &[Material]) -> Vec<f64> {
+    let mut stiffness = vec![0.0; block.nodes()];
+    for cell in block.cells() {
+        let modulus = materials[cell.material].stiffness[0][0];
+        for node in cell.nodes() {
+            let of_node: &mut f64 = &mut stiffness[node as usize];
+            *of_node = of_node.max(modulus);
+        }
+    }
+    stiffness
+}
+
+/// A condition in terms of components along the axes of its nodes' frames.
+fn in_frames<'a>(
+    condition: &BlockCondition,
+    frame: impl Fn(u32) -> &'a Frame,
+    dim: usize,
+) -> ApproachRow {
+    let mut constant = 0.0;
+    let mut row: BTreeMap<u32, f64> = BTreeMap::new();
+    for (node, coefficient) in &condition.entries {
+        let frame = frame(*node);
+        for axis in 0..dim {
+            let along = dot(coefficient, &frame.axes[axis]);
+            match frame.prescribed[axis] {
+                Some(value) => constant += along * value,
+                None => *row.entry(node * dim as u32 + axis as u32).or_default() += along,
+            }
+        }
+    }
+    // A frame along the condition's own normal leaves round-off on its other axes.
+    let scale = condition
+        .entries
+        .iter()
+        .map(|(_, c)| dot(c, c).sqrt())
+        .fold(0.0, f64::max);
+    ApproachRow {
+        constant,
+        terms: row
+            .into_iter()
+            .filter(|(_, c)| c.abs() > 1e-14 * scale)
+            .collect(),
+        gap: condition.gap,
+    }
+}

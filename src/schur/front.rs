@@ -1,0 +1,188 @@
+//! The dense part of a sparse factorization: the columns of a supernode and what they leave to the
+//! rows below.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Accum, Mat, MatMut, Par};
+use pulp::{Arch, Simd, WithSimd};
+
+/// Rows of a front up to which it is factorized four columns at a time in place; larger ones are
+/// left to faer's blocked algorithms.
+const SMALL: usize = 96;
+
+/// Factorizes `panel`, the `columns` columns of a front with `rows` rows, in place, and subtracts
+/// what they contribute from `update`, the square of the rows below. Lower triangles alone count.
+///
+/// # Errors
+/// The column whose pivot isn't positive.
+pub(super) fn factorize(
+    panel: &mut [f64],
+    rows: usize,
+    columns: usize,
+    update: &mut [f64],
+    par: Par,
+) -> Result<(), usize> {
+    if rows <= SMALL {
+        Arch::new().dispatch(InPlace {
+            panel,
+            rows,
+            columns,
+            update,
+        })
+    } else {
+        blocked(panel, rows, columns, update, par)
+    }
+}
+
+fn blocked(
+    panel: &mut [f64],
+    rows: usize,
+    columns: usize,
+    update: &mut [f64],
+    par: Par,
+) -> Result<(), usize> {
+    let below = rows - columns;
+    let panel = MatMut::from_column_major_slice_mut(panel, rows, columns);
+    let (mut top, mut bottom) = panel.split_at_row_mut(columns);
+    let scratch = cholesky_in_place_scratch::<f64>(columns, par, Default::default());
+    cholesky_in_place(
+        top.as_mut(),
+        Default::default(),
+        par,
+        MemStack::new(&mut MemBuffer::new(scratch)),
+        Default::default(),
+    )
+    .map_err(|LltError::NonPositivePivot { index }| index)?;
+    solve_lower_triangular_in_place(top.as_ref(), bottom.as_mut().transpose_mut(), par);
+    triangular::matmul(
+        MatMut::from_column_major_slice_mut(update, below, below),
+        BlockStructure::TriangularLower,
+        Accum::Add,
+        bottom.as_ref(),
+        BlockStructure::Rectangular,
+        bottom.as_ref().transpose(),
+        BlockStructure::Rectangular,
+        -1.0,
+        par,
+    );
+    Ok(())
+}
+
+/// Columns that are eliminated together, so that what follows is read and written once for all.
+const WIDTH: usize = 4;
+
+struct InPlace<'a> {
+    panel: &'a mut [f64],
+    rows: usize,
+    columns: usize,
+    update: &'a mut [f64],
+}
+
+impl WithSimd for InPlace<'_> {
+    type Output = Result<(), usize>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Self {
+            panel,
+            rows,
+            columns,
+            update,
+        } = self;
+        let below = rows - columns;
+        for first in (0..columns).step_by(WIDTH) {
+            let width = WIDTH.min(columns - first);
+            let (done, rest) = panel.split_at_mut((first + width) * rows);
+            eliminate(simd, &mut done[first * rows..], rows, first)?;
+            let done = &done[first * rows..];
+            for (j, column) in (first + width..).zip(rest.chunks_exact_mut(rows)) {
+                subtract(simd, &mut column[j..], done, rows, j);
+            }
+            for (j, column) in (0..below).zip(update.chunks_exact_mut(below.max(1))) {
+                subtract(simd, &mut column[j..], done, rows, columns + j);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Eliminates the few columns of `block`, whose first diagonal entry is in row `first`.
+#[inline(always)]
+fn eliminate<S: Simd>(simd: S, block: &mut [f64], rows: usize, first: usize) -> Result<(), usize> {
+    for j in 0..block.len() / rows {
+        let (done, rest) = block.split_at_mut(j * rows);
+        let column = &mut rest[first + j..rows];
+        subtract(simd, column, done, rows, first + j);
+        let pivot = column[0];
+        if pivot <= 0.0 || pivot.is_nan() {
+            return Err(first + j);
+        }
+        let root = pivot.sqrt();
+        let inverse = 1.0 / root;
+        column[0] = root;
+        for x in &mut column[1..] {
+            *x *= inverse;
+        }
+    }
+    Ok(())
+}
+
+/// `to` ← `to` − Σ_p L_ip L_jp over the columns p of `block`, i from j on: at most four columns.
+#[inline(always)]
+fn subtract<S: Simd>(simd: S, to: &mut [f64], block: &[f64], rows: usize, j: usize) {
+    match block.len() / rows {
+        0 => {}
+        1 => subtract_columns::<S, 1>(simd, to, block, rows, j),
+        2 => subtract_columns::<S, 2>(simd, to, block, rows, j),
+        3 => subtract_columns::<S, 3>(simd, to, block, rows, j),
+        _ => subtract_columns::<S, WIDTH>(simd, to, block, rows, j),
+    }
+}
+
+#[inline(always)]
+fn subtract_columns<S: Simd, const N: usize>(
+    simd: S,
+    to: &mut [f64],
+    block: &[f64],
+    rows: usize,
+    j: usize,
+) {
+    let columns: [&[f64]; N] = std::array::from_fn(|p| &block[p * rows + j..(p + 1) * rows]);
+    let factors: [S::f64s; N] = std::array::from_fn(|p| simd.splat_f64s(-columns[p][0]));
+    let (head, tail) = S::as_mut_simd_f64s(to);
+    let parts: [(&[S::f64s], &[f64]); N] = columns.map(|column| S::as_simd_f64s(column));
+    let heads: [&[S::f64s]; N] = parts.map(|(part, _)| &part[..head.len()]);
+    for (i, x) in head.iter_mut().enumerate() {
+        let mut sum = *x;
+        for p in 0..N {
+            sum = simd.mul_add_e_f64s(factors[p], heads[p][i], sum);
+        }
+        *x = sum;
+    }
+    if !tail.is_empty() {
+        let mut sum = simd.partial_load_f64s(tail);
+        for p in 0..N {
+            sum = simd.mul_add_e_f64s(factors[p], simd.partial_load_f64s(parts[p].1), sum);
+        }
+        simd.partial_store_f64s(tail, sum);
+    }
+}
+
+/// L Lᵀ of a lower triangle, the lower triangle alone.
+pub(super) fn square(l: &Mat<f64>, par: Par) -> Mat<f64> {
+    let mut s = Mat::zeros(l.nrows(), l.nrows());
+    triangular::matmul(
+        s.as_mut(),
+        BlockStructure::TriangularLower,
+        Accum::Replace,
+        l.as_ref(),
+        BlockStructure::TriangularLower,
+        l.transpose(),
+        BlockStructure::TriangularUpper,
+        1.0,
+        par,
+    );
+    s
+}

@@ -1,0 +1,214 @@
+//! The columns of one supernode of a Cholesky factor, and solving with them.
+
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Mat, MatMut, MatRef, Par};
+use pulp::{Arch, Simd, WithSimd};
+
+/// The columns of one supernode: a dense lower trapezoid over its own rows and those `below`.
+pub(super) struct Panel<'a> {
+    pub start: usize,
+    pub columns: usize,
+    pub below: &'a [u32],
+    pub values: &'a [f64],
+}
+
+impl<'a> Panel<'a> {
+    fn rows(&self) -> usize {
+        self.columns + self.below.len()
+    }
+
+    /// Column `j`, from the first row of the supernode on.
+    pub fn column(&self, j: usize) -> &'a [f64] {
+        &self.values[j * self.rows()..(j + 1) * self.rows()]
+    }
+
+    /// How many of its columns are among the first `count`; a supernode may reach from I into B.
+    pub fn columns_before(&self, count: usize) -> usize {
+        count.saturating_sub(self.start).min(self.columns)
+    }
+
+    /// Copies what it has of L_BB, the rows and columns from `interior` on.
+    pub fn copy_boundary(&self, interior: usize, l_bb: &mut Mat<f64>) {
+        for j in self.columns_before(interior)..self.columns {
+            let column = self.column(j);
+            let to = self.start + j - interior;
+            for i in j..self.columns {
+                l_bb[(self.start + i - interior, to)] = column[i];
+            }
+            for (&i, &value) in self.below.iter().zip(&column[self.columns..]) {
+                l_bb[(i as usize - interior, to)] = value;
+            }
+        }
+    }
+
+    /// One step of x ← L⁻¹ x with its first `count` columns.
+    pub fn forward(&self, count: usize, x: &mut [f64], work: &mut Vec<f64>) {
+        let own = &mut x[self.start..self.start + self.columns];
+        for j in 0..count {
+            let column = self.column(j);
+            let xj = own[j] / column[j];
+            own[j] = xj;
+            for (x, l) in own[j + 1..].iter_mut().zip(&column[j + 1..]) {
+                *x -= l * xj;
+            }
+        }
+        work.clear();
+        work.resize(self.below.len(), 0.0);
+        Arch::new().dispatch(Product {
+            panel: self,
+            x: &own[..count],
+            y: work,
+        });
+        for (&i, y) in self.below.iter().zip(work.iter()) {
+            x[i as usize] -= y;
+        }
+    }
+
+    /// One step of x ← L⁻ᵀ x with its first `count` columns.
+    pub fn backward(&self, count: usize, x: &mut [f64], work: &mut Vec<f64>) {
+        work.clear();
+        work.extend(self.below.iter().map(|&i| x[i as usize]));
+        let own = &mut x[self.start..self.start + self.columns];
+        Arch::new().dispatch(TransposedProduct {
+            panel: self,
+            x: work,
+            y: &mut own[..count],
+        });
+        for j in (0..count).rev() {
+            let column = self.column(j);
+            let (before, after) = own.split_at_mut(j + 1);
+            let mut sum = before[j];
+            for (x, l) in after.iter().zip(&column[j + 1..]) {
+                sum -= l * x;
+            }
+            before[j] = sum / column[j];
+        }
+    }
+
+    /// One step of X ← L_BB⁻¹ X with its columns from `interior` on; X has a row for every unknown
+    /// of B.
+    pub fn forward_boundary(&self, interior: usize, mut x: MatMut<'_, f64>, par: Par) {
+        let skipped = self.columns_before(interior);
+        let (first, count) = (self.start + skipped, self.columns - skipped);
+        if count == 0 {
+            return;
+        }
+        let values = MatRef::from_column_major_slice(self.values, self.rows(), self.columns);
+        let own = values.submatrix(skipped, skipped, count, count);
+        let mut top = x.as_mut().subrows_mut(first - interior, count);
+        solve_lower_triangular_in_place(own, top.as_mut(), par);
+        let below = values.submatrix(self.columns, skipped, self.below.len(), count);
+        let product = below * top.as_ref();
+        for (&i, row) in self.below.iter().zip(product.row_iter()) {
+            let to = x.as_mut().row_mut(i as usize - interior);
+            for (x, p) in to.iter_mut().zip(row.iter()) {
+                *x -= p;
+            }
+        }
+    }
+}
+
+/// Columns that are multiplied together.
+const WIDTH: usize = 4;
+
+/// y ← y + L x with the rows below a panel's own.
+struct Product<'a> {
+    panel: &'a Panel<'a>,
+    x: &'a [f64],
+    y: &'a mut [f64],
+}
+
+impl WithSimd for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let below = |j: usize| &self.panel.column(j)[self.panel.columns..];
+        let whole = self.x.len() / WIDTH * WIDTH;
+        for j in (0..whole).step_by(WIDTH) {
+            add_columns::<S, WIDTH>(simd, self.y, |p| (self.x[j + p], below(j + p)));
+        }
+        for j in whole..self.x.len() {
+            add_columns::<S, 1>(simd, self.y, |_| (self.x[j], below(j)));
+        }
+    }
+}
+
+#[inline(always)]
+fn add_columns<'a, S: Simd, const N: usize>(
+    simd: S,
+    y: &mut [f64],
+    column: impl Fn(usize) -> (f64, &'a [f64]),
+) {
+    let columns: [(f64, &[f64]); N] = std::array::from_fn(column);
+    let factors = columns.map(|(x, _)| simd.splat_f64s(x));
+    let parts = columns.map(|(_, column)| S::as_simd_f64s(column));
+    let (head, tail) = S::as_mut_simd_f64s(y);
+    let heads: [&[S::f64s]; N] = parts.map(|(part, _)| &part[..head.len()]);
+    for (i, y) in head.iter_mut().enumerate() {
+        let mut sum = *y;
+        for p in 0..N {
+            sum = simd.mul_add_e_f64s(factors[p], heads[p][i], sum);
+        }
+        *y = sum;
+    }
+    if !tail.is_empty() {
+        let mut sum = simd.partial_load_f64s(tail);
+        for p in 0..N {
+            sum = simd.mul_add_e_f64s(factors[p], simd.partial_load_f64s(parts[p].1), sum);
+        }
+        simd.partial_store_f64s(tail, sum);
+    }
+}
+
+/// y ← y − Lᵀ x with the rows below a panel's own.
+struct TransposedProduct<'a> {
+    panel: &'a Panel<'a>,
+    x: &'a [f64],
+    y: &'a mut [f64],
+}
+
+impl WithSimd for TransposedProduct<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let below = |j: usize| &self.panel.column(j)[self.panel.columns..];
+        let whole = self.y.len() / WIDTH * WIDTH;
+        for j in (0..whole).step_by(WIDTH) {
+            let sums = dot_columns::<S, WIDTH>(simd, self.x, |p| below(j + p));
+            for (y, sum) in self.y[j..].iter_mut().zip(sums) {
+                *y -= sum;
+            }
+        }
+        for j in whole..self.y.len() {
+            let [sum] = dot_columns::<S, 1>(simd, self.x, |_| below(j));
+            self.y[j] -= sum;
+        }
+    }
+}
+
+#[inline(always)]
+fn dot_columns<'a, S: Simd, const N: usize>(
+    simd: S,
+    x: &[f64],
+    column: impl Fn(usize) -> &'a [f64],
+) -> [f64; N] {
+    let (head, tail) = S::as_simd_f64s(x);
+    let columns: [&[f64]; N] = std::array::from_fn(column);
+    let parts = columns.map(|column| S::as_simd_f64s(column));
+    let heads: [&[S::f64s]; N] = parts.map(|(part, _)| &part[..head.len()]);
+    let mut sums = [simd.splat_f64s(0.0); N];
+    for (i, &x) in head.iter().enumerate() {
+        for p in 0..N {
+            sums[p] = simd.mul_add_e_f64s(heads[p][i], x, sums[p]);
+        }
+    }
+    if !tail.is_empty() {
+        let x = simd.partial_load_f64s(tail);
+        for p in 0..N {
+            sums[p] = simd.mul_add_e_f64s(simd.partial_load_f64s(parts[p].1), x, sums[p]);
+        }
+    }
+    sums.map(|sum| simd.reduce_sum_f64s(sum))
+}
