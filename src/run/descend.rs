@@ -13,6 +13,9 @@ const ROUND_OFF: f64 = 1e-14;
 
 /// Takes the bodies' descent out of gaps and supports.
 pub fn take_out_descent(blocks: &mut BTreeMap<usize, OwnedBlock>, survey: &Survey, dim: usize) {
+    if survey.longest_descent() == 0.0 {
+        return;
+    }
     for owned in blocks.values_mut() {
         let block = &mut owned.block;
         for (row, condition) in owned.rows.iter().zip(&mut owned.conditions) {
@@ -59,9 +62,13 @@ pub fn with_descent(
     survey: &Survey,
     dim: usize,
 ) -> BTreeMap<usize, Vec<f64>> {
+    let stays = survey.longest_descent() == 0.0;
     let of_block = |(&b, solution): (&usize, &BlockSolution)| {
         let block = &blocks.get(&b)?.block;
         let mut u = solution.u.clone();
+        if stays {
+            return Some((b, u));
+        }
         let mut done = vec![false; block.nodes()];
         for (member, node_of) in block.members.iter().zip(&block.node_of) {
             for (x, &node) in member.points.iter().zip(node_of) {

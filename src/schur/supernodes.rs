@@ -79,12 +79,11 @@ impl Supernodes {
                 parent: structures.parent(g),
                 zeros: 0,
             };
-            while let Some(child) = stack.last() {
-                let is_child = (last.first..=g).contains(&(child.parent as usize));
-                match last.with(child) {
-                    Some(merged) if is_child => last = merged,
-                    _ => break,
-                }
+            while let Some(child) = stack.last()
+                && (last.first..=g).contains(&(child.parent as usize))
+                && let Some(merged) = last.with(child)
+            {
+                last = merged;
                 stack.pop();
             }
             stack.push(last);
