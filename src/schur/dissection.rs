@@ -57,12 +57,18 @@ impl Dissection<'_> {
             .for_each(|&i| self.side[i as usize] = right_side);
         let (inner_left, along_left) = self.separated(left, right_side);
         let (inner_right, along_right) = self.separated(right, left_side);
-        let (halves, separator) = if along_left.len() <= along_right.len() {
+        let (halves, mut separator) = if along_left.len() <= along_right.len() {
             ([inner_left, right.to_vec()], along_left)
         } else {
             ([left.to_vec(), inner_right], along_right)
         };
         halves.into_iter().for_each(|half| self.cut(half));
+        // Along the cut, so that what a piece touches of it is contiguous.
+        let across = |i: u32| {
+            let [x, y, z] = self.points[i as usize];
+            x * direction[1] - y * direction[0] + z
+        };
+        separator.sort_unstable_by(|&i, &j| across(i).total_cmp(&across(j)).then(i.cmp(&j)));
         self.order.extend(separator);
     }
 

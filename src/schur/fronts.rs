@@ -1,5 +1,7 @@
 //! The numerical factorization: front by front, each passing what it leaves to its parent's.
 
+use std::ops::Range;
+
 use faer::{MatMut, Par};
 
 use super::factor::FactorError;
@@ -21,7 +23,7 @@ pub(super) struct Fronts<'a> {
     free: Vec<Vec<f64>>,
     /// Row of the current front for every unknown below it.
     place: Vec<u32>,
-    targets: Vec<u32>,
+    targets: Targets,
 }
 
 impl<'a> Fronts<'a> {
@@ -44,7 +46,7 @@ impl<'a> Fronts<'a> {
             updates: vec![Vec::new(); supernodes.len()],
             free: Vec::new(),
             place: vec![0; matrix.pattern.n()],
-            targets: Vec::new(),
+            targets: Targets::default(),
         }
     }
 
@@ -69,20 +71,13 @@ impl<'a> Fronts<'a> {
             let mut child = self.first_child[s];
             while child != ROOT {
                 let taken = std::mem::take(&mut self.updates[child as usize]);
-                self.target(child as usize);
-                let split = self
-                    .targets
-                    .partition_point(|&t| (t as usize) < columns.len());
-                let (own, passed) = (0..split, split..self.targets.len());
-                add(&taken, &self.targets, own, &mut panel, rows, 0);
-                add(
-                    &taken,
-                    &self.targets,
-                    passed,
-                    &mut update,
-                    below,
-                    columns.len(),
-                );
+                self.targets
+                    .set(self.supernodes.below(child as usize), &self.place);
+                let split = self.targets.before(columns.len());
+                self.targets.add(&taken, 0..split, &mut panel, rows, 0);
+                let passed = split..self.targets.rows.len();
+                self.targets
+                    .add(&taken, passed, &mut update, below, columns.len());
                 self.free.push(taken);
                 child = self.next_sibling[child as usize];
             }
@@ -120,24 +115,16 @@ impl<'a> Fronts<'a> {
         }
     }
 
+    /// Zeros, in memory that was used lately if there is any: fresh pages cost more than zeros.
     fn zeros(&mut self, len: usize) -> Vec<f64> {
-        match self.free.pop() {
-            Some(mut memory) if memory.capacity() >= len => {
-                memory.clear();
-                memory.resize(len, 0.0);
-                memory
-            }
-            // To grow would copy what nobody needs.
-            _ => vec![0.0; len],
-        }
-    }
-
-    /// The rows of the current front that a child's rows below are.
-    fn target(&mut self, child: usize) {
-        let below = self.supernodes.below(child);
-        self.targets.clear();
-        self.targets
-            .extend(below.iter().map(|&i| self.place[i as usize]));
+        let fit = (self.free.iter()).rposition(|free| free.capacity() >= len);
+        let Some(fit) = fit else {
+            return vec![0.0; len];
+        };
+        let mut memory = self.free.remove(fit);
+        memory.clear();
+        memory.resize(len, 0.0);
+        memory
     }
 
     /// Adds what a front without parent leaves to what stays.
@@ -156,22 +143,34 @@ impl<'a> Fronts<'a> {
     }
 }
 
-/// Adds the columns `which` of a child's update to a square or panel with `rows` rows, whose first
-/// row and column are row `first` of the front.
-fn add(
-    update: &[f64],
-    targets: &[u32],
-    which: std::ops::Range<usize>,
-    to: &mut [f64],
-    rows: usize,
-    first: usize,
-) {
-    let n = targets.len();
-    for j in which {
-        let column = (targets[j] as usize - first) * rows;
-        let to = &mut to[column..column + rows];
-        for (&i, value) in targets[j..].iter().zip(&update[j * n + j..(j + 1) * n]) {
-            to[i as usize - first] += value;
+/// Where the rows below a child are in its parent's front.
+#[derive(Debug, Default)]
+struct Targets {
+    rows: Vec<u32>,
+}
+
+impl Targets {
+    fn set(&mut self, below: &[u32], place: &[u32]) {
+        self.rows.clear();
+        self.rows.extend(below.iter().map(|&i| place[i as usize]));
+    }
+
+    /// How many rows of the child are before row `row` of the front.
+    fn before(&self, row: usize) -> usize {
+        self.rows.partition_point(|&to| (to as usize) < row)
+    }
+
+    /// Adds the lower triangle's columns `which` of a child's update to columns with `rows` rows,
+    /// the first row and column of which are row `first` of the front.
+    fn add(&self, update: &[f64], which: Range<usize>, to: &mut [f64], rows: usize, first: usize) {
+        let n = self.rows.len();
+        for j in which {
+            let column = (self.rows[j] as usize - first) * rows;
+            let to = &mut to[column..column + rows];
+            let values = &update[j * n + j..(j + 1) * n];
+            for (&i, value) in self.rows[j..].iter().zip(values) {
+                to[i as usize - first] += value;
+            }
         }
     }
 }
