@@ -1,7 +1,7 @@
 //! Everything that leaves the program: the result file, the report, the terminal.
 //!
 //! Only the root rank comes here. [`result`] holds what the ranks hand over, [`vtkhdf`] streams it
-//! into the result file subdomain by subdomain, [`report`] is the JSON of `--report` and of the
+//! into the result file in slabs of subdomains, [`report`] is the JSON of `--report` and of the
 //! file's attribute, [`terminal`] prints for people, [`progress`] draws the bar.
 
 pub mod memory;

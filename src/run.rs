@@ -174,7 +174,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     }
     seconds.recover = lap.elapsed().as_secs_f64();
 
-    // Results travel to the root subdomain by subdomain and are written as they arrive.
+    // Results travel to the root in slabs of subdomains and are written as they arrive.
     phase("writing");
     let lap = Instant::now();
     let fields = Fields {

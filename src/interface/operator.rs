@@ -102,22 +102,20 @@ impl Interface {
                 f_scale[dof as usize] += load.abs();
             }
             if is_pair {
-                sum.add(traces, |a, b| part.s[(a, b)]);
+                sum.add_large(traces, part.s.as_ref());
                 pair_traces.push(traces.clone());
                 laws.extend(part.law);
             } else {
-                s_0.add(traces, |a, b| part.s[(a, b)]);
+                s_0.add_large(traces, part.s.as_ref());
             }
         }
         sum.add_sparse(&s_0);
-        let unshifted = vec![0.0; n - numbering.linear];
-        let factor =
-            BoundaryLastCholesky::new(sum, numbering.linear, &unshifted, par).map_err(|error| {
-                Failure::ill_posed(format!(
-                    "the interface problem can't be solved even with every contact closed \
+        let factor = BoundaryLastCholesky::new(&sum, numbering.linear, par).map_err(|error| {
+            Failure::ill_posed(format!(
+                "the interface problem can't be solved even with every contact closed \
                      ({error}): some part of the scene is held neither by supports nor by contact"
-                ))
-            })?;
+            ))
+        })?;
         Ok(Self {
             len: n,
             eliminated,
@@ -183,7 +181,7 @@ impl Interface {
 
     /// The factor of S_0 alone; `None` where S_0 is singular.
     pub fn factor_s_0(&self) -> Option<BoundaryLastCholesky> {
-        let factor = BoundaryLastCholesky::new(self.s_0.clone(), self.len, &[], self.par).ok()?;
+        let factor = BoundaryLastCholesky::new(&self.s_0, self.len, self.par).ok()?;
         (factor.smallest_pivot() > SINGULAR_PIVOT).then_some(factor)
     }
 

@@ -6,7 +6,6 @@
 
 use faer::{Mat, MatMut, Par};
 
-use super::front;
 use super::fronts::Fronts;
 use super::panel::Panel;
 use super::pattern::SparseSymmetric;
@@ -33,34 +32,16 @@ pub struct BoundaryLastCholesky {
 }
 
 impl BoundaryLastCholesky {
-    /// Factorizes `matrix`, whose first `interior` unknowns are I.
-    ///
-    /// `shift` is added to the diagonal of B, so that S_BB may be singular;
-    /// [`schur_complement`](Self::schur_complement) takes it off again.
+    /// Factorizes `matrix`, whose first `interior` unknowns are I, wholly.
     ///
     /// # Errors
-    /// K_II isn't positive definite, or the factor is too large.
-    pub fn new(
-        mut matrix: SparseSymmetric,
-        interior: usize,
-        shift: &[f64],
-        par: Par,
-    ) -> Result<Self, FactorError> {
+    /// The matrix isn't positive definite, or the factor is too large.
+    pub fn new(matrix: &SparseSymmetric, interior: usize, par: Par) -> Result<Self, FactorError> {
         let n = matrix.pattern.n();
-        debug_assert_eq!(shift.len(), n - interior);
-        for (j, s) in (interior..n).zip(shift) {
-            let diagonal = matrix.pattern.column(j).start;
-            matrix.values[diagonal] += s;
-        }
         let mut nothing = Mat::new();
-        let mut factor = Self::eliminate(&matrix, n, nothing.as_mut(), par)?;
+        let mut factor = Self::eliminate(matrix, n, nothing.as_mut(), par)?;
         factor.interior = interior;
-        let unshifted = if shift.iter().all(|&s| s == 0.0) {
-            n
-        } else {
-            interior
-        };
-        factor.smallest_pivot = factor.find_smallest_pivot(&matrix, unshifted);
+        factor.smallest_pivot = factor.find_smallest_pivot(matrix, n);
         Ok(factor)
     }
 
@@ -114,8 +95,8 @@ impl BoundaryLastCholesky {
         })
     }
 
-    /// The smallest pivot relative to its diagonal entry, min L_jj² / K_jj, of I or, where B wasn't
-    /// shifted, of all unknowns: how close the matrix is to a singular one whatever its scaling.
+    /// The smallest pivot relative to its diagonal entry, min L_jj² / K_jj, of what was eliminated: how
+    /// close the matrix is to a singular one whatever its scaling.
     pub fn smallest_pivot(&self) -> f64 {
         self.smallest_pivot
     }
@@ -144,23 +125,6 @@ impl BoundaryLastCholesky {
         })
     }
 
-    /// S_BB = L_BB L_BBᵀ less the `shift` it was factorized with; both triangles are filled.
-    pub fn schur_complement(&self, shift: &[f64], par: Par) -> Mat<f64> {
-        let m = shift.len();
-        let mut l_bb = Mat::<f64>::zeros(m, m);
-        for panel in self.panels() {
-            panel.copy_boundary(self.interior, &mut l_bb);
-        }
-        let mut s = front::square(&l_bb, par);
-        for j in 0..m {
-            s[(j, j)] -= shift[j];
-            for i in j + 1..m {
-                s[(j, i)] = s[(i, j)];
-            }
-        }
-        s
-    }
-
     /// x_I ← L_II⁻¹ x_I and x_B ← x_B − L_BI x_I: condenses a load onto B.
     pub fn forward(&self, x: &mut [f64]) {
         self.forward_before(self.interior, x);
@@ -174,7 +138,7 @@ impl BoundaryLastCholesky {
         }
     }
 
-    /// X ← L_BB⁻¹ X, where X has a row for every unknown of B. Only where B wasn't shifted.
+    /// X ← L_BB⁻¹ X, where X has a row for every unknown of B. Only where B was factorized.
     pub fn forward_boundary(&self, mut x: MatMut<'_, f64>, par: Par) {
         for panel in self.panels() {
             panel.forward_boundary(self.interior, x.as_mut(), par);
@@ -187,7 +151,7 @@ impl BoundaryLastCholesky {
         self.backward_before(self.interior, x);
     }
 
-    /// x ← K⁻¹ x. Only where B was factorized and not shifted.
+    /// x ← K⁻¹ x. Only where B was factorized.
     pub fn solve(&self, x: &mut [f64]) {
         debug_assert_eq!(
             self.supernodes.begin.last().copied().unwrap_or(0) as usize,
@@ -246,12 +210,10 @@ mod tests {
     }
 
     #[test]
-    fn the_trailing_block_is_the_schur_complement() {
+    fn what_the_interior_leaves_is_the_schur_complement() {
         let matrix = chain(12);
         let a = dense(&matrix);
-        let shift = [3.0, 7.0, 2.0];
-        let factor = BoundaryLastCholesky::new(matrix, 9, &shift, Par::Seq).unwrap();
-        let s = factor.schur_complement(&shift, Par::Seq);
+        let (_, s) = BoundaryLastCholesky::condense(&matrix, 9, Par::Seq).unwrap();
         let k_ii = a.view((0, 0), (9, 9)).clone_owned();
         let k_ib = a.view((0, 9), (9, 3)).clone_owned();
         let exact =
@@ -267,7 +229,7 @@ mod tests {
     fn forward_and_backward_solve_with_the_boundary_given() {
         let matrix = chain(10);
         let a = dense(&matrix);
-        let factor = BoundaryLastCholesky::new(matrix, 7, &[0.0; 3], Par::Seq).unwrap();
+        let factor = BoundaryLastCholesky::new(&matrix, 7, Par::Seq).unwrap();
         let exact = nalgebra::DVector::from_fn(10, |i, _| (i as f64).sin() + 2.0);
         let mut x: Vec<f64> = (&a * &exact).iter().copied().collect();
         factor.forward(&mut x);
@@ -280,8 +242,8 @@ mod tests {
 
     #[test]
     fn half_of_a_solve_on_the_boundary_is_half_of_its_schur_complement() {
-        let factor = BoundaryLastCholesky::new(chain(12), 8, &[0.0; 4], Par::Seq).unwrap();
-        let s = factor.schur_complement(&[0.0; 4], Par::Seq);
+        let factor = BoundaryLastCholesky::new(&chain(12), 8, Par::Seq).unwrap();
+        let (_, s) = BoundaryLastCholesky::condense(&chain(12), 8, Par::Seq).unwrap();
         let x = Mat::from_fn(4, 3, |i, j| ((3 * i + 5 * j) as f64).sin());
         let mut w = x.clone();
         factor.forward_boundary(w.as_mut(), Par::Seq);
@@ -293,7 +255,7 @@ mod tests {
     fn a_matrix_that_is_not_positive_definite_is_refused() {
         let mut matrix = chain(4);
         matrix.add(&[2], |_, _| -100.0);
-        let error = BoundaryLastCholesky::new(matrix, 4, &[], Par::Seq).unwrap_err();
+        let error = BoundaryLastCholesky::new(&matrix, 4, Par::Seq).unwrap_err();
         assert!(matches!(error, FactorError::Pivot(_)));
     }
 }

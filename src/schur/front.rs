@@ -5,7 +5,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Accum, Mat, MatMut, Par};
+use faer::{Accum, MatMut, Par};
 use pulp::{Arch, Simd, WithSimd};
 
 /// Rows of a front up to which it is factorized four columns at a time in place; larger ones are
@@ -168,21 +168,4 @@ fn subtract_columns<S: Simd, const N: usize>(
         }
         simd.partial_store_f64s(tail, sum);
     }
-}
-
-/// L Lᵀ of a lower triangle, the lower triangle alone.
-pub(super) fn square(l: &Mat<f64>, par: Par) -> Mat<f64> {
-    let mut s = Mat::zeros(l.nrows(), l.nrows());
-    triangular::matmul(
-        s.as_mut(),
-        BlockStructure::TriangularLower,
-        Accum::Replace,
-        l.as_ref(),
-        BlockStructure::TriangularLower,
-        l.transpose(),
-        BlockStructure::TriangularUpper,
-        1.0,
-        par,
-    );
-    s
 }

@@ -1,7 +1,7 @@
 //! The columns of one supernode of a Cholesky factor, and solving with them.
 
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Mat, MatMut, MatRef, Par};
+use faer::{MatMut, MatRef, Par};
 use pulp::{Arch, Simd, WithSimd};
 
 /// The columns of one supernode: a dense lower trapezoid over its own rows and those `below`.
@@ -25,20 +25,6 @@ impl<'a> Panel<'a> {
     /// How many of its columns are among the first `count`; a supernode may reach from I into B.
     pub fn columns_before(&self, count: usize) -> usize {
         count.saturating_sub(self.start).min(self.columns)
-    }
-
-    /// Copies what it has of L_BB, the rows and columns from `interior` on.
-    pub fn copy_boundary(&self, interior: usize, l_bb: &mut Mat<f64>) {
-        for j in self.columns_before(interior)..self.columns {
-            let column = self.column(j);
-            let to = self.start + j - interior;
-            for i in j..self.columns {
-                l_bb[(self.start + i - interior, to)] = column[i];
-            }
-            for (&i, &value) in self.below.iter().zip(&column[self.columns..]) {
-                l_bb[(i as usize - interior, to)] = value;
-            }
-        }
     }
 
     /// One step of x ← L⁻¹ x with its first `count` columns.

@@ -1,5 +1,7 @@
 //! The pattern of a symmetric sparse matrix that is a sum of small dense ones.
 
+use faer::MatRef;
+
 /// Lists of unknowns, one list for every dense matrix that is scattered: the unknowns of an
 /// element, or the traces of a subdomain.
 #[derive(Clone, Debug)]
@@ -183,6 +185,22 @@ impl SparseSymmetric {
                 }
                 if let Ok(place) = rows.binary_search(&i) {
                     self.values[range.start + place] += entry(a, b);
+                }
+            }
+        }
+    }
+
+    /// Adds a dense symmetric `matrix` over many unknowns `dofs`, both of its triangles filled.
+    pub fn add_large(&mut self, dofs: &[u32], matrix: MatRef<'_, f64>) {
+        let mut place = vec![0; self.pattern.n()];
+        for (&j, column) in dofs.iter().zip(matrix.col_iter()) {
+            for (at, &i) in (self.pattern.column(j as usize)).zip(self.pattern.rows_of(j as usize))
+            {
+                place[i as usize] = at;
+            }
+            for (&i, entry) in dofs.iter().zip(column.iter()) {
+                if i >= j {
+                    self.values[place[i as usize]] += entry;
                 }
             }
         }
