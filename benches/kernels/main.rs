@@ -23,7 +23,7 @@ use contact_dd_mpi::interface::operator::{Contribution, Interface};
 use contact_dd_mpi::rigid::energy::RigidDrive;
 use contact_dd_mpi::schur::condensed::Condensed;
 use contact_dd_mpi::schur::local::LocalSchur;
-use contact_dd_mpi::schur::merge::Merge;
+use contact_dd_mpi::schur::merge::{Merge, Spare};
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use faer::Par;
 
@@ -96,10 +96,11 @@ fn merge(c: &mut Criterion) {
         let children = nodes[v].children.iter();
         children.map(|&child| scene.of_block(child)).collect()
     };
+    let mut spare = Spare::default();
     c.bench_function("merge", |bench| {
         bench.iter_batched(
             children,
-            |children| Merge::new(children, &nodes[v].eliminated, Par::Seq).unwrap(),
+            |children| Merge::new(children, &nodes[v].eliminated, &mut spare, Par::Seq).unwrap(),
             BatchSize::LargeInput,
         );
     });

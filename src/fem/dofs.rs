@@ -192,18 +192,20 @@ impl Dofs {
             self.constants.push(constant);
             self.offsets.push(self.terms.len() as u32);
         }
-        self.first.push(self.direct_from(start));
+        self.first.push(self.direct_from(node, start));
     }
 
-    /// The first of `dim` consecutive unknowns that are the node's components, if they are.
-    fn direct_from(&self, start: usize) -> u32 {
+    /// The first of the unknowns that are the node's components, if they are and make a site: a last
+    /// interior unknown and a first approach may follow one another by chance.
+    fn direct_from(&self, node: u32, start: usize) -> u32 {
         let base = &self.terms[self.offsets[start] as usize..];
         let direct = base.len() == self.dim
             && base
                 .iter()
                 .enumerate()
                 .all(|(k, &(dof, c))| c == 1.0 && dof == base[0].0 + k as u32)
-            && self.constants[start..].iter().all(|&c| c == 0.0);
+            && self.constants[start..].iter().all(|&c| c == 0.0)
+            && self.sites.unknowns_of(node) == (base[0].0..base[0].0 + self.dim as u32);
         if direct { base[0].0 } else { NOT_DIRECT }
     }
 

@@ -16,7 +16,7 @@ use crate::output::progress::Progress;
 use crate::rigid::survey::Survey;
 use crate::schur::condensed::Condensed;
 use crate::schur::local::{CondensedLoad, LocalSchur};
-use crate::schur::merge::{LooseTrace, Merge};
+use crate::schur::merge::{LooseTrace, Merge, Spare};
 
 /// What this rank has of the condensed blocks and of what they were merged into.
 #[derive(Debug, Default)]
@@ -61,6 +61,7 @@ pub fn condense_clusters(
         blocks,
         condensed: CondensedBlocks::default(),
         waiting: BTreeMap::new(),
+        spare: Spare::default(),
     };
     let (alone, across) = merging.nodes();
     // First what needs no other rank, depth first, so that little waits at a time.
@@ -95,6 +96,8 @@ struct Merging<'a> {
     condensed: CondensedBlocks,
     /// Nodes that are condensed and not merged yet.
     waiting: BTreeMap<usize, Condensed>,
+    /// Memory of what was merged.
+    spare: Spare,
 }
 
 impl Merging<'_> {
@@ -170,9 +173,13 @@ impl Merging<'_> {
             .iter()
             .map(|&child| &plan.tree.nodes[child].kept[..]);
         check_agreement(&traces, &kept.collect::<Vec<_>>())?;
-        let (merge, condensed, load) =
-            Merge::new(children, &node.eliminated, self.condensation.par)
-                .map_err(|LooseTrace(dof)| self.moves(v, dof))?;
+        let (merge, condensed, load) = Merge::new(
+            children,
+            &node.eliminated,
+            &mut self.spare,
+            self.condensation.par,
+        )
+        .map_err(|LooseTrace(dof)| self.moves(v, dof))?;
         self.condensed.merges.insert(v, merge);
         self.condensed.loads.insert(v, load);
         self.waiting.insert(v, condensed);

@@ -1,8 +1,9 @@
 //! Nested dissection by coordinates: a piece is cut in halves across its longest direction, the
 //! vertices along the cut come last.
 //!
-//! For blocks of a mesh the fill is within a tenth of METIS's and two thirds of minimum degree's,
-//! which can't know that the unknowns on the boundary come after all.
+//! For blocks of a mesh that takes 12 to 23 % more flops than METIS's dissection, whose graph work
+//! costs more than that, and two thirds of minimum degree's, which can't know that the unknowns on
+//! the boundary come after all.
 
 use super::graph::Graph;
 

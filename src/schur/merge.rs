@@ -30,6 +30,36 @@ pub struct Merge {
     places: Vec<Vec<u32>>,
 }
 
+/// Square matrices that were used: memory that is new costs a page fault every 4 KiB, more than all
+/// that is done with it.
+#[derive(Debug, Default)]
+pub struct Spare(Vec<Mat<f64>>);
+
+/// Most matrices that are kept, about as many as wait at a time in a deep hierarchy.
+const MOST_SPARE: usize = 8;
+
+impl Spare {
+    /// The smallest matrix that is large enough as zeros, or a new one.
+    fn zeros(&mut self, n: usize) -> Mat<f64> {
+        let fitting = (0..self.0.len()).filter(|&i| self.0[i].nrows() >= n);
+        let Some(place) = fitting.min_by_key(|&i| self.0[i].nrows()) else {
+            return Mat::zeros(n, n);
+        };
+        let mut matrix = self.0.swap_remove(place);
+        matrix.truncate(0, 0);
+        matrix.resize_with(n, n, |_, _| 0.0);
+        matrix
+    }
+
+    fn keep(&mut self, matrix: Mat<f64>) {
+        self.0.push(matrix);
+        if self.0.len() > MOST_SPARE {
+            let smallest = (0..self.0.len()).min_by_key(|&i| self.0[i].nrows());
+            smallest.map(|place| self.0.swap_remove(place));
+        }
+    }
+}
+
 /// Why Schur complements can't be merged: this unknown can move although all that is kept is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LooseTrace(pub TraceDof);
@@ -43,13 +73,14 @@ struct Run {
 
 impl Merge {
     /// Merges `children`, in their order, and eliminates the unknowns at the nodes of Γ that are
-    /// `eliminated`, ascending.
+    /// `eliminated`, ascending; `spare` matrices lend their memory, and the children's S are left there.
     ///
     /// # Errors
     /// A_EE isn't positive definite.
     pub fn new(
         children: Vec<Condensed>,
         eliminated: &[u32],
+        spare: &mut Spare,
         par: Par,
     ) -> Result<(Self, Condensed, CondensedLoad), LooseTrace> {
         let (gone, traces) = union_of_traces(&children, eliminated);
@@ -57,7 +88,7 @@ impl Merge {
         let e = gone.len();
         let k = approaches + traces.len();
         let mut columns = Mat::<f64>::zeros(e + k, e);
-        let mut s = Mat::<f64>::zeros(k, k);
+        let mut s = spare.zeros(k);
         let mut load = vec![0.0; e + k];
         let mut stiffness = vec![0.0; e + k];
         let mut places = Vec::with_capacity(children.len());
@@ -72,6 +103,7 @@ impl Merge {
                 stiffness[to as usize] += d;
             }
             add(&child.s, &place, e, &mut columns, &mut s);
+            spare.keep(child.s);
             smallest_pivot = smallest_pivot.min(child.smallest_pivot);
             eliminated_before += child.eliminated;
             places.push(place);

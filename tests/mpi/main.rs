@@ -101,10 +101,13 @@ type MakeCase = fn() -> Case;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 11] = [
+    let cases: [(&str, MakeCase); 12] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
+        }),
+        ("granite_in_a_deep_hierarchy", || {
+            Case::of(&built_in_model("granite", 0), 70)
         }),
         ("more_ranks_than_subdomains", || {
             Case::of(&model(&two_block_scene(), two_blocks().mesh), 2)

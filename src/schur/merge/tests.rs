@@ -59,7 +59,8 @@ fn example() -> (Vec<Condensed>, Mat<f64>, Vec<f64>) {
 #[test]
 fn a_merge_is_the_schur_complement_of_the_sum() {
     let (children, a, f) = example();
-    let (_, condensed, _) = Merge::new(children, &[2, 5, 7], Par::Seq).unwrap();
+    let (_, condensed, _) =
+        Merge::new(children, &[2, 5, 7], &mut Spare::default(), Par::Seq).unwrap();
     let gone = [2, 5, 7];
     let kept = [9, 10, 11, 0, 1, 3, 4, 6, 8];
     let part = |rows: &[usize], columns: &[usize]| {
@@ -86,7 +87,8 @@ fn what_is_recovered_solves_the_sum() {
         .llt(Side::Lower)
         .unwrap()
         .solve(Mat::from_fn(12, 1, |i, _| f[i]));
-    let (merge, _, load) = Merge::new(children, &[2, 5, 7], Par::Seq).unwrap();
+    let (merge, _, load) =
+        Merge::new(children, &[2, 5, 7], &mut Spare::default(), Par::Seq).unwrap();
     let again = merge.condense(&loads.iter().map(Vec::as_slice).collect::<Vec<_>>());
     assert_eq!(load.boundary(), again.boundary());
     let kept: Vec<f64> = [9, 10, 11, 0, 1, 3, 4, 6, 8]
@@ -107,6 +109,6 @@ fn an_unknown_that_nothing_holds_is_named() {
             usize::from(c.traces[0] == trace(1)),
         )] = -50.0;
     }
-    let error = Merge::new(children, &[2], Par::Seq).unwrap_err();
+    let error = Merge::new(children, &[2], &mut Spare::default(), Par::Seq).unwrap_err();
     assert_eq!(error, LooseTrace(trace(2)));
 }
