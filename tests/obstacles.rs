@@ -314,3 +314,28 @@ fn a_body_between_a_wall_and_another_body_leans_on_both() {
         close(reaction(&solution.contacts["joint"])[1], WEIGHT, 1e-7);
     }
 }
+
+/// The last interior unknown and the first approach may be a node's two components: they belong
+/// together no more than any others.
+#[test]
+fn a_strip_under_a_plane_is_balanced_whatever_its_length() {
+    for columns in 1..=9 {
+        let length = columns as f64;
+        let mesh = Blocks::new().rectangle("strip", [0.0, length], [0.0, 1.0], [columns, 1]);
+        let text = "
+            plane = 'strain'
+            materials.rock = {young = 20e9, poisson = 0.2}
+            bodies.strip.material = 'rock'
+            displacement = [{on = 'strip left', x = 0.0, y = 0.0}]
+            traction = [{on = 'strip bottom', value = [0.0, 1e6]}]
+            [[contact]]
+            name = 'ceiling'
+            sides = ['strip top']
+            obstacle = {point = [0.0, 1.0], normal = [0.0, -1.0]}";
+        let solution = solve(&model(text, mesh.mesh), 1);
+        let equilibrium = solution.report["certificate"]["equilibrium"]
+            .as_f64()
+            .unwrap();
+        assert!(equilibrium < 1e-14, "{columns}: {equilibrium:e}");
+    }
+}
