@@ -1,6 +1,7 @@
 //! Local Schur complements: ordering, sparse factorization with the boundary last, condensation and
 //! recovery.
 
+mod columns;
 pub mod condensed;
 mod dissection;
 pub mod factor;

@@ -8,6 +8,8 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, Par};
 use pulp::{Arch, Simd, WithSimd};
 
+use super::columns::add_columns;
+
 /// Rows of a front up to which it is factorized four columns at a time in place; larger ones are
 /// left to faer's blocked algorithms.
 const SMALL: usize = 96;
@@ -132,40 +134,15 @@ fn eliminate<S: Simd>(simd: S, block: &mut [f64], rows: usize, first: usize) -> 
 /// `to` ← `to` − Σ_p L_ip L_jp over the columns p of `block`, i from j on: at most four columns.
 #[inline(always)]
 fn subtract<S: Simd>(simd: S, to: &mut [f64], block: &[f64], rows: usize, j: usize) {
+    let column = |p: usize| {
+        let below = &block[p * rows + j..(p + 1) * rows];
+        (-below[0], below)
+    };
     match block.len() / rows {
         0 => {}
-        1 => subtract_columns::<S, 1>(simd, to, block, rows, j),
-        2 => subtract_columns::<S, 2>(simd, to, block, rows, j),
-        3 => subtract_columns::<S, 3>(simd, to, block, rows, j),
-        _ => subtract_columns::<S, WIDTH>(simd, to, block, rows, j),
-    }
-}
-
-#[inline(always)]
-fn subtract_columns<S: Simd, const N: usize>(
-    simd: S,
-    to: &mut [f64],
-    block: &[f64],
-    rows: usize,
-    j: usize,
-) {
-    let columns: [&[f64]; N] = std::array::from_fn(|p| &block[p * rows + j..(p + 1) * rows]);
-    let factors: [S::f64s; N] = std::array::from_fn(|p| simd.splat_f64s(-columns[p][0]));
-    let (head, tail) = S::as_mut_simd_f64s(to);
-    let parts: [(&[S::f64s], &[f64]); N] = columns.map(|column| S::as_simd_f64s(column));
-    let heads: [&[S::f64s]; N] = parts.map(|(part, _)| &part[..head.len()]);
-    for (i, x) in head.iter_mut().enumerate() {
-        let mut sum = *x;
-        for p in 0..N {
-            sum = simd.mul_add_e_f64s(factors[p], heads[p][i], sum);
-        }
-        *x = sum;
-    }
-    if !tail.is_empty() {
-        let mut sum = simd.partial_load_f64s(tail);
-        for p in 0..N {
-            sum = simd.mul_add_e_f64s(factors[p], simd.partial_load_f64s(parts[p].1), sum);
-        }
-        simd.partial_store_f64s(tail, sum);
+        1 => add_columns::<S, 1>(simd, to, column),
+        2 => add_columns::<S, 2>(simd, to, column),
+        3 => add_columns::<S, 3>(simd, to, column),
+        _ => add_columns::<S, WIDTH>(simd, to, column),
     }
 }
