@@ -12,9 +12,12 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{
     LltError, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
 };
+use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Accum, Mat, Par};
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
+};
+use faer::{Accum, Mat, MatMut, Par};
 
 use super::condensed::Condensed;
 use super::local::CondensedLoad;
@@ -181,47 +184,27 @@ impl Merge {
         let e = self.eliminated;
         let mut x = load.interior().to_vec();
         x.extend_from_slice(x_k);
-        for j in (0..e).rev() {
-            let column = self.columns.col_as_slice(j);
-            let (above, below) = x.split_at_mut(j + 1);
-            let sum: f64 = dot(&column[j + 1..], below);
-            above[j] = (above[j] - sum) / column[j];
-        }
+        let (l_e, p) = self.columns.as_ref().split_at_row(e);
+        let (x_e, x_k) = column_of(&mut x).split_at_row_mut(e);
+        let mut x_e = x_e;
+        matmul(x_e.as_mut(), Accum::Add, p.transpose(), x_k, -1.0, Par::Seq);
+        solve_upper_triangular_in_place(l_e.transpose(), x_e, Par::Seq);
         let of_child = |place: &Vec<u32>| place.iter().map(|&i| x[i as usize]).collect();
         self.places.iter().map(of_child).collect()
     }
 
     /// x_E ← L_E⁻¹ x_E and x_K ← x_K − P x_E.
     fn forward(&self, x: &mut [f64]) {
-        for j in 0..self.eliminated {
-            let column = self.columns.col_as_slice(j);
-            let (above, below) = x.split_at_mut(j + 1);
-            above[j] /= column[j];
-            let x_j = above[j];
-            for (x, l) in below.iter_mut().zip(&column[j + 1..]) {
-                *x -= l * x_j;
-            }
-        }
+        let (l_e, p) = self.columns.as_ref().split_at_row(self.eliminated);
+        let (mut x_e, x_k) = column_of(x).split_at_row_mut(self.eliminated);
+        solve_lower_triangular_in_place(l_e, x_e.as_mut(), Par::Seq);
+        matmul(x_k, Accum::Add, p, x_e, -1.0, Par::Seq);
     }
 }
 
-/// Σ a b in eight interleaved sums, which a processor can add at once.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    const LANES: usize = 8;
-    let (a_lanes, b_lanes) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
-    let rest: f64 = a_lanes
-        .remainder()
-        .iter()
-        .zip(b_lanes.remainder())
-        .map(|(a, b)| a * b)
-        .sum();
-    let mut sums = [0.0; LANES];
-    for (a, b) in a_lanes.zip(b_lanes) {
-        for lane in 0..LANES {
-            sums[lane] += a[lane] * b[lane];
-        }
-    }
-    sums.iter().sum::<f64>() + rest
+fn column_of(x: &mut [f64]) -> MatMut<'_, f64> {
+    let rows = x.len();
+    MatMut::from_column_major_slice_mut(x, rows, 1)
 }
 
 /// The traces of all children, each once, ascending: those at `eliminated` nodes, and the others.
