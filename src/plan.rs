@@ -5,6 +5,7 @@ pub mod cluster;
 pub mod tree;
 
 use contact_dd_partition::problem::Catalog;
+use contact_dd_partition::problem::hierarchy::Front;
 
 use self::assign::{assign, block_cost, front_cost};
 use self::cluster::{ClusterPlan, Merging, cluster_nodes};
@@ -117,16 +118,19 @@ impl Plan {
 
     /// Estimated flops of condensing a block, or of merging what lies under an inner node.
     fn cost(&self, catalog: &Catalog, v: usize) -> f64 {
-        let dim = catalog.dim as f64;
         let node = &self.tree.nodes[v];
-        let kept = dim * node.kept.len() as f64 + node.conditions as f64;
+        let kept = catalog.dim * node.kept.len() + node.conditions;
         match self.blocks.get(v) {
             Some(block) => {
                 let of_blocks = block.subdomains.iter();
                 let nodes: usize = of_blocks.map(|&s| catalog.subdomains[s].nodes).sum();
-                block_cost(dim * nodes as f64, kept)
+                let interior = (catalog.dim * nodes).saturating_sub(kept);
+                block_cost(interior as f64, kept as f64)
             }
-            None => front_cost(dim * node.eliminated.len() as f64, kept),
+            None => front_cost(Front {
+                eliminated: catalog.dim * node.eliminated.len(),
+                kept,
+            }),
         }
     }
 

@@ -1,9 +1,15 @@
 //! Who owns what: subtrees of the hierarchy are handed out by estimated cost.
 
+use contact_dd_partition::problem::hierarchy::{Front, condensation};
+
 use super::tree::Tree;
 
 /// Cost of an unknown of a block beside its elimination, in flops.
 const PER_UNKNOWN: f64 = 3e4;
+
+/// Cost of an entry of a block's S beside its elimination, in flops: a block's fronts are small, and
+/// what is kept goes through many of them.
+const PER_ENTRY_OF_BLOCK: f64 = 900.0;
 
 /// Cost of an entry of a front beside its elimination, in flops.
 const PER_ENTRY: f64 = 40.0;
@@ -14,18 +20,15 @@ const SPLITS: usize = 8;
 /// What a further split must gain.
 const GAIN: f64 = 0.97;
 
-/// Estimated cost of a block of so many interior unknowns and a boundary of so many: a planar graph
-/// under nested dissection, its boundary dense.
-pub(super) fn block_cost(interior: f64, boundary: f64) -> f64 {
-    PER_UNKNOWN * interior
-        + 30.0 * interior.powf(1.5)
-        + 5.0 * interior * boundary
-        + boundary.powi(3)
+/// Estimated cost of a block of so many interior unknowns that keeps `kept`.
+pub(super) fn block_cost(interior: f64, kept: f64) -> f64 {
+    let beside = PER_UNKNOWN * interior + PER_ENTRY_OF_BLOCK * kept * kept;
+    beside + condensation(interior, kept)
 }
 
-/// Estimated cost of eliminating e unknowns of a front that keeps b.
-pub(super) fn front_cost(e: f64, b: f64) -> f64 {
-    e.powi(3) / 3.0 + e * e * b + e * b * b + PER_ENTRY * (e + b).powi(2)
+/// Estimated cost of a front.
+pub(super) fn front_cost(front: Front) -> f64 {
+    PER_ENTRY * ((front.eliminated + front.kept) as f64).powi(2) + front.flops()
 }
 
 /// A way to hand out the tree.

@@ -43,7 +43,7 @@ impl Work {
 /// eliminated and `kept` on its boundary: 829/84 n^1.5 multiplications, and as many additions, for
 /// n nodes of one dof (George 1973), eight times as many with two; and the boundary carried
 /// through fronts as large as the separators.
-pub(super) fn condensation(interior: f64, kept: f64) -> f64 {
+pub fn condensation(interior: f64, kept: f64) -> f64 {
     let separator = (2.0 * interior).sqrt();
     56.0 * interior.powf(1.5) + separator * kept * kept + 2.0 * interior * kept
 }
