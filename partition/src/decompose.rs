@@ -3,6 +3,7 @@
 mod atoms;
 pub(crate) mod disjoint_sets;
 mod graph;
+mod growth;
 pub(crate) mod multilevel;
 mod prescribed;
 mod regions;
@@ -22,6 +23,10 @@ const DOFS: usize = 2_000;
 
 /// Dofs up to which a mesh is split no further than contact and materials ask for.
 const SMALL: usize = 20_000;
+
+/// Cells for every subdomain that stay outside of those in contact, where the user says how many
+/// there should be.
+const CELLS: usize = 8;
 
 /// Subdomains without contact that there are beside those in contact, at least.
 const LINEAR: usize = 4;
@@ -58,7 +63,7 @@ impl Decomposition {
         if let Some(subdomain) = &model.prescribed_subdomains {
             return prescribed::take(model, &topology, subdomain, count);
         }
-        let atoms = Atoms::new(model, &topology);
+        let atoms = Atoms::new(model, &topology, count.map_or(0, |count| CELLS * count));
         let cells = atoms.graph.cell_weights();
         let units = Units::new(&atoms.graph, &cells);
         let (least, most) = (units.pieces(), atoms.graph.len());
@@ -94,6 +99,11 @@ fn suitable(model: &Model, atoms: &Atoms, units: &Units) -> usize {
         many if many > MATERIALS => 1,
         few => few,
     };
-    let for_speed = if dofs > SMALL { dofs.div_ceil(DOFS) } else { 1 };
+    let outside = dofs * atoms.outside() / model.mesh.cells.len();
+    let for_speed = if dofs > SMALL {
+        outside.div_ceil(DOFS)
+    } else {
+        0
+    } + atoms.graph.clusters();
     for_speed.max(with_contact).max(with_materials)
 }

@@ -352,3 +352,26 @@ fn a_node_with_a_condition_at_which_the_mesh_is_pinched_keeps_its_group_together
         }
     }
 }
+
+#[test]
+fn clusters_grow_where_a_boundary_along_the_contact_would_be_dear() {
+    let long = stacked(2, 400, 8);
+    let catalog = |count| {
+        let decomposition = Decomposition::new(&long, count).unwrap();
+        Problem::new(&long, &decomposition).unwrap().catalog
+    };
+    let by_itself = catalog(None);
+    assert_eq!(
+        (by_itself.subdomains.len(), by_itself.interface_nodes),
+        (2, 0)
+    );
+    // As much is left to others as what was asked for needs.
+    for count in [6, 1000] {
+        assert_eq!(catalog(Some(count)).subdomains.len(), count);
+    }
+
+    let short = stacked(2, 10, 6);
+    let decomposition = Decomposition::new(&short, None).unwrap();
+    let catalog = Problem::new(&short, &decomposition).unwrap().catalog;
+    assert!(catalog.subdomains.iter().any(|s| s.group.is_none()));
+}

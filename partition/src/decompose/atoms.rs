@@ -2,6 +2,7 @@
 
 use super::disjoint_sets::DisjointSets;
 use super::graph::Graph;
+use super::growth::grow;
 use crate::mesh::topology::Topology;
 use crate::model::Model;
 
@@ -11,8 +12,8 @@ const SAME_MATERIAL: u32 = 4;
 
 /// The cells of a mesh, contracted to clusters wherever a cut would let Γ meet Γ_c.
 ///
-/// All cells around a node with a contact condition are one cluster; every other cell is an atom
-/// of its own. Where the mesh is pinched at such a node, the fans on both sides of it stay apart,
+/// All cells around a node with a contact condition are one cluster, with the layers of cells behind
+/// it that make it cheaper; every other cell is an atom of its own. Where the mesh is pinched at such a node, the fans on both sides of it stay apart,
 /// so that every atom is connected across facets.
 pub(super) struct Atoms {
     /// The atom of every cell, numbered by first cell.
@@ -22,10 +23,10 @@ pub(super) struct Atoms {
 }
 
 impl Atoms {
-    /// Contracts the cells of a model.
-    pub fn new(model: &Model, topology: &Topology) -> Self {
+    /// Contracts the cells of a model; clusters grow as long as `spared` cells stay outside.
+    pub fn new(model: &Model, topology: &Topology, spared: usize) -> Self {
         let around = Around::new(model);
-        let (of_cell, count) = contract(model, topology, &around);
+        let (of_cell, count) = contract(model, topology, &around, spared);
         let mut cells = vec![0; count];
         for &atom in &of_cell {
             cells[atom as usize] += 1;
@@ -55,6 +56,12 @@ impl Atoms {
         }
     }
 
+    /// Number of cells outside of clusters.
+    pub fn outside(&self) -> usize {
+        let atoms = 0..self.graph.len() as u32;
+        atoms.filter(|&atom| !self.graph.is_cluster(atom)).count()
+    }
+
     /// The subdomain of every cell, from the part of every atom of every unit; subdomains are
     /// numbered by first cell.
     pub fn subdomains(&self, units: &[Vec<u32>], parts: &[Vec<u32>]) -> Vec<u32> {
@@ -76,11 +83,11 @@ impl Atoms {
 }
 
 /// The surroundings of the nodes that have contact conditions.
-struct Around {
+pub(super) struct Around {
     /// The contacts that have a condition at each node, ascending.
-    contacts: Vec<Vec<u32>>,
+    pub contacts: Vec<Vec<u32>>,
     /// Each such node with each cell around it, ascending.
-    cells: Vec<(u32, u32)>,
+    pub cells: Vec<(u32, u32)>,
 }
 
 impl Around {
@@ -105,7 +112,12 @@ impl Around {
 }
 
 /// The atom of every cell, and how many atoms there are.
-fn contract(model: &Model, topology: &Topology, around: &Around) -> (Vec<u32>, usize) {
+fn contract(
+    model: &Model,
+    topology: &Topology,
+    around: &Around,
+    spared: usize,
+) -> (Vec<u32>, usize) {
     let cells = &model.mesh.cells;
     let mut sets = DisjointSets::new(cells.len());
     for &(node, a) in &around.cells {
@@ -115,6 +127,7 @@ fn contract(model: &Model, topology: &Topology, around: &Around) -> (Vec<u32>, u
             }
         }
     }
+    grow(model, topology, around, spared, &mut sets);
     let mut of_cell = vec![u32::MAX; cells.len()];
     let mut count = 0;
     for cell in 0..cells.len() {

@@ -1,0 +1,215 @@
+//! How far clusters grow into the bodies behind a contact surface.
+
+use std::collections::BTreeMap;
+
+use super::atoms::Around;
+use super::disjoint_sets::DisjointSets;
+use crate::mesh::topology::Topology;
+use crate::model::Model;
+use crate::problem::hierarchy::{Front, condensation};
+
+/// Estimated flops that growing saves at least.
+const WORTH: f64 = 1e8;
+
+/// What is left of the estimated flops, at most: a subdomain belongs to one rank, and large ones
+/// leave the others less to do.
+const LEFT: f64 = 0.5;
+
+/// A cell that no cluster reaches.
+const UNREACHED: u32 = u32::MAX;
+
+/// Adds to the clusters, the `sets` of cells around nodes in contact, the layers of cells of their
+/// material that make them cheapest, as long as `spared` cells stay outside.
+///
+/// A cluster of one layer of cells has a boundary as long as Γ_c, and its S is dense. Where a mesh
+/// becomes coarser behind Γ_c, the boundary of a cluster of more layers is shorter; at last a whole
+/// body is one subdomain and has none.
+pub(super) fn grow(
+    model: &Model,
+    topology: &Topology,
+    around: &Around,
+    spared: usize,
+    sets: &mut DisjointSets,
+) {
+    let layering = Layering::new(model, topology, around, sets);
+    let groups = Groups::new(model, around, sets);
+    let mut of_group: BTreeMap<u32, Layers> = BTreeMap::new();
+    for &cell in &layering.reached {
+        let group = groups.of(layering.cluster[cell as usize]);
+        let layers = of_group.entry(group).or_default();
+        let layer = layering.layer[cell as usize];
+        layers.add_cell(layer);
+        for &other in topology.neighbours(cell as usize) {
+            let cluster = layering.cluster[other as usize];
+            let is_within = cluster != UNREACHED && groups.of(cluster) == group;
+            layers.add_facet(layer, is_within.then_some(layering.layer[other as usize]));
+        }
+    }
+    let in_contact: usize = of_group.values().map(|layers| layers.cells[0]).sum();
+    let mut outside = model.mesh.cells.len() - in_contact;
+    let mut chosen = BTreeMap::new();
+    for (group, layers) in of_group {
+        let added = layers.cheapest(model, groups.conditions[group as usize], |cells| {
+            outside >= spared + cells
+        });
+        outside -= layers.cells[1..=added].iter().sum::<usize>();
+        chosen.insert(group, added as u32);
+    }
+    for &cell in &layering.reached {
+        let cluster = layering.cluster[cell as usize];
+        if layering.layer[cell as usize] <= chosen[&groups.of(cluster)] {
+            sets.unite(cell, cluster);
+        }
+    }
+}
+
+/// The cells that clusters reach across facets of one material.
+struct Layering {
+    /// The nearest cluster of every cell, by a cell of it.
+    cluster: Vec<u32>,
+    /// The layer around it in which the cell is; 0 in the cluster itself.
+    layer: Vec<u32>,
+    /// The cells that are reached, by layers.
+    reached: Vec<u32>,
+}
+
+impl Layering {
+    fn new(model: &Model, topology: &Topology, around: &Around, sets: &mut DisjointSets) -> Self {
+        let cells = model.mesh.cells.len();
+        let mut cluster = vec![UNREACHED; cells];
+        let mut layer = vec![0; cells];
+        let mut reached = Vec::new();
+        for &(_, cell) in &around.cells {
+            if cluster[cell as usize] == UNREACHED {
+                cluster[cell as usize] = sets.find(cell);
+                reached.push(cell);
+            }
+        }
+        let mut next = 0;
+        while next < reached.len() {
+            let cell = reached[next] as usize;
+            next += 1;
+            for &other in topology.neighbours(cell) {
+                let o = other as usize;
+                let is_same = model.cell_material[o] == model.cell_material[cell];
+                if is_same && cluster[o] == UNREACHED {
+                    cluster[o] = cluster[cell];
+                    layer[o] = layer[cell] + 1;
+                    reached.push(other);
+                }
+            }
+        }
+        Self {
+            cluster,
+            layer,
+            reached,
+        }
+    }
+}
+
+/// The clusters that contacts link: what is factorized together.
+struct Groups {
+    /// The group of every cluster, by its cell.
+    of_cluster: BTreeMap<u32, u32>,
+    /// The number of conditions of every group.
+    conditions: Vec<usize>,
+}
+
+impl Groups {
+    fn new(model: &Model, around: &Around, sets: &mut DisjointSets) -> Self {
+        let mut contacts = DisjointSets::new(model.contacts.len());
+        let mut of_cluster = BTreeMap::new();
+        for &(node, cell) in &around.cells {
+            for &contact in &around.contacts[node as usize] {
+                let first = *of_cluster.entry(sets.find(cell)).or_insert(contact);
+                contacts.unite(first, contact);
+            }
+        }
+        for group in of_cluster.values_mut() {
+            *group = contacts.find(*group);
+        }
+        let mut conditions = vec![0; model.contacts.len()];
+        for (number, contact) in model.contacts.iter().enumerate() {
+            conditions[contacts.find(number as u32) as usize] += contact.conditions.len();
+        }
+        Self {
+            of_cluster,
+            conditions,
+        }
+    }
+
+    fn of(&self, cluster: u32) -> u32 {
+        self.of_cluster[&cluster]
+    }
+}
+
+/// The layers around the clusters of a group.
+#[derive(Default)]
+struct Layers {
+    /// The cells of every layer.
+    cells: Vec<usize>,
+    /// How many more facets the boundary around every layer has than that around the one before.
+    facets: Vec<i64>,
+}
+
+impl Layers {
+    fn add_cell(&mut self, layer: u32) {
+        let layer = layer as usize;
+        if layer >= self.cells.len() {
+            self.cells.resize(layer + 1, 0);
+            self.facets.resize(layer + 2, 0);
+        }
+        self.cells[layer] += 1;
+    }
+
+    /// Counts a facet of a cell of `layer`, the other cell of which is in layer `other`, or not
+    /// in the group.
+    fn add_facet(&mut self, layer: u32, other: Option<u32>) {
+        match other {
+            None => self.facets[layer as usize] += 1,
+            Some(other) if other > layer => {
+                let end = other as usize;
+                if end >= self.facets.len() {
+                    self.facets.resize(end + 1, 0);
+                }
+                self.facets[layer as usize] += 1;
+                self.facets[end] -= 1;
+            }
+            Some(_) => {}
+        }
+    }
+
+    /// The number of layers to be added for which condensing the group, eliminating its boundary,
+    /// and the rest of the mesh cost least; of cells, as many as `may_take` allows.
+    fn cheapest(
+        &self,
+        model: &Model,
+        conditions: usize,
+        may_take: impl Fn(usize) -> bool,
+    ) -> usize {
+        let dofs = (model.mesh.dim * model.mesh.points.len()) as f64;
+        let per_cell = dofs / model.mesh.cells.len() as f64;
+        let (mut cells, mut facets) = (0, 0);
+        let mut costs = Vec::with_capacity(self.cells.len());
+        for (layer, &of_layer) in self.cells.iter().enumerate() {
+            cells += of_layer;
+            facets += self.facets[layer];
+            if layer > 0 && !may_take(cells - self.cells[0]) {
+                break;
+            }
+            let inside = (per_cell * cells as f64).min(dofs);
+            let front = Front {
+                eliminated: model.mesh.dim * facets as usize,
+                kept: conditions,
+            };
+            let kept = (front.eliminated + front.kept) as f64;
+            costs.push(
+                condensation(inside, kept) + front.flops() + condensation(dofs - inside, 0.0),
+            );
+        }
+        let least = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]));
+        least
+            .filter(|&layer| costs[layer] <= LEFT * costs[0] && costs[layer] + WORTH <= costs[0])
+            .unwrap_or(0)
+    }
+}
