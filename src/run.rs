@@ -167,7 +167,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         true => None,
         false => condition_number(&frozen, &solutions),
     };
-    let stress = stresses(comm, &blocks, &solutions, catalog, &plan);
+    let stress = (!settings.no_stress).then(|| stresses(comm, &blocks, &solutions, catalog, &plan));
     let displacement = with_descent(&blocks, &solutions, &survey, catalog.dim);
     if let Some(outcome) = &mut outcome {
         outcome.accept(&certificate);
@@ -180,7 +180,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let fields = Fields {
         solutions: &solutions,
         displacement: &displacement,
-        stress: &stress,
+        stress: stress.as_ref(),
     };
     let written = write_solution(comm, &blocks, fields, &plan, output.as_mut());
     comm.agree(written.map_err(Failure::from))?;
@@ -200,6 +200,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
                 certificate,
                 condition,
                 ranks,
+                has_stress: stress.is_some(),
                 warnings: [survey.motions.warnings, settled.warnings].concat(),
             };
             narrator.finish(&totals, output)
@@ -251,6 +252,6 @@ fn create_output(
     if !comm.is_root() {
         return Ok(None);
     }
-    let layout = Layout::new(catalog, &connectivity);
+    let layout = Layout::new(catalog, &connectivity, !settings.no_stress);
     Ok(Some(ResultFile::create(&settings.result_path(), &layout)?))
 }

@@ -44,6 +44,9 @@ pub struct Settings {
     /// Threads of each rank.
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: u16,
+    /// Leave stresses out: neither recovered nor written.
+    #[arg(long)]
+    pub no_stress: bool,
     /// Validate the problem file and say what the scene holds, without solving.
     #[arg(long)]
     pub check: bool,
@@ -121,6 +124,9 @@ impl Settings {
         }
         if let Some(theta) = self.relaxation {
             list.push(("relaxation", theta.to_string()));
+        }
+        if self.no_stress {
+            list.push(("stress", "left out".to_string()));
         }
         list.push(("result", self.result_path().display().to_string()));
         list

@@ -75,6 +75,7 @@ fn layout(cells: &[usize], conditions: &[usize]) -> Layout {
     Layout {
         partitions: cells.iter().map(|&cells| size(cells)).collect(),
         contacts: conditions.iter().enumerate().map(contact).collect(),
+        stress: true,
     }
 }
 

@@ -14,7 +14,8 @@ pub struct PartitionSize {
 /// The solution on consecutive subdomains: each list holds what belongs to the first one, then
 /// what belongs to the next, in the types that the file has.
 ///
-/// Stresses are (Pa) in the order XX, YY, ZZ, XY, YZ, XZ.
+/// Stresses are (Pa) in the order XX, YY, ZZ, XY, YZ, XZ; their lists are empty where they are left
+/// out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SubdomainResults {
     /// Number of the first subdomain.

@@ -27,12 +27,14 @@ pub struct Layout {
     pub partitions: Vec<PartitionSize>,
     /// One entry a contact.
     pub contacts: Vec<ContactSummary>,
+    /// Whether there are stresses.
+    pub stress: bool,
 }
 
 impl Layout {
     /// The layout for `catalog`; `connectivity` has, for every subdomain, the sum of the number of
     /// nodes over its cells.
-    pub fn new(catalog: &Catalog, connectivity: &[usize]) -> Self {
+    pub fn new(catalog: &Catalog, connectivity: &[usize], stress: bool) -> Self {
         let size = |(subdomain, &connectivity): (&SubdomainSummary, &usize)| PartitionSize {
             points: subdomain.nodes,
             cells: subdomain.cells,
@@ -46,6 +48,7 @@ impl Layout {
                 .map(size)
                 .collect(),
             contacts: catalog.contacts.clone(),
+            stress,
         }
     }
 }
@@ -75,7 +78,7 @@ impl ResultFile {
                 // A temporary file has no other reader, and not every file system can lock.
                 .with_fapl(|access| access.file_locking(false))
                 .create(destination.temporary())?;
-            let grid = Grid::create(&file, &layout.partitions)?;
+            let grid = Grid::create(&file, &layout.partitions, layout.stress)?;
             let contacts = ContactTables::create(&file, &layout.contacts)?;
             Ok((file, grid, contacts))
         };

@@ -50,6 +50,8 @@ pub struct Totals<'a> {
     pub condition: Option<f64>,
     /// Every rank's times.
     pub ranks: Vec<RankReport>,
+    /// Whether stresses are among the results.
+    pub has_stress: bool,
     /// What the ranks noticed on the way.
     pub warnings: Vec<String>,
 }
@@ -294,6 +296,9 @@ fn skipped(totals: &Totals<'_>) -> Vec<String> {
             "ranks without work: {idle} of {}, there are more ranks than blocks",
             totals.ranks.len()
         ));
+    }
+    if !totals.has_stress {
+        skipped.push("stresses: left out by --no-stress".into());
     }
     skipped
 }

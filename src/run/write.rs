@@ -94,8 +94,8 @@ pub struct Fields<'a> {
     pub solutions: &'a BTreeMap<usize, BlockSolution>,
     /// Displacement with it, node by node (m).
     pub displacement: &'a BTreeMap<usize, Vec<f64>>,
-    /// Stresses.
-    pub stress: &'a BTreeMap<usize, BlockStress>,
+    /// Stresses, unless they are left out.
+    pub stress: Option<&'a BTreeMap<usize, BlockStress>>,
 }
 
 /// Streams all subdomains and contact rows to the root, which writes a slab of subdomains as soon

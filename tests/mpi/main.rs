@@ -45,6 +45,7 @@ fn main() -> ExitCode {
     }));
     let mut trials = Trials::default();
     same_results(&mut trials);
+    without_stresses(&mut trials);
     bad_input::bad_input(&mut trials);
     bad_input::bad_usage(&mut trials);
     endings::no_equilibrium(&mut trials);
@@ -153,4 +154,21 @@ fn same_results(trials: &mut Trials) {
             assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
         });
     }
+}
+
+/// Stresses that are left out aren't in the file, and nothing else in it changes.
+fn without_stresses(trials: &mut Trials) {
+    trials.on_all_ranks("without_stresses", |ranks| {
+        let case = Case::of(&built_in_model("granite", 0), 8);
+        assert_eq!(case.run(&[]).code(), 0);
+        let mut expected = datasets(&case.result());
+        let with = expected.len();
+        expected.retain(|name, _| !name.contains("Stress") && !name.contains("VonMises"));
+        assert_eq!(expected.len() + 4, with);
+        let ended = run(&case, ranks, &["--no-stress"]);
+        assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+        assert!(datasets(&case.result()) == expected);
+        let skipped = ended.stdout.lines().filter(|l| l.starts_with("skipped"));
+        assert!(skipped.last().is_some_and(|l| l.contains("stresses")));
+    });
 }

@@ -34,20 +34,26 @@ struct Arrays {
     points: Dataset,
     node_tags: Dataset,
     displacement: Dataset,
-    nodal_stress: Dataset,
     connectivity: Dataset,
     offsets: Dataset,
     types: Dataset,
     subdomains: Dataset,
     materials: Dataset,
-    cell_stress: Dataset,
+    stress: Option<StressArrays>,
+}
+
+/// The arrays of stresses.
+#[derive(Debug)]
+struct StressArrays {
+    at_nodes: Dataset,
+    of_cells: Dataset,
     principal: Dataset,
     von_mises: Dataset,
 }
 
 impl Grid {
     /// Makes all arrays in their final sizes.
-    pub(super) fn create(file: &File, sizes: &[PartitionSize]) -> Result<Self> {
+    pub(super) fn create(file: &File, sizes: &[PartitionSize], stress: bool) -> Result<Self> {
         let group = file.create_group("VTKHDF")?;
         group
             .new_attr_builder()
@@ -78,7 +84,7 @@ impl Grid {
             end.connectivity += size.connectivity;
         }
         Ok(Self {
-            arrays: Arrays::create(&group, end, sizes.len())?,
+            arrays: Arrays::create(&group, end, sizes.len(), stress)?,
             sizes: sizes.to_vec(),
             starts,
             written: vec![false; sizes.len()],
@@ -110,7 +116,7 @@ impl Grid {
             let (count, index) = (self.sizes.len(), first.max(self.sizes.len()));
             return Err(format!("subdomain {index} of {count} has no place").into());
         };
-        check_sizes(results, sizes)?;
+        check_sizes(results, sizes, self.arrays.stress.is_some())?;
         if let Some(&start) = self.starts.get(first) {
             self.arrays.fill(results, start)?;
         }
@@ -129,9 +135,18 @@ impl Grid {
 
 impl Arrays {
     /// Makes them for `partitions` partitions of the size `total` together.
-    fn create(group: &Group, total: PartitionSize, partitions: usize) -> Result<Self> {
+    fn create(
+        group: &Group,
+        total: PartitionSize,
+        partitions: usize,
+        stress: bool,
+    ) -> Result<Self> {
         let points = group.create_group("PointData")?;
         let cells = group.create_group("CellData")?;
+        let stress = match stress {
+            true => Some(StressArrays::create(&points, &cells, total)?),
+            false => None,
+        };
         Ok(Self {
             points: column::empty_table::<f64>(group, "Points", total.points, 3)?,
             connectivity: column::empty::<i64>(group, "Connectivity", total.connectivity)?,
@@ -140,13 +155,10 @@ impl Arrays {
 
             node_tags: column::empty::<i64>(&points, "GlobalNodeId", total.points)?,
             displacement: column::empty_table::<f64>(&points, "Displacement", total.points, 3)?,
-            nodal_stress: column::empty_table::<f64>(&points, "Stress", total.points, 6)?,
 
             subdomains: column::empty::<i32>(&cells, "Subdomain", total.cells)?,
             materials: column::empty::<i32>(&cells, "Material", total.cells)?,
-            cell_stress: column::empty_table::<f64>(&cells, "Stress", total.cells, 6)?,
-            principal: column::empty_table::<f64>(&cells, "PrincipalStress", total.cells, 3)?,
-            von_mises: column::empty::<f64>(&cells, "VonMises", total.cells)?,
+            stress,
         })
     }
 
@@ -165,7 +177,6 @@ impl Arrays {
 
         column::fill(&self.node_tags, points, &results.node_tags)?;
         column::fill_table(&self.displacement, points, &results.displacement)?;
-        column::fill_table(&self.nodal_stress, points, &results.nodal_stress)?;
 
         let subdomains: Vec<i32> = (results.first as i32..)
             .zip(&results.sizes)
@@ -173,14 +184,33 @@ impl Arrays {
             .collect();
         column::fill(&self.subdomains, cells, &subdomains)?;
         column::fill(&self.materials, cells, &results.materials)?;
-        column::fill_table(&self.cell_stress, cells, &results.cell_stress)?;
-        column::fill_table(&self.principal, cells, &results.principal)?;
-        column::fill(&self.von_mises, cells, &results.von_mises)
+        match &self.stress {
+            Some(stress) => stress.fill(results, start),
+            None => Ok(()),
+        }
+    }
+}
+
+impl StressArrays {
+    fn create(points: &Group, cells: &Group, total: PartitionSize) -> Result<Self> {
+        Ok(Self {
+            at_nodes: column::empty_table::<f64>(points, "Stress", total.points, 6)?,
+            of_cells: column::empty_table::<f64>(cells, "Stress", total.cells, 6)?,
+            principal: column::empty_table::<f64>(cells, "PrincipalStress", total.cells, 3)?,
+            von_mises: column::empty::<f64>(cells, "VonMises", total.cells)?,
+        })
+    }
+
+    fn fill(&self, results: &SubdomainResults, start: PartitionSize) -> Result<()> {
+        column::fill_table(&self.at_nodes, start.points, &results.nodal_stress)?;
+        column::fill_table(&self.of_cells, start.cells, &results.cell_stress)?;
+        column::fill_table(&self.principal, start.cells, &results.principal)?;
+        column::fill(&self.von_mises, start.cells, &results.von_mises)
     }
 }
 
 /// Checks that each partition has the size in `sizes`, and that the lists hold what these say.
-fn check_sizes(results: &SubdomainResults, sizes: &[PartitionSize]) -> Result<()> {
+fn check_sizes(results: &SubdomainResults, sizes: &[PartitionSize], stress: bool) -> Result<()> {
     let check = |whose: &str, checks: &[(&str, usize, usize)]| match checks
         .iter()
         .find(|(_, found, expected)| found != expected)
@@ -203,6 +233,7 @@ fn check_sizes(results: &SubdomainResults, sizes: &[PartitionSize]) -> Result<()
     let sum = |of: fn(&PartitionSize) -> usize| sizes.iter().map(of).sum();
     let (points, cells) = (sum(|size| size.points), sum(|size| size.cells));
     let connectivity = sum(|size| size.connectivity);
+    let stressed = |count| if stress { count } else { 0 };
     let whose = match sizes.len() {
         0 | 1 => format!("subdomain {} has", results.first),
         n => format!(
@@ -217,14 +248,26 @@ fn check_sizes(results: &SubdomainResults, sizes: &[PartitionSize]) -> Result<()
             ("points", results.points.len(), points),
             ("node tags", results.node_tags.len(), points),
             ("displacements", results.displacement.len(), points),
-            ("nodal stresses", results.nodal_stress.len(), points),
+            (
+                "nodal stresses",
+                results.nodal_stress.len(),
+                stressed(points),
+            ),
             ("connectivity", results.connectivity.len(), connectivity),
             ("offsets", results.offsets.len(), cells + sizes.len()),
             ("cell types", results.types.len(), cells),
             ("materials", results.materials.len(), cells),
-            ("cell stresses", results.cell_stress.len(), cells),
-            ("principal stresses", results.principal.len(), cells),
-            ("von Mises stresses", results.von_mises.len(), cells),
+            ("cell stresses", results.cell_stress.len(), stressed(cells)),
+            (
+                "principal stresses",
+                results.principal.len(),
+                stressed(cells),
+            ),
+            (
+                "von Mises stresses",
+                results.von_mises.len(),
+                stressed(cells),
+            ),
         ],
     )
 }

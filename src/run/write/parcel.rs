@@ -47,10 +47,12 @@ impl Parcel {
             let b = plan.block_of[index];
             let block = blocks.get(&b).map(|owned| &owned.block);
             let member = block.and_then(|block| Some((block, block.member(index)?)));
-            let found = fields.displacement.get(&b).zip(fields.stress.get(&b));
-            match member.zip(found) {
-                Some(((block, m), (displacement, stress))) => {
-                    append_member(results, block, m, displacement, stress);
+            match member.zip(fields.displacement.get(&b)) {
+                Some(((block, m), displacement)) => {
+                    append_member(results, block, m, displacement);
+                    if let Some(stress) = fields.stress.and_then(|stress| stress.get(&b)) {
+                        append_stress(results, block, m, stress);
+                    }
                 }
                 // It takes its place without any content, so that the file names it.
                 None => results.sizes.push(PartitionSize::default()),
@@ -79,17 +81,9 @@ fn cut(slab_ends: impl Iterator<Item = usize>, owner: impl Fn(usize) -> usize) -
     parcels
 }
 
-/// Appends the solution on member `m` of a block.
-fn append_member(
-    results: &mut SubdomainResults,
-    block: &Block,
-    m: usize,
-    displacement: &[f64],
-    stress: &BlockStress,
-) {
+/// Appends member `m` of a block and its displacement.
+fn append_member(results: &mut SubdomainResults, block: &Block, m: usize, displacement: &[f64]) {
     let member = &block.members[m];
-    let first_cell: usize = block.members[..m].iter().map(|o| o.cells.len()).sum();
-    let cells = &stress.cells[first_cell..first_cell + member.cells.len()];
     let displacement_at = |&node: &u32| {
         let start = node as usize * block.dim;
         let mut u = [0.0; 3];
@@ -106,7 +100,6 @@ fn append_member(
     results
         .displacement
         .extend(block.node_of[m].iter().map(displacement_at));
-    results.nodal_stress.extend(stress.at_nodes(block, m));
     let connectivity = member.cells.connectivity().iter();
     results
         .connectivity
@@ -117,6 +110,13 @@ fn append_member(
     results.types.extend(types);
     let materials = member.cell_material.iter();
     results.materials.extend(materials.map(|&m| m as i32));
+}
+
+/// Appends the stresses of member `m` of a block.
+fn append_stress(results: &mut SubdomainResults, block: &Block, m: usize, stress: &BlockStress) {
+    let first_cell: usize = block.members[..m].iter().map(|o| o.cells.len()).sum();
+    let cells = &stress.cells[first_cell..first_cell + block.members[m].cells.len()];
+    results.nodal_stress.extend(stress.at_nodes(block, m));
     results.cell_stress.extend_from_slice(cells);
     results
         .principal
@@ -149,7 +149,7 @@ pub(super) fn pack(results: &SubdomainResults) -> Message {
 }
 
 /// Appends what another rank has packed. The sender is the same program, so what is taken is
-/// there; from a list that is too short nothing is taken.
+/// there; from a list that is too short, as that of a run without stresses, nothing is taken.
 pub(super) fn unpack(message: &Message, results: &mut SubdomainResults) {
     let mut integers = &message.integers[..];
     let count = take(&mut integers, 1).first().map_or(0, |&n| n as usize);
