@@ -187,7 +187,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     seconds.write = lap.elapsed().as_secs_f64();
     seconds.total = began.elapsed().as_secs_f64();
 
-    let ranks = report::collect(comm, &seconds, &plan);
+    let ranks = report::collect(comm, &seconds, &plan, condensed.repeats.found);
     let finished = match (&outcome, &interface, output) {
         (Some(outcome), Some((_, interface)), Some(output)) => {
             let totals = Totals {

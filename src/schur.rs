@@ -13,4 +13,5 @@ pub mod merge;
 pub mod ordering;
 mod panel;
 pub mod pattern;
+pub mod repeats;
 mod supernodes;

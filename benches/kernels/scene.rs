@@ -12,7 +12,7 @@ use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::example;
 use contact_dd_partition::model::{Material, Model};
 use contact_dd_partition::problem::{Catalog, Problem};
-use faer::Par;
+use faer::{Mat, Par};
 
 /// A scene cut into subdomains.
 pub struct Scene {
@@ -67,23 +67,23 @@ impl Scene {
     }
 
     /// A block condensed onto its boundary.
-    pub fn condensed(&self, b: usize) -> (Dofs, LocalSchur, CondensedLoad) {
+    pub fn condensed(&self, b: usize) -> (Dofs, LocalSchur, Mat<f64>, CondensedLoad) {
         let (dofs, system) = self.assembled(b);
-        let schur = LocalSchur::new(&system, dofs.interior, Par::Seq).unwrap();
+        let (schur, s) = LocalSchur::new(&system.stiffness, dofs.interior, Par::Seq).unwrap();
         let load = schur.condense(system.load);
-        (dofs, schur, load)
+        (dofs, schur, s, load)
     }
 
     /// The same as what a merge takes.
     pub fn of_block(&self, b: usize) -> Condensed {
-        let (dofs, schur, load) = self.condensed(b);
+        let (dofs, schur, s, load) = self.condensed(b);
         Condensed {
             approaches: dofs.approaches,
             traces: dofs.traces.clone(),
             smallest_pivot: schur.smallest_pivot(),
             load: load.boundary().to_vec(),
             stiffness: schur.stiffness,
-            s: schur.s,
+            s,
             eliminated: 0,
         }
     }

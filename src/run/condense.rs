@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use contact_dd_partition::problem::Catalog;
-use faer::{Mat, Par};
+use faer::Par;
 
 use super::merge::CondensedBlocks;
 use super::read::OwnedBlock;
@@ -17,7 +17,6 @@ use crate::plan::Plan;
 use crate::rigid::analysis::Pin;
 use crate::schur::condensed::Condensed;
 use crate::schur::factor::FactorError;
-use crate::schur::local::LocalSchur;
 
 /// What is needed to condense any block.
 #[derive(Clone, Copy)]
@@ -56,8 +55,10 @@ impl Condensation<'_> {
         let system =
             assemble(block, &dofs, &catalog.materials, &pins).ok_or_else(|| size(plan, number))?;
         let assembled = Instant::now();
-        let mut schur =
-            LocalSchur::new(&system, dofs.interior, par).map_err(|error| match error {
+        let (schur, s) = condensed
+            .repeats
+            .factorize(owned.size(), &system.stiffness, dofs.interior, par)
+            .map_err(|error| match error {
                 FactorError::Size => size(plan, number),
                 FactorError::Pivot(unknown) => moves(owned, &dofs, unknown, catalog),
             })?;
@@ -65,9 +66,9 @@ impl Condensation<'_> {
         let of_block = Condensed {
             approaches: dofs.approaches,
             traces: dofs.traces.clone(),
-            s: std::mem::replace(&mut schur.s, Mat::new()),
+            s,
             load: load.boundary().to_vec(),
-            stiffness: std::mem::take(&mut schur.stiffness),
+            stiffness: schur.stiffness.clone(),
             smallest_pivot: schur.smallest_pivot(),
             eliminated: 0,
         };

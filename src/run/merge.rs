@@ -1,6 +1,7 @@
 //! Up the hierarchy: blocks are condensed and merged until the clusters are left.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::clusters::take_clusters;
@@ -17,6 +18,7 @@ use crate::rigid::survey::Survey;
 use crate::schur::condensed::Condensed;
 use crate::schur::local::{CondensedLoad, LocalSchur};
 use crate::schur::merge::{LooseTrace, Merge, Spare};
+use crate::schur::repeats::Repeats;
 
 /// What this rank has of the condensed blocks and of what they were merged into.
 #[derive(Debug, Default)]
@@ -26,7 +28,9 @@ pub struct CondensedBlocks {
     /// The diagonal of every block's stiffness (Pa).
     pub diagonals: BTreeMap<usize, Vec<f64>>,
     /// The factor of every block.
-    pub factors: BTreeMap<usize, LocalSchur>,
+    pub factors: BTreeMap<usize, Arc<LocalSchur>>,
+    /// What equal blocks share.
+    pub repeats: Repeats,
     /// The merge at every inner node of the hierarchy.
     pub merges: BTreeMap<usize, Merge>,
     /// The condensed load of every node of the hierarchy.
@@ -59,7 +63,10 @@ pub fn condense_clusters(
         comm,
         condensation,
         blocks,
-        condensed: CondensedBlocks::default(),
+        condensed: CondensedBlocks {
+            repeats: Repeats::new(blocks.values().map(OwnedBlock::size)),
+            ..CondensedBlocks::default()
+        },
         waiting: BTreeMap::new(),
         spare: Spare::default(),
     };

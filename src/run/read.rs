@@ -11,6 +11,7 @@ use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;
 use crate::plan::Plan;
+use crate::schur::repeats::BlockSize;
 
 /// Most subdomains that are read at once: what HDF5 hands over is there twice for a while.
 const AT_ONCE: usize = 64;
@@ -24,6 +25,19 @@ pub struct OwnedBlock {
     pub rows: Vec<ContactRow>,
     /// The same over the nodes of the block.
     pub conditions: Vec<BlockCondition>,
+}
+
+impl OwnedBlock {
+    /// How large it is.
+    pub fn size(&self) -> BlockSize {
+        let cells = self.block.members.iter().map(|member| member.cells.len());
+        BlockSize {
+            nodes: self.block.nodes(),
+            cells: cells.sum(),
+            interface: self.block.interface.len(),
+            conditions: self.conditions.len(),
+        }
+    }
 }
 
 /// Reads the blocks of `plan` that this rank owns, by their number.

@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef, Par};
 
 use super::factor::{BoundaryLastCholesky, FactorError};
-use crate::fem::assembly::BlockSystem;
+use super::pattern::SparseSymmetric;
 
 /// S = K_BB − K_BI K_II⁻¹ K_IB with everything that condensing and recovering a load needs, (11).
 ///
@@ -12,28 +12,31 @@ use crate::fem::assembly::BlockSystem;
 pub struct LocalSchur {
     factor: BoundaryLastCholesky,
     interior: usize,
-    /// S, both triangles (Pa).
-    pub s: Mat<f64>,
     /// The diagonal of K_BB (Pa): what S's round-off is relative to.
     pub stiffness: Vec<f64>,
 }
 
 impl LocalSchur {
-    /// Factorizes a block's stiffness, whose first `interior` unknowns are I.
+    /// Factorizes a block's stiffness, whose first `interior` unknowns are I; S, both triangles (Pa),
+    /// stands beside.
     ///
     /// # Errors
     /// K_II isn't positive definite: the block can move with its boundary held.
-    pub fn new(system: &BlockSystem, interior: usize, par: Par) -> Result<Self, FactorError> {
-        let (factor, s) = BoundaryLastCholesky::condense(&system.stiffness, interior, par)?;
-        let stiffness = (interior..system.stiffness.pattern.n())
-            .map(|j| system.stiffness.values[system.stiffness.pattern.column(j).start])
+    pub fn new(
+        matrix: &SparseSymmetric,
+        interior: usize,
+        par: Par,
+    ) -> Result<(Self, Mat<f64>), FactorError> {
+        let (factor, s) = BoundaryLastCholesky::condense(matrix, interior, par)?;
+        let stiffness = (interior..matrix.pattern.n())
+            .map(|j| matrix.values[matrix.pattern.column(j).start])
             .collect();
-        Ok(Self {
+        let schur = Self {
             factor,
             interior,
-            s,
             stiffness,
-        })
+        };
+        Ok((schur, s))
     }
 
     /// The smallest pivot of K_II relative to its diagonal.

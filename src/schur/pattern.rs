@@ -158,7 +158,7 @@ impl LowerPattern {
 }
 
 /// A symmetric sparse matrix, its lower triangle by columns.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SparseSymmetric {
     /// Pattern.
     pub pattern: LowerPattern,

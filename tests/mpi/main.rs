@@ -25,6 +25,8 @@ use std::time::{Duration, Instant};
 
 use libtest_mimic::{Arguments, Trial};
 
+use contact_dd_partition::model::Model;
+use support::blocks::Blocks;
 use support::process::{Ended, Running, is_alive, kill};
 use support::scenes::{
     BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks,
@@ -46,6 +48,7 @@ fn main() -> ExitCode {
     let mut trials = Trials::default();
     same_results(&mut trials);
     without_stresses(&mut trials);
+    trials.once("equal_subdomains_are_factorized_once", one_factorization);
     bad_input::bad_input(&mut trials);
     bad_input::bad_usage(&mut trials);
     endings::no_equilibrium(&mut trials);
@@ -102,7 +105,7 @@ type MakeCase = fn() -> Case;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 12] = [
+    let cases: [(&str, MakeCase); 13] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
@@ -126,6 +129,7 @@ fn same_results(trials: &mut Trials) {
         }),
         ("row", || Case::of(&resting::row([-1e6, 0.0], true), 6)),
         ("fallen", || Case::of(&resting::fallen(), 5)),
+        ("equal_subdomains", || Case::of(&equal_squares(), 16)),
         ("on_circles", || Case::of(&resting::on_circles(), 6)),
     ];
     for (name, make) in cases {
@@ -168,7 +172,39 @@ fn without_stresses(trials: &mut Trials) {
         let ended = run(&case, ranks, &["--no-stress"]);
         assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
         assert!(datasets(&case.result()) == expected);
-        let skipped = ended.stdout.lines().filter(|l| l.starts_with("skipped"));
-        assert!(skipped.last().is_some_and(|l| l.contains("stresses")));
+        assert!(ended.stdout.contains("skipped: stresses"));
     });
+}
+
+/// A square of 4 × 4 equal subdomains, held at its lower edge.
+fn equal_squares() -> Model {
+    let mut squares = Blocks::new();
+    let mut names = Vec::new();
+    let mut scene = String::from("materials.rock = {young = 1e9, poisson = 0.25}\n");
+    for (i, j) in (0..16).map(|s| (s % 4, s / 4)) {
+        let name = format!("s{i}{j}");
+        let [x, y] = [i, j].map(|k| [f64::from(k), f64::from(k + 1)]);
+        squares = squares.rectangle(&name, x, y, [8, 8]);
+        scene += &format!("bodies.{name}.material = 'rock'\n");
+        names.push(format!("'{name}'"));
+    }
+    let names = names.join(", ");
+    scene.insert_str(0, &format!("plane = 'strain'\nsubdomains = [{names}]\n"));
+    scene += "[[displacement]]\non = ['s00 bottom', 's10 bottom', 's20 bottom', 's30 bottom']\nx = 0.0\ny = 0.0\n";
+    scene += "[[pressure]]\non = ['s03 top', 's30 right']\nvalue = 1e6\n";
+    model(&scene, squares.glued(|_, _| true).mesh)
+}
+
+fn one_factorization() {
+    let case = Case::of(&equal_squares(), 16);
+    assert_eq!(case.run(&[]).code(), 0);
+    let report = Solution::read(&case.result()).report;
+    // There are nine kinds: four corners, two at each of four edges, four within.
+    assert_eq!(report["per_rank"][0]["repeated"], 7);
+    let skipped = report["skipped"].as_array().unwrap();
+    assert!(
+        skipped
+            .iter()
+            .any(|s| s.as_str().unwrap().starts_with("factorizations: 7 of 16"))
+    );
 }
