@@ -8,6 +8,7 @@ pub mod memory;
 pub mod progress;
 pub mod report;
 pub mod result;
+pub mod resultants;
 pub mod terminal;
 pub mod vtkhdf;
 

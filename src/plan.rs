@@ -223,6 +223,7 @@ mod tests {
             plane: PlaneState::Strain,
             materials: Vec::new(),
             bodies: vec![Body { name: "b".into() }],
+            supports: Vec::new(),
             contacts: Vec::new(),
             subdomains: sizes
                 .iter()

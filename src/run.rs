@@ -14,6 +14,7 @@ pub mod read;
 pub mod recover;
 pub mod refine;
 mod report;
+mod resultants;
 pub mod settle;
 pub mod substitute;
 pub mod write;
@@ -35,6 +36,7 @@ use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
 use self::refine::refine;
 use self::report::{Narrator, Totals};
+use self::resultants::resultants;
 use self::settle::{settle_free_motions, settle_loose_motions};
 use self::substitute::Factors;
 use self::write::{Fields, stresses, write_solution};
@@ -167,6 +169,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         true => None,
         false => condition_number(&frozen, &solutions),
     };
+    let resultants = resultants(&frozen, &solutions);
     let stress = (!settings.no_stress).then(|| stresses(comm, &blocks, &solutions, catalog, &plan));
     let displacement = with_descent(&blocks, &solutions, &survey, catalog.dim);
     if let Some(outcome) = &mut outcome {
@@ -200,6 +203,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
                 certificate,
                 condition,
                 ranks,
+                resultants,
                 has_stress: stress.is_some(),
                 warnings: [survey.motions.warnings, settled.warnings].concat(),
             };

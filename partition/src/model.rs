@@ -50,6 +50,9 @@ pub struct Support {
     pub direction: [f64; 3],
     /// Prescribed displacement along it (m).
     pub value: f64,
+    /// Index of the condition that prescribes it among [`Model::support_names`]: of several that
+    /// do, the first.
+    pub condition: u32,
 }
 
 /// One contact condition, a row of `B u ≤ g`.
@@ -97,6 +100,8 @@ pub struct Model {
     pub cell_material: Vec<u32>,
     /// Index of its body for every cell.
     pub cell_body: Vec<u32>,
+    /// Names of the conditions that prescribe displacements.
+    pub support_names: Vec<String>,
     /// Supports in ascending order of nodes.
     pub supports: Vec<Support>,
     /// Consistent nodal forces in ascending order of nodes, one entry a loaded node (N per metre
@@ -120,7 +125,8 @@ impl Model {
         let mut warnings = Vec::new();
         let bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
         let topology = Topology::new(&bodies.mesh);
-        let supports = supports::supports(scene, &bodies.mesh, &topology)?;
+        let support_names = supports::names(scene);
+        let supports = supports::supports(scene, &support_names, &bodies.mesh, &topology)?;
         let forces = loads::forces(scene, &bodies, &topology)?;
         let sides = contact::Contacts::new(&bodies.mesh, &topology, &supports);
         let contacts = (scene.contact.iter())
@@ -137,6 +143,7 @@ impl Model {
             cell_material: bodies.cell_material,
             cell_body: bodies.cell_body,
             mesh: bodies.mesh,
+            support_names,
             supports,
             forces,
             contacts,

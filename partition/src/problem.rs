@@ -138,6 +138,8 @@ pub struct Catalog {
     pub materials: Vec<Material>,
     /// Bodies.
     pub bodies: Vec<Body>,
+    /// Names of the conditions that prescribe displacements.
+    pub supports: Vec<String>,
     /// Contacts.
     pub contacts: Vec<ContactSummary>,
     /// Subdomains.

@@ -109,6 +109,7 @@ mod tests {
             node: 4,
             direction,
             value,
+            condition: 0,
         };
         let frames = support_frames(
             &[support([0.0, 1.0, 0.0], 2.0), support([1.0, 0.0, 0.0], 1.0)],

@@ -59,18 +59,19 @@ impl NodeFrames {
 
 /// The frames of a block's supported nodes.
 pub fn supported_frames(block: &Block) -> BTreeMap<u32, Frame> {
-    let supports: Vec<Support> = block
-        .members
-        .iter()
-        .zip(&block.node_of)
-        .flat_map(|(member, node_of)| {
-            member.supports.iter().map(|s| Support {
-                node: node_of[s.node as usize],
-                ..*s
-            })
+    support_frames(&supports(block), block.dim)
+}
+
+/// The supports of a block, by its nodes.
+pub fn supports(block: &Block) -> Vec<Support> {
+    let of_members = block.members.iter().zip(&block.node_of);
+    let all = of_members.flat_map(|(member, node_of)| {
+        member.supports.iter().map(|s| Support {
+            node: node_of[s.node as usize],
+            ..*s
         })
-        .collect();
-    support_frames(&without_repetition(supports), block.dim)
+    });
+    without_repetition(all.collect())
 }
 
 /// Supports of nodes that several members share, once.

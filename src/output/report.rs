@@ -7,6 +7,8 @@ use contact_dd_partition::destination::{Destination, failure};
 use contact_dd_partition::error::OutputError;
 use serde::Serialize;
 
+use super::resultants::Resultants;
+
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -148,6 +150,9 @@ pub struct Report {
     pub per_rank: Vec<RankReport>,
     /// Sum of the ranks' peak resident memory (bytes).
     pub peak_memory_bytes: u64,
+    /// What contacts and supports carry.
+    #[serde(flatten)]
+    pub resultants: Resultants,
     /// What the scene didn't need, in words.
     pub skipped: Vec<String>,
     /// What the user should know, in words.
@@ -209,6 +214,7 @@ mod tests {
             seconds: PhaseSeconds::default(),
             per_rank: vec![RankReport::default()],
             peak_memory_bytes: 1,
+            resultants: Resultants::default(),
             skipped: Vec::new(),
             warnings: vec!["a \"quoted\"\nwarning".into()],
             version: "0.1.0".into(),

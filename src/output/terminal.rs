@@ -6,6 +6,7 @@ use std::io::{Result, Write};
 use std::path::Path;
 
 use super::report::{Certificate, PhaseSeconds, RankReport, Report};
+use super::resultants;
 
 /// What is to be solved, and on what.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,6 +136,8 @@ pub fn closing(out: &mut impl Write, reason: &str, report: &Report, result: &Pat
     if let Some(condition) = report.condition {
         writeln!(out, "             condition number about {condition:.0e}")?;
     }
+    writeln!(out)?;
+    resultants::print(out, &report.resultants)?;
     writeln!(out)?;
     timing(out, &report.per_rank)?;
     writeln!(out)?;

@@ -11,6 +11,7 @@ use crate::interface::operator::Interface;
 use crate::output::memory::peak_memory_bytes;
 use crate::output::report::{Certificate, PhaseSeconds, RankReport, Report, Status, write_report};
 use crate::output::result::ConvergenceRow;
+use crate::output::resultants::Resultants;
 use crate::output::terminal::{self, Summary, SweepLine};
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
@@ -50,6 +51,8 @@ pub struct Totals<'a> {
     pub condition: Option<f64>,
     /// Every rank's times.
     pub ranks: Vec<RankReport>,
+    /// What contacts and supports carry.
+    pub resultants: Resultants,
     /// Whether stresses are among the results.
     pub has_stress: bool,
     /// What the ranks noticed on the way.
@@ -271,6 +274,7 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
         seconds: PhaseSeconds::slowest(&seconds),
         peak_memory_bytes: totals.ranks.iter().map(|r| r.peak_memory_bytes).sum(),
         per_rank: totals.ranks.clone(),
+        resultants: totals.resultants.clone(),
         skipped: skipped(totals),
         warnings,
         version: env!("CARGO_PKG_VERSION").into(),

@@ -22,27 +22,33 @@ const CORNER: f64 = 0.766_044_443_118_978;
 struct Row<'a> {
     direction: [f64; 3],
     value: f64,
-    condition: &'a str,
+    condition: usize,
+    name: &'a str,
 }
 
-/// The supports of a scene, ascending by node, the rows of one node orthonormal.
-pub(super) fn supports(
-    scene: &Scene,
-    mesh: &Mesh,
-    topology: &Topology,
-) -> Result<Vec<Support>, InputError> {
+/// The names of a scene's conditions, displacements before bilateral ones.
+pub(super) fn names(scene: &Scene) -> Vec<String> {
     let label = |key: &str, index: usize, on: &dyn std::fmt::Display| {
         format!("{key}[{}] on {on}", index + 1)
     };
-    let (displacement, bilateral) = (&scene.displacement, &scene.bilateral);
-    let displacement_labels: Vec<String> = (displacement.iter().enumerate())
-        .map(|(i, condition)| label("displacement", i, &condition.on))
-        .collect();
-    let bilateral_labels: Vec<String> = (bilateral.iter().enumerate())
-        .map(|(i, condition)| label("bilateral", i, &condition.on))
-        .collect();
+    let displacement = (scene.displacement.iter().enumerate())
+        .map(|(i, condition)| label("displacement", i, &condition.on));
+    let bilateral = (scene.bilateral.iter().enumerate())
+        .map(|(i, condition)| label("bilateral", i, &condition.on));
+    displacement.chain(bilateral).collect()
+}
+
+/// The supports of a scene whose conditions have these names, ascending by node, the rows of one
+/// node orthonormal.
+pub(super) fn supports(
+    scene: &Scene,
+    names: &[String],
+    mesh: &Mesh,
+    topology: &Topology,
+) -> Result<Vec<Support>, InputError> {
     let mut rows: BTreeMap<u32, Vec<Row>> = BTreeMap::new();
-    for (condition, label) in displacement.iter().zip(&displacement_labels) {
+    let mut names = names.iter().enumerate();
+    for (condition, (number_of, label)) in scene.displacement.iter().zip(&mut names) {
         for node in groups::nodes(mesh, &condition.on, label)? {
             for (axis, number) in condition.components.iter().enumerate() {
                 let Some(number) = number else { continue };
@@ -54,12 +60,13 @@ pub(super) fn supports(
                 rows.entry(node).or_default().push(Row {
                     direction,
                     value,
-                    condition: label,
+                    condition: number_of,
+                    name: label,
                 });
             }
         }
     }
-    for (condition, label) in bilateral.iter().zip(&bilateral_labels) {
+    for (condition, (number_of, label)) in scene.bilateral.iter().zip(names) {
         let facets = groups::facets(mesh, &condition.on, label)?;
         let surface = Surface::new(mesh, topology, &facets, label)?;
         for (node, facets) in surface.around() {
@@ -67,7 +74,8 @@ pub(super) fn supports(
                 rows.entry(node).or_default().push(Row {
                     direction,
                     value: 0.0,
-                    condition: label,
+                    condition: number_of,
+                    name: label,
                 });
             }
         }
@@ -122,6 +130,7 @@ fn orthonormal(
                 node,
                 direction: direction.map(|c| c / left),
                 value: value / left,
+                condition: row.condition as u32,
             });
             continue;
         }
@@ -131,9 +140,9 @@ fn orthonormal(
         let agreed = if exact.is_some() { AGREE } else { PARALLEL };
         if value.abs() > agreed * scale {
             let others = match exact {
-                Some(other) => format!("{} says {}", other.condition, other.value),
+                Some(other) => format!("{} says {}", other.name, other.value),
                 None => {
-                    let names: Vec<&str> = rows[..index].iter().map(|r| r.condition).collect();
+                    let names: Vec<&str> = rows[..index].iter().map(|r| r.name).collect();
                     format!("{} say otherwise", names.join(" and "))
                 }
             };
@@ -141,7 +150,7 @@ fn orthonormal(
             return Err(InputError::new(format!(
                 "node {}: {} says {} for the displacement along ({x}, {y}, {z}), {others}; \
                  expected conditions that agree",
-                mesh.node_tags[node as usize], row.condition, row.value
+                mesh.node_tags[node as usize], row.name, row.value
             )));
         }
     }

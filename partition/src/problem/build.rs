@@ -36,6 +36,7 @@ impl Problem {
         warnings.extend(groups.warning.clone());
         warnings.extend(scattered::warning(model, decomposition));
         let mut catalog = Catalog {
+            supports: model.support_names.clone(),
             title: model.title.clone(),
             dim: model.mesh.dim,
             plane: model.plane,

@@ -141,6 +141,8 @@ impl Problem {
         support.column("node", rows().map(|s| i64::from(s.node)))?;
         support.vectors("direction", dim, rows().map(|s| &s.direction))?;
         support.column("value", rows().map(|s| s.value))?;
+        support.column("condition", rows().map(|s| i64::from(s.condition)))?;
+        support.strings("name", self.catalog.supports.iter().map(String::as_str))?;
 
         let force = Section::new(file, "force")?;
         force.offsets("offset", all.iter().map(|s| s.forces.len()))?;

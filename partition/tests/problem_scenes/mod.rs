@@ -85,6 +85,7 @@ impl Builder {
             ],
             bodies: (0..bodies).map(|b| format!("block {b}")).collect(),
             cell_material: self.cell_body.iter().map(|b| b % 2).collect(),
+            support_names: vec!["along".into(), "across".into()],
             supports: bottom
                 .iter()
                 .flat_map(|&node| {
@@ -92,6 +93,7 @@ impl Builder {
                         node,
                         direction,
                         value: f64::from(node),
+                        condition: u32::from(direction[0] < 0.0),
                     })
                 })
                 .collect(),

@@ -43,6 +43,7 @@ fn support(node: u32, direction: [f64; 3], value: f64) -> Support {
         node,
         direction,
         value,
+        condition: 0,
     }
 }
 

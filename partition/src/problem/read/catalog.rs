@@ -22,6 +22,7 @@ pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> 
         count,
         &["/support/offset", "/support/node"],
     )?;
+    let support_names = read_support_names(file)?;
     let forces = section(file, "force", count, &["/force/offset", "/force/node"])?;
     let (contacts, groups) = read_contacts(file)?;
     let subdomains = read_subdomains(file, &sizes, bodies.len(), groups.len() - 1)?;
@@ -36,6 +37,7 @@ pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> 
         plane: header.plane,
         materials,
         bodies: bodies.into_iter().map(|name| Body { name }).collect(),
+        supports: support_names,
         contacts,
         subdomains,
         interface,
@@ -168,6 +170,14 @@ fn read_subdomains(
             cells: sizes.cells[i],
         })
         .collect())
+}
+
+/// Names of the conditions that prescribe displacements; one for all where the file doesn't tell.
+fn read_support_names(file: &hdf5::File) -> Result<Vec<String>, InputError> {
+    if file.link_exists("support/condition") {
+        return Dataset::column(file, "/support/name", None)?.strings();
+    }
+    Ok(vec!["supports".into()])
 }
 
 /// Contacts, and the offsets of the groups' rows.

@@ -24,6 +24,8 @@ pub(super) struct Supports {
     pub node: Slab<i64>,
     pub direction: Slab<f64>,
     pub value: Slab<f64>,
+    /// Absent from files that don't tell conditions apart.
+    pub condition: Option<Slab<i64>>,
 }
 
 /// Nodal forces of consecutive subdomains.
@@ -70,7 +72,14 @@ impl Supports {
         Ok(Some(Self {
             node: Slab::integers(node, rows.clone())?,
             direction: Slab::unit_vectors(direction, rows.clone(), dim)?,
-            value: Slab::floats(value, rows, 1)?,
+            value: Slab::floats(value, rows.clone(), 1)?,
+            condition: match file.file.link_exists("support/condition") {
+                true => Some(Slab::integers(
+                    file.column("/support/condition")?.shaped(total, &[])?,
+                    rows,
+                )?),
+                false => None,
+            },
         }))
     }
 }

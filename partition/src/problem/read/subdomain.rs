@@ -160,11 +160,14 @@ impl ProblemFile {
             .indices(rows.clone(), nodes, "node of its subdomain")?;
         let directions = slab.direction.vectors(rows.clone());
         let values = slab.value.rows(rows.clone());
+        let conditions = match &slab.condition {
+            Some(slab) => slab.indices(rows.clone(), self.catalog.supports.len(), "condition")?,
+            None => vec![0; rows.len()],
+        };
         let mut supports: Vec<Support> = Vec::with_capacity(rows.len());
-        for ((at, &node_of), (&d, &value)) in nodes_of
-            .iter()
-            .enumerate()
+        for (((at, &node_of), (&d, &value)), &condition) in (nodes_of.iter().enumerate())
             .zip(directions.iter().zip(values))
+            .zip(&conditions)
         {
             for before in supports.iter().rev().take_while(|s| s.node >= node_of) {
                 if before.node > node_of {
@@ -184,6 +187,7 @@ impl ProblemFile {
                 node: node_of,
                 direction: d,
                 value,
+                condition,
             });
         }
         Ok(supports)
