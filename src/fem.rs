@@ -10,5 +10,6 @@ pub mod elasticity;
 mod elimination;
 pub mod frame;
 pub mod node_frames;
+pub mod recovery;
 mod sites;
 pub mod stress;

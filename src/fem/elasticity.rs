@@ -1,7 +1,5 @@
 //! Linear elasticity of one element in the plane: strains, stresses, stiffness.
 
-use std::sync::LazyLock;
-
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::model::{Material, PlaneState};
 
@@ -19,43 +17,15 @@ pub struct PointGradients {
     pub weight: f64,
 }
 
-/// Gradients and weights at the quadrature points of a reference element's stiffness.
-struct StiffnessRule {
-    points: Vec<(Vec<[f64; 3]>, f64)>,
-}
-
-impl StiffnessRule {
-    /// A rule that is exact for integrands of `degree` in the reference coordinates.
-    fn new(kind: ElementKind, degree: usize) -> Self {
-        let rule = kind.quadrature(degree);
-        let gradients = rule.points.iter().map(|&xi| kind.gradients(xi));
-        Self {
-            points: gradients.zip(rule.weights).collect(),
-        }
-    }
-
-    fn of(kind: ElementKind) -> &'static Self {
-        static TRIANGLE3: LazyLock<StiffnessRule> =
-            LazyLock::new(|| StiffnessRule::new(ElementKind::Triangle3, 0));
-        static NONE: StiffnessRule = StiffnessRule { points: Vec::new() };
-        match kind {
-            ElementKind::Triangle3 => &TRIANGLE3,
-            // Points and lines are facets; as cells they have no stiffness.
-            ElementKind::Point1 | ElementKind::Line2 => &NONE,
-        }
-    }
-}
-
 /// The quadrature points of an element's stiffness.
 pub fn stiffness_points(
     kind: ElementKind,
     points: &[[f64; 3]],
 ) -> impl Iterator<Item = PointGradients> {
-    let rule = &StiffnessRule::of(kind).points;
-    rule.iter().map(move |(reference, weight)| {
+    kind.stiffness_points().iter().map(move |reference| {
         // J = ∂x/∂ξ
         let mut j = [[0.0; 2]; 2];
-        for (x, g) in points.iter().zip(reference) {
+        for (x, g) in points.iter().zip(&reference.gradients) {
             for (row, x) in j.iter_mut().zip(x) {
                 row[0] += x * g[0];
                 row[1] += x * g[1];
@@ -63,13 +33,13 @@ pub fn stiffness_points(
         }
         let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
         let mut gradients = [[0.0; 2]; MAX_NODES];
-        for (gradient, g) in gradients.iter_mut().zip(reference) {
+        for (gradient, g) in gradients.iter_mut().zip(&reference.gradients) {
             gradient[0] = (j[1][1] * g[0] - j[1][0] * g[1]) / det;
             gradient[1] = (j[0][0] * g[1] - j[0][1] * g[0]) / det;
         }
         PointGradients {
             gradients,
-            weight: det * weight,
+            weight: det * reference.weight,
         }
     })
 }
@@ -130,10 +100,14 @@ impl ElementMatrix {
         self.order = 2 * kind.nodes();
         self.values[..self.order * self.order].fill(0.0);
         for point in stiffness_points(kind, points) {
+            // The compiler unrolls what it knows the size of.
             match kind {
-                // The compiler unrolls what it knows the size of.
                 ElementKind::Triangle3 => self.add_lower(3, &point, c),
-                _ => self.add_lower(kind.nodes(), &point, c),
+                ElementKind::Quad4 => self.add_lower(4, &point, c),
+                ElementKind::Triangle6 => self.add_lower(6, &point, c),
+                ElementKind::Quad8 => self.add_lower(8, &point, c),
+                ElementKind::Quad9 => self.add_lower(9, &point, c),
+                ElementKind::Point1 | ElementKind::Line2 | ElementKind::Line3 => {}
             }
         }
         // Symmetric to the last bit, so that assembling one triangle is assembling both.
@@ -197,7 +171,13 @@ pub fn von_mises(s: &[f64; 6]) -> f64 {
 mod tests {
     use super::*;
 
-    const POINTS: [[f64; 3]; 3] = [[0.2, 0.1, 0.0], [1.3, 0.4, 0.0], [0.5, 1.7, 0.0]];
+    const CELLS: [ElementKind; 5] = [
+        ElementKind::Triangle3,
+        ElementKind::Triangle6,
+        ElementKind::Quad4,
+        ElementKind::Quad8,
+        ElementKind::Quad9,
+    ];
     const C: [[f64; 3]; 3] = [[3.0, 1.0, 0.2], [1.0, 2.5, -0.1], [0.2, -0.1, 0.9]];
 
     fn material() -> Material {
@@ -209,54 +189,105 @@ mod tests {
         }
     }
 
-    fn stiffness() -> ElementMatrix {
+    /// A cell of no special shape, its edges curved where they can be.
+    fn points(kind: ElementKind) -> Vec<[f64; 3]> {
+        let nodes = kind.node_coordinates().iter();
+        nodes
+            .map(|&[x, y, _]| {
+                [
+                    0.2 + 1.1 * x + 0.3 * y + 0.1 * y * y,
+                    0.1 + 1.6 * y - 0.2 * x * y,
+                    0.0,
+                ]
+            })
+            .collect()
+    }
+
+    fn stiffness(kind: ElementKind) -> ElementMatrix {
         let mut k = ElementMatrix::default();
-        k.set(ElementKind::Triangle3, &POINTS, &C);
+        k.set(kind, &points(kind), &C);
         k
     }
 
     #[test]
     fn a_linear_displacement_has_its_own_strain() {
-        let u: Vec<f64> = POINTS
-            .iter()
-            .flat_map(|x| [0.1 * x[0] + 0.2 * x[1], -0.3 * x[0] + 0.4 * x[1]])
-            .collect();
-        for point in stiffness_points(ElementKind::Triangle3, &POINTS) {
-            let e = strain(&point, &u);
-            for (e, exact) in e.iter().zip([0.1, 0.4, -0.1]) {
-                assert!((e - exact).abs() < 1e-15);
+        for kind in CELLS {
+            let points = points(kind);
+            let u: Vec<f64> = (points.iter())
+                .flat_map(|x| [0.1 * x[0] + 0.2 * x[1], -0.3 * x[0] + 0.4 * x[1]])
+                .collect();
+            for point in stiffness_points(kind, &points) {
+                let e = strain(&point, &u);
+                for (e, exact) in e.iter().zip([0.1, 0.4, -0.1]) {
+                    assert!((e - exact).abs() < 1e-14, "{kind:?}");
+                }
             }
         }
     }
 
     #[test]
     fn stiffness_is_symmetric_and_rigid_motions_cost_nothing() {
-        let k = stiffness();
-        let rotation: Vec<f64> = POINTS.iter().flat_map(|x| [-x[1], x[0]]).collect();
-        for (i, row) in k.rows().enumerate() {
-            let force: f64 = row.iter().zip(&rotation).map(|(k, u)| k * u).sum();
-            let push: f64 = row.iter().step_by(2).sum();
-            assert!(force.abs() < 1e-14 && push.abs() < 1e-14);
-            assert!(k.rows().zip(row).all(|(column, k)| column[i] == *k));
+        for kind in CELLS {
+            let k = stiffness(kind);
+            let rotation: Vec<f64> = points(kind).iter().flat_map(|x| [-x[1], x[0]]).collect();
+            for (i, row) in k.rows().enumerate() {
+                let force: f64 = row.iter().zip(&rotation).map(|(k, u)| k * u).sum();
+                let push: f64 = row.iter().step_by(2).sum();
+                assert!(force.abs() < 1e-13 && push.abs() < 1e-13, "{kind:?}");
+                assert!(k.rows().zip(row).all(|(column, k)| column[i] == *k));
+            }
+        }
+    }
+
+    /// ∫ Bᵀ σ for a uniform stress is ∮ N σ n, with nothing at nodes inside.
+    #[test]
+    fn the_forces_of_a_uniform_stress_are_its_tractions_on_the_edges() {
+        for kind in CELLS {
+            let (k, at) = (stiffness(kind), points(kind));
+            let u: Vec<f64> = (at.iter())
+                .flat_map(|x| [0.1 * x[0] + 0.2 * x[1], -0.3 * x[0] + 0.4 * x[1]])
+                .collect();
+            let s = stress(&material(), PlaneState::Strain, &[0.1, 0.4, -0.1]);
+            let mut exact = vec![0.0; u.len()];
+            for (facet, local) in kind.facets() {
+                let on: Vec<_> = local.iter().map(|&i| at[i]).collect();
+                let rule = facet.quadrature(7);
+                for (&xi, weight) in rule.points.iter().zip(&rule.weights) {
+                    let n = facet.area_vector(&on, xi);
+                    let traction = [s[0] * n[0] + s[3] * n[1], s[3] * n[0] + s[1] * n[1]];
+                    for (&i, shape) in local.iter().zip(facet.shape(xi)) {
+                        exact[2 * i] += weight * shape * traction[0];
+                        exact[2 * i + 1] += weight * shape * traction[1];
+                    }
+                }
+            }
+            for (row, exact) in k.rows().zip(&exact) {
+                let force: f64 = row.iter().zip(&u).map(|(k, u)| k * u).sum();
+                assert!((force - exact).abs() < 1e-13, "{kind:?}");
+            }
         }
     }
 
     #[test]
     fn the_energy_is_half_stress_times_strain_times_area() {
-        let u = [0.3, -0.1, 0.2, 0.5, -0.4, 0.1];
-        let k = stiffness();
-        let energy: f64 = (0..6)
-            .flat_map(|i| (0..6).map(move |j| (i, j)))
-            .map(|(i, j)| u[i] * k.row(i)[j] * u[j])
-            .sum();
-        let exact: f64 = stiffness_points(ElementKind::Triangle3, &POINTS)
-            .map(|point| {
-                let e = strain(&point, &u);
-                let s = stress(&material(), PlaneState::Strain, &e);
-                point.weight * (s[0] * e[0] + s[1] * e[1] + s[3] * e[2])
-            })
-            .sum();
-        assert!((energy - exact).abs() < 1e-13);
+        for kind in CELLS {
+            let u: Vec<f64> = (0..2 * kind.nodes())
+                .map(|i| (1.7 * i as f64).sin())
+                .collect();
+            let k = stiffness(kind);
+            let forces = k
+                .rows()
+                .map(|row| row.iter().zip(&u).map(|(k, u)| k * u).sum::<f64>());
+            let energy: f64 = forces.zip(&u).map(|(force, u)| force * u).sum();
+            let exact: f64 = stiffness_points(kind, &points(kind))
+                .map(|point| {
+                    let e = strain(&point, &u);
+                    let s = stress(&material(), PlaneState::Strain, &e);
+                    point.weight * (s[0] * e[0] + s[1] * e[1] + s[3] * e[2])
+                })
+                .sum();
+            assert!((energy - exact).abs() < 1e-12 * exact, "{kind:?}");
+        }
     }
 
     #[test]

@@ -1,15 +1,16 @@
-//! Stresses: per cell, and recovered at nodes as the mean over the cells around them, weighted by
-//! their area; across Γ, but never across a contact or a change of material.
+//! Stresses: the mean over each cell, and at nodes the mean of what the cells around them have
+//! there, weighted by their area; across Γ, but never across a contact or a change of material.
 
 use contact_dd_partition::model::{Material, PlaneState};
 
 use super::block::Block;
 use super::elasticity::{MAX_NODES, stiffness_points, strain, stress};
+use super::recovery::nodal_weights;
 
-/// Area-weighted sum of the stresses around a node, and the area.
+/// Area-weighted sum of stresses, such as those around a node, and the area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StressSum {
-    /// ∫ σ (N), order XX YY ZZ XY YZ XZ.
+    /// Σ area·σ (N), order XX YY ZZ XY YZ XZ.
     pub stress: [f64; 6],
     /// Area (m²).
     pub area: f64,
@@ -56,9 +57,11 @@ impl BlockStress {
         let mut cells = Vec::with_capacity(count);
         let mut points = Vec::with_capacity(MAX_NODES);
         let mut u_e = Vec::with_capacity(dim * MAX_NODES);
+        let mut at_points = Vec::new();
         for cell in block.cells() {
             points.clear();
             u_e.clear();
+            at_points.clear();
             for node in cell.nodes() {
                 let node = node as usize;
                 points.push(block.points[node]);
@@ -71,11 +74,21 @@ impl BlockStress {
                     stress: sigma.map(|s| s * point.weight),
                     area: point.weight,
                 });
+                at_points.push(sigma);
             }
             cells.push(sum.mean());
             if let Ok(place) = present.binary_search(&(cell.material as u32)) {
-                for node in cell.nodes() {
-                    sums[place][node as usize].add(&sum);
+                for (node, weights) in cell.nodes().zip(nodal_weights(cell.kind)) {
+                    let mut at_node = [0.0; 6];
+                    for (weight, sigma) in weights.iter().zip(&at_points) {
+                        for (total, s) in at_node.iter_mut().zip(sigma) {
+                            *total += weight * sum.area * s;
+                        }
+                    }
+                    sums[place][node as usize].add(&StressSum {
+                        stress: at_node,
+                        area: sum.area,
+                    });
                 }
             }
         }

@@ -31,21 +31,15 @@ impl ElementKind {
             .fold([0.0; 3], |sum, (value, &x)| advance(sum, value, x))
     }
 
-    /// The columns ∂x/∂ξ_j of a cell's or facet's map.
-    fn tangents(self, at: &[[f64; 3]], xi: [f64; 3]) -> [[f64; 3]; 3] {
-        let mut tangents = [[0.0; 3]; 3];
-        for (gradient, &x) in self.gradients(xi).into_iter().zip(at) {
-            for (tangent, slope) in tangents.iter_mut().zip(gradient) {
-                *tangent = advance(*tangent, slope, x);
-            }
-        }
-        tangents
-    }
-
     /// det ∂x/∂ξ of a cell that fills its space: positive where it is positively oriented, and
     /// dx = det·dξ (m^dim).
     pub fn jacobian(self, at: &[[f64; 3]], xi: [f64; 3]) -> f64 {
-        let [t, s, _] = self.tangents(at, xi);
+        self.determinant(&self.gradients(xi), at)
+    }
+
+    /// det ∂x/∂ξ at a point where the shape functions have these `gradients` (m^dim).
+    pub fn determinant(self, gradients: &[[f64; 3]], at: &[[f64; 3]]) -> f64 {
+        let [t, s, _] = tangents(gradients, at);
         match self.dim() {
             0 => 1.0,
             1 => t[0],
@@ -53,23 +47,24 @@ impl ElementKind {
         }
     }
 
-    /// ∫ det ∂x/∂ξ dξ of a cell that fills its space: its length, area or volume, with the sign of
-    /// its orientation (m^dim).
+    /// ∫ det ∂x/∂ξ dξ of a cell that fills the plane: its area, with the sign of its orientation
+    /// (m²).
     pub fn measure(self, at: &[[f64; 3]]) -> f64 {
-        // One for every cell of a mesh: without a rule on the heap where the map is affine.
+        // One for every cell of a mesh: without a rule where the map is affine.
         if let (Self::Triangle3, [a, b, c]) = (self, at) {
             let (t, s) = (difference(*b, *a), difference(*c, *a));
             return 0.5 * (t[0] * s[1] - t[1] * s[0]);
         }
-        let rule = self.quadrature(1);
-        let points = rule.points.iter().zip(&rule.weights);
-        points.map(|(&xi, w)| w * self.jacobian(at, xi)).sum()
+        let points = self.stiffness_points().iter();
+        points
+            .map(|point| point.weight * self.determinant(&point.gradients, at))
+            .sum()
     }
 
     /// n dS/dξ of a facet whose cell lies to its left: its unit outward normal times the measure
     /// that a unit of the reference facet has in space.
     pub fn area_vector(self, at: &[[f64; 3]], xi: [f64; 3]) -> [f64; 3] {
-        let [t, s, _] = self.tangents(at, xi);
+        let [t, s, _] = tangents(&self.gradients(xi), at);
         match self.dim() {
             0 => [0.0; 3],
             1 => [t[1], -t[0], 0.0],
@@ -81,23 +76,69 @@ impl ElementKind {
         }
     }
 
-    /// Where the line x + s·`direction` (a unit vector) crosses the inside of a straight facet of
-    /// a plane: s (m). `None` where it passes by, or along it.
+    /// Points whose convex hull holds a line, its ends among them (m).
+    pub fn hull(self, at: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        match (self, at) {
+            // The middle one of Bernstein's coefficients.
+            (Self::Line3, &[p, q, m]) => {
+                let middle = [0, 1, 2].map(|i| 2.0 * m[i] - 0.5 * (p[i] + q[i]));
+                vec![p, q, middle]
+            }
+            _ => at.to_vec(),
+        }
+    }
+
+    /// Where the line x + s·`direction` (a unit vector) crosses the inside of a facet of the
+    /// plane: s (m), the one nearest to x where there are two. `None` where it passes by, or along
+    /// it.
     pub fn crossing(self, at: &[[f64; 3]], x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
+        let aside = |p: [f64; 3]| {
+            let way = difference(p, x);
+            direction[0] * way[1] - direction[1] * way[0]
+        };
         match (self, at) {
             (Self::Line2, &[p, q]) => {
-                let (p, q) = (difference(p, x), difference(q, x));
-                let aside = |r: [f64; 3]| direction[0] * r[1] - direction[1] * r[0];
                 let (left, right) = (aside(p), aside(q));
                 if left * right >= 0.0 {
                     return None;
                 }
                 let t = left / (left - right);
-                Some(dot(p, direction) * (1.0 - t) + dot(q, direction) * t)
+                let ahead = |p: [f64; 3]| dot(difference(p, x), direction);
+                Some(ahead(p) * (1.0 - t) + ahead(q) * t)
+            }
+            (Self::Line3, &[p, q, m]) => {
+                let (start, end, middle) = (aside(p), aside(q), aside(m));
+                let (half, slope) = (0.5 * (start + end) - middle, 0.5 * (end - start));
+                let inside = roots(half, slope, middle).filter(|xi| xi.abs() < 1.0);
+                let ways = inside.map(|xi| {
+                    let point = self.position(at, [xi, 0.0, 0.0]);
+                    dot(difference(point, x), direction)
+                });
+                ways.min_by(|a, b| a.abs().total_cmp(&b.abs()))
             }
             _ => None,
         }
     }
+}
+
+/// The columns ∂x/∂ξ_j of the map of an element with the nodes at `at`.
+fn tangents(gradients: &[[f64; 3]], at: &[[f64; 3]]) -> [[f64; 3]; 3] {
+    let mut tangents = [[0.0; 3]; 3];
+    for (gradient, &x) in gradients.iter().zip(at) {
+        for (tangent, &slope) in tangents.iter_mut().zip(gradient) {
+            *tangent = advance(*tangent, slope, x);
+        }
+    }
+    tangents
+}
+
+/// The real roots of a·x² + b·x + c, without cancellation, and none where it is constant.
+fn roots(a: f64, b: f64, c: f64) -> impl Iterator<Item = f64> {
+    let square = b * b - 4.0 * a * c;
+    let sum = -0.5 * (b + square.sqrt().copysign(b));
+    let far = (a != 0.0).then(|| sum / a);
+    let near = (sum != 0.0).then(|| c / sum);
+    (far.into_iter().chain(near)).filter(move |_| square >= 0.0)
 }
 
 #[cfg(test)]
@@ -127,6 +168,54 @@ mod tests {
         assert_eq!(kind.jacobian(&at, [0.0; 3]), 6.0);
         let turned: Vec<_> = kind.reversed().iter().map(|&i| at[i]).collect();
         assert_eq!(kind.jacobian(&turned, [0.0; 3]), -6.0);
+        for kind in ElementKind::ALL.into_iter().filter(|kind| kind.dim() == 2) {
+            let at = kind.node_coordinates();
+            let turned: Vec<_> = kind.reversed().iter().map(|&i| at[i]).collect();
+            assert!((kind.measure(at) + kind.measure(&turned)).abs() < 1e-15);
+            assert!(kind.measure(at) > 0.4);
+        }
+    }
+
+    #[test]
+    fn the_normals_of_a_cell_with_curved_edges_add_up_to_zero() {
+        for kind in [
+            ElementKind::Triangle6,
+            ElementKind::Quad8,
+            ElementKind::Quad9,
+        ] {
+            let bent = |&[x, y, _]: &[f64; 3]| [x + 0.1 * y * y, y - 0.2 * x * y + 0.1 * x, 0.0];
+            let at: Vec<_> = kind.node_coordinates().iter().map(bent).collect();
+            let mut sum = [0.0; 3];
+            let mut moment = 0.0;
+            for (facet, local) in kind.facets() {
+                let on: Vec<_> = local.iter().map(|&i| at[i]).collect();
+                let rule = facet.quadrature(5);
+                for (&xi, &weight) in rule.points.iter().zip(&rule.weights) {
+                    let normal = facet.area_vector(&on, xi);
+                    sum = advance(sum, weight, normal);
+                    moment += weight * dot(normal, facet.position(&on, xi));
+                }
+            }
+            assert!(length(sum) < 1e-15, "{kind:?}");
+            // div x = 2.
+            assert!((moment - 2.0 * kind.measure(&at)).abs() < 1e-14, "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_crosses_a_curved_facet_where_it_is() {
+        // y = 1 − x² for −1 < x < 1.
+        let arch = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let crossing = |x, direction| ElementKind::Line3.crossing(&arch, x, direction);
+        let up = crossing([0.5, -1.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
+        assert!((up - 1.75).abs() < 1e-15);
+        let across = crossing([-0.4, 0.75, 0.0], [1.0, 0.0, 0.0]).unwrap();
+        assert!((across + 0.1).abs() < 1e-15, "the nearer of two");
+        assert_eq!(crossing([0.0, 1.5, 0.0], [1.0, 0.0, 0.0]), None);
+        assert_eq!(crossing([1.5, 0.0, 0.0], [0.0, 1.0, 0.0]), None);
+        let straight = [[0.0, 1.0, 0.0], [2.0, 3.0, 0.0], [1.0, 2.0, 0.0]];
+        let up = ElementKind::Line3.crossing(&straight, [0.5, 0.5, 0.0], [0.0, 1.0, 0.0]);
+        assert!((up.unwrap() - 1.0).abs() < 1e-15);
     }
 
     #[test]

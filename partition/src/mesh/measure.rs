@@ -18,7 +18,7 @@ impl Mesh {
     /// Turns cells of negative measure over.
     ///
     /// # Errors
-    /// A cell without measure, by its tag.
+    /// A cell without measure, or whose Jacobian isn't positive everywhere, by its tag.
     pub(crate) fn orient_cells(&mut self) -> Result<(), InputError> {
         for cell in 0..self.cells.len() {
             let measure = self.measure(cell);
@@ -37,8 +37,28 @@ impl Mesh {
                     *node = old[from];
                 }
             }
+            self.check_jacobian(cell, FLAT * size)?;
         }
         Ok(())
+    }
+
+    /// Checks that the Jacobian of a cell is above `floor` everywhere.
+    fn check_jacobian(&self, cell: usize, floor: f64) -> Result<(), InputError> {
+        let (kind, nodes) = (self.cells.kind(cell), self.cells.nodes_of(cell));
+        let at: Vec<_> = nodes.iter().map(|&n| self.points[n as usize]).collect();
+        let Some(fold) = kind.fold(&at, floor) else {
+            return Ok(());
+        };
+        let [x, y, _] = fold.position;
+        Err(InputError::new(format!(
+            "element {} ({}) is folded: its Jacobian is {:e} m² at ({x}, {y}), near node {}; \
+             expected a positive one everywhere (corners below 180°, nodes on edges near their \
+             middle)",
+            self.cell_tags[cell],
+            kind.name(),
+            fold.jacobian,
+            self.node_tags[nodes[fold.node] as usize]
+        )))
     }
 
     fn longest_edge(&self, cell: usize) -> f64 {

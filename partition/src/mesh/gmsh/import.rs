@@ -34,8 +34,8 @@ pub(super) fn mesh(content: Content) -> Result<Mesh, InputError> {
     let dim = dim.unwrap_or_default();
     if dim < ElementKind::Triangle3.dim() {
         return Err(InputError::new(
-            "the mesh has no cells: expected triangles of 3 nodes (a file of Gmsh holds only \
-             what is in a physical group, unless Mesh.SaveAll is set)",
+            "the mesh has no cells: expected triangles or quadrilaterals (a file of Gmsh holds \
+             only what is in a physical group, unless Mesh.SaveAll is set)",
         ));
     }
     let mut cells = listed(&content.blocks, dim);
@@ -198,7 +198,7 @@ fn flatten(mesh: &mut Mesh) -> Result<(), InputError> {
         for component in mesh.dim..point.len() {
             if (point[component] - first[component]).abs() > PLANE * extent {
                 return Err(InputError::new(format!(
-                    "node {tag} has z = {}, node {} has z = {}: a mesh of triangles has to lie in \
+                    "node {tag} has z = {}, node {} has z = {}: a mesh of plane cells has to lie in \
                      a plane of constant z",
                     point[component], mesh.node_tags[0], first[component]
                 )));

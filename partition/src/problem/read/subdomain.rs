@@ -79,20 +79,12 @@ impl ProblemFile {
         let table = &slabs.offsets.dataset;
         let offsets = slabs.offsets.rows(first..first + rows.len() + 1);
         let mut elements = Elements::default();
-        let mut at_corners = Vec::new();
+        let mut at_nodes = Vec::new();
         let mut used = vec![false; points.len()];
         let mut at = 0;
         for (cell, &code) in slabs.types.rows(rows.clone()).iter().enumerate() {
-            let kind = u8::try_from(code)
-                .ok()
-                .and_then(|code| ElementKind::from_vtk(code).ok())
-                .filter(|kind| kind.dim() == self.catalog.dim)
-                .ok_or_else(|| {
-                    types.row_error(
-                        rows.start + cell,
-                        &format!("VTK cell type {code}; expected 5 (triangle of 3 nodes)"),
-                    )
-                })?;
+            let kind = ElementKind::cell_from_vtk(code, self.catalog.dim)
+                .map_err(|error| types.row_error(rows.start + cell, &error))?;
             let end = at + kind.nodes();
             if offsets[cell] != at as i64 || offsets[cell + 1] != end as i64 {
                 return Err(table.row_error(
@@ -104,15 +96,15 @@ impl ProblemFile {
                     ),
                 ));
             }
-            let Some(corners) = nodes.get(at..end) else {
+            let Some(its_nodes) = nodes.get(at..end) else {
                 return Err(table.row_error(
                     first + cell + 1,
                     &format!("offset {end}; expected at most {}", nodes.len()),
                 ));
             };
-            at_corners.clear();
-            at_corners.extend(corners.iter().map(|&n| points[n as usize]));
-            let size = kind.measure(&at_corners);
+            at_nodes.clear();
+            at_nodes.extend(its_nodes.iter().map(|&n| points[n as usize]));
+            let size = kind.measure(&at_nodes);
             if !(size > 0.0 && size.is_finite()) {
                 return Err(connectivity.row_error(
                     entries.start + at,
@@ -122,10 +114,22 @@ impl ProblemFile {
                     ),
                 ));
             }
-            for &node in corners {
+            if let Some(fold) = kind.fold(&at_nodes, 0.0) {
+                return Err(connectivity.row_error(
+                    entries.start + at + fold.node,
+                    &format!(
+                        "cell {} ({}) is folded: its Jacobian near the node is {:e}; expected a \
+                         positive one everywhere",
+                        rows.start + cell,
+                        kind.name(),
+                        fold.jacobian
+                    ),
+                ));
+            }
+            for &node in its_nodes {
                 used[node as usize] = true;
             }
-            elements.push(kind, corners);
+            elements.push(kind, its_nodes);
             at = end;
         }
         if at != nodes.len() {
