@@ -1,5 +1,6 @@
 //! A mesh: points, cells, facets, and the physical groups that name them.
 
+mod conform;
 pub mod gmsh;
 mod measure;
 pub mod topology;

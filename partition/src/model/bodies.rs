@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::scene::condition::Partner;
 use crate::scene::material::Elasticity;
 
-/// Poisson's ratio from which on linear triangles lock: too stiff by 7 % in energy at 0.499.
+/// Poisson's ratio from which on linear cells lock: too stiff by 7 % in energy at 0.499.
 const LOCKING: f64 = 0.49;
 
 /// The mesh of the bodies alone, and body and material of its cells.
@@ -45,6 +45,7 @@ impl Bodies {
         let kept: Vec<bool> = owner.iter().map(Option::is_some).collect();
         let mut mesh = restrict(mesh, &kept, &used_groups(scene))?;
         mesh.orient_cells()?;
+        mesh.check_edges()?;
         let cell_body: Vec<u32> = owner.into_iter().flatten().collect();
         let material_of_body: Vec<u32> = scene
             .bodies
@@ -54,26 +55,39 @@ impl Bodies {
                 scene.materials.keys().filter(before).count() as u32
             })
             .collect();
-        for (name, material) in &scene.materials {
-            let used = scene.bodies.values().any(|body| body.material == *name);
-            match material {
-                Elasticity::Isotropic { poisson, .. } if used && *poisson >= LOCKING => {
-                    warnings.push(format!(
-                        "material '{name}': linear triangles lock at a Poisson's ratio of {poisson}; \
-                         displacements come out too small"
-                    ));
-                }
-                _ => {}
-            }
-        }
+        let cell_material: Vec<u32> = (cell_body.iter())
+            .map(|&body| material_of_body[body as usize])
+            .collect();
+        warn_of_locking(scene, &mesh, &cell_material, warnings);
         Ok(Self {
             mesh,
-            cell_material: cell_body
-                .iter()
-                .map(|&body| material_of_body[body as usize])
-                .collect(),
+            cell_material,
             cell_body,
         })
+    }
+}
+
+/// Warns of linear cells of a material that hardly changes its volume.
+fn warn_of_locking(scene: &Scene, mesh: &Mesh, cell_material: &[u32], warnings: &mut Vec<String>) {
+    for (index, (name, material)) in (0..).zip(&scene.materials) {
+        let Elasticity::Isotropic { poisson, .. } = material else {
+            continue;
+        };
+        if *poisson < LOCKING {
+            continue;
+        }
+        let cells = mesh.cells.iter().zip(cell_material);
+        let kinds: BTreeSet<_> = cells
+            .filter(|&((kind, _), &of)| of == index && kind.is_linear())
+            .map(|((kind, _), _)| kind.name().replacen(' ', "s ", 1))
+            .collect();
+        if !kinds.is_empty() {
+            let kinds = kinds.into_iter().collect::<Vec<_>>().join(" and ");
+            warnings.push(format!(
+                "material '{name}': {kinds} lock at a Poisson's ratio of {poisson}; \
+                 displacements come out too small; quadratic ones don't lock"
+            ));
+        }
     }
 }
 

@@ -173,6 +173,7 @@ impl<'a> Contacts<'a> {
         let behind = INTERFERENCE * side_a.extent().min(side_b.extent());
         let skip = |node: u32| shared.contains(&node);
 
+        let (mid_a, mid_b) = (side_a.mid_nodes(), side_b.mid_nodes());
         let target = Target::new(side_b);
         let mut conditions = Vec::new();
         let mut partners = HashSet::new();
@@ -182,6 +183,12 @@ impl<'a> Contacts<'a> {
             match target.met(a.position, a.normal, behind, skip) {
                 Met::Nodes(nodes, _) => {
                     partners.extend(nodes.iter().copied());
+                    let is_mid = mid_a.contains(&a.node);
+                    // Their shares of the force would differ.
+                    if let Some(other) = nodes.iter().find(|&b| mid_b.contains(b) != is_mid) {
+                        unmatched.push((a.node, &side_b.facets[on_b[other][0]]));
+                        continue;
+                    }
                     for (b, share) in opposite(a, nodes, [side_a, side_b], [&on_a, &on_b]) {
                         let to_b = advance(mesh.points[b as usize], -1.0, a.position);
                         conditions.push(ContactCondition {
@@ -209,7 +216,8 @@ impl<'a> Contacts<'a> {
             let shown: Vec<u32> = unmatched.iter().take(5).map(|u| u.0).collect();
             return Err(format!(
                 "the sides don't match at {} nodes (tags {}{}): the normal of node {} meets side \
-                 {} between nodes {}; expected each node opposite a node",
+                 {} between nodes {}; expected each corner opposite a corner and each node on an \
+                 edge opposite another",
                 unmatched.len(),
                 mesh.tags_of(&shown),
                 if unmatched.len() > 5 { ", …" } else { "" },

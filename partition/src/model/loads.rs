@@ -5,16 +5,30 @@ use std::collections::BTreeMap;
 use super::bodies::Bodies;
 use super::groups;
 use super::surface::Surface;
+use crate::element::ElementKind;
 use crate::element::geometry::{advance, length};
 use crate::error::InputError;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 use crate::scene::number::Vector;
 
-/// Degree of exactness on facets; a cubic load times a linear shape function needs 4.
+/// Degree of exactness on facets: a cubic pressure along a curved quadratic one times a shape
+/// function and n dS needs 9.
 const FACET_DEGREE: usize = 9;
-/// The same in cells.
-const CELL_DEGREE: usize = 5;
+
+/// Degree of exactness in cells: for a constant load in a cell of any shape, and for a cubic one in
+/// a cell with straight edges and nodes in their middle; on quadrilaterals in each direction.
+fn cell_degree(kind: ElementKind, is_constant: bool) -> usize {
+    match (kind, is_constant) {
+        (ElementKind::Triangle6, true) => 4,
+        (ElementKind::Triangle3 | ElementKind::Triangle6, false) => 5,
+        (ElementKind::Quad4, true) => 2,
+        (ElementKind::Quad4, false) => 5,
+        (ElementKind::Quad8 | ElementKind::Quad9, true) => 5,
+        (ElementKind::Quad8 | ElementKind::Quad9, false) => 6,
+        _ => 1,
+    }
+}
 
 /// The nodal forces of a scene, ascending by node, without those that are zero.
 pub(super) fn forces(
@@ -78,22 +92,20 @@ fn body_force(
     forces: &mut [[f64; 3]],
 ) -> Result<(), String> {
     let mesh = &bodies.mesh;
-    let degree = if force.is_constant() { 1 } else { CELL_DEGREE };
     let mut rules = BTreeMap::new();
     for (cell, (kind, nodes)) in mesh.cells.iter().enumerate() {
         if bodies.cell_body[cell] != body {
             continue;
         }
-        let (rule, shapes) = rules.entry(kind).or_insert_with(|| {
-            let rule = kind.quadrature(degree);
-            let shapes: Vec<_> = rule.points.iter().map(|&xi| kind.shape(xi)).collect();
-            (rule, shapes)
-        });
+        let rule = rules
+            .entry(kind)
+            .or_insert_with(|| kind.tabulate(cell_degree(kind, force.is_constant())));
         let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
-        for ((&xi, &weight), shape) in rule.points.iter().zip(&rule.weights).zip(shapes.iter()) {
-            let x = (shape.iter().zip(&at)).fold([0.0; 3], |sum, (&n, &p)| advance(sum, n, p));
+        for point in rule.iter() {
+            let shape = point.shape.iter();
+            let x = (shape.clone().zip(&at)).fold([0.0; 3], |sum, (&n, &p)| advance(sum, n, p));
             let load = force.at(x)?;
-            let weight = weight * kind.jacobian(&at, xi);
+            let weight = point.weight * kind.determinant(&point.gradients, &at);
             for (&node, value) in nodes.iter().zip(shape) {
                 let sum = &mut forces[node as usize];
                 *sum = advance(*sum, weight * value, load);

@@ -90,7 +90,7 @@ impl<'a> Target<'a> {
             let margin = ASIDE * f.size();
             let bound = |pick: fn(f64, f64) -> f64, margin: f64| {
                 let first = f.at[0];
-                f.at.iter()
+                (f.kind.hull(&f.at).iter())
                     .fold(first, |bound, p| {
                         [0, 1, 2].map(|axis| pick(bound[axis], p[axis]))
                     })

@@ -70,7 +70,7 @@ pub(super) fn supports(
         let facets = groups::facets(mesh, &condition.on, label)?;
         let surface = Surface::new(mesh, topology, &facets, label)?;
         for (node, facets) in surface.around() {
-            for direction in corner_normals(&surface, facets) {
+            for direction in corner_normals(&surface, node, facets) {
                 rows.entry(node).or_default().push(Row {
                     direction,
                     value: 0.0,
@@ -87,17 +87,19 @@ pub(super) fn supports(
     Ok(supports)
 }
 
-/// The normals of the facets around a node: averages, weighted by measure, of those that differ
-/// by no more than a corner.
-fn corner_normals(surface: &Surface, mut facets: Vec<usize>) -> Vec<[f64; 3]> {
+/// The normals at a node of the facets around it: averages, weighted by measure, of those that
+/// differ by no more than a corner.
+fn corner_normals(surface: &Surface, node: u32, mut facets: Vec<usize>) -> Vec<[f64; 3]> {
     let measure = |f: &usize| surface.facets[*f].measure;
     facets.sort_by(|a, b| measure(b).total_cmp(&measure(a)));
     let mut sums: Vec<[f64; 3]> = Vec::new();
     for facet in facets.iter().map(|&f| &surface.facets[f]) {
-        let same = |sum: &&mut [f64; 3]| dot(**sum, facet.normal) >= CORNER * length(**sum);
+        let place = facet.nodes.iter().position(|&n| n == node);
+        let normal = place.map_or(facet.normal, |i| facet.normal_at(i));
+        let same = |sum: &&mut [f64; 3]| dot(**sum, normal) >= CORNER * length(**sum);
         match sums.iter_mut().find(same) {
-            Some(sum) => *sum = advance(*sum, facet.measure, facet.normal),
-            None => sums.push(facet.normal.map(|c| c * facet.measure)),
+            Some(sum) => *sum = advance(*sum, facet.measure, normal),
+            None => sums.push(normal.map(|c| c * facet.measure)),
         }
     }
     sums.into_iter()

@@ -8,6 +8,9 @@ use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 
+/// Degree of exactness with which curved facets are measured.
+const CURVED_DEGREE: usize = 9;
+
 /// A facet of the boundary.
 #[derive(Clone, Debug)]
 pub(super) struct SurfaceFacet {
@@ -16,7 +19,7 @@ pub(super) struct SurfaceFacet {
     pub nodes: Vec<u32>,
     /// Coordinates of the nodes (m).
     pub at: Vec<[f64; 3]>,
-    /// Unit outward normal in its middle.
+    /// Unit outward normal in its middle, which is the normal of its chord.
     pub normal: [f64; 3],
     /// Length or area.
     pub measure: f64,
@@ -30,6 +33,21 @@ impl SurfaceFacet {
             1 => self.measure,
             _ => self.measure.sqrt(),
         }
+    }
+
+    /// Unit outward normal at its node `i`: that of the facet itself, be it curved.
+    pub fn normal_at(&self, i: usize) -> [f64; 3] {
+        if self.kind.is_linear() {
+            return self.normal;
+        }
+        let area = (self.kind).area_vector(&self.at, self.kind.node_coordinates()[i]);
+        let size = length(area);
+        area.map(|c| c / size)
+    }
+
+    /// Its nodes from its start to its end.
+    fn along(&self) -> impl Iterator<Item = u32> {
+        self.kind.along().iter().map(|&i| self.nodes[i])
     }
 
     /// ∫ of the shape function of its node `i` over it.
@@ -67,7 +85,7 @@ impl SurfaceFacet {
 /// What the facets around a node say of the surface there.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SurfaceNode {
-    /// Σ measure·normal of the facets around it.
+    /// Σ measure·normal at it of the facets around it.
     pub area: [f64; 3],
     /// Σ measure of the facets around it.
     pub measure: f64,
@@ -76,7 +94,8 @@ pub(super) struct SurfaceNode {
 }
 
 impl SurfaceNode {
-    /// The average of the facets' outward normals weighted by their measure, normalized. `None`
+    /// The average of the facets' outward normals at the node weighted by their measure,
+    /// normalized. `None`
     /// where they cancel.
     pub fn normal(&self) -> Option<[f64; 3]> {
         let size = length(self.area);
@@ -121,11 +140,15 @@ impl Surface {
             let nodes: Vec<u32> = local.iter().map(|&i| cell[i]).collect();
             let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
             let area = integrate(kind, |xi| kind.area_vector(&at, xi));
-            let measure = length(area);
+            let chord = length(area);
+            let measure = match kind.is_linear() {
+                true => chord,
+                false => integrate(kind, |xi| [length(kind.area_vector(&at, xi)), 0.0, 0.0])[0],
+            };
             Ok(SurfaceFacet {
                 kind,
                 nodes,
-                normal: area.map(|c| c / measure),
+                normal: area.map(|c| c / chord),
                 measure,
                 at,
             })
@@ -140,12 +163,18 @@ impl Surface {
         for facet in &self.facets {
             for (i, &node) in facet.nodes.iter().enumerate() {
                 let sum = nodes.entry(node).or_default();
-                sum.area = advance(sum.area, facet.measure, facet.normal);
+                sum.area = advance(sum.area, facet.measure, facet.normal_at(i));
                 sum.measure += facet.measure;
                 sum.share += facet.share(i);
             }
         }
         nodes
+    }
+
+    /// Its nodes in the middle of facets; the others are corners.
+    pub fn mid_nodes(&self) -> HashSet<u32> {
+        let of_facet = |facet: &'_ SurfaceFacet| facet.nodes[facet.kind.corners()..].to_vec();
+        self.facets.iter().flat_map(of_facet).collect()
     }
 
     /// The facets around each node.
@@ -169,9 +198,11 @@ impl Surface {
         let mut leaving: HashMap<u32, Vec<usize>> = HashMap::new();
         let mut entered: HashMap<u32, usize> = HashMap::new();
         for &f in facets.iter().rev() {
-            let nodes = &self.facets[f].nodes;
-            leaving.entry(nodes[0]).or_default().push(f);
-            for &node in &nodes[1..] {
+            let mut nodes = self.facets[f].along();
+            if let Some(start) = nodes.next() {
+                leaving.entry(start).or_default().push(f);
+            }
+            for node in nodes {
                 *entered.entry(node).or_default() += 1;
             }
         }
@@ -184,11 +215,10 @@ impl Surface {
             let mut next = Some(first);
             while let Some(f) = next.filter(|&f| !done[f]) {
                 done[f] = true;
-                let nodes = &self.facets[f].nodes;
-                order.extend(nodes.iter().copied().filter(|&node| seen.insert(node)));
-                next = nodes
-                    .last()
-                    .and_then(|last| leaving.get(last))
+                let nodes = self.facets[f].along();
+                order.extend(nodes.filter(|&node| seen.insert(node)));
+                next = (self.facets[f].along().last())
+                    .and_then(|last| leaving.get(&last))
                     .and_then(|candidates| candidates.iter().rev().copied().find(|&f| !done[f]));
             }
         }
@@ -210,7 +240,8 @@ impl Surface {
 }
 
 fn integrate(kind: ElementKind, integrand: impl Fn([f64; 3]) -> [f64; 3]) -> [f64; 3] {
-    let rule = kind.quadrature(2);
+    // The length of a curved facet isn't a polynomial.
+    let rule = kind.quadrature(if kind.is_linear() { 2 } else { CURVED_DEGREE });
     (rule.points.iter().zip(&rule.weights))
         .fold([0.0; 3], |sum, (&xi, &w)| advance(sum, w, integrand(xi)))
 }
