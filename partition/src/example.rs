@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 
 use self::blocks::Patch;
 use crate::destination;
+use crate::element::ElementKind;
 use crate::error::{InputError, OutputError};
 use crate::mesh::{Mesh, gmsh};
 use crate::scene::Scene;
@@ -70,12 +71,21 @@ impl Example {
         Ok((Scene::parse(self.scene)?, self.mesh(refine)?))
     }
 
-    /// Makes its mesh with the mesh size halved `refine` times.
+    /// Makes its mesh of linear triangles with the mesh size halved `refine` times.
     ///
     /// # Errors
     /// A refinement too large to be made.
     pub fn mesh(&self, refine: u32) -> Result<Mesh, InputError> {
-        blocks::mesh(&(self.patches)(), refine)
+        self.mesh_of(ElementKind::Triangle3, refine)
+    }
+
+    /// Makes its mesh of cells of `kind` with the mesh size halved `refine` times; where the mesh
+    /// size changes, there are triangles between quadrilaterals.
+    ///
+    /// # Errors
+    /// A refinement too large to be made.
+    pub fn mesh_of(&self, kind: ElementKind, refine: u32) -> Result<Mesh, InputError> {
+        blocks::mesh(&(self.patches)(), refine, kind)
     }
 
     /// Writes `scene.toml` and `mesh.msh` into `directory`, which is made where it isn't there,

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::error::{InputError, OutputError};
 use contact_dd_partition::example::{self, EXAMPLES};
 use contact_dd_partition::mesh::{Mesh, gmsh};
@@ -36,6 +37,12 @@ struct Args {
     #[arg(long, value_name = "K", requires = "example", default_value_t = 0)]
     refine: u32,
 
+    /// Cells of the built-in scene: triangle3, triangle6, quad4, quad8 or quad9; where the mesh
+    /// size changes, there are triangles between quadrilaterals
+    #[arg(long, value_name = "KIND", requires = "example", default_value = "triangle3",
+          value_parser = element)]
+    element: ElementKind,
+
     /// Write scene.toml and mesh.msh of the built-in scene into DIR, to start from; the problem
     /// file is then written only with -o
     #[arg(long, value_name = "DIR", requires = "example")]
@@ -53,6 +60,22 @@ Examples:
   contact-dd-partition --example junction --write-scene my-scene
 
 Exit codes: 0 done, 2 bad usage or input, 5 the output can't be written.";
+
+/// The kind of cells of a name.
+fn element(name: &str) -> Result<ElementKind, String> {
+    const KINDS: [(&str, ElementKind); 5] = [
+        ("triangle3", ElementKind::Triangle3),
+        ("triangle6", ElementKind::Triangle6),
+        ("quad4", ElementKind::Quad4),
+        ("quad8", ElementKind::Quad8),
+        ("quad9", ElementKind::Quad9),
+    ];
+    let found = KINDS.iter().find(|(known, _)| *known == name);
+    found.map(|&(_, kind)| kind).ok_or_else(|| {
+        let names = KINDS.map(|(known, _)| known);
+        format!("expected one of {}", names.join(", "))
+    })
+}
 
 /// Why no problem file was written.
 #[derive(Debug, thiserror::Error)]
@@ -146,7 +169,7 @@ fn read(args: &Args) -> Result<Option<Source>, Failure> {
         }));
     }
     let example = example::find(args.example.as_deref().unwrap_or_default())?;
-    let mesh = example.mesh(args.refine)?;
+    let mesh = example.mesh_of(args.element, args.refine)?;
     if let Some(directory) = &args.write_scene {
         let scene = example.write(&mesh, directory)?;
         if let Some(output) = &args.output {

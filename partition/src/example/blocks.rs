@@ -19,7 +19,7 @@ pub(super) struct Patch {
     pub(super) body: &'static str,
     /// Where a point of the unit square lies (m); keeps orientation.
     pub(super) map: Box<dyn Fn([f64; 2]) -> [f64; 2]>,
-    /// How the unit square is triangulated.
+    /// How the unit square is divided.
     pub(super) pattern: Pattern,
     /// Groups of bottom, right, top and left. A side without a group is glued to the side without
     /// a group that has the same ends; a side with a group, such as that of a contact, never is.
@@ -44,11 +44,13 @@ struct Placed {
     first: usize,
 }
 
-/// Meshes the patches with their triangles cut into four `refine` times.
+/// Meshes the patches with cells of `kind` cut into four `refine` times. Nodes on edges lie in the
+/// middle of the unit square's, so that the images of its sides are curved where the map curves
+/// them.
 ///
 /// # Errors
 /// A refinement too large to be made.
-pub(super) fn mesh(patches: &[Patch], refine: u32) -> Result<Mesh, InputError> {
+pub(super) fn mesh(patches: &[Patch], refine: u32, kind: ElementKind) -> Result<Mesh, InputError> {
     let coarsest: usize = patches.iter().map(|p| p.pattern.triangles()).sum();
     let cells = 4_usize
         .checked_pow(refine)
@@ -59,7 +61,7 @@ pub(super) fn mesh(patches: &[Patch], refine: u32) -> Result<Mesh, InputError> {
              number"
         )));
     }
-    let placed = place(patches, refine);
+    let placed = place(patches, refine, kind);
     let node = glue(patches, &placed);
 
     let mut mesh = Mesh {
@@ -77,19 +79,24 @@ pub(super) fn mesh(patches: &[Patch], refine: u32) -> Result<Mesh, InputError> {
             }
         }
         let number = |local: u32| number[node[placed.first + local as usize]];
-        for triangle in &placed.square.triangles {
+        for (kind, nodes) in placed.square.cells.iter() {
             let members = &mut group(&mut groups, patch.body, 2).members;
             members.push(mesh.cells.len() as u32);
-            mesh.cells
-                .push(ElementKind::Triangle3, &triangle.map(number));
+            let nodes: Vec<u32> = nodes.iter().map(|&node| number(node)).collect();
+            mesh.cells.push(kind, &nodes);
         }
         for (side, name) in placed.square.sides.iter().zip(patch.sides) {
             let Some(name) = name else { continue };
-            for pair in side.windows(2) {
+            let (facet, segments) = match kind.is_linear() {
+                true => (ElementKind::Line2, 1),
+                false => (ElementKind::Line3, 2),
+            };
+            for along in side.windows(segments + 1).step_by(segments) {
                 let members = &mut group(&mut groups, name, 1).members;
                 members.push(mesh.facets.len() as u32);
-                mesh.facets
-                    .push(ElementKind::Line2, &[number(pair[0]), number(pair[1])]);
+                let order = facet.along().iter();
+                let nodes: Vec<u32> = order.map(|&i| number(along[i])).collect();
+                mesh.facets.push(facet, &nodes);
             }
         }
     }
@@ -114,13 +121,16 @@ fn group<'a>(
     })
 }
 
-fn place(patches: &[Patch], refine: u32) -> Vec<Placed> {
+fn place(patches: &[Patch], refine: u32, kind: ElementKind) -> Vec<Placed> {
     let mut first = 0;
     let mut placed = Vec::with_capacity(patches.len());
     for patch in patches {
-        let mut square = UnitSquare::new(patch.pattern, &patch.map);
+        let mut square = UnitSquare::new(patch.pattern, kind, &patch.map);
         for _ in 0..refine {
             square.refine();
+        }
+        if !kind.is_linear() {
+            square.raise(kind);
         }
         let points: Vec<[f64; 2]> = square.points.iter().map(|&p| (patch.map)(p)).collect();
         let count = points.len();

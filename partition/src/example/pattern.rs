@@ -1,15 +1,18 @@
-//! Triangulations of the unit square, to be mapped.
+//! Meshes of the unit square, to be mapped.
 
 use std::collections::HashMap;
 
-/// How the unit square is triangulated before it is refined.
+use crate::element::{ElementKind, Elements};
+
+/// How the unit square is divided before it is refined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pattern {
-    /// Columns and rows of rectangles, each cut along its shorter diagonal.
+    /// Columns and rows of rectangles, each cut along its shorter diagonal where it isn't to
+    /// become a quadrilateral.
     Grid(usize, usize),
-    /// One row whose top has twice as many segments as its bottom, which has so many.
+    /// One row of triangles whose top has twice as many segments as its bottom, which has so many.
     Refining(usize),
-    /// One row whose bottom has twice as many segments as its top, which has so many.
+    /// One row of triangles whose bottom has twice as many segments as its top, which has so many.
     Coarsening(usize),
 }
 
@@ -23,20 +26,25 @@ impl Pattern {
     }
 }
 
-/// A triangulation of the unit square.
+/// A mesh of the unit square.
 #[derive(Clone, Debug, Default)]
 pub(super) struct UnitSquare {
     /// Nodes.
     pub(super) points: Vec<[f64; 2]>,
-    /// Triangles.
-    pub(super) triangles: Vec<[u32; 3]>,
+    /// Triangles and quadrilaterals.
+    pub(super) cells: Elements,
     /// Nodes along bottom, right, top and left, from left to right and from bottom to top.
     pub(super) sides: [Vec<u32>; 4],
 }
 
 impl UnitSquare {
-    /// Triangulates the unit square; `map` tells which diagonal is the shorter one.
-    pub(super) fn new(pattern: Pattern, map: &dyn Fn([f64; 2]) -> [f64; 2]) -> Self {
+    /// Divides the unit square into linear cells, rectangles into quadrilaterals where `kind` is
+    /// one; else `map` tells which diagonal is the shorter one.
+    pub(super) fn new(
+        pattern: Pattern,
+        kind: ElementKind,
+        map: &dyn Fn([f64; 2]) -> [f64; 2],
+    ) -> Self {
         let mut square = Self::default();
         match pattern {
             Pattern::Grid(columns, rows) => {
@@ -46,7 +54,10 @@ impl UnitSquare {
                 for (j, pair) in lines.windows(2).enumerate() {
                     for i in 0..columns {
                         let corners = [pair[0][i], pair[0][i + 1], pair[1][i + 1], pair[1][i]];
-                        square.split(corners, (i + j) % 2 == 0, map);
+                        match kind.corners() {
+                            4 => square.cells.push(ElementKind::Quad4, &corners),
+                            _ => square.split(corners, (i + j) % 2 == 0, map),
+                        }
                     }
                 }
                 square.set_sides(&lines);
@@ -59,7 +70,7 @@ impl UnitSquare {
                 for i in 0..columns {
                     let (a, b) = (coarse[i], coarse[i + 1]);
                     let (c, m, d) = (fine[2 * i], fine[2 * i + 1], fine[2 * i + 2]);
-                    square.triangles.extend([[a, b, m], [a, m, c], [b, d, m]]);
+                    square.triangles([[a, b, m], [a, m, c], [b, d, m]]);
                 }
                 let lines = if refining {
                     [coarse, fine]
@@ -72,30 +83,68 @@ impl UnitSquare {
         square
     }
 
-    /// Cuts every triangle into four by the midpoints of its edges.
+    /// Cuts every linear cell into four by the midpoints of its edges.
     pub(super) fn refine(&mut self) {
-        let mut midpoints: HashMap<(u32, u32), u32> = HashMap::new();
-        let points = &mut self.points;
-        let mut midpoint = |a: u32, b: u32| {
-            *midpoints.entry((a.min(b), a.max(b))).or_insert_with(|| {
-                let (p, q) = (points[a as usize], points[b as usize]);
-                points.push([0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]);
-                points.len() as u32 - 1
-            })
-        };
-        let mut finer = Vec::with_capacity(4 * self.triangles.len());
-        for &[a, b, c] in &self.triangles {
-            let (d, e, f) = (midpoint(a, b), midpoint(b, c), midpoint(c, a));
-            finer.extend([[a, d, f], [d, b, e], [f, e, c], [d, e, f]]);
+        let mut middles = Middles::default();
+        let coarse = std::mem::take(&mut self.cells);
+        for (_, corners) in coarse.iter() {
+            let on_edges = middles.of_edges(&mut self.points, corners);
+            if let (&[a, b, c], &[d, e, f]) = (corners, &on_edges[..]) {
+                self.triangles([[a, d, f], [d, b, e], [f, e, c], [d, e, f]]);
+            } else if let (&[a, b, c, d], &[e, f, g, h]) = (corners, &on_edges[..]) {
+                let m = self.centre(corners);
+                for quad in [[a, e, m, h], [e, b, f, m], [m, f, c, g], [h, m, g, d]] {
+                    self.cells.push(ElementKind::Quad4, &quad);
+                }
+            }
         }
+        self.add_to_sides(&mut middles);
+    }
+
+    /// Gives every linear cell a node in the middle of every edge, and quadrilaterals one in their
+    /// centre where they become `kind` of nine nodes.
+    pub(super) fn raise(&mut self, kind: ElementKind) {
+        let mut middles = Middles::default();
+        let linear = std::mem::take(&mut self.cells);
+        for (_, corners) in linear.iter() {
+            let mut nodes = corners.to_vec();
+            nodes.extend(middles.of_edges(&mut self.points, corners));
+            if corners.len() == ElementKind::Triangle6.corners() {
+                self.cells.push(ElementKind::Triangle6, &nodes);
+                continue;
+            }
+            if kind == ElementKind::Quad9 {
+                nodes.push(self.centre(corners));
+            }
+            self.cells.push(kind, &nodes);
+        }
+        self.add_to_sides(&mut middles);
+    }
+
+    /// Puts the midpoints of the edges along the sides between their ends.
+    fn add_to_sides(&mut self, middles: &mut Middles) {
         for side in &mut self.sides {
             let mut refined = vec![side[0]];
             for pair in side.windows(2) {
-                refined.extend([midpoint(pair[0], pair[1]), pair[1]]);
+                let middle = middles.between(&mut self.points, pair[0], pair[1]);
+                refined.extend([middle, pair[1]]);
             }
             *side = refined;
         }
-        self.triangles = finer;
+    }
+
+    /// Appends the node in the centre of a quadrilateral.
+    fn centre(&mut self, corners: &[u32]) -> u32 {
+        let at = corners.iter().map(|&node| self.points[node as usize]);
+        let sum = at.fold([0.0; 2], |sum, p| [sum[0] + p[0], sum[1] + p[1]]);
+        self.points.push(sum.map(|x| x / corners.len() as f64));
+        self.points.len() as u32 - 1
+    }
+
+    fn triangles<const N: usize>(&mut self, triangles: [[u32; 3]; N]) {
+        for triangle in triangles {
+            self.cells.push(ElementKind::Triangle3, &triangle);
+        }
     }
 
     /// Appends the nodes of a horizontal line at height `t`.
@@ -120,7 +169,7 @@ impl UnitSquare {
             true => first,
             false => ac < bd,
         };
-        self.triangles.extend(if along_ac {
+        self.triangles(if along_ac {
             [[a, b, c], [a, c, d]]
         } else {
             [[a, b, d], [b, c, d]]
@@ -134,5 +183,29 @@ impl UnitSquare {
         let left = lines.iter().map(|line| line[0]).collect();
         let right = lines.iter().map(|line| line[line.len() - 1]).collect();
         self.sides = [bottom.clone(), right, top.clone(), left];
+    }
+}
+
+/// The nodes in the middle of edges.
+#[derive(Default)]
+struct Middles {
+    nodes: HashMap<(u32, u32), u32>,
+}
+
+impl Middles {
+    /// The node between two, which is appended to `points` the first time.
+    fn between(&mut self, points: &mut Vec<[f64; 2]>, a: u32, b: u32) -> u32 {
+        *self.nodes.entry((a.min(b), a.max(b))).or_insert_with(|| {
+            let (p, q) = (points[a as usize], points[b as usize]);
+            points.push([0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]);
+            points.len() as u32 - 1
+        })
+    }
+
+    /// The nodes in the middle of the edges of a cell, in their order.
+    fn of_edges(&mut self, points: &mut Vec<[f64; 2]>, corners: &[u32]) -> Vec<u32> {
+        let next = corners.iter().cycle().skip(1);
+        let edges = corners.iter().zip(next);
+        edges.map(|(&a, &b)| self.between(points, a, b)).collect()
     }
 }
