@@ -4,12 +4,15 @@
 //! K u + Dᵀ μ + Bᵀ λ = f,   D u = v,   B u ≤ g
 //! ```
 
+use std::collections::BTreeMap;
+
 use contact_dd_partition::model::Model;
 use faer::Mat;
 use faer::Par;
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 
+use super::isoparametric::{Cell, Reference};
 use super::random::Random;
 use super::twofold::Twofold;
 
@@ -222,70 +225,16 @@ fn refined(
     x
 }
 
-/// A triangle of constant strain.
-struct Cell {
-    nodes: [usize; 3],
-    /// ∇N of each node.
-    slopes: [[f64; 2]; 3],
-    area: f64,
-    stiffness: [[f64; 3]; 3],
-}
-
-impl Cell {
-    fn new(points: [[f64; 3]; 3], nodes: [usize; 3], stiffness: [[f64; 3]; 3]) -> Self {
-        let [p, q, r] = points;
-        let twice_area = (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]);
-        // ∇N_i = (y_j − y_k, x_k − x_j) / 2A
-        let slopes = [(q, r), (r, p), (p, q)]
-            .map(|(j, k)| [(j[1] - k[1]) / twice_area, (k[0] - j[0]) / twice_area]);
-        Self {
-            nodes,
-            slopes,
-            area: twice_area.abs() / 2.0,
-            stiffness,
-        }
-    }
-
-    /// aᵀ C b.
-    fn product(&self, a: [f64; 3], b: [f64; 3]) -> f64 {
-        let c = &self.stiffness;
-        (0..9).map(|k| a[k / 3] * c[k / 3][k % 3] * b[k % 3]).sum()
-    }
-
-    /// A Gᵀ C G, G the strains (ε_xx, ε_yy, γ_xy) of each dof.
-    fn entries(&self) -> impl Iterator<Item = Triplet<usize, usize, f64>> {
-        let strain = |i: usize| match (i % 2, self.slopes[i / 2]) {
-            (0, [x, y]) => [x, 0.0, y],
-            (_, [x, y]) => [0.0, y, x],
-        };
-        let dof = |i: usize| 2 * self.nodes[i / 2] + i % 2;
-        (0..36).map(move |k| {
-            let (i, j) = (k / 6, k % 6);
-            let value = self.product(strain(i), strain(j)) * self.area;
-            Triplet::new(dof(i), dof(j), value)
-        })
-    }
-
-    fn energy(&self, u: &[f64]) -> f64 {
-        let mut strain = [0.0; 3];
-        for (node, [x, y]) in self.nodes.iter().zip(self.slopes).skip(1) {
-            // The slopes add up to 0: against the first node, a translation drops out.
-            let [du, dv] = [0, 1].map(|axis| u[2 * node + axis] - u[2 * self.nodes[0] + axis]);
-            strain[0] += x * du;
-            strain[1] += y * dv;
-            strain[2] += y * du + x * dv;
-        }
-        self.product(strain, strain) * self.area
-    }
-}
-
 fn cells(model: &Model) -> Vec<Cell> {
     let mesh = &model.mesh;
+    let mut references = BTreeMap::new();
     (mesh.cells.iter().zip(&model.cell_material))
-        .map(|((_, nodes), &material)| {
-            let nodes = [0, 1, 2].map(|i| nodes[i] as usize);
-            let points = nodes.map(|node| mesh.points[node]);
-            Cell::new(points, nodes, model.materials[material as usize].stiffness)
+        .map(|((kind, nodes), &material)| {
+            let nodes: Vec<usize> = nodes.iter().map(|&node| node as usize).collect();
+            let points: Vec<_> = nodes.iter().map(|&node| mesh.points[node]).collect();
+            let stiffness = model.materials[material as usize].stiffness;
+            let reference = (references.entry(kind)).or_insert_with(|| Reference::new(kind));
+            Cell::new(reference, &points, nodes, stiffness)
         })
         .collect()
 }

@@ -149,7 +149,11 @@ pub fn moved(mut mesh: Mesh, to: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
     // A reflection turns all cells inside out.
     if mesh.measure(0) < 0.0 {
         for cell in 0..mesh.cells.len() {
-            mesh.cells.nodes_of_mut(cell).swap(1, 2);
+            let old = mesh.cells.nodes_of(cell).to_vec();
+            let order = mesh.cells.kind(cell).reversed();
+            for (node, &from) in mesh.cells.nodes_of_mut(cell).iter_mut().zip(order) {
+                *node = old[from];
+            }
         }
     }
     mesh
@@ -190,10 +194,15 @@ pub fn shuffled(mesh: &Mesh, seed: u64) -> (Mesh, BTreeMap<i64, i64>) {
         let mut list = Elements::default();
         for &old in order {
             let mut nodes = elements.nodes_of(old as usize).to_vec();
-            let turn = random.below(nodes.len());
-            nodes.rotate_left(turn);
-            if elements.kind(old as usize) == Line2 {
-                nodes.reverse();
+            let corners = elements.kind(old as usize).corners();
+            let turn = random.below(corners);
+            let (at_corners, on_edges) = nodes.split_at_mut(corners);
+            at_corners.rotate_left(turn);
+            if let Some(on_edges) = on_edges.get_mut(..corners) {
+                on_edges.rotate_left(turn);
+            }
+            if elements.kind(old as usize).dim() == 1 {
+                nodes[..corners].reverse();
             }
             let nodes: Vec<u32> = nodes.iter().map(|&n| number[n as usize]).collect();
             list.push(elements.kind(old as usize), &nodes);

@@ -8,6 +8,7 @@
 pub mod assembled;
 pub mod blocks;
 pub mod comparison;
+pub mod isoparametric;
 pub mod monolithic;
 pub mod process;
 pub mod random;
@@ -15,6 +16,7 @@ pub mod round;
 pub mod scenes;
 pub mod solution;
 pub mod solver;
+pub mod sorts;
 pub mod statics;
 pub mod stress;
 pub mod twofold;

@@ -15,6 +15,10 @@ pub struct Solution {
     pub displacement: BTreeMap<i64, [f64; 3]>,
     /// Stress of every cell, with its centre [Pa].
     pub cells: Vec<([f64; 3], [f64; 6])>,
+    /// Stress recovered at nodes, by node tag [Pa].
+    pub nodal_stress: BTreeMap<i64, [f64; 6]>,
+    /// VTK's numbers of the types of cells.
+    pub types: Vec<u8>,
     /// Conditions by contact.
     pub contacts: BTreeMap<String, Vec<ContactPoint>>,
     /// The report.
@@ -52,7 +56,10 @@ impl Solution {
         let contacts = (names.unwrap_or_default().into_iter())
             .map(|name| (name.clone(), points(&file, &format!("contact/{name}"))))
             .collect();
+        let nodal_stress = table::<6>(&file, "VTKHDF/PointData/Stress");
         Self {
+            nodal_stress: tags.iter().copied().zip(nodal_stress).collect(),
+            types: column::<u8>(&file, "VTKHDF/Types"),
             displacement: tags.into_iter().zip(displacement).collect(),
             cells: cells(&file),
             contacts,
