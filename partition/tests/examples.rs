@@ -4,9 +4,11 @@
 
 use std::collections::{BTreeSet, HashMap};
 
+use contact_dd_partition::element::ElementKind::{Quad4, Quad8, Quad9, Triangle6};
 use contact_dd_partition::example::{self, EXAMPLES};
 use contact_dd_partition::mesh::topology::Topology;
 use contact_dd_partition::mesh::{Mesh, gmsh};
+use contact_dd_partition::model::{Contact, Model};
 use contact_dd_partition::scene::Scene;
 
 fn mesh_of(name: &str, refine: u32) -> Mesh {
@@ -65,6 +67,51 @@ fn refinement_follows_the_curved_side_of_the_plate_with_second_order() {
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
         assert!((order - 2.0).abs() < 0.05, "order {order}");
+    }
+}
+
+#[test]
+fn quadratic_cells_follow_the_curved_side_of_the_plate_with_fourth_order() {
+    let exact = 0.05_f64.powi(2) - std::f64::consts::PI * 0.01_f64.powi(2) / 4.0;
+    for kind in [Triangle6, Quad8, Quad9] {
+        let errors = [0, 1, 2].map(|refine| {
+            let mesh = example::find("plain").unwrap().mesh_of(kind, refine);
+            (area(&mesh.unwrap()) - exact).abs()
+        });
+        for pair in errors.windows(2) {
+            let order = (pair[0] / pair[1]).log2();
+            assert!((order - 4.0).abs() < 0.1, "{kind:?}: order {order}");
+        }
+    }
+}
+
+#[test]
+fn examples_of_any_cells_are_the_same_scene() {
+    for example in EXAMPLES {
+        let triangles = example.mesh(0).unwrap();
+        for kind in [Triangle6, Quad4, Quad8, Quad9] {
+            let mesh = example.mesh_of(kind, 0).unwrap();
+            assert!(
+                mesh.cells.iter().any(|(of, _)| of == kind),
+                "{}",
+                example.name
+            );
+            assert!(mesh.groups.keys().eq(triangles.groups.keys()));
+            assert_eq!(mesh.facets.len(), triangles.facets.len());
+            let topology = Topology::new(&mesh);
+            for (_, facet) in mesh.facets.iter() {
+                assert_eq!(topology.cells_at(facet).len(), 1, "{}", example.name);
+            }
+            let scene = Scene::parse(example.scene).unwrap();
+            let model = Model::new(&scene, mesh).unwrap();
+            let linear = Model::new(&scene, triangles.clone()).unwrap();
+            for (contact, other) in model.contacts.iter().zip(&linear.contacts) {
+                let share = |c: &Contact| c.conditions.iter().map(|r| r.share).sum::<f64>();
+                assert!(contact.conditions.len() >= other.conditions.len());
+                // At a crack tip there is no condition, and its share is smaller.
+                assert!(share(contact) > share(other) - 1e-12, "{}", example.name);
+            }
+        }
     }
 }
 

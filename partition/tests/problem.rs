@@ -8,9 +8,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::element::ElementKind::{Quad4, Quad8, Quad9, Triangle6};
+use contact_dd_partition::example;
 use contact_dd_partition::model::Model;
 use contact_dd_partition::problem::Problem;
 use contact_dd_partition::problem::read::ProblemFile;
+use contact_dd_partition::scene::Scene;
 use problem_scenes::{cracked, shuffled, stacked};
 
 /// A decomposition by columns of the lattice, two for every block.
@@ -124,6 +127,33 @@ fn interface_nodes_are_those_with_cells_in_two_subdomains() {
     let model = shuffled(&cracked(8, &[(0, 3)]), 2);
     let decomposition = halves(&model, 4.0);
     let problem = Problem::new(&model, &decomposition).unwrap();
+    assert_eq!(
+        problem.catalog.interface.concat().len(),
+        2 * shared(&model, &decomposition).len()
+    );
+    on_interface_is_what_is_shared(&model, &decomposition, &problem);
+}
+
+#[test]
+fn nodes_in_the_middle_of_cut_edges_are_on_the_interface_and_never_in_contact() {
+    let example = example::find("granite").unwrap();
+    for kind in [Triangle6, Quad4, Quad8, Quad9] {
+        let mesh = example.mesh_of(kind, 0).unwrap();
+        let model = Model::new(&Scene::parse(example.scene).unwrap(), mesh).unwrap();
+        let decomposition = Decomposition::new(&model, Some(12)).unwrap();
+        let problem = Problem::new(&model, &decomposition).unwrap();
+        on_interface_is_what_is_shared(&model, &decomposition, &problem);
+        let shared = shared(&model, &decomposition);
+        let conditions = model.contacts.iter().flat_map(|c| &c.conditions);
+        for condition in conditions {
+            assert!(!shared.contains(&condition.tag_a) && !shared.contains(&condition.tag_b));
+        }
+        assert_eq!(problem.catalog.warnings, Vec::<String>::new());
+    }
+}
+
+/// The tags of the nodes with cells in two subdomains, in the order of the nodes.
+fn shared(model: &Model, decomposition: &Decomposition) -> Vec<i64> {
     let mut owners: BTreeMap<i64, Vec<u32>> = BTreeMap::new();
     for (cell, &subdomain) in decomposition.subdomain.iter().enumerate() {
         for &node in model.mesh.cells.nodes_of(cell) {
@@ -135,13 +165,13 @@ fn interface_nodes_are_those_with_cells_in_two_subdomains() {
             }
         }
     }
-    let expected: Vec<i64> = model
-        .mesh
-        .node_tags
-        .iter()
-        .copied()
-        .filter(|tag| owners[tag].len() > 1)
-        .collect();
+    let tags = model.mesh.node_tags.iter().copied();
+    tags.filter(|tag| owners[tag].len() > 1).collect()
+}
+
+#[track_caller]
+fn on_interface_is_what_is_shared(model: &Model, decomposition: &Decomposition, problem: &Problem) {
+    let expected = shared(model, decomposition);
     for subdomain in &problem.subdomains {
         for on in &subdomain.interface {
             let tag = subdomain.node_tags[on.node as usize];
@@ -149,7 +179,6 @@ fn interface_nodes_are_those_with_cells_in_two_subdomains() {
         }
     }
     assert_eq!(problem.catalog.interface_nodes, expected.len());
-    assert_eq!(problem.catalog.interface.concat().len(), 2 * expected.len());
 }
 
 #[test]

@@ -7,8 +7,12 @@ mod problem_scenes;
 use std::path::Path;
 
 use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::element::ElementKind;
+use contact_dd_partition::example;
+use contact_dd_partition::model::Model;
 use contact_dd_partition::problem::Problem;
 use contact_dd_partition::problem::read::ProblemFile;
+use contact_dd_partition::scene::Scene;
 use problem_scenes::stacked;
 
 fn problem() -> Problem {
@@ -88,8 +92,22 @@ fn every_defect_is_named() {
         ),
         (
             "cell type",
+            |f| set(f, "/VTKHDF/Types", 2, 10u8),
+            &[
+                "/VTKHDF/Types, row 2",
+                "type 10",
+                "expected 5 (triangle of 3 nodes), 22 (triangle of 6 nodes), 9 (",
+            ],
+        ),
+        (
+            "type of a line",
+            |f| set(f, "/VTKHDF/Types", 2, 21u8),
+            &["/VTKHDF/Types, row 2", "type 21", "expected 5"],
+        ),
+        (
+            "type of more nodes",
             |f| set(f, "/VTKHDF/Types", 2, 9u8),
-            &["/VTKHDF/Types, row 2", "type 9", "expected 5"],
+            &["/VTKHDF/Offsets, row 2", "expected 6 to 10"],
         ),
         (
             "node of a cell",
@@ -326,6 +344,39 @@ fn every_defect_is_named() {
         for word in *words {
             assert!(message.contains(word), "{what}: {message}");
         }
+    }
+}
+
+#[test]
+fn a_folded_cell_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("problem.h5");
+    let example = example::find("patch").unwrap();
+    let mesh = example.mesh_of(ElementKind::Quad8, 0).unwrap();
+    let model = Model::new(&Scene::parse(example.scene).unwrap(), mesh).unwrap();
+    let decomposition = Decomposition::new(&model, None).unwrap();
+    let problem = Problem::new(&model, &decomposition).unwrap();
+    problem.write(&path).unwrap();
+    assert_eq!(
+        ProblemFile::open(&path).unwrap().problem().unwrap(),
+        problem
+    );
+    // The node in the middle of the third cell's first edge, beside that edge's end.
+    let nodes = problem.subdomains[0].cells.nodes_of(2);
+    let (end, middle) = (nodes[0] as usize, nodes[4] as usize);
+    let file = hdf5::File::open_rw(&path).unwrap();
+    for axis in 0..2 {
+        let x = problem.subdomains[0].points[end][axis];
+        set(&file, "/VTKHDF/Points", 3 * middle + axis, x);
+    }
+    file.close().unwrap();
+    let error = ProblemFile::open(&path).unwrap().problem().unwrap_err();
+    let message = error.to_string();
+    for word in [
+        "/VTKHDF/Connectivity, row ",
+        "(quadrilateral of 8 nodes) is folded",
+    ] {
+        assert!(message.contains(word), "{message}");
     }
 }
 

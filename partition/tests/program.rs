@@ -5,6 +5,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::example::{self, EXAMPLES};
 use contact_dd_partition::mesh::gmsh;
 
@@ -27,10 +28,19 @@ fn the_program_writes_a_scene_to_start_from() {
         "--write-scene",
         "a/b",
     ];
-    let output = program(&args, dir.path());
-    assert!(output.status.success(), "{output:?}");
-    let mesh = gmsh::read(&dir.path().join("a/b/mesh.msh")).unwrap();
-    assert_eq!(mesh, example::find("patch").unwrap().mesh(1).unwrap());
+    let patch = example::find("patch").unwrap();
+    for (more, mesh) in [
+        (&[][..], patch.mesh(1)),
+        (
+            &["--element", "quad9"],
+            patch.mesh_of(ElementKind::Quad9, 1),
+        ),
+    ] {
+        let output = program(&[&args[..], more].concat(), dir.path());
+        assert!(output.status.success(), "{output:?}");
+        let read = gmsh::read(&dir.path().join("a/b/mesh.msh")).unwrap();
+        assert_eq!(read, mesh.unwrap());
+    }
     assert_eq!(
         std::fs::read_dir(dir.path().join("a/b")).unwrap().count(),
         2
@@ -74,6 +84,11 @@ fn bad_usage_ends_with_2_and_unwritable_output_with_5_and_one_line() {
         (&["-o", "file/x"], 5, "file/x"),
         (&["-o", "dir"], 5, "dir: can't be written: it is a folder"),
         (&["-n", "0"], 2, "0 subdomains can't be; expected 2 "),
+        (
+            &["--element", "quad5"],
+            2,
+            "expected one of triangle3, triangle6",
+        ),
         (&["-n", "abc"], 2, "'abc' for '--subdomains <N>'"),
         (&["-n", "-1"], 2, "'-1'"),
         (&["-n"], 2, "'--subdomains <N>'"),

@@ -26,13 +26,14 @@ use std::time::{Duration, Instant};
 use libtest_mimic::{Arguments, Trial};
 
 use contact_dd_partition::model::Model;
-use support::blocks::Blocks;
+use support::blocks::{Blocks, jittered};
 use support::process::{Ended, Running, is_alive, kill};
 use support::scenes::{
     BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks,
 };
 use support::solution::{Solution, datasets};
 use support::solver::{Case, LIMIT, program};
+use support::sorts::sort;
 
 /// Numbers of ranks; there are few cores, so that more would only wait for each other.
 const RANKS: [usize; 4] = [1, 2, 3, 4];
@@ -105,13 +106,18 @@ type MakeCase = fn() -> Case;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 13] = [
+    let cases: [(&str, MakeCase); 14] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
         }),
         ("granite_in_a_deep_hierarchy", || {
             Case::of(&built_in_model("granite", 0), 70)
+        }),
+        ("curved_cells_of_three_kinds", || {
+            let mesh = sort("triangle6, quad8 and quad9").of(&two_blocks().mesh);
+            let mesh = jittered(mesh, 0.008, 5);
+            Case::of(&model(&two_block_scene(), mesh), 9)
         }),
         ("more_ranks_than_subdomains", || {
             Case::of(&model(&two_block_scene(), two_blocks().mesh), 2)

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::element::ElementKind::{Line2, Triangle3};
+use contact_dd_partition::element::ElementKind::{Line2, Line3, Triangle3, Triangle6};
 use contact_dd_partition::element::Elements;
 use contact_dd_partition::mesh::{Group, Mesh};
 use contact_dd_partition::model::Model;
@@ -95,6 +95,35 @@ impl Blocks {
     pub fn moved(mut self, to: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         self.mesh.points = self.mesh.points.into_iter().map(to).collect();
         self
+    }
+
+    /// The same mesh with a node in the middle of every edge.
+    pub fn quadratic(mut self) -> Self {
+        let mut middles = BTreeMap::new();
+        let linear = std::mem::take(&mut self.mesh.cells);
+        for (_, corners) in linear.iter() {
+            let edges = [[0, 1], [1, 2], [2, 0]].map(|edge| edge.map(|i| corners[i]));
+            let on_edges = edges.map(|ends| self.middle(&mut middles, ends));
+            let nodes = [corners, &on_edges].concat();
+            self.mesh.cells.push(Triangle6, &nodes);
+        }
+        let linear = std::mem::take(&mut self.mesh.facets);
+        for (_, ends) in linear.iter() {
+            let ends = [ends[0], ends[1]];
+            let middle = self.middle(&mut middles, ends);
+            self.mesh.facets.push(Line3, &[ends[0], ends[1], middle]);
+        }
+        self
+    }
+
+    fn middle(&mut self, known: &mut BTreeMap<[u32; 2], u32>, [a, b]: [u32; 2]) -> u32 {
+        *known.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+            let points = &mut self.mesh.points;
+            let (p, q) = (points[a as usize], points[b as usize]);
+            points.push([0, 1, 2].map(|i| 0.5 * (p[i] + q[i])));
+            self.mesh.node_tags.push(1000 + 3 * points.len() as i64);
+            points.len() as u32 - 1
+        })
     }
 
     /// The same mesh with nodes, cells and facets numbered from the other end, and every other

@@ -12,4 +12,5 @@ mod corner;
 mod invariance;
 mod loads;
 mod obstacle;
+mod quadratic;
 mod supports;
