@@ -189,6 +189,10 @@ impl Layers {
     ) -> usize {
         let dofs = (model.mesh.dim * model.mesh.points.len()) as f64;
         let per_cell = dofs / model.mesh.cells.len() as f64;
+        // Facets of a closed line share their ends.
+        let kinds = model.mesh.cells.iter().flat_map(|(kind, _)| kind.facets());
+        let nodes = kinds.map(|(facet, _)| facet.nodes()).max().unwrap_or(1);
+        let per_facet = model.mesh.dim * (nodes - 1).max(1);
         let (mut cells, mut facets) = (0, 0);
         let mut costs = Vec::with_capacity(self.cells.len());
         for (layer, &of_layer) in self.cells.iter().enumerate() {
@@ -199,7 +203,7 @@ impl Layers {
             }
             let inside = (per_cell * cells as f64).min(dofs);
             let front = Front {
-                eliminated: model.mesh.dim * facets as usize,
+                eliminated: per_facet * facets as usize,
                 kept: conditions,
             };
             let kept = (front.eliminated + front.kept) as f64;
