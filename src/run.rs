@@ -16,6 +16,7 @@ pub mod refine;
 mod report;
 mod resultants;
 pub mod settle;
+mod stresses;
 pub mod substitute;
 pub mod write;
 
@@ -38,8 +39,9 @@ use self::refine::refine;
 use self::report::{Narrator, Totals};
 use self::resultants::resultants;
 use self::settle::{settle_free_motions, settle_loose_motions};
+use self::stresses::{error_estimate, stresses};
 use self::substitute::Factors;
-use self::write::{Fields, stresses, write_solution};
+use self::write::{Fields, write_solution};
 use crate::comm::{Comm, Message, phase};
 use crate::contact::s_con::SCon;
 use crate::error::Failure;
@@ -171,6 +173,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     };
     let resultants = resultants(&frozen, &solutions);
     let stress = (!settings.no_stress).then(|| stresses(comm, &blocks, &solutions, catalog, &plan));
+    let estimate = (stress.as_ref()).map(|stress| error_estimate(comm, stress, &plan));
     let displacement = with_descent(&blocks, &solutions, &survey, catalog.dim);
     if let Some(outcome) = &mut outcome {
         outcome.accept(&certificate);
@@ -204,7 +207,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
                 condition,
                 ranks,
                 resultants,
-                has_stress: stress.is_some(),
+                estimate,
                 warnings: [survey.motions.warnings, settled.warnings].concat(),
             };
             narrator.finish(&totals, output)

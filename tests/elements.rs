@@ -174,9 +174,10 @@ fn quadratic_displacements_are_exact_in_quadratic_cells_with_straight_edges() {
     }
 }
 
-/// The error of u = v = 1e-3·sin(x)·sin(y) in the norm of the energy, relative: as nothing but zero
-/// is prescribed, ‖u − u_h‖² = ‖u‖² − ‖u_h‖², and ‖u_h‖² is the work of the loads.
-fn energy_error(sort: Sort, n: usize) -> f64 {
+/// The error of u = v = 1e-3·sin(x)·sin(y) in the norm of the energy, relative, and the report's
+/// estimate over it: as nothing but zero is prescribed, ‖u − u_h‖² = ‖u‖² − ‖u_h‖², and ‖u_h‖² is
+/// the work of the loads.
+fn energy_error(sort: Sort, n: usize) -> [f64; 2] {
     let [l, m] = lame().map(|c| 1e-3 * c);
     let (ux, uy) = ("cos(x)*sin(y)", "sin(x)*cos(y)");
     let xx = format!("{}*{ux} + {l}*{uy}", l + 2.0 * m);
@@ -197,13 +198,20 @@ fn energy_error(sort: Sort, n: usize) -> f64 {
     let (s, c) = (0.5 - 0.25 * 2.0_f64.sin(), 0.5 + 0.25 * 2.0_f64.sin());
     let product = 0.25 * (1.0_f64.sin().powi(4));
     let exact = 1e-3 * ((l + 3.0 * m) * 2.0 * s * c + 2.0 * (l + m) * product);
-    ((exact - work).abs() / exact).sqrt()
+    let error = (exact - work).abs().sqrt();
+    let estimate = &solution.report["error_estimate"];
+    let number = |key: &str| estimate[key].as_f64().unwrap();
+    close(number("energy_norm"), work.sqrt(), 1e-9 * work.sqrt());
+    let relative = number("error") / work.sqrt();
+    close(number("relative"), relative, 0.01 * relative);
+    [error / exact.sqrt(), number("error") / error]
 }
 
 #[test]
 fn the_energy_converges_with_the_order_of_the_cells() {
     for sort in SORTS {
-        let errors = [4, 8].map(|n| energy_error(sort, n));
+        let found = [4, 8].map(|n| energy_error(sort, n));
+        let errors = found.map(|[error, _]| error);
         let rate = (errors[0] / errors[1]).log2();
         let order = if sort.is_quadratic { 2.0 } else { 1.0 };
         assert!(
@@ -211,6 +219,32 @@ fn the_energy_converges_with_the_order_of_the_cells() {
             "{}: {errors:?}, order {rate}",
             sort.name
         );
+        for [_, effectivity] in found {
+            assert!(
+                (0.9..1.15).contains(&effectivity),
+                "{}: {found:?}",
+                sort.name
+            );
+        }
+    }
+}
+
+/// Patches run across Γ, also where it meets the boundary.
+#[test]
+fn recovered_stress_and_estimate_are_the_same_in_any_number_of_subdomains() {
+    for sort in SORTS {
+        let mesh = jittered(sort.of(&two_blocks().mesh), 0.008, 5);
+        let model = model(&two_block_scene(), mesh);
+        let [few, many] = [2, 23].map(|count| solve(&model, count));
+        let error = |of: &Solution| of.report["error_estimate"]["error"].as_f64().unwrap();
+        close(error(&many), error(&few), 1e-8 * error(&few));
+        let stresses = few.nodal_stress.values().flatten();
+        let largest = stresses.fold(0.0_f64, |m, s| m.max(s.abs()));
+        for (tag, stress) in &few.nodal_stress {
+            for (a, b) in stress.iter().zip(&many.nodal_stress[tag]) {
+                close(*a, *b, 1e-8 * largest);
+            }
+        }
     }
 }
 

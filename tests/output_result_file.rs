@@ -40,6 +40,7 @@ fn strips(first: usize, cells: &[usize]) -> SubdomainResults {
         results.cell_stress.extend((0..cells).map(six));
         results.principal.extend((0..cells).map(three));
         results.von_mises.extend((0..cells).map(|c| value(c, 0)));
+        results.energy_error.extend((0..cells).map(|c| value(c, 1)));
     }
     results
 }

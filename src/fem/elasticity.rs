@@ -1,6 +1,7 @@
 //! Linear elasticity of one element in the plane: strains, stresses, stiffness.
 
 use contact_dd_partition::element::ElementKind;
+use contact_dd_partition::element::tabulation::TabulatedPoint;
 use contact_dd_partition::model::{Material, PlaneState};
 
 /// Most nodes that an element has.
@@ -22,26 +23,30 @@ pub fn stiffness_points(
     kind: ElementKind,
     points: &[[f64; 3]],
 ) -> impl Iterator<Item = PointGradients> {
-    kind.stiffness_points().iter().map(move |reference| {
-        // J = ∂x/∂ξ
-        let mut j = [[0.0; 2]; 2];
-        for (x, g) in points.iter().zip(&reference.gradients) {
-            for (row, x) in j.iter_mut().zip(x) {
-                row[0] += x * g[0];
-                row[1] += x * g[1];
-            }
+    let reference = kind.stiffness_points().iter();
+    reference.map(move |reference| gradients(reference, points))
+}
+
+/// The gradients at one point of the element with the nodes at `points`.
+pub fn gradients(reference: &TabulatedPoint, points: &[[f64; 3]]) -> PointGradients {
+    // J = ∂x/∂ξ
+    let mut j = [[0.0; 2]; 2];
+    for (x, g) in points.iter().zip(&reference.gradients) {
+        for (row, x) in j.iter_mut().zip(x) {
+            row[0] += x * g[0];
+            row[1] += x * g[1];
         }
-        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-        let mut gradients = [[0.0; 2]; MAX_NODES];
-        for (gradient, g) in gradients.iter_mut().zip(&reference.gradients) {
-            gradient[0] = (j[1][1] * g[0] - j[1][0] * g[1]) / det;
-            gradient[1] = (j[0][0] * g[1] - j[0][1] * g[0]) / det;
-        }
-        PointGradients {
-            gradients,
-            weight: det * reference.weight,
-        }
-    })
+    }
+    let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+    let mut gradients = [[0.0; 2]; MAX_NODES];
+    for (gradient, g) in gradients.iter_mut().zip(&reference.gradients) {
+        gradient[0] = (j[1][1] * g[0] - j[1][0] * g[1]) / det;
+        gradient[1] = (j[0][0] * g[1] - j[0][1] * g[0]) / det;
+    }
+    PointGradients {
+        gradients,
+        weight: det * reference.weight,
+    }
 }
 
 /// ε = (ε_xx, ε_yy, γ_xy) at a point for nodal displacements `u`.
@@ -59,13 +64,21 @@ pub fn strain(point: &PointGradients, u: &[f64]) -> [f64; 3] {
 ///
 /// σ_zz follows from the material's row out of the plane; where that isn't known it is 0.
 pub fn stress(material: &Material, plane: PlaneState, strain: &[f64; 3]) -> [f64; 6] {
-    let row = |c: &[f64; 3]| c.iter().zip(strain).map(|(c, e)| c * e).sum::<f64>();
-    let c = &material.stiffness;
+    let [xx, yy, xy] = stress_in_plane(material, strain);
     let zz = match (plane, &material.out_of_plane) {
-        (PlaneState::Strain, Some(out_of_plane)) => row(out_of_plane),
+        (PlaneState::Strain, Some(out_of_plane)) => product(out_of_plane, strain),
         _ => 0.0,
     };
-    [row(&c[0]), row(&c[1]), zz, row(&c[2]), 0.0, 0.0]
+    [xx, yy, zz, xy, 0.0, 0.0]
+}
+
+/// σ = (XX, YY, XY) for a strain in the plane (Pa).
+pub fn stress_in_plane(material: &Material, strain: &[f64; 3]) -> [f64; 3] {
+    material.stiffness.map(|row| product(&row, strain))
+}
+
+fn product(row: &[f64; 3], strain: &[f64; 3]) -> f64 {
+    row.iter().zip(strain).map(|(c, e)| c * e).sum()
 }
 
 /// An element's stiffness, both triangles.

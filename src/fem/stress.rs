@@ -1,136 +1,107 @@
-//! Stresses: the mean over each cell, and at nodes the mean of what the cells around them have
-//! there, weighted by their area; across Γ, but never across a contact or a change of material.
+//! Stresses: the mean over each cell, at nodes by recovery, and the error that their difference
+//! tells of.
 
+use std::sync::LazyLock;
+
+use contact_dd_partition::element::ElementKind;
+use contact_dd_partition::element::tabulation::TabulatedPoint;
 use contact_dd_partition::model::{Material, PlaneState};
 
-use super::block::Block;
-use super::elasticity::{MAX_NODES, stiffness_points, strain, stress};
-use super::recovery::nodal_weights;
-
-/// Area-weighted sum of stresses, such as those around a node, and the area.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StressSum {
-    /// Σ area·σ (N), order XX YY ZZ XY YZ XZ.
-    pub stress: [f64; 6],
-    /// Area (m²).
-    pub area: f64,
-}
-
-impl StressSum {
-    /// Adds another part of the surroundings.
-    pub fn add(&mut self, other: &Self) {
-        for (a, b) in self.stress.iter_mut().zip(&other.stress) {
-            *a += b;
-        }
-        self.area += other.area;
-    }
-
-    /// The mean stress (Pa).
-    pub fn mean(&self) -> [f64; 6] {
-        self.stress.map(|s| s / self.area)
-    }
-}
+use super::block::{Block, BlockCell};
+use super::elasticity::{MAX_NODES, gradients, stiffness_points, strain, stress};
+use super::estimate::{CellError, cell_error};
+use super::patch::{COMPONENTS, PatchSum};
+use super::recovery::{Recovery, corners};
 
 /// The stresses of a block.
 #[derive(Clone, Debug)]
 pub struct BlockStress {
-    /// Of every cell, member by member (Pa).
+    /// Of every cell, member by member (Pa), order XX YY ZZ XY YZ XZ.
     pub cells: Vec<[f64; 6]>,
-    /// Its materials, ascending.
-    materials: Vec<u32>,
-    /// Around every node, for each of the materials.
-    sums: Vec<Vec<StressSum>>,
+    /// What is recovered in each material, ascending.
+    pub recoveries: Vec<Recovery>,
+}
+
+/// Stresses at nodes and what they say of the cells' error.
+#[derive(Clone, Debug)]
+pub struct RecoveredStress {
+    /// The block's materials, ascending.
+    materials: Vec<usize>,
+    /// At every node in each of them (Pa).
+    at_nodes: Vec<Vec<[f64; COMPONENTS]>>,
+    /// Estimated error of every cell, member by member.
+    pub errors: Vec<CellError>,
 }
 
 impl BlockStress {
     /// The stresses for displacements `u`, node by node.
     pub fn new(block: &Block, materials: &[Material], plane: PlaneState, u: &[f64]) -> Self {
-        let dim = block.dim;
-        let mut present: Vec<u32> = (block.members.iter())
+        let mut present: Vec<usize> = (block.members.iter())
             .flat_map(|member| &member.cell_material)
-            .copied()
+            .map(|&material| material as usize)
             .collect();
         present.sort_unstable();
         present.dedup();
-        let mut sums = vec![vec![StressSum::default(); block.nodes()]; present.len()];
+        let mut patches = vec![vec![PatchSum::default(); block.nodes()]; present.len()];
         let count = block.members.iter().map(|m| m.cells.len()).sum();
         let mut cells = Vec::with_capacity(count);
-        let mut points = Vec::with_capacity(MAX_NODES);
-        let mut u_e = Vec::with_capacity(dim * MAX_NODES);
-        let mut at_points = Vec::new();
+        let mut local = LocalCell::default();
         for cell in block.cells() {
-            points.clear();
-            u_e.clear();
-            at_points.clear();
-            for node in cell.nodes() {
-                let node = node as usize;
-                points.push(block.points[node]);
-                u_e.extend_from_slice(&u[dim * node..dim * (node + 1)]);
+            local.take(block, &cell, u);
+            let material = &materials[cell.material];
+            cells.push(local.mean(material, plane));
+            let Ok(place) = present.binary_search(&cell.material) else {
+                continue;
+            };
+            let around = &mut patches[place];
+            for (corner, node) in corners(&cell).enumerate() {
+                around[node].add_cell(local.angle(corner), !cell.kind.is_linear());
             }
-            let mut sum = StressSum::default();
-            for point in stiffness_points(cell.kind, &points) {
-                let sigma = stress(&materials[cell.material], plane, &strain(&point, &u_e));
-                sum.add(&StressSum {
-                    stress: sigma.map(|s| s * point.weight),
-                    area: point.weight,
-                });
-                at_points.push(sigma);
-            }
-            cells.push(sum.mean());
-            if let Ok(place) = present.binary_search(&(cell.material as u32)) {
-                for (node, weights) in cell.nodes().zip(nodal_weights(cell.kind)) {
-                    let mut at_node = [0.0; 6];
-                    for (weight, sigma) in weights.iter().zip(&at_points) {
-                        for (total, s) in at_node.iter_mut().zip(sigma) {
-                            *total += weight * sum.area * s;
-                        }
-                    }
-                    sums[place][node as usize].add(&StressSum {
-                        stress: at_node,
-                        area: sum.area,
-                    });
+            for point in superconvergent_points(cell.kind) {
+                let (at, sigma) = local.at(point, material, plane);
+                for node in corners(&cell) {
+                    let from = &block.points[node];
+                    around[node].add_sample([at[0] - from[0], at[1] - from[1]], sigma);
                 }
             }
         }
-        Self {
-            cells,
+        let recoveries = (present.into_iter().zip(patches))
+            .map(|(material, patches)| Recovery::new(block, material, patches))
+            .collect();
+        Self { cells, recoveries }
+    }
+
+    /// The stresses at nodes, and the estimate, for the same displacements.
+    pub fn recover(&mut self, block: &Block, materials: &[Material], u: &[f64]) -> RecoveredStress {
+        let recoveries = std::mem::take(&mut self.recoveries);
+        let present: Vec<usize> = recoveries.iter().map(Recovery::material).collect();
+        let at_nodes: Vec<_> = (recoveries.into_iter())
+            .map(|recovery| recovery.at_nodes(block))
+            .collect();
+        let mut errors = Vec::with_capacity(self.cells.len());
+        let mut local = LocalCell::default();
+        let mut recovered = Vec::with_capacity(MAX_NODES);
+        for cell in block.cells() {
+            local.take(block, &cell, u);
+            recovered.clear();
+            if let Ok(place) = present.binary_search(&cell.material) {
+                recovered.extend(cell.nodes().map(|node| at_nodes[place][node as usize]));
+            }
+            let of_cell = (cell.kind, &local.points[..], &local.u[..]);
+            errors.push(cell_error(of_cell, &recovered, &materials[cell.material]));
+        }
+        RecoveredStress {
             materials: present,
-            sums,
+            at_nodes,
+            errors,
         }
     }
+}
 
-    /// What this block knows of the surroundings of the nodes it shares: number on Γ, material,
-    /// sum.
-    pub fn shared<'a>(
-        &'a self,
-        block: &'a Block,
-    ) -> impl Iterator<Item = (u32, u32, StressSum)> + 'a {
-        block.interface.iter().flat_map(move |&(node, id)| {
-            (self.materials.iter().zip(&self.sums))
-                .map(move |(&material, around)| (id, material, around[node as usize]))
-                .filter(|(_, _, sum)| sum.area > 0.0)
-        })
-    }
-
-    /// Puts the sums over all blocks in the place of this block's own, in the order of
-    /// [`shared`](Self::shared).
-    pub fn set_shared(&mut self, block: &Block, totals: &[StressSum]) {
-        let mut totals = totals.iter();
-        for &(node, _) in &block.interface {
-            for around in &mut self.sums {
-                let sum = &mut around[node as usize];
-                if sum.area > 0.0
-                    && let Some(total) = totals.next()
-                {
-                    *sum = *total;
-                }
-            }
-        }
-    }
-
-    /// The stress recovered at the nodes of member `m`; where two of its materials meet, that of
-    /// the first one.
-    pub fn at_nodes(&self, block: &Block, m: usize) -> Vec<[f64; 6]> {
+impl RecoveredStress {
+    /// The stress recovered at the nodes of member `m` (Pa); where two of its materials meet, that
+    /// of the first one.
+    pub fn of_member(&self, block: &Block, m: usize) -> Vec<[f64; 6]> {
         let member = &block.members[m];
         let mut material = vec![u32::MAX; member.points.len()];
         for ((_, nodes), &cell_material) in member.cells.iter().zip(&member.cell_material) {
@@ -139,14 +110,104 @@ impl BlockStress {
                 *material = cell_material.min(*material);
             }
         }
-        block.node_of[m]
-            .iter()
-            .zip(&material)
-            .map(|(&node, material)| {
-                self.materials
-                    .binary_search(material)
-                    .map_or([0.0; 6], |place| self.sums[place][node as usize].mean())
+        (block.node_of[m].iter().zip(&material))
+            .map(|(&node, &material)| {
+                let place = self.materials.binary_search(&(material as usize));
+                let [xx, yy, zz, xy] =
+                    place.map_or([0.0; 4], |place| self.at_nodes[place][node as usize]);
+                [xx, yy, zz, xy, 0.0, 0.0]
             })
             .collect()
     }
+}
+
+/// A cell with its coordinates and displacements.
+#[derive(Default)]
+struct LocalCell {
+    kind: Option<ElementKind>,
+    points: Vec<[f64; 3]>,
+    u: Vec<f64>,
+}
+
+impl LocalCell {
+    fn take(&mut self, block: &Block, cell: &BlockCell<'_>, u: &[f64]) {
+        self.kind = Some(cell.kind);
+        self.points.clear();
+        self.u.clear();
+        for node in cell.nodes().map(|node| node as usize) {
+            self.points.push(block.points[node]);
+            (self.u).extend_from_slice(&u[block.dim * node..block.dim * (node + 1)]);
+        }
+    }
+
+    /// The mean stress.
+    fn mean(&self, material: &Material, plane: PlaneState) -> [f64; 6] {
+        let (mut sum, mut area) = ([0.0; 6], 0.0);
+        for point in self
+            .kind
+            .into_iter()
+            .flat_map(|kind| stiffness_points(kind, &self.points))
+        {
+            let sigma = stress(material, plane, &strain(&point, &self.u));
+            for (sum, s) in sum.iter_mut().zip(sigma) {
+                *sum += point.weight * s;
+            }
+            area += point.weight;
+        }
+        sum.map(|s| s / area)
+    }
+
+    /// Place and stress at a point.
+    fn at(
+        &self,
+        point: &TabulatedPoint,
+        material: &Material,
+        plane: PlaneState,
+    ) -> ([f64; 2], [f64; COMPONENTS]) {
+        let mut at = [0.0; 2];
+        for (n, x) in point.shape.iter().zip(&self.points) {
+            at[0] += n * x[0];
+            at[1] += n * x[1];
+        }
+        let strain = strain(&gradients(point, &self.points), &self.u);
+        let [xx, yy, zz, xy, ..] = stress(material, plane, &strain);
+        (at, [xx, yy, zz, xy])
+    }
+
+    /// The angle between the edges at a corner (rad).
+    fn angle(&self, corner: usize) -> f64 {
+        let Some(kind) = self.kind else {
+            return 0.0;
+        };
+        let corners = kind.corners();
+        let vertex = self.points[corner];
+        let tangent = |other: usize, middle: usize| {
+            let end = self.points[other];
+            let way = [0, 1].map(|k| end[k] - vertex[k]);
+            match kind.is_linear() {
+                true => way,
+                // The derivative at the end of a parabola through three points.
+                false => [0, 1].map(|k| 4.0 * (self.points[middle][k] - vertex[k]) - way[k]),
+            }
+        };
+        let before = (corner + corners - 1) % corners;
+        let out = tangent((corner + 1) % corners, corners + corner);
+        let back = tangent(before, corners + before);
+        (out[0] * back[1] - out[1] * back[0]).atan2(out[0] * back[0] + out[1] * back[1])
+    }
+}
+
+/// Where stresses are more accurate than elsewhere in a cell, or make patches that are.
+///
+/// Barlow, Int. J. Numer. Meth. Eng. 10 (1976); Zienkiewicz and Zhu 1992.
+fn superconvergent_points(kind: ElementKind) -> &'static [TabulatedPoint] {
+    static POINTS: LazyLock<[Vec<TabulatedPoint>; ElementKind::ALL.len()]> = LazyLock::new(|| {
+        ElementKind::ALL.map(|kind| match kind {
+            ElementKind::Point1 | ElementKind::Line2 | ElementKind::Line3 => Vec::new(),
+            ElementKind::Triangle3 | ElementKind::Quad4 => kind.tabulate(1),
+            ElementKind::Triangle6 => kind.tabulate(2),
+            ElementKind::Quad8 | ElementKind::Quad9 => kind.tabulate(3),
+        })
+    });
+    &POINTS[kind as usize]
 }

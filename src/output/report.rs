@@ -41,6 +41,17 @@ pub struct Certificate {
     pub interface_jump: f64,
 }
 
+/// What the mesh does to the stress, after Zienkiewicz and Zhu, in the energy norm.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ErrorEstimate {
+    /// ‖σ* − σ_h‖ / ‖σ‖, with σ* the recovered stress and ‖σ‖² = ‖σ_h‖² + ‖σ* − σ_h‖².
+    pub relative: f64,
+    /// ‖σ* − σ_h‖ (√N, per metre of thickness in the plane).
+    pub error: f64,
+    /// ‖σ_h‖, the root of twice the strain energy (the same unit).
+    pub energy_norm: f64,
+}
+
 /// Time that each phase of a run took, in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct PhaseSeconds {
@@ -150,6 +161,8 @@ pub struct Report {
     pub per_rank: Vec<RankReport>,
     /// Sum of the ranks' peak resident memory (bytes).
     pub peak_memory_bytes: u64,
+    /// Estimate of the mesh's error; `null` where stresses are left out.
+    pub error_estimate: Option<ErrorEstimate>,
     /// What contacts and supports carry.
     #[serde(flatten)]
     pub resultants: Resultants,
@@ -214,6 +227,7 @@ mod tests {
             seconds: PhaseSeconds::default(),
             per_rank: vec![RankReport::default()],
             peak_memory_bytes: 1,
+            error_estimate: None,
             resultants: Resultants::default(),
             skipped: Vec::new(),
             warnings: vec!["a \"quoted\"\nwarning".into()],
@@ -245,7 +259,7 @@ mod tests {
         ];
         assert_eq!(keys(&value["seconds"]), phases);
         let mut of_rank = phases.to_vec();
-        of_rank.extend(["bytes_sent", "peak_memory_bytes", "subdomains"]);
+        of_rank.extend(["bytes_sent", "peak_memory_bytes", "repeated", "subdomains"]);
         of_rank.sort_unstable();
         assert_eq!(keys(&value["per_rank"][0]), of_rank);
         assert_eq!(
@@ -269,7 +283,9 @@ mod tests {
                 "condition",
                 "contact_conditions",
                 "contact_pairs",
+                "contacts",
                 "dofs",
+                "error_estimate",
                 "fallbacks",
                 "inner_steps",
                 "interface_dofs",
@@ -278,6 +294,7 @@ mod tests {
                 "peak_memory_bytes",
                 "per_rank",
                 "ranks",
+                "reactions",
                 "seconds",
                 "skipped",
                 "status",

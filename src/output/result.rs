@@ -45,6 +45,8 @@ pub struct SubdomainResults {
     pub principal: Vec<[f64; 3]>,
     /// Von Mises stress of the cells (Pa).
     pub von_mises: Vec<f64>,
+    /// Estimated error of the cells in the energy norm (√N, per metre of thickness).
+    pub energy_error: Vec<f64>,
 }
 
 impl SubdomainResults {
@@ -66,6 +68,7 @@ impl SubdomainResults {
             cell_stress,
             principal,
             von_mises,
+            energy_error,
         } = self;
         *start = first;
         sizes.clear();
@@ -80,6 +83,7 @@ impl SubdomainResults {
         cell_stress.clear();
         principal.clear();
         von_mises.clear();
+        energy_error.clear();
     }
 }
 

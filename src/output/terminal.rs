@@ -136,6 +136,13 @@ pub fn closing(out: &mut impl Write, reason: &str, report: &Report, result: &Pat
     if let Some(condition) = report.condition {
         writeln!(out, "             condition number about {condition:.0e}")?;
     }
+    if let Some(estimate) = report.error_estimate {
+        writeln!(
+            out,
+            "mesh         stresses are off by about {:.1} % in the energy norm",
+            100.0 * estimate.relative
+        )?;
+    }
     writeln!(out)?;
     resultants::print(out, &report.resultants)?;
     writeln!(out)?;

@@ -7,9 +7,12 @@ use contact_dd_partition::problem::Catalog;
 
 use crate::comm::{Comm, Message};
 use crate::error::Failure;
+use crate::fem::estimate::CellError;
 use crate::interface::operator::Interface;
 use crate::output::memory::peak_memory_bytes;
-use crate::output::report::{Certificate, PhaseSeconds, RankReport, Report, Status, write_report};
+use crate::output::report::{
+    Certificate, ErrorEstimate, PhaseSeconds, RankReport, Report, Status, write_report,
+};
 use crate::output::result::ConvergenceRow;
 use crate::output::resultants::Resultants;
 use crate::output::terminal::{self, Summary, SweepLine};
@@ -53,8 +56,8 @@ pub struct Totals<'a> {
     pub ranks: Vec<RankReport>,
     /// What contacts and supports carry.
     pub resultants: Resultants,
-    /// Whether stresses are among the results.
-    pub has_stress: bool,
+    /// The estimate of the mesh's error, where there are stresses.
+    pub estimate: Option<CellError>,
     /// What the ranks noticed on the way.
     pub warnings: Vec<String>,
 }
@@ -274,6 +277,11 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
         seconds: PhaseSeconds::slowest(&seconds),
         peak_memory_bytes: totals.ranks.iter().map(|r| r.peak_memory_bytes).sum(),
         per_rank: totals.ranks.clone(),
+        error_estimate: totals.estimate.map(|estimate| ErrorEstimate {
+            relative: estimate.relative(),
+            error: estimate.error.sqrt(),
+            energy_norm: estimate.energy.sqrt(),
+        }),
         resultants: totals.resultants.clone(),
         skipped: skipped(totals),
         warnings,
@@ -319,7 +327,7 @@ fn skipped(totals: &Totals<'_>) -> Vec<String> {
             totals.plan.blocks.len()
         ));
     }
-    if !totals.has_stress {
+    if totals.estimate.is_none() {
         skipped.push("stresses: left out by --no-stress".into());
     }
     skipped

@@ -1,91 +1,19 @@
-//! Stresses, and the results on their way to the root and into the file.
+//! The results on their way to the root and into the file.
 
 mod parcel;
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use contact_dd_partition::error::OutputError;
-use contact_dd_partition::problem::Catalog;
 
 use self::parcel::{Parcel, pack, unpack};
 use super::read::OwnedBlock;
 use super::recover::BlockSolution;
+use super::stresses::Stress;
 use crate::comm::{Comm, Message, ROOT};
-use crate::fem::stress::{BlockStress, StressSum};
 use crate::output::result::{ContactResult, SubdomainResults};
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
-
-/// Stresses of this rank's blocks; what blocks share at nodes of Γ is summed over all of them by
-/// the root. Collective.
-pub fn stresses(
-    comm: &Comm,
-    blocks: &BTreeMap<usize, OwnedBlock>,
-    solutions: &BTreeMap<usize, BlockSolution>,
-    catalog: &Catalog,
-    plan: &Plan,
-) -> BTreeMap<usize, BlockStress> {
-    let mut stresses: BTreeMap<usize, BlockStress> = solutions
-        .iter()
-        .filter_map(|(b, solution)| {
-            let block = &blocks.get(b)?.block;
-            let stress = BlockStress::new(block, &catalog.materials, catalog.plane, &solution.u);
-            Some((*b, stress))
-        })
-        .collect();
-    let owners = plan.owners();
-    let mut totals: HashMap<(i64, i64), StressSum> = HashMap::new();
-    let mut asked: Vec<Vec<(i64, i64)>> = Vec::new();
-    comm.gather(
-        &owners,
-        |b| {
-            let mut message = Message::default();
-            if let (Some(stress), Some(owned)) = (stresses.get(&b), blocks.get(&b)) {
-                for (node, material, sum) in stress.shared(&owned.block) {
-                    message
-                        .integers
-                        .extend([i64::from(node), i64::from(material)]);
-                    message.reals.extend(sum.stress);
-                    message.reals.push(sum.area);
-                }
-            }
-            message
-        },
-        |_, message| {
-            let keys: Vec<(i64, i64)> = message.integers.chunks(2).map(|k| (k[0], k[1])).collect();
-            for (key, sum) in keys.iter().zip(message.reals.chunks(7)) {
-                totals.entry(*key).or_default().add(&stress_sum(sum));
-            }
-            asked.push(keys);
-        },
-    );
-    comm.scatter(
-        &owners,
-        |b| {
-            let mut message = Message::default();
-            for key in &asked[b] {
-                let sum = totals.get(key).copied().unwrap_or_default();
-                message.reals.extend(sum.stress);
-                message.reals.push(sum.area);
-            }
-            message
-        },
-        |b, message| {
-            let sums: Vec<StressSum> = message.reals.chunks(7).map(stress_sum).collect();
-            if let (Some(stress), Some(owned)) = (stresses.get_mut(&b), blocks.get(&b)) {
-                stress.set_shared(&owned.block, &sums);
-            }
-        },
-    );
-    stresses
-}
-
-fn stress_sum(values: &[f64]) -> StressSum {
-    let mut sum = StressSum::default();
-    sum.stress.copy_from_slice(&values[..6]);
-    sum.area = values[6];
-    sum
-}
 
 /// What this rank's blocks have found.
 #[derive(Clone, Copy, Debug)]
@@ -95,7 +23,7 @@ pub struct Fields<'a> {
     /// Displacement with it, node by node (m).
     pub displacement: &'a BTreeMap<usize, Vec<f64>>,
     /// Stresses, unless they are left out.
-    pub stress: Option<&'a BTreeMap<usize, BlockStress>>,
+    pub stress: Option<&'a BTreeMap<usize, Stress>>,
 }
 
 /// Streams all subdomains and contact rows to the root, which writes a slab of subdomains as soon

@@ -49,6 +49,7 @@ struct StressArrays {
     of_cells: Dataset,
     principal: Dataset,
     von_mises: Dataset,
+    energy_error: Dataset,
 }
 
 impl Grid {
@@ -198,6 +199,7 @@ impl StressArrays {
             of_cells: column::empty_table::<f64>(cells, "Stress", total.cells, 6)?,
             principal: column::empty_table::<f64>(cells, "PrincipalStress", total.cells, 3)?,
             von_mises: column::empty::<f64>(cells, "VonMises", total.cells)?,
+            energy_error: column::empty::<f64>(cells, "EnergyError", total.cells)?,
         })
     }
 
@@ -205,7 +207,8 @@ impl StressArrays {
         column::fill_table(&self.at_nodes, start.points, &results.nodal_stress)?;
         column::fill_table(&self.of_cells, start.cells, &results.cell_stress)?;
         column::fill_table(&self.principal, start.cells, &results.principal)?;
-        column::fill(&self.von_mises, start.cells, &results.von_mises)
+        column::fill(&self.von_mises, start.cells, &results.von_mises)?;
+        column::fill(&self.energy_error, start.cells, &results.energy_error)
     }
 }
 
@@ -268,6 +271,7 @@ fn check_sizes(results: &SubdomainResults, sizes: &[PartitionSize], stress: bool
                 results.von_mises.len(),
                 stressed(cells),
             ),
+            ("errors", results.energy_error.len(), stressed(cells)),
         ],
     )
 }

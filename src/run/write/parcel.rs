@@ -7,10 +7,10 @@ use super::Fields;
 use crate::comm::{Comm, Message};
 use crate::fem::block::Block;
 use crate::fem::elasticity::{principal_stresses, von_mises};
-use crate::fem::stress::BlockStress;
 use crate::output::result::{PartitionSize, SubdomainResults};
 use crate::plan::Plan;
 use crate::run::read::OwnedBlock;
+use crate::run::stresses::Stress;
 
 /// A slab of the result file, or a part of one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -113,11 +113,16 @@ fn append_member(results: &mut SubdomainResults, block: &Block, m: usize, displa
 }
 
 /// Appends the stresses of member `m` of a block.
-fn append_stress(results: &mut SubdomainResults, block: &Block, m: usize, stress: &BlockStress) {
+fn append_stress(results: &mut SubdomainResults, block: &Block, m: usize, stress: &Stress) {
     let first_cell: usize = block.members[..m].iter().map(|o| o.cells.len()).sum();
-    let cells = &stress.cells[first_cell..first_cell + block.members[m].cells.len()];
-    results.nodal_stress.extend(stress.at_nodes(block, m));
+    let of_member = first_cell..first_cell + block.members[m].cells.len();
+    let cells = &stress.cells[of_member.clone()];
+    let errors = &stress.recovered.errors[of_member];
+    let nodal = stress.recovered.of_member(block, m);
+    results.nodal_stress.extend(nodal);
     results.cell_stress.extend_from_slice(cells);
+    let norms = errors.iter().map(|e| e.error.sqrt());
+    results.energy_error.extend(norms);
     results
         .principal
         .extend(cells.iter().map(principal_stresses));
@@ -145,6 +150,7 @@ pub(super) fn pack(results: &SubdomainResults) -> Message {
     reals.extend_from_slice(results.cell_stress.as_flattened());
     reals.extend_from_slice(results.principal.as_flattened());
     reals.extend_from_slice(&results.von_mises);
+    reals.extend_from_slice(&results.energy_error);
     message
 }
 
@@ -187,6 +193,7 @@ pub(super) fn unpack(message: &Message, results: &mut SubdomainResults) {
     results.cell_stress.extend_from_slice(tuples(reals, cells));
     results.principal.extend_from_slice(tuples(reals, cells));
     results.von_mises.extend_from_slice(take(reals, cells));
+    results.energy_error.extend_from_slice(take(reals, cells));
 }
 
 fn take<'a, T>(list: &mut &'a [T], n: usize) -> &'a [T] {
@@ -244,6 +251,7 @@ mod tests {
             cell_stress: six(3),
             principal: three(3),
             von_mises: vec![7.0, 8.0, 9.0],
+            energy_error: vec![0.1, 0.2, 0.3],
         };
         let mut arrived = SubdomainResults::default();
         unpack(&pack(&sent), &mut arrived);
