@@ -44,13 +44,17 @@ materials.rock = {young = 20e9, poisson = 0.25}
 bodies.lower.material = 'rock'
 bodies.upper.material = 'rock'
 [[bilateral]]
-on = ['lower bottom', 'lower left', 'upper left']
+on = ['lower left', 'upper left']
 [[pressure]]
 on = ['upper top', 'lower right', 'upper right']
 value = 1e6
 [[contact]]
 name = 'joint'
 sides = ['lower top', 'upper bottom']
+[[contact]]
+name = 'floor'
+sides = ['lower bottom']
+obstacle = {point = [0, 0], normal = [0, 1]}
 ";
 
 #[test]
@@ -75,16 +79,14 @@ fn uniform_compression_goes_through_a_contact_of_any_cells() {
             {
                 (stress.iter().zip(uniform)).for_each(|(s, e)| close(*s, e, 1e-10 * p));
             }
-            let points = &solution.contacts["joint"];
-            assert_eq!(
-                points.len(),
-                if sort.is_quadratic { 11 } else { 6 },
-                "{}",
-                sort.name
-            );
-            for point in points {
-                close(point.pressure, p, 1e-10 * p);
-                assert!(point.closed);
+            let count = if sort.is_quadratic { 11 } else { 6 };
+            for contact in ["joint", "floor"] {
+                let points = &solution.contacts[contact];
+                assert_eq!(points.len(), count, "{}", sort.name);
+                for point in points {
+                    close(point.pressure, p, 1e-10 * p);
+                    assert!(point.closed);
+                }
             }
         }
     }
@@ -174,10 +176,10 @@ fn quadratic_displacements_are_exact_in_quadratic_cells_with_straight_edges() {
     }
 }
 
-/// The error of u = v = 1e-3·sin(x)·sin(y) in the norm of the energy, relative, and the report's
-/// estimate over it: as nothing but zero is prescribed, ‖u − u_h‖² = ‖u‖² − ‖u_h‖², and ‖u_h‖² is
-/// the work of the loads.
-fn energy_error(sort: Sort, n: usize) -> [f64; 2] {
+/// The error of u = v = 1e-3·sin(x)·sin(y) in the norm of the energy, relative, the largest error of
+/// the stress at nodes, and the report's estimate over the true error. As nothing but zero is
+/// prescribed, ‖u − u_h‖² = ‖u‖² − ‖u_h‖², and ‖u_h‖² is the work of the loads.
+fn errors(sort: Sort, n: usize) -> [f64; 3] {
     let [l, m] = lame().map(|c| 1e-3 * c);
     let (ux, uy) = ("cos(x)*sin(y)", "sin(x)*cos(y)");
     let xx = format!("{}*{ux} + {l}*{uy}", l + 2.0 * m);
@@ -198,33 +200,42 @@ fn energy_error(sort: Sort, n: usize) -> [f64; 2] {
     let (s, c) = (0.5 - 0.25 * 2.0_f64.sin(), 0.5 + 0.25 * 2.0_f64.sin());
     let product = 0.25 * (1.0_f64.sin().powi(4));
     let exact = 1e-3 * ((l + 3.0 * m) * 2.0 * s * c + 2.0 * (l + m) * product);
+    let of_stress = (model.mesh.node_tags.iter().zip(&model.mesh.points)).map(|(tag, at)| {
+        let [sin, cos] = [[at[0].sin(), at[1].sin()], [at[0].cos(), at[1].cos()]];
+        let (ux, uy) = (cos[0] * sin[1], sin[0] * cos[1]);
+        let axial = l + 2.0 * m;
+        let exact = [axial * ux + l * uy, axial * uy + l * ux, m * (ux + uy)];
+        let found = solution.nodal_stress[tag];
+        let error = [0, 1, 3]
+            .into_iter()
+            .zip(exact)
+            .map(|(k, e)| (found[k] - e).abs());
+        error.fold(0.0, f64::max)
+    });
     let error = (exact - work).abs().sqrt();
     let estimate = &solution.report["error_estimate"];
     let number = |key: &str| estimate[key].as_f64().unwrap();
     close(number("energy_norm"), work.sqrt(), 1e-9 * work.sqrt());
     let relative = number("error") / work.sqrt();
     close(number("relative"), relative, 0.01 * relative);
-    [error / exact.sqrt(), number("error") / error]
+    [
+        error / exact.sqrt(),
+        of_stress.fold(0.0, f64::max) / l,
+        number("error") / error,
+    ]
 }
 
 #[test]
-fn the_energy_converges_with_the_order_of_the_cells() {
+fn energy_and_nodal_stresses_converge_with_the_order_of_the_cells() {
     for sort in SORTS {
-        let found = [4, 8].map(|n| energy_error(sort, n));
-        let errors = found.map(|[error, _]| error);
-        let rate = (errors[0] / errors[1]).log2();
+        let [coarse, fine] = [4, 8].map(|n| errors(sort, n));
+        let [energy, stress] = [0, 1].map(|k| (coarse[k] / fine[k]).log2());
         let order = if sort.is_quadratic { 2.0 } else { 1.0 };
-        assert!(
-            (rate - order).abs() < 0.25,
-            "{}: {errors:?}, order {rate}",
-            sort.name
-        );
-        for [_, effectivity] in found {
-            assert!(
-                (0.9..1.15).contains(&effectivity),
-                "{}: {found:?}",
-                sort.name
-            );
+        let at = format!("{}: {coarse:?}, {fine:?}", sort.name);
+        assert!((energy - order).abs() < 0.15, "{at}, order {energy}");
+        assert!(stress > order - 0.15, "{at}, order {stress}");
+        for effectivity in [coarse[2], fine[2]] {
+            assert!((0.9..1.15).contains(&effectivity), "{at}");
         }
     }
 }
@@ -248,11 +259,18 @@ fn recovered_stress_and_estimate_are_the_same_in_any_number_of_subdomains() {
     }
 }
 
+/// The two blocks in few irregular cells, curved inside.
+fn small_blocks(sort: Sort) -> Mesh {
+    let blocks = Blocks::new()
+        .rectangle("lower", [0.0, 2.0], [0.0, 1.0], [8, 3])
+        .rectangle("upper", [0.5, 1.5], [1.0, 2.0], [4, 4]);
+    jittered(sort.of(&blocks.mesh), 0.015, 5)
+}
+
 #[test]
 fn joints_of_any_cells_are_the_monolithic_solution() {
     for sort in SORTS {
-        let mesh = jittered(sort.of(&two_blocks().mesh), 0.008, 5);
-        let model = model(&two_block_scene(), mesh);
+        let model = model(&two_block_scene(), small_blocks(sort));
         let reference = Monolithic::new(&model);
         for count in [2, 7] {
             let solution = solve(&model, count);
@@ -265,7 +283,7 @@ fn joints_of_any_cells_are_the_monolithic_solution() {
 /// The types of the result's cells.
 #[test]
 fn results_name_the_types_of_their_cells() {
-    let mesh = sort("triangle6, quad8 and quad9").of(&two_blocks().mesh);
+    let mesh = small_blocks(sort("triangle6, quad8 and quad9"));
     let model = model(&two_block_scene(), mesh);
     let mut expected: Vec<u8> = model
         .mesh
@@ -285,8 +303,8 @@ fn results_name_the_types_of_their_cells() {
 #[test]
 fn rows_of_other_cells_than_a_bodys_own_pass_through_the_same_joint() {
     // Quadratic triangles below, quadrilaterals of nine nodes above.
-    let lower = Blocks::new().rectangle("lower", [0.0, 2.0], [0.0, 1.0], [16, 8]);
-    let upper = Blocks::new().rectangle("upper", [0.5, 1.5], [1.0, 2.0], [8, 8]);
+    let lower = Blocks::new().rectangle("lower", [0.0, 2.0], [0.0, 1.0], [8, 4]);
+    let upper = Blocks::new().rectangle("upper", [0.5, 1.5], [1.0, 2.0], [4, 4]);
     let mesh = joined(
         sort("triangle6").of(&lower.mesh),
         sort("quad9").of(&upper.mesh),

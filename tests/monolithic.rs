@@ -10,6 +10,7 @@ mod support;
 
 use std::collections::BTreeSet;
 
+use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -21,6 +22,7 @@ use support::scenes::{
     BODIES, JOINT, LOAD, SUPPORTS, built_in, built_in_model, model, two_block_scene, two_blocks,
 };
 use support::solver::solve;
+use support::sorts::SORTS;
 
 /// Solves `model` in `count` subdomains and fails unless displacement, forces, pressures, gaps and
 /// status are those of the reference. Returns the number of closed conditions.
@@ -294,7 +296,7 @@ fn column() -> impl Strategy<Value = Column> {
 }
 
 impl Column {
-    fn model(&self) -> Model {
+    fn model(&self, of: impl Fn(Mesh) -> Mesh) -> Model {
         let mut blocks = Blocks::new();
         let mut materials = String::from("plane = 'strain'\n");
         let mut conditions = String::new();
@@ -329,7 +331,7 @@ impl Column {
             on = 'b{last} top'
             value = '1e6*(1 + {slope}*(x - 0.5))'\n"
         );
-        model(&format!("{materials}{conditions}{load}"), blocks.mesh)
+        model(&format!("{materials}{conditions}{load}"), of(blocks.mesh))
     }
 }
 
@@ -343,6 +345,26 @@ proptest! {
 
     #[test]
     fn rough_columns_are_the_monolithic_solution(column in column()) {
-        agrees(&column.model(), column.subdomains);
+        agrees(&column.model(|mesh| mesh), column.subdomains);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 10,
+        rng_seed: RngSeed::Fixed(21),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn rough_columns_of_any_cells_are_the_monolithic_solution(
+        column in column(),
+        sort in prop::sample::select(&SORTS[1..]),
+    ) {
+        agrees(
+            &column.model(|mesh| jittered(sort.of(&mesh), 0.006, 1)),
+            column.subdomains,
+        );
     }
 }

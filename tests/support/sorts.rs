@@ -9,7 +9,7 @@ use contact_dd_partition::element::Elements;
 use contact_dd_partition::mesh::Mesh;
 
 /// What the cells of a mesh become.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Sort {
     pub name: &'static str,
     /// The quadrilateral that two triangles that make one become, by their number; or they stay.

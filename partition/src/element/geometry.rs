@@ -39,11 +39,18 @@ impl ElementKind {
 
     /// det ∂x/∂ξ at a point where the shape functions have these `gradients` (m^dim).
     pub fn determinant(self, gradients: &[[f64; 3]], at: &[[f64; 3]]) -> f64 {
-        let [t, s, _] = tangents(gradients, at);
+        // One for every point of every cell: without the components that the plane lacks.
+        let mut j = [[0.0; 2]; 2];
+        for (gradient, x) in gradients.iter().zip(at) {
+            for (row, x) in j.iter_mut().zip(x) {
+                row[0] += gradient[0] * x;
+                row[1] += gradient[1] * x;
+            }
+        }
         match self.dim() {
             0 => 1.0,
-            1 => t[0],
-            _ => t[0] * s[1] - t[1] * s[0],
+            1 => j[0][0],
+            _ => j[0][0] * j[1][1] - j[0][1] * j[1][0],
         }
     }
 

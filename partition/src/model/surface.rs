@@ -95,8 +95,7 @@ pub(super) struct SurfaceNode {
 
 impl SurfaceNode {
     /// The average of the facets' outward normals at the node weighted by their measure,
-    /// normalized. `None`
-    /// where they cancel.
+    /// normalized. `None` where they cancel.
     pub fn normal(&self) -> Option<[f64; 3]> {
         let size = length(self.area);
         (size > 1e-6 * self.measure).then(|| self.area.map(|c| c / size))
