@@ -350,6 +350,16 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
         ),
         (
             "gap = 0.0",
+            "pairing = 'by the way'",
+            "line 34: contact[1] 'left crack'.pairing: unknown value 'by the way'; did you mean 'mortar'? Known here: nodes, mortar",
+        ),
+        (
+            "gap = 0.0",
+            "pairing = 'motar'",
+            "line 34: contact[1] 'left crack'.pairing: unknown value 'motar'; did you mean 'mortar'?",
+        ),
+        (
+            "gap = 0.0",
             "gap = nan",
             "line 34: contact[1] 'left crack'.gap: NaN",
         ),
@@ -357,6 +367,11 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
             "normal = [0.0, 2.0]",
             "normal = [0.0, 0]",
             "line 38: contact[2] 'table'.obstacle.normal: the zero vector",
+        ),
+        (
+            "name = \"table\"",
+            "name = \"table\"\npairing = 'nodes'",
+            "contact[2] 'table': 'pairing' is of two sides; expected none beside an 'obstacle'",
         ),
         (
             ", normal = [0.0, 2.0]",

@@ -1,7 +1,7 @@
 //! Contact with a rigid obstacle: rows of one node.
 
 use super::ContactCondition;
-use super::contact::SideNode;
+use super::sides::SideNode;
 use super::sight::FACING;
 use crate::element::geometry::{difference, dot, length};
 use crate::mesh::Mesh;

@@ -46,20 +46,23 @@ impl RTreeObject for Leaf {
     }
 }
 
+/// The boxes in which a search looks further.
+struct Boxes<F>(F);
+
+impl<F: Fn([f64; 3], [f64; 3]) -> bool> SelectionFunction<Leaf> for Boxes<F> {
+    fn should_unpack_parent(&self, envelope: &AABB<[f64; 3]>) -> bool {
+        self.0(envelope.lower(), envelope.upper())
+    }
+
+    fn should_unpack_leaf(&self, leaf: &Leaf) -> bool {
+        self.0(leaf.low, leaf.high)
+    }
+}
+
 /// The line through a point along a unit vector, in both directions.
 struct Line {
     start: [f64; 3],
     direction: [f64; 3],
-}
-
-impl SelectionFunction<Leaf> for Line {
-    fn should_unpack_parent(&self, envelope: &AABB<[f64; 3]>) -> bool {
-        self.meets(envelope.lower(), envelope.upper())
-    }
-
-    fn should_unpack_leaf(&self, leaf: &Leaf) -> bool {
-        self.meets(leaf.low, leaf.high)
-    }
 }
 
 impl Line {
@@ -109,6 +112,13 @@ impl<'a> Target<'a> {
         }
     }
 
+    /// The facets in boxes, given by their least and largest coordinates, for which `may_hold` says
+    /// so; it must do so of every box that holds one of them.
+    pub fn facets(&self, may_hold: impl Fn([f64; 3], [f64; 3]) -> bool) -> Vec<usize> {
+        let found = self.tree.locate_with_selection_function(Boxes(may_hold));
+        found.map(|leaf| leaf.facet).collect()
+    }
+
     /// What the line from `start` along the unit vector `direction` meets first, either way but
     /// no more than `behind` backwards, of what faces it; nodes for which `passes` holds are
     /// passed by. O(log n) for a surface that isn't parallel to the line.
@@ -120,10 +130,11 @@ impl<'a> Target<'a> {
         passes: impl Fn(u32) -> bool,
     ) -> Met {
         let line = Line { start, direction };
+        let boxes = Boxes(|low, high| line.meets(low, high));
         let mut nodes: Vec<(u32, f64, f64)> = Vec::new();
         let mut crossed: Option<(usize, f64)> = None;
         let mut averted = false;
-        for leaf in self.tree.locate_with_selection_function(line) {
+        for leaf in self.tree.locate_with_selection_function(boxes) {
             let facet = &self.surface.facets[leaf.facet];
             let slack = ASIDE * facet.size();
             let faces = dot(facet.normal, direction) <= -FACING;

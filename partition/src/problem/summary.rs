@@ -47,6 +47,8 @@ pub struct Summary {
     pub contact_conditions: usize,
     /// Contacts.
     pub contacts: Vec<ContactSummary>,
+    /// How the sides of each contact are paired, in words; nothing where there are no two.
+    pub pairings: Vec<&'static str>,
     /// Groups in contact.
     pub groups: Vec<GroupSummary>,
 }
@@ -83,6 +85,7 @@ impl Problem {
             cut_facets: self.cut_facets(),
             contact_conditions: catalog.groups.iter().sum(),
             contacts: catalog.contacts.clone(),
+            pairings: self.pairings(),
             groups: catalog
                 .groups
                 .iter()
@@ -95,6 +98,19 @@ impl Problem {
                 })
                 .collect(),
         }
+    }
+
+    /// How the sides of each contact are paired, as its rows show.
+    fn pairings(&self) -> Vec<&'static str> {
+        let mut pairings = vec![""; self.catalog.contacts.len()];
+        for row in self.rows.iter().flatten() {
+            pairings[row.contact as usize] = match (row.entries.len(), row.tag_b) {
+                (1, _) => "",
+                (_, -1) => ", mortar",
+                _ => ", node by node",
+            };
+        }
+        pairings
     }
 
     /// Facets that cells of two subdomains share.
@@ -160,10 +176,10 @@ impl fmt::Display for Summary {
             self.merges, self.merge_flops, self.largest_front, self.uneven_halves
         )?;
         writeln!(f, "contact       {} conditions", self.contact_conditions)?;
-        for contact in &self.contacts {
+        for (contact, pairing) in self.contacts.iter().zip(&self.pairings) {
             writeln!(
                 f,
-                "              {:>6} on {}",
+                "              {:>6} on {}{pairing}",
                 contact.conditions, contact.name
             )?;
         }

@@ -139,6 +139,8 @@ pub struct Contact {
     pub side_a: Names,
     /// What side a may touch.
     pub partner: Partner,
+    /// How conditions are made of two sides; `None` to let their nodes decide.
+    pub pairing: Option<Pairing>,
     /// The gap in place of the geometric one (m).
     pub gap: Option<Number>,
 }
@@ -152,14 +154,26 @@ pub enum Partner {
     Obstacle(Obstacle),
 }
 
+/// How the conditions of a contact are made of its two sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Pairing {
+    /// A condition for every node of side a and the node of side b opposite it.
+    Nodes,
+    /// A condition for every node of side a and what of side b lies opposite its surroundings,
+    /// weighted by dual Lagrange multipliers.
+    Mortar,
+}
+
 #[derive(Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "a table of name, sides, gap and obstacle"
+    expecting = "a table of name, sides, pairing, gap and obstacle"
 )]
 struct ContactKeys {
     name: ContactName,
     sides: Vec<Names>,
+    pairing: Option<Pairing>,
     gap: Option<Number>,
     obstacle: Option<Obstacle>,
 }
@@ -177,6 +191,9 @@ impl TryFrom<ContactKeys> for Contact {
                 }
                 (a, Partner::Side(b))
             }
+            (Some(_), None, None, Some(_)) if keys.pairing.is_some() => {
+                return Err("'pairing' is of two sides; expected none beside an 'obstacle'".into());
+            }
             (Some(a), None, None, Some(obstacle)) => (a, Partner::Obstacle(obstacle)),
             (_, _, _, None) => {
                 return Err(format!(
@@ -193,6 +210,7 @@ impl TryFrom<ContactKeys> for Contact {
             name: keys.name.0,
             side_a,
             partner,
+            pairing: keys.pairing,
             gap: keys.gap,
         })
     }

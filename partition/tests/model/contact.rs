@@ -76,7 +76,7 @@ fn nodes_beyond_the_end_of_the_overlap_carry_no_condition() {
 }
 
 #[test]
-fn sides_whose_nodes_dont_match_are_an_error_with_tags() {
+fn sides_whose_nodes_dont_match_cant_be_paired_by_nodes() {
     let other = |n: usize, x: [f64; 2]| {
         Blocks::new()
             .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 2])
@@ -89,7 +89,7 @@ fn sides_whose_nodes_dont_match_are_an_error_with_tags() {
         other(4, [0.1, 2.1]),
         other(1, [-0.5, 2.5]),
     ] {
-        let error = conditions(&blocks, CONTACT).unwrap_err();
+        let error = conditions(&blocks, &format!("{CONTACT}pairing = 'nodes'")).unwrap_err();
         assert!(
             error.contains("contact 'c': the sides don't match at"),
             "{error}"

@@ -11,6 +11,7 @@ mod contact;
 mod corner;
 mod invariance;
 mod loads;
+mod mortar;
 mod obstacle;
 mod quadratic;
 mod supports;

@@ -1,0 +1,84 @@
+//! Conditions between sides whose nodes don't match: segment-to-segment contact with dual Lagrange
+//! multipliers (Wohlmuth 2000; Popp, Gitterle, Gee and Wall 2010).
+//!
+//! Side a carries the multipliers. Its averaged normals, interpolated along its facets, say what of
+//! side b lies opposite each of its points. With the dual basis φ on what is covered, ∫ φ_j N_k =
+//! δ_jk ∫ N_k, the condition of node j is
+//!
+//! ```text
+//! n_j·(u_a(j) − Σ_k M_jk/D_jj u_b(k)) ≤ g_j,   D_jj = ∫ φ_j,   M_jk = ∫ φ_j N_k^b,   g_j = ∫ φ_j g / D_jj
+//! ```
+//!
+//! so that its multiplier is the normal force on node j. All integrals go over the part of side a
+//! that side b covers (Cichosz and Bischoff 2011), so that a uniform pressure passes whatever the
+//! meshes and wherever the sides end.
+
+mod cover;
+mod dual;
+mod field;
+mod root;
+mod rows;
+mod weights;
+
+use std::collections::HashMap;
+
+use self::cover::{Cover, Opposite};
+use self::field::Field;
+use self::rows::Row;
+use self::weights::Weights;
+use super::ContactCondition;
+use super::sides::{Sides, apart};
+use super::surface::SurfaceFacet;
+
+/// A facet of side a and what of side b covers it.
+struct Covered<'a> {
+    facet: &'a SurfaceFacet,
+    cover: Cover,
+}
+
+/// A condition for every node of side a that carries a multiplier, along the side.
+///
+/// # Errors
+/// Sides that don't face each other.
+pub(super) fn conditions(sides: &Sides) -> Result<Vec<ContactCondition>, String> {
+    let normals: HashMap<u32, [f64; 3]> = (sides.a.nodes().into_iter())
+        .filter_map(|(node, at)| Some((node, at.normal()?)))
+        .collect();
+    let opposite = Opposite::new(sides.b, sides.behind);
+    let mut covered = Vec::new();
+    let mut any_averted = false;
+    for facet in in_order(sides) {
+        // Only a shared node may be without one, where the side turns back at a crack tip.
+        let at_node = |node: &u32| normals.get(node).copied().unwrap_or(facet.normal);
+        let normals = facet.nodes.iter().map(at_node).collect();
+        let field = Field::new(facet, normals);
+        let (cover, averted) = opposite.cover(&field);
+        any_averted |= averted;
+        if !cover.samples.is_empty() {
+            covered.push(Covered { facet, cover });
+        }
+    }
+    let weights = Weights::new(sides, &covered);
+    let mut rows: HashMap<u32, Row> = HashMap::new();
+    for on in &covered {
+        for (node, weight) in weights.on(on) {
+            rows.entry(node).or_default().add(on, sides.b, &weight);
+        }
+    }
+    let conditions: Vec<ContactCondition> = (sides.nodes_a.iter())
+        .filter_map(|a| Some(rows.remove(&a.node)?.condition(a, sides.mesh)))
+        .collect();
+    if conditions.is_empty() {
+        return Err(apart(any_averted));
+    }
+    Ok(conditions)
+}
+
+/// The facets along side a.
+fn in_order<'a>(sides: &Sides<'a>) -> Vec<&'a SurfaceFacet> {
+    let order = sides.a.in_order().into_iter().enumerate();
+    let place: HashMap<u32, usize> = order.map(|(place, node)| (node, place)).collect();
+    let mut facets: Vec<&SurfaceFacet> = sides.a.facets.iter().collect();
+    facets.sort_by_key(|facet| place[&facet.nodes[0]]);
+    facets
+}

@@ -1,0 +1,121 @@
+//! Conditions between nodes that lie opposite each other.
+
+use std::collections::HashSet;
+
+use super::ContactCondition;
+use super::sides::{SideNode, Sides, apart};
+use super::sight::{Met, Target};
+use crate::element::geometry::{advance, dot};
+
+/// Why two sides have no pairs of nodes.
+pub(super) enum Unpaired {
+    /// They face each other, but not node by node.
+    Unmatched(String),
+    /// They don't face each other.
+    Apart(String),
+}
+
+/// A condition for every node of side a and its partner on side b.
+///
+/// # Errors
+/// Sides that don't face each other, or not node by node.
+pub(super) fn conditions(sides: &Sides) -> Result<Vec<ContactCondition>, Unpaired> {
+    let mesh = sides.mesh;
+    let skip = |node: u32| sides.shared.contains(&node);
+    let (mid_a, mid_b) = (sides.a.mid_nodes(), sides.b.mid_nodes());
+    let target = Target::new(sides.b);
+    let mut conditions = Vec::new();
+    let mut partners = HashSet::new();
+    let mut unmatched = Vec::new();
+    let mut any_averted = false;
+    for a in &sides.nodes_a {
+        match target.met(a.position, a.normal, sides.behind, skip) {
+            Met::Nodes(nodes, _) => {
+                partners.extend(nodes.iter().copied());
+                let is_mid = mid_a.contains(&a.node);
+                // Their shares of the force would differ.
+                if let Some(other) = nodes.iter().find(|&b| mid_b.contains(b) != is_mid) {
+                    let facet = sides.around_b[other][0];
+                    unmatched.push((a.node, "b", &sides.b.facets[facet]));
+                    continue;
+                }
+                for (b, share) in opposite(a, nodes, sides) {
+                    let to_b = advance(mesh.points[b as usize], -1.0, a.position);
+                    conditions.push(ContactCondition {
+                        entries: vec![(a.node, a.normal), (b, a.normal.map(|c| -c))],
+                        gap: dot(to_b, a.normal),
+                        share,
+                        position: a.position,
+                        normal: a.normal,
+                        tag_a: mesh.node_tags[a.node as usize],
+                        tag_b: mesh.node_tags[b as usize],
+                    });
+                }
+            }
+            Met::Facet(facet) => unmatched.push((a.node, "b", &sides.b.facets[facet])),
+            Met::Nothing { averted } => any_averted |= averted,
+        }
+    }
+    let target = Target::new(sides.a);
+    let alone = (sides.nodes_b.iter()).filter(|b| !partners.contains(&b.node));
+    for b in alone {
+        if let Met::Facet(facet) = target.met(b.position, b.normal, sides.behind, skip) {
+            unmatched.push((b.node, "a", &sides.a.facets[facet]));
+        }
+    }
+    if let Some((node, side, facet)) = unmatched.first() {
+        let shown: Vec<u32> = unmatched.iter().take(5).map(|u| u.0).collect();
+        return Err(Unpaired::Unmatched(format!(
+            "the sides don't match at {} nodes (tags {}{}): the normal of node {} meets side \
+             {side} between nodes {}; expected each corner opposite a corner and each node on an \
+             edge opposite another",
+            unmatched.len(),
+            mesh.tags_of(&shown),
+            if unmatched.len() > 5 { ", …" } else { "" },
+            mesh.node_tags[*node as usize],
+            mesh.tags_of(&facet.nodes)
+        )));
+    }
+    if conditions.is_empty() {
+        return Err(Unpaired::Apart(apart(any_averted)));
+    }
+    Ok(conditions)
+}
+
+/// Which of the nodes `partners` in one place on side b node `a` of side a has conditions with, and
+/// its share of each.
+///
+/// Where corners of several bodies meet in a point, two that lie diagonally across share nothing but
+/// that point, and a condition between them would follow from those between neighbours.
+fn opposite(a: &SideNode, partners: Vec<u32>, sides: &Sides) -> Vec<(u32, f64)> {
+    if let [only] = partners[..] {
+        return vec![(only, a.share)];
+    }
+    let mut shares: Vec<f64> = vec![0.0; partners.len()];
+    let mut alone = 0.0;
+    for facet in sides.around_a[&a.node].iter().map(|&f| &sides.a.facets[f]) {
+        let meets = |b: &u32| {
+            let mut facets = sides.around_b[b].iter().map(|&f| &sides.b.facets[f]);
+            facets.any(|other| facet.is_opposite(a.node, other, *b, a.normal))
+        };
+        let met: Vec<bool> = partners.iter().map(meets).collect();
+        let count = met.iter().filter(|&&met| met).count();
+        let own = facet.nodes.iter().position(|&node| node == a.node);
+        let share = own.map_or(0.0, |i| facet.share(i));
+        match count {
+            0 => alone += share,
+            _ => (shares.iter_mut().zip(met).filter(|(_, met)| *met))
+                .for_each(|(sum, _)| *sum += share / count as f64),
+        }
+    }
+    if shares.iter().all(|&share| share == 0.0) {
+        let share = a.share / partners.len() as f64;
+        return partners.into_iter().map(|b| (b, share)).collect();
+    }
+    let mut kept: Vec<(u32, f64)> = (partners.into_iter().zip(shares))
+        .filter(|&(_, share)| share > 0.0)
+        .collect();
+    let alone = alone / kept.len() as f64;
+    kept.iter_mut().for_each(|(_, share)| *share += alone);
+    kept
+}

@@ -1,0 +1,269 @@
+//! Contact of sides whose nodes don't match.
+
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that can't go on has failed"
+)]
+
+mod support;
+
+use contact_dd_partition::model::Model;
+
+use support::blocks::{Blocks, moved};
+use support::close;
+use support::random::Random;
+use support::scenes::model;
+use support::solution::Solution;
+use support::solver::solve;
+
+const PRESSURE: f64 = 1e6;
+const POISSON: [f64; 2] = [0.3, 0.22];
+
+/// Two materials, and bodies of them in turn.
+fn materials(bodies: &[&str]) -> String {
+    let mut text = format!(
+        "plane = 'strain'
+        materials.m0 = {{young = 210e9, poisson = {}}}
+        materials.m1 = {{young = 20e9, poisson = {}}}\n",
+        POISSON[0], POISSON[1]
+    );
+    for (i, body) in bodies.iter().enumerate() {
+        text += &format!("bodies.'{body}'.material = 'm{}'\n", i % 2);
+    }
+    text
+}
+
+/// A block of n[0] × n[1] cells whose nodes lie along x as they happen to.
+fn block(blocks: Blocks, name: &str, x: [f64; 2], y: [f64; 2], n: [usize; 2], seed: u64) -> Blocks {
+    let mut random = Random::new(seed);
+    let columns: Vec<f64> = (0..=n[0])
+        .map(|i| match i == 0 || i == n[0] {
+            true => i as f64 / n[0] as f64,
+            false => (i as f64 + 0.35 * random.signed()) / n[0] as f64,
+        })
+        .collect();
+    blocks.mapped(name, n, |[s, t]| {
+        let column = columns[(s * n[0] as f64).round() as usize];
+        [x[0] + column * (x[1] - x[0]), y[0] + t * (y[1] - y[0])]
+    })
+}
+
+/// Blocks that lie on each other, from below.
+struct Pile {
+    names: Vec<&'static str>,
+    x: Vec<[f64; 2]>,
+    blocks: Blocks,
+    text: String,
+}
+
+impl Pile {
+    /// Blocks 1 m high with so many cells along x. Each is held at its left end, the lowest at its
+    /// bottom, the uppermost is pressed upon. `upside_down`: the lower one is side a.
+    fn new(x: &[[f64; 2]], n: &[usize], upside_down: bool) -> Self {
+        let names: Vec<&str> = ["zero", "one", "two", "three"][..x.len()].to_vec();
+        let mut text = materials(&names) + "[[bilateral]]\non = 'zero bottom'\n";
+        let mut blocks = Blocks::new();
+        for (i, name) in names.iter().enumerate() {
+            let y = [i as f64, i as f64 + 1.0];
+            blocks = block(
+                blocks,
+                name,
+                x[i],
+                y,
+                [n[i], 3],
+                17 * i as u64 + n[i] as u64,
+            );
+            text += &format!("[[bilateral]]\non = '{name} left'\n");
+            if i > 0 {
+                let (upper, lower) = (format!("{name} bottom"), format!("{} top", names[i - 1]));
+                let [a, b] = if upside_down {
+                    [lower, upper]
+                } else {
+                    [upper, lower]
+                };
+                text += &format!("[[contact]]\nname = 'joint {i}'\nsides = ['{a}', '{b}']\n");
+                // Round-off of coordinates isn't much less than the displacements are.
+                text += "gap = 0.0\n";
+            }
+        }
+        let last = names[names.len() - 1];
+        text += &format!("[[pressure]]\non = '{last} top'\nvalue = {PRESSURE}\n");
+        Self {
+            names,
+            x: x.to_vec(),
+            blocks,
+            text,
+        }
+    }
+
+    /// The pile turned by an angle, pressed upon wherever nothing lies on it.
+    fn model(&self, angle: f64) -> Model {
+        let (sin, cos) = angle.sin_cos();
+        let mesh = moved(self.blocks.mesh.clone(), |[x, y]| {
+            [cos * x - sin * y, sin * x + cos * y]
+        });
+        let mut model = model(&self.text, mesh);
+        let mut forces = vec![[0.0; 2]; model.mesh.points.len()];
+        for &(node, [x, y, _]) in &model.forces {
+            forces[node as usize] = [x, y];
+        }
+        for i in 1..self.names.len() {
+            let (below, above) = (self.x[i - 1], self.x[i]);
+            for (side, own, other, down) in [
+                (format!("{} top", self.names[i - 1]), below, above, -1.0),
+                (format!("{} bottom", self.names[i]), above, below, 1.0),
+            ] {
+                for free in [[own[0], other[0]], [other[1], own[1]]] {
+                    for (node, length) in self.integrals(&side, free) {
+                        let force = down * PRESSURE * length;
+                        let at = &mut forces[node as usize];
+                        *at = [at[0] - sin * force, at[1] + cos * force];
+                    }
+                }
+            }
+        }
+        model.forces = (0_u32..)
+            .zip(forces)
+            .filter(|(_, f)| *f != [0.0; 2])
+            .map(|(node, [x, y])| (node, [x, y, 0.0]))
+            .collect();
+        model
+    }
+
+    /// ∫ N over part of a side, for every node and facet.
+    fn integrals(&self, side: &str, part: [f64; 2]) -> Vec<(u32, f64)> {
+        let mesh = &self.blocks.mesh;
+        let mut list = Vec::new();
+        for &facet in &mesh.groups[side].members {
+            let nodes = mesh.facets.nodes_of(facet as usize);
+            for (own, other) in [(nodes[0], nodes[1]), (nodes[1], nodes[0])] {
+                let [p, q] = [own, other].map(|n| mesh.points[n as usize][0]);
+                let (from, to) = (p.min(q).max(part[0]), p.max(q).min(part[1]));
+                if to > from {
+                    list.push((own, (to - from) * (q - 0.5 * (from + to)) / (q - p)));
+                }
+            }
+        }
+        list
+    }
+}
+
+/// Fails unless everything is under the uniform pressure, all contacts closed, to within 1e-10.
+#[track_caller]
+fn is_uniform(solution: &Solution, angle: f64) {
+    let (sin, cos) = angle.sin_cos();
+    let [xx, yy, xy] = [sin * sin, cos * cos, -sin * cos].map(|s| -PRESSURE * s);
+    for (centre, [s_xx, s_yy, _, s_xy, _, _]) in &solution.cells {
+        for (found, expected) in [(s_xx, xx), (s_yy, yy), (s_xy, xy)] {
+            let error = (found - expected).abs() / PRESSURE;
+            assert!(error < 1e-10, "{error:e} at {centre:?}");
+        }
+    }
+    for point in solution.points() {
+        assert!(point.closed, "{point:?}");
+        close(point.pressure, PRESSURE, 1e-10 * PRESSURE);
+    }
+}
+
+#[test]
+fn a_uniform_pressure_passes_between_meshes_of_any_sizes() {
+    for n in [[4, 7], [9, 2], [5, 5], [1, 6], [3, 40], [40, 3]] {
+        for upside_down in [false, true] {
+            let pile = Pile::new(&[[0.0, 2.0], [0.0, 2.0]], &n, upside_down);
+            let solution = solve(&pile.model(0.0), 2);
+            is_uniform(&solution, 0.0);
+            assert!(solution.points().all(|point| point.tags[1] == -1));
+        }
+    }
+}
+
+#[test]
+fn a_uniform_pressure_passes_where_sides_overlap_in_part() {
+    for (lower, upper, n) in [
+        ([0.0, 3.0], [0.7, 2.1], [8, 5]),
+        ([0.0, 3.0], [0.7, 2.1], [3, 11]),
+        ([0.0, 2.0], [1.1, 3.3], [6, 5]),
+        ([0.0, 2.0], [0.0, 1.001], [4, 3]),
+        ([0.0, 2.0], [0.0, 1.0 + 1e-9], [4, 3]),
+        ([0.0, 2.0], [0.9, 1.2], [2, 3]),
+        ([0.0, 1.3], [-0.4, 2.0], [5, 2]),
+    ] {
+        for upside_down in [false, true] {
+            let pile = Pile::new(&[lower, upper], &n, upside_down);
+            is_uniform(&solve(&pile.model(0.0), 2), 0.0);
+        }
+    }
+}
+
+#[test]
+fn a_uniform_pressure_passes_inclined_and_through_three_blocks() {
+    for (n, upside_down) in [([3, 8, 5], false), ([8, 3, 10], true)] {
+        for angle in [0.0, 0.4, 2.0] {
+            let x = [[0.0, 2.0], [0.3, 1.9], [-0.2, 1.5]];
+            let pile = Pile::new(&x, &n, upside_down);
+            let model = pile.model(angle);
+            for count in [3, 7] {
+                is_uniform(&solve(&model, count), angle);
+            }
+        }
+    }
+}
+
+/// A plate with a crack along y = 0 from tip to tip, its sides of n[0] facets below and n[1] above.
+fn cracked_plate(n: [usize; 2], text: &str) -> Model {
+    let mut blocks = Blocks::new();
+    for (column, x, cells) in [
+        ("left", [-3.0, -1.0], [4, 4]),
+        ("middle", [-1.0, 1.0], n),
+        ("right", [1.0, 3.0], [4, 4]),
+    ] {
+        for (half, y, cells) in [
+            ("below", [-2.0, 0.0], cells[0]),
+            ("above", [0.0, 2.0], cells[1]),
+        ] {
+            let name = format!("{column} {half}");
+            blocks = block(blocks, &name, x, y, [cells, 4], cells as u64);
+        }
+    }
+    let mesh = blocks.glued(|x, y| y != 0.0 || x.abs() > 1.0 - 1e-9).mesh;
+    let columns = ["left", "middle", "right"];
+    let list = |side: &str| columns.map(|c| format!("'{c} {side}'")).join(", ");
+    let bodies = columns.map(|c| {
+        format!("bodies.'{c} below'.material = 'm0'\nbodies.'{c} above'.material = 'm0'\n")
+    });
+    let text = format!(
+        "plane = 'strain'
+        materials.m0 = {{young = 210e9, poisson = 0.3}}
+        {}
+        [[bilateral]]
+        on = [{}]
+        [[bilateral]]
+        on = ['left below left', 'left above left']
+        [[pressure]]
+        on = [{}]
+        value = {PRESSURE}
+        {text}",
+        bodies.concat(),
+        list("below bottom"),
+        list("above top")
+    );
+    model(&text, mesh)
+}
+
+#[test]
+fn a_uniform_pressure_passes_across_a_crack_whose_tips_are_shared() {
+    for n in [[4, 7], [7, 4], [2, 9], [6, 6]] {
+        for sides in [
+            "'middle above bottom', 'middle below top'",
+            "'middle below top', 'middle above bottom'",
+        ] {
+            let text = format!("[[contact]]\nname = 'crack'\nsides = [{sides}]\n");
+            let model = cracked_plate(n, &text);
+            for count in [1, 2, 5] {
+                let solution = solve(&model, count);
+                is_uniform(&solution, 0.0);
+            }
+        }
+    }
+}
