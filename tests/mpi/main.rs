@@ -106,7 +106,7 @@ type MakeCase = fn() -> Case;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 14] = [
+    let cases: [(&str, MakeCase); 15] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
@@ -136,6 +136,7 @@ fn same_results(trials: &mut Trials) {
         ("row", || Case::of(&resting::row([-1e6, 0.0], true), 6)),
         ("fallen", || Case::of(&resting::fallen(), 5)),
         ("equal_subdomains", || Case::of(&equal_squares(), 16)),
+        ("mortar", || Case::of(&resting::uneven(), 7)),
         ("on_circles", || Case::of(&resting::on_circles(), 6)),
     ];
     for (name, make) in cases {

@@ -39,6 +39,31 @@ fn ground() -> String {
     obstacle("ground", "bottom", "point = [0, 0], normal = [0, 1]")
 }
 
+/// Three blocks on each other, each pressed upon by its weight and the next, whose nodes don't match.
+pub fn uneven() -> Model {
+    let mut blocks = Blocks::new();
+    let mut text = ROCK.to_owned();
+    for (i, (name, n)) in [("low", 11), ("middle", 5), ("high", 8)]
+        .into_iter()
+        .enumerate()
+    {
+        let (x, y) = (0.3 * i as f64, i as f64);
+        blocks = blocks.rectangle(name, [x, x + 2.0], [y, y + 1.0], [n, 4]);
+        text += &format!("bodies.{name} = {{material = 'rock', body_force = [0, -25e3]}}\n");
+    }
+    for [upper, lower] in [["high", "middle"], ["middle", "low"]] {
+        text += &format!(
+            "[[bilateral]]
+            on = '{upper} left'
+            [[contact]]
+            name = 'below {upper}'
+            sides = ['{upper} bottom', '{lower} top']\n"
+        );
+    }
+    text += "[[displacement]]\non = 'low bottom'\nx = 0.0\ny = 0.0\n";
+    model(&text, blocks.mesh)
+}
+
 /// Three blocks in a row, the last one with a traction on its right; perhaps with a wall on the
 /// left of the first one, which is held otherwise.
 pub fn row(traction: [f64; 2], wall: bool) -> Model {

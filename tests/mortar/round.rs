@@ -1,0 +1,143 @@
+//! Round bodies: statics and Hertz.
+
+use crate::support::blocks::Blocks;
+use crate::support::close;
+use crate::support::scenes::model;
+use crate::support::solver::solve;
+use crate::support::statics::{area, reaction};
+
+/// A disc of n × n cells; its sides are quarters of the circle.
+fn disc(blocks: Blocks, name: &str, centre: [f64; 2], radius: f64, n: usize, turn: f64) -> Blocks {
+    blocks.mapped(name, [n, n], |[s, t]| {
+        let (u, v) = (2.0 * s - 1.0, 2.0 * t - 1.0);
+        let out = f64::max(u.abs(), v.abs());
+        let round = out / f64::hypot(u, v).max(1e-300);
+        let stretch = radius * (1.0 - out * (1.0 - round));
+        let (x, y) = (stretch * u, stretch * v);
+        let (sin, cos) = turn.sin_cos();
+        [centre[0] + cos * x - sin * y, centre[1] + sin * x + cos * y]
+    })
+}
+
+#[test]
+fn rollers_carry_each_other_as_statics_says() {
+    let (radius, apart) = (1.0, 1.2);
+    let height = f64::sqrt(4.0 * radius * radius - apart * apart);
+    let mut blocks = Blocks::new();
+    let mut text = "plane = 'strain'
+        materials.steel = {young = 210e9, poisson = 0.3}\n"
+        .to_owned();
+    for (name, centre, n, turn) in [
+        ("left", [-apart, 1.0], 12, 0.1),
+        ("right", [apart, 1.0], 17, 0.2),
+        ("top", [0.0, 1.0 + height], 14, 0.35),
+    ] {
+        blocks = disc(blocks, name, centre, radius, n, turn);
+        text += &format!("bodies.{name} = {{material = 'steel', body_force = [0, -77e3]}}\n");
+    }
+    let outline = |name: &str| {
+        ["bottom", "right", "top", "left"]
+            .map(|s| format!("'{name} {s}'"))
+            .join(", ")
+    };
+    for (name, a, b) in [("one", "left", "top"), ("two", "top", "right")] {
+        text += &format!(
+            "[[contact]]\nname = '{name}'\nsides = [[{}], [{}]]\n",
+            outline(a),
+            outline(b)
+        );
+    }
+    for (body, name, point, normal) in [
+        ("left", "floor left", [0.0, 0.0], [0.0, 1.0]),
+        ("right", "floor right", [0.0, 0.0], [0.0, 1.0]),
+        ("left", "wall left", [-apart - radius, 0.0], [1.0, 0.0]),
+        ("right", "wall right", [apart + radius, 0.0], [-1.0, 0.0]),
+    ] {
+        text += &format!(
+            "[[contact]]\nname = '{name}'\nsides = [[{}]]\nobstacle = {{point = {point:?}, normal = {normal:?}}}\n",
+            outline(body)
+        );
+    }
+    let weight = |name: &str| 77e3 * area(&blocks.mesh, name);
+    let model = model(&text, blocks.mesh.clone());
+    for count in [3, 8] {
+        let solution = solve(&model, count);
+        let on = |name: &str| reaction(&solution.contacts[name]);
+        let ([x, y, _], [x_2, y_2, _]) = (on("one"), on("two"));
+        let slack = 1e-10 * weight("top");
+        close(x_2, x, slack);
+        close(y_2 - y, weight("top"), slack);
+        close(on("floor left")[1], weight("left") - y, slack);
+        close(on("floor right")[1], weight("right") + y_2, slack);
+        close(on("wall left")[0], -x, slack);
+        close(on("wall right")[0], x, slack);
+        // Two polygons press on each other along a line that is theirs to within half a facet.
+        let angle = f64::atan2(apart, height);
+        close(f64::atan2(x, y).abs(), std::f64::consts::PI - angle, 0.06);
+        close(f64::atan2(x_2, y_2).abs(), angle, 0.06);
+    }
+}
+
+#[test]
+fn a_cylinder_presses_on_a_block_as_hertz_says() {
+    let (young, poisson, radius, load) = (200.0, 0.3, 8.0_f64, 1.0);
+    let stiffness = young / (2.0 * (1.0 - poisson * poisson));
+    let half_width = f64::sqrt(4.0 * load * radius / (std::f64::consts::PI * stiffness));
+    let largest = 2.0 * load / (std::f64::consts::PI * half_width);
+    let graded = |s: f64| 4.0 * (0.08 * s + 0.92 * s * s * s);
+    let across = move |s: f64| graded(2.0 * s - 1.0);
+    // Facets of a finer side a feel each kink of side b.
+    for (n, upside_down, slack) in [
+        ([60, 44], false, 0.04),
+        ([60, 44], true, 0.1),
+        ([40, 70], false, 0.1),
+        ([40, 70], true, 0.04),
+    ] {
+        let blocks = Blocks::new()
+            .mapped("block", [n[0], 24], |[s, t]| {
+                [across(s), -graded(1.0 - t) * 2.0]
+            })
+            .mapped("cylinder", [n[1], 24], |[s, t]| {
+                let x = across(s);
+                let arc = radius - f64::sqrt(radius * radius - x * x);
+                [x, arc + (8.0 - arc) / 4.0 * graded(t)]
+            });
+        let sides = match upside_down {
+            true => "'block top', 'cylinder bottom'",
+            false => "'cylinder bottom', 'block top'",
+        };
+        let text = format!(
+            "plane = 'strain'
+            materials.m = {{young = {young}, poisson = {poisson}}}
+            bodies.block.material = 'm'
+            bodies.cylinder.material = 'm'
+            [[displacement]]
+            on = 'block bottom'
+            x = 0.0
+            y = 0.0
+            [[displacement]]
+            on = 'cylinder top'
+            x = 0.0
+            [[pressure]]
+            on = 'cylinder top'
+            value = {}
+            [[contact]]
+            name = 'contact'
+            sides = [{sides}]",
+            load / 8.0
+        );
+        let solution = solve(&model(&text, blocks.mesh), 5);
+        let forces: f64 = solution
+            .points()
+            .map(|point| point.force * point.normal[1].abs())
+            .sum();
+        close(forces, load, 1e-9);
+        for point in solution.points() {
+            let x = point.position[0] / half_width;
+            let exact = largest * f64::max(0.0, 1.0 - x * x).sqrt();
+            if (x.abs() - 1.0).abs() > 0.15 {
+                close(point.pressure, exact, slack * largest);
+            }
+        }
+    }
+}
