@@ -48,6 +48,27 @@ fn the_program_writes_a_scene_to_start_from() {
 }
 
 #[test]
+fn the_program_says_how_the_sides_of_a_contact_are_paired() {
+    let dir = tempfile::tempdir().unwrap();
+    let written = program(&["--example", "patch", "--write-scene", "."], dir.path());
+    assert!(written.status.success(), "{written:?}");
+    let path = dir.path().join("scene.toml");
+    let scene = std::fs::read_to_string(&path).unwrap();
+    for (pairing, expected) in [
+        ("", ", node by node"),
+        ("[[contact]]\npairing = 'nodes'", ", node by node"),
+        ("[[contact]]\npairing = 'mortar'", ", mortar"),
+    ] {
+        if !pairing.is_empty() {
+            std::fs::write(&path, scene.replace("[[contact]]", pairing)).unwrap();
+        }
+        let output = program(&["scene.toml", "-n", "2"], dir.path());
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(said.lines().any(|line| line.ends_with(expected)), "{said}");
+    }
+}
+
+#[test]
 fn the_program_lists_every_example() {
     let output = program(&["--list-examples"], Path::new("."));
     let list = String::from_utf8(output.stdout).unwrap();

@@ -427,3 +427,15 @@ fn crack_tips_carry_no_condition_and_pressure_loads_all_other_nodes_as_it_should
         }
     }
 }
+
+#[test]
+fn many_nodes_a_side_take_no_quadratic_time() {
+    let n = 20_000;
+    let blocks = Blocks::new()
+        .block("lower", [0.0, 100.0], [0.0, 1.0], [n, 1])
+        .block("upper", [0.0, 100.0], [1.0, 2.0], [n + 1, 1])
+        .moved(|[x, y, z]| [x, y + (0.1 * x).sin(), z]);
+    let start = std::time::Instant::now();
+    assert_eq!(conditions(&blocks, &contact("lower")).len(), n + 1);
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+}
