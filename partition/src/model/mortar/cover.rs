@@ -2,9 +2,9 @@
 
 use super::super::sight::{FACING, Target};
 use super::super::surface::{Surface, SurfaceFacet};
-use super::field::{Field, ahead, beside};
+use super::field::{Field, ahead, beside, cross};
 use super::root::{ENDS, root};
-use crate::element::geometry::{dot, length};
+use crate::element::geometry::{difference, dot, length};
 
 /// Degree to which a segment is integrated. The product of two straight facets' shape functions
 /// has degree 2; projections between facets that aren't parallel are rational.
@@ -92,16 +92,17 @@ impl<'a> Opposite<'a> {
         (cover, any_averted)
     }
 
-    /// The facets of side b that may lie on a line of `field`.
+    /// The facets of side b that may lie on a line of `field`: between its first and its last.
     fn candidates(&self, field: &Field) -> Vec<usize> {
+        let lines = ENDS.map(|end| (field.position(end), field.normal(end)));
         let mut candidates = self.target.facets(|low, high| {
             let corners = [
-                [low[0], low[1]],
-                [high[0], low[1]],
-                [low[0], high[1]],
-                [high[0], high[1]],
+                [low[0], low[1], 0.0],
+                [high[0], low[1], 0.0],
+                [low[0], high[1], 0.0],
+                [high[0], high[1], 0.0],
             ];
-            let sides = corners.map(|[x, y]| ENDS.map(|end| field.aside(end, [x, y, 0.0])[0]));
+            let sides = lines.map(|(x, n)| corners.map(|corner| cross(n, difference(corner, x))));
             let all = |is: fn(f64) -> bool| sides.iter().flatten().all(|&side| is(side));
             !all(|side| side > 0.0) && !all(|side| side < 0.0)
         });

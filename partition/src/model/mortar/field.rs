@@ -20,7 +20,7 @@ fn slope(kind: ElementKind, values: &[[f64; 3]], xi: f64) -> [f64; 3] {
 }
 
 /// The component of a × b across the plane.
-fn cross(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
