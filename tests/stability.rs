@@ -19,7 +19,7 @@ use support::solution::Solution;
 use support::solver::{built, solve};
 use support::stress::judge::Findings;
 use support::stress::trial::{Trial, Verdict};
-use support::stress::{Balance, draw};
+use support::stress::{Balance, Drawn, draw, draw_uneven};
 
 /// What the judge finds in the solution of two blocks after `tamper`.
 fn faults(tamper: impl Fn(&mut Solution)) -> Vec<String> {
@@ -118,16 +118,22 @@ proptest! {
     /// One that has no equilibrium is answered by the message that says so.
     #[test]
     fn a_random_scene_is_answered_rightly(seed in 0_u64..1_000_000) {
-        let mut drawn = draw(seed, 4);
-        // Tests of several ranks stand elsewhere.
-        drawn.ranks = 0;
-        let trial = Trial::of(&drawn, built(), Duration::from_secs(60), None);
-        prop_assert_eq!(
-            trial.verdict,
-            Verdict::Right,
-            "{}\n{}",
-            trial.reason,
-            drawn.described()
-        );
+        let (verdict, why) = judged(draw(seed, 4));
+        prop_assert_eq!(verdict, Verdict::Right, "{}", why);
     }
+
+    #[test]
+    fn a_random_scene_of_meshes_that_dont_match_is_answered_rightly(seed in 0_u64..1_000_000) {
+        let (verdict, why) = judged(draw_uneven(seed, 4));
+        prop_assert_eq!(verdict, Verdict::Right, "{}", why);
+    }
+}
+
+/// The verdict on a scene, and what to say of it.
+fn judged(mut drawn: Drawn) -> (Verdict, String) {
+    // Tests of several ranks stand elsewhere.
+    drawn.ranks = 0;
+    let trial = Trial::of(&drawn, built(), Duration::from_secs(60), None);
+    let why = format!("{}\n{}", trial.reason, drawn.described());
+    (trial.verdict, why)
 }

@@ -27,6 +27,7 @@ pub fn packing(draft: &mut Draft) {
                 false => push * draft.random.pick(&[-1.0, 0.0, 1.0]),
             };
             let weight = draft.weight(heights[j]) - draft.load * 1e-3;
+            let n = n.map(|n| draft.facing(n));
             draft.block(&format!("b{i}_{j}"), rectangle(x, y), n, [push, weight]);
         }
     }

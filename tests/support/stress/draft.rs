@@ -23,6 +23,8 @@ pub struct Draft {
     pub load: f64,
     /// Most cells along a side of a block.
     pub cells: usize,
+    /// Whether nodes of blocks in contact lie opposite each other.
+    pub matching: bool,
     contacts: usize,
 }
 
@@ -42,6 +44,7 @@ impl Draft {
             contrast,
             load,
             cells,
+            matching: true,
             contacts: 0,
             random,
         }
@@ -50,6 +53,14 @@ impl Draft {
     /// A number of cells along a side.
     pub fn side_cells(&mut self) -> usize {
         self.random.count(1, self.cells)
+    }
+
+    /// A number of cells along a side of a block in contact with others of `n`.
+    pub fn facing(&mut self, n: usize) -> usize {
+        match self.matching {
+            true => n,
+            false => self.random.count(1, 2 * self.cells),
+        }
     }
 
     /// Adds a quadrilateral, its inner nodes moved a little, as a body with `force` per volume.

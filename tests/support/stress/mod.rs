@@ -44,6 +44,13 @@ pub const FAMILIES: [Family; 12] = [
     ("layers", towers::layers),
 ];
 
+/// Those whose blocks may be meshed each for itself.
+const UNEVEN: [Family; 3] = [
+    ("tower", towers::tower),
+    ("packing", boxes::packing),
+    ("layers", towers::layers),
+];
+
 /// Cells a side from which on some scenes are finer.
 const FINE: usize = 10;
 
@@ -82,13 +89,26 @@ impl Drawn {
 /// scenes are several times finer.
 #[track_caller]
 pub fn draw(seed: u64, cells: usize) -> Drawn {
-    let (family, make) = FAMILIES[(seed % FAMILIES.len() as u64) as usize];
+    let family = FAMILIES[(seed % FAMILIES.len() as u64) as usize];
+    draw_of(family, true, seed, cells)
+}
+
+/// The same with blocks whose nodes don't match.
+#[track_caller]
+pub fn draw_uneven(seed: u64, cells: usize) -> Drawn {
+    let family = UNEVEN[(seed % UNEVEN.len() as u64) as usize];
+    draw_of(family, false, seed, cells)
+}
+
+#[track_caller]
+fn draw_of((family, make): Family, matching: bool, seed: u64, cells: usize) -> Drawn {
     let mut random = Random::new(seed);
     let cells = match cells >= FINE && random.chance(0.03) {
         true => 3 * cells,
         false => random.count(2.min(cells), cells),
     };
     let mut draft = Draft::new(random.clone(), cells);
+    draft.matching = matching;
     make(&mut draft);
     let text = draft.text();
     let mut model = model(&text, draft.blocks.mesh);

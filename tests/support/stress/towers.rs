@@ -35,6 +35,8 @@ fn pile(draft: &mut Draft, height: impl Fn(&mut Draft, usize) -> f64) {
     draft.equilibrium = Some(fall == Fall::Stands);
     // A surface that isn't plane would hold what is pushed.
     let rough = fall == Fall::Stands && draft.random.chance(0.3);
+    // Neither is held sideways by much but round-off where few nodes meet it.
+    let rough = rough && (rolled || draft.matching);
     if rough && !rolled {
         draft.equilibrium = None;
     }
@@ -49,7 +51,7 @@ fn pile(draft: &mut Draft, height: impl Fn(&mut Draft, usize) -> f64) {
         let height = height(draft, i);
         let rows = ((height * width as f64).ceil() as usize).clamp(1, draft.cells);
         let x = columns.map(|c| c as f64 / width as f64);
-        let n = [columns[1] - columns[0], rows];
+        let n = [draft.facing(columns[1] - columns[0]), rows];
         let weight = match fall {
             Fall::Lifted | Fall::Toppled => 0.0,
             _ => draft.weight(height),
