@@ -429,8 +429,29 @@ fn crack_tips_carry_no_condition_and_pressure_loads_all_other_nodes_as_it_should
 }
 
 #[test]
+fn other_units_change_lengths_alone() {
+    let text = contact("lower");
+    let blocks = uneven([0.0, 3.0], [0.7, 2.1], [8, 5], 0.25)
+        .moved(|[x, y, z]| [x, y + 0.1 * (x + y).sin(), z]);
+    let rows = conditions(&blocks, &text);
+    for unit in [1e3, 1e-9, 1e100] {
+        let scaled = conditions(&blocks.clone().moved(|x| x.map(|c| c * unit)), &text);
+        assert_eq!(rows.len(), scaled.len());
+        for (one, other) in rows.iter().zip(&scaled) {
+            close(other.gap / unit, one.gap, 1e-14);
+            close(other.share / unit, one.share, 1e-14);
+            assert_eq!(one.entries.len(), other.entries.len());
+            for ((p, c), (q, d)) in one.entries.iter().zip(&other.entries) {
+                assert_eq!(p, q);
+                (0..3).for_each(|i| close(c[i], d[i], 1e-12));
+            }
+        }
+    }
+}
+
+#[test]
 fn many_nodes_a_side_take_no_quadratic_time() {
-    let n = 20_000;
+    let n = 10_000;
     let blocks = Blocks::new()
         .block("lower", [0.0, 100.0], [0.0, 1.0], [n, 1])
         .block("upper", [0.0, 100.0], [1.0, 2.0], [n + 1, 1])

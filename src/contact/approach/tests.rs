@@ -44,6 +44,28 @@ fn a_chain_of_conditions_leaves_every_approach_what_it_is_called() {
 }
 
 #[test]
+fn conditions_of_mortar_are_solved_for_what_each_has_alone() {
+    // Unknown i is that of side a of condition i; those from 10 on, of side b, are in several.
+    let rows: Vec<ApproachRow> = (0..4)
+        .map(|i| {
+            row(
+                &[(i, 1.0), (10 + i, -0.7), (11 + i, -0.5), (12 + i, 0.2)],
+                0.0,
+            )
+        })
+        .collect();
+    for soft in [0, 10] {
+        let stiffness = |v| if v / 10 * 10 == soft { 1.0 } else { 1e6 };
+        let approaches = Approaches::new(&rows, |_| true, stiffness).unwrap();
+        assert_eq!(approaches.len, 4);
+        for i in 1..4 {
+            // Nothing but its own condition's.
+            assert_eq!(approaches.replaced[&i].terms.len(), 4);
+        }
+    }
+}
+
+#[test]
 fn a_condition_given_twice_shares_its_approach() {
     let rows = [
         row(&[(0, 1.0), (1, -1.0)], 0.0),

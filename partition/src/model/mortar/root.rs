@@ -11,7 +11,8 @@ const STEPS: usize = 100;
 pub(super) fn root(function: impl Fn(f64) -> [f64; 2]) -> Option<f64> {
     let [mut low, mut high] = ENDS;
     let [at_low, at_high] = ENDS.map(|end| function(end)[0]);
-    if at_low * at_high >= 0.0 || at_low.is_nan() || at_high.is_nan() {
+    let rises = at_low < 0.0 && at_high > 0.0;
+    if !rises && !(at_low > 0.0 && at_high < 0.0) {
         return None;
     }
     // The secant meets the root of a straight function at once.
@@ -21,7 +22,7 @@ pub(super) fn root(function: impl Fn(f64) -> [f64; 2]) -> Option<f64> {
         if value == 0.0 {
             break;
         }
-        if (value > 0.0) == (at_high > 0.0) {
+        if (value > 0.0) == rises {
             high = xi;
         } else {
             low = xi;
