@@ -12,7 +12,8 @@ pub(super) fn root(function: impl Fn(f64) -> [f64; 2]) -> Option<f64> {
     let [mut low, mut high] = ENDS;
     let [at_low, at_high] = ENDS.map(|end| function(end)[0]);
     let rises = at_low < 0.0 && at_high > 0.0;
-    if !rises && !(at_low > 0.0 && at_high < 0.0) {
+    let falls = at_low > 0.0 && at_high < 0.0;
+    if !rises && !falls {
         return None;
     }
     // The secant meets the root of a straight function at once.
