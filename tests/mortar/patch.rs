@@ -229,3 +229,34 @@ fn a_uniform_pressure_passes_across_a_crack_whose_tips_are_shared() {
         }
     }
 }
+
+/// The user's own partition cuts through the contact: all subdomains around it are one group.
+#[test]
+fn a_uniform_pressure_passes_where_a_cut_meets_the_contact() {
+    let blocks = block(Blocks::new(), "west", [0.0, 1.0], [0.0, 1.0], [3, 3], 5);
+    let blocks = block(blocks, "east", [1.0, 2.0], [0.0, 1.0], [4, 3], 6);
+    let blocks = block(blocks, "one", [0.0, 2.0], [1.0, 2.0], [4, 3], 7);
+    let mesh = blocks.glued(|x, y| x == 1.0 && y <= 1.0).mesh;
+    let (upper, lower) = ("['one bottom']", "['west top', 'east top']");
+    for sides in [format!("{upper}, {lower}"), format!("{lower}, {upper}")] {
+        let text = format!(
+            "subdomains = ['west', 'east', 'one']
+            plane = 'strain'
+            materials.m = {{young = 20e9, poisson = 0.3}}
+            bodies.west.material = 'm'
+            bodies.east.material = 'm'
+            bodies.one.material = 'm'
+            [[bilateral]]
+            on = ['west bottom', 'east bottom']
+            [[bilateral]]
+            on = ['west left', 'one left']
+            [[pressure]]
+            on = 'one top'
+            value = {PRESSURE}
+            [[contact]]
+            name = 'joint'
+            sides = [{sides}]"
+        );
+        is_uniform(&solve(&model(&text, mesh.clone()), 3), 0.0);
+    }
+}
