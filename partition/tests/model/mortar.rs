@@ -346,6 +346,26 @@ fn discs_that_touch_leave_the_gap_between_their_circles() {
 }
 
 #[test]
+fn discs_that_turn_together_or_on_their_own_keep_their_gaps() {
+    let text = "[[contact]]\nname = 'c'\nsides = ['upper top', 'lower top']\n";
+    let blocks = discs([50, 33]);
+    let model = blocks.model(text).unwrap();
+    for row in &model.contacts[0].conditions {
+        // About the origin, and the upper one about its centre.
+        let (mut together, mut alone) = (0.0, 0.0);
+        for &(node, c) in &row.entries {
+            let [x, y, _] = model.mesh.points[node as usize];
+            together += x * c[1] - y * c[0];
+            if y > 0.0 {
+                alone += x * c[1] - (y - 1.0) * c[0];
+            }
+        }
+        close(together, 0.0, 1e-13);
+        close(alone, 0.0, 1e-13);
+    }
+}
+
+#[test]
 fn numbering_in_the_mesh_file_doesnt_matter() {
     let blocks = discs([50, 33]);
     let text = "[[contact]]\nname = 'c'\nsides = ['upper top', 'lower top']\n";

@@ -4,18 +4,22 @@ use super::super::ContactCondition;
 use super::super::sides::SideNode;
 use super::super::surface::Surface;
 use super::Covered;
+use super::field::cross;
+use crate::element::geometry::difference;
 use crate::mesh::Mesh;
 
 /// Coefficient below which a node of side b has no part in a condition: round-off of shape
 /// functions that are orthogonal.
 const ROUND_OFF: f64 = 1e-13;
 
-/// ∫ ψ (u_a − u_b) and ∫ ψ g over what a multiplier's weight ψ covers.
+/// What a multiplier's weight ψ covers.
 pub(super) struct Row {
     /// ∫ ψ (m).
     share: f64,
-    /// ∫ ψ N of the nodes of side a less those of side b, in the order along side a (m).
-    terms: Vec<(u32, f64)>,
+    /// ∫ ψ N of the nodes of side a, in the order along it (m).
+    side_a: Vec<(u32, f64)>,
+    /// The same of side b.
+    side_b: Vec<(u32, f64)>,
     /// ∫ ψ g (m²).
     gap: f64,
     /// The least gap where ψ isn't zero (m).
@@ -26,10 +30,18 @@ impl Default for Row {
     fn default() -> Self {
         Self {
             share: 0.0,
-            terms: Vec::new(),
+            side_a: Vec::new(),
+            side_b: Vec::new(),
             gap: 0.0,
             least_gap: f64::INFINITY,
         }
+    }
+}
+
+fn add(terms: &mut Vec<(u32, f64)>, node: u32, value: f64) {
+    match terms.iter_mut().find(|(other, _)| *other == node) {
+        Some((_, sum)) => *sum += value,
+        None => terms.push((node, value)),
     }
 }
 
@@ -43,19 +55,37 @@ impl Row {
             self.share += weight;
             self.gap += weight * sample.gap;
             for (&node, n) in facet.nodes.iter().zip(&sample.shape) {
-                self.add_term(node, weight * n);
+                add(&mut self.side_a, node, weight * n);
             }
             let opposite = &side_b.facets[sample.opposite];
             for (&node, n) in opposite.nodes.iter().zip(&sample.opposite_shape) {
-                self.add_term(node, -weight * n);
+                add(&mut self.side_b, node, weight * n);
             }
         }
     }
 
-    fn add_term(&mut self, node: u32, value: f64) {
-        match self.terms.iter_mut().find(|(other, _)| *other == node) {
-            Some((_, sum)) => *sum += value,
-            None => self.terms.push((node, value)),
+    /// Shifts what side b has of the row so that both sides turn together without changing the gap,
+    /// and the condition's force has no moment: Σ s_a D_a = Σ s_b M_b with the places s along side a.
+    ///
+    /// It is so already where the sides are straight. Without it, the ragged facets of round bodies
+    /// would keep them from turning against each other.
+    fn balance(&mut self, a: &SideNode, mesh: &Mesh) {
+        // In shares of side a, so that no square of a length overflows.
+        let place = |node: u32| {
+            let way = difference(mesh.points[node as usize], a.position);
+            cross(a.normal, way) / self.share
+        };
+        let moment = |terms: &[(u32, f64)]| terms.iter().map(|&(n, c)| c * place(n)).sum::<f64>();
+        let defect = moment(&self.side_a) - moment(&self.side_b);
+        // Each node takes part as it does already.
+        let parts = || self.side_b.iter().map(|&(n, c)| (c.abs(), place(n)));
+        let middle =
+            parts().map(|(c, s)| c * s).sum::<f64>() / parts().map(|(c, _)| c).sum::<f64>();
+        let spread: f64 = parts().map(|(c, s)| c * (s - middle).powi(2)).sum();
+        if spread > 0.0 {
+            let shift =
+                |(n, c): (u32, f64)| (n, c + defect * c.abs() * (place(n) - middle) / spread);
+            self.side_b = self.side_b.iter().copied().map(shift).collect();
         }
     }
 
@@ -65,8 +95,13 @@ impl Row {
     /// The weight changes its sign, so that the weighted gap of uneven surfaces may be less than any
     /// of their gaps. No condition starts out violated more than they are: bodies that only touch
     /// carry no force without a load.
-    pub fn condition(self, a: &SideNode, mesh: &Mesh) -> ContactCondition {
-        let entries = self.terms.iter().filter_map(|&(node, value)| {
+    pub fn condition(mut self, a: &SideNode, mesh: &Mesh) -> ContactCondition {
+        self.balance(a, mesh);
+        let mut terms = self.side_a;
+        for (node, value) in self.side_b {
+            add(&mut terms, node, -value);
+        }
+        let entries = terms.into_iter().filter_map(|(node, value)| {
             let coefficient = value / self.share;
             (coefficient.abs() > ROUND_OFF).then(|| (node, a.normal.map(|c| c * coefficient)))
         });
