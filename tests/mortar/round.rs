@@ -141,3 +141,57 @@ fn a_cylinder_presses_on_a_block_as_hertz_says() {
         }
     }
 }
+
+/// A ring of n cells around and 8 across, its seam at an angle.
+fn ring(blocks: Blocks, name: &str, radii: [f64; 2], n: usize, seam: f64) -> Blocks {
+    blocks.mapped(name, [n, 8], |[s, t]| {
+        let (sin, cos) = (seam - std::f64::consts::TAU * s).sin_cos();
+        let radius = radii[0] + t * (radii[1] - radii[0]);
+        [radius * cos, radius * sin]
+    })
+}
+
+#[test]
+fn shrunk_rings_press_on_each_other_as_lame_says_and_turn_freely() {
+    let (young, poisson, interference) = (200.0, 0.3, 1e-3);
+    let [a, b, c] = [1.0_f64, 2.0, 3.0].map(|r| r * r);
+    let stiffness = young / (1.0 - poisson * poisson);
+    let pressure = stiffness * interference / 2.0 * (b - a) * (c - b) / (2.0 * b * (c - a));
+    // Odd numbers, so that no node lies on the other's seam.
+    let blocks = ring(Blocks::new(), "inner", [1.0, 2.0], 75, 0.0);
+    let blocks = ring(blocks, "outer", [2.0, 3.0], 91, std::f64::consts::PI);
+    let mesh = blocks.glued(|_, y| y.abs() < 1e-9).mesh;
+    // Facets of a finer side a feel each kink of side b.
+    for (sides, slack) in [
+        ("'inner top', 'outer bottom'", 0.04),
+        ("'outer bottom', 'inner top'", 0.1),
+    ] {
+        let text = format!(
+            "plane = 'strain'
+            materials.m = {{young = {young}, poisson = {poisson}}}
+            bodies.inner.material = 'm'
+            bodies.outer.material = 'm'
+            [[contact]]
+            name = 'fit'
+            sides = [{sides}]
+            gap = {}",
+            -interference
+        );
+        let model = model(&text, mesh.clone());
+        let solution = solve(&model, 4);
+        for point in solution.points() {
+            close(point.pressure, pressure, slack * pressure);
+        }
+        let size = solution.largest_displacement();
+        for (tag, &[x, y, _]) in model.mesh.node_tags.iter().zip(&model.mesh.points) {
+            let [u, v, _] = solution.displacement[tag];
+            close((x * v - y * u) / x.hypot(y), 0.0, 0.01 * size);
+        }
+        // Three motions of both and one against the other.
+        let warnings = solution.report["warnings"].as_array().unwrap();
+        let free = warnings
+            .iter()
+            .filter(|warning| warning.as_str().unwrap().starts_with("nothing holds"));
+        assert_eq!(free.count(), 4, "{warnings:#?}");
+    }
+}
