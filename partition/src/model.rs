@@ -73,7 +73,7 @@ pub struct ContactCondition {
     pub normal: [f64; 3],
     /// Tag of its node on side a.
     pub tag_a: i64,
-    /// Tag of its node on side b; −1 for an obstacle.
+    /// Tag of its node on side b; −1 for an obstacle and where there are several (mortar).
     pub tag_b: i64,
 }
 

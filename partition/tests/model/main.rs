@@ -12,6 +12,7 @@ mod corner;
 mod invariance;
 mod loads;
 mod mortar;
+mod mortar_discs;
 mod obstacle;
 mod quadratic;
 mod supports;
