@@ -153,7 +153,8 @@ fn a_corner_opposite_the_middle_of_an_edge_is_no_match() {
         .block("lower", [0.0, 2.0], [0.0, 1.0], [2, 2])
         .quadratic();
     let linear = Blocks::new().block("upper", [0.0, 2.0], [1.0, 2.0], [4, 2]);
-    let error = conditions(&joined(quadratic, linear), CONTACT).unwrap_err();
+    let by_nodes = format!("{CONTACT}pairing = 'nodes'\n");
+    let error = conditions(&joined(quadratic, linear), &by_nodes).unwrap_err();
     assert!(
         error.contains("the sides don't match at 2 nodes"),
         "{error}"
