@@ -8,6 +8,7 @@
 
 mod patch;
 mod round;
+mod sorts;
 #[path = "../support/mod.rs"]
 mod support;
 mod system;
