@@ -1,7 +1,9 @@
 //! The built-in scenes.
 
 mod blocks;
+mod crack;
 mod granite;
+mod hertz;
 mod junction;
 mod patch;
 mod pattern;
@@ -21,6 +23,8 @@ use crate::scene::suggest::nearest;
 /// The built-in scenes.
 pub const EXAMPLES: &[Example] = &[
     granite::EXAMPLE,
+    hertz::EXAMPLE,
+    crack::EXAMPLE,
     patch::EXAMPLE,
     junction::EXAMPLE,
     stack::EXAMPLE,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::pattern::{Pattern, UnitSquare};
-use crate::element::ElementKind;
+use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::mesh::{Group, Mesh};
 
@@ -21,6 +21,9 @@ pub(super) struct Patch {
     pub(super) map: Box<dyn Fn([f64; 2]) -> [f64; 2]>,
     /// How the unit square is divided.
     pub(super) pattern: Pattern,
+    /// Whether edges of quadratic cells follow the map; else they are straight, with the node in
+    /// their middle, as a map that only grades the mesh wants them.
+    pub(super) is_curved: bool,
     /// Groups of bottom, right, top and left. A side without a group is glued to the side without
     /// a group that has the same ends; a side with a group, such as that of a contact, never is.
     pub(super) sides: [Option<&'static str>; 4],
@@ -44,9 +47,7 @@ struct Placed {
     first: usize,
 }
 
-/// Meshes the patches with cells of `kind` cut into four `refine` times. Nodes on edges lie in the
-/// middle of the unit square's, so that the images of its sides are curved where the map curves
-/// them.
+/// Meshes the patches with cells of `kind` cut into four `refine` times.
 ///
 /// # Errors
 /// A refinement too large to be made.
@@ -132,7 +133,10 @@ fn place(patches: &[Patch], refine: u32, kind: ElementKind) -> Vec<Placed> {
         if !kind.is_linear() {
             square.raise(kind);
         }
-        let points: Vec<[f64; 2]> = square.points.iter().map(|&p| (patch.map)(p)).collect();
+        let mut points: Vec<[f64; 2]> = square.points.iter().map(|&p| (patch.map)(p)).collect();
+        if !patch.is_curved {
+            straighten(&square.cells, &mut points);
+        }
         let count = points.len();
         placed.push(Placed {
             square,
@@ -142,6 +146,23 @@ fn place(patches: &[Patch], refine: u32, kind: ElementKind) -> Vec<Placed> {
         first += count;
     }
     placed
+}
+
+/// Puts the nodes on edges of quadratic cells in their middle, and those in a cell in its centre.
+fn straighten(cells: &Elements, points: &mut [[f64; 2]]) {
+    for (kind, nodes) in cells.iter().filter(|(kind, _)| !kind.is_linear()) {
+        let (corners, others) = nodes.split_at(kind.corners());
+        let mean = |of: &[u32]| {
+            let sum = |axis: usize| of.iter().map(|&n| points[n as usize][axis]).sum::<f64>();
+            [0, 1].map(|axis| sum(axis) / of.len() as f64)
+        };
+        let next = corners.iter().cycle().skip(1);
+        let edges = corners.iter().zip(next).map(|(&a, &b)| mean(&[a, b]));
+        let places: Vec<[f64; 2]> = edges.chain([mean(corners)]).collect();
+        for (&node, place) in others.iter().zip(places) {
+            points[node as usize] = place;
+        }
+    }
 }
 
 /// For every node of every patch the first one that it is glued to.

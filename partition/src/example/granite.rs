@@ -96,6 +96,7 @@ fn band(
             (true, Pattern::Refining(columns)) => Pattern::Coarsening(columns),
             _ => pattern,
         },
+        is_curved: false,
         sides: [below, right_side, above, left_side],
     }
 }

@@ -34,6 +34,7 @@ fn patches() -> Vec<Patch> {
         body,
         map: quadrilateral(corners),
         pattern: grid,
+        is_curved: false,
         sides,
     };
     let (west, east) = ([-HALF, RISE], [HALF, -RISE]);
@@ -85,6 +86,7 @@ fn wedge(east: [f64; 2]) -> [Patch; 3] {
             body: "wedge",
             map: quadrilateral([corner, between(corner, next), centre, between(last, corner)]),
             pattern: Pattern::Grid(CELLS / 2, CELLS / 2),
+            is_curved: false,
             sides: [Some(sides[k]), None, None, Some(sides[(k + 2) % 3])],
         }
     })

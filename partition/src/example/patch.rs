@@ -23,6 +23,7 @@ fn patches() -> Vec<Patch> {
             body: "lower",
             map: quadrilateral([[0.0, 0.0], [2.0, 0.0], right, left]),
             pattern,
+            is_curved: false,
             sides: [
                 Some("bottom"),
                 Some("right"),
@@ -34,6 +35,7 @@ fn patches() -> Vec<Patch> {
             body: "upper",
             map: quadrilateral([left, right, [2.0, 2.0], [0.0, 2.0]]),
             pattern,
+            is_curved: false,
             sides: [Some("upper face"), Some("right"), Some("top"), Some("left")],
         },
     ]

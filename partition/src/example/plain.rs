@@ -30,6 +30,7 @@ fn patches() -> Vec<Patch> {
             body: "plate",
             map: Box::new(eighth),
             pattern,
+            is_curved: true,
             sides: [Some("horizontal axis"), Some("right"), None, Some("hole")],
         },
         // The mirror image, exact to the last bit, so that the axis lies where it should.
@@ -40,6 +41,7 @@ fn patches() -> Vec<Patch> {
                 [y, x]
             }),
             pattern,
+            is_curved: true,
             sides: [None, Some("top"), Some("vertical axis"), Some("hole")],
         },
     ]

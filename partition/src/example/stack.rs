@@ -64,6 +64,7 @@ fn rectangle(
         body,
         map: quadrilateral([[left, low], [right, low], [right, high], [left, high]]),
         pattern: Pattern::Grid(columns, CELLS as usize),
+        is_curved: false,
         sides,
     }
 }

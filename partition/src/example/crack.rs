@@ -1,0 +1,58 @@
+//! A closed inclined crack in a wide plate, which slips without friction.
+//!
+//! The plate is turned so that the crack lies along x. Of the far load σ at the angle ψ to the crack
+//! the crack transmits the pressure σ sin²ψ and none of the shear σ sinψ cosψ.
+
+use super::Example;
+use super::blocks::Patch;
+use super::pattern::Pattern;
+
+pub(super) const EXAMPLE: Example = Example {
+    name: "crack",
+    about: "a closed inclined crack in a wide plate, exact answer known",
+    subdomains: 6,
+    scene: include_str!("crack.toml"),
+    patches,
+};
+
+/// Half the side of the plate (m); half the length of the crack is 1 m.
+const HALF: f64 = 20.0;
+
+/// Columns beside the crack and along it, and rows on each side of it.
+const COLUMNS: [usize; 3] = [8, 16, 8];
+const ROWS: usize = 10;
+
+fn patches() -> Vec<Patch> {
+    // Away from the crack cells grow with the cube of the distance.
+    let away = |t: f64, size: f64| size * (0.1 * t + 0.9 * t.powi(3));
+    let x = move |column: usize, s: f64| match column {
+        0 => -1.0 - away(1.0 - s, HALF - 1.0),
+        1 => 2.0 * s - 1.0,
+        _ => 1.0 + away(s, HALF - 1.0),
+    };
+    let mut patches = Vec::new();
+    for (column, cells) in COLUMNS.into_iter().enumerate() {
+        let outer = |at: usize, name: &'static str| (column == at).then_some(name);
+        for is_above in [false, true] {
+            let crack = match is_above {
+                false => outer(1, "crack lower"),
+                true => outer(1, "crack upper"),
+            };
+            let (bottom, top) = match is_above {
+                false => (Some("bottom"), crack),
+                true => (crack, Some("top")),
+            };
+            patches.push(Patch {
+                body: "plate",
+                map: Box::new(move |[s, t]| match is_above {
+                    false => [x(column, s), -away(1.0 - t, HALF)],
+                    true => [x(column, s), away(t, HALF)],
+                }),
+                pattern: Pattern::Grid(cells, ROWS),
+                is_curved: false,
+                sides: [bottom, outer(2, "right"), top, outer(0, "left")],
+            });
+        }
+    }
+    patches
+}

@@ -1,0 +1,53 @@
+//! Line contact: a cylinder on its mirror image, by symmetry a quarter of it on a rigid plane.
+//!
+//! A square stands for the half plane of Hertz's theory: on the sides that cut it off act the
+//! tractions of the half plane (McEwen; K. L. Johnson, *Contact Mechanics*, §4.2), so that nothing
+//! but the mesh stands between the answer and the theory. The mesh is graded towards the end of the
+//! contact, where the pressure falls to zero like a square root.
+
+use std::f64::consts::PI;
+
+use super::Example;
+use super::blocks::Patch;
+use super::pattern::Pattern;
+
+pub(super) const EXAMPLE: Example = Example {
+    name: "hertz",
+    about: "line contact of two cylinders, graded mesh, exact answer known",
+    subdomains: 4,
+    scene: include_str!("hertz.toml"),
+    patches,
+};
+
+/// Side of the square (m).
+const SIDE: f64 = 2.0;
+
+/// Sizes of cells grow with the distance from the end of the contact to this power, less one.
+const GRADING: f64 = 1.6;
+
+/// Columns under the contact and beside it, and rows.
+const COLUMNS: [usize; 2] = [8, 10];
+const ROWS: usize = 14;
+
+fn patches() -> Vec<Patch> {
+    // a² = 4 P R / (π E*) with P = 10, R = 8 and E* = 200 / (1 − 0.3²).
+    let half_width = (1.456 / PI).sqrt();
+    let down = |t: f64| -SIDE * (1.0 - t).powf(GRADING);
+    let beside = SIDE - half_width;
+    vec![
+        Patch {
+            body: "cylinder",
+            map: Box::new(move |[s, t]| [half_width * (1.0 - (1.0 - s).powf(GRADING)), down(t)]),
+            pattern: Pattern::Grid(COLUMNS[0], ROWS),
+            is_curved: false,
+            sides: [Some("bottom"), None, Some("top"), Some("axis")],
+        },
+        Patch {
+            body: "cylinder",
+            map: Box::new(move |[s, t]| [half_width + beside * s.powf(GRADING), down(t)]),
+            pattern: Pattern::Grid(COLUMNS[1], ROWS),
+            is_curved: false,
+            sides: [Some("bottom"), Some("right"), Some("top"), None],
+        },
+    ]
+}
