@@ -74,11 +74,26 @@ fn powers(kind: ElementKind) -> &'static [[i32; 2]] {
     }
 }
 
-/// ∂N_i/∂ξ: with V_ik = m_k(ξ_i), N = V⁻ᵀ m.
-fn gradients(kind: ElementKind, [s, t]: [f64; 2]) -> Vec<[f64; 2]> {
+/// Σ_k V⁻¹_ki of(power k) for every node i, with V_ik = m_k(ξ_i): what a linear function of the
+/// monomials, such as a value or a slope, is of the shape functions N = V⁻ᵀ m.
+fn of_shapes(kind: ElementKind, of: &dyn Fn([i32; 2]) -> f64) -> DVector<f64> {
     let (nodes, powers) = (reference(kind), powers(kind));
     let n = nodes.len();
-    let monomial = |x: f64, p: i32| x.powi(p);
+    let v = DMatrix::from_fn(n, n, |k, i| {
+        nodes[i][0].powi(powers[k][0]) * nodes[i][1].powi(powers[k][1])
+    });
+    let of = DVector::from_fn(n, |k, _| of(powers[k]));
+    v.lu().solve(&of).unwrap()
+}
+
+/// N_i.
+pub fn shapes(kind: ElementKind, [s, t]: [f64; 2]) -> Vec<f64> {
+    let values = of_shapes(kind, &|[p, q]| s.powi(p) * t.powi(q));
+    values.iter().copied().collect()
+}
+
+/// ∂N_i/∂ξ.
+pub fn gradients(kind: ElementKind, [s, t]: [f64; 2]) -> Vec<[f64; 2]> {
     let slope = |x: f64, p: i32| {
         if p == 0 {
             0.0
@@ -86,17 +101,9 @@ fn gradients(kind: ElementKind, [s, t]: [f64; 2]) -> Vec<[f64; 2]> {
             f64::from(p) * x.powi(p - 1)
         }
     };
-    let v = DMatrix::from_fn(n, n, |k, i| {
-        monomial(nodes[i][0], powers[k][0]) * monomial(nodes[i][1], powers[k][1])
-    });
-    let lu = v.lu();
-    let along = |of: &dyn Fn([i32; 2]) -> f64| {
-        lu.solve(&DVector::from_fn(n, |k, _| of(powers[k])))
-            .unwrap()
-    };
-    let x = along(&|[p, q]| slope(s, p) * monomial(t, q));
-    let y = along(&|[p, q]| monomial(s, p) * slope(t, q));
-    (0..n).map(|i| [x[i], y[i]]).collect()
+    let x = of_shapes(kind, &|[p, q]| slope(s, p) * t.powi(q));
+    let y = of_shapes(kind, &|[p, q]| s.powi(p) * slope(t, q));
+    x.iter().zip(&y).map(|(&x, &y)| [x, y]).collect()
 }
 
 /// Points and weights of the rule by which the stiffness is defined.

@@ -26,7 +26,7 @@ const SIDE: f64 = 2.0;
 const GRADING: f64 = 1.6;
 
 /// Columns under the contact and beside it, and rows.
-const COLUMNS: [usize; 2] = [8, 10];
+const COLUMNS: [usize; 2] = [10, 8];
 const ROWS: usize = 14;
 
 fn patches() -> Vec<Patch> {

@@ -1,0 +1,151 @@
+//! A closed inclined crack, turned so that it lies along x.
+
+use nalgebra::Complex;
+
+use super::super::blocks::Blocks;
+use super::super::scenes::model;
+use super::super::solution::Solution;
+use super::super::sorts::sort;
+use super::exact::Exact;
+use super::{Case, Family, Figure, Gate, Measured, falling, gather, measured, plain};
+
+const TEXT: &str = "\
+A crack of half-length b = 1 m at ψ = 20° to a pressure of σ = 100 MPa, E = 25 GPa, ν = 0.25, plane
+strain, no friction: t_N = −σ sin²ψ = −11.698 MPa, slip 4 (1 − ν²)/E σ sinψ cosψ √(b² − x²), at most
+4.8209e-3 m. With Z = −σ sinψ cosψ z/√(z² − b²) the shear that the crack doesn't carry adds
+σ_xx = 2 Im Z + y Re Z', σ_yy = −y Re Z', σ_xy = Re Z − y Im Z'.
+
+Source: A.-V. Phan, J. A. L. Napier, L. J. Gray, T. Kaplan, *Symmetric-Galerkin BEM simulation of fracture
+with frictional contact*, Int. J. Numer. Meth. Eng. 57 (2003); stresses by Westergaard's function of
+the second mode, H. Tada, P. C. Paris, G. R. Irwin, *The Stress Analysis of Cracks Handbook*.
+
+Mesh: the square [−3, 3]² with the exact tractions, lines graded towards both tips and towards the
+crack with the 3rd power. At the tips stresses are infinite: on such meshes orders come near to 1 for
+linear and to 1.5 for quadratic cells.
+";
+
+const HALF: f64 = 3.0;
+const LOAD: f64 = 100e6;
+const SCENE: &str = "
+    plane = 'strain'
+    materials.rock = {young = 25e9, poisson = 0.25}
+    bodies.plate.material = 'rock'
+    [[contact]]
+    name = 'crack'
+    sides = ['middle above bottom', 'middle below top']
+    gap = 0";
+
+/// sinψ and cosψ.
+fn inclination() -> [f64; 2] {
+    let (sin, cos) = 20_f64.to_radians().sin_cos();
+    [sin, cos]
+}
+
+fn exact() -> Exact {
+    let [sin, cos] = inclination();
+    Exact(Box::new(move |[x, y]: [f64; 2]| {
+        let z = Complex::new(x, y);
+        let root = (z - 1.0).sqrt() * (z + 1.0).sqrt();
+        let shear = -LOAD * sin * cos;
+        let value = z / root * shear;
+        let slope = -shear / (root * root * root);
+        [
+            -LOAD * cos * cos + 2.0 * value.im + y * slope.re,
+            -LOAD * sin * sin - y * slope.re,
+            value.re - y * slope.im,
+        ]
+    }))
+}
+
+fn solved(name: &str, n: usize) -> Measured {
+    let graded = |s: f64| s.powi(3);
+    let outer = HALF - 1.0;
+    let x = move |column: &str, s: f64| match column {
+        "left" => -1.0 - outer * graded(1.0 - s),
+        "right" => 1.0 + outer * graded(s),
+        _ if s < 0.5 => -1.0 + graded(2.0 * s),
+        _ => 1.0 - graded(2.0 - 2.0 * s),
+    };
+    let mut blocks = Blocks::new();
+    for (column, cells) in [("left", n), ("middle", 2 * n), ("right", n)] {
+        blocks = blocks
+            .mapped(&format!("{column} below"), [cells, n], |[s, t]| {
+                [x(column, s), -HALF * graded(1.0 - t)]
+            })
+            .mapped(&format!("{column} above"), [cells, n], |[s, t]| {
+                [x(column, s), HALF * graded(t)]
+            });
+    }
+    // The sides of the crack have nodes of their own but for the tips.
+    let blocks = blocks.glued(|x, y| y != 0.0 || x.abs() > 1.0 - 1e-9);
+    let mut mesh = sort(name).of(&blocks.mesh);
+    let pieces =
+        ["left", "middle", "right"].map(|c| ["below", "above"].map(|r| format!("{c} {r}")));
+    let pieces: Vec<&str> = pieces.iter().flatten().map(String::as_str).collect();
+    gather(&mut mesh, "plate", &pieces);
+    let mut model = model(SCENE, mesh);
+    let exact = exact();
+    for column in ["left", "middle", "right"] {
+        let ends = [
+            format!("{column} below bottom"),
+            format!("{column} above top"),
+        ];
+        exact.load(
+            &mut model,
+            &[(&ends[0], [0.0, -1.0]), (&ends[1], [0.0, 1.0])],
+        );
+    }
+    for row in ["below", "above"] {
+        let ends = [format!("left {row} left"), format!("right {row} right")];
+        exact.load(
+            &mut model,
+            &[(&ends[0], [-1.0, 0.0]), (&ends[1], [1.0, 0.0])],
+        );
+    }
+    measured(&model, &exact, of_crack)
+}
+
+/// Errors of the largest slip and of the pressure.
+fn of_crack(solution: &Solution) -> Vec<Figure> {
+    let [sin, cos] = inclination();
+    let slip = 4.0 * (1.0 - 0.25 * 0.25) / 25e9 * LOAD * sin * cos;
+    let pressure = LOAD * sin * sin;
+    let points = &solution.contacts["crack"];
+    let largest = points.iter().map(|point| {
+        let [a, b] = point.tags.map(|tag| solution.displacement[&tag][0]);
+        (a - b).abs()
+    });
+    let errors = points
+        .iter()
+        .map(|point| (point.pressure / pressure - 1.0).abs());
+    vec![
+        falling("slip", largest.fold(0.0, f64::max) / slip - 1.0),
+        plain("pressure", errors.fold(0.0, f64::max)),
+    ]
+}
+
+/// The crack in linear and quadratic cells.
+pub fn case() -> Case {
+    let family = |name: &'static str| {
+        let is_quadratic = sort(name).is_quadratic;
+        let order = if is_quadratic { 1.3 } else { 0.85 };
+        let finer = if is_quadratic { 4 } else { 8 };
+        Family {
+            name: name.into(),
+            run: Box::new(move |level| solved(name, finer << level)),
+            meshes: [2, 4],
+            gates: vec![
+                Gate::Order("energy", order),
+                Gate::AtMost("slip", 3e-2),
+                Gate::AtMost("pressure", 1e-8),
+            ],
+        }
+    };
+    Case {
+        title: "Closed inclined crack",
+        text: TEXT,
+        families: ["triangle3", "quad4", "triangle6", "quad9"]
+            .map(family)
+            .into(),
+    }
+}

@@ -1,0 +1,170 @@
+//! Scenes with exact answers, refined step by step: errors and the orders with which they vanish.
+//!
+//! `tests/validation.rs` holds the first refinements against gates; `scripts/validate` runs more and
+//! writes all into docs/validation.md.
+
+pub mod beam;
+pub mod crack;
+pub mod exact;
+pub mod hertz;
+pub mod hole;
+pub mod punch;
+pub mod signorini;
+pub mod uniform;
+
+use contact_dd_partition::mesh::{Group, Mesh};
+use contact_dd_partition::model::Model;
+
+use self::exact::Exact;
+use super::solution::Solution;
+use super::solver;
+
+/// A scene with an exact answer.
+pub struct Case {
+    pub title: &'static str,
+    /// Formula, source and mesh, in Markdown.
+    pub text: &'static str,
+    pub families: Vec<Family>,
+}
+
+/// Meshes of one kind of cells, each with half the size of the one before.
+pub struct Family {
+    pub name: String,
+    /// Solves the scene on a mesh refined so many times.
+    pub run: Box<dyn Fn(usize) -> Measured>,
+    /// Number of meshes among the tests, which may be none, and in the document.
+    pub meshes: [usize; 2],
+    pub gates: Vec<Gate>,
+}
+
+/// What was found on one mesh.
+pub struct Measured {
+    pub dofs: usize,
+    pub figures: Vec<Figure>,
+}
+
+/// A figure, zero if all were exact.
+#[derive(Clone, Copy, Debug)]
+pub struct Figure {
+    pub name: &'static str,
+    pub value: f64,
+    /// Whether it falls with a power of the mesh size.
+    pub has_order: bool,
+}
+
+/// What has to hold.
+#[derive(Clone, Copy, Debug)]
+pub enum Gate {
+    /// The order between the last two meshes is at least so much.
+    Order(&'static str, f64),
+    /// On the finest mesh the figure is at most so much.
+    AtMost(&'static str, f64),
+}
+
+/// All cases, in the order of the document.
+pub fn cases() -> Vec<Case> {
+    vec![
+        uniform::patch(),
+        uniform::junction(),
+        hertz::on_an_obstacle(),
+        hertz::body_on_body(),
+        crack::case(),
+        punch::case(),
+        signorini::case(),
+        beam::case(),
+        hole::case(),
+    ]
+}
+
+/// An error that falls with a power of the mesh size.
+pub fn falling(name: &'static str, value: f64) -> Figure {
+    let has_order = true;
+    Figure {
+        name,
+        value: value.abs(),
+        has_order,
+    }
+}
+
+/// An error that doesn't fall evenly, or not at all.
+pub fn plain(name: &'static str, value: f64) -> Figure {
+    let has_order = false;
+    Figure {
+        name,
+        value: value.abs(),
+        has_order,
+    }
+}
+
+/// Solves a model, in as many subdomains as suit its size, and measures its error in the norm of the
+/// energy.
+pub fn measured(
+    model: &Model,
+    exact: &Exact,
+    figures: impl Fn(&Solution) -> Vec<Figure>,
+) -> Measured {
+    let dofs = 2 * model.mesh.points.len();
+    let solution = solver::Case::new(&solver::problem(model, None)).solve(&[]);
+    let energy = falling("energy", exact.energy_error(model, &solution));
+    Measured {
+        dofs,
+        figures: [vec![energy], figures(&solution)].concat(),
+    }
+}
+
+/// Makes one group of others.
+pub fn gather(mesh: &mut Mesh, name: &str, of: &[&str]) {
+    let groups: Vec<Group> = of.iter().map(|old| mesh.groups[*old].clone()).collect();
+    let members = groups.iter().flat_map(|group| group.members.clone());
+    let (dim, members) = (groups[0].dim, members.collect());
+    mesh.groups.insert(name.into(), Group { dim, members });
+}
+
+impl Family {
+    /// Runs the first `count` meshes.
+    pub fn measure(&self, count: usize) -> Vec<Measured> {
+        (0..count).map(&self.run).collect()
+    }
+
+    /// What doesn't hold of the gates, in words.
+    pub fn faults(&self, all: &[Measured]) -> Vec<String> {
+        let last = &all[all.len() - 1];
+        let value = |measured: &Measured, name: &str| {
+            let figure = measured.figures.iter().find(|figure| figure.name == name);
+            figure.unwrap_or_else(|| panic!("no figure {name}")).value
+        };
+        let broken = |gate: &Gate| match *gate {
+            Gate::Order(name, least) => {
+                let order = (value(&all[all.len() - 2], name) / value(last, name)).log2();
+                (order.is_nan() || order < least)
+                    .then(|| format!("{name}: order {order:.3}; expected at least {least}"))
+            }
+            Gate::AtMost(name, most) => {
+                let value = value(last, name);
+                (value.is_nan() || value > most)
+                    .then(|| format!("{name}: {value:.2e}; expected at most {most:.1e}"))
+            }
+        };
+        self.gates.iter().filter_map(broken).collect()
+    }
+}
+
+impl Case {
+    /// Runs the meshes of the tests and fails where a gate isn't kept.
+    #[track_caller]
+    pub fn check(&self) {
+        let mut faults = Vec::new();
+        for family in self.families.iter().filter(|family| family.meshes[0] > 0) {
+            let all = family.measure(family.meshes[0]);
+            for measured in &all {
+                println!(
+                    "{}: {} dofs, {:?}",
+                    family.name, measured.dofs, measured.figures
+                );
+            }
+            let found = family.faults(&all).into_iter();
+            faults.extend(found.map(|fault| format!("{}, {fault}", family.name)));
+        }
+        assert!(faults.is_empty(), "{}:\n{}", self.title, faults.join("\n"));
+    }
+}

@@ -1,0 +1,122 @@
+//! A solution of Signorini's problem that was chosen first.
+
+use super::super::blocks::{Blocks, jittered};
+use super::super::scenes::model;
+use super::super::solution::Solution;
+use super::super::sorts::sort;
+use super::exact::Exact;
+use super::{Case, Family, Figure, Gate, Measured, falling, measured, plain};
+
+const TEXT: &str = "\
+u_x = −y A'(x), u_y = A(x) + y B(x) with A = 1e-3 cos 2x and B = −1e-2 max(½ − x, 0)³, E = 200, ν = 0.3,
+plane strain. On the upper side y = 0 there is no shear, and σ_yy = (λ + 2μ) B is a pressure where
+x < ½ and nothing beyond. With the gap A + 1e-3 max(x − ½, 0)² to a rigid plane the left half is in
+contact and the right half isn't. Body force and tractions are those of u. *Pressure*: largest error over
+the largest pressure; *wrong*: nodes more than a cell from x = ½ that are open or closed against that.
+
+Source: made for this.
+
+Mesh: the square [0, 1] × [−1, 0] in irregular cells, u prescribed on the left and below, tractions on
+the right.
+";
+
+const YOUNG: f64 = 200.0;
+const POISSON: f64 = 0.3;
+
+/// λ and μ.
+fn lame() -> [f64; 2] {
+    [
+        YOUNG * POISSON / (1.0 + POISSON) / (1.0 - 2.0 * POISSON),
+        YOUNG / 2.0 / (1.0 + POISSON),
+    ]
+}
+
+/// B and B'.
+fn b(x: f64) -> [f64; 2] {
+    let w = (0.5 - x).max(0.0);
+    [-1e-2 * w.powi(3), 3e-2 * w * w]
+}
+
+fn exact() -> Exact {
+    let [l, m] = lame();
+    Exact(Box::new(move |[x, y]: [f64; 2]| {
+        let bending = -y * (-4e-3 * (2.0 * x).cos());
+        let [b, slope] = b(x);
+        [
+            (l + 2.0 * m) * bending + l * b,
+            l * bending + (l + 2.0 * m) * b,
+            m * y * slope,
+        ]
+    }))
+}
+
+/// The scene: b_x = (λ + 2μ) y A''' − (λ + μ) B', b_y = λ A'' − μ y B''.
+fn scene() -> String {
+    let [l, m] = lame();
+    let third = "8e-3*sin(2*x)";
+    let w = "max(0.5 - x, 0)";
+    let force = [
+        format!("{}*y*{third} - {}*3e-2*{w}^2", l + 2.0 * m, l + m),
+        format!("-{l}*4e-3*cos(2*x) + {m}*y*6e-2*{w}"),
+    ];
+    format!(
+        "plane = 'strain'
+        materials.steel = {{young = {YOUNG}, poisson = {POISSON}}}
+        bodies.block = {{material = 'steel', body_force = ['{}', '{}']}}
+        [[displacement]]
+        on = ['block left', 'block bottom']
+        x = '2e-3*y*sin(2*x)'
+        y = '1e-3*cos(2*x) - 1e-2*y*{w}^3'
+        [[contact]]
+        name = 'contact'
+        sides = ['block top']
+        obstacle = {{point = [0, 0], normal = [0, -1]}}
+        gap = '1e-3*cos(2*x) + 1e-3*max(x - 0.5, 0)^2'",
+        force[0], force[1],
+    )
+}
+
+fn solved(name: &str, n: usize) -> Measured {
+    let blocks = Blocks::new().rectangle("block", [0.0, 1.0], [-1.0, 0.0], [n, n]);
+    let mesh = sort(name).of(&jittered(blocks.mesh, 0.1 / n as f64, 3));
+    let mut model = model(&scene(), mesh);
+    let exact = exact();
+    exact.load(&mut model, &[("block right", [1.0, 0.0])]);
+    let [l, m] = lame();
+    measured(&model, &exact, |solution: &Solution| -> Vec<Figure> {
+        let largest = -(l + 2.0 * m) * b(0.0)[0];
+        let points = &solution.contacts["contact"];
+        let errors = points.iter().map(|point| {
+            let pressure = -(l + 2.0 * m) * b(point.position[0])[0];
+            (point.pressure - pressure).abs() / largest
+        });
+        let wrong = points.iter().filter(|point| {
+            let beyond = point.position[0] - 0.5;
+            beyond.abs() > 1.0 / n as f64 + 1e-9 && point.closed != (beyond < 0.0)
+        });
+        vec![
+            falling("pressure", errors.fold(0.0, f64::max)),
+            plain("wrong", wrong.count() as f64),
+        ]
+    })
+}
+
+/// The chosen solution in all kinds of cells.
+pub fn case() -> Case {
+    let family = |name: &'static str| {
+        let order = if sort(name).is_quadratic { 1.9 } else { 0.95 };
+        Family {
+            name: name.into(),
+            run: Box::new(move |level| solved(name, 6 << level)),
+            meshes: [3, 4],
+            gates: vec![Gate::Order("energy", order), Gate::AtMost("pressure", 0.1)],
+        }
+    };
+    Case {
+        title: "Manufactured solution of Signorini's problem",
+        text: TEXT,
+        families: ["triangle3", "quad4", "triangle6", "quad8", "quad9"]
+            .map(family)
+            .into(),
+    }
+}

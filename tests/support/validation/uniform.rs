@@ -1,0 +1,118 @@
+//! Fields that every mesh has exactly: uniform compression through contacts.
+
+use contact_dd_partition::element::ElementKind::{self, Quad4, Quad8, Quad9, Triangle3, Triangle6};
+use contact_dd_partition::example;
+
+use super::super::blocks::{Blocks, jittered};
+use super::super::scenes::model;
+use super::super::solution::Solution;
+use super::super::sorts::sort;
+use super::exact::Exact;
+use super::{Case, Family, Figure, Gate, measured, plain};
+
+const PATCH: &str = "\
+Two blocks that meet in an inclined line, the same pressure p = 1 MPa from above and from the right:
+σ = −p I in the plane whatever the inclination, contact pressure p. Every mesh has this field.
+
+Source: after R. L. Taylor and P. Papadopoulos, *On a patch test for contact problems in two
+dimensions*, 1991.
+
+Mesh: the blocks of the built-in scene `patch` in irregular cells.
+";
+
+const JUNCTION: &str = "\
+Four blocks and three contacts that meet in a point, rollers on the left and below, 1 MPa from the
+right and from above: σ = −p I, pressure p on every contact.
+
+Source: equilibrium.
+
+Mesh: the built-in scene `junction`.
+";
+
+/// Largest relative error of the contact pressure from `p`.
+fn pressure_error(solution: &Solution, p: f64) -> Vec<Figure> {
+    let errors = solution
+        .points()
+        .map(|point| (point.pressure / p - 1.0).abs());
+    let open = solution.points().filter(|point| !point.closed).count();
+    vec![
+        plain("pressure", errors.fold(0.0, f64::max)),
+        plain("open contacts", open as f64),
+    ]
+}
+
+fn compression() -> Exact {
+    Exact(Box::new(|_| [-1e6, -1e6, 0.0]))
+}
+
+fn gates() -> Vec<Gate> {
+    vec![
+        Gate::AtMost("energy", 1e-10),
+        Gate::AtMost("pressure", 1e-10),
+        Gate::AtMost("open contacts", 0.0),
+    ]
+}
+
+/// The patch test, matching nodes.
+pub fn patch() -> Case {
+    let scene = "
+        plane = 'strain'
+        materials.rock = {young = 20e9, poisson = 0.25}
+        bodies.lower.material = 'rock'
+        bodies.upper.material = 'rock'
+        [[bilateral]]
+        on = ['lower bottom', 'lower left', 'upper left']
+        [[pressure]]
+        on = ['upper top', 'lower right', 'upper right']
+        value = 1e6
+        [[contact]]
+        name = 'joint'
+        sides = ['lower top', 'upper bottom']
+        gap = 0";
+    let family = |name: &'static str| Family {
+        name: name.into(),
+        run: Box::new(move |level| {
+            let [left, right] = [[0.0, 0.8], [2.0, 1.2]];
+            let n = 4 << level;
+            let blocks = Blocks::new()
+                .quadrilateral("lower", [[0.0, 0.0], [2.0, 0.0], right, left], [n, n / 2])
+                .quadrilateral("upper", [left, right, [2.0, 2.0], [0.0, 2.0]], [n, n / 2]);
+            let mesh = sort(name).of(&jittered(blocks.mesh, 0.2 / n as f64, 7));
+            let model = model(scene, mesh);
+            measured(&model, &compression(), |solution| {
+                pressure_error(solution, 1e6)
+            })
+        }),
+        meshes: [2, 3],
+        gates: gates(),
+    };
+    let kinds = ["triangle3", "quad4", "triangle6", "quad8", "quad9"];
+    Case {
+        title: "Patch test: matching nodes",
+        text: PATCH,
+        families: kinds.into_iter().map(family).collect(),
+    }
+}
+
+/// Three contacts that meet.
+pub fn junction() -> Case {
+    let family = |kind: ElementKind| Family {
+        name: kind.name().into(),
+        run: Box::new(move |level| {
+            let example = example::find("junction").unwrap();
+            let mesh = example.mesh_of(kind, level as u32).unwrap();
+            let model = model(example.scene, mesh);
+            measured(&model, &compression(), |solution| {
+                pressure_error(solution, 1e6)
+            })
+        }),
+        meshes: [1, 2],
+        gates: gates(),
+    };
+    let kinds = [Triangle3, Quad4, Triangle6, Quad8, Quad9];
+    Case {
+        title: "Junction",
+        text: JUNCTION,
+        families: kinds.into_iter().map(family).collect(),
+    }
+}
