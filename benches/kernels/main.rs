@@ -61,8 +61,12 @@ fn subdomain(c: &mut Criterion) {
         group.bench_function("certificate, check", |bench| {
             bench.iter(|| BlockCheck::new(block, conditions, &balance, black_box(&u), &[]));
         });
+        let mut patches = Vec::new();
         group.bench_function("stresses", |bench| {
-            bench.iter(|| BlockStress::new(block, materials, scene.catalog.plane, black_box(&u)));
+            bench.iter(|| {
+                let u = black_box(&u);
+                BlockStress::new(block, materials, scene.catalog.plane, u, &mut patches)
+            });
         });
         group.finish();
     }

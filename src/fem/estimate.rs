@@ -33,46 +33,68 @@ impl CellError {
     }
 }
 
-/// The error of a cell: its kind, coordinates and displacements, and the stress `recovered` at its
-/// nodes.
-pub fn cell_error(
-    (kind, points, u): (ElementKind, &[[f64; 3]], &[f64]),
-    recovered: &[[f64; COMPONENTS]],
-    material: &Material,
-) -> CellError {
-    let c = Matrix3::from_fn(|i, j| material.stiffness[i][j]);
-    let Some(compliance) = c.try_inverse() else {
-        return CellError::default();
-    };
-    let norm = |s: &[f64; 3]| {
-        let s = Vector3::from(*s);
-        s.dot(&(compliance * s))
-    };
-    let mut sum = CellError::default();
-    for (reference, point) in (kind.stiffness_points().iter()).zip(stiffness_points(kind, points)) {
-        let stress = stress_in_plane(material, &strain(&point, u));
-        sum.energy += point.weight * norm(&stress);
-        if kind == ElementKind::Triangle3 {
-            // The difference is linear, and one point too few: ∫ over its values at the corners.
-            let mut total = [0.0; 3];
-            let mut squares = 0.0;
-            for at_node in recovered {
-                let d = difference(at_node, &stress);
-                squares += norm(&d);
-                total = std::array::from_fn(|k| total[k] + d[k]);
-            }
-            sum.error += point.weight / 12.0 * (squares + norm(&total));
-            continue;
-        }
-        let mut smooth = [0.0; COMPONENTS];
-        for (n, at_node) in reference.shape.iter().zip(recovered) {
-            for (s, v) in smooth.iter_mut().zip(at_node) {
-                *s += n * v;
-            }
-        }
-        sum.error += point.weight * norm(&difference(&smooth, &stress));
+/// C⁻¹ of a material (1/Pa), in whose norm stresses are measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Compliance(Matrix3<f64>);
+
+impl Compliance {
+    /// That of a material; zero where its stiffness is singular.
+    pub fn new(material: &Material) -> Self {
+        let c = Matrix3::from_fn(|i, j| material.stiffness[i][j]);
+        Self(c.try_inverse().unwrap_or_default())
     }
-    sum
+
+    /// s C⁻¹ s of (XX, YY, XY).
+    fn norm(&self, s: &[f64; 3]) -> f64 {
+        let s = Vector3::from(*s);
+        s.dot(&(self.0 * s))
+    }
+
+    /// The error of a linear triangle with an area, whose stress is the same everywhere.
+    pub fn triangle(
+        &self,
+        area: f64,
+        stress: &[f64; 6],
+        recovered: [&[f64; COMPONENTS]; 3],
+    ) -> CellError {
+        let stress = [stress[0], stress[1], stress[3]];
+        // The difference is linear: ∫ over its values at the corners.
+        let mut total = [0.0; 3];
+        let mut squares = 0.0;
+        for at_node in recovered {
+            let d = difference(at_node, &stress);
+            squares += self.norm(&d);
+            total = std::array::from_fn(|k| total[k] + d[k]);
+        }
+        CellError {
+            error: area / 12.0 * (squares + self.norm(&total)),
+            energy: area * self.norm(&stress),
+        }
+    }
+
+    /// The error of a cell: its kind, coordinates and displacements, and the stress `recovered` at
+    /// its nodes.
+    pub fn cell(
+        &self,
+        (kind, points, u): (ElementKind, &[[f64; 3]], &[f64]),
+        recovered: &[[f64; COMPONENTS]],
+        material: &Material,
+    ) -> CellError {
+        let mut sum = CellError::default();
+        let references = kind.stiffness_points().iter();
+        for (reference, point) in references.zip(stiffness_points(kind, points)) {
+            let stress = stress_in_plane(material, &strain(&point, u));
+            let mut smooth = [0.0; COMPONENTS];
+            for (n, at_node) in reference.shape.iter().zip(recovered) {
+                for (s, v) in smooth.iter_mut().zip(at_node) {
+                    *s += n * v;
+                }
+            }
+            sum.energy += point.weight * self.norm(&stress);
+            sum.error += point.weight * self.norm(&difference(&smooth, &stress));
+        }
+        sum
+    }
 }
 
 /// Recovered (XX, YY, ZZ, XY) less (XX, YY, XY).

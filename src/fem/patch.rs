@@ -52,7 +52,7 @@ impl Cells {
 
 /// The normal equations of the polynomial around a vertex that is nearest to samples of the stress.
 /// Those of several blocks add up.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PatchSum {
     angle: f64,
     cells: Cells,
@@ -243,7 +243,7 @@ impl Polynomial {
         }
     }
 
-    /// Its coefficients in a row.
+    /// Its coefficients in a row: of 1, x, y for all components, then those of x², xy, y².
     pub fn as_slice(&self) -> &[f64] {
         self.coefficients.as_flattened()
     }
@@ -253,6 +253,38 @@ impl Polynomial {
         for (a, b) in (self.coefficients.as_flattened_mut().iter_mut()).zip(coefficients) {
             *a += b;
         }
+    }
+}
+
+/// Polynomials around nodes, in as little memory as they need: there is one for every vertex of a
+/// mesh.
+#[derive(Clone, Debug)]
+pub struct Polynomials {
+    width: usize,
+    values: Vec<f64>,
+}
+
+impl Polynomials {
+    /// Zeros for `count` nodes, of linear polynomials alone or of quadratic ones too.
+    pub fn zeros(count: usize, are_linear: bool) -> Self {
+        let width = COMPONENTS * if are_linear { LINEAR } else { TERMS };
+        Self {
+            width,
+            values: vec![0.0; width * count],
+        }
+    }
+
+    /// That of a node.
+    pub fn get(&self, node: usize) -> Polynomial {
+        let mut polynomial = Polynomial::default();
+        polynomial.add_slice(&self.values[self.width * node..][..self.width]);
+        polynomial
+    }
+
+    /// Sets that of a node; of a quadratic one, among linear ones, its linear terms.
+    pub fn set(&mut self, node: usize, polynomial: &Polynomial) {
+        let values = &mut self.values[self.width * node..][..self.width];
+        values.copy_from_slice(&polynomial.as_slice()[..self.width]);
     }
 }
 

@@ -4,37 +4,46 @@
 //! of its neighbours' within. A node on an edge or in a face has the mean of what the vertices of
 //! its cell say there.
 
+use std::collections::BTreeMap;
+
 use contact_dd_partition::element::ElementKind;
 
 use super::block::{Block, BlockCell};
-use super::patch::{COMPONENTS, PatchSum, Polynomial};
+use super::patch::{COMPONENTS, PatchSum, Polynomial, Polynomials};
 
 /// A block's part of the patches around the vertices in one material, and what comes of them.
 #[derive(Clone, Debug)]
 pub struct Recovery {
     material: usize,
     /// Polynomials around the block's vertices, by node.
-    polynomials: Vec<Polynomial>,
+    polynomials: Polynomials,
     /// Whether cells surround them.
     is_inner: Vec<bool>,
     /// Patches on Γ, in the order of the block's interface.
     shared: Vec<PatchSum>,
     /// Sums of neighbours' polynomials around vertices at the boundary, and how many these are.
-    neighbours: Vec<(Polynomial, f64)>,
+    neighbours: BTreeMap<usize, (Polynomial, f64)>,
 }
 
 impl Recovery {
     /// Takes the `patches` around the block's nodes in one material.
-    pub fn new(block: &Block, material: usize, patches: Vec<PatchSum>) -> Self {
+    pub fn new(block: &Block, material: usize, patches: &[PatchSum]) -> Self {
         let shared = (block.interface.iter())
-            .map(|&(node, _)| patches[node as usize].clone())
+            .map(|&(node, _)| patches[node as usize])
             .collect();
+        let are_linear = block.cells().all(|cell| cell.kind.is_linear());
+        let mut polynomials = Polynomials::zeros(block.nodes(), are_linear);
+        for (node, patch) in patches.iter().enumerate() {
+            if !patch.is_empty() {
+                polynomials.set(node, &patch.fit());
+            }
+        }
         Self {
             material,
-            polynomials: patches.iter().map(PatchSum::fit).collect(),
+            polynomials,
             is_inner: patches.iter().map(PatchSum::is_inner).collect(),
             shared,
-            neighbours: Vec::new(),
+            neighbours: BTreeMap::new(),
         }
     }
 
@@ -52,21 +61,23 @@ impl Recovery {
     /// Puts the whole patch in the place of this block's part.
     pub fn set_shared(&mut self, block: &Block, place: usize, whole: &PatchSum) {
         let node = block.interface[place].0 as usize;
-        self.polynomials[node] = whole.fit();
+        self.polynomials.set(node, &whole.fit());
         self.is_inner[node] = whole.is_inner();
     }
 
     /// Adds up, for the vertices at the boundary, what this block's cells say of their neighbours
     /// within.
     pub fn gather_neighbours(&mut self, block: &Block) {
-        self.neighbours = vec![(Polynomial::default(), 0.0); block.nodes()];
         for cell in block.cells().filter(|cell| cell.material == self.material) {
             let corners = corners(&cell);
+            if corners.clone().all(|c| self.is_inner[c]) {
+                continue;
+            }
             for at_boundary in corners.clone().filter(|&c| !self.is_inner[c]) {
-                let (sum, count) = &mut self.neighbours[at_boundary];
+                let (sum, count) = self.neighbours.entry(at_boundary).or_default();
                 for within in corners.clone().filter(|&c| self.is_inner[c]) {
                     let way = way(block, within, at_boundary);
-                    sum.add(1.0, &self.polynomials[within].seen_from(way));
+                    sum.add(1.0, &self.polynomials.get(within).seen_from(way));
                     *count += 1.0;
                 }
             }
@@ -81,36 +92,40 @@ impl Recovery {
     ) -> impl Iterator<Item = (usize, &Polynomial, f64)> {
         let places = block.interface.iter().enumerate();
         places.filter_map(|(place, &(node, _))| {
-            let (sum, count) = self.neighbours.get(node as usize)?;
-            let node = node as usize;
-            let is_vertex = !self.shared[place].is_empty();
-            (is_vertex && !self.is_inner[node]).then_some((place, sum, *count))
+            let (sum, count) = self.neighbours.get(&(node as usize))?;
+            Some((place, sum, *count))
         })
     }
 
     /// Puts the sum over the neighbours in all blocks in the place of this block's.
     pub fn set_neighbours(&mut self, block: &Block, place: usize, sum: Polynomial, count: f64) {
-        self.neighbours[block.interface[place].0 as usize] = (sum, count);
+        let node = block.interface[place].0 as usize;
+        self.neighbours.insert(node, (sum, count));
     }
 
     /// The stress at every node of the block in this material (Pa): XX, YY, ZZ, XY; 0 at others.
     pub fn at_nodes(mut self, block: &Block) -> Vec<[f64; COMPONENTS]> {
-        for (polynomial, (sum, count)) in self.polynomials.iter_mut().zip(&self.neighbours) {
+        for (&node, (sum, count)) in &self.neighbours {
             if *count > 0.0 {
                 let mut mean = Polynomial::default();
                 mean.add(count.recip(), sum);
-                *polynomial = mean;
+                self.polynomials.set(node, &mean);
             }
         }
-        let mut stress = vec![[0.0; COMPONENTS]; block.nodes()];
-        for cell in block.cells().filter(|cell| cell.material == self.material) {
+        let mut stress: Vec<[f64; COMPONENTS]> = (0..block.nodes())
+            .map(|node| self.polynomials.get(node).at([0.0; 2]))
+            .collect();
+        let quadratic =
+            |cell: &BlockCell<'_>| cell.material == self.material && !cell.kind.is_linear();
+        for cell in block.cells().filter(quadratic) {
             let nodes: Vec<usize> = cell.nodes().map(|node| node as usize).collect();
-            for (local, &node) in nodes.iter().enumerate() {
+            for local in cell.kind.corners()..nodes.len() {
                 let around = vertices_of(cell.kind, local);
+                let node = nodes[local];
                 let mut mean = [0.0; COMPONENTS];
                 for &vertex in around {
                     let from = nodes[vertex];
-                    let value = self.polynomials[from].at(way(block, from, node));
+                    let value = self.polynomials.get(from).at(way(block, from, node));
                     for (m, v) in mean.iter_mut().zip(value) {
                         *m += v / around.len() as f64;
                     }
@@ -134,12 +149,8 @@ fn way(block: &Block, from: usize, to: usize) -> [f64; 2] {
     [0, 1].map(|k| block.points[to][k] - block.points[from][k])
 }
 
-/// The corners that a local node lies between; itself if it is one.
+/// The corners that a local node on an edge or in the face lies between.
 fn vertices_of(kind: ElementKind, local: usize) -> &'static [usize] {
-    const ALONE: [[usize; 1]; 4] = [[0], [1], [2], [3]];
-    if local < kind.corners() {
-        return &ALONE[local];
-    }
     let mut edges = kind.facets().iter();
     match edges.find(|(_, nodes)| nodes.get(2) == Some(&local)) {
         Some((_, nodes)) => &nodes[..2],

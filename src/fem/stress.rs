@@ -9,7 +9,7 @@ use contact_dd_partition::model::{Material, PlaneState};
 
 use super::block::{Block, BlockCell};
 use super::elasticity::{MAX_NODES, gradients, stiffness_points, strain, stress};
-use super::estimate::{CellError, cell_error};
+use super::estimate::{CellError, Compliance};
 use super::patch::{COMPONENTS, PatchSum};
 use super::recovery::{Recovery, corners};
 
@@ -34,15 +34,22 @@ pub struct RecoveredStress {
 }
 
 impl BlockStress {
-    /// The stresses for displacements `u`, node by node.
-    pub fn new(block: &Block, materials: &[Material], plane: PlaneState, u: &[f64]) -> Self {
+    /// The stresses for displacements `u`, node by node; `patches` is memory that may be used.
+    pub fn new(
+        block: &Block,
+        materials: &[Material],
+        plane: PlaneState,
+        u: &[f64],
+        patches: &mut Vec<PatchSum>,
+    ) -> Self {
         let mut present: Vec<usize> = (block.members.iter())
             .flat_map(|member| &member.cell_material)
             .map(|&material| material as usize)
             .collect();
         present.sort_unstable();
         present.dedup();
-        let mut patches = vec![vec![PatchSum::default(); block.nodes()]; present.len()];
+        patches.clear();
+        patches.resize(block.nodes() * present.len(), PatchSum::default());
         let count = block.members.iter().map(|m| m.cells.len()).sum();
         let mut cells = Vec::with_capacity(count);
         let mut local = LocalCell::default();
@@ -53,7 +60,7 @@ impl BlockStress {
             let Ok(place) = present.binary_search(&cell.material) else {
                 continue;
             };
-            let around = &mut patches[place];
+            let around = &mut patches[place * block.nodes()..][..block.nodes()];
             for (corner, node) in corners(&cell).enumerate() {
                 around[node].add_cell(local.angle(corner), !cell.kind.is_linear());
             }
@@ -65,7 +72,7 @@ impl BlockStress {
                 }
             }
         }
-        let recoveries = (present.into_iter().zip(patches))
+        let recoveries = (present.into_iter().zip(patches.chunks(block.nodes())))
             .map(|(material, patches)| Recovery::new(block, material, patches))
             .collect();
         Self { cells, recoveries }
@@ -81,14 +88,27 @@ impl BlockStress {
         let mut errors = Vec::with_capacity(self.cells.len());
         let mut local = LocalCell::default();
         let mut recovered = Vec::with_capacity(MAX_NODES);
-        for cell in block.cells() {
+        let compliances: Vec<Compliance> = (present.iter())
+            .map(|&material| Compliance::new(&materials[material]))
+            .collect();
+        for (cell, stress) in block.cells().zip(&self.cells) {
+            let Ok(place) = present.binary_search(&cell.material) else {
+                continue;
+            };
+            let (at_nodes, compliance) = (&at_nodes[place], &compliances[place]);
+            if cell.kind == ElementKind::Triangle3 {
+                let mut nodes = cell.nodes().map(|node| node as usize);
+                let nodes: [usize; 3] = std::array::from_fn(|_| nodes.next().unwrap_or_default());
+                let area = cell.kind.measure(&nodes.map(|node| block.points[node]));
+                let recovered = nodes.map(|node| &at_nodes[node]);
+                errors.push(compliance.triangle(area, stress, recovered));
+                continue;
+            }
             local.take(block, &cell, u);
             recovered.clear();
-            if let Ok(place) = present.binary_search(&cell.material) {
-                recovered.extend(cell.nodes().map(|node| at_nodes[place][node as usize]));
-            }
+            recovered.extend(cell.nodes().map(|node| at_nodes[node as usize]));
             let of_cell = (cell.kind, &local.points[..], &local.u[..]);
-            errors.push(cell_error(of_cell, &recovered, &materials[cell.material]));
+            errors.push(compliance.cell(of_cell, &recovered, &materials[cell.material]));
         }
         RecoveredStress {
             materials: present,

@@ -77,21 +77,19 @@ pub fn stresses(
     catalog: &Catalog,
     plan: &Plan,
 ) -> BTreeMap<usize, Stress> {
+    // Fresh memory for every block would cost more than what is done with it.
+    let mut patches = Vec::new();
     let found = solutions.iter().filter_map(|(b, solution)| {
         let block = &blocks.get(b)?.block;
-        let stress = BlockStress::new(block, &catalog.materials, catalog.plane, &solution.u);
+        let (materials, u) = (&catalog.materials, &solution.u);
+        let stress = BlockStress::new(block, materials, catalog.plane, u, &mut patches);
         Some((*b, (block, stress)))
     });
     let mut stresses: BTreeMap<usize, (&Block, BlockStress)> = found.collect();
     let exchange = Exchange { comm, plan };
     exchange.sum(
         &mut stresses,
-        |recovery, _| {
-            (recovery
-                .shared()
-                .map(|(place, patch)| (place, patch.clone())))
-            .collect()
-        },
+        |recovery, _| (recovery.shared().map(|(place, patch)| (place, *patch))).collect(),
         |recovery, block, place, whole: PatchSum| recovery.set_shared(block, place, &whole),
     );
     for (block, stress) in stresses.values_mut() {
