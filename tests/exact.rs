@@ -187,6 +187,33 @@ fn closed_crack(cells: usize, sort: Sort) -> [f64; 2] {
 }
 
 #[test]
+fn built_in_line_contact_is_hertzs() {
+    let (a, peak): (f64, f64) = (0.68078, 9.35135);
+    for count in [1, 4] {
+        let solution = solve(&built_in_model("hertz", 0), count);
+        close(solution.points().map(|p| p.force).sum(), 5.0, 1e-9);
+        for point in solution.points() {
+            let x = point.position[0];
+            assert_eq!(point.closed, x < a + 1e-3, "{point:?}");
+            let exact = peak * (1.0 - x * x / a / a).max(0.0).sqrt();
+            close(point.pressure, exact, 0.02 * peak);
+        }
+    }
+}
+
+#[test]
+fn the_built_in_crack_carries_its_pressure_and_slips() {
+    let solution = solve(&built_in_model("crack", 0), 6);
+    let mut slip = 0.0_f64;
+    for point in solution.points() {
+        close(point.pressure, 11.698e6, 1e3);
+        let [a, b] = point.tags.map(|tag| solution.displacement[&tag][0]);
+        slip = slip.max((a - b).abs());
+    }
+    close(slip, 4.8209e-3, 0.1 * 4.8209e-3);
+}
+
+#[test]
 fn a_closed_inclined_crack_slips_as_the_formula_says() {
     let errors = [12, 24, 48].map(|cells| {
         let [slip, pressure] = closed_crack(cells, sort("triangle3"));

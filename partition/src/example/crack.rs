@@ -19,15 +19,16 @@ pub(super) const EXAMPLE: Example = Example {
 const HALF: f64 = 20.0;
 
 /// Columns beside the crack and along it, and rows on each side of it.
-const COLUMNS: [usize; 3] = [8, 16, 8];
-const ROWS: usize = 10;
+const COLUMNS: [usize; 3] = [12, 24, 12];
+const ROWS: usize = 16;
 
 fn patches() -> Vec<Patch> {
-    // Away from the crack cells grow with the cube of the distance.
-    let away = |t: f64, size: f64| size * (0.1 * t + 0.9 * t.powi(3));
+    // Cells grow away from the tips and from the crack.
+    let away = |t: f64, size: f64| size * (0.02 * t + 0.98 * t.powi(3));
     let x = move |column: usize, s: f64| match column {
         0 => -1.0 - away(1.0 - s, HALF - 1.0),
-        1 => 2.0 * s - 1.0,
+        1 if s < 0.5 => (2.0 * s).powi(2) - 1.0,
+        1 => 1.0 - (2.0 - 2.0 * s).powi(2),
         _ => 1.0 + away(s, HALF - 1.0),
     };
     let mut patches = Vec::new();
@@ -45,7 +46,7 @@ fn patches() -> Vec<Patch> {
             patches.push(Patch {
                 body: "plate",
                 map: Box::new(move |[s, t]| match is_above {
-                    false => [x(column, s), -away(1.0 - t, HALF)],
+                    false => [x(column, s), 0.0 - away(1.0 - t, HALF)],
                     true => [x(column, s), away(t, HALF)],
                 }),
                 pattern: Pattern::Grid(cells, ROWS),

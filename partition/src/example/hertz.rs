@@ -32,7 +32,7 @@ const ROWS: usize = 14;
 fn patches() -> Vec<Patch> {
     // a² = 4 P R / (π E*) with P = 10, R = 8 and E* = 200 / (1 − 0.3²).
     let half_width = (1.456 / PI).sqrt();
-    let down = |t: f64| -SIDE * (1.0 - t).powf(GRADING);
+    let down = |t: f64| 0.0 - SIDE * (1.0 - t).powf(GRADING);
     let beside = SIDE - half_width;
     vec![
         Patch {
