@@ -20,21 +20,22 @@ const SIDE: f64 = 2.0;
 const GRADING: f64 = 1.6;
 
 const ON_AN_OBSTACLE: &str = "\
-Two equal cylinders, R = 8, E = 200, ν = 0.3, P = 10 per unit of length, plane strain: a² = 4 P R/(π E*),
-E* = E/(1 − ν²) for one of them on their plane of symmetry, so that a = 0.68078; pressure
-p₀ √(1 − x²/a²), p₀ = 2 P/(π a) = 9.35135. Stresses of the half plane y ≤ 0, with
-z = x + i y and Z = −p₀/a (√(a² − z²) − i z): σ_xx = Re Z − y Im Z', σ_yy = Re Z + y Im Z',
-σ_xy = −y Re Z'.
+Two equal cylinders, R = 8, E = 200, ν = 0.3, P = 10 per unit of length, plane strain; one of them on
+their plane of symmetry: a² = 4 P R/(π E*) with E* = E/(1 − ν²), so that a = 0.68078; pressure
+p₀ √(1 − x²/a²), p₀ = 2 P/(π a) = 9.35135. Stresses of the half plane y ≤ 0, with z = x + i y and
+Z = −p₀/a (√(a² − z²) − i z): σ_xx = Re Z − y Im Z', σ_yy = Re Z + y Im Z', σ_xy = −y Re Z'.
 
 Source: K. L. Johnson, *Contact Mechanics*, Cambridge 1985, §4.2.
 
 Mesh: the square [0, 2] × [−2, 0] of the built-in scene `hertz`, the tractions of the half plane on its
-right and its lower side, gap x²/16 to a rigid plane. *Graded* meshes have lines at distances
-proportional to the 1.6th power of their number, from x = a and from y = 0. Nothing but contact holds
-the body. *p₀*: the pressure of the node at x = 0; where the diagonals of uniform linear triangles
-alternate, four triangles meet at one node of the side and eight at the next one, and their pressures are
-a little too large and too small by turns. *Half-width*: how many cells lie between x = a and the last
-closed node. *Resultant*: the sum of the contact forces.
+right and its lower side, gap x²/16 to a rigid plane. *Graded* meshes have lines at distances from x = a
+and from y = 0 that grow with the 1.6th power of their number. Nothing but contact holds the body
+vertically.
+
+*p₀*: the pressure of the node at x = 0. In uniform linear triangles, whose diagonals alternate, four
+triangles meet at one node of the side and eight at the next one, and pressures are too large and too
+small by turns. *Half-width*: how many cells lie between x = a and the last closed node. *Resultant*: the
+sum of the contact forces.
 ";
 
 const BODY_ON_BODY: &str = "\

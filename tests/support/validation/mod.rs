@@ -19,6 +19,10 @@ use self::exact::Exact;
 use super::solution::Solution;
 use super::solver;
 
+/// The figure of the certificate that every answer has to keep, and what it is promised to be.
+const BACKWARD_ERROR: &str = "backward error";
+const CERTIFIED: Gate = Gate::AtMost(BACKWARD_ERROR, 1e-14);
+
 /// A scene with an exact answer.
 pub struct Case {
     pub title: &'static str,
@@ -104,11 +108,16 @@ pub fn measured(
     figures: impl Fn(&Solution) -> Vec<Figure>,
 ) -> Measured {
     let dofs = 2 * model.mesh.points.len();
-    let solution = solver::Case::new(&solver::problem(model, None)).solve(&[]);
+    let case = solver::Case::new(&solver::problem(model, None));
+    let ended = case.run(&[]);
+    assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+    let solution = Solution::read(&case.result());
+    let backward = solution.report["certificate"]["equilibrium"].as_f64();
     let energy = falling("energy", exact.energy_error(model, &solution));
+    let backward = plain(BACKWARD_ERROR, backward.unwrap());
     Measured {
         dofs,
-        figures: [vec![energy], figures(&solution)].concat(),
+        figures: [vec![energy], figures(&solution), vec![backward]].concat(),
     }
 }
 
@@ -145,7 +154,8 @@ impl Family {
                     .then(|| format!("{name}: {value:.2e}; expected at most {most:.1e}"))
             }
         };
-        self.gates.iter().filter_map(broken).collect()
+        let gates = self.gates.iter().chain([&CERTIFIED]);
+        gates.filter_map(broken).collect()
     }
 }
 

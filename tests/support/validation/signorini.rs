@@ -17,7 +17,9 @@ the largest pressure; *wrong*: nodes more than a cell from x = ½ that are open 
 Source: made for this.
 
 Mesh: the square [0, 1] × [−1, 0] in irregular cells, u prescribed on the left and below, tractions on
-the right.
+the right. Quadrilaterals of eight nodes are squares: in other cells than parallelograms they lose their
+order (D. N. Arnold, D. Boffi, R. S. Falk, *Approximation by quadrilateral finite elements*, Math. Comp.
+71 (2002)).
 ";
 
 const YOUNG: f64 = 200.0;
@@ -78,7 +80,8 @@ fn scene() -> String {
 
 fn solved(name: &str, n: usize) -> Measured {
     let blocks = Blocks::new().rectangle("block", [0.0, 1.0], [-1.0, 0.0], [n, n]);
-    let mesh = sort(name).of(&jittered(blocks.mesh, 0.1 / n as f64, 3));
+    let amount = if name == "quad8" { 0.0 } else { 0.1 };
+    let mesh = sort(name).of(&jittered(blocks.mesh, amount / n as f64, 3));
     let mut model = model(&scene(), mesh);
     let exact = exact();
     exact.load(&mut model, &[("block right", [1.0, 0.0])]);

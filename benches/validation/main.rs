@@ -1,0 +1,66 @@
+//! Scenes with exact answers, refined further than among the tests.
+//!
+//! `scripts/validate` runs it and writes docs/validation.md.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a suite that can't go on has failed"
+)]
+
+mod document;
+#[path = "../../tests/support/mod.rs"]
+mod support;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use support::validation::{Measured, cases};
+
+/// Compares solutions with exact answers on finer and finer meshes.
+#[derive(Parser)]
+struct Arguments {
+    /// Runs the cases alone whose titles contain this.
+    #[arg(long, value_name = "TEXT", conflicts_with = "markdown")]
+    only: Option<String>,
+    /// Writes the results as markdown.
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+    /// Cargo adds it.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let mut text = document::HEAD.to_owned();
+    let mut kept = true;
+    for case in cases() {
+        if (arguments.only.as_ref()).is_some_and(|only| !case.title.contains(only)) {
+            continue;
+        }
+        let ran: Vec<Vec<Measured>> = (case.families.iter())
+            .map(|family| family.measure(family.meshes[1]))
+            .collect();
+        let pairs = case.families.iter().zip(&ran);
+        let broken = pairs.flat_map(|(family, all)| {
+            let found = family.faults(all).into_iter();
+            found.map(|fault| format!("{}, {fault}", family.name))
+        });
+        let broken: Vec<String> = broken.collect();
+        let chapter = document::chapter(&case, &ran, &broken);
+        print!("{chapter}");
+        text += &chapter;
+        kept &= broken.is_empty();
+    }
+    if let Some(path) = &arguments.markdown {
+        std::fs::write(path, text).unwrap();
+    }
+    match kept {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
+    }
+}
