@@ -12,6 +12,7 @@ pub mod punch;
 pub mod signorini;
 pub mod uniform;
 
+use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::mesh::{Group, Mesh};
 use contact_dd_partition::model::Model;
 
@@ -22,6 +23,15 @@ use super::solver;
 /// The figure of the certificate that every answer has to keep, and what it is promised to be.
 const BACKWARD_ERROR: &str = "backward error";
 const CERTIFIED: Gate = Gate::AtMost(BACKWARD_ERROR, 1e-14);
+
+/// The kinds of cells of built-in scenes, by the names of [`super::sorts`].
+pub const KINDS: [(&str, ElementKind); 5] = [
+    ("triangle3", ElementKind::Triangle3),
+    ("quad4", ElementKind::Quad4),
+    ("triangle6", ElementKind::Triangle6),
+    ("quad8", ElementKind::Quad8),
+    ("quad9", ElementKind::Quad9),
+];
 
 /// A scene with an exact answer.
 pub struct Case {

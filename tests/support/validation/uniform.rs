@@ -1,6 +1,6 @@
 //! Fields that every mesh has exactly: uniform compression through contacts.
 
-use contact_dd_partition::element::ElementKind::{self, Quad4, Quad8, Quad9, Triangle3, Triangle6};
+use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::example;
 
 use super::super::blocks::{Blocks, jittered};
@@ -8,7 +8,7 @@ use super::super::scenes::model;
 use super::super::solution::Solution;
 use super::super::sorts::sort;
 use super::exact::Exact;
-use super::{Case, Family, Figure, Gate, measured, plain};
+use super::{Case, Family, Figure, Gate, KINDS, measured, plain};
 
 const PATCH: &str = "\
 Two blocks that meet in an inclined line, the same pressure p = 1 MPa from above and from the right:
@@ -96,8 +96,8 @@ pub fn patch() -> Case {
 
 /// Three contacts that meet.
 pub fn junction() -> Case {
-    let family = |kind: ElementKind| Family {
-        name: kind.name().into(),
+    let family = |(name, kind): (&str, ElementKind)| Family {
+        name: name.into(),
         run: Box::new(move |level| {
             let example = example::find("junction").unwrap();
             let mesh = example.mesh_of(kind, level as u32).unwrap();
@@ -109,10 +109,9 @@ pub fn junction() -> Case {
         meshes: [1, 2],
         gates: gates(),
     };
-    let kinds = [Triangle3, Quad4, Triangle6, Quad8, Quad9];
     Case {
         title: "Junction",
         text: JUNCTION,
-        families: kinds.into_iter().map(family).collect(),
+        families: KINDS.map(family).into(),
     }
 }
