@@ -12,6 +12,7 @@ pub mod local;
 pub mod merge;
 pub mod ordering;
 mod panel;
+mod partial;
 pub mod pattern;
 pub mod repeats;
 mod supernodes;

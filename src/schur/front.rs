@@ -1,14 +1,11 @@
 //! The dense part of a sparse factorization: the columns of a supernode and what they leave to the
 //! rows below.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
-use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Accum, MatMut, Par};
+use faer::{MatMut, Par};
 use pulp::{Arch, Simd, WithSimd};
 
 use super::columns::add_columns;
+use super::partial::partial_cholesky;
 
 /// Rows of a front up to which it is factorized four columns at a time in place; larger ones are
 /// left to faer's blocked algorithms.
@@ -34,42 +31,13 @@ pub(super) fn factorize(
             update,
         })
     } else {
-        blocked(panel, rows, columns, update, par)
+        let below = rows - columns;
+        partial_cholesky(
+            MatMut::from_column_major_slice_mut(panel, rows, columns),
+            MatMut::from_column_major_slice_mut(update, below, below),
+            par,
+        )
     }
-}
-
-fn blocked(
-    panel: &mut [f64],
-    rows: usize,
-    columns: usize,
-    update: &mut [f64],
-    par: Par,
-) -> Result<(), usize> {
-    let below = rows - columns;
-    let panel = MatMut::from_column_major_slice_mut(panel, rows, columns);
-    let (mut top, mut bottom) = panel.split_at_row_mut(columns);
-    let scratch = cholesky_in_place_scratch::<f64>(columns, par, Default::default());
-    cholesky_in_place(
-        top.as_mut(),
-        Default::default(),
-        par,
-        MemStack::new(&mut MemBuffer::new(scratch)),
-        Default::default(),
-    )
-    .map_err(|LltError::NonPositivePivot { index }| index)?;
-    solve_lower_triangular_in_place(top.as_ref(), bottom.as_mut().transpose_mut(), par);
-    triangular::matmul(
-        MatMut::from_column_major_slice_mut(update, below, below),
-        BlockStructure::TriangularLower,
-        Accum::Add,
-        bottom.as_ref(),
-        BlockStructure::Rectangular,
-        bottom.as_ref().transpose(),
-        BlockStructure::Rectangular,
-        -1.0,
-        par,
-    );
-    Ok(())
 }
 
 /// Columns that are eliminated together, so that what follows is read and written once for all.

@@ -8,12 +8,7 @@
 //!
 //! are dense: the multifrontal method of Duff and Reid, with the blocks as its leaves.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{
-    LltError, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
-};
 use faer::linalg::matmul::matmul;
-use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
@@ -21,6 +16,7 @@ use faer::{Accum, Mat, MatMut, Par};
 
 use super::condensed::Condensed;
 use super::local::CondensedLoad;
+use super::partial::partial_cholesky;
 use crate::fem::dofs::TraceDof;
 
 /// What a merge leaves behind for solving.
@@ -116,8 +112,7 @@ impl Merge {
             columns,
             places,
         };
-        merge
-            .eliminate(&mut s, par)
+        partial_cholesky(merge.columns.as_mut(), s.as_mut(), par)
             .map_err(|j| LooseTrace(gone[j]))?;
         for (j, d) in stiffness[..e].iter().enumerate() {
             smallest_pivot = smallest_pivot.min(merge.columns[(j, j)].powi(2) / d);
@@ -133,38 +128,6 @@ impl Merge {
             eliminated: eliminated_before + e,
         };
         Ok((merge, condensed, CondensedLoad::new(load, e)))
-    }
-
-    /// Factorizes A_EE and takes P Pᵀ off A_KK.
-    fn eliminate(&mut self, s: &mut Mat<f64>, par: Par) -> Result<(), usize> {
-        let (e, k) = (self.eliminated, s.nrows());
-        let (mut top, mut below) = self.columns.as_mut().split_at_row_mut(e);
-        let mut memory =
-            MemBuffer::new(cholesky_in_place_scratch::<f64>(e, par, Default::default()));
-        cholesky_in_place(
-            top.as_mut(),
-            LltRegularization::default(),
-            par,
-            MemStack::new(&mut memory),
-            Default::default(),
-        )
-        .map_err(|LltError::NonPositivePivot { index }| index)?;
-        if k == 0 {
-            return Ok(());
-        }
-        solve_lower_triangular_in_place(top.as_ref(), below.as_mut().transpose_mut(), par);
-        triangular::matmul(
-            s.as_mut(),
-            BlockStructure::TriangularLower,
-            Accum::Add,
-            below.as_ref(),
-            BlockStructure::Rectangular,
-            below.as_ref().transpose(),
-            BlockStructure::Rectangular,
-            -1.0,
-            par,
-        );
-        Ok(())
     }
 
     /// Condenses the loads on the children's boundaries, in their order.
