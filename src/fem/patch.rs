@@ -110,7 +110,9 @@ impl PatchSum {
             true => self.solve::<TERMS>(),
             false => None,
         };
-        let has_linear = self.is_inner() || self.gram[0] > LINEAR as f64;
+        // A quadratic cell alone has a linear stress; three linear ones have no better than a mean.
+        let enough = LINEAR as f64 + if self.cells.linear { 1.0 } else { 0.0 };
+        let has_linear = self.is_inner() || self.gram[0] >= enough;
         let linear = || match has_linear {
             true => self.solve::<LINEAR>(),
             false => None,
