@@ -10,8 +10,9 @@
 //! J. Daněk, *Use of MATLAB for domain decomposition method for contact problem in elasticity*.
 //!
 //! [`run`] is the whole solve on one page: every rank reads its own blocks ([`plan`], [`fem`]),
-//! looks for rigid motions that nothing holds ([`rigid`]), condenses them ([`schur`], [`contact`]);
-//! the root assembles and solves on Γ ([`interface`], [`sweep`]); the solution is checked against
+//! looks for rigid motions that nothing holds ([`rigid`]), condenses them ([`schur`], [`contact`]) and
+//! merges what belongs together up a tree of subdomains, the hierarchy of the problem file; the root
+//! assembles and solves what is left of Γ ([`interface`], [`sweep`]); the solution is checked against
 //! the full discrete problem ([`certificate`]) and written ([`output`]). Only [`comm`] knows MPI.
 
 pub mod certificate;
