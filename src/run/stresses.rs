@@ -1,7 +1,7 @@
-//! Stresses and the estimate of the mesh's error: what blocks share at nodes of Γ is summed up over
-//! all of them by the root.
+//! Stresses and the estimate of the mesh's error: what blocks know in parts of nodes on Γ goes to all
+//! ranks that share them.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 
 use contact_dd_partition::problem::Catalog;
 
@@ -86,7 +86,7 @@ pub fn stresses(
         Some((*b, (block, stress)))
     });
     let mut stresses: BTreeMap<usize, (&Block, BlockStress)> = found.collect();
-    let exchange = Exchange { comm, plan };
+    let exchange = Exchange::new(comm, catalog, plan);
     exchange.sum(
         &mut stresses,
         |recovery, _| (recovery.shared().map(|(place, patch)| (place, *patch))).collect(),
@@ -116,13 +116,42 @@ pub fn stresses(
     stresses.into_iter().filter_map(recover).collect()
 }
 
-/// The way of parts to the root and of their sums back.
+/// The way of parts to all ranks that share a node.
 struct Exchange<'a> {
     comm: &'a Comm,
-    plan: &'a Plan,
+    /// The ranks that share every node on Γ, ascending.
+    ranks: Vec<Vec<usize>>,
+    /// From rank to rank, where they share any.
+    ways: Vec<(usize, usize)>,
 }
 
-impl Exchange<'_> {
+/// A part: number on Γ, material, block.
+type Place = (u32, usize, usize);
+
+impl<'a> Exchange<'a> {
+    fn new(comm: &'a Comm, catalog: &Catalog, plan: &Plan) -> Self {
+        let mut ranks: Vec<Vec<usize>> = vec![Vec::new(); catalog.interface_nodes];
+        for (nodes, &block) in catalog.interface.iter().zip(&plan.block_of) {
+            let owner = plan.blocks[block].owner;
+            for &node in nodes {
+                let ranks = &mut ranks[node as usize];
+                if let Err(at) = ranks.binary_search(&owner) {
+                    ranks.insert(at, owner);
+                }
+            }
+        }
+        let pairs = ranks.iter().flat_map(|of_node| {
+            let to = move |&from: &usize| of_node.iter().map(move |&to| (from, to));
+            of_node.iter().flat_map(to)
+        });
+        let ways: BTreeSet<(usize, usize)> = pairs.filter(|(from, to)| from != to).collect();
+        Self {
+            comm,
+            ranks,
+            ways: ways.into_iter().collect(),
+        }
+    }
+
     /// Sums up what `parts` gives for places on the interface of every block, and hands the sums
     /// to `set`. Sums run in the order of blocks, whoever owns them. Collective.
     fn sum<P: Part>(
@@ -131,70 +160,69 @@ impl Exchange<'_> {
         parts: impl Fn(&Recovery, &Block) -> Vec<(usize, P)>,
         set: impl Fn(&mut Recovery, &Block, usize, P),
     ) {
-        let owners = self.plan.owners();
-        let of_block = |(&b, (block, stress)): (&usize, &(&Block, BlockStress))| {
-            let recoveries = stress.recoveries.iter();
-            let all: Vec<_> = recoveries.map(|recovery| parts(recovery, block)).collect();
-            (b, all)
-        };
-        let own: BTreeMap<usize, Vec<Vec<(usize, P)>>> = stresses.iter().map(of_block).collect();
-        let mut totals: HashMap<(i64, i64), P> = HashMap::new();
-        let mut asked: Vec<Vec<(i64, i64)>> = Vec::new();
-        self.comm.gather(
-            &owners,
-            |b| {
+        let mut all: Vec<(Place, P)> = Vec::new();
+        let mut own: Vec<Vec<usize>> = Vec::new();
+        for (&b, (block, stress)) in &*stresses {
+            for recovery in &stress.recoveries {
+                let mut places = Vec::new();
+                for (place, part) in parts(recovery, block) {
+                    let of_part = (block.interface[place].1, recovery.material(), b);
+                    places.push(place);
+                    all.push((of_part, part));
+                }
+                own.push(places);
+            }
+        }
+        let mine = all.len();
+        let mut arrived = Vec::new();
+        self.comm.route(
+            self.ways.iter().copied(),
+            |way| {
+                let to = self.ways[way].1;
                 let mut message = Message::default();
-                let Some((block, stress)) = stresses.get(&b) else {
-                    return message;
-                };
-                for (recovery, parts) in stress.recoveries.iter().zip(&own[&b]) {
-                    for (place, part) in parts {
-                        let node = i64::from(block.interface[*place].1);
-                        let material = recovery.material() as i64;
-                        message.integers.extend([node, material]);
+                for ((node, material, block), part) in &all[..mine] {
+                    if self.ranks[*node as usize].contains(&to) {
+                        let numbers = [i64::from(*node), *material as i64, *block as i64];
+                        message.integers.extend(numbers);
                         part.pack(&mut message.reals);
                     }
                 }
                 message
             },
             |_, message| {
-                let keys = message.integers.chunks(2).map(|k| (k[0], k[1]));
-                let keys: Vec<(i64, i64)> = keys.collect();
                 let mut reals = &message.reals[..];
-                for (key, part) in keys
-                    .iter()
-                    .zip(std::iter::from_fn(|| P::unpack(&mut reals)))
-                {
-                    (totals.entry(*key))
-                        .and_modify(|sum| sum.add(&part))
-                        .or_insert(part);
-                }
-                asked.push(keys);
+                let parts = std::iter::from_fn(|| P::unpack(&mut reals));
+                let places = message.integers.chunks(3);
+                let places = places.map(|n| (n[0] as u32, n[1] as usize, n[2] as usize));
+                arrived.extend(places.zip(parts));
             },
         );
-        self.comm.scatter(
-            &owners,
-            |b| {
-                let mut message = Message::default();
-                for total in asked[b].iter().filter_map(|key| totals.get(key)) {
-                    total.pack(&mut message.reals);
+        all.append(&mut arrived);
+        let mut order: Vec<usize> = (0..all.len()).collect();
+        order.sort_unstable_by_key(|&i| all[i].0);
+        let same = |&i: &usize, &j: &usize| (all[i].0.0, all[i].0.1) == (all[j].0.0, all[j].0.1);
+        let mut totals: Vec<P> = Vec::new();
+        let mut total_of = vec![0; all.len()];
+        for of_node in order.chunk_by(same) {
+            let mut total = all[of_node[0]].1.clone();
+            for &i in &of_node[1..] {
+                total.add(&all[i].1);
+            }
+            for &i in of_node {
+                total_of[i] = totals.len();
+            }
+            totals.push(total);
+        }
+        let mut next = total_of.into_iter();
+        let mut own = own.into_iter();
+        for (block, stress) in stresses.values_mut() {
+            for recovery in &mut stress.recoveries {
+                // Own parts come first, in this very order.
+                for (place, total) in own.next().into_iter().flatten().zip(&mut next) {
+                    set(recovery, block, place, totals[total].clone());
                 }
-                message
-            },
-            |b, message| {
-                let Some((block, stress)) = stresses.get_mut(&b) else {
-                    return;
-                };
-                let mut reals = &message.reals[..];
-                for (recovery, parts) in stress.recoveries.iter_mut().zip(&own[&b]) {
-                    for (place, _) in parts {
-                        if let Some(total) = P::unpack(&mut reals) {
-                            set(recovery, block, *place, total);
-                        }
-                    }
-                }
-            },
-        );
+            }
+        }
     }
 }
 
