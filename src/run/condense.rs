@@ -57,7 +57,7 @@ impl Condensation<'_> {
         let assembled = Instant::now();
         let (schur, s) = condensed
             .repeats
-            .factorize(owned.size(), &system.stiffness, dofs.interior, par)
+            .factorize(owned.shape(), &system.stiffness, dofs.interior, par)
             .map_err(|error| match error {
                 FactorError::Size => size(plan, number),
                 FactorError::Pivot(unknown) => moves(owned, &dofs, unknown, catalog),

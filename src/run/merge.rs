@@ -64,7 +64,7 @@ pub fn condense_clusters(
         condensation,
         blocks,
         condensed: CondensedBlocks {
-            repeats: Repeats::new(blocks.values().map(OwnedBlock::size)),
+            repeats: Repeats::new(blocks.values().map(OwnedBlock::shape)),
             ..CondensedBlocks::default()
         },
         waiting: BTreeMap::new(),

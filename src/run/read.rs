@@ -1,6 +1,7 @@
 //! Reading: every rank takes its own blocks from the problem file.
 
 use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
 
 use contact_dd_partition::problem::read::ProblemFile;
@@ -11,7 +12,7 @@ use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;
 use crate::plan::Plan;
-use crate::schur::repeats::BlockSize;
+use crate::schur::repeats::BlockShape;
 
 /// Most subdomains that are read at once: what HDF5 hands over is there twice for a while.
 const AT_ONCE: usize = 64;
@@ -28,14 +29,20 @@ pub struct OwnedBlock {
 }
 
 impl OwnedBlock {
-    /// How large it is.
-    pub fn size(&self) -> BlockSize {
-        let cells = self.block.members.iter().map(|member| member.cells.len());
-        BlockSize {
-            nodes: self.block.nodes(),
-            cells: cells.sum(),
+    /// What it has in common with blocks that are equal to it.
+    pub fn shape(&self) -> BlockShape {
+        let mut mesh = DefaultHasher::new();
+        let points = &self.block.points;
+        for (point, first) in points.iter().flat_map(|p| p.iter().zip(&points[0])) {
+            mesh.write_u64((point - first).to_bits());
+        }
+        for member in &self.block.members {
+            member.cells.connectivity().hash(&mut mesh);
+        }
+        BlockShape {
             interface: self.block.interface.len(),
             conditions: self.conditions.len(),
+            mesh: mesh.finish(),
         }
     }
 }

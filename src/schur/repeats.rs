@@ -9,18 +9,16 @@ use super::factor::FactorError;
 use super::local::LocalSchur;
 use super::pattern::SparseSymmetric;
 
-/// What equal blocks have in common, known before anything is assembled: numbers of nodes, cells,
-/// nodes on Γ and contact conditions.
+/// What equal blocks have in common, known before anything is assembled, so that no other block is
+/// kept for comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct BlockSize {
-    /// Nodes.
-    pub nodes: usize,
-    /// Cells.
-    pub cells: usize,
-    /// Nodes on Γ.
+pub struct BlockShape {
+    /// Number of nodes on Γ.
     pub interface: usize,
-    /// Contact conditions.
+    /// Number of contact conditions.
     pub conditions: usize,
+    /// Hash of where the nodes lie from the first one, and of the cells' nodes.
+    pub mesh: u64,
 }
 
 /// Factorizes blocks, those whose stiffness is the same bit for bit once.
@@ -29,8 +27,8 @@ pub struct BlockSize {
 /// differences of coordinates are free of round-off.
 #[derive(Debug, Default)]
 pub struct Repeats {
-    to_come: BTreeMap<BlockSize, usize>,
-    known: BTreeMap<BlockSize, Vec<Known>>,
+    to_come: BTreeMap<BlockShape, usize>,
+    known: BTreeMap<BlockShape, Vec<Known>>,
     /// Blocks that needed no factorization.
     pub found: usize,
 }
@@ -45,11 +43,11 @@ struct Known {
 }
 
 impl Repeats {
-    /// Expects blocks of these sizes.
-    pub fn new(sizes: impl Iterator<Item = BlockSize>) -> Self {
+    /// Expects blocks of these shapes.
+    pub fn new(shapes: impl Iterator<Item = BlockShape>) -> Self {
         let mut to_come = BTreeMap::new();
-        for size in sizes {
-            *to_come.entry(size).or_default() += 1;
+        for shape in shapes {
+            *to_come.entry(shape).or_default() += 1;
         }
         Self {
             to_come,
@@ -57,21 +55,21 @@ impl Repeats {
         }
     }
 
-    /// The factor and S of a block of this size, whose first `interior` unknowns are I.
+    /// The factor and S of a block of this shape, whose first `interior` unknowns are I.
     ///
     /// # Errors
     /// K_II isn't positive definite: the block can move with its boundary held.
     pub fn factorize(
         &mut self,
-        size: BlockSize,
+        shape: BlockShape,
         stiffness: &SparseSymmetric,
         interior: usize,
         par: Par,
     ) -> Result<(Arc<LocalSchur>, Mat<f64>), FactorError> {
-        let to_come = self.to_come.entry(size).or_insert(1);
+        let to_come = self.to_come.entry(shape).or_insert(1);
         *to_come = to_come.saturating_sub(1);
         let is_last = *to_come == 0;
-        let known = self.known.entry(size).or_default();
+        let known = self.known.entry(shape).or_default();
         let same = (known.iter()).find(|k| k.interior == interior && k.stiffness == *stiffness);
         let result = match same {
             Some(same) => {
@@ -93,7 +91,7 @@ impl Repeats {
             }
         };
         if is_last {
-            self.known.remove(&size);
+            self.known.remove(&shape);
         }
         Ok(result)
     }
