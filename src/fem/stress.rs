@@ -8,7 +8,7 @@ use contact_dd_partition::element::tabulation::TabulatedPoint;
 use contact_dd_partition::model::{Material, PlaneState};
 
 use super::block::{Block, BlockCell};
-use super::elasticity::{MAX_NODES, gradients, stiffness_points, strain, stress};
+use super::elasticity::{MAX_DOFS, MAX_NODES, gradients, stiffness_points, strain, stress};
 use super::estimate::{CellError, Compliance};
 use super::patch::{COMPONENTS, PatchSum};
 use super::recovery::{Recovery, corners};
@@ -52,7 +52,7 @@ impl BlockStress {
         patches.resize(block.nodes() * present.len(), PatchSum::default());
         let count = block.members.iter().map(|m| m.cells.len()).sum();
         let mut cells = Vec::with_capacity(count);
-        let mut local = LocalCell::default();
+        let mut local = LocalCell::empty();
         for cell in block.cells() {
             local.take(block, &cell, u);
             let material = &materials[cell.material];
@@ -72,9 +72,11 @@ impl BlockStress {
                 }
             }
         }
-        let recoveries = (present.into_iter().zip(patches.chunks(block.nodes())))
-            .map(|(material, patches)| Recovery::new(block, material, patches))
-            .collect();
+        let recoveries = (present
+            .into_iter()
+            .zip(patches.chunks(block.nodes().max(1))))
+        .map(|(material, patches)| Recovery::new(block, material, patches))
+        .collect();
         Self { cells, recoveries }
     }
 
@@ -86,7 +88,7 @@ impl BlockStress {
             .map(|recovery| recovery.at_nodes(block))
             .collect();
         let mut errors = Vec::with_capacity(self.cells.len());
-        let mut local = LocalCell::default();
+        let mut local = LocalCell::empty();
         let mut recovered = Vec::with_capacity(MAX_NODES);
         let compliances: Vec<Compliance> = (present.iter())
             .map(|&material| Compliance::new(&materials[material]))
@@ -142,16 +144,24 @@ impl RecoveredStress {
 }
 
 /// A cell with its coordinates and displacements.
-#[derive(Default)]
 struct LocalCell {
-    kind: Option<ElementKind>,
+    kind: ElementKind,
     points: Vec<[f64; 3]>,
     u: Vec<f64>,
 }
 
 impl LocalCell {
+    /// Room for a cell.
+    fn empty() -> Self {
+        Self {
+            kind: ElementKind::Triangle3,
+            points: Vec::with_capacity(MAX_NODES),
+            u: Vec::with_capacity(MAX_DOFS),
+        }
+    }
+
     fn take(&mut self, block: &Block, cell: &BlockCell<'_>, u: &[f64]) {
-        self.kind = Some(cell.kind);
+        self.kind = cell.kind;
         self.points.clear();
         self.u.clear();
         for node in cell.nodes().map(|node| node as usize) {
@@ -163,11 +173,7 @@ impl LocalCell {
     /// The mean stress.
     fn mean(&self, material: &Material, plane: PlaneState) -> [f64; 6] {
         let (mut sum, mut area) = ([0.0; 6], 0.0);
-        for point in self
-            .kind
-            .into_iter()
-            .flat_map(|kind| stiffness_points(kind, &self.points))
-        {
+        for point in stiffness_points(self.kind, &self.points) {
             let sigma = stress(material, plane, &strain(&point, &self.u));
             for (sum, s) in sum.iter_mut().zip(sigma) {
                 *sum += point.weight * s;
@@ -196,15 +202,12 @@ impl LocalCell {
 
     /// The angle between the edges at a corner (rad).
     fn angle(&self, corner: usize) -> f64 {
-        let Some(kind) = self.kind else {
-            return 0.0;
-        };
-        let corners = kind.corners();
+        let corners = self.kind.corners();
         let vertex = self.points[corner];
         let tangent = |other: usize, middle: usize| {
             let end = self.points[other];
             let way = [0, 1].map(|k| end[k] - vertex[k]);
-            match kind.is_linear() {
+            match self.kind.is_linear() {
                 true => way,
                 // The derivative at the end of a parabola through three points.
                 false => [0, 1].map(|k| 4.0 * (self.points[middle][k] - vertex[k]) - way[k]),
