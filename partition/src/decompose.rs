@@ -100,10 +100,9 @@ fn suitable(model: &Model, atoms: &Atoms, units: &Units) -> usize {
         few => few,
     };
     let outside = dofs * atoms.outside() / model.mesh.cells.len();
-    let for_speed = if dofs > SMALL {
-        outside.div_ceil(DOFS)
-    } else {
-        0
-    } + atoms.graph.clusters();
+    let for_speed = match dofs > SMALL {
+        true => outside.div_ceil(DOFS) + atoms.graph.clusters(),
+        false => 1,
+    };
     for_speed.max(with_contact).max(with_materials)
 }
