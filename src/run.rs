@@ -10,11 +10,11 @@ mod descend;
 pub mod frozen;
 pub mod interface;
 pub mod merge;
+mod reactions;
 pub mod read;
 pub mod recover;
 pub mod refine;
 mod report;
-mod resultants;
 pub mod settle;
 mod stresses;
 pub mod substitute;
@@ -33,11 +33,11 @@ use self::descend::{take_out_descent, with_descent};
 use self::frozen::{Frozen, FrozenRoot};
 use self::interface::assemble_interface;
 use self::merge::condense_clusters;
+use self::reactions::reactions;
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
 use self::refine::refine;
 use self::report::{Narrator, Totals};
-use self::resultants::resultants;
 use self::settle::{settle_free_motions, settle_loose_motions};
 use self::stresses::{error_estimate, stresses};
 use self::substitute::Factors;
@@ -47,6 +47,7 @@ use crate::contact::s_con::SCon;
 use crate::error::Failure;
 use crate::output::progress::Progress;
 use crate::output::report::PhaseSeconds;
+use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
 use crate::rigid::survey::survey;
@@ -171,7 +172,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         true => None,
         false => condition_number(&frozen, &solutions),
     };
-    let resultants = resultants(&frozen, &solutions);
+    let reactions = reactions(&frozen, &solutions);
     let stress = (!settings.no_stress).then(|| stresses(comm, &blocks, &solutions, catalog, &plan));
     let estimate = (stress.as_ref()).map(|stress| error_estimate(comm, stress, &plan));
     let displacement = with_descent(&blocks, &solutions, &survey, catalog.dim);
@@ -188,7 +189,9 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         displacement: &displacement,
         stress: stress.as_ref(),
     };
-    let written = write_solution(comm, &blocks, fields, &plan, output.as_mut());
+    let mut resultants = Resultants::new(catalog, reactions);
+    let contacts = &mut resultants.contacts;
+    let written = write_solution(comm, &blocks, fields, &plan, output.as_mut(), contacts);
     comm.agree(written.map_err(Failure::from))?;
     seconds.write = lap.elapsed().as_secs_f64();
     seconds.total = began.elapsed().as_secs_f64();

@@ -2,7 +2,10 @@
 
 use std::io::{Result, Write};
 
+use contact_dd_partition::problem::Catalog;
 use serde::Serialize;
+
+use super::result::ContactResult;
 
 /// Most lines that are printed; the report has all.
 const LINES: usize = 12;
@@ -36,11 +39,20 @@ pub struct ContactResultant {
     pub conditions: usize,
     /// Number of those that are closed.
     pub closed: usize,
-    /// What acts on side a, on its undeformed positions.
+    /// What acts on side a, at the positions of its conditions.
     #[serde(flatten)]
     pub resultant: Resultant,
     /// Largest contact pressure (Pa).
     pub largest_pressure: f64,
+}
+
+impl ContactResultant {
+    /// Adds what a condition carries.
+    pub fn add(&mut self, row: &ContactResult) {
+        self.closed += usize::from(row.closed);
+        (self.resultant).add(row.position, row.normal.map(|n| -row.force * n));
+        self.largest_pressure = self.largest_pressure.max(row.pressure);
+    }
 }
 
 /// What a condition that prescribes displacements exerts on the bodies.
@@ -60,6 +72,21 @@ pub struct Resultants {
     pub contacts: Vec<ContactResultant>,
     /// Reactions: displacement conditions, then bilateral ones.
     pub reactions: Vec<Reaction>,
+}
+
+impl Resultants {
+    /// Contacts of a problem that carry nothing yet, and reactions.
+    pub fn new(catalog: &Catalog, reactions: Vec<Reaction>) -> Self {
+        let contacts = catalog.contacts.iter().map(|contact| ContactResultant {
+            name: contact.name.clone(),
+            conditions: contact.conditions,
+            ..ContactResultant::default()
+        });
+        Self {
+            contacts: contacts.collect(),
+            reactions,
+        }
+    }
 }
 
 /// Prints contacts and reactions.

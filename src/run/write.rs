@@ -12,6 +12,7 @@ use super::recover::BlockSolution;
 use super::stresses::Stress;
 use crate::comm::{Comm, Message, ROOT};
 use crate::output::result::{ContactResult, SubdomainResults};
+use crate::output::resultants::ContactResultant;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
 
@@ -29,6 +30,8 @@ pub struct Fields<'a> {
 /// Streams all subdomains and contact rows to the root, which writes a slab of subdomains as soon
 /// as it is complete. Collective; `file` is the root's.
 ///
+/// On the root the conditions are added up to `contacts` on their way.
+///
 /// The slabs don't depend on who owns what: the same calls write the same numbers on any ranks.
 ///
 /// # Errors
@@ -39,6 +42,7 @@ pub fn write_solution(
     fields: Fields<'_>,
     plan: &Plan,
     mut file: Option<&mut ResultFile>,
+    contacts: &mut [ContactResultant],
 ) -> Result<(), OutputError> {
     let slabs = file.as_ref().map_or(Vec::new(), |file| file.slabs());
     let mut failed = Ok(());
@@ -84,6 +88,9 @@ pub fn write_solution(
         },
         |_, message| {
             let rows = unpack_contacts(message);
+            for row in &rows {
+                contacts[row.contact].add(row);
+            }
             write(&mut |file| file.write_contacts(&rows));
         },
     );

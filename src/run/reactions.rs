@@ -1,0 +1,62 @@
+//! Reactions: what supports carry.
+
+use std::collections::BTreeMap;
+
+use super::frozen::Frozen;
+use super::recover::BlockSolution;
+use super::refine::balance;
+use crate::comm::Message;
+use crate::fem::node_frames::supports;
+use crate::output::resultants::{Reaction, Resultant};
+
+/// What every condition that prescribes displacements exerts on the bodies; on the root it is that
+/// of the whole solution. Collective.
+pub fn reactions(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Vec<Reaction> {
+    let names = frozen.catalog.supports.iter();
+    let mut reactions: Vec<Reaction> = names
+        .map(|support| Reaction {
+            support: support.clone(),
+            resultant: Resultant::default(),
+        })
+        .collect();
+    frozen.comm.gather(
+        &frozen.plan.owners(),
+        |b| match solutions.get(&b) {
+            Some(solution) => of_block(frozen, b, solution),
+            None => Message::default(),
+        },
+        |_, message| {
+            for (&condition, r) in message.integers.iter().zip(message.reals.chunks(6)) {
+                let reaction = &mut reactions[condition as usize];
+                (reaction.resultant).add([r[0], r[1], r[2]], [r[3], r[4], r[5]]);
+            }
+        },
+    );
+    reactions
+}
+
+/// For every support its condition, its position and the reaction.
+fn of_block(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Message {
+    let mut message = Message::default();
+    let Some(owned) = frozen.blocks.get(&b) else {
+        return message;
+    };
+    let held = supports(&owned.block);
+    if held.is_empty() {
+        return message;
+    }
+    let dim = owned.block.dim;
+    let residual = balance(frozen, b, solution).map_or_else(Vec::new, |b| b.residual);
+    for support in held {
+        let residual = residual
+            .get(dim * support.node as usize..)
+            .unwrap_or_default();
+        let along: f64 = (residual.iter().zip(&support.direction[..dim]))
+            .map(|(r, d)| r * d)
+            .sum();
+        message.integers.push(i64::from(support.condition));
+        (message.reals).extend(owned.block.points[support.node as usize]);
+        (message.reals).extend(support.direction.map(|d| -along * d));
+    }
+    message
+}
