@@ -10,6 +10,7 @@
 pub mod analysis;
 mod columns;
 mod descent;
+mod description;
 pub mod energy;
 mod inner;
 mod kinematics;

@@ -159,9 +159,14 @@ impl GapProblem<'_> {
         let mut fewest = usize::MAX;
         let mut patience = PATIENCE;
         let mut steps = 0;
+        let mut center = self.center.to_vec();
         loop {
             steps += 1;
-            let trial = self.linear(open);
+            let trial = GapProblem {
+                center: &center,
+                ..*self
+            }
+            .linear(open);
             self.open_idle(open, &trial);
             let wrong = self.wrong_signs(open, &trial);
             if wrong.len() < fewest {
@@ -173,6 +178,10 @@ impl GapProblem<'_> {
             let stuck = patience == 0 && !single_flips;
             if wrong.is_empty() || stuck || steps >= limit {
                 return self.solution(&trial, steps, wrong.is_empty());
+            }
+            // What opening these conditions leaves without hold stays where it was within its gaps.
+            if !wrong.iter().any(|&j| open[j]) {
+                center.clone_from(&trial.approaches);
             }
             let flips = if patience > 0 {
                 &wrong[..]

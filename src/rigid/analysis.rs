@@ -152,18 +152,21 @@ impl Kinematics {
 
     /// Pins the free motions, the columns of `free`, and says so.
     fn fix(&self, bodies: &[BodyState], names: &[String], free: &DMatrix<f64>) -> RigidMotions {
-        let mut motions = RigidMotions::default();
-        for column in free.column_iter() {
-            let x = column.into_owned();
-            motions.warnings.push(format!(
-                "nothing holds {}; without load along it, this motion is fixed so that the mean \
-                 displacement has no component along it",
-                self.described(bodies, names, &x)
-            ));
-            motions.free.push(self.motion(&x));
+        let columns = free.column_iter();
+        let motions: Vec<FreeMotion> = columns.map(|x| self.motion(&x.into_owned())).collect();
+        let fixed = |what: &String| {
+            format!(
+                "nothing holds {what}; without load along it, this is fixed so that the mean \
+                 displacement has no component along it"
+            )
+        };
+        RigidMotions {
+            warnings: (self.described(bodies, names, &motions).iter())
+                .map(fixed)
+                .collect(),
+            pins: self.pins(bodies, free),
+            free: motions,
         }
-        motions.pins = self.pins(bodies, free);
-        motions
     }
 
     /// Motion `x` body by body.
@@ -174,25 +177,6 @@ impl Kinematics {
                 .filter(|(_, z)| z.iter().any(|z| z.abs() > 1e-12))
                 .collect(),
         }
-    }
-
-    /// Motion `x` in words.
-    pub(super) fn described(
-        &self,
-        bodies: &[BodyState],
-        names: &[String],
-        x: &DVector<f64>,
-    ) -> String {
-        let motion = self.motion(x);
-        let taking_part = motion.bodies.iter();
-        let words: Vec<String> = taking_part
-            .filter(|(_, z)| z.iter().any(|z| z.abs() > 1e-6))
-            .map(|(b, z)| {
-                let how = bodies[*b].frame.describe(self.dim, z);
-                format!("'{}' ({how})", names[*b])
-            })
-            .collect();
-        words.join(", ")
     }
 
     /// As many components of candidate nodes as there are free motions, chosen one after the other

@@ -44,21 +44,21 @@ impl Scene {
         }
         let found = null_space(&resisted);
         let mut motions = free.to_vec();
-        let mut warnings = Vec::new();
         let mut columns = known;
         for x in found.column_iter() {
             let x = x.into_owned();
             motions.push(kinematics.motion(&x));
-            let what = kinematics.described(&self.bodies, &self.names, &x);
-            warnings.push(format!("no contact force holds {what}"));
             columns.push(x);
         }
+        let loose = kinematics.described(&self.bodies, &self.names, &motions[free.len()..]);
         let z = DMatrix::from_fn(kinematics.len, columns.len(), |i, k| columns[k][i]);
         LooseMotions {
             motions,
             rows: b.select_rows(&idle) * z,
             gaps: idle.iter().map(|&j| gaps[j].max(0.0)).collect(),
-            warnings,
+            warnings: (loose.iter())
+                .map(|what| format!("no contact force holds {what}"))
+                .collect(),
         }
     }
 }

@@ -189,9 +189,8 @@ fn shrunk_rings_press_on_each_other_as_lame_says_and_turn_freely() {
         }
         // Three motions of both and one against the other.
         let warnings = solution.report["warnings"].as_array().unwrap();
-        let free = warnings
-            .iter()
-            .filter(|warning| warning.as_str().unwrap().starts_with("nothing holds"));
-        assert_eq!(free.count(), 4, "{warnings:#?}");
+        let free = "nothing holds 4 rigid motions of 'inner', 'outer';";
+        let mut texts = warnings.iter().filter_map(|warning| warning.as_str());
+        assert!(texts.any(|text| text.starts_with(free)), "{warnings:#?}");
     }
 }
