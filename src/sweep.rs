@@ -96,6 +96,8 @@ pub struct SweepOutcome {
     pub notes: Vec<String>,
     /// Linear systems solved in contact problems, those of single pairs and the coupled one.
     pub inner_steps: usize,
+    /// Evaluations of pairs, and how many more weren't made because nothing had changed.
+    pub evaluations: [usize; 2],
     /// Which other methods had to help, in words.
     pub fallbacks: Vec<String>,
     /// The residual that is left in the end.
@@ -137,6 +139,7 @@ pub struct Sweeps<'a, 'c> {
     records: Vec<SweepRecord>,
     notes: Vec<String>,
     inner_steps: usize,
+    evaluations: [usize; 2],
     fallbacks: Vec<String>,
     observer: &'a mut dyn FnMut(&SweepRecord),
 }
@@ -167,6 +170,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             records: Vec::new(),
             notes: Vec::new(),
             inner_steps: 0,
+            evaluations: [0; 2],
             fallbacks: Vec::new(),
             observer,
         };
@@ -189,6 +193,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             records: sweeps.records,
             notes: sweeps.notes,
             inner_steps: sweeps.inner_steps,
+            evaluations: sweeps.evaluations,
             fallbacks: sweeps.fallbacks,
             residual: last.relative,
             totals: last.totals,
@@ -199,6 +204,8 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     fn residual(&mut self, u: &[f64], expected: Option<&[Vec<bool>]>) -> Residual {
         let totals = (self.s_con).evaluate(self.interface, u, expected, &mut self.state);
         self.inner_steps += totals.steps;
+        self.evaluations[0] += self.s_con.len() - totals.unmoved_pairs;
+        self.evaluations[1] += totals.unmoved_pairs;
         if totals.fallen_back_pairs > 0 {
             self.fell_back("pairs: the interior-point method named the closed contacts");
         }
@@ -287,6 +294,7 @@ mod tests {
             records: Vec::new(),
             notes: Vec::new(),
             inner_steps: 0,
+            evaluations: [0; 2],
             fallbacks: Vec::new(),
             residual: 0.0,
             totals: ConTotals::default(),

@@ -40,6 +40,14 @@ fn granite_is_the_monolithic_solution() {
 }
 
 #[test]
+fn pairs_are_not_evaluated_again_where_nothing_changed() {
+    let report = solve(&built_in_model("granite", 0), 8).report;
+    let skipped = report["skipped"].as_array().unwrap();
+    let mut texts = skipped.iter().filter_map(|text| text.as_str());
+    assert!(texts.any(|text| text.starts_with("updates of pairs: ")));
+}
+
+#[test]
 fn jittered_and_shuffled_granite_is_the_monolithic_solution() {
     let (text, mesh) = built_in("granite", 0);
     let (mesh, _) = shuffled(&jittered(mesh, 0.03, 5), 6);

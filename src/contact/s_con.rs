@@ -34,6 +34,8 @@ pub struct ConTotals {
     pub fallen_back_pairs: usize,
     /// Pairs whose small problem didn't converge.
     pub failed_pairs: usize,
+    /// Pairs that weren't asked: their traces are those of the evaluation before.
+    pub unmoved_pairs: usize,
 }
 
 const STOP: i64 = 0;
@@ -90,7 +92,10 @@ impl<'a> SCon<'a> {
         self.ask(EVALUATE, &moved, question, |p, message| {
             state.responses[p] = unpack(message);
         });
-        let mut totals = ConTotals::default();
+        let mut totals = ConTotals {
+            unmoved_pairs: n - moved.len(),
+            ..ConTotals::default()
+        };
         for (p, response) in state.responses.iter().enumerate() {
             totals.active += response.open.iter().filter(|&&open| !open).count();
             totals.failed_pairs += usize::from(!response.converged);

@@ -327,6 +327,13 @@ fn skipped(totals: &Totals<'_>) -> Vec<String> {
             totals.plan.blocks.len()
         ));
     }
+    let [made, unmade] = totals.outcome.evaluations;
+    if unmade > 0 {
+        skipped.push(format!(
+            "updates of pairs: {unmade} of {}, their traces hadn't changed",
+            made + unmade
+        ));
+    }
     if totals.estimate.is_none() {
         skipped.push("stresses: left out by --no-stress".into());
     }
