@@ -10,6 +10,7 @@ mod descend;
 pub mod frozen;
 pub mod interface;
 pub mod merge;
+pub mod motions;
 mod reactions;
 pub mod read;
 pub mod recover;
@@ -33,6 +34,7 @@ use self::descend::{take_out_descent, with_descent};
 use self::frozen::{Frozen, FrozenRoot};
 use self::interface::assemble_interface;
 use self::merge::condense_clusters;
+use self::motions::Motions;
 use self::reactions::reactions;
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
@@ -158,13 +160,17 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         catalog,
         plan: &plan,
         descent: survey.longest_descent(),
+        free: Motions {
+            list: &survey.motions.free,
+            frames: &survey.frames,
+        },
         root: root.map(|(outcome, (numbering, interface))| FrozenRoot {
             numbering,
             interface,
             converged: outcome.status == SweepStatus::Converged,
         }),
     };
-    settle_free_motions(&frozen, &survey, &mut solutions);
+    settle_free_motions(&frozen, &mut solutions);
     let mut certificate = refine(&frozen, &mut solutions);
     let settled = settle_loose_motions(&frozen, &survey, &mut solutions, &mut certificate);
     // What is loose has no stiffness that could be compared.

@@ -203,6 +203,37 @@ fn a_body_that_may_slide_stays_in_the_mean_and_a_warning_says_so() {
     }
 }
 
+/// What is left of forces along the motion that both are free in has to lie somewhere.
+#[test]
+fn round_off_along_a_free_motion_is_left_at_no_single_node() {
+    for n in [36, 48, 52, 56] {
+        let blocks = Blocks::new()
+            .rectangle("lower", [0.0, 1.0], [0.0, 1.0], [n, n])
+            .rectangle("upper", [0.0, 1.0], [1.0, 2.0], [n, n]);
+        let text = format!(
+            "plane = 'strain'
+            materials.rock = {{young = 20e9, poisson = 0.22}}
+            bodies.lower.material = 'rock'
+            bodies.upper.material = 'rock'
+            [[bilateral]]
+            on = ['lower left', 'upper left']
+            [[pressure]]
+            on = ['lower bottom', 'upper top']
+            value = '1e6*(1.2-x^2)'
+            {JOINT}"
+        );
+        let model = model(&text, blocks.mesh);
+        for count in [2, 6] {
+            let solution = solve(&model, count);
+            let equilibrium = solution.report["certificate"]["equilibrium"].as_f64();
+            assert!(
+                equilibrium.is_some_and(|e| e < 4e-15),
+                "{n}: {equilibrium:?}"
+            );
+        }
+    }
+}
+
 /// A square that stands on its corner on top of a block.
 fn on_its_tip() -> Model {
     let corners = [[0.0, 0.0], [1.0, 1.0], [0.0, 2.0], [-1.0, 1.0]];

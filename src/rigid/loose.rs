@@ -109,7 +109,9 @@ mod tests {
     /// A displacement of one node along two motions, x and y.
     fn products(u: [f64; 2]) -> MotionProducts {
         let mut products = MotionProducts::zeros(2);
-        products.add_node(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &u);
+        let moves = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        products.add_node(&moves);
+        products.add_value(&moves, &u);
         products
     }
 

@@ -1,14 +1,14 @@
-//! Taking the free rigid motions out of a displacement.
+//! Taking rigid motions out of a field on nodes, of displacements or of forces.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Sums over nodes of the products of free motions with each other and with the displacement.
+/// Sums over nodes of the products of rigid motions with each other and with a field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionProducts {
     /// Σ z_i·z_j.
     pub gram: Vec<f64>,
-    /// Σ z_i·u.
-    pub displacement: Vec<f64>,
+    /// Σ z_i·v.
+    pub field: Vec<f64>,
 }
 
 impl MotionProducts {
@@ -16,19 +16,24 @@ impl MotionProducts {
     pub fn zeros(n: usize) -> Self {
         Self {
             gram: vec![0.0; n * n],
-            displacement: vec![0.0; n],
+            field: vec![0.0; n],
         }
     }
 
-    /// Adds a node at which the motions displace by `moves` and the solution by `u`.
-    pub fn add_node(&mut self, moves: &[[f64; 3]], u: &[f64]) {
+    /// Adds a node that the motions displace by `moves`.
+    pub fn add_node(&mut self, moves: &[[f64; 3]]) {
         let n = moves.len();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         for i in 0..n {
-            self.displacement[i] += dot(&moves[i], u);
             for j in 0..n {
                 self.gram[i * n + j] += dot(&moves[i], &moves[j]);
             }
+        }
+    }
+
+    /// Adds a value `v` of the field at such a node.
+    pub fn add_value(&mut self, moves: &[[f64; 3]], v: &[f64]) {
+        for (sum, z) in self.field.iter_mut().zip(moves) {
+            *sum += dot(z, v);
         }
     }
 
@@ -37,20 +42,25 @@ impl MotionProducts {
         for (a, b) in self.gram.iter_mut().zip(&other.gram) {
             *a += b;
         }
-        for (a, b) in self.displacement.iter_mut().zip(&other.displacement) {
+        for (a, b) in self.field.iter_mut().zip(&other.field) {
             *a += b;
         }
     }
 
-    /// How much of each motion the displacement has.
+    /// How much of each motion the field has.
     pub fn coefficients(&self) -> Vec<f64> {
-        let n = self.displacement.len();
+        let n = self.field.len();
         let gram = DMatrix::from_row_slice(n, n, &self.gram);
-        let rhs = DVector::from_column_slice(&self.displacement);
+        let rhs = DVector::from_column_slice(&self.field);
         gram.svd(true, true)
             .solve(&rhs, 1e-14)
             .map_or_else(|_| vec![0.0; n], |x| x.iter().copied().collect())
     }
+}
+
+/// Over the components that both have.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
@@ -64,7 +74,8 @@ mod tests {
         let u = [[0.3, 0.1], [-0.2, 0.7], [1.0, 0.4]];
         let mut products = MotionProducts::zeros(2);
         for (x, u) in nodes.iter().zip(&u) {
-            products.add_node(&moves(x), u);
+            products.add_node(&moves(x));
+            products.add_value(&moves(x), u);
         }
         let c = products.coefficients();
         for motion in 0..2 {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use contact_dd_partition::problem::Catalog;
 
 use super::merge::CondensedBlocks;
+use super::motions::Motions;
 use super::read::OwnedBlock;
 use super::substitute::Factors;
 use crate::comm::{Comm, Message};
@@ -29,6 +30,8 @@ pub struct Frozen<'a> {
     pub plan: &'a Plan,
     /// The longest way of a body to rest (m).
     pub descent: f64,
+    /// Motions that are free whatever the contacts do; springs at pins hold them.
+    pub free: Motions<'a>,
     /// What the root holds besides.
     pub root: Option<FrozenRoot<'a>>,
 }

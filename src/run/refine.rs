@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::frozen::{BlockLoad, Frozen};
+use super::motions::Field;
 use super::recover::BlockSolution;
 use crate::certificate::{BlockCheck, certificate};
 use crate::comm::Message;
@@ -111,13 +112,22 @@ fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Cer
     }
 }
 
-/// Adds the solution of the linear problem whose load is what `solutions` leave unbalanced.
+/// Adds the solution of the linear problem whose load is what `solutions` leave unbalanced. What of it
+/// drives a free motion no displacement can balance: it is round-off, of loads and of stiffnesses that
+/// are 0 along the motion but for theirs. It is left on all nodes that move, where it is least; the
+/// springs at the motions' pins would bear it each at one node.
 fn correct(frozen: &Frozen<'_>, solutions: &mut BTreeMap<usize, BlockSolution>) {
+    let residual = |(&b, solution): (&usize, &BlockSolution)| {
+        Some((b, balance(frozen, b, solution)?.residual))
+    };
+    let mut residuals: BTreeMap<usize, Vec<f64>> = solutions.iter().filter_map(residual).collect();
+    let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
+    frozen.free.project(frozen, Field::Summed, fields);
     let unbalanced = |(&b, solution): (&usize, &BlockSolution)| {
         let dofs = frozen.condensed.dofs.get(&b)?;
         let owned = frozen.blocks.get(&b)?;
         let mut load = vec![0.0; dofs.len()];
-        dofs.add_load(&balance(frozen, b, solution)?.residual, &mut load);
+        dofs.add_load(residuals.get(&b)?, &mut load);
         let missing = (owned.conditions.iter())
             .map(|condition| condition.gap_left(owned.block.dim, &solution.u))
             .collect();

@@ -2,18 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::problem::{Catalog, Subdomain};
-
 use super::descend::with_descent;
 use super::frozen::Frozen;
+use super::motions::{Field, Motions};
 use super::recover::BlockSolution;
 use super::refine::{balance, replace_if_as_good};
 use crate::comm::Message;
 use crate::output::report::Certificate;
-use crate::rigid::analysis::FreeMotion;
 use crate::rigid::loose::LooseMotions;
 use crate::rigid::motion::BodyFrame;
-use crate::rigid::projection::MotionProducts;
 use crate::rigid::survey::{Survey, pack_motions, unpack_motions};
 
 /// A contact force, relative to the terms of the equilibrium at its nodes, that is round-off.
@@ -24,26 +21,9 @@ const OPENED: f64 = 1e-13;
 /// Makes the displacement of all blocks, node by node, orthogonal to every motion that is free
 /// whatever the contacts do, in the Euclidean sense over the nodes of the bodies that take part.
 /// Collective.
-pub fn settle_free_motions(
-    frozen: &Frozen<'_>,
-    survey: &Survey,
-    solutions: &mut BTreeMap<usize, BlockSolution>,
-) {
-    let motions = Motions {
-        list: &survey.motions.free,
-        frames: &survey.frames,
-    };
-    if motions.list.is_empty() {
-        return;
-    }
+pub fn settle_free_motions(frozen: &Frozen<'_>, solutions: &mut BTreeMap<usize, BlockSolution>) {
     let displacement = solutions.iter_mut().map(|(&b, s)| (b, &mut s.u)).collect();
-    let products = motions.products(frozen, &displacement);
-    let mut coefficients = Message::default();
-    if frozen.root.is_some() {
-        coefficients.reals = products.coefficients();
-    }
-    frozen.comm.broadcast(&mut coefficients);
-    motions.take_out(frozen, &coefficients.reals, displacement);
+    frozen.free.project(frozen, Field::Shared, displacement);
 }
 
 /// What settling loose motions came to.
@@ -121,6 +101,7 @@ fn move_nearer(
     };
     let products = motions.products(
         frozen,
+        Field::Shared,
         &displacement.iter_mut().map(|(&b, u)| (b, u)).collect(),
     );
     let mut coefficients = Message::default();
@@ -129,9 +110,9 @@ fn move_nearer(
     }
     frozen.comm.broadcast(&mut coefficients);
     let all = solutions.iter_mut().map(|(&b, s)| (b, &mut s.u)).collect();
-    motions.take_out(frozen, &coefficients.reals, all);
+    motions.take_out(frozen, Field::Shared, &coefficients.reals, all);
     let mut settled = Settled {
-        is_loose: list.len() > survey.motions.free.len(),
+        is_loose: list.len() > frozen.free.list.len(),
         ..Settled::default()
     };
     frozen.comm.gather(
@@ -210,126 +191,4 @@ fn conditions(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option
         message.reals.push(condition.gap_left(dim, &solution.u));
     }
     Some(message)
-}
-
-/// Rigid motions of the bodies.
-#[derive(Clone, Copy)]
-struct Motions<'a> {
-    list: &'a [FreeMotion],
-    frames: &'a [BodyFrame],
-}
-
-impl Motions<'_> {
-    /// Their products with each other and with `displacement`, on the root. Collective.
-    fn products(
-        &self,
-        frozen: &Frozen<'_>,
-        displacement: &BTreeMap<usize, &mut Vec<f64>>,
-    ) -> MotionProducts {
-        let Frozen {
-            comm,
-            blocks,
-            catalog,
-            plan,
-            ..
-        } = *frozen;
-        let (count, dim) = (self.list.len(), catalog.dim);
-        let first_of = first_subdomains(catalog);
-        let owners: Vec<usize> = (plan.block_of.iter())
-            .map(|&b| plan.blocks[b].owner)
-            .collect();
-        let mut total = MotionProducts::zeros(count);
-        comm.gather(
-            &owners,
-            |s| {
-                let mut products = MotionProducts::zeros(count);
-                let b = plan.block_of[s];
-                if let (Some(owned), Some(u)) = (blocks.get(&b), displacement.get(&b))
-                    && let Some(m) = owned.block.member(s)
-                {
-                    let member = &owned.block.members[m];
-                    let elsewhere = counted_elsewhere(member, &first_of);
-                    for (local, &node) in owned.block.node_of[m].iter().enumerate() {
-                        if !elsewhere[local] {
-                            let moves = self.at(dim, member.body, &member.points[local]);
-                            let start = node as usize * dim;
-                            products.add_node(&moves, &u[start..start + dim]);
-                        }
-                    }
-                }
-                Message {
-                    integers: Vec::new(),
-                    reals: [products.gram, products.displacement].concat(),
-                }
-            },
-            |_, message| {
-                let (gram, displacement) = message.reals.split_at(count * count);
-                total.add(&MotionProducts {
-                    gram: gram.to_vec(),
-                    displacement: displacement.to_vec(),
-                });
-            },
-        );
-        total
-    }
-
-    /// u ← u − Σ c z.
-    fn take_out(
-        &self,
-        frozen: &Frozen<'_>,
-        coefficients: &[f64],
-        displacement: BTreeMap<usize, &mut Vec<f64>>,
-    ) {
-        let dim = frozen.catalog.dim;
-        for (b, u) in displacement {
-            let Some(owned) = frozen.blocks.get(&b) else {
-                continue;
-            };
-            let mut settled = vec![false; owned.block.nodes()];
-            for (member, node_of) in owned.block.members.iter().zip(&owned.block.node_of) {
-                for (local, &node) in node_of.iter().enumerate() {
-                    if std::mem::replace(&mut settled[node as usize], true) {
-                        continue;
-                    }
-                    let moves = self.at(dim, member.body, &member.points[local]);
-                    for (z, c) in moves.iter().zip(coefficients) {
-                        let start = node as usize * dim;
-                        for (u, z) in u[start..start + dim].iter_mut().zip(z) {
-                            *u -= c * z;
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    /// How each of them moves point x of a body.
-    fn at(&self, dim: usize, body: usize, x: &[f64; 3]) -> Vec<[f64; 3]> {
-        let of_motion = |motion: &FreeMotion| {
-            let own = motion.bodies.iter().find(|(b, _)| *b == body);
-            own.map_or([0.0; 3], |(_, z)| self.frames[body].displacement(dim, x, z))
-        };
-        self.list.iter().map(of_motion).collect()
-    }
-}
-
-/// The lowest subdomain at every node of Γ.
-fn first_subdomains(catalog: &Catalog) -> Vec<usize> {
-    let mut first = vec![usize::MAX; catalog.interface_nodes];
-    for (s, nodes) in catalog.interface.iter().enumerate() {
-        for &node in nodes {
-            let first = &mut first[node as usize];
-            *first = s.min(*first);
-        }
-    }
-    first
-}
-
-/// Which nodes of a subdomain a lower one counts.
-fn counted_elsewhere(member: &Subdomain, first_of: &[usize]) -> Vec<bool> {
-    let mut elsewhere = vec![false; member.points.len()];
-    for on in &member.interface {
-        elsewhere[on.node as usize] = first_of[on.interface as usize] < member.index;
-    }
-    elsewhere
 }

@@ -1,0 +1,169 @@
+//! Rigid motions of the bodies against fields on the nodes of the blocks, displacements and forces.
+
+use std::collections::BTreeMap;
+
+use contact_dd_partition::problem::Catalog;
+
+use super::frozen::Frozen;
+use super::read::OwnedBlock;
+use crate::comm::Message;
+use crate::plan::Plan;
+use crate::rigid::analysis::FreeMotion;
+use crate::rigid::motion::BodyFrame;
+use crate::rigid::projection::MotionProducts;
+
+/// What blocks know of a field on a node that several of them have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Field {
+    /// Every one knows all of it, as of a displacement.
+    Shared,
+    /// Every one has a part, as of the forces that elements exert; the parts add up.
+    Summed,
+}
+
+/// Rigid motions of the bodies.
+#[derive(Clone, Copy)]
+pub struct Motions<'a> {
+    /// Them.
+    pub list: &'a [FreeMotion],
+    /// The frame of every body.
+    pub frames: &'a [BodyFrame],
+}
+
+impl Motions<'_> {
+    /// Makes a field orthogonal to every motion, in the Euclidean sense over the nodes of the bodies
+    /// that take part. Collective.
+    pub(super) fn project(
+        &self,
+        frozen: &Frozen<'_>,
+        kind: Field,
+        fields: BTreeMap<usize, &mut Vec<f64>>,
+    ) {
+        if self.list.is_empty() {
+            return;
+        }
+        let products = self.products(frozen, kind, &fields);
+        let mut coefficients = Message::default();
+        if frozen.root.is_some() {
+            coefficients.reals = products.coefficients();
+        }
+        frozen.comm.broadcast(&mut coefficients);
+        self.take_out(frozen, kind, &coefficients.reals, fields);
+    }
+
+    /// Their products with each other and with a field, on the root. Collective.
+    pub(super) fn products(
+        &self,
+        frozen: &Frozen<'_>,
+        kind: Field,
+        fields: &BTreeMap<usize, &mut Vec<f64>>,
+    ) -> MotionProducts {
+        let (count, dim) = (self.list.len(), frozen.catalog.dim);
+        let first_of = first_blocks(frozen.catalog, frozen.plan);
+        let mut total = MotionProducts::zeros(count);
+        frozen.comm.gather(
+            &frozen.plan.owners(),
+            |b| {
+                let mut products = MotionProducts::zeros(count);
+                if let (Some(owned), Some(field)) = (frozen.blocks.get(&b), fields.get(&b)) {
+                    let is_first = first_in(owned, b, &first_of);
+                    self.visit(owned, |node, moves| {
+                        if is_first[node] {
+                            products.add_node(moves);
+                        }
+                        if is_first[node] || kind == Field::Summed {
+                            products.add_value(moves, &field[node * dim..(node + 1) * dim]);
+                        }
+                    });
+                }
+                Message {
+                    integers: Vec::new(),
+                    reals: [products.gram, products.field].concat(),
+                }
+            },
+            |_, message| {
+                let (gram, field) = message.reals.split_at(count * count);
+                total.add(&MotionProducts {
+                    gram: gram.to_vec(),
+                    field: field.to_vec(),
+                });
+            },
+        );
+        total
+    }
+
+    /// v ← v − Σ c z.
+    pub(super) fn take_out(
+        &self,
+        frozen: &Frozen<'_>,
+        kind: Field,
+        coefficients: &[f64],
+        fields: BTreeMap<usize, &mut Vec<f64>>,
+    ) {
+        let dim = frozen.catalog.dim;
+        let first_of = first_blocks(frozen.catalog, frozen.plan);
+        for (b, field) in fields {
+            let Some(owned) = frozen.blocks.get(&b) else {
+                continue;
+            };
+            let is_first = first_in(owned, b, &first_of);
+            self.visit(owned, |node, moves| {
+                if kind == Field::Summed && !is_first[node] {
+                    return;
+                }
+                for (z, c) in moves.iter().zip(coefficients) {
+                    for (v, z) in field[node * dim..(node + 1) * dim].iter_mut().zip(z) {
+                        *v -= c * z;
+                    }
+                }
+            });
+        }
+    }
+
+    /// Calls `at` with every node of a block and how each of the motions moves it.
+    fn visit(&self, owned: &OwnedBlock, mut at: impl FnMut(usize, &[[f64; 3]])) {
+        let block = &owned.block;
+        let mut seen = vec![false; block.nodes()];
+        for (member, node_of) in block.members.iter().zip(&block.node_of) {
+            for (local, &node) in node_of.iter().enumerate() {
+                let node = node as usize;
+                if !std::mem::replace(&mut seen[node], true) {
+                    at(
+                        node,
+                        &self.at(block.dim, member.body, &member.points[local]),
+                    );
+                }
+            }
+        }
+    }
+
+    /// How each of them moves point x of a body.
+    fn at(&self, dim: usize, body: usize, x: &[f64; 3]) -> Vec<[f64; 3]> {
+        let of_motion = |motion: &FreeMotion| {
+            let own = motion.bodies.iter().find(|(b, _)| *b == body);
+            own.map_or([0.0; 3], |(_, z)| self.frames[body].displacement(dim, x, z))
+        };
+        self.list.iter().map(of_motion).collect()
+    }
+}
+
+/// The lowest block at every node of Γ.
+fn first_blocks(catalog: &Catalog, plan: &Plan) -> Vec<usize> {
+    let mut first = vec![usize::MAX; catalog.interface_nodes];
+    for (nodes, &b) in catalog.interface.iter().zip(&plan.block_of) {
+        for &node in nodes {
+            let first = &mut first[node as usize];
+            *first = b.min(*first);
+        }
+    }
+    first
+}
+
+/// Which nodes of block b no lower one has.
+fn first_in(owned: &OwnedBlock, b: usize, first_of: &[usize]) -> Vec<bool> {
+    let mut is_first = vec![true; owned.block.nodes()];
+    for &(node, id) in &owned.block.interface {
+        is_first[node as usize] = first_of[id as usize] >= b;
+    }
+    is_first
+}
