@@ -8,11 +8,16 @@
 
 mod support;
 
-use support::validation::{beam, crack, hertz, hole, punch, signorini, uniform};
+use support::validation::{beam, crack, hertz, hole, punch, roller, signorini, uniform};
 
 #[test]
 fn uniform_compression_passes_through_matching_nodes() {
     uniform::patch().check();
+}
+
+#[test]
+fn a_uniform_pressure_passes_between_cells_of_all_kinds_that_do_not_match() {
+    uniform::uneven().check();
 }
 
 #[test]
@@ -28,6 +33,16 @@ fn a_cylinder_on_a_plane_converges_to_hertz() {
 #[test]
 fn a_cylinder_on_a_cylinder_converges_to_hertz() {
     hertz::body_on_body().check();
+}
+
+#[test]
+fn a_cylinder_on_a_cylinder_whose_nodes_do_not_match_converges_to_hertz() {
+    hertz::uneven_bodies().check();
+}
+
+#[test]
+fn the_nafems_roller_presses_as_it_should() {
+    roller::case().check();
 }
 
 #[test]

@@ -18,8 +18,6 @@ relative but for numbers of cells and nodes. *Order* is log₂ of the error on t
 are twice as large, over this one. Contact pressures are those of the result file: the force of a node
 over the integral of its weight.
 
-Not yet here: non-matching contact, and with it the NAFEMS roller.
-
 ";
 
 /// A case with its table, its gates and what doesn't keep them.

@@ -8,9 +8,7 @@ use crate::support::scenes::model;
 use crate::support::solution::Solution;
 use crate::support::solver::solve;
 use crate::support::sorts::{Sort, sort};
-use crate::{block, materials};
-
-pub const PRESSURE: f64 = 1e6;
+use crate::support::uneven::{PRESSURE, block, materials, turned_pressure};
 
 /// Blocks that lie on each other, from below.
 struct Pile {
@@ -115,8 +113,7 @@ impl Pile {
 /// Fails unless everything is under the uniform pressure, all contacts closed, to within 1e-10.
 #[track_caller]
 pub fn is_uniform(solution: &Solution, angle: f64) {
-    let (sin, cos) = angle.sin_cos();
-    let [xx, yy, xy] = [sin * sin, cos * cos, -sin * cos].map(|s| -PRESSURE * s);
+    let [xx, yy, xy] = turned_pressure(angle);
     for (centre, [s_xx, s_yy, _, s_xy, _, _]) in &solution.cells {
         for (found, expected) in [(s_xx, xx), (s_yy, yy), (s_xy, xy)] {
             let error = (found - expected).abs() / PRESSURE;

@@ -8,7 +8,7 @@ use crate::support::comparison::compare;
 use crate::support::monolithic::Monolithic;
 use crate::support::scenes::{model, two_block_scene, two_blocks};
 use crate::support::solver::solve;
-use crate::{block, materials};
+use crate::support::uneven::{block, materials};
 
 /// Two blocks of different heights that part at one end, side a above or below.
 fn lifting(n: [usize; 2], young: [f64; 2], upside_down: bool, text: &str) -> Model {

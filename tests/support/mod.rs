@@ -20,6 +20,7 @@ pub mod sorts;
 pub mod statics;
 pub mod stress;
 pub mod twofold;
+pub mod uneven;
 pub mod validation;
 
 /// Fails unless both agree to within `slack`.

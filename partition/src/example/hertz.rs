@@ -1,7 +1,7 @@
 //! Line contact: a cylinder on its mirror image, by symmetry a quarter of it on a rigid plane.
 //!
 //! A square stands for the half plane of Hertz's theory: on the sides that cut it off act the
-//! tractions of the half plane (McEwen; K. L. Johnson, *Contact Mechanics*, §4.2), so that nothing
+//! tractions of the half plane (McEwen; K. L. Johnson, *Contact Mechanics*), so that nothing
 //! but the mesh stands between the answer and the theory. The mesh is graded towards the end of the
 //! contact, where the pressure falls to zero like a square root.
 

@@ -16,7 +16,7 @@ strain, no friction: t_N = −σ sin²ψ = −11.698 MPa, slip 4 (1 − ν²)/E 
 σ_xx = 2 Im Z + y Re Z', σ_yy = −y Re Z', σ_xy = Re Z − y Im Z'.
 
 Source: A.-V. Phan, J. A. L. Napier, L. J. Gray, T. Kaplan, *Symmetric-Galerkin BEM simulation of fracture
-with frictional contact*, Int. J. Numer. Meth. Eng. 57 (2003); stresses by Westergaard's function of
+with frictional contact*, Int. J. Numer. Meth. Engng 57 (2003); stresses by Westergaard's function of
 the second mode, H. Tada, P. C. Paris, G. R. Irwin, *The Stress Analysis of Cracks Handbook*.
 
 Mesh: the square [−3, 3]² with the exact tractions, lines graded towards both tips and towards the

@@ -25,7 +25,7 @@ their plane of symmetry: a² = 4 P R/(π E*) with E* = E/(1 − ν²), so that a
 p₀ √(1 − x²/a²), p₀ = 2 P/(π a) = 9.35135. Stresses of the half plane y ≤ 0, with z = x + i y and
 Z = −p₀/a (√(a² − z²) − i z): σ_xx = Re Z − y Im Z', σ_yy = Re Z + y Im Z', σ_xy = −y Re Z'.
 
-Source: K. L. Johnson, *Contact Mechanics*, Cambridge 1985, §4.2.
+Source: K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985, chapter 4.
 
 Mesh: the square [0, 2] × [−2, 0] of the built-in scene `hertz`, the tractions of the half plane on its
 right and its lower side, gap x²/16 to a rigid plane. *Graded* meshes have lines at distances from x = a
@@ -43,6 +43,13 @@ The same cylinders, both of them: two squares with matching nodes and the gap x�
 Neither is held in the vertical direction.
 
 Source and mesh: as above, mirrored.
+";
+
+const UNEVEN: &str = "\
+The same two bodies, the upper one with 3 lines where the lower one has 2: no nodes match but those at
+x = 0, a and 2, and sides are paired by `mortar`. The lower side is side a.
+
+Source and mesh: as above.
 ";
 
 /// The half-width of the contact.
@@ -156,6 +163,23 @@ pub fn body_on_body() -> Case {
     }
 }
 
+/// Both bodies with nodes that don't match.
+pub fn uneven_bodies() -> Case {
+    let mut families = families(
+        solve_uneven_bodies,
+        &["triangle3", "quad4", "triangle6", "quad9"],
+    );
+    for family in &mut families {
+        let is_tested = ["quad4, graded", "triangle6, graded"].contains(&family.name.as_str());
+        family.meshes = [if is_tested { 2 } else { 0 }, 3];
+    }
+    Case {
+        title: "Hertz: a cylinder on a cylinder, nodes that don't match",
+        text: UNEVEN,
+        families,
+    }
+}
+
 fn family(sort: Sort, grading: f64, make: fn(Sort, usize, f64) -> Measured, order: f64) -> Family {
     let is_graded = grading > 1.0;
     let mut gates = vec![
@@ -202,7 +226,16 @@ fn solve_on_an_obstacle(sort: Sort, n: usize, grading: f64) -> Measured {
 }
 
 fn solve_body_on_body(sort: Sort, n: usize, grading: f64) -> Measured {
-    let [lower, upper] = [["lower", "below"], ["upper", "above"]].map(|[body, row]| {
+    solve_bodies(sort, [n, n], grading)
+}
+
+fn solve_uneven_bodies(sort: Sort, n: usize, grading: f64) -> Measured {
+    solve_bodies(sort, [2 * n, 3 * n], grading)
+}
+
+fn solve_bodies(sort: Sort, n: [usize; 2], grading: f64) -> Measured {
+    let bodies = [("lower", "below", n[0]), ("upper", "above", n[1])];
+    let [lower, upper] = bodies.map(|(body, row, n)| {
         let mut mesh = sort.of(&square([body, row], n, grading, half_width()));
         let pieces = ["under", "beside"].map(|piece| format!("{body} {piece}"));
         gather(&mut mesh, body, &[&pieces[0], &pieces[1]]);

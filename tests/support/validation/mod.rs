@@ -9,6 +9,7 @@ pub mod exact;
 pub mod hertz;
 pub mod hole;
 pub mod punch;
+pub mod roller;
 pub mod signorini;
 pub mod uniform;
 
@@ -79,9 +80,12 @@ pub enum Gate {
 pub fn cases() -> Vec<Case> {
     vec![
         uniform::patch(),
+        uniform::uneven(),
         uniform::junction(),
         hertz::on_an_obstacle(),
         hertz::body_on_body(),
+        hertz::uneven_bodies(),
+        roller::case(),
         crack::case(),
         punch::case(),
         signorini::case(),
@@ -117,17 +121,24 @@ pub fn measured(
     exact: &Exact,
     figures: impl Fn(&Solution) -> Vec<Figure>,
 ) -> Measured {
+    figured(model, |solution| {
+        let energy = falling("energy", exact.energy_error(model, solution));
+        [vec![energy], figures(solution)].concat()
+    })
+}
+
+/// Solves a model, in as many subdomains as suit its size.
+pub fn figured(model: &Model, figures: impl Fn(&Solution) -> Vec<Figure>) -> Measured {
     let dofs = 2 * model.mesh.points.len();
     let case = solver::Case::new(&solver::problem(model, None));
     let ended = case.run(&[]);
     assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
     let solution = Solution::read(&case.result());
     let backward = solution.report["certificate"]["equilibrium"].as_f64();
-    let energy = falling("energy", exact.energy_error(model, &solution));
     let backward = plain(BACKWARD_ERROR, backward.unwrap());
     Measured {
         dofs,
-        figures: [vec![energy], figures(&solution), vec![backward]].concat(),
+        figures: [figures(&solution), vec![backward]].concat(),
     }
 }
 

@@ -17,7 +17,7 @@ A flat rigid punch of half-width a = 1, load P = 10 per unit of length, on a hal
 Z = −P/(π √(a² − z²)). *Resultant*: the sum of the contact forces against P/2; *pressure*: the largest
 error where x ≤ 0.8 a.
 
-Source: K. L. Johnson, *Contact Mechanics*, §2.8.
+Source: K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985, chapter 2.
 
 Mesh: the square [0, 2] × [−2, 0] with the tractions of the half plane on its right and its lower side,
 graded towards the corner of the punch with the 3rd power. At the corner the pressure is infinite: on

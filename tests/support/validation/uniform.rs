@@ -7,6 +7,7 @@ use super::super::blocks::{Blocks, jittered};
 use super::super::scenes::model;
 use super::super::solution::Solution;
 use super::super::sorts::sort;
+use super::super::uneven::{PRESSURE, turned_pressure, two_sorts};
 use super::exact::Exact;
 use super::{Case, Family, Figure, Gate, KINDS, measured, plain};
 
@@ -15,9 +16,23 @@ Two blocks that meet in an inclined line, the same pressure p = 1 MPa from above
 σ = −p I in the plane whatever the inclination, contact pressure p. Every mesh has this field.
 
 Source: after R. L. Taylor and P. Papadopoulos, *On a patch test for contact problems in two
-dimensions*, 1991.
+dimensions*, in P. Wriggers and W. Wagner (eds.), *Nonlinear Computational Mechanics*, Springer 1991.
 
 Mesh: the blocks of the built-in scene `patch` in irregular cells.
+";
+
+const UNEVEN: &str = "\
+Two blocks, E = 210 and 20 GPa, ν = 0.3 and 0.22, lie on each other with nodes that don't match, p = 1 MPa
+presses on the upper one: σ = −p n nᵀ with n the normal of their joint, contact pressure p. Every mesh has
+this field; that contact passes it on is the test of the pairing. A row `triangle3 on quad8` has triangles
+in the upper block, whose side is side a.
+
+Source: as above; dual multipliers on segments: B. I. Wohlmuth, *A mortar finite element method using
+dual spaces for the Lagrange multiplier*, SIAM J. Numer. Anal. 38 (2000).
+
+Mesh: blocks of 2 × 1 m turned by 0.4, 3 cells of uneven widths along the joint below and 7 above, or twice
+as many and so on. Overlaps in part, three blocks in a pile, cracks whose tips are shared and cuts that
+meet the contact are in `tests/mortar`.
 ";
 
 const JUNCTION: &str = "\
@@ -91,6 +106,40 @@ pub fn patch() -> Case {
         title: "Patch test: matching nodes",
         text: PATCH,
         families: kinds.into_iter().map(family).collect(),
+    }
+}
+
+/// The patch test, nodes that don't match, every kind of cells on every other.
+pub fn uneven() -> Case {
+    const ANGLE: f64 = 0.4;
+    let family = |lower: &'static str, upper: &'static str| Family {
+        name: match lower == upper {
+            true => upper.into(),
+            false => format!("{upper} on {lower}"),
+        },
+        run: Box::new(move |level| {
+            let n = [3, 7].map(|n| n << level);
+            let model = two_sorts([lower, upper].map(sort), n, 3 << level, ANGLE, false);
+            let exact = Exact(Box::new(|_| turned_pressure(ANGLE)));
+            measured(&model, &exact, |solution| {
+                pressure_error(solution, PRESSURE)
+            })
+        }),
+        meshes: if lower == upper { [2, 3] } else { [1, 1] },
+        gates: gates(),
+    };
+    let alone = KINDS.map(|(name, _)| family(name, name));
+    let pairs = KINDS
+        .iter()
+        .flat_map(|(lower, _)| KINDS.iter().map(move |(upper, _)| (*lower, *upper)));
+    let mixed = pairs.filter(|(lower, upper)| lower != upper);
+    Case {
+        title: "Patch test: nodes that don't match",
+        text: UNEVEN,
+        families: alone
+            .into_iter()
+            .chain(mixed.map(|(lower, upper)| family(lower, upper)))
+            .collect(),
     }
 }
 

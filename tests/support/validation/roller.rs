@@ -1,0 +1,197 @@
+//! The NAFEMS contact roller: a steel cylinder on a block of aluminium whose nodes don't match.
+
+use std::f64::consts::{FRAC_PI_4, PI};
+
+use contact_dd_partition::mesh::Mesh;
+
+use super::super::blocks::{Blocks, joined};
+use super::super::scenes::model;
+use super::super::solution::{ContactPoint, Solution};
+use super::super::sorts::{Sort, sort};
+use super::super::statics::reaction;
+use super::{Case, Family, Figure, Gate, Measured, falling, figured, gather, plain};
+
+const TEXT: &str = "\
+A cylinder of steel, R = 50 mm, E = 210 GPa, is pressed by P = 35 kN/mm on a block of aluminium,
+200 mm × 200 mm, E = 70 GPa; ν = 0.3, plane strain, no friction. By Hertz, for half planes,
+a = √(4 P R/(π E*)) = 6.21 mm and p₀ = 2 P/(π a) = 3585 MPa with 1/E* = Σ (1 − ν²)/E.
+
+Source: A. Konter, *Advanced Finite Element Contact Benchmarks*, NAFEMS R0094, 2006 (FENET D3613), the
+first benchmark.
+
+Mesh: half of both by symmetry, the block held at its bottom. Of the cylinder the lower half, pressed
+evenly on its flat side; the original's point load would be singular. Lines are graded towards the contact
+by hyperbolic sines; along it the block has 3 cells where the cylinder has 2. Sides are paired by `mortar`,
+gaps are those of the meshes, edges of quadratic cells follow the circle. Displacements are small: gaps
+and normals are those of the undeformed bodies.
+
+*p₀* and *half-width*: (3π/8) Σ F p/Σ F and 2 √(Σ F x²/Σ F) over the contact forces F, which are p₀ and a of
+an ellipse, against the same of 1 257 604 dofs: 3590.30 MPa and 6.21309 mm in `quad9`, from which
+`triangle6` and `quad8` of that fineness differ by 4e-6. *From Hertz*: against 3585.37 MPa and 6.2146 mm.
+The bodies are no half planes: of this 1.4e-3 and 2.5e-4 stay, however fine the mesh. *Resultant*: the
+vertical force against P/2.
+";
+
+const RADIUS: f64 = 50.0;
+const SIDE: f64 = 200.0;
+/// P (N/mm).
+const LOAD: f64 = 35e3;
+
+/// p₀ (MPa) and a (mm) of `quad9` on a mesh four times as fine as the finest here.
+const REFERENCE: [f64; 2] = [3590.30, 6.213_09];
+
+/// p₀ (MPa) and a (mm) of half planes.
+fn hertz() -> [f64; 2] {
+    let stiffness = 1.0 / (0.91 / 210e3 + 0.91 / 70e3);
+    let half_width = (4.0 * LOAD * RADIUS / (PI * stiffness)).sqrt();
+    [2.0 * LOAD / (PI * half_width), half_width]
+}
+
+/// From 0 to 1, slowly at first.
+fn graded(by: f64, s: f64) -> f64 {
+    (by * s).sinh() / by.sinh()
+}
+
+/// The quarter of a disc on the right of its lowest point, which is the origin: one piece `below`, up
+/// to 45° from there, one `beside` it, and one in the `middle`.
+fn quarter(n: usize) -> Mesh {
+    let arc = |part: f64| {
+        let (sin, cos) = (FRAC_PI_4 * part).sin_cos();
+        [RADIUS * sin, RADIUS * (1.0 - cos)]
+    };
+    let between = |p: [f64; 2], q: [f64; 2], w: f64| [0, 1].map(|i| p[i] + (q[i] - p[i]) * w);
+    let [lowest, corner, side, centre] =
+        [[0.0, 0.5], [0.4, 0.6], [0.5, 1.0], [0.0, 1.0]].map(|p| p.map(|c| c * RADIUS));
+    let along = |s: f64| graded(4.0, s);
+    let inward = |t: f64| graded(3.5, t);
+    let blocks = Blocks::new()
+        .mapped("below", [n, n], |[s, t]| {
+            let s = along(s);
+            between(arc(s), between(lowest, corner, s), inward(t))
+        })
+        .mapped("beside", [n / 2, n], |[s, t]| {
+            between(arc(1.0 + s), between(corner, side, s), inward(t))
+        })
+        .mapped("middle", [n, n / 2], |[s, t]| {
+            let s = along(s);
+            between(between(lowest, corner, s), between(centre, side, s), t)
+        });
+    blocks.glued(|_, _| true).mesh
+}
+
+/// The right half of the block, `n` cells each way.
+fn block(n: usize) -> Mesh {
+    Blocks::new()
+        .mapped("block", [n, n], |[s, t]| {
+            let x = 0.5 * SIDE * graded(5.0, s);
+            [x, -SIDE * graded(6.0, 1.0 - t)]
+        })
+        .mesh
+}
+
+/// Moves the nodes on a side of the disc onto its circle.
+fn round(mesh: &mut Mesh, side: &str) {
+    for &facet in &mesh.groups[side].members {
+        for &node in mesh.facets.nodes_of(facet as usize) {
+            let point = &mut mesh.points[node as usize];
+            let (x, y) = (point[0], point[1] - RADIUS);
+            let stretch = RADIUS / x.hypot(y);
+            *point = [x * stretch, RADIUS + y * stretch, 0.0];
+        }
+    }
+}
+
+/// p₀ and a of an ellipse with the same mean of the pressure and of x² under the force.
+fn ellipse(points: &[ContactPoint]) -> [f64; 2] {
+    let mean = |of: fn(&ContactPoint) -> f64| -> f64 {
+        let moment: f64 = points.iter().map(|point| point.force * of(point)).sum();
+        moment / points.iter().map(|point| point.force).sum::<f64>()
+    };
+    [
+        0.375 * PI * mean(|point| point.pressure),
+        2.0 * mean(|point| point.position[0].powi(2)).sqrt(),
+    ]
+}
+
+fn figures(solution: &Solution) -> Vec<Figure> {
+    let points = &solution.contacts["contact"];
+    let found = ellipse(points);
+    let from = |other: [f64; 2], i: usize| found[i] / other[i] - 1.0;
+    let vertical = reaction(points)[1].abs();
+    vec![
+        falling("p₀", from(REFERENCE, 0)),
+        falling("half-width", from(REFERENCE, 1)),
+        plain("p₀ from Hertz", from(hertz(), 0)),
+        plain("half-width from Hertz", from(hertz(), 1)),
+        plain("resultant", vertical / (0.5 * LOAD) - 1.0),
+    ]
+}
+
+fn solved(sort: Sort, n: usize) -> Measured {
+    let mut cylinder = sort.of(&quarter(6 * n));
+    gather(&mut cylinder, "cylinder", &["below", "beside", "middle"]);
+    round(&mut cylinder, "below bottom");
+    round(&mut cylinder, "beside bottom");
+    let text = format!(
+        "plane = 'strain'
+        materials.steel = {{young = 210e3, poisson = 0.3}}
+        materials.aluminium = {{young = 70e3, poisson = 0.3}}
+        bodies.cylinder.material = 'steel'
+        bodies.block.material = 'aluminium'
+        [[displacement]]
+        on = 'block bottom'
+        x = 0.0
+        y = 0.0
+        [[bilateral]]
+        on = 'block left'
+        [[bilateral]]
+        on = ['below left', 'middle left']
+        [[pressure]]
+        on = ['beside right', 'middle top']
+        value = {}
+        [[contact]]
+        name = 'contact'
+        sides = ['below bottom', 'block top']
+        pairing = 'mortar'",
+        LOAD / (2.0 * RADIUS)
+    );
+    let mesh = joined(cylinder, sort.of(&block(9 * n)));
+    figured(&model(&text, mesh), figures)
+}
+
+/// The roller in all kinds of cells.
+pub fn case() -> Case {
+    let family = |name: &'static str| {
+        let sort = sort(name);
+        let mut gates = match sort.is_quadratic {
+            true => vec![Gate::AtMost("p₀", 1e-3), Gate::AtMost("half-width", 5e-4)],
+            false => vec![
+                Gate::Order("p₀", 1.5),
+                Gate::AtMost("p₀", 5e-3),
+                Gate::AtMost("half-width", 1e-3),
+            ],
+        };
+        gates.extend([
+            Gate::AtMost("p₀ from Hertz", 5e-3),
+            Gate::AtMost("half-width from Hertz", 1e-3),
+            Gate::AtMost("resultant", 1e-9),
+        ]);
+        Family {
+            name: name.into(),
+            run: Box::new(move |level| solved(sort, 2 << level)),
+            meshes: match name {
+                "quad8" => [0, 3],
+                _ if sort.is_quadratic => [2, 3],
+                _ => [3, 4],
+            },
+            gates,
+        }
+    };
+    Case {
+        title: "NAFEMS contact roller",
+        text: TEXT,
+        families: ["triangle3", "quad4", "triangle6", "quad8", "quad9"]
+            .map(family)
+            .into(),
+    }
+}
