@@ -60,6 +60,7 @@ fn row(contact: usize, place: usize) -> ContactResult {
         tag_a: (100 * contact + place) as i64,
         tag_b: -1,
         position: [contact as f64, place as f64, 0.0],
+        acts_at: [contact as f64, place as f64, 0.0],
         normal: [0.0, 1.0, 0.0],
         gap: place as f64,
         force: 2.0,

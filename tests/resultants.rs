@@ -11,8 +11,9 @@ mod support;
 use hdf5::File;
 use serde_json::Value;
 
+use support::blocks::{Blocks, moved};
 use support::close;
-use support::scenes::{built_in_model, model, two_block_scene, two_blocks};
+use support::scenes::{BODIES, built_in_model, model, two_block_scene, two_blocks};
 use support::solution::Solution;
 use support::solver::{Case, solve};
 
@@ -67,6 +68,73 @@ fn supports_and_contacts_carry_the_load() {
         assert_eq!(entry["closed"], closed);
         let largest = solution.points().map(|p| p.pressure).fold(0.0, f64::max);
         assert_eq!(entry["largest_pressure"].as_f64(), Some(largest));
+    }
+}
+
+/// Two blocks that overlap in part, turned by an angle: a node at an end of the overlap hands over
+/// to its neighbour. What acts on the upper one is in balance, moments included.
+#[test]
+fn a_body_between_load_supports_and_contact_is_balanced() {
+    for (n, x, angle) in [
+        ([8, 4], [0.5, 1.5], 0.0),
+        ([5, 7], [0.7, 2.6], 0.0),
+        ([5, 7], [0.7, 2.6], 0.4),
+        ([13, 3], [-0.4, 1.9], 2.0),
+    ] {
+        let (sin, cos) = f64::sin_cos(angle);
+        let blocks = Blocks::new()
+            .rectangle("lower", [0.0, 2.0], [0.0, 1.0], [n[0], 4])
+            .rectangle("upper", x, [1.0, 1.6], [n[1], 4]);
+        let mesh = moved(blocks.mesh, |[x, y]| [cos * x - sin * y, sin * x + cos * y]);
+        for sides in ["'upper bottom', 'lower top'", "'lower top', 'upper bottom'"] {
+            let text = format!(
+                "{BODIES}
+                [[displacement]]
+                on = 'lower bottom'
+                x = 0.0
+                y = 0.0
+                [[bilateral]]
+                on = 'upper left'
+                [[pressure]]
+                on = 'upper top'
+                value = '1e6*(1+0.3*sin(x+2*y))'
+                [[contact]]
+                name = 'joint'
+                sides = [{sides}]
+                gap = '1e-6*x'"
+            );
+            let model = model(&text, mesh.clone());
+            let solution = solve(&model, 4);
+            assert!(solution.closed() > 0);
+            let upper = model.mesh.groups["lower"].members.len();
+            let upper: Vec<u32> = (upper..model.mesh.cells.len())
+                .flat_map(|cell| model.mesh.cells.nodes_of(cell).to_vec())
+                .collect();
+            let (mut sum, mut scale) = ([0.0; 3], 0.0);
+            for (node, [fx, fy, _]) in &model.forces {
+                let at = model.mesh.points[*node as usize];
+                if upper.contains(node) {
+                    let moment = at[0] * fy - at[1] * fx;
+                    sum = [sum[0] + fx, sum[1] + fy, sum[2] + moment];
+                    scale += fx.abs() + fy.abs();
+                }
+            }
+            let joint = resultant(named(&solution, "contacts", "name", "joint"));
+            let left = resultant(named(
+                &solution,
+                "reactions",
+                "support",
+                "bilateral[1] on 'upper left'",
+            ));
+            let sign = if sides.starts_with("'upper") {
+                1.0
+            } else {
+                -1.0
+            };
+            for k in 0..3 {
+                close(sum[k] + left[k] + sign * joint[k], 0.0, 1e-12 * scale);
+            }
+        }
     }
 }
 

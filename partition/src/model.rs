@@ -69,6 +69,8 @@ pub struct ContactCondition {
     pub share: f64,
     /// Undeformed position on side a (m).
     pub position: [f64; 3],
+    /// Where its force on side a acts, Σ coefficient·position over the nodes of side a (m).
+    pub acts_at: [f64; 3],
     /// Unit normal, outward of side a.
     pub normal: [f64; 3],
     /// Tag of its node on side a.

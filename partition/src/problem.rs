@@ -88,6 +88,8 @@ pub struct ContactRow {
     pub share: f64,
     /// Undeformed position on side a (m).
     pub position: [f64; 3],
+    /// Where its force on side a acts (m).
+    pub acts_at: [f64; 3],
     /// Unit normal, outward of side a.
     pub normal: [f64; 3],
     /// Tag of its node on side a, −1 where there is none.

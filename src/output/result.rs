@@ -100,6 +100,8 @@ pub struct ContactResult {
     pub tag_b: i64,
     /// Undeformed position on side a (m).
     pub position: [f64; 3],
+    /// Where the force on side a acts (m); the file doesn't hold it.
+    pub acts_at: [f64; 3],
     /// Unit normal of the undeformed side a, outward.
     pub normal: [f64; 3],
     /// The gap that is left, g − B u ≥ 0 (m).

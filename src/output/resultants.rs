@@ -39,7 +39,7 @@ pub struct ContactResultant {
     pub conditions: usize,
     /// Number of those that are closed.
     pub closed: usize,
-    /// What acts on side a, at the positions of its conditions.
+    /// What acts on side a.
     #[serde(flatten)]
     pub resultant: Resultant,
     /// Largest contact pressure (Pa).
@@ -50,7 +50,7 @@ impl ContactResultant {
     /// Adds what a condition carries.
     pub fn add(&mut self, row: &ContactResult) {
         self.closed += usize::from(row.closed);
-        (self.resultant).add(row.position, row.normal.map(|n| -row.force * n));
+        (self.resultant).add(row.acts_at, row.normal.map(|n| -row.force * n));
         self.largest_pressure = self.largest_pressure.max(row.pressure);
     }
 }

@@ -113,6 +113,7 @@ fn pack_contacts(owned: &OwnedBlock, solution: &BlockSolution) -> Message {
             i64::from(solution.closed[j]),
         ]);
         message.reals.extend(row.position);
+        message.reals.extend(row.acts_at);
         message.reals.extend(row.normal);
         message
             .reals
@@ -123,7 +124,7 @@ fn pack_contacts(owned: &OwnedBlock, solution: &BlockSolution) -> Message {
 
 fn unpack_contacts(message: Message) -> Vec<ContactResult> {
     let integers = message.integers.chunks(5);
-    let reals = message.reals.chunks(9);
+    let reals = message.reals.chunks(12);
     integers
         .zip(reals)
         .map(|(i, r)| ContactResult {
@@ -132,10 +133,11 @@ fn unpack_contacts(message: Message) -> Vec<ContactResult> {
             tag_a: i[2],
             tag_b: i[3],
             position: [r[0], r[1], r[2]],
-            normal: [r[3], r[4], r[5]],
-            gap: r[6],
-            force: r[7],
-            pressure: r[8],
+            acts_at: [r[3], r[4], r[5]],
+            normal: [r[6], r[7], r[8]],
+            gap: r[9],
+            force: r[10],
+            pressure: r[11],
             closed: i[4] != 0,
         })
         .collect()

@@ -46,6 +46,7 @@ pub(super) fn conditions(sides: &Sides) -> Result<Vec<ContactCondition>, Unpaire
                         gap: dot(to_b, a.normal),
                         share,
                         position: a.position,
+                        acts_at: a.position,
                         normal: a.normal,
                         tag_a: mesh.node_tags[a.node as usize],
                         tag_b: mesh.node_tags[b as usize],

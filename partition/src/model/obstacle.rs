@@ -41,6 +41,7 @@ pub(super) fn conditions(
             gap: distance,
             share: a.share,
             position: a.position,
+            acts_at: a.position,
             normal,
             tag_a: tag,
             tag_b: -1,

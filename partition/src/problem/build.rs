@@ -234,6 +234,7 @@ fn gather_rows(model: &Model, owners: &Owners, groups: &Groups) -> Vec<Vec<Conta
                 gap: condition.gap,
                 share: condition.share,
                 position: condition.position,
+                acts_at: condition.acts_at,
                 normal: condition.normal,
                 tag_a: condition.tag_a,
                 tag_b: condition.tag_b,

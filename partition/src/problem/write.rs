@@ -168,6 +168,7 @@ impl Problem {
         contact.column("gap", rows().map(|r| r.gap))?;
         contact.column("share", rows().map(|r| r.share))?;
         contact.vectors("position", dim, rows().map(|r| &r.position))?;
+        contact.vectors("acts_at", dim, rows().map(|r| &r.acts_at))?;
         contact.vectors("normal", dim, rows().map(|r| &r.normal))?;
         contact.column("node_a", rows().map(|r| r.tag_a))?;
         contact.column("node_b", rows().map(|r| r.tag_b))?;

@@ -58,6 +58,7 @@ impl Builder {
                     gap: 1e-3 * x as f64,
                     share: 1.0,
                     position: self.points[a as usize],
+                    acts_at: self.points[a as usize],
                     normal: [0.0, 1.0, 0.0],
                     tag_a: tag(a),
                     tag_b: tag(b),

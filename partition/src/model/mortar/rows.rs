@@ -5,7 +5,7 @@ use super::super::sides::SideNode;
 use super::super::surface::Surface;
 use super::Covered;
 use super::field::cross;
-use crate::element::geometry::difference;
+use crate::element::geometry::{advance, difference};
 use crate::mesh::Mesh;
 
 /// Coefficient below which a node of side b has no part in a condition: round-off of shape
@@ -89,6 +89,14 @@ impl Row {
         }
     }
 
+    /// Where the force on side a acts: beside node `a` where others hand over to it.
+    fn acts_at(&self, a: &SideNode, mesh: &Mesh) -> [f64; 3] {
+        (self.side_a.iter()).fold(a.position, |at, &(node, value)| {
+            let way = difference(mesh.points[node as usize], a.position);
+            advance(at, value / self.share, way)
+        })
+    }
+
     /// The condition of node `a`, scaled so that the coefficients of side a sum to its normal: the
     /// multiplier is the force along it.
     ///
@@ -97,6 +105,7 @@ impl Row {
     /// carry no force without a load.
     pub fn condition(mut self, a: &SideNode, mesh: &Mesh) -> ContactCondition {
         self.balance(a, mesh);
+        let acts_at = self.acts_at(a, mesh);
         let mut terms = self.side_a;
         for (node, value) in self.side_b {
             add(&mut terms, node, -value);
@@ -113,6 +122,7 @@ impl Row {
             gap: (self.gap / self.share).max(self.least_gap.min(0.0)),
             share: self.share,
             position: a.position,
+            acts_at,
             normal: a.normal,
             tag_a: mesh.node_tags[a.node as usize],
             tag_b: -1,

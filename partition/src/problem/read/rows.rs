@@ -29,6 +29,10 @@ impl ProblemFile {
             ));
         }
         let position = table("/contact/position")?.vectors(rows.clone(), dim)?;
+        let acts_at = match self.file.link_exists("contact/acts_at") {
+            true => table("/contact/acts_at")?.vectors(rows.clone(), dim)?,
+            false => position.clone(),
+        };
         let normal = table("/contact/normal")?.unit_vectors(rows.clone(), dim)?;
         let tag_a = column("/contact/node_a")?.integers(rows.clone())?;
         let tag_b = column("/contact/node_b")?.integers(rows.clone())?;
@@ -44,6 +48,7 @@ impl ProblemFile {
                 gap: gap[i],
                 share: share[i],
                 position: position[i],
+                acts_at: acts_at[i],
                 normal: normal[i],
                 tag_a: tag_a[i],
                 tag_b: tag_b[i],
