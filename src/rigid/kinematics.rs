@@ -8,7 +8,7 @@ use super::motion::BodyFrame;
 
 /// Relative size below which a singular value is zero: a support that is this much shorter than
 /// the body it holds doesn't hold it.
-const RANK_TOLERANCE: f64 = 1e-9;
+pub(super) const RANK_TOLERANCE: f64 = 1e-9;
 
 /// The motions that supports leave to all bodies, side by side.
 pub(super) struct Kinematics {

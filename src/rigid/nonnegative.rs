@@ -1,8 +1,12 @@
 //! Non-negative least squares: can contact forces λ ≥ 0 balance a load?
 
+use faer::Mat;
 use nalgebra::{DMatrix, DVector};
 
 use super::columns::Columns;
+
+/// Slope along a column, relative to b, that is round-off of r.
+const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
 /// r = b − A λ for the λ ≥ 0 that minimizes ‖r‖₂, after Lawson and Hanson.
 ///
@@ -12,31 +16,79 @@ pub fn residual(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     let n = a.ncols();
     let norms: Vec<f64> = a.column_iter().map(|c| c.norm()).collect();
     let largest = norms.iter().copied().fold(0.0, f64::max);
-    let tolerance = 1e-13 * b.norm();
     // A column that is round-off would have a direction all the same.
-    let mut candidates: Vec<usize> = (0..n).filter(|&j| norms[j] > 1e-12 * largest).collect();
-    let mut passive = Columns::default();
-    let mut is_passive = vec![false; n];
-    let mut lambda = vec![0.0; n];
-    let mut r = b.clone();
+    let is_column: Vec<bool> = norms.iter().map(|&norm| norm > 1e-12 * largest).collect();
+    let mut point = Point {
+        passive: Columns::default(),
+        lambda: vec![0.0; n],
+        r: b.clone(),
+    };
+    // Columns whose slope has turned out to be round-off where r is.
+    let mut is_tried = vec![false; n];
     for _ in 0..10 * (n + a.nrows()) + 10 {
-        let slopes = a.tr_mul(&r);
-        let best = (candidates.iter().copied())
-            .filter(|&j| !is_passive[j])
+        let slopes = a.tr_mul(&point.r);
+        let best = (0..n)
+            .filter(|&j| is_column[j] && !is_tried[j] && point.lambda[j] == 0.0)
             .map(|j| (slopes[j] / norms[j], j))
             .max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1)));
         let Some((steepest, entering)) = best else {
             break;
         };
-        if steepest <= tolerance {
+        if steepest <= ROUND_OFF * b.norm() {
             break;
         }
-        if !passive.push(a, entering) {
-            // It depends on those that are in: its slope is round-off.
-            candidates.retain(|&j| j != entering);
-            continue;
+        match point.entered(a, b, entering) {
+            Some(nearer) => {
+                point = nearer;
+                is_tried.fill(false);
+            }
+            None => is_tried[entering] = true,
         }
-        is_passive[entering] = true;
+    }
+    point.r
+}
+
+/// The same r where that is zero, or nearly so: found where A's rows are orthonormal, so that it
+/// tells a direction in which columns hardly act from one in which they don't.
+///
+/// With A = V Σ Uᵀ, A λ = b where Uᵀ λ = Σ⁻¹ Vᵀ b; what is left there is V Σ times it here. What
+/// A's columns don't span at all, singular values up to `least` of the largest, is left out.
+pub fn residual_in_span(a: &DMatrix<f64>, b: &DVector<f64>, least: f64) -> Option<DVector<f64>> {
+    let rows = Mat::from_fn(a.ncols(), a.nrows(), |i, j| a[(j, i)]);
+    let svd = rows.thin_svd().ok()?;
+    let (u, sizes, v) = (svd.U(), svd.S().column_vector(), svd.V());
+    let largest = sizes.iter().copied().fold(0.0, f64::max);
+    let kept: Vec<usize> = (0..sizes.nrows())
+        .filter(|&i| sizes[i] > least * largest)
+        .collect();
+    let turned = DMatrix::from_fn(kept.len(), a.ncols(), |k, j| u[(j, kept[k])]);
+    let along = |i: usize| (0..a.nrows()).map(|row| v[(row, i)] * b[row]).sum::<f64>();
+    let scaled = DVector::from_fn(kept.len(), |k, _| along(kept[k]) / sizes[kept[k]]);
+    let left = residual(&turned, &scaled);
+    let back = |row: usize| {
+        let terms = kept.iter().zip(left.iter());
+        terms.map(|(&i, left)| v[(row, i)] * sizes[i] * left).sum()
+    };
+    Some(DVector::from_fn(a.nrows(), |row, _| back(row)))
+}
+
+/// A λ ≥ 0 whose positive entries, those of the passive columns, come nearest to b.
+#[derive(Clone)]
+struct Point {
+    passive: Columns,
+    lambda: Vec<f64>,
+    r: DVector<f64>,
+}
+
+impl Point {
+    /// The point with a column more, and without those whose λ would become negative; `None` where
+    /// that is no nearer to b.
+    fn entered(&self, a: &DMatrix<f64>, b: &DVector<f64>, entering: usize) -> Option<Self> {
+        let mut point = self.clone();
+        let Self { passive, lambda, r } = &mut point;
+        if !passive.push(a, entering) {
+            return None;
+        }
         loop {
             let trial = passive.solve(b);
             let blocking = (passive.numbers.iter().zip(&trial))
@@ -58,7 +110,6 @@ pub fn residual(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
                 let j = passive.numbers[place];
                 if lambda[j] <= 1e-14 * largest {
                     lambda[j] = 0.0;
-                    is_passive[j] = false;
                     passive.remove(place);
                 }
             }
@@ -66,9 +117,9 @@ pub fn residual(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
                 break;
             }
         }
-        r = passive.residual(b);
+        *r = passive.residual(b);
+        (r.norm() < self.r.norm()).then_some(point)
     }
-    r
 }
 
 #[cfg(test)]

@@ -1,0 +1,175 @@
+//! Scenes of a few blocks, judged by hand.
+
+use super::*;
+
+fn square(at: f64, load: [f64; 3], supports: Vec<Vec<f64>>) -> BodyState {
+    let frame = BodyFrame::new([at, 0.0, 0.0], [at + 1.0, 1.0, 0.0]);
+    BodyState {
+        frame,
+        supports,
+        load: load.to_vec(),
+        load_scale: load.iter().map(|f| f.abs()).sum(),
+        candidates: vec![(0, 0, [at, 0.0, 0.0]), (0, 1, [at + 1.0, 1.0, 0.0])],
+    }
+}
+
+fn floor(body: &BodyState, b: usize, xs: &[f64]) -> Vec<RigidRow> {
+    xs.iter()
+        .map(|&x| {
+            let action = body.frame.action(2, &[x, 0.0, 0.0], &[0.0, -1.0, 0.0]);
+            RigidRow {
+                bodies: vec![(b, action)],
+                gap: 0.0,
+            }
+        })
+        .collect()
+}
+
+fn analyse(body: BodyState, rows: Vec<RigidRow>) -> Result<RigidMotions, Failure> {
+    let scene = Scene {
+        dim: 2,
+        bodies: vec![body],
+        names: vec!["block".into()],
+        conditions: vec![rows.len()],
+        rows,
+    };
+    scene.analyse()
+}
+
+#[test]
+fn a_block_on_the_floor_slides_freely_and_is_pinned_once() {
+    let block = square(0.0, [0.0, -3.0, 0.0], vec![]);
+    let rows = floor(&block, 0, &[0.0, 0.5, 1.0]);
+    let motions = analyse(block, rows).unwrap();
+    assert_eq!(motions.pins.len(), 1);
+    assert_eq!(motions.pins[0].component, 0);
+    assert!(motions.warnings[0].contains("'block'"));
+}
+
+#[test]
+fn a_pushed_block_slides_and_is_named() {
+    let block = square(0.0, [0.1, -3.0, 0.0], vec![]);
+    let rows = floor(&block, 0, &[0.0, 1.0]);
+    let failure = analyse(block, rows).unwrap_err();
+    assert!(failure.message.contains("'block'"), "{failure}");
+    assert!(
+        failure
+            .message
+            .contains("translation along (1.0000, 0.0000)")
+    );
+}
+
+#[test]
+fn a_lifted_block_and_a_toppling_one_have_no_equilibrium() {
+    let lifted = square(0.0, [0.0, 1.0, 0.0], vec![]);
+    let rows = floor(&lifted, 0, &[0.0, 1.0]);
+    assert!(analyse(lifted, rows.clone()).is_err());
+    let toppling = square(0.0, [0.0, -1.0, -3.0], vec![]);
+    assert!(analyse(toppling, rows.clone()).is_err());
+    let steady = square(0.0, [0.0, -1.0, -0.5], vec![]);
+    assert!(analyse(steady, rows).is_ok());
+}
+
+/// Blocks on top of each other, the lowest on the ground, their joints level but for slopes of
+/// about `slope` up and down by turns; each is pushed aside by a part of what its joint can hold.
+fn tower(count: usize, slope: f64, unit: f64, push: f64) -> Scene {
+    let state = |i: usize| {
+        let frame = BodyFrame::new(
+            [0.0, i as f64 * unit, 0.0],
+            [2.0 * unit, (i as f64 + 1.0) * unit, 0.0],
+        );
+        let aside = slope * push * if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let load = [aside, -1.0, 0.0];
+        BodyState {
+            frame,
+            supports: vec![],
+            load: load.to_vec(),
+            load_scale: 1.0,
+            candidates: vec![(i as u32, 0, frame.center)],
+        }
+    };
+    let bodies: Vec<BodyState> = (0..count).map(state).collect();
+    let nodes = 6;
+    let row = |k: usize| {
+        let (i, node) = (k / nodes, k % nodes);
+        let at = [
+            2.0 * unit * node as f64 / (nodes - 1) as f64,
+            i as f64 * unit,
+            0.0,
+        ];
+        let tilt = slope * if node % 2 == 0 { 1.0 } else { -1.0 };
+        let normal = [tilt, -1.0, 0.0].map(|c| c / tilt.hypot(1.0));
+        let back = normal.map(|c| -c);
+        let above = (i, bodies[i].frame.action(2, &at, &normal));
+        let below = (i > 0).then(|| (i - 1, bodies[i - 1].frame.action(2, &at, &back)));
+        RigidRow {
+            bodies: std::iter::once(above).chain(below).collect(),
+            gap: 0.0,
+        }
+    };
+    let rows: Vec<RigidRow> = (0..count * nodes).map(row).collect();
+    Scene {
+        dim: 2,
+        names: (0..count).map(|i| i.to_string()).collect(),
+        conditions: vec![rows.len()],
+        bodies,
+        rows,
+    }
+}
+
+#[test]
+fn rough_joints_hold_a_tower_however_high_and_in_any_unit() {
+    for count in [1, 2, 5, 12, 50] {
+        for slope in [1e-2, 1e-4, 1e-5, 1e-6, 1e-7] {
+            for unit in [1e-3, 1.0, 1e3] {
+                let motions = tower(count, slope, unit, 0.3).analyse();
+                assert_eq!(motions, Ok(RigidMotions::default()), "{count} {slope}");
+                // A push that is a load, and more than the joints can hold.
+                if slope >= 1e-6 {
+                    let pushed = tower(count, slope, unit, 30.0).analyse();
+                    assert!(pushed.is_err(), "{count} {slope}");
+                }
+            }
+        }
+    }
+}
+
+/// On two slopes of 1e-5 and 2e-5 below its middle: 3e-10 of the load are more than they hold, and less
+/// than counts.
+#[test]
+fn a_load_that_contact_hardly_fails_to_hold_is_told() {
+    for (beyond, told) in [(0.0, false), (3e-10, true)] {
+        let block = square(0.0, [2e-5 + beyond, -1.0, 0.0], vec![]);
+        let row = |slope: f64| RigidRow {
+            bodies: vec![(
+                0,
+                block
+                    .frame
+                    .action(2, &block.frame.center, &[slope, -1.0, 0.0]),
+            )],
+            gap: 0.0,
+        };
+        let rows = vec![row(1e-5), row(2e-5)];
+        let warnings = analyse(block, rows).unwrap().warnings;
+        let found = warnings.iter().any(|w| w.contains("of all loads"));
+        assert_eq!(found, told, "{warnings:?}");
+    }
+}
+
+#[test]
+fn a_supported_body_is_left_alone() {
+    let frame = BodyFrame::new([0.0; 3], [1.0, 1.0, 0.0]);
+    let rows = [([0.0; 3], 0), ([0.0; 3], 1), ([1.0, 0.0, 0.0], 1)];
+    let supports = (rows.iter())
+        .map(|(x, axis)| {
+            let mut direction = [0.0; 3];
+            direction[*axis] = 1.0;
+            let mut row = frame.action(2, x, &direction);
+            row.push(0.0);
+            row
+        })
+        .collect();
+    let body = square(0.0, [5.0, 1.0, 2.0], supports);
+    let motions = analyse(body, vec![]).unwrap();
+    assert_eq!(motions, RigidMotions::default());
+}
