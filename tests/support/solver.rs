@@ -60,7 +60,12 @@ impl Case {
 
     /// Runs without a launcher, with the problem and `args`.
     pub fn run(&self, args: &[&str]) -> Ended {
-        Running::start(program(0).arg(self.problem()).args(args)).wait(LIMIT)
+        self.run_on(0, args)
+    }
+
+    /// Runs on `ranks` ranks, without a launcher for 0.
+    pub fn run_on(&self, ranks: usize, args: &[&str]) -> Ended {
+        Running::start(program(ranks).arg(self.problem()).args(args)).wait(LIMIT)
     }
 
     /// Runs without a launcher and reads the result, which has to keep its certificate.

@@ -54,7 +54,7 @@ fn solved(name: &str, n: usize) -> Measured {
     }));
     exact.load(&mut model, &[("beam right", [1.0, 0.0])]);
     let deflection = FACTOR * ((4.0 + 5.0 * POISSON) * LENGTH + 2.0 * LENGTH.powi(3));
-    measured(&model, &exact, |solution| {
+    measured(model, exact, move |solution| {
         let found = solution.displacement[&tip][1];
         vec![falling("deflection", found / deflection - 1.0)]
     })

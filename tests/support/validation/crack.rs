@@ -102,7 +102,7 @@ fn solved(name: &str, n: usize) -> Measured {
             &[(&ends[0], [-1.0, 0.0]), (&ends[1], [1.0, 0.0])],
         );
     }
-    measured(&model, &exact, of_crack)
+    measured(model, exact, of_crack)
 }
 
 /// Errors of the largest slip and of the pressure.

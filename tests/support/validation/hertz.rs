@@ -11,13 +11,13 @@ use super::super::scenes::model;
 use super::super::solution::{ContactPoint, Solution};
 use super::super::sorts::{Sort, sort};
 use super::exact::Exact;
-use super::{Case, Family, Figure, Gate, Measured, falling, gather, measured, plain};
+use super::{Case, Family, Figure, Gate, Measured, Posed, falling, gather, measured, plain};
 
 /// Side of the squares that are cut out of the half planes.
 const SIDE: f64 = 2.0;
 
 /// The exponent of graded meshes; quadratic cells need more than 4/3.
-const GRADING: f64 = 1.6;
+pub const GRADING: f64 = 1.6;
 
 const ON_AN_OBSTACLE: &str = "\
 Two equal cylinders, R = 8, E = 200, ν = 0.3, P = 10 per unit of length, plane strain; one of them on
@@ -210,7 +210,8 @@ fn family(sort: Sort, grading: f64, make: fn(Sort, usize, f64) -> Measured, orde
     }
 }
 
-fn solve_on_an_obstacle(sort: Sort, n: usize, grading: f64) -> Measured {
+/// One body on its plane of symmetry, with lines that follow a power of their number.
+pub fn posed_on_an_obstacle(sort: Sort, n: usize, grading: f64) -> Posed {
     let mut mesh = sort.of(&square(["body", "below"], n, grading, half_width()));
     for (name, of) in [
         ("cylinder", &["body under", "body beside"][..]),
@@ -221,8 +222,15 @@ fn solve_on_an_obstacle(sort: Sort, n: usize, grading: f64) -> Measured {
     ] {
         gather(&mut mesh, name, of);
     }
-    let model = model(example::find("hertz").unwrap().scene, mesh);
-    measured(&model, &exact(), of_contact)
+    Posed {
+        model: model(example::find("hertz").unwrap().scene, mesh),
+        exact: exact(),
+        figures: Box::new(of_contact),
+    }
+}
+
+fn solve_on_an_obstacle(sort: Sort, n: usize, grading: f64) -> Measured {
+    posed_on_an_obstacle(sort, n, grading).measured()
 }
 
 fn solve_body_on_body(sort: Sort, n: usize, grading: f64) -> Measured {
@@ -266,5 +274,5 @@ fn solve_bodies(sort: Sort, n: [usize; 2], grading: f64) -> Measured {
             ("upper beside top", [0.0, 1.0]),
         ],
     );
-    measured(&model, &exact(), of_contact)
+    measured(model, exact(), of_contact)
 }

@@ -53,7 +53,7 @@ fn solved(kind: ElementKind, level: usize) -> Measured {
     let at = |p: &[f64; 3]| p[0].hypot(p[1] - RADIUS) < 1e-9;
     let peak = model.mesh.points.iter().position(at).unwrap();
     let peak = model.mesh.node_tags[peak];
-    measured(&model, &exact, |solution| {
+    measured(model, exact, move |solution| {
         let found = solution.nodal_stress[&peak][0];
         vec![falling("peak", found / (3.0 * TENSION) - 1.0)]
     })

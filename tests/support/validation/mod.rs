@@ -114,19 +114,6 @@ pub fn plain(name: &'static str, value: f64) -> Figure {
     }
 }
 
-/// Solves a model, in as many subdomains as suit its size, and measures its error in the norm of the
-/// energy.
-pub fn measured(
-    model: &Model,
-    exact: &Exact,
-    figures: impl Fn(&Solution) -> Vec<Figure>,
-) -> Measured {
-    figured(model, |solution| {
-        let energy = falling("energy", exact.energy_error(model, solution));
-        [vec![energy], figures(solution)].concat()
-    })
-}
-
 /// Solves a model, in as many subdomains as suit its size.
 pub fn figured(model: &Model, figures: impl Fn(&Solution) -> Vec<Figure>) -> Measured {
     let dofs = 2 * model.mesh.points.len();
@@ -140,6 +127,47 @@ pub fn figured(model: &Model, figures: impl Fn(&Solution) -> Vec<Figure>) -> Mea
         dofs,
         figures: [figures(&solution), vec![backward]].concat(),
     }
+}
+
+/// A scene on a mesh, with its exact answer.
+pub struct Posed {
+    pub model: Model,
+    pub exact: Exact,
+    /// What is looked at beside the energy.
+    pub figures: Box<dyn Fn(&Solution) -> Vec<Figure>>,
+}
+
+impl Posed {
+    /// Number of unknowns, prescribed ones among them.
+    pub fn dofs(&self) -> usize {
+        2 * self.model.mesh.points.len()
+    }
+
+    /// The error in the norm of the energy, then the other figures.
+    pub fn errors(&self, solution: &Solution) -> Vec<Figure> {
+        let energy = self.exact.energy_error(&self.model, solution);
+        [vec![falling("energy", energy)], (self.figures)(solution)].concat()
+    }
+
+    /// Solves it, in as many subdomains as suit its size, and measures its errors.
+    pub fn measured(&self) -> Measured {
+        figured(&self.model, |solution| self.errors(solution))
+    }
+}
+
+/// What [`Posed::measured`] says of a scene on a mesh.
+pub fn measured(
+    model: Model,
+    exact: Exact,
+    figures: impl Fn(&Solution) -> Vec<Figure> + 'static,
+) -> Measured {
+    let figures = Box::new(figures);
+    let posed = Posed {
+        model,
+        exact,
+        figures,
+    };
+    posed.measured()
 }
 
 /// Makes one group of others.

@@ -64,7 +64,7 @@ fn solved(name: &str, n: usize) -> Measured {
             ("body beside right", [1.0, 0.0]),
         ],
     );
-    measured(&model, &exact, of_punch)
+    measured(model, exact, of_punch)
 }
 
 fn of_punch(solution: &Solution) -> Vec<Figure> {

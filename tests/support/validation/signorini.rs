@@ -5,7 +5,7 @@ use super::super::scenes::model;
 use super::super::solution::Solution;
 use super::super::sorts::sort;
 use super::exact::Exact;
-use super::{Case, Family, Figure, Gate, Measured, falling, measured, plain};
+use super::{Case, Family, Figure, Gate, Posed, falling, plain};
 
 const TEXT: &str = "\
 u_x = −y A'(x), u_y = A(x) + y B(x) with A = 1e-3 cos 2x and B = −1e-2 max(½ − x, 0)³, E = 200, ν = 0.3,
@@ -78,30 +78,38 @@ fn scene() -> String {
     )
 }
 
-fn solved(name: &str, n: usize) -> Measured {
+/// The scene on n × n squares, or in irregular cells where these keep their order.
+pub fn posed(name: &str, n: usize) -> Posed {
     let blocks = Blocks::new().rectangle("block", [0.0, 1.0], [-1.0, 0.0], [n, n]);
     let amount = if name == "quad8" { 0.0 } else { 0.1 };
     let mesh = sort(name).of(&jittered(blocks.mesh, amount / n as f64, 3));
     let mut model = model(&scene(), mesh);
     let exact = exact();
     exact.load(&mut model, &[("block right", [1.0, 0.0])]);
+    Posed {
+        model,
+        exact,
+        figures: Box::new(move |solution| of_contact(solution, n)),
+    }
+}
+
+/// Errors of the pressure and of the closed part of the side in n cells.
+fn of_contact(solution: &Solution, n: usize) -> Vec<Figure> {
     let [l, m] = lame();
-    measured(&model, &exact, |solution: &Solution| -> Vec<Figure> {
-        let largest = -(l + 2.0 * m) * b(0.0)[0];
-        let points = &solution.contacts["contact"];
-        let errors = points.iter().map(|point| {
-            let pressure = -(l + 2.0 * m) * b(point.position[0])[0];
-            (point.pressure - pressure).abs() / largest
-        });
-        let wrong = points.iter().filter(|point| {
-            let beyond = point.position[0] - 0.5;
-            beyond.abs() > 1.0 / n as f64 + 1e-9 && point.closed != (beyond < 0.0)
-        });
-        vec![
-            falling("pressure", errors.fold(0.0, f64::max)),
-            plain("wrong", wrong.count() as f64),
-        ]
-    })
+    let largest = -(l + 2.0 * m) * b(0.0)[0];
+    let points = &solution.contacts["contact"];
+    let errors = points.iter().map(|point| {
+        let pressure = -(l + 2.0 * m) * b(point.position[0])[0];
+        (point.pressure - pressure).abs() / largest
+    });
+    let wrong = points.iter().filter(|point| {
+        let beyond = point.position[0] - 0.5;
+        beyond.abs() > 1.0 / n as f64 + 1e-9 && point.closed != (beyond < 0.0)
+    });
+    vec![
+        falling("pressure", errors.fold(0.0, f64::max)),
+        plain("wrong", wrong.count() as f64),
+    ]
 }
 
 /// The chosen solution in all kinds of cells.
@@ -110,7 +118,7 @@ pub fn case() -> Case {
         let order = if sort(name).is_quadratic { 1.9 } else { 0.95 };
         Family {
             name: name.into(),
-            run: Box::new(move |level| solved(name, 6 << level)),
+            run: Box::new(move |level| posed(name, 6 << level).measured()),
             meshes: [3, 4],
             gates: vec![Gate::Order("energy", order), Gate::AtMost("pressure", 0.1)],
         }

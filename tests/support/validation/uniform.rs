@@ -94,7 +94,7 @@ pub fn patch() -> Case {
                 .quadrilateral("upper", [left, right, [2.0, 2.0], [0.0, 2.0]], [n, n / 2]);
             let mesh = sort(name).of(&jittered(blocks.mesh, 0.2 / n as f64, 7));
             let model = model(scene, mesh);
-            measured(&model, &compression(), |solution| {
+            measured(model, compression(), |solution| {
                 pressure_error(solution, 1e6)
             })
         }),
@@ -121,9 +121,7 @@ pub fn uneven() -> Case {
             let n = [3, 7].map(|n| n << level);
             let model = two_sorts([lower, upper].map(sort), n, 3 << level, ANGLE, false);
             let exact = Exact(Box::new(|_| turned_pressure(ANGLE)));
-            measured(&model, &exact, |solution| {
-                pressure_error(solution, PRESSURE)
-            })
+            measured(model, exact, |solution| pressure_error(solution, PRESSURE))
         }),
         meshes: if lower == upper { [2, 3] } else { [1, 1] },
         gates: gates(),
@@ -151,7 +149,7 @@ pub fn junction() -> Case {
             let example = example::find("junction").unwrap();
             let mesh = example.mesh_of(kind, level as u32).unwrap();
             let model = model(example.scene, mesh);
-            measured(&model, &compression(), |solution| {
+            measured(model, compression(), |solution| {
                 pressure_error(solution, 1e6)
             })
         }),
