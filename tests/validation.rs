@@ -8,6 +8,9 @@
 
 mod support;
 
+use support::solution::Solution;
+use support::solver::{Case, problem};
+use support::sorts::sort;
 use support::validation::{beam, crack, hertz, hole, punch, roller, signorini, uniform};
 
 #[test]
@@ -68,4 +71,35 @@ fn a_cantilever_bends_as_beams_do() {
 #[test]
 fn stress_beside_a_hole_is_three_times_the_tension() {
     hole::case().check();
+}
+
+#[test]
+fn the_default_tolerance_leaves_the_error_to_the_mesh() {
+    let quad9 = sort("quad9");
+    for posed in [
+        hertz::posed_on_an_obstacle(quad9, 4, hertz::GRADING),
+        signorini::posed("triangle6", 24),
+    ] {
+        let case = Case::new(&problem(&posed.model, Some(8)));
+        let error = |solution: &Solution| posed.exact.energy_error(&posed.model, solution);
+        let of_mesh = error(&case.solve(&["--tolerance", "1e-14"]));
+        let slow = ["--method", "anderson"];
+        for method in [&[][..], &slow] {
+            let usual = error(&case.solve(method));
+            assert!(
+                (usual / of_mesh - 1.0).abs() < 1e-2,
+                "{usual:e}, {of_mesh:e}"
+            );
+        }
+        // Where these sweeps ended, without the refinement that follows.
+        let sweeps = Solution::read(&case.result()).sweeps().to_string();
+        let limits = ["--max-sweeps", &sweeps, "--tolerance", "1e-300"];
+        assert_eq!(case.run(&[&slow[..], &limits].concat()).code(), 3);
+        let stopped = error(&Solution::read(&case.result()));
+        assert_ne!(stopped, of_mesh);
+        assert!(
+            (stopped / of_mesh - 1.0).abs() < 1e-2,
+            "{stopped:e}, {of_mesh:e}"
+        );
+    }
 }
