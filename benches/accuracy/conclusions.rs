@@ -1,0 +1,245 @@
+//! What follows from the measurements.
+
+use clap::Parser;
+use contact_dd_mpi::settings::Settings;
+
+use crate::Measurements;
+use crate::document::shown;
+use crate::reached::{GOAL, Reached, reached};
+use crate::series::{SCENES, Series};
+use crate::timed::Timed;
+use crate::tolerance::Tried;
+
+/// The largest ratio of quadratic cells' time to linear cells' at the goal.
+pub const RATIO: f64 = 0.1;
+/// The change of an error, over it, that the sweeps may make.
+pub const MOVED: f64 = 0.01;
+
+/// The smallest error of a mesh in the energy that is thought of: a hundredth of the finest here.
+const SMALLEST: f64 = 1e-6;
+
+/// All of them.
+pub struct Conclusions {
+    pub places: Vec<Place>,
+    pub stopped: Vec<Row>,
+    /// The smallest residual that a mesh needs for the error of the mesh to be all there is, and the
+    /// smallest over that error.
+    enough: [f64; 2],
+    /// The largest change that a run as a user asks for it made, if it converged.
+    refined: f64,
+    /// The smallest error in the energy of a mesh.
+    finest: f64,
+}
+
+/// A series and where it reaches the goal.
+pub struct Place {
+    pub scene: &'static str,
+    pub element: &'static str,
+    pub mesh: &'static str,
+    is_quadratic: bool,
+    pub reached: Option<Reached>,
+}
+
+/// What sweeps leave that end below a residual.
+pub struct Row {
+    pub residual: f64,
+    pub largest: f64,
+    pub moved: usize,
+    pub meshes: usize,
+}
+
+impl Conclusions {
+    /// From all that was measured.
+    pub fn new(series: &[Series], all: &Measurements) -> Self {
+        let of = |series: &Series| -> Vec<&Timed> {
+            let own = |mesh: &&Timed| {
+                [&mesh.scene, &mesh.element, &mesh.mesh]
+                    == [series.scene, series.element, series.mesh]
+            };
+            all.timed.iter().filter(own).collect()
+        };
+        let places = series.iter().map(|series| Place {
+            scene: series.scene,
+            element: series.element,
+            mesh: series.mesh,
+            is_quadratic: series.is_quadratic,
+            reached: reached(&of(series)),
+        });
+        let asked = |tried: &Tried| {
+            let good = tried.asked.iter().filter(|run| run.converged);
+            good.fold(0.0f64, |most, run| most.max(tried.shift(run.error)))
+        };
+        let enough = |tried: &Tried| tried.enough(MOVED);
+        let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
+        Self {
+            places: places.collect(),
+            stopped: (2..15).map(|digits| row(&all.tried, digits)).collect(),
+            enough: [
+                least(&mut all.tried.iter().map(enough)),
+                least(&mut all.tried.iter().map(|t| enough(t) / t.error)),
+            ],
+            refined: all.tried.iter().map(asked).fold(0.0, f64::max),
+            finest: least(&mut all.tried.iter().map(|tried| tried.error)),
+        }
+    }
+
+    /// What should hold and doesn't.
+    pub fn faults(&self) -> Vec<String> {
+        let mut faults = Vec::new();
+        for place in self.places.iter().filter(|p| p.element == "triangle6") {
+            let at = format!("{}, triangle6, {}", place.scene, place.mesh);
+            match self.of_linear(place) {
+                Some([ratio, ..]) if ratio <= RATIO => {}
+                Some([ratio, ..]) => faults.push(format!(
+                    "{at}: {ratio:.3} of triangle3's time at an error of {} %; expected at most {RATIO}",
+                    100.0 * GOAL
+                )),
+                None => faults.push(format!("{at}: an error of {} % isn't reached", 100.0 * GOAL)),
+            }
+        }
+        if self.refined > MOVED {
+            faults.push(format!(
+                "the tolerance moves the error by {:.1e} of itself; expected at most {MOVED}",
+                self.refined
+            ));
+        }
+        if default_tolerance() > self.derived_tolerance() {
+            faults.push(format!(
+                "the default tolerance is {:.0e}; expected at most {:.0e}",
+                default_tolerance(),
+                self.derived_tolerance()
+            ));
+        }
+        faults
+    }
+
+    /// The power of ten that leaves the smallest error to the mesh.
+    fn derived_tolerance(&self) -> f64 {
+        10f64.powf((self.enough[1] * SMALLEST).log10().floor())
+    }
+
+    /// The times of quadratic cells over those of linear ones of the same shape on the same meshes.
+    pub fn of_linear(&self, place: &Place) -> Option<[f64; 3]> {
+        let shape = |element: &str| element.starts_with("triangle");
+        let is_linear = |other: &&Place| {
+            let alike = shape(other.element) == shape(place.element);
+            let on = other.mesh == place.mesh || place.mesh == "squares";
+            alike && on && other.scene == place.scene && !other.is_quadratic
+        };
+        let linear = self.places.iter().find(is_linear)?.reached?;
+        let own = place.reached.filter(|_| place.is_quadratic)?;
+        Some([0, 1, 2].map(|i| own.seconds[i] / linear.seconds[i]))
+    }
+
+    /// The fastest on one rank of those that `is_one` holds for.
+    fn fastest(&self, is_one: impl Fn(&Place) -> bool) -> Option<(&Place, Reached)> {
+        let own = self.places.iter().filter(|place| is_one(place));
+        own.filter_map(|place| Some((place, place.reached?)))
+            .min_by(|a, b| a.1.seconds[0].total_cmp(&b.1.seconds[0]))
+    }
+
+    /// In words.
+    pub fn text(&self) -> String {
+        let mut text = "## What follows\n\n".to_owned();
+        for scene in SCENES {
+            text += &self.elements(scene).unwrap_or_default();
+        }
+        text += &self.grading().unwrap_or_default();
+        text += &self.tolerance();
+        text
+    }
+
+    /// Which cells to take for a scene.
+    fn elements(&self, scene: &str) -> Option<String> {
+        let quadratic = self.fastest(|p| p.scene == scene && p.is_quadratic)?;
+        let linear = self.fastest(|p| p.scene == scene && !p.is_quadratic)?;
+        let sentence = |(place, reached): (&Place, Reached)| {
+            format!(
+                "{} `{}`, {:.0} dofs, {:.1} ms",
+                place.mesh,
+                place.element,
+                reached.dofs,
+                1e3 * reached.seconds[0]
+            )
+        };
+        let ratios = |shape: &str| {
+            let own = (self.places.iter())
+                .filter(|p| p.scene == scene && p.element.starts_with(shape))
+                .filter_map(|place| self.of_linear(place))
+                .map(|[ratio, ..]| ratio);
+            let [least, most] = own.fold([f64::INFINITY, 0.0f64], |[a, b], r| [a.min(r), b.max(r)]);
+            format!("{least:.2} to {most:.2}")
+        };
+        Some(format!(
+            "- **{scene}**: {} % in the energy takes least time with quadratic cells ({}, {:.1} of them \
+             solving). Linear ones need {:.0} times that at best ({}). On the same kind of mesh \
+             `triangle6` takes {} of the time of `triangle3`, `quad8` and `quad9` {} of that of `quad4`.\n",
+            100.0 * GOAL,
+            sentence(quadratic),
+            1e3 * quadratic.1.seconds[1],
+            linear.1.seconds[0] / quadratic.1.seconds[0],
+            sentence(linear),
+            ratios("triangle"),
+            ratios("quad"),
+        ))
+    }
+
+    /// What grading gains.
+    fn grading(&self) -> Option<String> {
+        let on = |mesh: &'static str| {
+            let best = self.fastest(|p| p.is_quadratic && p.mesh == mesh)?;
+            Some((best.0.element, best.1))
+        };
+        let (graded, uniform) = (on("graded")?, on("uniform")?);
+        Some(format!(
+            "- **Grading** towards the end of the contact: quadratic cells have {} % with {:.0} dofs \
+             (`{}`), on uniform meshes with {:.0} (`{}`).\n",
+            100.0 * GOAL,
+            graded.1.dofs,
+            graded.0,
+            uniform.1.dofs,
+            uniform.0,
+        ))
+    }
+
+    /// Which tolerance to take.
+    fn tolerance(&self) -> String {
+        let [enough, share] = self.enough;
+        format!(
+            "- **Tolerance**: sweeps that end at a residual of {} change the error of no mesh here, down \
+             to {}, by more than {} % of it; on every mesh {} of the error is enough. For errors down to \
+             {SMALLEST:.0e} that makes {}, as a power of ten {:.0e}; the default is {:.0e}. Whatever the \
+             tolerance, the refinement after the sweeps left a change of {} at most: it decides how many \
+             sweeps are made, and how good the answer is only where there is no refinement.\n\n",
+            shown(enough),
+            shown(self.finest),
+            100.0 * MOVED,
+            shown(share),
+            shown(share * SMALLEST),
+            self.derived_tolerance(),
+            default_tolerance(),
+            shown(self.refined),
+        )
+    }
+}
+
+fn row(tried: &[Tried], digits: i32) -> Row {
+    let residual = 10f64.powi(-digits);
+    let shifts: Vec<f64> = (tried.iter())
+        .filter_map(|tried| {
+            let end = tried.stopped.iter().find(|end| end.residual <= residual)?;
+            Some(tried.shift(end.error))
+        })
+        .collect();
+    Row {
+        residual,
+        largest: shifts.iter().copied().fold(0.0, f64::max),
+        moved: shifts.iter().filter(|&&shift| shift > MOVED).count(),
+        meshes: shifts.len(),
+    }
+}
+
+/// Of `--tolerance`.
+pub fn default_tolerance() -> f64 {
+    Settings::parse_from(["contact-dd-mpi", "problem.h5"]).tolerance
+}
