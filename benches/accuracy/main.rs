@@ -83,7 +83,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let (dofs, usual) = match arguments.quick {
         true => (700, 1),
-        false => (20_000, 5),
+        false => (9_000, 5),
     };
     let series = series::all();
     let measurements = match &arguments.from {

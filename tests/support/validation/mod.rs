@@ -114,6 +114,9 @@ pub fn plain(name: &'static str, value: f64) -> Figure {
     }
 }
 
+/// Reads figures off a solution.
+pub type Figures = Box<dyn Fn(&Solution) -> Vec<Figure>>;
+
 /// Solves a model, in as many subdomains as suit its size.
 pub fn figured(model: &Model, figures: impl Fn(&Solution) -> Vec<Figure>) -> Measured {
     let dofs = 2 * model.mesh.points.len();
@@ -134,7 +137,7 @@ pub struct Posed {
     pub model: Model,
     pub exact: Exact,
     /// What is looked at beside the energy.
-    pub figures: Box<dyn Fn(&Solution) -> Vec<Figure>>,
+    pub figures: Figures,
 }
 
 impl Posed {
