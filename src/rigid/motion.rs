@@ -52,6 +52,19 @@ impl BodyFrame {
         u
     }
 
+    /// How each rigid motion moves `x`.
+    pub fn moves(&self, dim: usize, x: &[f64; 3]) -> Vec<[f64; 3]> {
+        let mut moves = vec![[0.0; 3]; Self::count(dim)];
+        for component in 0..dim {
+            let mut unit = [0.0; 3];
+            unit[component] = 1.0;
+            for (moves, action) in moves.iter_mut().zip(self.action(dim, x, &unit)) {
+                moves[component] = action;
+            }
+        }
+        moves
+    }
+
     /// A motion in words.
     pub fn describe(&self, dim: usize, z: &[f64]) -> String {
         let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();

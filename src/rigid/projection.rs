@@ -47,6 +47,24 @@ impl MotionProducts {
         }
     }
 
+    /// Adds what a body has, `of_body` with its own rigid motions, where `shares` are those of each
+    /// motion in these; none where the body takes no part.
+    pub fn add_body(&mut self, shares: &[&[f64]], of_body: &Self) {
+        let (n, modes) = (shares.len(), of_body.field.len());
+        for (i, z_i) in shares.iter().enumerate() {
+            self.field[i] += dot(z_i, &of_body.field);
+            let mut row = vec![0.0; modes];
+            for (z, of_mode) in z_i.iter().zip(of_body.gram.chunks(modes)) {
+                for (sum, g) in row.iter_mut().zip(of_mode) {
+                    *sum += z * g;
+                }
+            }
+            for (j, z_j) in shares.iter().enumerate() {
+                self.gram[i * n + j] += dot(&row, z_j);
+            }
+        }
+    }
+
     /// How much of each motion the field has.
     pub fn coefficients(&self) -> Vec<f64> {
         let n = self.field.len();
@@ -66,6 +84,27 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn products_of_motions_follow_from_those_of_their_bodies() {
+        let units = |x: f64| [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, x, 0.0]];
+        let shares = [[0.3, -0.2, 0.7], [1.0, 0.4, 0.0]];
+        let (mut of_body, mut direct) = (MotionProducts::zeros(3), MotionProducts::zeros(3));
+        for (x, v) in [(0.0, [0.3, 0.1]), (2.0, [-0.2, 0.7]), (0.5, [1.0, 0.4])] {
+            of_body.add_node(&units(x));
+            of_body.add_value(&units(x), &v);
+            let moved = |z: [f64; 3]| [z[0], z[1] + z[2] * x, 0.0];
+            let moves = [moved(shares[0]), moved(shares[1]), [0.0; 3]];
+            direct.add_node(&moves);
+            direct.add_value(&moves, &v);
+        }
+        let mut combined = MotionProducts::zeros(3);
+        combined.add_body(&[&shares[0], &shares[1], &[]], &of_body);
+        let pairs = combined.gram.iter().zip(&direct.gram);
+        for (a, b) in pairs.chain(combined.field.iter().zip(&direct.field)) {
+            assert!((a - b).abs() < 1e-14);
+        }
+    }
 
     #[test]
     fn what_is_taken_out_leaves_nothing_along_the_motions() {

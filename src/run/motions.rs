@@ -30,7 +30,7 @@ pub struct Motions<'a> {
     pub frames: &'a [BodyFrame],
 }
 
-impl Motions<'_> {
+impl<'a> Motions<'a> {
     /// Makes a field orthogonal to every motion, in the Euclidean sense over the nodes of the bodies
     /// that take part. Collective.
     pub(super) fn project(
@@ -58,37 +58,51 @@ impl Motions<'_> {
         kind: Field,
         fields: &BTreeMap<usize, &mut Vec<f64>>,
     ) -> MotionProducts {
-        let (count, dim) = (self.list.len(), frozen.catalog.dim);
+        let dim = frozen.catalog.dim;
+        let modes = BodyFrame::count(dim);
         let first_of = first_blocks(frozen.catalog, frozen.plan);
-        let mut total = MotionProducts::zeros(count);
+        let mut of_bodies: BTreeMap<usize, MotionProducts> = BTreeMap::new();
         frozen.comm.gather(
             &frozen.plan.owners(),
             |b| {
-                let mut products = MotionProducts::zeros(count);
+                let mut of_block: BTreeMap<usize, MotionProducts> = BTreeMap::new();
                 if let (Some(owned), Some(field)) = (frozen.blocks.get(&b), fields.get(&b)) {
                     let is_first = first_in(owned, b, &first_of);
-                    self.visit(owned, |node, moves| {
+                    visit(owned, |node, body, x| {
+                        let products = of_body(&mut of_block, body, modes);
+                        let moves = self.frames[body].moves(dim, x);
                         if is_first[node] {
-                            products.add_node(moves);
+                            products.add_node(&moves);
                         }
                         if is_first[node] || kind == Field::Summed {
-                            products.add_value(moves, &field[node * dim..(node + 1) * dim]);
+                            products.add_value(&moves, &field[node * dim..(node + 1) * dim]);
                         }
                     });
                 }
-                Message {
-                    integers: Vec::new(),
-                    reals: [products.gram, products.field].concat(),
+                let mut message = Message::default();
+                for (body, products) in of_block {
+                    message.integers.push(body as i64);
+                    message.reals.extend(products.gram);
+                    message.reals.extend(products.field);
                 }
+                message
             },
             |_, message| {
-                let (gram, field) = message.reals.split_at(count * count);
-                total.add(&MotionProducts {
-                    gram: gram.to_vec(),
-                    field: field.to_vec(),
-                });
+                let bodies = message.integers.len();
+                let mut reader = message.read();
+                let bodies: Vec<usize> = (0..bodies).map(|_| reader.count()).collect();
+                for body in bodies {
+                    of_body(&mut of_bodies, body, modes).add(&MotionProducts {
+                        gram: reader.reals(modes * modes),
+                        field: reader.reals(modes),
+                    });
+                }
             },
         );
+        let mut total = MotionProducts::zeros(self.list.len());
+        for (body, products) in &of_bodies {
+            total.add_body(&self.shares(*body), products);
+        }
         total
     }
 
@@ -102,48 +116,65 @@ impl Motions<'_> {
     ) {
         let dim = frozen.catalog.dim;
         let first_of = first_blocks(frozen.catalog, frozen.plan);
+        let taken: Vec<Vec<f64>> = (0..self.frames.len())
+            .map(|body| {
+                let mut sum = vec![0.0; BodyFrame::count(dim)];
+                for (share, c) in self.shares(body).iter().zip(coefficients) {
+                    for (sum, z) in sum.iter_mut().zip(*share) {
+                        *sum += c * z;
+                    }
+                }
+                sum
+            })
+            .collect();
         for (b, field) in fields {
             let Some(owned) = frozen.blocks.get(&b) else {
                 continue;
             };
             let is_first = first_in(owned, b, &first_of);
-            self.visit(owned, |node, moves| {
+            visit(owned, |node, body, x| {
                 if kind == Field::Summed && !is_first[node] {
                     return;
                 }
-                for (z, c) in moves.iter().zip(coefficients) {
-                    for (v, z) in field[node * dim..(node + 1) * dim].iter_mut().zip(z) {
-                        *v -= c * z;
-                    }
+                let z = &taken[body];
+                let moved = self.frames[body].displacement(dim, x, z);
+                for (v, z) in field[node * dim..(node + 1) * dim].iter_mut().zip(moved) {
+                    *v -= z;
                 }
             });
         }
     }
 
-    /// Calls `at` with every node of a block and how each of the motions moves it.
-    fn visit(&self, owned: &OwnedBlock, mut at: impl FnMut(usize, &[[f64; 3]])) {
-        let block = &owned.block;
-        let mut seen = vec![false; block.nodes()];
-        for (member, node_of) in block.members.iter().zip(&block.node_of) {
-            for (local, &node) in node_of.iter().enumerate() {
-                let node = node as usize;
-                if !std::mem::replace(&mut seen[node], true) {
-                    at(
-                        node,
-                        &self.at(block.dim, member.body, &member.points[local]),
-                    );
-                }
-            }
-        }
-    }
-
-    /// How each of them moves point x of a body.
-    fn at(&self, dim: usize, body: usize, x: &[f64; 3]) -> Vec<[f64; 3]> {
-        let of_motion = |motion: &FreeMotion| {
+    /// What body `body` does in each of the motions; nothing where it takes no part.
+    fn shares(&self, body: usize) -> Vec<&'a [f64]> {
+        let of_motion = |motion: &'a FreeMotion| {
             let own = motion.bodies.iter().find(|(b, _)| *b == body);
-            own.map_or([0.0; 3], |(_, z)| self.frames[body].displacement(dim, x, z))
+            own.map_or(&[][..], |(_, z)| z)
         };
         self.list.iter().map(of_motion).collect()
+    }
+}
+
+/// The products of a body, zero before the first of its nodes.
+fn of_body(
+    products: &mut BTreeMap<usize, MotionProducts>,
+    body: usize,
+    modes: usize,
+) -> &mut MotionProducts {
+    (products.entry(body)).or_insert_with(|| MotionProducts::zeros(modes))
+}
+
+/// Calls `at` with every node of a block, its body and its place.
+fn visit(owned: &OwnedBlock, mut at: impl FnMut(usize, usize, &[f64; 3])) {
+    let block = &owned.block;
+    let mut seen = vec![false; block.nodes()];
+    for (member, node_of) in block.members.iter().zip(&block.node_of) {
+        for (local, &node) in node_of.iter().enumerate() {
+            let node = node as usize;
+            if !std::mem::replace(&mut seen[node], true) {
+                at(node, member.body, &member.points[local]);
+            }
+        }
     }
 }
 
