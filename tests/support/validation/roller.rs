@@ -20,7 +20,7 @@ Source: A. Konter, *Advanced Finite Element Contact Benchmarks*, NAFEMS R0094, 2
 first benchmark.
 
 Mesh: half of both by symmetry, the block held at its bottom. Of the cylinder the lower half, pressed
-evenly on its flat side; the original's point load would be singular. Lines are graded towards the contact
+evenly on its flat side: under a point load stresses would be infinite. Lines are graded towards the contact
 by hyperbolic sines; along it the block has 3 cells where the cylinder has 2. Sides are paired by `mortar`,
 gaps are those of the meshes, edges of quadratic cells follow the circle. Displacements are small: gaps
 and normals are those of the undeformed bodies.
