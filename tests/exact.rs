@@ -8,6 +8,8 @@
 
 mod support;
 
+use contact_dd_partition::element::ElementKind::Quad4;
+use contact_dd_partition::example;
 use contact_dd_partition::mesh::Mesh;
 
 use support::blocks::Blocks;
@@ -16,6 +18,7 @@ use support::scenes::{BODIES, JOINT, SUPPORTS, built_in_model, model, two_blocks
 use support::solution::Solution;
 use support::solver::solve;
 use support::sorts::{Sort, sort};
+use support::statics::{balanced, reaction};
 
 /// Pressure, Young's modulus and Poisson's ratio of a uniform compression.
 type Compression = [f64; 3];
@@ -232,6 +235,37 @@ fn a_closed_crack_of_quadratic_cells_bears_uniform_pressure_up_to_its_tips() {
         assert!(pressure < 1e-9, "{name}: {pressure}");
         assert!((slip - 1.0).abs() < 0.03, "{name}: {slip}");
     }
+}
+
+#[test]
+fn rollers_press_as_hertz_says_of_the_forces_they_carry() {
+    let mesh = example::find("rollers").unwrap().mesh_of(Quad4, 0);
+    let model = model(example::find("rollers").unwrap().scene, mesh.unwrap());
+    let stiffness = 1.0 / (0.91 / 210e9 + 0.91 / 70e9);
+    let solution = solve(&model, 8);
+    assert_eq!(solution.report["warnings"].as_array().unwrap().len(), 0);
+    let mut total = [0.0; 2];
+    for (roller, x) in [("left", -0.12), ("middle", 0.0), ("right", 0.12)] {
+        let [below, above] =
+            ["below", "above"].map(|side| &solution.contacts[&format!("{roller} roller {side}")]);
+        let (on_plate, on_roller) = (reaction(below), reaction(above));
+        balanced(on_plate, on_roller, 1e-9 * on_plate[1].abs());
+        let force = -on_plate[1];
+        total = [total[0] + force, total[1] - on_plate[2]];
+        close(on_plate[2], -force * x, 1e-4 * force);
+        let largest = (force * stiffness / (std::f64::consts::PI * 0.05)).sqrt();
+        for points in [below, above] {
+            let found = points.iter().fold(0.0, |m: f64, p| m.max(p.pressure));
+            close(found, largest, 0.02 * largest);
+        }
+    }
+    // ∫ p dx and ∫ p x dx of the pressure on the upper plate.
+    close(total[0], 40e6, 1e-9 * 40e6);
+    close(
+        total[1],
+        1e8 / 0.4 * 2.0 * 0.2_f64.powi(3) / 3.0,
+        1e-6 * 1e6,
+    );
 }
 
 #[test]

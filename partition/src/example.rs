@@ -8,6 +8,7 @@ mod junction;
 mod patch;
 mod pattern;
 mod plain;
+mod rollers;
 mod stack;
 
 use std::path::{Path, PathBuf};
@@ -28,6 +29,7 @@ pub const EXAMPLES: &[Example] = &[
     patch::EXAMPLE,
     junction::EXAMPLE,
     stack::EXAMPLE,
+    rollers::EXAMPLE,
     plain::EXAMPLE,
 ];
 

@@ -106,7 +106,7 @@ type MakeCase = fn() -> Case;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 15] = [
+    let cases: [(&str, MakeCase); 16] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
@@ -129,6 +129,7 @@ fn same_results(trials: &mut Trials) {
             Case::of(&built_in_model("plain", 0), 4)
         }),
         ("junction", || Case::of(&built_in_model("junction", 0), 6)),
+        ("rollers", || Case::of(&built_in_model("rollers", 0), 8)),
         ("stack", || Case::of(&built_in_model("stack", 0), 6)),
         ("stack_without_interface", || {
             Case::of(&built_in_model("stack", 0), 3)
