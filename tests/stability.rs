@@ -129,6 +129,19 @@ proptest! {
     }
 }
 
+/// Its stiff bodies' round-off is more than the tolerance of the sweeps.
+#[test]
+fn newton_gives_up_where_it_gets_no_further() {
+    for seed in [193, 475] {
+        let mut drawn = draw(seed, 6);
+        drawn.ranks = 0;
+        let trial = Trial::of(&drawn, built(), Duration::from_secs(60), None);
+        assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);
+        let sweeps = trial.reported(&["sweeps"]).unwrap();
+        assert!(sweeps <= 12.0, "{sweeps} sweeps");
+    }
+}
+
 /// The verdict on a scene, and what to say of it.
 fn judged(mut drawn: Drawn) -> (Verdict, String) {
     // Tests of several ranks stand elsewhere.

@@ -21,6 +21,8 @@ pub struct Runs {
 pub struct Ran {
     pub seed: u64,
     pub family: &'static str,
+    /// The name of its cells.
+    pub cells: &'static str,
     /// Whether its solution was chosen first.
     pub manufactured: bool,
     /// On how many ranks it ran besides, 0 for none.
@@ -51,7 +53,10 @@ impl Runs {
 
     fn one(&self, seed: u64, told: bool) -> Ran {
         let began = Instant::now();
-        let drawn = std::panic::catch_unwind(|| draw(seed, self.cells));
+        let drawn = std::panic::catch_unwind(|| match std::env::var("UNEVEN").is_ok() {
+            true => crate::support::stress::draw_uneven(seed, self.cells),
+            false => draw(seed, self.cells),
+        });
         let drawn = drawn.unwrap_or_else(|_| panic!("the scene of seed {seed} can't be"));
         let trial = Trial::of(&drawn, &self.binary, self.limit, self.keep.as_deref());
         let ran = Ran::new(&drawn, trial, began);
@@ -78,6 +83,7 @@ impl Ran {
         Self {
             seed: drawn.seed,
             family: drawn.family,
+            cells: drawn.sort.name,
             manufactured: drawn.manufactured,
             ranks: drawn.ranks,
             trial,
@@ -101,9 +107,10 @@ impl Ran {
     pub fn line(&self) -> String {
         let trial = &self.trial;
         let mut line = format!(
-            "{:>6} {:<10} {:<13} {:>6} dofs {:>4} conditions {:>3} subdomains {:>5.2} s",
+            "{:>6} {:<17} {:<26} {:<13} {:>6} dofs {:>4} conditions {:>3} subdomains {:>5.2} s",
             self.seed,
             self.family,
+            self.cells,
             trial.verdict.name(),
             trial.dofs,
             trial.conditions,

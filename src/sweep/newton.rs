@@ -10,6 +10,9 @@ use crate::interface::coupled::CoupledContact;
 
 /// Sweeps before another method takes over.
 const MAX_SWEEPS: usize = 20;
+/// Sweeps in a row that change no contact and leave half of the residual before that is what round-off
+/// of stiff bodies leaves it.
+const PATIENCE: usize = 3;
 /// Residual to which the other method goes.
 const FALL_BACK_TOLERANCE: f64 = 1e-13;
 
@@ -22,6 +25,7 @@ impl Sweeps<'_, '_> {
         let Some(coupled) = CoupledContact::new(self.interface) else {
             return self.fall_back(u, residual, "the pairs have too many conditions for newton");
         };
+        let mut stalls = 0;
         while !self.is_converged(&residual) {
             if self.sweeps_done() >= limit {
                 if self.settings.max_sweeps.is_some() {
@@ -41,6 +45,12 @@ impl Sweeps<'_, '_> {
             axpy(1.0, &step.u, u);
             let before = std::mem::replace(&mut residual, self.residual(u, Some(&step.open)));
             self.record(&residual);
+            let stalled =
+                residual.totals.changed == 0 && residual.relative >= 0.5 * before.relative;
+            stalls = if stalled { stalls + 1 } else { 0 };
+            if stalls == PATIENCE && !self.is_converged(&residual) {
+                return self.fall_back(u, residual, "newton got no further");
+            }
             // A contact without force and gap may come out open at the root and closed in its pair.
             let tolerance = self.settings.tolerance;
             let settled = before.relative.max(residual.relative) <= tolerance;

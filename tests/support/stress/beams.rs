@@ -13,7 +13,7 @@ pub fn beams(draft: &mut Draft) {
     let deflection = draft.compression() * length.powi(3);
     for i in 0..count {
         let y = [i as f64, i as f64 + 1.0];
-        let n = [columns, draft.random.count(1, 3)];
+        let n = [draft.facing(columns), draft.random.count(1, 3)];
         let name = format!("b{i}");
         let weight = draft.load * draft.random.signed() * 0.1;
         draft.block(&name, rectangle([0.0, length], y), n, [0.0, weight]);

@@ -9,13 +9,19 @@ pub fn cracked(draft: &mut Draft) {
     let n = [0; 2].map(|_: usize| draft.random.count(2, draft.cells.max(2)));
     let lean = draft.random.signed() * draft.random.pick(&[0.0, 0.5, 1.0]);
     let plate = move |[x, y]: [f64; 2]| [x, y + lean * x];
+    let open: Vec<Vec<bool>> = (1..up).map(|_| crack(draft, across)).collect();
+    let is_above_crack = |i: usize, j: usize| j > 0 && open[j - 1][i];
     for i in 0..across {
+        let mut columns = n[0];
         for j in 0..up {
+            if is_above_crack(i, j) {
+                columns = draft.facing(columns).max(2);
+            }
             let (x, y) = (i as f64, j as f64);
+            let n = [columns, n[1]];
             draft.shape(&format!("q{i}_{j}"), n, |[s, t]| plate([x + s, y + t]));
         }
     }
-    let open: Vec<Vec<bool>> = (1..up).map(|_| crack(draft, across)).collect();
     let cracks = open.clone();
     let is_open = move |x: f64, y: f64| {
         let level = y - lean * x;
@@ -83,7 +89,8 @@ pub fn wedge(draft: &mut Draft) {
         ("right", right, columns[2]),
     ] {
         let force = [0.0, if name == "middle" { weight } else { 0.0 }];
-        draft.shape(name, [columns, n], |st| bilinear(corners, st));
+        let n = [columns, draft.facing(n)];
+        draft.shape(name, n, |st| bilinear(corners, st));
         draft.body(name, &[name], force);
     }
     for (block, outer) in [("left", "left left"), ("right", "right right")] {

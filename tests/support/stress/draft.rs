@@ -145,8 +145,11 @@ impl Draft {
         self.tables += &format!("[[traction]]\non = '{on}'\nvalue = ['{x}', '{y}']\n");
     }
 
-    /// A contact between groups of facets; without a gap the geometry gives it.
+    /// A contact between groups of facets; without a gap the geometry gives it. Where nodes don't
+    /// match, either side may be the first.
     pub fn contact(&mut self, a: &[String], b: &[String], gap: Option<&str>) {
+        let turned = !self.matching && self.random.chance(0.5);
+        let [a, b] = if turned { [b, a] } else { [a, b] };
         self.tables += &format!(
             "[[contact]]\nname = 'c{}'\nsides = [{a:?}, {b:?}]\n",
             self.contacts

@@ -23,33 +23,62 @@ use contact_dd_partition::model::Model;
 use self::draft::Draft;
 use super::random::Random;
 use super::scenes::model;
+use super::sorts::{SORTS, Sort};
 
 pub use self::balance::Balance;
 
-type Family = (&'static str, fn(&mut Draft));
+/// Scenes of one kind.
+#[derive(Clone, Copy)]
+pub struct Family {
+    pub name: &'static str,
+    /// Whether nodes of bodies in contact lie opposite each other.
+    matching: bool,
+    make: fn(&mut Draft),
+}
 
-/// The families of scenes.
-pub const FAMILIES: [Family; 12] = [
-    ("tower", towers::tower),
-    ("packing", boxes::packing),
-    ("bricks", walls::bricks),
-    ("inclusion", inclusions::inclusion),
-    ("punch", obstacles::punched),
-    ("notch", obstacles::notched),
-    ("disk", obstacles::disk),
-    ("beams", beams::beams),
-    ("plank", beams::plank),
-    ("cracks", cracks::cracked),
-    ("wedge", cracks::wedge),
-    ("layers", towers::layers),
-];
+const fn matching(name: &'static str, make: fn(&mut Draft)) -> Family {
+    let matching = true;
+    Family {
+        name,
+        matching,
+        make,
+    }
+}
 
-/// Those whose blocks may be meshed each for itself.
-const UNEVEN: [Family; 3] = [
-    ("tower", towers::tower),
-    ("packing", boxes::packing),
-    ("layers", towers::layers),
+/// Its bodies are meshed each for itself.
+const fn uneven(name: &'static str, make: fn(&mut Draft)) -> Family {
+    let matching = false;
+    Family {
+        name,
+        matching,
+        make,
+    }
+}
+
+/// The families of scenes; from [`FIRST_UNEVEN`] on those whose nodes don't match.
+pub const FAMILIES: [Family; 20] = [
+    matching("tower", towers::tower),
+    matching("packing", boxes::packing),
+    matching("bricks", walls::bricks),
+    matching("inclusion", inclusions::inclusion),
+    matching("punch", obstacles::punched),
+    matching("notch", obstacles::notched),
+    matching("disk", obstacles::disk),
+    matching("beams", beams::beams),
+    matching("plank", beams::plank),
+    matching("cracks", cracks::cracked),
+    matching("wedge", cracks::wedge),
+    matching("layers", towers::layers),
+    uneven("tower, uneven", towers::tower),
+    uneven("packing, uneven", boxes::packing),
+    uneven("bricks, uneven", walls::bricks),
+    uneven("inclusion, uneven", inclusions::inclusion),
+    uneven("beams, uneven", beams::beams),
+    uneven("cracks, uneven", cracks::cracked),
+    uneven("wedge, uneven", cracks::wedge),
+    uneven("layers, uneven", towers::layers),
 ];
+const FIRST_UNEVEN: usize = 12;
 
 /// Cells a side from which on some scenes are finer.
 const FINE: usize = 10;
@@ -58,6 +87,8 @@ const FINE: usize = 10;
 pub struct Drawn {
     pub seed: u64,
     pub family: &'static str,
+    /// Its cells.
+    pub sort: Sort,
     /// Its scene file.
     pub text: String,
     /// Whether its gaps, loads and prescribed displacements were replaced by those of a solution
@@ -77,7 +108,7 @@ pub struct Drawn {
 impl Drawn {
     /// Its scene file, and what was changed behind it.
     pub fn described(&self) -> String {
-        let mut text = self.text.clone();
+        let mut text = format!("# {} in {}\n{}", self.family, self.sort.name, self.text);
         if self.manufactured {
             text += "# gaps and loads replaced by those of a known solution\n";
         }
@@ -85,33 +116,37 @@ impl Drawn {
     }
 }
 
-/// The scene of a seed, with blocks of at most `cells` cells a side; where that isn't few, some
-/// scenes are several times finer.
+/// The scene of a seed, with blocks of at most `cells` linear cells a side, or half as many
+/// quadratic ones; where that isn't few, some scenes are several times finer.
 #[track_caller]
 pub fn draw(seed: u64, cells: usize) -> Drawn {
-    let family = FAMILIES[(seed % FAMILIES.len() as u64) as usize];
-    draw_of(family, true, seed, cells)
+    draw_from(&FAMILIES, seed, cells)
 }
 
 /// The same with blocks whose nodes don't match.
 #[track_caller]
 pub fn draw_uneven(seed: u64, cells: usize) -> Drawn {
-    let family = UNEVEN[(seed % UNEVEN.len() as u64) as usize];
-    draw_of(family, false, seed, cells)
+    draw_from(&FAMILIES[FIRST_UNEVEN..], seed, cells)
 }
 
 #[track_caller]
-fn draw_of((family, make): Family, matching: bool, seed: u64, cells: usize) -> Drawn {
+fn draw_from(families: &[Family], seed: u64, cells: usize) -> Drawn {
+    let family = families[(seed % families.len() as u64) as usize];
     let mut random = Random::new(seed);
+    let sort = random.pick(&SORTS);
+    let cells = match sort.is_quadratic {
+        true => cells.div_ceil(2),
+        false => cells,
+    };
     let cells = match cells >= FINE && random.chance(0.03) {
         true => 3 * cells,
         false => random.count(2.min(cells), cells),
     };
     let mut draft = Draft::new(random.clone(), cells);
-    draft.matching = matching;
-    make(&mut draft);
+    draft.matching = family.matching;
+    (family.make)(&mut draft);
     let text = draft.text();
-    let mut model = model(&text, draft.blocks.mesh);
+    let mut model = model(&text, sort.of(&draft.blocks.mesh));
     let mut random = draft.random;
     let manufactured = draft.equilibrium == Some(true) && random.chance(0.15);
     if manufactured {
@@ -130,7 +165,8 @@ fn draw_of((family, make): Family, matching: bool, seed: u64, cells: usize) -> D
     };
     Drawn {
         seed,
-        family,
+        family: family.name,
+        sort,
         text,
         manufactured,
         factor,

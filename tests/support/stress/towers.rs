@@ -35,8 +35,6 @@ fn pile(draft: &mut Draft, height: impl Fn(&mut Draft, usize) -> f64) {
     draft.equilibrium = Some(fall == Fall::Stands);
     // A surface that isn't plane would hold what is pushed.
     let rough = fall == Fall::Stands && draft.random.chance(0.3);
-    // Neither is held sideways by much but round-off where few nodes meet it.
-    let rough = rough && (rolled || draft.matching);
     if rough && !rolled {
         draft.equilibrium = None;
     }

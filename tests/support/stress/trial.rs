@@ -69,8 +69,9 @@ pub struct Trial {
     pub verdict: Verdict,
     /// Why, in words; empty where it is right.
     pub reason: String,
-    /// Whether there is an equilibrium.
-    pub equilibrium: bool,
+    /// Whether there is an equilibrium; `None` where that is a matter of round-off, so that both the
+    /// message that there is none and a solution are right.
+    pub equilibrium: Option<bool>,
     pub dofs: usize,
     pub conditions: usize,
     pub subdomains: usize,
@@ -87,7 +88,7 @@ impl Trial {
         let mut trial = Self {
             verdict: Verdict::Right,
             reason: String::new(),
-            equilibrium: drawn.equilibrium != Some(false),
+            equilibrium: drawn.equilibrium,
             dofs: model.mesh.dim * model.mesh.points.len(),
             conditions: model.contacts.iter().map(|c| c.conditions.len()).sum(),
             subdomains: 0,
@@ -97,8 +98,9 @@ impl Trial {
         let assembled = Assembled::new(model);
         let balance = Balance::new(model, &assembled);
         trial.equilibrium = match (balance, drawn.equilibrium) {
-            (Balance::Holds, None | Some(true)) => true,
-            (Balance::Fails, None | Some(false)) => false,
+            (Balance::Holds, None | Some(true)) => Some(true),
+            (Balance::Fails, None | Some(false)) => Some(false),
+            (Balance::Unclear, None) => None,
             (_, built) => {
                 trial.ends(Verdict::Unclear, format!("{balance:?}, built: {built:?}"));
                 return trial;
@@ -142,14 +144,14 @@ impl Trial {
         };
         let message = ended.errors().join(" ");
         match (status.code(), self.equilibrium) {
-            (Some(4), false) => return,
+            (Some(4), Some(false) | None) => return,
             (Some(2 | 4), _) => return self.ends(Verdict::Refused, message),
             (Some(0 | 3), _) => {}
             _ => return self.ends(Verdict::Crashed, format!("{status} {}", ended.stderr)),
         }
         let solution = Solution::read(&case.result());
         self.report = Some(solution.report.clone());
-        if !self.equilibrium {
+        if self.equilibrium == Some(false) {
             return self.ends(Verdict::Missed, message);
         }
         let reference = self.dofs <= REFERENCE;

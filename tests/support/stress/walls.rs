@@ -36,6 +36,7 @@ pub fn bricks(draft: &mut Draft) {
         let x = brick.halves.map(|h| h as f64 * width);
         let y = [0, 1].map(|k| (brick.course + k) as f64 * height);
         let n = [n[0] * (brick.halves[1] - brick.halves[0]), n[1]];
+        let n = n.map(|n| draft.facing(n));
         let aside = match ends && draft.random.chance(0.5) {
             true => draft.load * 0.3 * draft.random.signed(),
             false => 0.0,
