@@ -10,11 +10,14 @@ mod support;
 
 use contact_dd_partition::model::Model;
 
+use support::assembled::Assembled;
 use support::blocks::Blocks;
 use support::close;
-use support::scenes::{JOINT, built_in_model, model};
+use support::random::Random;
+use support::scenes::{BODIES, JOINT, built_in_model, model};
 use support::solution::Solution;
 use support::solver::solve;
+use support::stress::judge::Findings;
 
 /// Number of nodes of the lower block.
 const LOWER_NODES: i64 = 9 * 5;
@@ -79,6 +82,51 @@ fn a_body_without_load_is_lifted_no_further_than_it_must() {
         moved(&model, &solution, 0.01, 0.006);
         assert!(solution.largest_force() < 1e-3);
         assert!(names(&solution, "upper"));
+    }
+}
+
+/// Squeezed from both sides, which are divided unevenly: the sums of both loads differ by round-off,
+/// and so do their moments.
+#[test]
+fn a_body_whose_load_is_in_balance_stays_where_it_is() {
+    for (seed, gap) in [(1, 0.0), (2, 1e-5), (3, 0.3)] {
+        let blocks = Blocks::new()
+            .rectangle("lower", [0.0, 2.0], [0.0, 1.0], [8, 4])
+            .rectangle("upper", [0.5, 1.5], [1.0, 2.0], [4, 7]);
+        let text = format!(
+            "{BODIES}
+            [[displacement]]
+            on = 'lower bottom'
+            x = 0.0
+            y = 0.0
+            [[pressure]]
+            on = 'lower left'
+            value = 1e6
+            {JOINT}
+            gap = {gap:e}"
+        );
+        let mut model = model(&text, blocks.mesh);
+        // Forces of a displacement: K u has no resultant but that of its round-off.
+        let stiffness = Assembled::new(&model);
+        let mut random = Random::new(seed);
+        let u: Vec<f64> = (model.mesh.node_tags.iter())
+            .flat_map(|tag| match *tag > 9 * 5 {
+                true => [1e-4 * random.signed(), 1e-4 * random.signed()],
+                false => [0.0; 2],
+            })
+            .collect();
+        let forces = stiffness.times(&u);
+        let of_upper = (0_u32..).zip(forces.chunks(2)).skip(9 * 5);
+        model
+            .forces
+            .extend(of_upper.map(|(node, f)| (node, [f[0], f[1], 0.0])));
+        let assembled = Assembled::new(&model);
+        for count in [2, 5] {
+            let solution = solve(&model, count);
+            assert!(solution.largest_displacement() < 3e-4);
+            let found = Findings::new(&model, &assembled, &solution, false);
+            assert!(found.backward_error < 1e-14, "{}", found.backward_error);
+        }
     }
 }
 

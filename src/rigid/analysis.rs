@@ -9,10 +9,13 @@ use crate::error::Failure;
 
 /// Load along a free motion, relative to all loads, that counts as none.
 const LOAD_TOLERANCE: f64 = 1e-10;
+/// Resultant of a body's load, relative to the sum of its absolute forces, that is round-off of these:
+/// they may be products of a stiffness themselves.
+const RESULTANT_ROUND_OFF: f64 = 1e-12;
 /// Load that contact can't balance, relative to all loads, that counts as none.
 const BALANCE_TOLERANCE: f64 = 1e-9;
 /// The same that may be more than round-off.
-const UNDECIDED: f64 = 1e-13;
+const UNDECIDED: f64 = 1e-12;
 
 /// A body as the analysis sees it.
 #[derive(Clone, Debug)]
@@ -27,6 +30,17 @@ pub struct BodyState {
     pub load_scale: f64,
     /// Nodes at which it may be pinned: subdomain, node, position.
     pub candidates: Vec<(u32, u32, [f64; 3])>,
+}
+
+impl BodyState {
+    /// Makes nothing of resultants that are round-off: they would drive a body that its load
+    /// doesn't move until something stops it.
+    pub(super) fn drop_round_off(&mut self) {
+        let round_off = RESULTANT_ROUND_OFF * self.load_scale;
+        for load in self.load.iter_mut().filter(|load| load.abs() <= round_off) {
+            *load = 0.0;
+        }
+    }
 }
 
 /// A contact condition against the rigid motions of the bodies it touches.
@@ -116,16 +130,23 @@ impl Scene {
         let held = &load - &driven;
         let balanced = |left: &DVector<f64>| left.norm() <= BALANCE_TOLERANCE * scale;
         let actions = b.transpose();
+        let is_nothing = |left: &DVector<f64>| left.norm() <= UNDECIDED * scale;
         let in_span = nonnegative::residual_in_span(&actions, &held, RANK_TOLERANCE);
-        let unbalanced =
-            (in_span.filter(balanced)).unwrap_or_else(|| nonnegative::residual(&actions, &held));
+        let unbalanced = match in_span {
+            Some(left) if is_nothing(&left) => left,
+            in_span => {
+                let nearest = nonnegative::residual(&actions, &held);
+                let in_span = in_span.filter(|left| left.norm() < nearest.norm());
+                in_span.unwrap_or(nearest)
+            }
+        };
         if !balanced(&unbalanced) {
             let why = "contact can't hold it";
             return Err(kinematics.ill_posed(bodies, names, &unbalanced, why));
         }
         let mut motions = kinematics.fix(bodies, names, &free);
-        let share = unbalanced.norm() / scale;
-        if share > UNDECIDED {
+        if !is_nothing(&unbalanced) {
+            let share = unbalanced.norm() / scale;
             let motion = kinematics.motion(&unbalanced.normalize());
             motions.warnings.push(format!(
                 "contact can't hold {} against {share:.0e} of all loads; this counts as round-off, \

@@ -192,6 +192,7 @@ fn body_states(
             }
         },
     );
+    states.iter_mut().for_each(BodyState::drop_round_off);
     states
 }
 
