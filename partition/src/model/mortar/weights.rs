@@ -12,9 +12,11 @@ use super::dual::{dual_basis, integral};
 /// Share of what is covered around a node that the integral of its shape function over it has to
 /// have for the node to carry a multiplier. With less, its condition would extrapolate side b from
 /// afar, and its multiplier be next to nothing. Wholly covered, nodes of straight facets have a half.
-const LEAST: f64 = 0.1;
-/// Share of a facet with less of which covered its shape functions can't be told apart reliably.
-const SLIVER: f64 = 1e-3;
+/// No round number: where sides overlap by a fifth of a facet, round-off would decide.
+const LEAST: f64 = 0.098_765;
+/// Share of a facet with less of which covered its shape functions can't be told apart reliably. No
+/// round number either.
+const SLIVER: f64 = 0.987_65e-3;
 
 /// The nodes that carry multipliers. All others on what is covered, crack tips among them, hand
 /// their part of the dual basis to those beside them, so that the weights sum to 1 everywhere: what

@@ -1,0 +1,171 @@
+//! Where a scene lies, how large it is and how its nodes are numbered plays no part.
+
+use std::collections::BTreeMap;
+
+use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::model::Model;
+
+use crate::support::blocks::{Blocks, moved, shuffled};
+use crate::support::close;
+use crate::support::scenes::model;
+use crate::support::solution::{ContactPoint, Solution};
+use crate::support::solver::solve;
+use crate::support::sorts::sort;
+
+/// A block whose lower side is bent on a longer one, of cells of another size, pressed down at one
+/// end; of the last facet that it covers it covers a fifth.
+fn mesh(cells: &str) -> Mesh {
+    let bent = |[s, t]: [f64; 2]| {
+        let x = 0.4 + 2.1 * s;
+        [x, 1.0 + 0.6 * t + 2e-5 * (x - 1.2).powi(2) * (1.0 - t)]
+    };
+    let blocks = Blocks::new()
+        .rectangle("zero", [0.0, 2.0], [0.0, 1.0], [4, 3])
+        .mapped("one", [7, 3], bent);
+    sort(cells).of(&blocks.mesh)
+}
+
+fn text(upside_down: bool) -> String {
+    let sides = match upside_down {
+        true => "'zero top', 'one bottom'",
+        false => "'one bottom', 'zero top'",
+    };
+    format!(
+        "plane = 'strain'
+        materials.m0 = {{young = 20e9, poisson = 0.3}}
+        materials.m1 = {{young = 210e9, poisson = 0.22}}
+        bodies.zero.material = 'm0'
+        bodies.one.material = 'm1'
+        [[bilateral]]
+        on = ['zero bottom', 'zero left', 'one left']
+        [[contact]]
+        name = 'joint'
+        sides = [{sides}]\n"
+    )
+}
+
+/// The model of a mesh with forces by tag.
+fn loaded(text: &str, mesh: Mesh, force: impl Fn(i64) -> [f64; 2]) -> Model {
+    let mut model = model(text, mesh);
+    model.forces = (0_u32..)
+        .zip(&model.mesh.node_tags)
+        .map(|(node, &tag)| (node, force(tag)))
+        .filter(|(_, f)| *f != [0.0; 2])
+        .map(|(node, [x, y])| (node, [x, y, 0.0]))
+        .collect();
+    model
+}
+
+/// The scene, moved by a turn (and a reflection), a factor and a translation.
+#[derive(Clone, Copy)]
+struct Place {
+    angle: f64,
+    mirrored: bool,
+    factor: f64,
+    way: [f64; 2],
+}
+
+const HERE: Place = Place {
+    angle: 0.0,
+    mirrored: false,
+    factor: 1.0,
+    way: [0.0; 2],
+};
+
+impl Place {
+    fn turned(self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) = self.angle.sin_cos();
+        let x = if self.mirrored { -x } else { x };
+        [cos * x - sin * y, sin * x + cos * y]
+    }
+
+    fn point(self, at: [f64; 2]) -> [f64; 2] {
+        let turned = self.turned(at);
+        [0, 1].map(|i| self.factor * (turned[i] + self.way[i]))
+    }
+}
+
+/// Fails unless the scene has the same answer at all `places`, its nodes renumbered if `seed` says
+/// how.
+#[track_caller]
+fn is_the_same_at(places: &[Place], seed: Option<u64>) {
+    for (cells, upside_down) in [
+        ("triangle3", false),
+        ("triangle3", true),
+        ("triangle6, quad8 and quad9", true),
+    ] {
+        let text = text(upside_down);
+        let here = mesh(cells);
+        let pressed = |tag: i64| {
+            let [x, y, _] = here.points[tag as usize - 1];
+            let on_top = (y - 1.6).abs() < 1e-9;
+            [0.0, if on_top { -1e5 * (1.6 - x) } else { 0.0 }]
+        };
+        let first = solve(&loaded(&text, here.clone(), pressed), 4);
+        assert!(first.closed() > 0 && first.closed() < first.points().count());
+        for &place in places {
+            let there = moved(here.clone(), |at| place.point(at));
+            let (there, old) = match seed {
+                Some(seed) => shuffled(&there, seed),
+                None => (there, here.node_tags.iter().map(|&t| (t, t)).collect()),
+            };
+            let largest = there.points.iter().flatten();
+            let largest = largest.fold(0.0, |m: f64, c| m.max(c.abs()));
+            let force = |tag: i64| place.turned(pressed(old[&tag])).map(|f| place.factor * f);
+            let second = solve(&loaded(&text, there, force), 4);
+            // Gaps are differences of coordinates.
+            let round_off = 20.0 * f64::EPSILON * largest / second.largest_displacement();
+            agree(&first, &second, place, &old, 1e-10 + round_off);
+        }
+    }
+}
+
+#[track_caller]
+fn agree(first: &Solution, second: &Solution, place: Place, old: &BTreeMap<i64, i64>, slack: f64) {
+    let size = second.largest_displacement();
+    for (tag, u) in &second.displacement {
+        let [x, y, _] = first.displacement[&old[tag]];
+        let expected = place.turned([x, y]).map(|u| place.factor * u);
+        (0..2).for_each(|k| close(u[k], expected[k], slack * size));
+    }
+    let by_tag: BTreeMap<i64, &ContactPoint> = first.points().map(|p| (p.tags[0], p)).collect();
+    assert_eq!(by_tag.len(), second.points().count());
+    for point in second.points() {
+        let other = by_tag[&old[&point.tags[0]]];
+        let force = place.factor * other.force;
+        close(point.force, force, 10.0 * slack * second.largest_force());
+        close(point.gap, place.factor * other.gap, slack * size);
+    }
+}
+
+#[test]
+fn a_scene_that_is_mirrored_or_turned_has_the_same_answer() {
+    let turned = |angle, mirrored| Place {
+        angle,
+        mirrored,
+        ..HERE
+    };
+    is_the_same_at(
+        &[turned(0.7, false), turned(0.0, true), turned(2.0, true)],
+        None,
+    );
+}
+
+#[test]
+fn a_scene_of_any_size_has_the_same_answer() {
+    is_the_same_at(
+        &[1e-3, 1e3, 1e6].map(|factor| Place { factor, ..HERE }),
+        None,
+    );
+}
+
+#[test]
+fn a_scene_far_away_has_the_same_answer() {
+    let far = |angle, way| Place { angle, way, ..HERE };
+    is_the_same_at(&[far(0.0, [3e3, 0.0]), far(0.7, [-1e3, 2e3])], None);
+}
+
+#[test]
+fn a_renumbered_scene_has_the_same_answer() {
+    is_the_same_at(&[HERE], Some(1));
+}
