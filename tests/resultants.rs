@@ -77,8 +77,8 @@ fn supports_and_contacts_carry_the_load() {
 fn a_body_between_load_supports_and_contact_is_balanced() {
     for (n, x, angle) in [
         ([8, 4], [0.5, 1.5], 0.0),
-        ([5, 7], [0.7, 2.6], 0.0),
-        ([5, 7], [0.7, 2.6], 0.4),
+        ([5, 7], [0.35, 2.6], 0.0),
+        ([5, 7], [0.35, 2.03], 0.4),
         ([13, 3], [-0.4, 1.9], 2.0),
     ] {
         let (sin, cos) = f64::sin_cos(angle);

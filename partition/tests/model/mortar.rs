@@ -136,6 +136,26 @@ fn forces_and_moments_of_any_pressure_balance_across_a_straight_gap() {
     }
 }
 
+/// A fifth of a facet is covered, a half, a quarter: round-off may not decide which nodes carry.
+#[test]
+fn the_same_nodes_carry_however_a_side_lies() {
+    for (from, facets) in [(0.4, 4), (0.1, 4), (0.25, 4), (0.3, 2), (0.9, 2), (0.48, 4)] {
+        let blocks = Blocks::new()
+            .block("lower", [0.0, 2.0], [0.0, 1.0], [facets, 1])
+            .block("upper", [from, 2.5], [1.0, 2.0], [7, 1]);
+        let tags = |blocks: &Blocks| -> Vec<i64> {
+            let rows = conditions(blocks, &contact("lower"));
+            rows.iter().map(|row| row.tag_a).collect()
+        };
+        let here = tags(&blocks);
+        for step in 1..20 {
+            let (sin, cos) = f64::sin_cos(0.3 * f64::from(step));
+            let turned = |[x, y, z]: [f64; 3]| [cos * x - sin * y, sin * x + cos * y, z];
+            assert_eq!(tags(&blocks.clone().moved(turned)), here, "{from} {step}");
+        }
+    }
+}
+
 #[test]
 fn no_coefficient_is_large_however_little_of_a_facet_is_covered() {
     for (lower, upper, n) in overlaps() {
