@@ -32,6 +32,18 @@ const FLIPS_EACH: usize = 10;
 /// Conditions for which every single flip that may be needed is tried.
 const SINGLE_FLIPS: usize = 100;
 
+/// How pivoting goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pivoting {
+    /// All wrong signs flip, and what loses its hold goes back to where it began.
+    Quick,
+    /// All wrong signs flip, and what loses its hold stays where it was within its gaps: bodies that
+    /// go back may run into others, close there, and open again.
+    Following,
+    /// Single signs flip where flipping all of them gets nowhere.
+    Ending,
+}
+
 /// The contact problem.
 #[derive(Clone, Copy, Debug)]
 pub struct GapProblem<'a> {
@@ -100,7 +112,13 @@ impl GapProblem<'_> {
     /// ones are open in the solution.
     pub fn solve(&self, open: &mut [bool]) -> GapSolution {
         let mut set = open.to_vec();
-        let mut solution = self.pivot(&mut set, QUICK_STEPS, false);
+        let mut solution = self.pivot(&mut set, QUICK_STEPS, Pivoting::Quick);
+        if !solution.converged {
+            let steps = solution.steps;
+            set.copy_from_slice(open);
+            solution = self.pivot(&mut set, QUICK_STEPS, Pivoting::Following);
+            solution.steps += steps;
+        }
         if !solution.converged {
             let quick = solution.steps;
             let (mut named, center, named_in) = self.interior_point();
@@ -110,7 +128,7 @@ impl GapProblem<'_> {
                 ..*self
             };
             solution = if self.rows.is_empty() {
-                centered.pivot(&mut named, self.most_steps(), true)
+                centered.pivot(&mut named, self.most_steps(), Pivoting::Ending)
             } else {
                 centered.dual(&mut named, self.most_steps())
             };
@@ -155,7 +173,7 @@ impl GapProblem<'_> {
 
     /// Pivots until all signs are right, or `limit` systems are solved, or flipping all wrong
     /// signs gets nowhere and single flips aren't asked for.
-    fn pivot(&self, open: &mut [bool], limit: usize, single_flips: bool) -> GapSolution {
+    fn pivot(&self, open: &mut [bool], limit: usize, pivoting: Pivoting) -> GapSolution {
         let mut fewest = usize::MAX;
         let mut patience = PATIENCE;
         let mut steps = 0;
@@ -175,12 +193,11 @@ impl GapProblem<'_> {
             } else {
                 patience = patience.saturating_sub(1);
             }
-            let stuck = patience == 0 && !single_flips;
+            let stuck = patience == 0 && pivoting != Pivoting::Ending;
             if wrong.is_empty() || stuck || steps >= limit {
                 return self.solution(&trial, steps, wrong.is_empty());
             }
-            // What opening these conditions leaves without hold stays where it was within its gaps.
-            if !wrong.iter().any(|&j| open[j]) {
+            if pivoting == Pivoting::Following && !wrong.iter().any(|&j| open[j]) {
                 center.clone_from(&trial.approaches);
             }
             let flips = if patience > 0 {
