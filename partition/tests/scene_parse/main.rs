@@ -1,0 +1,142 @@
+//! Reading scene.toml: every key of it, and what is said about wrong ones.
+
+mod refused;
+
+use contact_dd_partition::model::PlaneState;
+use contact_dd_partition::scene::Scene;
+use contact_dd_partition::scene::condition::{Obstacle, Partner};
+use contact_dd_partition::scene::material::Elasticity;
+use contact_dd_partition::scene::number::Number;
+
+const WHOLE: &str = r#"title = "Loaded granite block with cracks"
+mesh  = "block.msh"
+plane = "strain"
+subdomains = ["s1", "s2"]
+
+[materials.granite]
+young = 5.2e9
+poisson = 0.18
+[materials.wood]
+stiffness = [[10, 2, 0], [2, 5, 0], [0, 0, "1+1"]]
+out_of_plane = [1.0, 2.0, 0]
+
+[bodies.block]
+material = "granite"
+body_force = [0.0, -25e3]
+[bodies."left block"]
+material = "wood"
+
+[[displacement]]
+on = "bottom"
+x = 0.0
+y = "1e-3*x"
+[[bilateral]]
+on = ["axis", "side"]
+[[traction]]
+on = "top"
+value = ["0", "-1e6*(1-x^2)"]
+[[pressure]]
+on = "right"
+value = 0.6e7
+[[contact]]
+name = "left crack"
+sides = ["left crack lower", ["left crack upper", "more"]]
+gap = 0.0
+[[contact]]
+name = "table"
+sides = ["base"]
+obstacle = { point = [0.0, 0.0], normal = [0.0, 2.0] }
+[[contact]]
+name = "ring"
+sides = ["rim"]
+obstacle = { center = [0, 0], radius = "2*pi", inside = true }
+"#;
+
+#[test]
+fn every_key_is_read() {
+    let scene = Scene::parse(WHOLE).unwrap();
+    assert_eq!(scene.title, "Loaded granite block with cracks");
+    assert_eq!(scene.mesh.to_str(), Some("block.msh"));
+    assert_eq!(scene.plane, Some(PlaneState::Strain));
+    let subdomains = scene.subdomains.unwrap();
+    assert_eq!(subdomains.iter().collect::<Vec<_>>(), ["s1", "s2"]);
+    assert_eq!(
+        scene.materials["granite"],
+        Elasticity::Isotropic {
+            young: 5.2e9,
+            poisson: 0.18
+        }
+    );
+    assert_eq!(
+        scene.materials["wood"],
+        Elasticity::Anisotropic {
+            stiffness: [[10.0, 2.0, 0.0], [2.0, 5.0, 0.0], [0.0, 0.0, 2.0]],
+            out_of_plane: Some([1.0, 2.0, 0.0]),
+        }
+    );
+    let force = scene.bodies["block"].body_force.clone().unwrap();
+    assert_eq!(force.at([0.0; 3]), Ok([0.0, -25e3, 0.0]));
+    assert_eq!(scene.bodies["left block"].body_force, None);
+    let displacement = &scene.displacement[0].components;
+    assert_eq!(displacement[0], Some(Number::Constant(0.0)));
+    assert_eq!(
+        displacement[1].as_ref().unwrap().at([2.0, 0.0, 0.0]),
+        Ok(2e-3)
+    );
+    assert_eq!(displacement[2], None);
+    assert_eq!(scene.bilateral[0].on.to_string(), "'axis', 'side'");
+    assert_eq!(
+        scene.traction[0].value.at([0.5, 9.0, 0.0]),
+        Ok([0.0, -0.75e6, 0.0])
+    );
+    assert_eq!(scene.pressure[0].value, Number::Constant(0.6e7));
+    let [crack, table, ring] = scene.contact.as_slice() else {
+        panic!("three contacts");
+    };
+    assert_eq!(crack.name, "left crack");
+    assert_eq!(crack.gap, Some(Number::Constant(0.0)));
+    assert!(matches!(&crack.partner, Partner::Side(b)
+        if b.to_string() == "'left crack upper', 'more'"));
+    assert_eq!(table.gap, None);
+    assert!(matches!(&table.partner,
+        Partner::Obstacle(Obstacle::HalfPlane { point, normal })
+            if point.value == [0.0; 3] && normal.value == [0.0, 2.0, 0.0]));
+    assert!(matches!(&ring.partner,
+        Partner::Obstacle(Obstacle::Circle { radius, inside: true, .. })
+            if *radius == 2.0 * std::f64::consts::PI));
+}
+
+#[test]
+fn a_scene_needs_no_more_than_mesh_material_and_body() {
+    let scene = Scene::parse(
+        "mesh = 'a.msh'\nplane = 'stress'\nmaterials.m = {young = 1, poisson = 0}\nbodies.b.material = 'm'",
+    )
+    .unwrap();
+    assert_eq!(scene.plane, Some(PlaneState::Stress));
+    assert!(scene.contact.is_empty() && scene.subdomains.is_none());
+}
+
+#[test]
+fn the_mesh_lies_beside_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, WHOLE).unwrap();
+    let scene = Scene::read(&path).unwrap();
+    assert_eq!(scene.mesh, folder.path().join("block.msh"));
+    std::fs::write(&path, WHOLE.replace("block.msh", "/meshes/block.msh")).unwrap();
+    let scene = Scene::read(&path).unwrap();
+    assert_eq!(scene.mesh.to_str(), Some("/meshes/block.msh"));
+}
+
+#[test]
+fn files_that_are_no_scene_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    let said = |path: &std::path::Path| Scene::read(path).unwrap_err().to_string();
+    assert!(said(&path).contains("scene.toml: can't be read"));
+    assert!(said(folder.path()).contains("can't be read"));
+    std::fs::write(&path, b"title = 'a'\nmesh = '\xff'").unwrap();
+    assert!(said(&path).contains("scene.toml: line 2: isn't UTF-8"));
+    std::fs::write(&path, "mesh = 1").unwrap();
+    assert!(said(&path).contains("scene.toml: line 1: mesh: "));
+}
