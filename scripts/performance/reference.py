@@ -14,6 +14,8 @@ import numpy as np
 import scipy.sparse as sp
 
 TRIANGLE = 5
+# Residual of the linear problem, relative to its terms, of what counts as a solution.
+LARGEST_RESIDUAL = 1e-10
 
 
 class System:
@@ -216,18 +218,20 @@ class Pardiso:
 
 
 def tried(system, threads):
-    """What the linear problem needs by each of PARDISO's choices, after a try that starts the
-    threads; where it is short, the best of three."""
+    """What the linear problem needs by each of PARDISO's choices that solve it, after a try that
+    starts the threads; where it is short, the best of three."""
     linear(system, threads, next(iter(Pardiso.CHOICES)))
     results = {}
     for choice in Pardiso.CHOICES:
         # Its ways to factorize differ with several threads only.
         if threads == 1 and "two-level" in choice and choice != "minimum degree, two-level":
             continue
-        results[choice], _ = linear(system, threads, choice)
-        if results[choice]["total"] < 1:
-            again = [linear(system, threads, choice)[0] for _ in range(2)]
-            results[choice] = min([results[choice], *again], key=lambda result: result["total"])
+        tries = [linear(system, threads, choice)]
+        if tries[0][0]["total"] < 1:
+            tries += [linear(system, threads, choice) for _ in range(2)]
+        # Some ways end without an error and without a solution.
+        if all(system.residual(u) < LARGEST_RESIDUAL for _, u in tries):
+            results[choice] = min((result for result, _ in tries), key=lambda result: result["total"])
     return results
 
 
