@@ -5,10 +5,12 @@
 //! empty but where more conditions meet than there are directions. Flags, bounds and forces are
 //! those of approaches, then those of dependent conditions.
 //!
-//! A warm-started primal-dual active set flips every condition whose sign is wrong. Where that turns
-//! in circles or opens conditions one by one, an interior-point method names the set to start from,
-//! and from there Júdice and Pires' rule ends for every positive definite H: flip all as long as
-//! their number falls, else one at a time. With dependent conditions it's the dual method that ends.
+//! A warm-started primal-dual active set flips every condition whose sign is wrong, at first with
+//! bodies that lose their hold back where they began, then, if that gets nowhere, with them where
+//! they were last within their gaps. Where that turns in circles or opens conditions one by one, too,
+//! an interior-point method names the set to start from, and from there Júdice and Pires' rule ends
+//! for every positive definite H: flip all as long as their number falls, else one at a time. With
+//! dependent conditions it's the dual method that ends.
 
 use faer::MatRef;
 

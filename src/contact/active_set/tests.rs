@@ -1,6 +1,6 @@
 //! Contact problems whose answers are known or can be checked.
 
-use faer::linalg::solvers::DenseSolveCore;
+use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, Side};
 
 use super::*;
@@ -264,4 +264,71 @@ fn conditions_that_contradict_each_other_have_no_solution() {
     rows.push(vec![(0, -1.0)]);
     let (solution, _) = solve_with(&h, &[1.0], &rows, &[0.1, -0.2]);
     assert!(!solution.converged);
+}
+
+/// H, c and the bounds of a row of `bricks` between two walls, each brick `points` nodes high, free
+/// to move along the row by up to `gap` and under loads that balance.
+fn brick_row(
+    seed: usize,
+    bricks: usize,
+    points: usize,
+    gap: f64,
+) -> (Mat<f64>, Vec<f64>, Vec<f64>) {
+    let sides = 2 * points;
+    let rights = (bricks - 1) * points;
+    let all = rights + (bricks + 1) * points;
+    // Unknowns are the right sides' displacements but the last one's, then the approaches.
+    let right = |brick: usize, i: usize| match brick + 1 < bricks {
+        true => brick * points + i,
+        false => rights + bricks * points + i,
+    };
+    let approach = |joint: usize, i: usize| rights + joint * points + i;
+    let without_mean = |a: Mat<f64>| {
+        let means: Vec<f64> = (a.col_iter())
+            .map(|column| column.iter().sum::<f64>() / sides as f64)
+            .collect();
+        Mat::from_fn(sides, a.ncols(), |i, j| a[(i, j)] - means[j])
+    };
+    let mut k = Mat::<f64>::zeros(all, all);
+    let mut f = Mat::<f64>::zeros(all, 1);
+    for brick in 0..bricks {
+        let at = seed * 1000 + brick * 100;
+        let root = without_mean(Mat::from_fn(sides, sides, |i, j| noise(at + i * 31 + j)));
+        let load = without_mean(Mat::from_fn(sides, 1, |i, _| noise(at + 57 * i)));
+        let mut of_unknowns = Mat::<f64>::zeros(sides, all);
+        for i in 0..points {
+            of_unknowns[(i, approach(brick, i))] -= 1.0;
+            if brick > 0 {
+                of_unknowns[(i, right(brick - 1, i))] += 1.0;
+            }
+            of_unknowns[(points + i, right(brick, i))] += 1.0;
+        }
+        k += of_unknowns.transpose() * &root * root.transpose() * &of_unknowns;
+        f += of_unknowns.transpose() * load;
+    }
+    // With every joint closed the row is one piece between the walls.
+    let coupling = k.submatrix(rights, 0, all - rights, rights);
+    let piece = k.submatrix(0, 0, rights, rights).llt(Side::Lower).unwrap();
+    let h = k.submatrix(rights, rights, all - rights, all - rights)
+        - coupling * piece.solve(coupling.transpose());
+    let c = f.subrows(rights, all - rights) - coupling * piece.solve(f.subrows(0, rights));
+    let m = all - rights;
+    let bounds = (0..m).map(|i| gap * noise(seed * 13 + i).abs()).collect();
+    let symmetric = Mat::from_fn(m, m, |i, j| 0.5 * (h[(i, j)] + h[(j, i)]));
+    (symmetric, (0..m).map(|i| c[(i, 0)]).collect(), bounds)
+}
+
+#[test]
+fn bricks_that_lose_their_hold_stay_between_their_neighbours() {
+    // Where they go back to where they began, the signs turn in circles in this row.
+    let (h, c, bounds) = brick_row(53, 8, 3, 5.0);
+    let (solution, _) = solve(&h, &c, &bounds);
+    assert!(solution.converged && !solution.fell_back);
+    assert_optimal(&h, &c, &bounds, &solution);
+    for seed in 0..40 {
+        let (h, c, bounds) = brick_row(seed, 8, 4, 0.2);
+        let (solution, _) = solve(&h, &c, &bounds);
+        assert!(solution.converged && !solution.fell_back, "{seed}");
+        assert_optimal(&h, &c, &bounds, &solution);
+    }
 }
