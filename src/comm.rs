@@ -5,6 +5,7 @@
 
 mod environment;
 mod message;
+mod signal;
 
 use std::cell::Cell;
 
@@ -14,6 +15,7 @@ use mpi::traits::*;
 
 pub use environment::{World, phase, start};
 pub use message::{Message, MessageReader};
+pub use signal::is_asked_to_stop;
 
 use crate::error::{Failure, FailureKind};
 
@@ -66,6 +68,15 @@ impl Comm {
         };
         self.broadcast_from(lowest as usize, &mut message);
         Err(message.into_failure())
+    }
+
+    /// Whether any rank was asked to stop. Collective.
+    pub fn is_any_asked_to_stop(&self) -> bool {
+        let mine = i32::from(is_asked_to_stop());
+        let mut any = 0i32;
+        self.world
+            .all_reduce_into(&mine, &mut any, SystemOperation::max());
+        any != 0
     }
 
     /// Gives all ranks the root's message. Collective.

@@ -16,6 +16,8 @@ pub enum FailureKind {
     IllPosed = 4,
     /// The output can't be written.
     Output = 5,
+    /// A signal asked the run to stop.
+    Interrupted = 6,
 }
 
 impl FailureKind {
@@ -25,6 +27,7 @@ impl FailureKind {
             2 => Self::Input,
             4 => Self::IllPosed,
             5 => Self::Output,
+            6 => Self::Interrupted,
             _ => Self::Internal,
         }
     }
@@ -61,6 +64,14 @@ impl Failure {
     pub fn ill_posed(message: impl Into<String>) -> Self {
         Self {
             kind: FailureKind::IllPosed,
+            message: message.into(),
+        }
+    }
+
+    /// A run that was asked to stop.
+    pub fn interrupted(message: impl Into<String>) -> Self {
+        Self {
+            kind: FailureKind::Interrupted,
             message: message.into(),
         }
     }

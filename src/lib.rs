@@ -13,9 +13,11 @@
 //! looks for rigid motions that nothing holds ([`rigid`]), condenses them ([`schur`], [`contact`]) and
 //! merges what belongs together up a tree of subdomains, the hierarchy of the problem file; the root
 //! assembles and solves what is left of Γ ([`interface`], [`sweep`]); the solution is checked against
-//! the full discrete problem ([`certificate`]) and written ([`output`]). Only [`comm`] knows MPI.
+//! the full discrete problem ([`certificate`]) and written ([`output`]). A run that a signal stops leaves
+//! a [`checkpoint`]. Only [`comm`] knows MPI.
 
 pub mod certificate;
+pub mod checkpoint;
 pub mod comm;
 pub mod contact;
 pub mod error;

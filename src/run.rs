@@ -11,6 +11,7 @@ pub mod frozen;
 pub mod interface;
 pub mod merge;
 pub mod motions;
+mod pausing;
 mod reactions;
 pub mod read;
 pub mod recover;
@@ -35,6 +36,7 @@ use self::frozen::{Frozen, FrozenRoot};
 use self::interface::assemble_interface;
 use self::merge::condense_clusters;
 use self::motions::Motions;
+use self::pausing::Checkpoints;
 use self::reactions::reactions;
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
@@ -89,6 +91,12 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let plan = Plan::new(catalog, comm.size(), settings.merging());
     let mut blocks = comm.agree(read_blocks(comm, &file, &plan))?;
     narrator.problem(catalog, &plan);
+    let mut checkpoints = Checkpoints::new(settings);
+    let earlier = match comm.is_root() {
+        true => checkpoints.last(),
+        false => Ok(None),
+    };
+    let earlier = comm.agree(earlier)?;
 
     // Rigid motions that neither supports nor contact hold, and those by which bodies come to rest.
     phase("looking for free rigid motions");
@@ -127,19 +135,26 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let lap = Instant::now();
     let pair_owners = plan.contact_owners();
     let mut s_con = SCon::new(comm, &pair_owners, &mut condensed.pairs);
-    let mut outcome = match &interface {
+    let outcome = match &interface {
         Some((_, interface)) => {
-            narrator.sweeps(interface);
+            narrator.sweeps(interface, earlier.as_ref());
             let mut observer = |record: &SweepRecord| narrator.sweep(interface, record);
-            let solved = Sweeps::solve(interface, &mut s_con, settings.sweeps(), &mut observer);
+            let restored = checkpoints.restore(earlier, interface, &mut s_con);
+            let solved = restored.and_then(|earlier| {
+                let sweeps = settings.sweeps();
+                let pause = &mut checkpoints;
+                Sweeps::solve(interface, &mut s_con, sweeps, earlier, pause, &mut observer)
+                    .ok_or_else(|| checkpoints.stopped())
+            });
             s_con.stop();
-            Some(solved)
+            solved.map(Some)
         }
         None => {
             s_con.serve();
-            None
+            Ok(None)
         }
     };
+    let mut outcome = comm.agree(outcome)?;
     seconds.sweeps = lap.elapsed().as_secs_f64();
 
     // Back-substitution, and the check of the full discrete problem.
@@ -217,9 +232,18 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
                 ranks,
                 resultants,
                 estimate,
-                warnings: [survey.motions.warnings, settled.warnings].concat(),
+                warnings: [
+                    checkpoints.warnings.clone(),
+                    survey.motions.warnings,
+                    settled.warnings,
+                ]
+                .concat(),
             };
-            narrator.finish(&totals, output)
+            let finished = narrator.finish(&totals, output);
+            if finished.is_ok() && outcome.status == SweepStatus::Converged {
+                checkpoints.remove();
+            }
+            finished
         }
         _ => Ok(()),
     };

@@ -1,5 +1,6 @@
 //! The command line.
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
@@ -18,7 +19,7 @@ use crate::sweep::{Method, SweepSettings};
                   mpirun -n 4 contact-dd-mpi problem.h5 -o out.vtkhdf --report report.json\n  \
                   contact-dd-mpi --check problem.h5\n\n\
                   Exit codes: 0 converged, 2 bad input, 3 not converged (results are written), \
-                  4 a body can move freely, 5 the output can't be written, 1 anything else."
+                  4 a body can move freely, 5 the output can't be written, 6 interrupted by a signal, 1 anything else."
 )]
 pub struct Settings {
     /// Problem file, made by contact-dd-partition.
@@ -44,6 +45,12 @@ pub struct Settings {
     /// Threads of each rank.
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: u16,
+    /// Write a checkpoint after every N sweeps, too, and not only where a signal stops them.
+    #[arg(long, value_name = "N")]
+    pub checkpoint_every: Option<NonZeroUsize>,
+    /// Go on from the last checkpoint of the same run, if there is one.
+    #[arg(long)]
+    pub restart: bool,
     /// Leave stresses out: neither recovered nor written.
     #[arg(long)]
     pub no_stress: bool,
@@ -124,6 +131,9 @@ impl Settings {
         }
         if let Some(theta) = self.relaxation {
             list.push(("relaxation", theta.to_string()));
+        }
+        if let Some(n) = self.checkpoint_every {
+            list.push(("checkpoint", format!("every {n} sweeps")));
         }
         if self.no_stress {
             list.push(("stress", "left out".to_string()));

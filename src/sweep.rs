@@ -6,23 +6,23 @@
 
 pub mod anderson;
 pub mod newton;
+mod outcome;
 pub mod picard;
+pub mod progress;
 
 use std::time::Instant;
 
+pub use self::outcome::{SweepOutcome, SweepRecord, SweepStatus};
+use self::progress::{Memory, Progress};
 use crate::contact::s_con::{ConState, ConTotals, SCon};
 use crate::interface::operator::Interface;
-use crate::output::report::Certificate;
+use crate::schur::factor::BoundaryLastCholesky;
 
 /// Residual that is round-off and nothing else.
 const ROUND_OFF: f64 = 1e-15;
 
-/// Equilibrium and penetration of a certificate that isn't one.
-const NOT_BALANCED: f64 = 1e-10;
-/// Equilibrium that may be round-off of a scene without load.
-const ROUND_OFF_OF_TERMS: f64 = 1e-12;
-/// Equilibrium relative to the load of an answer that says nothing.
-const NOT_BALANCED_OF_LOAD: f64 = 1e-2;
+/// Residual to which a method goes that took over: there may be nothing to refine with afterwards.
+const FALL_BACK_TOLERANCE: f64 = 1e-13;
 
 /// How U is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -59,88 +59,18 @@ pub struct SweepSettings {
     pub relaxation: Option<f64>,
 }
 
-/// One line of the convergence history; line 0 is the bilateral start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SweepRecord {
-    /// Number of the sweep.
-    pub sweep: usize,
-    /// ‖r‖∞ relative to the terms that r is a sum of.
-    pub residual: f64,
-    /// Closed conditions.
-    pub active: usize,
-    /// Conditions that opened or closed in it.
-    pub changed: usize,
-    /// Since the sweeps began (s).
-    pub seconds: f64,
-}
-
-/// Why sweeps ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum SweepStatus {
-    /// The residual is below the tolerance and no contact changes any more.
-    Converged,
-    /// They stopped short of that, for this reason.
-    NotConverged(String),
-}
-
-/// What the sweeps found.
-#[derive(Clone, Debug)]
-pub struct SweepOutcome {
-    /// U.
-    pub u: Vec<f64>,
-    /// Why they ended.
-    pub status: SweepStatus,
-    /// History.
-    pub records: Vec<SweepRecord>,
-    /// What a user should know.
-    pub notes: Vec<String>,
-    /// Linear systems solved in contact problems, those of single pairs and the coupled one.
-    pub inner_steps: usize,
-    /// Evaluations of pairs, and how many more weren't made because nothing had changed.
-    pub evaluations: [usize; 2],
-    /// Which other methods had to help, in words.
-    pub fallbacks: Vec<String>,
-    /// The residual that is left in the end.
-    pub residual: f64,
-    /// Totals of the last evaluation of S_CON.
-    pub totals: ConTotals,
-}
-
-impl SweepOutcome {
-    /// Takes back that the sweeps converged if the full discrete problem says otherwise: their
-    /// residual is relative to terms that may be far larger than the load.
-    pub fn accept(&mut self, certificate: &Certificate) {
-        let Certificate {
-            equilibrium,
-            equilibrium_of_load,
-            penetration,
-            ..
-        } = *certificate;
-        let unbalanced = equilibrium > NOT_BALANCED
-            || (equilibrium > ROUND_OFF_OF_TERMS && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
-        let failed = unbalanced || penetration > NOT_BALANCED || equilibrium.is_nan();
-        if failed && self.status == SweepStatus::Converged {
-            self.status = SweepStatus::NotConverged(format!(
-                "the forces on the nodes are balanced to {equilibrium:.1e} of their terms and \
-                 {equilibrium_of_load:.1e} of the largest load, and contacts penetrate by \
-                 {penetration:.1e} of the largest displacement: the scene is too badly conditioned"
-            ));
-        }
-    }
-}
-
-/// The state of the sweeps on the root.
+/// The sweeps on the root.
 pub struct Sweeps<'a, 'c> {
     interface: &'a Interface,
     s_con: &'a mut SCon<'c>,
     state: ConState,
     settings: SweepSettings,
+    progress: Progress,
+    /// The factor of S_0, where the method inverts it.
+    s_0: Option<BoundaryLastCholesky>,
     began: Instant,
-    records: Vec<SweepRecord>,
-    notes: Vec<String>,
-    inner_steps: usize,
-    evaluations: [usize; 2],
-    fallbacks: Vec<String>,
+    /// What earlier runs took (s).
+    earlier: f64,
     observer: &'a mut dyn FnMut(&SweepRecord),
 }
 
@@ -152,64 +82,99 @@ struct Residual {
     totals: ConTotals,
 }
 
+/// What a sweep leads to.
+enum Next {
+    /// More sweeps, of this method or another one.
+    Sweep(Memory, Residual),
+    /// The end.
+    End(SweepStatus),
+}
+
+/// What sweeps are asked for between two of them.
+pub trait Pause {
+    /// Sees what has been found so far; tells whether the sweeps stop here and are to go on in
+    /// another run. On the root; `s_con` reaches the other ranks.
+    fn pause(&mut self, progress: &Progress, state: &ConState, s_con: &mut SCon<'_>) -> bool;
+}
+
 impl<'a, 'c> Sweeps<'a, 'c> {
-    /// Solves S_0 U + S_CON(U) = F, (14), from the bilateral start. On the root, while the other
-    /// ranks serve S_CON; `observer` sees every sweep.
+    /// Solves S_0 U + S_CON(U) = F, (14), from the bilateral start, or from where a run before had
+    /// come. On the root, while the other ranks serve S_CON; `observer` sees every sweep. `None`
+    /// where `pause` stops them.
     pub fn solve(
         interface: &'a Interface,
         s_con: &'a mut SCon<'c>,
         settings: SweepSettings,
+        earlier: Option<(Progress, ConState)>,
+        pause: &mut dyn Pause,
         observer: &'a mut dyn FnMut(&SweepRecord),
-    ) -> SweepOutcome {
+    ) -> Option<SweepOutcome> {
+        let goes_on = earlier.is_some();
+        let (progress, state) = earlier.unwrap_or_else(|| {
+            let start = Progress::new(interface.bilateral_start(), settings.method);
+            (start, ConState::default())
+        });
         let mut sweeps = Self {
             interface,
             s_con,
-            state: ConState::default(),
+            state,
             settings,
+            s_0: None,
             began: Instant::now(),
-            records: Vec::new(),
-            notes: Vec::new(),
-            inner_steps: 0,
-            evaluations: [0; 2],
-            fallbacks: Vec::new(),
+            earlier: progress.records.last().map_or(0.0, |last| last.seconds),
+            progress,
             observer,
         };
-        let mut u = interface.bilateral_start();
-        let residual = sweeps.residual(&u, None);
-        sweeps.record(&residual);
-        let status = match settings.method {
-            Method::Newton => sweeps.newton(&mut u, residual),
-            Method::Anderson => sweeps.anderson(&mut u, residual),
-            Method::Picard => sweeps.picard(&mut u, residual),
+        let residual = match goes_on {
+            true => sweeps.unbalanced(sweeps.progress.totals),
+            false => {
+                let residual = sweeps.residual(None);
+                sweeps.record(&residual);
+                residual
+            }
         };
+        let status = sweeps.sweep(residual, pause)?;
         if status == SweepStatus::Converged {
-            sweeps.refine(&mut u);
+            sweeps.refine();
         }
         // The pairs keep the approaches and forces of their last evaluation: it has to be S_CON(U).
-        let last = sweeps.residual(&u, None);
-        SweepOutcome {
-            u,
-            status,
-            records: sweeps.records,
-            notes: sweeps.notes,
-            inner_steps: sweeps.inner_steps,
-            evaluations: sweeps.evaluations,
-            fallbacks: sweeps.fallbacks,
-            residual: last.relative,
-            totals: last.totals,
+        let last = sweeps.residual(None);
+        Some(sweeps.progress.outcome(status, last.relative))
+    }
+
+    /// Sweeps until that ends; `None` where `pause` stops it.
+    fn sweep(&mut self, mut residual: Residual, pause: &mut dyn Pause) -> Option<SweepStatus> {
+        while !self.is_converged(&residual) {
+            if pause.pause(&self.progress, &self.state, self.s_con) {
+                return None;
+            }
+            let next = match std::mem::take(&mut self.progress.memory) {
+                Memory::Newton(memory) => self.newton(memory, residual),
+                Memory::Anderson(memory) => self.anderson(memory, residual),
+                Memory::Picard(memory) => self.picard(memory, residual),
+            };
+            match next {
+                Next::Sweep(memory, after) => {
+                    self.progress.memory = memory;
+                    residual = after;
+                }
+                Next::End(status) => return Some(status),
+            }
         }
+        Some(SweepStatus::Converged)
     }
 
     /// r(U), where the pairs' approaches are `expected` to be open; else as they were last.
-    fn residual(&mut self, u: &[f64], expected: Option<&[Vec<bool>]>) -> Residual {
+    fn residual(&mut self, expected: Option<&[Vec<bool>]>) -> Residual {
+        let u = &self.progress.u;
         let totals = (self.s_con).evaluate(self.interface, u, expected, &mut self.state);
-        self.inner_steps += totals.steps;
-        self.evaluations[0] += self.s_con.len() - totals.unmoved_pairs;
-        self.evaluations[1] += totals.unmoved_pairs;
-        if totals.fallen_back_pairs > 0 {
-            self.fell_back("pairs: the interior-point method named the closed contacts");
-        }
-        let (mut r, mut scale) = self.interface.linear_residual(u);
+        self.progress.count(&totals, self.s_con.len());
+        self.unbalanced(totals)
+    }
+
+    /// r(U) with the answers that the pairs have given.
+    fn unbalanced(&self, totals: ConTotals) -> Residual {
+        let (mut r, mut scale) = self.interface.linear_residual(&self.progress.u);
         self.state.subtract(self.interface, &mut r, &mut scale);
         let (r_max, scale_max) = (maximum(&r), maximum(&scale));
         Residual {
@@ -219,34 +184,35 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         }
     }
 
-    /// Remembers that another method had to help.
-    fn fell_back(&mut self, what: &str) {
-        if !self.fallbacks.iter().any(|known| known == what) {
-            self.fallbacks.push(what.into());
-        }
-    }
-
     fn record(&mut self, residual: &Residual) {
         let record = SweepRecord {
-            sweep: self.records.len(),
+            sweep: self.progress.records.len(),
             residual: residual.relative,
             active: residual.totals.active,
             changed: residual.totals.changed,
-            seconds: self.began.elapsed().as_secs_f64(),
+            seconds: self.earlier + self.began.elapsed().as_secs_f64(),
         };
-        self.records.push(record);
+        self.progress.records.push(record);
         (self.observer)(&record);
     }
 
     /// Whether the residual is small and the active set settled, or the residual is round-off: S_CON
     /// is evaluated exactly, so that then nothing is left that could change.
     fn is_converged(&self, residual: &Residual) -> bool {
-        let small = residual.relative <= self.settings.tolerance && residual.totals.changed == 0;
+        let small = residual.relative <= self.tolerance() && residual.totals.changed == 0;
         residual.totals.failed_pairs == 0 && (small || residual.relative <= ROUND_OFF)
     }
 
+    /// Residual at which the sweeps end.
+    fn tolerance(&self) -> f64 {
+        match self.progress.has_fallen_back {
+            true => self.settings.tolerance.min(FALL_BACK_TOLERANCE),
+            false => self.settings.tolerance,
+        }
+    }
+
     fn sweeps_done(&self) -> usize {
-        self.records.len() - 1
+        self.progress.records.len() - 1
     }
 
     fn gave_up(&self, residual: &Residual, why: &str) -> SweepStatus {
@@ -280,47 +246,5 @@ fn dot(x: &[f64], y: &[f64]) -> f64 {
 fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += a * x;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn status(equilibrium: f64, equilibrium_of_load: f64, penetration: f64) -> SweepStatus {
-        let mut outcome = SweepOutcome {
-            u: Vec::new(),
-            status: SweepStatus::Converged,
-            records: Vec::new(),
-            notes: Vec::new(),
-            inner_steps: 0,
-            evaluations: [0; 2],
-            fallbacks: Vec::new(),
-            residual: 0.0,
-            totals: ConTotals::default(),
-        };
-        outcome.accept(&Certificate {
-            equilibrium,
-            equilibrium_of_load,
-            penetration,
-            ..Certificate::default()
-        });
-        outcome.status
-    }
-
-    #[test]
-    fn an_answer_that_does_not_balance_is_not_accepted() {
-        assert_eq!(status(3e-16, 1e-13, 1e-16), SweepStatus::Converged);
-        // A stiffness ratio of 1e8, and a scene without load.
-        assert_eq!(status(2e-15, 3e-6, 1e-16), SweepStatus::Converged);
-        assert_eq!(status(1e-16, 0.8, 0.0), SweepStatus::Converged);
-        for bad in [
-            (1e-9, 1e-8, 0.0),
-            (4e-11, 0.8, 0.0),
-            (1e-16, 1e-13, 1e-9),
-            (f64::NAN, 0.0, 0.0),
-        ] {
-            assert_ne!(status(bad.0, bad.1, bad.2), SweepStatus::Converged);
-        }
     }
 }

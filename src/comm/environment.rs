@@ -49,6 +49,8 @@ pub fn start() -> Result<World, Failure> {
         universe_abort();
     }));
     check_launcher(size)?;
+    super::signal::listen()
+        .map_err(|error| Failure::internal(format!("signals can't be listened to: {error}")))?;
     Ok(World { universe })
 }
 

@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::clusters::take_clusters;
 use super::condense::Condensation;
 use super::read::OwnedBlock;
-use crate::comm::{Comm, Message};
+use crate::comm::{Comm, Message, is_asked_to_stop};
 use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
 use crate::error::Failure;
@@ -73,6 +73,11 @@ pub fn condense_clusters(
     let (alone, across) = merging.nodes();
     // First what needs no other rank, depth first, so that little waits at a time.
     let own = alone.into_iter().try_for_each(|v| {
+        if is_asked_to_stop() {
+            return Err(Failure::interrupted(
+                "interrupted while factorizing, before the sweeps: no checkpoint was written",
+            ));
+        }
         merging.own_node(v)?;
         if v < plan.blocks.len() {
             progress.advance();

@@ -5,6 +5,7 @@ use std::io::stdout;
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
 
+use crate::checkpoint::Checkpoint;
 use crate::comm::{Comm, Message};
 use crate::error::Failure;
 use crate::fem::estimate::CellError;
@@ -107,10 +108,14 @@ impl<'a> Narrator<'a> {
         }
     }
 
-    /// The head of the table of sweeps, if there are going to be any.
-    pub fn sweeps(&self, interface: &Interface) {
+    /// The head of the table of sweeps, if there are going to be any, and those of an `earlier` run.
+    pub fn sweeps(&self, interface: &Interface, earlier: Option<&Checkpoint>) {
         if self.speaks() && !interface.pair_traces.is_empty() {
             let _ = terminal::sweep_header(&mut stdout());
+        }
+        let earlier = earlier.map(|checkpoint| &checkpoint.progress.records[..]);
+        for record in earlier.unwrap_or_default() {
+            self.sweep(interface, record);
         }
     }
 

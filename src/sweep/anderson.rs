@@ -3,43 +3,68 @@
 use std::collections::VecDeque;
 
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
-use super::{Residual, SweepStatus, Sweeps, axpy};
+use super::progress::Memory;
+use super::{Next, Residual, Sweeps, axpy};
 
 /// Steps that are remembered.
 const DEPTH: usize = 5;
 /// Sweeps before it gives up.
 const MAX_SWEEPS: usize = 500;
 
-impl Sweeps<'_, '_> {
-    pub(super) fn anderson(&mut self, u: &mut [f64], mut residual: Residual) -> SweepStatus {
-        let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
-        let first = self.sweeps_done();
-        let mut history: VecDeque<(Vec<f64>, Vec<f64>)> = VecDeque::new();
-        let mut last: Option<(Vec<f64>, Vec<f64>)> = None;
-        while !self.is_converged(&residual) {
-            let hopeless = !residual.relative.is_finite() || self.interface.len == 0;
-            if hopeless || self.sweeps_done() - first >= limit {
-                return self.gave_up(&residual, "anderson stopped");
-            }
-            let mut chord = residual.r.clone();
-            self.interface.solve_bilateral(&mut chord);
-            if let Some((u_last, chord_last)) = last.replace((u.to_vec(), chord.clone())) {
-                history.push_back((difference(u, &u_last), difference(&chord, &chord_last)));
-                if history.len() > DEPTH {
-                    history.pop_front();
-                }
-            }
-            let weights = mixing_weights(&history, &chord);
-            axpy(1.0, &chord, u);
-            for ((du, dc), weight) in history.iter().zip(&weights) {
-                axpy(-weight, du, u);
-                axpy(-weight, dc, u);
-            }
-            residual = self.residual(u, None);
-            self.record(&residual);
+/// The steps that are remembered.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Chords {
+    /// Sweeps of other methods before.
+    first: usize,
+    /// U and the chord's step there, last time.
+    last: Option<(Vec<f64>, Vec<f64>)>,
+    /// Changes of both.
+    history: VecDeque<(Vec<f64>, Vec<f64>)>,
+}
+
+impl Chords {
+    /// None yet, after so many sweeps of another method.
+    pub(super) fn after(first: usize) -> Self {
+        Self {
+            first,
+            ..Self::default()
         }
-        SweepStatus::Converged
+    }
+
+    fn remember(&mut self, u: &[f64], chord: &[f64]) {
+        let now = (u.to_vec(), chord.to_vec());
+        if let Some((u_last, chord_last)) = self.last.replace(now) {
+            let change = (difference(u, &u_last), difference(chord, &chord_last));
+            self.history.push_back(change);
+            if self.history.len() > DEPTH {
+                self.history.pop_front();
+            }
+        }
+    }
+}
+
+impl Sweeps<'_, '_> {
+    pub(super) fn anderson(&mut self, mut chords: Chords, before: Residual) -> Next {
+        let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
+        let hopeless = !before.relative.is_finite() || self.interface.len == 0;
+        if hopeless || self.sweeps_done() - chords.first >= limit {
+            return Next::End(self.gave_up(&before, "anderson stopped"));
+        }
+        let mut chord = before.r;
+        self.interface.solve_bilateral(&mut chord);
+        let u = &mut self.progress.u;
+        chords.remember(u, &chord);
+        let weights = mixing_weights(&chords.history, &chord);
+        axpy(1.0, &chord, u);
+        for ((du, dc), weight) in chords.history.iter().zip(&weights) {
+            axpy(-weight, du, u);
+            axpy(-weight, dc, u);
+        }
+        let residual = self.residual(None);
+        self.record(&residual);
+        Next::Sweep(Memory::Anderson(chords), residual)
     }
 }
 

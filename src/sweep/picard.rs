@@ -4,7 +4,10 @@
 //! stiffness on both sides of Γ doesn't give; relaxed, U ← U + θ S_0⁻¹ r converges for
 //! θ < 2 / (1 + λ), λ the largest eigenvalue of S_0⁻¹ S_CON', wherever S_0 is regular.
 
-use super::{Residual, SweepStatus, Sweeps, axpy, dot, maximum};
+use serde::{Deserialize, Serialize};
+
+use super::progress::Memory;
+use super::{Next, Residual, SweepStatus, Sweeps, axpy, dot, maximum};
 use crate::schur::factor::BoundaryLastCholesky;
 
 /// Sweeps before it gives up.
@@ -14,56 +17,78 @@ const POWER_STEPS: usize = 60;
 /// Growth of U over the bilateral start at which it diverges.
 const DIVERGED: f64 = 1e8;
 
+/// θ and where it began.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Relaxation {
+    theta: f64,
+    /// ρ(S_0⁻¹ S_CON').
+    rho: f64,
+    first_residual: f64,
+    /// ‖U^0‖∞.
+    start: f64,
+}
+
 impl Sweeps<'_, '_> {
-    pub(super) fn picard(&mut self, u: &mut [f64], mut residual: Residual) -> SweepStatus {
-        if self.is_converged(&residual) {
-            return SweepStatus::Converged;
+    pub(super) fn picard(&mut self, relaxation: Option<Relaxation>, before: Residual) -> Next {
+        if self.s_0.is_none() {
+            self.s_0 = self.interface.factor_s_0();
         }
-        let Some(s_0) = self.interface.factor_s_0() else {
-            return SweepStatus::NotConverged(
+        let Some(s_0) = self.s_0.take() else {
+            return Next::End(SweepStatus::NotConverged(
                 "S_0 is singular: a part of the interface belongs to contact subdomains alone, or \
                  a linear subdomain floats, so that (18) isn't defined for this partition; use \
                  --method newton or --method anderson"
                     .into(),
-            );
+            ));
         };
-        let rho = self.spectral_radius(&s_0);
+        let relaxation = relaxation.unwrap_or_else(|| self.relaxation(&s_0, before.relative));
+        let Relaxation { theta, rho, .. } = relaxation;
+        let growth = maximum(&self.progress.u) / relaxation.start;
+        let diverged = !before.relative.is_finite() || growth > DIVERGED;
+        let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
+        if diverged || self.sweeps_done() >= limit {
+            let why = if diverged {
+                format!(
+                    "(18) with relaxation {theta:.4} diverges: the spectral radius of \
+                     S_0^-1 S_CON' is about {rho:.3}; use --method newton; stopped"
+                )
+            } else {
+                format!(
+                    "picard with relaxation {theta:.4} isn't there (it began at a residual of \
+                     {:.1e}; use --method newton); stopped",
+                    relaxation.first_residual
+                )
+            };
+            return Next::End(self.gave_up(&before, &why));
+        }
+        let mut step = before.r;
+        s_0.solve(&mut step);
+        axpy(theta, &step, &mut self.progress.u);
+        let residual = self.residual(None);
+        self.record(&residual);
+        self.s_0 = Some(s_0);
+        Next::Sweep(Memory::Picard(Some(relaxation)), residual)
+    }
+
+    /// The relaxation that is set or converges, and a note about it.
+    fn relaxation(&mut self, s_0: &BoundaryLastCholesky, first_residual: f64) -> Relaxation {
+        let rho = self.spectral_radius(s_0);
         let theta = self.settings.relaxation.unwrap_or(2.0 / (2.0 + rho));
         let verdict = if rho < 1.0 {
             "(18) as printed converges here"
         } else {
             "(18) as printed diverges here"
         };
-        self.notes.push(format!(
+        self.progress.notes.push(format!(
             "picard: the spectral radius of S_0^-1 S_CON' is about {rho:.3}, so that {verdict}; \
              relaxation {theta:.4}"
         ));
-        let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
-        let first = residual.relative;
-        let start = maximum(u).max(f64::MIN_POSITIVE);
-        while !self.is_converged(&residual) {
-            let diverged = !residual.relative.is_finite() || maximum(u) > DIVERGED * start;
-            if diverged || self.sweeps_done() >= limit {
-                let why = if diverged {
-                    format!(
-                        "(18) with relaxation {theta:.4} diverges: the spectral radius of \
-                         S_0^-1 S_CON' is about {rho:.3}; use --method newton; stopped"
-                    )
-                } else {
-                    format!(
-                        "picard with relaxation {theta:.4} isn't there (it began at a residual of \
-                         {first:.1e}; use --method newton); stopped"
-                    )
-                };
-                return self.gave_up(&residual, &why);
-            }
-            let mut step = residual.r.clone();
-            s_0.solve(&mut step);
-            axpy(theta, &step, u);
-            residual = self.residual(u, None);
-            self.record(&residual);
+        Relaxation {
+            theta,
+            rho,
+            first_residual,
+            start: maximum(&self.progress.u).max(f64::MIN_POSITIVE),
         }
-        SweepStatus::Converged
     }
 
     /// ρ(S_0⁻¹ S_CON') at the active sets of the last evaluation, by power iteration from a vector

@@ -11,6 +11,7 @@
 
 mod bad_input;
 mod endings;
+mod restarting;
 mod resting;
 #[path = "../support/mod.rs"]
 mod support;
@@ -27,12 +28,12 @@ use libtest_mimic::{Arguments, Trial};
 
 use contact_dd_partition::model::Model;
 use support::blocks::{Blocks, jittered};
-use support::process::{Ended, Running, is_alive, kill};
+use support::process::{Ended, Running, is_alive, kill, send};
 use support::scenes::{
     BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks,
 };
 use support::solution::{Solution, datasets};
-use support::solver::{Case, LIMIT, program};
+use support::solver::{Case, LIMIT, names_in, program};
 use support::sorts::sort;
 
 /// Numbers of ranks; there are few cores, so that more would only wait for each other.
@@ -58,6 +59,10 @@ fn main() -> ExitCode {
     endings::not_converged(&mut trials);
     endings::unwritable_output(&mut trials);
     endings::killed_rank(&mut trials);
+    restarting::stopped_and_restarted(&mut trials);
+    restarting::stopped_while_factorizing(&mut trials);
+    restarting::every_sweep(&mut trials);
+    restarting::other_checkpoints(&mut trials);
     libtest_mimic::run(&arguments, trials.0).exit_code()
 }
 
@@ -104,6 +109,9 @@ fn failed_once(ended: &Ended, code: i32, words: &[&str]) {
 
 type MakeCase = fn() -> Case;
 
+/// A problem and the bits of its solution on one rank.
+type Solved = OnceLock<(Case, BTreeMap<String, Vec<u64>>)>;
+
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
     let cases: [(&str, MakeCase); 16] = [
@@ -141,7 +149,7 @@ fn same_results(trials: &mut Trials) {
         ("on_circles", || Case::of(&resting::on_circles(), 6)),
     ];
     for (name, make) in cases {
-        let alone: OnceLock<(Case, BTreeMap<String, Vec<u64>>)> = OnceLock::new();
+        let alone = Solved::new();
         trials.on_all_ranks(&format!("same_bits::{name}"), move |ranks| {
             let (_, expected) = alone.get_or_init(|| {
                 let case = make();

@@ -139,10 +139,15 @@ impl Running {
     }
 }
 
-/// Sends SIGKILL; a process that is gone already is fine.
+/// Sends SIGKILL.
 pub fn kill(id: u32) {
+    send(id, Signal::KILL);
+}
+
+/// Sends a signal; a process that is gone already is fine.
+pub fn send(id: u32, signal: Signal) {
     if let Some(id) = Pid::from_raw(id as i32) {
-        let _ = kill_process(id, Signal::KILL);
+        let _ = kill_process(id, signal);
     }
 }
 

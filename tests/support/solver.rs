@@ -50,12 +50,7 @@ impl Case {
 
     /// The names of all files in the folder.
     pub fn files(&self) -> Vec<String> {
-        let mut names: Vec<String> = std::fs::read_dir(self.folder.path())
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
+        names_in(self.folder.path())
     }
 
     /// Runs without a launcher, with the problem and `args`.
@@ -77,6 +72,16 @@ impl Case {
         solution.check_certificate();
         solution
     }
+}
+
+/// The names of all files in a folder, sorted.
+pub fn names_in(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
 }
 
 /// A model cut into `count` subdomains.

@@ -1,0 +1,28 @@
+//! Signals that ask a run to stop: SIGTERM, SIGINT, and SIGUSR1, which Slurm sends ahead of the time
+//! limit where it is asked to.
+
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
+use signal_hook::flag;
+
+static ASKED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
+
+/// Whether this rank was asked to stop.
+pub fn is_asked_to_stop() -> bool {
+    ASKED
+        .get()
+        .is_some_and(|asked| asked.load(Ordering::Relaxed))
+}
+
+/// From now on the signals are remembered; the same one again ends the process as ever.
+pub(super) fn listen() -> io::Result<()> {
+    let asked = ASKED.get_or_init(Arc::default);
+    for signal in [SIGTERM, SIGINT, SIGUSR1] {
+        flag::register_conditional_default(signal, Arc::clone(asked))?;
+        flag::register(signal, Arc::clone(asked))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,125 @@
+//! What sweeps leave: U, why they ended, and how they got there.
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::s_con::ConTotals;
+use crate::output::report::Certificate;
+
+/// Equilibrium and penetration of a certificate that isn't one.
+const NOT_BALANCED: f64 = 1e-10;
+/// Equilibrium that may be round-off of a scene without load.
+const ROUND_OFF_OF_TERMS: f64 = 1e-12;
+/// Equilibrium relative to the load of an answer that says nothing.
+const NOT_BALANCED_OF_LOAD: f64 = 1e-2;
+
+/// One line of the convergence history; line 0 is the bilateral start.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SweepRecord {
+    /// Number of the sweep.
+    pub sweep: usize,
+    /// ‖r‖∞ relative to the terms that r is a sum of.
+    pub residual: f64,
+    /// Closed conditions.
+    pub active: usize,
+    /// Conditions that opened or closed in it.
+    pub changed: usize,
+    /// Since the sweeps began (s).
+    pub seconds: f64,
+}
+
+/// Why sweeps ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SweepStatus {
+    /// The residual is below the tolerance and no contact changes any more.
+    Converged,
+    /// They stopped short of that, for this reason.
+    NotConverged(String),
+}
+
+/// What the sweeps found.
+#[derive(Clone, Debug)]
+pub struct SweepOutcome {
+    /// U.
+    pub u: Vec<f64>,
+    /// Why they ended.
+    pub status: SweepStatus,
+    /// History.
+    pub records: Vec<SweepRecord>,
+    /// What a user should know.
+    pub notes: Vec<String>,
+    /// Linear systems solved in contact problems, those of single pairs and the coupled one.
+    pub inner_steps: usize,
+    /// Evaluations of pairs, and how many more weren't made because nothing had changed.
+    pub evaluations: [usize; 2],
+    /// Which other methods had to help, in words.
+    pub fallbacks: Vec<String>,
+    /// The residual that is left in the end.
+    pub residual: f64,
+    /// Totals of the last evaluation of S_CON.
+    pub totals: ConTotals,
+}
+
+impl SweepOutcome {
+    /// Takes back that the sweeps converged if the full discrete problem says otherwise: their
+    /// residual is relative to terms that may be far larger than the load.
+    pub fn accept(&mut self, certificate: &Certificate) {
+        let Certificate {
+            equilibrium,
+            equilibrium_of_load,
+            penetration,
+            ..
+        } = *certificate;
+        let unbalanced = equilibrium > NOT_BALANCED
+            || (equilibrium > ROUND_OFF_OF_TERMS && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
+        let failed = unbalanced || penetration > NOT_BALANCED || equilibrium.is_nan();
+        if failed && self.status == SweepStatus::Converged {
+            self.status = SweepStatus::NotConverged(format!(
+                "the forces on the nodes are balanced to {equilibrium:.1e} of their terms and \
+                 {equilibrium_of_load:.1e} of the largest load, and contacts penetrate by \
+                 {penetration:.1e} of the largest displacement: the scene is too badly conditioned"
+            ));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn status(equilibrium: f64, equilibrium_of_load: f64, penetration: f64) -> SweepStatus {
+        let mut outcome = SweepOutcome {
+            u: Vec::new(),
+            status: SweepStatus::Converged,
+            records: Vec::new(),
+            notes: Vec::new(),
+            inner_steps: 0,
+            evaluations: [0; 2],
+            fallbacks: Vec::new(),
+            residual: 0.0,
+            totals: ConTotals::default(),
+        };
+        outcome.accept(&Certificate {
+            equilibrium,
+            equilibrium_of_load,
+            penetration,
+            ..Certificate::default()
+        });
+        outcome.status
+    }
+
+    #[test]
+    fn an_answer_that_does_not_balance_is_not_accepted() {
+        assert_eq!(status(3e-16, 1e-13, 1e-16), SweepStatus::Converged);
+        // A stiffness ratio of 1e8, and a scene without load.
+        assert_eq!(status(2e-15, 3e-6, 1e-16), SweepStatus::Converged);
+        assert_eq!(status(1e-16, 0.8, 0.0), SweepStatus::Converged);
+        for bad in [
+            (1e-9, 1e-8, 0.0),
+            (4e-11, 0.8, 0.0),
+            (1e-16, 1e-13, 1e-9),
+            (f64::NAN, 0.0, 0.0),
+        ] {
+            assert_ne!(status(bad.0, bad.1, bad.2), SweepStatus::Converged);
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! What sweeps remember from one to the next.
+
+use serde::{Deserialize, Serialize};
+
+use super::Method;
+use super::anderson::Chords;
+use super::newton::Stalls;
+use super::outcome::{SweepOutcome, SweepRecord, SweepStatus};
+use super::picard::Relaxation;
+use crate::contact::s_con::ConTotals;
+
+/// How far sweeps have come: all that the next one depends on beside the pairs' answers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Progress {
+    /// U.
+    pub u: Vec<f64>,
+    /// History.
+    pub records: Vec<SweepRecord>,
+    pub(super) memory: Memory,
+    /// Whether another method took over from newton: then nothing may refine afterwards.
+    pub(super) has_fallen_back: bool,
+    pub(super) totals: ConTotals,
+    pub(super) notes: Vec<String>,
+    pub(super) inner_steps: usize,
+    evaluations: [usize; 2],
+    fallbacks: Vec<String>,
+}
+
+/// What the method that has its turn remembers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Memory {
+    Newton(Stalls),
+    Anderson(Chords),
+    /// `None` before ρ(S_0⁻¹ S_CON') is known.
+    Picard(Option<Relaxation>),
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self::Newton(Stalls::default())
+    }
+}
+
+impl Progress {
+    /// Before the first sweep.
+    pub(super) fn new(u: Vec<f64>, method: Method) -> Self {
+        Self {
+            u,
+            records: Vec::new(),
+            memory: match method {
+                Method::Newton => Memory::Newton(Stalls::default()),
+                Method::Anderson => Memory::Anderson(Chords::default()),
+                Method::Picard => Memory::Picard(None),
+            },
+            has_fallen_back: false,
+            totals: ConTotals::default(),
+            notes: Vec::new(),
+            inner_steps: 0,
+            evaluations: [0; 2],
+            fallbacks: Vec::new(),
+        }
+    }
+
+    /// Counts an evaluation of `pairs` pairs.
+    pub(super) fn count(&mut self, totals: &ConTotals, pairs: usize) {
+        self.totals = *totals;
+        self.inner_steps += totals.steps;
+        self.evaluations[0] += pairs - totals.unmoved_pairs;
+        self.evaluations[1] += totals.unmoved_pairs;
+        if totals.fallen_back_pairs > 0 {
+            self.fell_back("pairs: the interior-point method named the closed contacts");
+        }
+    }
+
+    /// Remembers that another method had to help.
+    pub(super) fn fell_back(&mut self, what: &str) {
+        if !self.fallbacks.iter().any(|known| known == what) {
+            self.fallbacks.push(what.into());
+        }
+    }
+
+    pub(super) fn outcome(self, status: SweepStatus, residual: f64) -> SweepOutcome {
+        SweepOutcome {
+            u: self.u,
+            status,
+            records: self.records,
+            notes: self.notes,
+            inner_steps: self.inner_steps,
+            evaluations: self.evaluations,
+            fallbacks: self.fallbacks,
+            residual,
+            totals: self.totals,
+        }
+    }
+}
