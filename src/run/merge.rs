@@ -72,7 +72,7 @@ pub fn condense_clusters(
     };
     let (alone, across) = merging.nodes();
     // First what needs no other rank, depth first, so that little waits at a time.
-    let own = alone.into_iter().try_for_each(|v| {
+    let mut merged = alone.into_iter().try_for_each(|v| {
         if is_asked_to_stop() {
             return Err(Failure::interrupted(
                 "interrupted while factorizing, before the sweeps: no checkpoint was written",
@@ -84,8 +84,7 @@ pub fn condense_clusters(
         }
         Ok(())
     });
-    comm.agree(own)?;
-    let mut merged = Ok(());
+    // Then, while others may still be at their own: what failed here is missed where it should go.
     for v in across {
         let result = merging.node_across_ranks(v);
         merged = merged.and(result);
