@@ -28,6 +28,8 @@ pub struct BlockCheck {
     tension: f64,
     largest_force: f64,
     /// Largest load, contact force or support reaction at a node.
+    largest_external: f64,
+    /// Largest load at a node.
     largest_load: f64,
     complementarity: f64,
     largest_displacement: f64,
@@ -54,6 +56,7 @@ impl BlockCheck {
     ) -> Self {
         let mut check = Self {
             largest_displacement: largest(u),
+            largest_load: balance.largest_load,
             ..Self::default()
         };
         check.equilibrium(block, balance);
@@ -99,7 +102,9 @@ impl BlockCheck {
             let scale = vector(&balance.scale, node);
             let mut force = vector(&balance.external, node);
             self.force_scale += force.iter().map(|f| f.abs()).sum::<f64>();
-            self.largest_load = force.iter().fold(self.largest_load, |m, &f| maximum(m, f));
+            self.largest_external = force
+                .iter()
+                .fold(self.largest_external, |m, &f| maximum(m, f));
             let first = of_trace.len();
             for axis in 0..dim {
                 let axes = &frame.axes[axis];
@@ -110,7 +115,7 @@ impl BlockCheck {
                         *f -= along * a;
                     }
                     self.force_scale += along.abs();
-                    self.largest_load = maximum(self.largest_load, along);
+                    self.largest_external = maximum(self.largest_external, along);
                 } else if is_shared[node] {
                     of_trace.push((axis as u32, along, along_scale));
                 } else {
@@ -169,6 +174,7 @@ impl BlockCheck {
             self.penetration,
             self.tension,
             self.largest_force,
+            self.largest_external,
             self.largest_load,
             self.complementarity,
             self.largest_displacement,
@@ -202,6 +208,7 @@ impl BlockCheck {
             penetration: reader.real(),
             tension: reader.real(),
             largest_force: reader.real(),
+            largest_external: reader.real(),
             largest_load: reader.real(),
             complementarity: reader.real(),
             largest_displacement: reader.real(),
@@ -236,6 +243,7 @@ pub fn certificate(checks: &[BlockCheck], interface_nodes: usize, dim: usize) ->
         total.penetration = maximum(total.penetration, check.penetration);
         total.tension = maximum(total.tension, check.tension);
         total.largest_force = maximum(total.largest_force, check.largest_force);
+        total.largest_external = maximum(total.largest_external, check.largest_external);
         total.largest_load = maximum(total.largest_load, check.largest_load);
         total.complementarity = maximum(total.complementarity, check.complementarity);
         total.largest_displacement =
@@ -277,7 +285,8 @@ pub fn certificate(checks: &[BlockCheck], interface_nodes: usize, dim: usize) ->
     };
     Certificate {
         equilibrium: ratio(total.residual, total.scale),
-        equilibrium_of_load: ratio(total.residual, total.largest_load),
+        equilibrium_of_load: ratio(total.residual, total.largest_external),
+        load_share: ratio(total.largest_load, total.largest_external),
         penetration: ratio(total.penetration, total.largest_displacement),
         tension: ratio(total.tension, force_scale),
         complementarity: ratio(

@@ -16,6 +16,8 @@ pub struct Balance {
     pub scale: Vec<f64>,
     /// External forces on nodes: f − Bᵀλ.
     pub external: Vec<f64>,
+    /// ‖f‖∞.
+    pub largest_load: f64,
 }
 
 impl Balance {
@@ -30,6 +32,7 @@ impl Balance {
         let dim = block.dim;
         let mut external = nodal_forces(block);
         let mut scale: Vec<f64> = external.iter().map(|f| f.abs()).collect();
+        let largest_load = scale.iter().fold(0.0, |m: f64, f| m.max(*f));
         for (condition, &force) in conditions.iter().zip(forces) {
             for (node, coefficient) in &condition.entries {
                 for component in 0..dim {
@@ -70,6 +73,7 @@ impl Balance {
             residual,
             scale,
             external,
+            largest_load,
         }
     }
 }

@@ -27,6 +27,10 @@ pub struct Certificate {
     /// ‖K u − f + Bᵀλ‖∞ over the largest load, contact force or reaction at a node: what the
     /// condition of the scene makes of round-off.
     pub equilibrium_of_load: f64,
+    /// The largest load at a node over that scale: near 0 where the forces are round-off of a scene
+    /// without load, or displacements drive it.
+    #[serde(skip)]
+    pub load_share: f64,
     /// Largest penetration over the largest displacement.
     pub penetration: f64,
     /// Largest tension in a contact over the load scale.

@@ -168,6 +168,7 @@ pub fn certificate(out: &mut impl Write, certificate: &Certificate) -> Result<()
     let Certificate {
         equilibrium,
         equilibrium_of_load,
+        load_share: _,
         penetration,
         tension,
         complementarity,

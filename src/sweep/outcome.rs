@@ -9,6 +9,8 @@ use crate::output::report::Certificate;
 const NOT_BALANCED: f64 = 1e-10;
 /// Equilibrium that may be round-off of a scene without load.
 const ROUND_OFF_OF_TERMS: f64 = 1e-12;
+/// Share of loads in the forces on nodes from which these aren't round-off of a scene without load.
+const LOADED: f64 = 1e-2;
 /// Equilibrium relative to the load of an answer that says nothing.
 const NOT_BALANCED_OF_LOAD: f64 = 1e-2;
 
@@ -66,11 +68,13 @@ impl SweepOutcome {
         let Certificate {
             equilibrium,
             equilibrium_of_load,
+            load_share,
             penetration,
             ..
         } = *certificate;
+        let not_round_off = equilibrium > ROUND_OFF_OF_TERMS || load_share > LOADED;
         let unbalanced = equilibrium > NOT_BALANCED
-            || (equilibrium > ROUND_OFF_OF_TERMS && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
+            || (not_round_off && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
         let failed = unbalanced || penetration > NOT_BALANCED || equilibrium.is_nan();
         if failed && self.status == SweepStatus::Converged {
             self.status = SweepStatus::NotConverged(format!(
@@ -86,7 +90,9 @@ impl SweepOutcome {
 mod tests {
     use super::*;
 
-    fn status(equilibrium: f64, equilibrium_of_load: f64, penetration: f64) -> SweepStatus {
+    fn status(
+        [equilibrium, equilibrium_of_load, load_share, penetration]: [f64; 4],
+    ) -> SweepStatus {
         let mut outcome = SweepOutcome {
             u: Vec::new(),
             status: SweepStatus::Converged,
@@ -101,6 +107,7 @@ mod tests {
         outcome.accept(&Certificate {
             equilibrium,
             equilibrium_of_load,
+            load_share,
             penetration,
             ..Certificate::default()
         });
@@ -109,17 +116,23 @@ mod tests {
 
     #[test]
     fn an_answer_that_does_not_balance_is_not_accepted() {
-        assert_eq!(status(3e-16, 1e-13, 1e-16), SweepStatus::Converged);
-        // A stiffness ratio of 1e8, and a scene without load.
-        assert_eq!(status(2e-15, 3e-6, 1e-16), SweepStatus::Converged);
-        assert_eq!(status(1e-16, 0.8, 0.0), SweepStatus::Converged);
-        for bad in [
-            (1e-9, 1e-8, 0.0),
-            (4e-11, 0.8, 0.0),
-            (1e-16, 1e-13, 1e-9),
-            (f64::NAN, 0.0, 0.0),
+        for good in [
+            [3e-16, 1e-13, 0.9, 1e-16],
+            // A stiffness ratio of 1e8.
+            [2e-15, 3e-6, 0.9, 1e-16],
+            // A scene without load, where reactions are round-off.
+            [1e-16, 0.8, 0.0, 0.0],
         ] {
-            assert_ne!(status(bad.0, bad.1, bad.2), SweepStatus::Converged);
+            assert_eq!(status(good), SweepStatus::Converged, "{good:?}");
+        }
+        for bad in [
+            [1e-9, 1e-8, 0.9, 0.0],
+            [4e-11, 0.8, 0.0, 0.0],
+            [1e-16, 0.08, 0.3, 0.0],
+            [1e-16, 1e-13, 0.9, 1e-9],
+            [f64::NAN, 0.0, 0.9, 0.0],
+        ] {
+            assert_ne!(status(bad), SweepStatus::Converged, "{bad:?}");
         }
     }
 }
