@@ -42,6 +42,11 @@ impl Comm {
         self.world.size() as usize
     }
 
+    /// The name of the machine that this rank is on.
+    pub fn machine(&self) -> String {
+        mpi::environment::processor_name().unwrap_or_default()
+    }
+
     /// Whether this rank is the root.
     pub fn is_root(&self) -> bool {
         self.rank() == ROOT

@@ -2,6 +2,7 @@
 
 mod assign;
 pub mod cluster;
+pub mod demand;
 pub mod tree;
 
 use contact_dd_partition::problem::Catalog;

@@ -2,6 +2,7 @@
 //!
 //! read → assemble → condense → S_0 at the root → sweeps → recover → certificate → write
 
+mod affording;
 mod clusters;
 pub mod condense;
 pub mod conditioning;
@@ -29,6 +30,7 @@ use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::read::ProblemFile;
 use faer::Par;
 
+use self::affording::afford;
 use self::condense::Condensation;
 use self::conditioning::condition_number;
 use self::descend::{take_out_descent, with_descent};
@@ -89,6 +91,8 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let file = comm.agree(ProblemFile::open(&settings.problem).map_err(Failure::from))?;
     let catalog = file.catalog();
     let plan = Plan::new(catalog, comm.size(), settings.merging());
+    let demands = plan.demands(catalog, comm.size());
+    let available = afford(comm, &demands)?;
     let mut blocks = comm.agree(read_blocks(comm, &file, &plan))?;
     narrator.problem(catalog, &plan);
     let mut checkpoints = Checkpoints::new(settings);
@@ -102,7 +106,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     phase("looking for free rigid motions");
     let survey = survey(comm, &blocks, catalog, &plan)?;
     if settings.check {
-        narrator.check(&survey);
+        narrator.check(&survey, &demands, available);
         return Ok(Ending::Converged);
     }
     let mut output = comm.agree(create_output(comm, settings, catalog, &plan, &blocks))?;

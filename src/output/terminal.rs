@@ -7,6 +7,7 @@ use std::path::Path;
 
 use super::report::{Certificate, PhaseSeconds, RankReport, Report};
 use super::resultants;
+use crate::plan::demand::Demand;
 
 /// What is to be solved, and on what.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +45,33 @@ pub struct SweepLine {
     pub changed: Option<usize>,
     /// Time that the sweep took (s).
     pub seconds: f64,
+}
+
+/// Prints what solving would cost: the `demands` of all ranks against the memory that is `available`
+/// on their machines together (bytes).
+///
+/// # Errors
+/// `out` can't be written.
+pub fn demands(out: &mut impl Write, demands: &[Demand], available: f64) -> Result<()> {
+    let gigabytes = |bytes: f64| bytes / 1e9;
+    let all: f64 = demands.iter().map(|demand| demand.bytes).sum();
+    let most = demands.iter().fold(0.0, |m: f64, d| m.max(d.bytes));
+    let flops: f64 = demands.iter().map(|demand| demand.flops).sum();
+    let busiest = demands.iter().fold(0.0, |m: f64, d| m.max(d.flops));
+    writeln!(out, "\nsolving it would take about")?;
+    writeln!(
+        out,
+        "  memory       {:.2} GB, {:.2} GB on the largest rank; {:.1} GB are available",
+        gigabytes(all),
+        gigabytes(most),
+        gigabytes(available)
+    )?;
+    writeln!(
+        out,
+        "  arithmetic   {:.1} Gflop, {:.1} Gflop on the busiest rank",
+        flops / 1e9,
+        busiest / 1e9
+    )
 }
 
 /// Prints the problem.

@@ -19,6 +19,7 @@ use crate::output::resultants::Resultants;
 use crate::output::terminal::{self, Summary, SweepLine};
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
+use crate::plan::demand::Demand;
 use crate::rigid::survey::Survey;
 use crate::settings::Settings;
 use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
@@ -96,14 +97,15 @@ impl<'a> Narrator<'a> {
         }
     }
 
-    /// What validating found.
-    pub fn check(&self, survey: &Survey) {
+    /// What validating found, and what solving would cost.
+    pub fn check(&self, survey: &Survey, demands: &[Demand], available: f64) {
         if self.comm.is_root() {
             for warning in &survey.motions.warnings {
                 eprintln!("warning: {warning}");
             }
         }
         if self.speaks() {
+            let _ = terminal::demands(&mut stdout(), demands, available);
             println!("\nthe problem file is valid");
         }
     }
