@@ -6,6 +6,7 @@ mod clusters;
 pub mod condense;
 pub mod conditioning;
 mod conditions;
+mod copies;
 mod descend;
 pub mod frozen;
 pub mod interface;
@@ -30,6 +31,7 @@ use faer::Par;
 
 use self::condense::Condensation;
 use self::conditioning::condition_number;
+use self::copies::check_copies;
 use self::descend::{take_out_descent, with_descent};
 use self::frozen::{Frozen, FrozenRoot};
 use self::interface::assemble_interface;
@@ -88,6 +90,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let catalog = file.catalog();
     let plan = Plan::new(catalog, comm.size(), settings.merging());
     let mut blocks = comm.agree(read_blocks(comm, &file, &plan))?;
+    comm.agree(check_copies(comm, &file, &plan, &blocks))?;
     narrator.problem(catalog, &plan);
 
     // Rigid motions that neither supports nor contact hold, and those by which bodies come to rest.

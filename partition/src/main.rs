@@ -22,7 +22,7 @@ struct Args {
     scene: Option<PathBuf>,
 
     /// Number of subdomains; without it a number that suits the size
-    #[arg(short = 'n', long, value_name = "N")]
+    #[arg(short = 'n', long, value_name = "N", allow_negative_numbers = true)]
     subdomains: Option<usize>,
 
     /// Problem file to write [default: the scene's name with the ending .h5]
@@ -34,18 +34,29 @@ struct Args {
     example: Option<String>,
 
     /// Halve the mesh size of the built-in scene K times
-    #[arg(long, value_name = "K", requires = "example", default_value_t = 0)]
+    #[arg(
+        long,
+        value_name = "K",
+        requires = "example",
+        conflicts_with = "scene",
+        default_value_t = 0
+    )]
     refine: u32,
 
     /// Cells of the built-in scene: triangle3, triangle6, quad4, quad8 or quad9; where the mesh
     /// size changes, there are triangles between quadrilaterals
-    #[arg(long, value_name = "KIND", requires = "example", default_value = "triangle3",
-          value_parser = element)]
+    #[arg(long, value_name = "KIND", requires = "example", conflicts_with = "scene",
+          default_value = "triangle3", value_parser = element)]
     element: ElementKind,
 
     /// Write scene.toml and mesh.msh of the built-in scene into DIR, to start from; the problem
     /// file is then written only with -o
-    #[arg(long, value_name = "DIR", requires = "example")]
+    #[arg(
+        long,
+        value_name = "DIR",
+        requires = "example",
+        conflicts_with = "scene"
+    )]
     write_scene: Option<PathBuf>,
 
     /// List the built-in scenes
@@ -133,9 +144,13 @@ fn run(args: &Args) -> Result<(), Failure> {
     let Some(source) = read(args)? else {
         return Ok(());
     };
-    let model = Model::new(&source.scene, source.mesh)?;
-    let decomposition = Decomposition::new(&model, source.subdomains)?;
-    let mut problem = Problem::new(&model, &decomposition)?;
+    let in_scene = |error: InputError| match &args.scene {
+        Some(path) => error.in_file(path),
+        None => error,
+    };
+    let model = Model::new(&source.scene, source.mesh).map_err(in_scene)?;
+    let decomposition = Decomposition::new(&model, source.subdomains).map_err(in_scene)?;
+    let mut problem = Problem::new(&model, &decomposition).map_err(in_scene)?;
     // The user's own partition keeps its numbers.
     if model.prescribed_subdomains.is_none() {
         problem = problem.in_order_of_hierarchy();

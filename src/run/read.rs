@@ -64,12 +64,12 @@ pub fn read_blocks(
             continue;
         }
         let members = of_plan.subdomains.iter();
-        let members = members
+        let members: Vec<Subdomain> = members
             .filter_map(|index| subdomains.remove(index))
             .collect();
         let rows = of_plan
             .group
-            .map(|group| file.rows(group))
+            .map(|group| file.rows(group, &members.iter().collect::<Vec<_>>()))
             .transpose()?
             .unwrap_or_default();
         let block = Block::new(members, dim, |node| plan.sharing[node as usize] > 1);

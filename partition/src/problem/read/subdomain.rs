@@ -4,9 +4,11 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 use super::ProblemFile;
-use super::slabs::{Slabs, interface};
+use super::slabs::Slabs;
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
+use crate::magnitude::SMALLEST_AREA;
+use crate::mesh::topology::Facets;
 use crate::model::Support;
 use crate::problem::slab::Slab;
 use crate::problem::{InterfaceNode, Subdomain, UNIT_TOLERANCE};
@@ -105,7 +107,7 @@ impl ProblemFile {
             at_nodes.clear();
             at_nodes.extend(its_nodes.iter().map(|&n| points[n as usize]));
             let size = kind.measure(&at_nodes);
-            if !(size > 0.0 && size.is_finite()) {
+            if !(size > SMALLEST_AREA && size.is_finite()) {
                 return Err(connectivity.row_error(
                     entries.start + at,
                     &format!(
@@ -138,13 +140,25 @@ impl ProblemFile {
                 &format!("offset {at}; expected {}", nodes.len()),
             ));
         }
-        match used.iter().position(|used| !used) {
-            Some(node) => Err(InputError::new(format!(
+        if let Some(node) = used.iter().position(|used| !used) {
+            return Err(InputError::new(format!(
                 "dataset /VTKHDF/Points, row {}: the point belongs to no cell",
                 self.offsets.points[index] + node
-            ))),
-            None => Ok(elements),
+            )));
         }
+        if let Some([one, other]) = Facets::new(&elements, points.len()).overlap(&elements) {
+            let [one, other] = [one.cell, other.cell].map(|cell| cell as usize);
+            return Err(connectivity.row_error(
+                entries.start + elements.offsets()[other.max(one)],
+                &format!(
+                    "the cells {} and {} lie on the same side of an edge that they share; expected \
+                     cells that don't overlap",
+                    rows.start + one.min(other),
+                    rows.start + one.max(other)
+                ),
+            ));
+        }
+        Ok(elements)
     }
 
     fn take_supports(
@@ -217,11 +231,6 @@ impl ProblemFile {
             ));
         }
         Ok(nodes_of.into_iter().zip(slab.value.vectors(rows)).collect())
-    }
-
-    /// The nodes of Γ of one subdomain.
-    pub(super) fn read_interface(&self, index: usize) -> Result<Vec<InterfaceNode>, InputError> {
-        self.take_interface(interface(self, index..index + 1)?.as_ref(), index)
     }
 
     fn take_interface(

@@ -1,0 +1,114 @@
+//! The names that a problem file may hold: one that isn't known was meant to be another.
+
+use crate::error::InputError;
+use crate::scene::suggest::nearest;
+
+/// What each group may hold; below `/VTKHDF` a file may hold what it likes for ParaView.
+const KNOWN: [(&str, &[&str]); 10] = [
+    (
+        "/",
+        &[
+            "VTKHDF",
+            "materials",
+            "bodies",
+            "subdomains",
+            "hierarchy",
+            "interface",
+            "support",
+            "force",
+            "contact",
+            "warnings",
+        ],
+    ),
+    (
+        "/VTKHDF",
+        &[
+            "NumberOfPoints",
+            "NumberOfCells",
+            "NumberOfConnectivityIds",
+            "Points",
+            "Connectivity",
+            "Offsets",
+            "Types",
+            "PointData",
+            "CellData",
+            "FieldData",
+        ],
+    ),
+    (
+        "/materials",
+        &["name", "stiffness", "out_of_plane", "poisson"],
+    ),
+    ("/bodies", &["name"]),
+    ("/subdomains", &["body", "group"]),
+    ("/hierarchy", &["parent"]),
+    ("/interface", &["offset", "node", "interface"]),
+    (
+        "/support",
+        &["offset", "node", "direction", "value", "condition", "name"],
+    ),
+    ("/force", &["offset", "node", "value"]),
+    (
+        "/contact",
+        &[
+            "name",
+            "group_offset",
+            "contact",
+            "place",
+            "gap",
+            "share",
+            "position",
+            "acts_at",
+            "normal",
+            "node_a",
+            "node_b",
+            "entry_offset",
+            "entry_subdomain",
+            "entry_node",
+            "entry_coefficient",
+        ],
+    ),
+];
+
+/// Attributes of `/`.
+const ATTRIBUTES: &[&str] = &["format", "version", "title", "dimension", "plane"];
+
+/// Checks that the file holds nothing but what is known.
+///
+/// # Errors
+/// The first name that isn't, with the nearest that is.
+pub(super) fn check(file: &hdf5::File) -> Result<(), InputError> {
+    let unreadable = |what: &str| InputError::new(format!("{what} can't be read"));
+    let attributes = file
+        .attr_names()
+        .map_err(|_| unreadable("the list of attributes"))?;
+    refuse("attribute ", attributes, ATTRIBUTES)?;
+    for (path, known) in KNOWN {
+        // What is missing, or is no group, is found where its datasets are opened.
+        let Ok(group) = file.group(path) else {
+            continue;
+        };
+        let names = group
+            .member_names()
+            .map_err(|_| unreadable(&format!("the group {path}")))?;
+        let place = match path {
+            "/" => "/".to_owned(),
+            _ => format!("{path}/"),
+        };
+        refuse(&place, names, known)?;
+    }
+    Ok(())
+}
+
+fn refuse(place: &str, mut names: Vec<String>, known: &[&str]) -> Result<(), InputError> {
+    names.sort();
+    let unknown = names.iter().find(|name| !known.contains(&name.as_str()));
+    let Some(name) = unknown else {
+        return Ok(());
+    };
+    let near = nearest(name, known.iter().copied()).unwrap_or_default();
+    Err(InputError::new(format!(
+        "{place}{name} isn't known; did you mean '{near}'? Known here: {}",
+        known.join(", ")
+    )))
+}
