@@ -16,6 +16,8 @@ pub fn open(path: &Path, what: &str) -> Result<File, InputError> {
     };
     match fs::metadata(path).map_err(unreadable)?.is_file() {
         true => File::open(path).map_err(unreadable),
-        false => Err(InputError::new(format!("can't be read: it isn't a file; expected {what}"))),
+        false => Err(InputError::new(format!(
+            "can't be read: it isn't a file; expected {what}"
+        ))),
     }
 }

@@ -68,6 +68,33 @@ impl Facets {
             pairs.find(|[a, b]| start(a) == start(b))
         })
     }
+
+    /// Two cells that share the ends of an edge but not what lies between them, if there are any:
+    /// a node in its middle would hang.
+    pub fn torn(cells: &Elements, nodes: usize) -> Option<[CellFacet; 2]> {
+        if cells.iter().all(|(kind, _)| kind.is_linear()) {
+            return None;
+        }
+        let all = cells.iter().enumerate().flat_map(|(cell, (kind, nodes))| {
+            let facets = kind.facets().iter().enumerate();
+            facets.map(move |(facet, (kind, local))| {
+                let corners = local.iter().take(kind.corners());
+                let corners = key(corners.map(|&i| nodes[i]));
+                let whole = key(local.iter().map(|&i| nodes[i]));
+                let (cell, facet) = (cell as u32, facet as u8);
+                (corners[0], (corners, whole, CellFacet { cell, facet }))
+            })
+        });
+        let mut by_node = Lists::new(nodes, all);
+        by_node.sort();
+        let torn = |pair: &[(Key, Key, CellFacet)]| {
+            let (a, b) = (pair[0], pair[1]);
+            (a.0 == b.0 && a.1 != b.1).then_some([a.2, b.2])
+        };
+        by_node
+            .iter()
+            .find_map(|list| list.windows(2).find_map(torn))
+    }
 }
 
 /// The adjacency of a mesh's cells across facets.

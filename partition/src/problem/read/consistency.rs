@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::element::geometry::{advance, difference, dot, length};
 use crate::error::InputError;
 use crate::magnitude::WIDEST_GAP;
-use crate::problem::{ContactRow, Subdomain};
+use crate::problem::{ContactRow, RowEntry, Subdomain};
 
 /// How far coefficients may be from what the normal says, relative to the largest of them.
 const COEFFICIENT: f64 = 1e-8;
@@ -116,13 +116,41 @@ impl<'a> Members<'a> {
                 if !is_there(row.position) {
                     return Some(("position", displaced(row.position, point, tag)));
                 }
-                let is_alone = row.entries.len() == 1 || row.tag_b != -1;
-                if is_alone && !is_there(row.acts_at) {
-                    return Some(("acts_at", displaced(row.acts_at, point, tag)));
+                if !self.acts_there(row, entry) {
+                    let [x, y, _] = row.acts_at;
+                    let what = format!(
+                        "({x}, {y}); expected the sum of (normal · coefficient) position over the \
+                         nodes of side a"
+                    );
+                    return Some(("acts_at", what));
                 }
             }
         }
         None
+    }
+
+    /// Whether the force of a row acts where its coefficients of side a, among them `own`, say.
+    fn acts_there(&self, row: &ContactRow, own: &RowEntry) -> bool {
+        let body = |e: &RowEntry| self.by_index.get(&e.subdomain).map(|member| member.body);
+        let is_pair = row.entries.len() == 1 || row.tag_b != -1;
+        // Where both sides belong to one body the nodes don't tell on which they are.
+        if !is_pair && row.entries.iter().all(|e| body(e) == body(own)) {
+            return true;
+        }
+        let on_a = |e: &&RowEntry| match is_pair {
+            true => *e == own,
+            false => body(e) == body(own),
+        };
+        let (mut place, mut scale) = ([0.0; 3], 0.0);
+        for entry in row.entries.iter().filter(on_a) {
+            let weight = dot(entry.coefficient, row.normal);
+            let member = self.by_index[&entry.subdomain];
+            let way = difference(member.points[entry.node as usize], row.position);
+            place = advance(place, weight, way);
+            scale += weight.abs();
+        }
+        let acts_at = difference(row.acts_at, row.position);
+        length(difference(acts_at, place)) <= PLACE * self.extent * scale.max(1.0)
     }
 }
 

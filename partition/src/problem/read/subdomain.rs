@@ -8,7 +8,7 @@ use super::slabs::Slabs;
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::magnitude::SMALLEST_AREA;
-use crate::mesh::topology::Facets;
+use crate::mesh::topology::{CellFacet, Facets};
 use crate::model::Support;
 use crate::problem::slab::Slab;
 use crate::problem::{InterfaceNode, Subdomain, UNIT_TOLERANCE};
@@ -104,6 +104,14 @@ impl ProblemFile {
                     &format!("offset {end}; expected at most {}", nodes.len()),
                 ));
             };
+            if let Some(twice) =
+                (1..its_nodes.len()).find(|&i| its_nodes[..i].contains(&its_nodes[i]))
+            {
+                return Err(connectivity.row_error(
+                    entries.start + at + twice,
+                    &format!("cell {} has the node twice", rows.start + cell),
+                ));
+            }
             at_nodes.clear();
             at_nodes.extend(its_nodes.iter().map(|&n| points[n as usize]));
             let size = kind.measure(&at_nodes);
@@ -146,17 +154,30 @@ impl ProblemFile {
                 self.offsets.points[index] + node
             )));
         }
-        if let Some([one, other]) = Facets::new(&elements, points.len()).overlap(&elements) {
-            let [one, other] = [one.cell, other.cell].map(|cell| cell as usize);
-            return Err(connectivity.row_error(
-                entries.start + elements.offsets()[other.max(one)],
+        let refused = |[one, other]: [CellFacet; 2], what: &str| {
+            let [one, other] = [one.cell.min(other.cell), one.cell.max(other.cell)];
+            let [one, other] = [one as usize, other as usize];
+            Err(connectivity.row_error(
+                entries.start + elements.offsets()[other],
                 &format!(
-                    "the cells {} and {} lie on the same side of an edge that they share; expected \
-                     cells that don't overlap",
-                    rows.start + one.min(other),
-                    rows.start + one.max(other)
+                    "the cells {} and {} {what}",
+                    rows.start + one,
+                    rows.start + other
                 ),
-            ));
+            ))
+        };
+        if let Some(cells) = Facets::new(&elements, points.len()).overlap(&elements) {
+            return refused(
+                cells,
+                "lie on the same side of an edge that they share; expected cells that don't overlap",
+            );
+        }
+        if let Some(cells) = Facets::torn(&elements, points.len()) {
+            return refused(
+                cells,
+                "share the ends of an edge, but not the node between them; expected the same nodes \
+                 on both sides",
+            );
         }
         Ok(elements)
     }
