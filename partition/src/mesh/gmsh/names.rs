@@ -38,7 +38,10 @@ fn entry(line: &str) -> Option<(usize, i64, &str)> {
     let mut words = head.split_whitespace();
     let dim = words.next()?.parse().ok().filter(|&dim| dim <= 3)?;
     let number: i64 = words.next()?.parse().ok()?;
-    words.next().is_none().then_some((dim, number.abs(), name))
+    words
+        .next()
+        .is_none()
+        .then_some((dim, number.checked_abs()?, name))
 }
 
 /// Members of groups by name, from those by dimension and number.
