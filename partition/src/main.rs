@@ -1,5 +1,6 @@
 //! Makes a problem file from a scene and its mesh, or from a built-in scene.
 
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -137,7 +138,7 @@ fn in_one_line(message: &str) -> String {
 fn run(args: &Args) -> Result<(), Failure> {
     if args.list_examples {
         for example in EXAMPLES {
-            println!("{:<10} {}", example.name, example.about);
+            say(&format!("{:<10} {}", example.name, example.about));
         }
         return Ok(());
     }
@@ -191,9 +192,12 @@ fn read(args: &Args) -> Result<Option<Source>, Failure> {
             keep(&scene, output)?;
             keep(&directory.join(example::MESH), output)?;
         }
-        println!("scene         {}", scene.display());
+        say(&format!("scene         {}", scene.display()));
         if args.output.is_none() {
-            println!("next          contact-dd-partition {}", scene.display());
+            say(&format!(
+                "next          contact-dd-partition {}",
+                scene.display()
+            ));
             return Ok(None);
         }
     }
@@ -228,14 +232,19 @@ fn output(args: &Args, stem: &Path) -> PathBuf {
 
 /// Prints what the problem file holds and what to do with it.
 fn report(problem: &Problem, output: &Path) {
-    println!("title         {}", problem.catalog.title);
-    println!("{}", problem.summary());
+    say(&format!("title         {}", problem.catalog.title));
+    say(&problem.summary().to_string());
     for warning in &problem.catalog.warnings {
-        println!("warning       {warning}");
+        say(&format!("warning       {warning}"));
     }
-    println!("written       {}", output.display());
-    println!(
-        "next          mpirun -n 2 contact-dd-mpi {}",
-        output.display()
-    );
+    let output = output.display();
+    say(&format!("written       {output}"));
+    say(&format!(
+        "next          mpirun -n 2 contact-dd-mpi {output}"
+    ));
+}
+
+/// Prints a line. Where nobody reads any more, as behind `| head`, there is nobody to tell.
+fn say(line: &str) {
+    let _ = writeln!(io::stdout(), "{line}");
 }

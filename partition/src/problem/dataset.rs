@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use hdf5::plist::dataset_create::Layout;
 use hdf5::types::TypeDescriptor;
 
 use super::strings::read_strings;
@@ -27,6 +28,7 @@ impl Dataset {
             .map_err(|_| InputError::new(format!("dataset {name} is missing")))?;
         let shape = inner.shape();
         let dataset = Self { name, inner, shape };
+        dataset.check_layout()?;
         dataset.check_storage(file.size())?;
         Ok(dataset)
     }
@@ -281,6 +283,22 @@ impl Dataset {
                 .map(|array| array.into_raw_vec_and_offset().0)
         };
         data.map_err(|reason| self.error(&format!("can't be read: {reason}")))
+    }
+
+    /// No other file is read than the one that was named.
+    fn check_layout(&self) -> Result<(), InputError> {
+        let creation = self
+            .inner
+            .dcpl()
+            .map_err(|reason| self.error(&format!("can't be read: {reason}")))?;
+        let is_here = matches!(
+            creation.layout(),
+            Layout::Compact | Layout::Contiguous | Layout::Chunked
+        );
+        match is_here && creation.external().is_empty() {
+            true => Ok(()),
+            false => Err(self.error("lies in another file; expected all data in this one")),
+        }
     }
 
     /// No allocation may follow a shape that the file doesn't fill.

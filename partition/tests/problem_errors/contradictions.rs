@@ -185,6 +185,33 @@ fn a_name_that_is_not_known_is_answered_with_the_nearest_that_is() {
 }
 
 #[test]
+fn no_other_file_is_read() {
+    let defects: &[Defect] = &[
+        (
+            "link to another file",
+            |f| {
+                f.unlink("/force/value").unwrap();
+                f.link_external("other.h5", "/value", "/force/value")
+                    .unwrap();
+            },
+            &["/force/value is a link to another file"],
+        ),
+        (
+            "data in another file",
+            |f| {
+                let shape = f.dataset("/force/value").unwrap().shape();
+                f.unlink("/force/value").unwrap();
+                let builder = f.new_dataset::<f64>().shape(shape);
+                let builder = builder.external("other.raw", 0, 1 << 20);
+                builder.create("/force/value").unwrap();
+            },
+            &["/force/value: lies in another file"],
+        ),
+    ];
+    refuses(write, defects);
+}
+
+#[test]
 fn names_that_would_lead_elsewhere_are_refused() {
     for (names, words) in [
         (["../x", "b"], "'../x' holds a '/'"),

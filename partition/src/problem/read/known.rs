@@ -1,9 +1,15 @@
-//! The names that a problem file may hold: one that isn't known was meant to be another.
+//! The names that a problem file may hold: one that isn't known was meant to be another, and none
+//! leads out of the file.
+
+use hdf5::LinkType;
 
 use crate::error::InputError;
 use crate::scene::suggest::nearest;
 
-/// What each group may hold; below `/VTKHDF` a file may hold what it likes for ParaView.
+/// Groups that may hold what they like for ParaView.
+const FREE: [&str; 2] = ["/VTKHDF/PointData", "/VTKHDF/CellData"];
+
+/// What each of the other groups may hold.
 const KNOWN: [(&str, &[&str]); 10] = [
     (
         "/",
@@ -83,19 +89,33 @@ pub(super) fn check(file: &hdf5::File) -> Result<(), InputError> {
         .attr_names()
         .map_err(|_| unreadable("the list of attributes"))?;
     refuse("attribute ", attributes, ATTRIBUTES)?;
-    for (path, known) in KNOWN {
+    let known = KNOWN.map(|(path, known)| (path, Some(known)));
+    for (path, known) in known.into_iter().chain(FREE.map(|path| (path, None))) {
         // What is missing, or is no group, is found where its datasets are opened.
         let Ok(group) = file.group(path) else {
             continue;
         };
-        let names = group
-            .member_names()
-            .map_err(|_| unreadable(&format!("the group {path}")))?;
         let place = match path {
             "/" => "/".to_owned(),
             _ => format!("{path}/"),
         };
-        refuse(&place, names, known)?;
+        let (mut names, mut leading_out) = (Vec::new(), None);
+        let visited = group.iter_visit_default(|name, link| {
+            names.push(name.to_owned());
+            if link.link_type == LinkType::External {
+                leading_out.get_or_insert_with(|| name.to_owned());
+            }
+            Ok(())
+        });
+        visited.map_err(|_| unreadable(&format!("the group {path}")))?;
+        if let Some(name) = leading_out {
+            return Err(InputError::new(format!(
+                "{place}{name} is a link to another file; expected all data in this one"
+            )));
+        }
+        if let Some(known) = known {
+            refuse(&place, names, known)?;
+        }
     }
     Ok(())
 }
