@@ -10,3 +10,4 @@ pub mod limits;
 pub mod open_factor;
 pub mod pair;
 pub mod s_con;
+pub mod squeezed;

@@ -16,6 +16,6 @@ mod inner;
 mod kinematics;
 pub mod loose;
 pub mod motion;
-mod nonnegative;
+pub mod nonnegative;
 pub mod projection;
 pub mod survey;

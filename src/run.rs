@@ -7,6 +7,7 @@ mod clusters;
 pub mod condense;
 pub mod conditioning;
 mod conditions;
+mod copies;
 mod descend;
 pub mod frozen;
 pub mod interface;
@@ -33,6 +34,7 @@ use faer::Par;
 use self::affording::afford;
 use self::condense::Condensation;
 use self::conditioning::condition_number;
+use self::copies::check_copies;
 use self::descend::{take_out_descent, with_descent};
 use self::frozen::{Frozen, FrozenRoot};
 use self::interface::assemble_interface;
@@ -94,6 +96,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let demands = plan.demands(catalog, comm.size());
     let available = afford(comm, &demands)?;
     let mut blocks = comm.agree(read_blocks(comm, &file, &plan))?;
+    comm.agree(check_copies(comm, &file, &plan, &blocks))?;
     narrator.problem(catalog, &plan);
     let mut checkpoints = Checkpoints::new(settings);
     let earlier = match comm.is_root() {

@@ -29,10 +29,18 @@ impl InputError {
 
 impl std::fmt::Display for InputError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match &self.place {
-            Some(path) => write!(f, "{}: {}", path.display(), self.message),
-            None => f.write_str(&self.message),
+        let text = match &self.place {
+            Some(path) => format!("{}: {}", path.display(), self.message),
+            None => self.message.clone(),
+        };
+        // It stays one line whatever stands in a file or is the name of one.
+        for c in text.chars() {
+            match c.is_control() {
+                true => write!(f, "{}", c.escape_debug())?,
+                false => write!(f, "{c}")?,
+            }
         }
+        Ok(())
     }
 }
 

@@ -1,5 +1,6 @@
 //! Makes a problem file from a scene and its mesh, or from a built-in scene.
 
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -22,7 +23,7 @@ struct Args {
     scene: Option<PathBuf>,
 
     /// Number of subdomains; without it a number that suits the size
-    #[arg(short = 'n', long, value_name = "N")]
+    #[arg(short = 'n', long, value_name = "N", allow_negative_numbers = true)]
     subdomains: Option<usize>,
 
     /// Problem file to write [default: the scene's name with the ending .h5]
@@ -34,18 +35,29 @@ struct Args {
     example: Option<String>,
 
     /// Halve the mesh size of the built-in scene K times
-    #[arg(long, value_name = "K", requires = "example", default_value_t = 0)]
+    #[arg(
+        long,
+        value_name = "K",
+        requires = "example",
+        conflicts_with = "scene",
+        default_value_t = 0
+    )]
     refine: u32,
 
     /// Cells of the built-in scene: triangle3, triangle6, quad4, quad8 or quad9; where the mesh
     /// size changes, there are triangles between quadrilaterals
-    #[arg(long, value_name = "KIND", requires = "example", default_value = "triangle3",
-          value_parser = element)]
+    #[arg(long, value_name = "KIND", requires = "example", conflicts_with = "scene",
+          default_value = "triangle3", value_parser = element)]
     element: ElementKind,
 
     /// Write scene.toml and mesh.msh of the built-in scene into DIR, to start from; the problem
     /// file is then written only with -o
-    #[arg(long, value_name = "DIR", requires = "example")]
+    #[arg(
+        long,
+        value_name = "DIR",
+        requires = "example",
+        conflicts_with = "scene"
+    )]
     write_scene: Option<PathBuf>,
 
     /// List the built-in scenes
@@ -126,16 +138,20 @@ fn in_one_line(message: &str) -> String {
 fn run(args: &Args) -> Result<(), Failure> {
     if args.list_examples {
         for example in EXAMPLES {
-            println!("{:<10} {}", example.name, example.about);
+            say(&format!("{:<10} {}", example.name, example.about));
         }
         return Ok(());
     }
     let Some(source) = read(args)? else {
         return Ok(());
     };
-    let model = Model::new(&source.scene, source.mesh)?;
-    let decomposition = Decomposition::new(&model, source.subdomains)?;
-    let mut problem = Problem::new(&model, &decomposition)?;
+    let in_scene = |error: InputError| match &args.scene {
+        Some(path) => error.in_file(path),
+        None => error,
+    };
+    let model = Model::new(&source.scene, source.mesh).map_err(in_scene)?;
+    let decomposition = Decomposition::new(&model, source.subdomains).map_err(in_scene)?;
+    let mut problem = Problem::new(&model, &decomposition).map_err(in_scene)?;
     // The user's own partition keeps its numbers.
     if model.prescribed_subdomains.is_none() {
         problem = problem.in_order_of_hierarchy();
@@ -176,9 +192,12 @@ fn read(args: &Args) -> Result<Option<Source>, Failure> {
             keep(&scene, output)?;
             keep(&directory.join(example::MESH), output)?;
         }
-        println!("scene         {}", scene.display());
+        say(&format!("scene         {}", scene.display()));
         if args.output.is_none() {
-            println!("next          contact-dd-partition {}", scene.display());
+            say(&format!(
+                "next          contact-dd-partition {}",
+                scene.display()
+            ));
             return Ok(None);
         }
     }
@@ -213,14 +232,19 @@ fn output(args: &Args, stem: &Path) -> PathBuf {
 
 /// Prints what the problem file holds and what to do with it.
 fn report(problem: &Problem, output: &Path) {
-    println!("title         {}", problem.catalog.title);
-    println!("{}", problem.summary());
+    say(&format!("title         {}", problem.catalog.title));
+    say(&problem.summary().to_string());
     for warning in &problem.catalog.warnings {
-        println!("warning       {warning}");
+        say(&format!("warning       {warning}"));
     }
-    println!("written       {}", output.display());
-    println!(
-        "next          mpirun -n 2 contact-dd-mpi {}",
-        output.display()
-    );
+    let output = output.display();
+    say(&format!("written       {output}"));
+    say(&format!(
+        "next          mpirun -n 2 contact-dd-mpi {output}"
+    ));
+}
+
+/// Prints a line. Where nobody reads any more, as behind `| head`, there is nobody to tell.
+fn say(line: &str) {
+    let _ = writeln!(io::stdout(), "{line}");
 }

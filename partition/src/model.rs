@@ -5,6 +5,7 @@
 
 mod bodies;
 mod contact;
+mod facing;
 mod groups;
 mod loads;
 mod mortar;
@@ -130,9 +131,11 @@ impl Model {
         let mut warnings = Vec::new();
         let bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
         let topology = Topology::new(&bodies.mesh);
+        (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
         let support_names = supports::names(scene);
         let supports = supports::supports(scene, &support_names, &bodies.mesh, &topology)?;
         let forces = loads::forces(scene, &bodies, &topology)?;
+        facing::check(scene, &bodies.mesh)?;
         let sides = contact::Contacts::new(&bodies.mesh, &topology, &supports);
         let contacts = (scene.contact.iter())
             .map(|keys| sides.contact(keys, &mut warnings))

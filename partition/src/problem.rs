@@ -4,9 +4,9 @@
 //! same for somebody who writes one with h5py.
 
 pub mod build;
+pub mod copies;
 mod dataset;
 pub mod hierarchy;
-mod interface;
 mod order;
 pub mod read;
 mod slab;

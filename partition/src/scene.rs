@@ -15,6 +15,7 @@ use serde::Deserialize;
 
 use crate::error::InputError;
 use crate::model::PlaneState;
+use crate::{name, source};
 use condition::{Bilateral, Body, Contact, Displacement, Names, Partner, Pressure, Traction};
 use material::Elasticity;
 use place::Step;
@@ -65,10 +66,9 @@ impl Scene {
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let refused = |reason: String| InputError::new(reason).in_file(path);
         let unreadable = |error: std::io::Error| refused(format!("can't be read: {error}"));
+        let file = source::open(path, "a scene in TOML").map_err(|error| error.in_file(path))?;
         let mut bytes = Vec::new();
-        std::fs::File::open(path)
-            .and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes))
-            .map_err(unreadable)?;
+        (file.take(LARGEST + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
         if bytes.len() as u64 > LARGEST {
             return Err(refused(format!(
                 "larger than {LARGEST} bytes; expected a scene in TOML"
@@ -108,9 +108,27 @@ impl Scene {
         if self.bodies.is_empty() {
             return Some((vec!["bodies".into()], "expected at least one body".into()));
         }
-        self.unknown_material()
+        self.wrong_name()
+            .or_else(|| self.unknown_material())
             .or_else(|| self.repeated_contact())
             .or_else(|| self.wrong_dimension())
+    }
+
+    fn wrong_name(&self) -> Option<(Vec<Step>, String)> {
+        let wrong = |path: Vec<Step>, name: &str, reason| {
+            Some((path, format!("'{}' {reason}", name::shown(name))))
+        };
+        if let Err(reason) = name::check_text(&self.title) {
+            return wrong(vec!["title".into()], &self.title, reason);
+        }
+        let materials = self.materials.keys().map(|name| ("materials", name));
+        let bodies = self.bodies.keys().map(|name| ("bodies", name));
+        for (table, name) in materials.chain(bodies) {
+            if let Err(reason) = name::check(name) {
+                return wrong(vec![table.into(), name.as_str().into()], name, reason);
+            }
+        }
+        None
     }
 
     fn unknown_material(&self) -> Option<(Vec<Step>, String)> {

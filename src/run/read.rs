@@ -8,6 +8,7 @@ use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::{ContactRow, Subdomain};
 
 use crate::comm::Comm;
+use crate::contact::squeezed;
 use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;
@@ -50,7 +51,7 @@ impl OwnedBlock {
 /// Reads the blocks of `plan` that this rank owns, by their number.
 ///
 /// # Errors
-/// A slice of the problem file isn't what it should be.
+/// A slice of the problem file isn't what it should be, or obstacles leave no place for a node.
 pub fn read_blocks(
     comm: &Comm,
     file: &ProblemFile,
@@ -64,12 +65,12 @@ pub fn read_blocks(
             continue;
         }
         let members = of_plan.subdomains.iter();
-        let members = members
+        let members: Vec<Subdomain> = members
             .filter_map(|index| subdomains.remove(index))
             .collect();
         let rows = of_plan
             .group
-            .map(|group| file.rows(group))
+            .map(|group| file.rows(group, &members.iter().collect::<Vec<_>>()))
             .transpose()?
             .unwrap_or_default();
         let block = Block::new(members, dim, |node| plan.sharing[node as usize] > 1);
@@ -77,14 +78,13 @@ pub fn read_blocks(
             .iter()
             .map(|row| BlockCondition::new(&block, row))
             .collect();
-        blocks.insert(
-            number,
-            OwnedBlock {
-                block,
-                rows,
-                conditions,
-            },
-        );
+        let owned = OwnedBlock {
+            block,
+            rows,
+            conditions,
+        };
+        squeezed::check(&owned, file.catalog())?;
+        blocks.insert(number, owned);
     }
     Ok(blocks)
 }

@@ -18,14 +18,19 @@ mod version2;
 mod version4;
 mod write;
 
+use std::io::Read as _;
 use std::path::Path;
 
 use self::content::Content;
 use self::cursor::{Cursor, Encoding};
 use super::Mesh;
 use crate::error::InputError;
+use crate::source;
 
 pub use self::write::write;
+
+/// Within how many bytes a mesh says that it is one.
+const HEAD: u64 = 1 << 20;
 
 /// Reads a mesh.
 ///
@@ -33,10 +38,23 @@ pub use self::write::write;
 /// What is wrong with the file and where: the line of an ASCII file, section and byte of a binary
 /// one, tags of nodes and elements.
 pub fn read(path: &Path) -> Result<Mesh, InputError> {
-    std::fs::read(path)
-        .map_err(|e| InputError::new(format!("the mesh can't be read: {e}")))
-        .and_then(|bytes| parse(&bytes))
-        .map_err(|e| e.in_file(path))
+    read_unnamed(path).map_err(|e| e.in_file(path))
+}
+
+fn read_unnamed(path: &Path) -> Result<Mesh, InputError> {
+    let unreadable = |e: std::io::Error| InputError::new(format!("the mesh can't be read: {e}"));
+    let mut file = source::open(path, "a mesh in Gmsh's format")?;
+    let mut bytes = Vec::new();
+    // What doesn't start as a mesh isn't read to its end, which may be far.
+    (&mut file)
+        .take(HEAD)
+        .read_to_end(&mut bytes)
+        .map_err(unreadable)?;
+    let first = b"$MeshFormat";
+    if bytes.windows(first.len()).any(|w| w == first) {
+        file.read_to_end(&mut bytes).map_err(unreadable)?;
+    }
+    parse(&bytes)
 }
 
 /// Reads a mesh from the bytes of an MSH file.

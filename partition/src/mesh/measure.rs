@@ -3,6 +3,7 @@
 use super::Mesh;
 use crate::element::geometry::{difference, length};
 use crate::error::InputError;
+use crate::magnitude::SMALLEST_AREA;
 
 /// Measure over the square (in space: the cube) of the largest edge below which a cell is flat.
 const FLAT: f64 = 1e-13;
@@ -23,7 +24,7 @@ impl Mesh {
         for cell in 0..self.cells.len() {
             let measure = self.measure(cell);
             let size = self.longest_edge(cell).powi(self.dim as i32);
-            if measure.is_nan() || measure.abs() <= FLAT * size {
+            if measure.is_nan() || measure.abs() <= (FLAT * size).max(SMALLEST_AREA) {
                 return Err(InputError::new(format!(
                     "element {} has no area: its nodes {} lie on one line",
                     self.cell_tags[cell],

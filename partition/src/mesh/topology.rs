@@ -1,6 +1,8 @@
 //! Which cells meet at a facet, and what hangs together.
 
 use super::Mesh;
+use crate::element::Elements;
+use crate::error::InputError;
 use crate::lists::Lists;
 
 /// Nodes that tell facets apart: those beyond lie between them.
@@ -18,36 +20,95 @@ pub struct CellFacet {
     pub facet: u8,
 }
 
+/// The facets of cells, those of the same nodes beside each other.
+#[derive(Clone, Debug)]
+pub struct Facets {
+    /// By their smallest node.
+    by_node: Lists<(Key, CellFacet)>,
+}
+
+impl Facets {
+    /// Finds all facets of all cells over `nodes` nodes.
+    pub fn new(cells: &Elements, nodes: usize) -> Self {
+        let all = cells.iter().enumerate().flat_map(|(cell, (kind, nodes))| {
+            let facets = kind.facets().iter().enumerate();
+            facets.map(move |(facet, (_, local))| {
+                let key = key(local.iter().map(|&i| nodes[i]));
+                let cell = cell as u32;
+                let facet = facet as u8;
+                (key[0], (key, CellFacet { cell, facet }))
+            })
+        });
+        let mut by_node = Lists::new(nodes, all);
+        by_node.sort();
+        Self { by_node }
+    }
+
+    /// The facets of the same nodes, those of a place after the other.
+    fn places(&self) -> impl Iterator<Item = &[(Key, CellFacet)]> + Clone {
+        let lists = self.by_node.iter();
+        lists.flat_map(|list| list.chunk_by(|a, b| a.0 == b.0))
+    }
+
+    /// Two cells on the same side of an edge that they share, if there are any: one of them is
+    /// turned over, or they overlap.
+    pub fn overlap(&self, cells: &Elements) -> Option<[CellFacet; 2]> {
+        let start = |of: &CellFacet| {
+            let (kind, nodes) = (
+                cells.kind(of.cell as usize),
+                cells.nodes_of(of.cell as usize),
+            );
+            let (_, local) = kind.facets()[of.facet as usize];
+            nodes[local[0]]
+        };
+        self.places().find_map(|same| {
+            // Of three cells two are on one side.
+            let count = same.len().min(3);
+            let mut pairs = (1..count).flat_map(|i| (0..i).map(move |j| [same[j].1, same[i].1]));
+            pairs.find(|[a, b]| start(a) == start(b))
+        })
+    }
+
+    /// Two cells that share the ends of an edge but not what lies between them, if there are any:
+    /// a node in its middle would hang.
+    pub fn torn(cells: &Elements, nodes: usize) -> Option<[CellFacet; 2]> {
+        if cells.iter().all(|(kind, _)| kind.is_linear()) {
+            return None;
+        }
+        let all = cells.iter().enumerate().flat_map(|(cell, (kind, nodes))| {
+            let facets = kind.facets().iter().enumerate();
+            facets.map(move |(facet, (kind, local))| {
+                let corners = local.iter().take(kind.corners());
+                let corners = key(corners.map(|&i| nodes[i]));
+                let whole = key(local.iter().map(|&i| nodes[i]));
+                let (cell, facet) = (cell as u32, facet as u8);
+                (corners[0], (corners, whole, CellFacet { cell, facet }))
+            })
+        });
+        let mut by_node = Lists::new(nodes, all);
+        by_node.sort();
+        let torn = |pair: &[(Key, Key, CellFacet)]| {
+            let (a, b) = (pair[0], pair[1]);
+            (a.0 == b.0 && a.1 != b.1).then_some([a.2, b.2])
+        };
+        by_node
+            .iter()
+            .find_map(|list| list.windows(2).find_map(torn))
+    }
+}
+
 /// The adjacency of a mesh's cells across facets.
 #[derive(Clone, Debug)]
 pub struct Topology {
-    /// The facets of all cells by their smallest node; those of the same nodes beside each other.
-    facets: Lists<(Key, CellFacet)>,
+    facets: Facets,
     neighbours: Lists<u32>,
 }
 
 impl Topology {
     /// Finds all facets of all cells.
     pub fn new(mesh: &Mesh) -> Self {
-        let all = mesh
-            .cells
-            .iter()
-            .enumerate()
-            .flat_map(|(cell, (kind, nodes))| {
-                let facets = kind.facets().iter().enumerate();
-                facets.map(move |(facet, (_, local))| {
-                    let key = key(local.iter().map(|&i| nodes[i]));
-                    let cell = cell as u32;
-                    let facet = facet as u8;
-                    (key[0], (key, CellFacet { cell, facet }))
-                })
-            });
-        let mut facets = Lists::new(mesh.points.len(), all);
-        facets.sort();
-        let same = facets
-            .iter()
-            .flat_map(|list| list.chunk_by(|a, b| a.0 == b.0));
-        let pairs = same.flat_map(|same| {
+        let facets = Facets::new(&mesh.cells, mesh.points.len());
+        let pairs = facets.places().flat_map(|same| {
             let others = move |a: u32| same.iter().map(move |(_, b)| (a, b.cell));
             same.iter().flat_map(move |(_, a)| others(a.cell))
         });
@@ -57,11 +118,35 @@ impl Topology {
         Self { facets, neighbours }
     }
 
+    /// Checks that no two cells lie on the same side of an edge that they share.
+    ///
+    /// # Errors
+    /// Two such cells, by their tags.
+    pub fn check_sides(&self, mesh: &Mesh) -> Result<(), InputError> {
+        let Some([a, b]) = self.facets.overlap(&mesh.cells) else {
+            return Ok(());
+        };
+        let cell = a.cell as usize;
+        let (_, local) = mesh.cells.kind(cell).facets()[a.facet as usize];
+        let nodes: Vec<u32> = local
+            .iter()
+            .map(|&i| mesh.cells.nodes_of(cell)[i])
+            .collect();
+        Err(InputError::new(format!(
+            "elements {} and {} lie on the same side of the edge of nodes {} that they share; \
+             expected cells that don't overlap (is one of them inside out?)",
+            mesh.cell_tags[cell],
+            mesh.cell_tags[b.cell as usize],
+            mesh.tags_of(&nodes)
+        )))
+    }
+
     /// The facets of cells that have exactly these nodes, in any order.
     pub fn cells_at(&self, facet_nodes: &[u32]) -> Vec<CellFacet> {
         let key = key(facet_nodes.iter().copied());
+        let by_node = &self.facets.by_node;
         let list = match key[0] as usize {
-            node if node < self.facets.len() => self.facets.of(node),
+            node if node < by_node.len() => by_node.of(node),
             _ => &[],
         };
         let start = list.partition_point(|(other, _)| *other < key);

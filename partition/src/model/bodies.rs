@@ -44,8 +44,8 @@ impl Bodies {
         }
         let kept: Vec<bool> = owner.iter().map(Option::is_some).collect();
         let mut mesh = restrict(mesh, &kept, &used_groups(scene))?;
-        mesh.orient_cells()?;
-        mesh.check_edges()?;
+        (mesh.orient_cells().and_then(|()| mesh.check_edges()))
+            .map_err(|error| error.in_file(&scene.mesh))?;
         let cell_body: Vec<u32> = owner.into_iter().flatten().collect();
         let material_of_body: Vec<u32> = scene
             .bodies

@@ -8,6 +8,7 @@ use super::surface::Surface;
 use crate::element::ElementKind;
 use crate::element::geometry::{advance, length};
 use crate::error::InputError;
+use crate::magnitude;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 use crate::scene::number::Vector;
@@ -67,6 +68,15 @@ pub(super) fn forces(
             Ok(area.map(|c| -pressure * c))
         })
         .map_err(|reason| InputError::new(format!("{what}: {reason}")))?;
+    }
+    for (force, tag) in forces.iter().zip(&mesh.node_tags) {
+        for &component in force {
+            magnitude::check(component).map_err(|expected| {
+                InputError::new(format!(
+                    "the load on node {tag} is {component:e} N; expected {expected}"
+                ))
+            })?;
+        }
     }
     Ok((0_u32..)
         .zip(forces)

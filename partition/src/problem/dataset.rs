@@ -1,11 +1,14 @@
 //! A dataset that knows its name: reads slices and says what is wrong with them, and where.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
+use hdf5::plist::dataset_create::Layout;
 use hdf5::types::TypeDescriptor;
 
 use super::strings::read_strings;
 use crate::error::InputError;
+use crate::{magnitude, name};
 
 /// The best compression that HDF5's deflate reaches; a dataset that declares more isn't there.
 const LARGEST_RATIO: u64 = 1100;
@@ -25,6 +28,7 @@ impl Dataset {
             .map_err(|_| InputError::new(format!("dataset {name} is missing")))?;
         let shape = inner.shape();
         let dataset = Self { name, inner, shape };
+        dataset.check_layout()?;
         dataset.check_storage(file.size())?;
         Ok(dataset)
     }
@@ -159,13 +163,13 @@ impl Dataset {
         let count = rows.len();
         let values = self.any_floats(rows)?;
         let width = values.len().checked_div(count).unwrap_or(1).max(1);
-        match values.iter().position(|value| !value.is_finite()) {
-            Some(at) => Err(self.row_error(
-                start + at / width,
-                &format!("{}; expected a finite number", values[at]),
-            )),
-            None => Ok(values),
+        for (at, &value) in values.iter().enumerate() {
+            magnitude::check(value).map_err(|expected| {
+                let what = format!("{value:e}; expected {expected}");
+                self.row_error(start + at / width, &what)
+            })?;
         }
+        Ok(values)
     }
 
     /// Reads numbers that may be NaN.
@@ -217,17 +221,43 @@ impl Dataset {
         Ok(())
     }
 
-    /// Reads all strings, of variable or fixed length.
+    /// Reads all strings, of variable or fixed length, each a line of text.
     pub fn strings(&self) -> Result<Vec<String>, InputError> {
-        read_strings(&self.inner).map_err(|reason| self.error(&reason))
+        self.checked_strings(name::check_text)
     }
 
-    /// Reads all strings, of which there has to be one at least.
+    /// Reads all names, of which there has to be one at least.
     pub fn names(&self) -> Result<Vec<String>, InputError> {
-        match self.strings()? {
+        match self.checked_strings(name::check)? {
             names if names.is_empty() => Err(self.error("is empty; expected at least one name")),
             names => Ok(names),
         }
+    }
+
+    /// Reads the names of contacts, each another one.
+    pub fn contact_names(&self) -> Result<Vec<String>, InputError> {
+        let names = self.checked_strings(name::check_contact)?;
+        let mut seen = HashMap::new();
+        for (row, name) in names.iter().enumerate() {
+            if let Some(first) = seen.insert(name, row) {
+                let what = format!("'{name}' is the name of contact {first} already");
+                return Err(self.row_error(row, &what));
+            }
+        }
+        Ok(names)
+    }
+
+    fn checked_strings(
+        &self,
+        check: fn(&str) -> Result<(), &'static str>,
+    ) -> Result<Vec<String>, InputError> {
+        let strings = read_strings(&self.inner).map_err(|reason| self.error(&reason))?;
+        for (row, text) in strings.iter().enumerate() {
+            check(text).map_err(|reason| {
+                self.row_error(row, &format!("'{}' {reason}", name::shown(text)))
+            })?;
+        }
+        Ok(strings)
     }
 
     fn descriptor(&self) -> Result<TypeDescriptor, InputError> {
@@ -253,6 +283,22 @@ impl Dataset {
                 .map(|array| array.into_raw_vec_and_offset().0)
         };
         data.map_err(|reason| self.error(&format!("can't be read: {reason}")))
+    }
+
+    /// No other file is read than the one that was named.
+    fn check_layout(&self) -> Result<(), InputError> {
+        let creation = self
+            .inner
+            .dcpl()
+            .map_err(|reason| self.error(&format!("can't be read: {reason}")))?;
+        let is_here = matches!(
+            creation.layout(),
+            Layout::Compact | Layout::Contiguous | Layout::Chunked
+        );
+        match is_here && creation.external().is_empty() {
+            true => Ok(()),
+            false => Err(self.error("lies in another file; expected all data in this one")),
+        }
     }
 
     /// No allocation may follow a shape that the file doesn't fill.

@@ -1,8 +1,10 @@
 //! Reads `problem.h5`, a slice at a time.
 
 mod catalog;
+mod consistency;
 mod header;
 mod hierarchy;
+mod known;
 mod materials;
 mod rows;
 mod sizes;
@@ -12,9 +14,11 @@ mod subdomain;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use super::copies::NodeCopies;
 use super::dataset::Dataset;
 use super::{Catalog, ContactRow, Problem, Subdomain};
 use crate::error::InputError;
+use crate::source;
 
 /// An open problem file whose catalog was read and checked.
 #[derive(Debug)]
@@ -50,13 +54,7 @@ impl ProblemFile {
 
     fn open_unnamed(path: &Path) -> Result<Self, InputError> {
         // The library distinguishes few of the reasons for which a file doesn't open.
-        let meta = std::fs::metadata(path)
-            .map_err(|reason| InputError::new(format!("can't be read: {reason}")))?;
-        if !meta.is_file() {
-            return Err(InputError::new("isn't a file; expected a problem file"));
-        }
-        std::fs::File::open(path)
-            .map_err(|reason| InputError::new(format!("can't be read: {reason}")))?;
+        source::open(path, "a problem file")?;
         hdf5::silence_errors(true);
         // Locks fail on some network file systems, and nobody writes under this name in place.
         let file = hdf5::File::with_options()
@@ -67,6 +65,7 @@ impl ProblemFile {
                     "isn't a whole HDF5 file ({reason}); expected one written by contact-dd-partition"
                 ))
             })?;
+        known::check(&file)?;
         let (catalog, offsets) = catalog::read(&file)?;
         let mut sharing = vec![0; catalog.interface_nodes];
         for &number in catalog.interface.iter().flatten() {
@@ -79,6 +78,11 @@ impl ProblemFile {
             catalog,
             offsets,
         })
+    }
+
+    /// An error about the file as a whole, found by comparing its parts.
+    pub fn refuse(&self, error: InputError) -> InputError {
+        error.in_file(&self.path)
     }
 
     /// What every rank knows of the whole problem.
@@ -106,31 +110,42 @@ impl ProblemFile {
             .map_err(|error| error.in_file(&self.path))
     }
 
-    /// Reads and checks the contact rows of one group.
+    /// Reads and checks the contact rows of one group, whose subdomains are `members`.
     ///
     /// # Errors
-    /// The dataset and the row that isn't what it should be.
-    pub fn rows(&self, group: usize) -> Result<Vec<ContactRow>, InputError> {
-        self.read_rows(group)
+    /// The dataset and the row that isn't what it should be, or that says something else than the
+    /// mesh of the members does.
+    pub fn rows(
+        &self,
+        group: usize,
+        members: &[&Subdomain],
+    ) -> Result<Vec<ContactRow>, InputError> {
+        self.read_rows(group, members)
             .map_err(|error| error.in_file(&self.path))
     }
 
-    /// Reads everything and checks, beyond what the slices show, that subdomains agree on Γ.
+    /// Reads everything and checks, beyond what the slices show, that subdomains agree on their
+    /// nodes.
     ///
     /// # Errors
     /// The dataset and the row that isn't what it should be.
     pub fn problem(&self) -> Result<Problem, InputError> {
-        let problem = Problem {
+        let subdomains = self.subdomains(0..self.catalog.subdomains.len())?;
+        let mut copies = NodeCopies::new(&self.catalog);
+        for subdomain in &subdomains {
+            copies.add(subdomain.index, subdomain.own_nodes());
+        }
+        (copies.check()).map_err(|error| error.in_file(&self.path))?;
+        let rows = (0..self.catalog.groups.len()).map(|group| {
+            let of_group = |s: &&Subdomain| self.catalog.subdomains[s.index].group == Some(group);
+            let members: Vec<&Subdomain> = subdomains.iter().filter(of_group).collect();
+            self.rows(group, &members)
+        });
+        Ok(Problem {
             catalog: self.catalog.clone(),
-            subdomains: self.subdomains(0..self.catalog.subdomains.len())?,
-            rows: (0..self.catalog.groups.len())
-                .map(|group| self.rows(group))
-                .collect::<Result<_, _>>()?,
-        };
-        problem
-            .check_interface()
-            .map_err(|error| error.in_file(&self.path))?;
-        Ok(problem)
+            rows: rows.collect::<Result<_, _>>()?,
+            subdomains,
+        })
     }
 
     fn column(&self, name: &'static str) -> Result<Dataset, InputError> {

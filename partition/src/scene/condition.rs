@@ -4,6 +4,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
 use super::number::{Constant, ConstantVector, Number, Vector};
+use crate::name;
 
 /// Names of physical groups: one, or a list without repetition.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -224,23 +225,10 @@ impl TryFrom<String> for ContactName {
     type Error = String;
 
     fn try_from(name: String) -> Result<Self, String> {
-        let reason = if name.trim().is_empty() {
-            "is empty"
-        } else if name.contains('/') {
-            "holds a '/'"
-        } else if name == "." || name == ".." {
-            "means a place in a path"
-        } else if name.chars().any(char::is_control) {
-            "holds a control character"
-        } else if name.len() > 255 {
-            "is longer than 255 bytes"
-        } else {
-            return Ok(Self(name));
-        };
-        Err(format!(
-            "'{}' {reason}; a contact's name is that of a group in the result file",
-            name.escape_debug()
-        ))
+        match name::check_contact(&name) {
+            Ok(()) => Ok(Self(name)),
+            Err(reason) => Err(format!("'{}' {reason}", name::shown(&name))),
+        }
     }
 }
 

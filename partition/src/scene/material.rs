@@ -4,6 +4,7 @@ use nalgebra::Matrix3;
 use serde::Deserialize;
 
 use super::number::Constant;
+use crate::magnitude::SMALLEST_STIFFNESS;
 
 /// How a material answers to strain.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -74,10 +75,12 @@ impl TryFrom<Constant> for Young {
     type Error = String;
 
     fn try_from(Constant(value): Constant) -> Result<Self, String> {
-        if value > 0.0 {
+        if value >= SMALLEST_STIFFNESS {
             Ok(Self(value))
         } else {
-            Err(format!("Young's modulus is {value}; expected more than 0"))
+            Err(format!(
+                "Young's modulus is {value}; expected more than 0 (at least {SMALLEST_STIFFNESS:e})"
+            ))
         }
     }
 }
@@ -124,9 +127,11 @@ impl TryFrom<[[Constant; 3]; 3]> for Stiffness {
             }
         }
         let symmetric = 0.5 * (given + given.transpose());
-        let eigenvalues = symmetric.symmetric_eigenvalues();
+        // Scaled first, so that no product under- or overflows.
+        let scale = symmetric.amax();
+        let eigenvalues = (symmetric / scale).symmetric_eigenvalues() * scale;
         let (least, largest) = (eigenvalues.min(), eigenvalues.max());
-        if least > 1e-15 * largest && least > 0.0 {
+        if least > 1e-15 * largest && scale >= SMALLEST_STIFFNESS {
             Ok(Self(symmetric.into()))
         } else {
             Err(format!(

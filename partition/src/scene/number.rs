@@ -4,6 +4,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 
 use super::expression::Expression;
+use crate::magnitude;
 
 /// A finite number, or an expression of x, y and z.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,13 +25,13 @@ impl Number {
             Self::Constant(value) => Ok(*value),
             Self::Varying(expression) => {
                 let value = expression.value(point);
-                if value.is_finite() {
-                    Ok(value)
-                } else {
+                magnitude::check(value).map_err(|expected| {
                     let [x, y, z] = point;
                     let text = expression.text();
-                    Err(format!("'{text}' is {value} at x = {x}, y = {y}, z = {z}"))
-                }
+                    format!(
+                        "'{text}' is {value:e} at x = {x}, y = {y}, z = {z}; expected {expected}"
+                    )
+                })
             }
         }
     }
@@ -55,10 +56,9 @@ impl<'de> Deserialize<'de> for Number {
             }
 
             fn visit_f64<E: Error>(self, value: f64) -> Result<Number, E> {
-                if value.is_finite() {
-                    Ok(Number::Constant(value))
-                } else {
-                    Err(E::custom(format!("{value} isn't a finite number")))
+                match magnitude::check(value) {
+                    Ok(value) => Ok(Number::Constant(value)),
+                    Err(expected) => Err(E::custom(format!("{value:e} isn't {expected}"))),
                 }
             }
 

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "what fails here fails the test")]
 
+mod contradictions;
 mod files;
 #[path = "../problem_scenes/mod.rs"]
 mod problem_scenes;
@@ -9,22 +10,27 @@ mod problem_scenes;
 use std::path::Path;
 
 use contact_dd_partition::decompose::Decomposition;
-use contact_dd_partition::element::ElementKind;
-use contact_dd_partition::example;
-use contact_dd_partition::model::Model;
 use contact_dd_partition::problem::Problem;
 use contact_dd_partition::problem::read::ProblemFile;
-use contact_dd_partition::scene::Scene;
 use problem_scenes::stacked;
 
-fn problem() -> Problem {
-    let model = stacked(2, 4, 3);
+fn stack(blocks: usize) -> Problem {
+    let model = stacked(blocks, 4, 3);
     let decomposition = Decomposition::new(&model, Some(4)).unwrap();
     Problem::new(&model, &decomposition).unwrap()
 }
 
+fn problem() -> Problem {
+    stack(2)
+}
+
 fn write(path: &Path) {
     problem().write(path).unwrap();
+}
+
+/// A file with two contacts.
+fn write_two_joints(path: &Path) {
+    stack(3).write(path).unwrap();
 }
 
 /// Overwrites entry `at` of a dataset (counted through all dimensions).
@@ -43,6 +49,31 @@ fn replace<T: hdf5::H5Type>(file: &hdf5::File, name: &str, shape: &[usize], data
 }
 
 type Defect = (&'static str, fn(&hdf5::File), &'static [&'static str]);
+
+/// Fails unless a file that `write` makes is refused with all words once it is damaged.
+fn refuse(write: fn(&Path), what: &str, damage: &dyn Fn(&hdf5::File), words: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("problem.h5");
+    write(&path);
+    ProblemFile::open(&path).unwrap().problem().unwrap();
+    let file = hdf5::File::open_rw(&path).unwrap();
+    damage(&file);
+    file.close().unwrap();
+    let message = match ProblemFile::open(&path).and_then(|file| file.problem()) {
+        Ok(_) => panic!("{what}: accepted"),
+        Err(error) => error.to_string(),
+    };
+    assert!(message.starts_with(path.to_str().unwrap()), "{message}");
+    for word in words {
+        assert!(message.contains(word), "{what}: {message}");
+    }
+}
+
+fn refuses(write: fn(&Path), defects: &[Defect]) {
+    for (what, damage, words) in defects {
+        refuse(write, what, damage, words);
+    }
+}
 
 #[test]
 fn every_defect_is_named() {
@@ -329,55 +360,5 @@ fn every_defect_is_named() {
             &["/VTKHDF/Types", "holds only"],
         ),
     ];
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("problem.h5");
-    write(&path);
-    ProblemFile::open(&path).unwrap().problem().unwrap();
-    for (what, damage, words) in defects {
-        write(&path);
-        let file = hdf5::File::open_rw(&path).unwrap();
-        damage(&file);
-        file.close().unwrap();
-        let message = match ProblemFile::open(&path).and_then(|file| file.problem()) {
-            Ok(_) => panic!("{what}: accepted"),
-            Err(error) => error.to_string(),
-        };
-        assert!(message.starts_with(path.to_str().unwrap()), "{message}");
-        for word in *words {
-            assert!(message.contains(word), "{what}: {message}");
-        }
-    }
-}
-
-#[test]
-fn a_folded_cell_is_named() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("problem.h5");
-    let example = example::find("patch").unwrap();
-    let mesh = example.mesh_of(ElementKind::Quad8, 0).unwrap();
-    let model = Model::new(&Scene::parse(example.scene).unwrap(), mesh).unwrap();
-    let decomposition = Decomposition::new(&model, None).unwrap();
-    let problem = Problem::new(&model, &decomposition).unwrap();
-    problem.write(&path).unwrap();
-    assert_eq!(
-        ProblemFile::open(&path).unwrap().problem().unwrap(),
-        problem
-    );
-    // The node in the middle of the third cell's first edge, beside that edge's end.
-    let nodes = problem.subdomains[0].cells.nodes_of(2);
-    let (end, middle) = (nodes[0] as usize, nodes[4] as usize);
-    let file = hdf5::File::open_rw(&path).unwrap();
-    for axis in 0..2 {
-        let x = problem.subdomains[0].points[end][axis];
-        set(&file, "/VTKHDF/Points", 3 * middle + axis, x);
-    }
-    file.close().unwrap();
-    let error = ProblemFile::open(&path).unwrap().problem().unwrap_err();
-    let message = error.to_string();
-    for word in [
-        "/VTKHDF/Connectivity, row ",
-        "(quadrilateral of 8 nodes) is folded",
-    ] {
-        assert!(message.contains(word), "{message}");
-    }
+    refuses(write, defects);
 }

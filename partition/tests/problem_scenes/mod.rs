@@ -197,13 +197,9 @@ pub fn shuffled(model: &Model, seed: u64) -> Model {
         place[old] = new as u32;
     }
     let mut out = model.clone();
-    out.mesh.points = nodes
-        .iter()
-        .map(|&n| {
-            let [x, y, z] = mesh.points[n];
-            [x + 0.1 * (3.0 * y).sin(), y + 0.1 * (2.0 * x).cos(), z]
-        })
-        .collect();
+    let moved = |[x, y, z]: [f64; 3]| [x + 0.1 * (3.0 * y).sin(), y + 0.1 * (2.0 * x).cos(), z];
+    let old = nodes.iter().map(|&n| mesh.points[n]);
+    out.mesh.points = old.map(moved).collect();
     out.mesh.node_tags = nodes.iter().map(|&n| mesh.node_tags[n]).collect();
     out.mesh.cell_tags = cells.iter().map(|&c| mesh.cell_tags[c]).collect();
     out.mesh.cells = Elements::default();
@@ -226,13 +222,12 @@ pub fn shuffled(model: &Model, seed: u64) -> Model {
         force.0 = place[force.0 as usize];
     }
     out.forces.sort_by_key(|f| f.0);
-    for entry in out
-        .contacts
-        .iter_mut()
-        .flat_map(|c| &mut c.conditions)
-        .flat_map(|c| &mut c.entries)
-    {
-        entry.0 = place[entry.0 as usize];
+    for condition in out.contacts.iter_mut().flat_map(|c| &mut c.conditions) {
+        condition.position = moved(condition.position);
+        condition.acts_at = moved(condition.acts_at);
+        for entry in &mut condition.entries {
+            entry.0 = place[entry.0 as usize];
+        }
     }
     out
 }

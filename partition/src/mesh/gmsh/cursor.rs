@@ -1,6 +1,7 @@
 //! A place in the bytes of an MSH file, from which numbers are read in either encoding.
 
 use crate::error::InputError;
+use crate::magnitude;
 
 /// How the numbers of a file are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -180,7 +181,7 @@ impl<'a> Cursor<'a> {
         i64::try_from(value).map_err(|_| self.error(format!("{what} is too large: {value}")))
     }
 
-    /// A finite real number.
+    /// A real number, neither infinite nor beyond all measure.
     pub(super) fn real(&mut self, what: &str) -> Result<f64, InputError> {
         let value: f64 = match self.encoding {
             Encoding::Ascii => self.word(what, "a number")?,
@@ -192,10 +193,8 @@ impl<'a> Cursor<'a> {
                 }
             }
         };
-        if !value.is_finite() {
-            return Err(self.error(format!("{what} is {value}; expected a number")));
-        }
-        Ok(value)
+        magnitude::check(value)
+            .map_err(|expected| self.error(format!("{what} is {value:e}; expected {expected}")))
     }
 
     /// Three coordinates.

@@ -122,9 +122,15 @@ fn distinct(mut listed: Vec<Listed<'_>>) -> Result<Distinct<'_>, InputError> {
             groups.entry(group).or_default().push(place);
         }
     }
-    for members in groups.values_mut() {
+    for (group, members) in &mut groups {
         members.sort_unstable();
-        members.dedup();
+        if let Some(twice) = members.windows(2).find(|w| w[0] == w[1]) {
+            return Err(InputError::new(format!(
+                "the element {} is listed twice in physical group {group}, be it under another \
+                 tag; expected every element once in a group",
+                elements[twice[0] as usize].tag
+            )));
+        }
     }
     Ok(Distinct { elements, groups })
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::cursor::Cursor;
 use crate::error::InputError;
+use crate::name;
 
 /// Reads the body of `$PhysicalNames`: names by dimension and number.
 pub(super) fn read(cursor: &mut Cursor) -> Result<BTreeMap<(usize, i64), String>, InputError> {
@@ -19,6 +20,9 @@ pub(super) fn read(cursor: &mut Cursor) -> Result<BTreeMap<(usize, i64), String>
                 "expected dimension, number and \"name\" of a physical group, found `{line}`"
             )));
         };
+        if let Err(reason) = name::check_text(name) {
+            return Err(cursor.error(format!("'{name}' {reason}")));
+        }
         if !name.is_empty() && names.insert((dim, number), name.to_string()).is_some() {
             return Err(cursor.error(format!(
                 "physical group {number} of dimension {dim} has two names"
@@ -34,7 +38,10 @@ fn entry(line: &str) -> Option<(usize, i64, &str)> {
     let mut words = head.split_whitespace();
     let dim = words.next()?.parse().ok().filter(|&dim| dim <= 3)?;
     let number: i64 = words.next()?.parse().ok()?;
-    words.next().is_none().then_some((dim, number.abs(), name))
+    words
+        .next()
+        .is_none()
+        .then_some((dim, number.checked_abs()?, name))
 }
 
 /// Members of groups by name, from those by dimension and number.

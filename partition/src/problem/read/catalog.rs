@@ -1,8 +1,11 @@
 //! The catalog: what every rank reads.
 
+use std::collections::HashMap;
+
 use super::header::Header;
 use super::sizes::Sizes;
 use super::{Offsets, hierarchy, materials};
+use crate::decompose::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::problem::dataset::Dataset;
 use crate::problem::hierarchy::Hierarchy;
@@ -27,6 +30,7 @@ pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> 
     let (contacts, groups) = read_contacts(file)?;
     let subdomains = read_subdomains(file, &sizes, bodies.len(), groups.len() - 1)?;
     let interface_nodes = check_interface(&interface, &subdomains)?;
+    check_bodies(&interface, &subdomains)?;
     let warnings = match file.link_exists("warnings") {
         true => Dataset::column(file, "/warnings", None)?.strings()?,
         false => Vec::new(),
@@ -131,6 +135,30 @@ fn check_interface(
     }
 }
 
+/// The subdomains of a body hang together through Γ.
+fn check_bodies(interface: &[Vec<u32>], subdomains: &[SubdomainSummary]) -> Result<(), InputError> {
+    let mut pieces = DisjointSets::new(subdomains.len());
+    let mut first: HashMap<u32, usize> = HashMap::new();
+    for (subdomain, list) in interface.iter().enumerate() {
+        for &number in list {
+            let other = *first.entry(number).or_insert(subdomain);
+            pieces.unite(other as u32, subdomain as u32);
+        }
+    }
+    let mut of_body = HashMap::new();
+    for (subdomain, summary) in subdomains.iter().enumerate() {
+        let other = *of_body.entry(summary.body).or_insert(subdomain);
+        if pieces.find(other as u32) != pieces.find(subdomain as u32) {
+            return Err(InputError::new(format!(
+                "dataset /subdomains/body: the subdomains {other} and {subdomain} of body {} \
+                 don't hang together through /interface; expected a body of its own for each piece",
+                summary.body
+            )));
+        }
+    }
+    Ok(())
+}
+
 fn read_subdomains(
     file: &hdf5::File,
     sizes: &Sizes,
@@ -140,7 +168,7 @@ fn read_subdomains(
     let count = sizes.points.len();
     let body = Dataset::column(file, "/subdomains/body", Some(count))?;
     let body_of = body.indices(0..count, bodies, "body")?;
-    if let Some(empty) = (0..bodies).find(|&b| !body_of.contains(&(b as u32))) {
+    if let Some(empty) = first_missing(bodies, body_of.iter().map(|&b| b as usize)) {
         return Err(body.error(&format!("no subdomain belongs to body {empty}")));
     }
     let group = Dataset::column(file, "/subdomains/group", Some(count))?;
@@ -159,7 +187,7 @@ fn read_subdomains(
             )),
         })
         .collect::<Result<Vec<_>, _>>()?;
-    if let Some(empty) = (0..groups).find(|&g| !group_of.contains(&Some(g))) {
+    if let Some(empty) = first_missing(groups, group_of.iter().copied().flatten()) {
         return Err(group.error(&format!("no subdomain belongs to group {empty}")));
     }
     Ok((0..count)
@@ -172,9 +200,20 @@ fn read_subdomains(
         .collect())
 }
 
+/// The first number below `count` that isn't among the `named` ones.
+fn first_missing(count: usize, named: impl Iterator<Item = usize>) -> Option<usize> {
+    let mut is_named = vec![false; count];
+    for number in named {
+        is_named[number] = true;
+    }
+    is_named.iter().position(|named| !named)
+}
+
 /// Names of the conditions that prescribe displacements; one for all where the file doesn't tell.
 fn read_support_names(file: &hdf5::File) -> Result<Vec<String>, InputError> {
-    if file.link_exists("support/condition") {
+    // Each of the two says nothing without the other.
+    if file.link_exists("support/condition") || file.link_exists("support/name") {
+        Dataset::column(file, "/support/condition", None)?;
         return Dataset::column(file, "/support/name", None)?.strings();
     }
     Ok(vec!["supports".into()])
@@ -185,7 +224,7 @@ fn read_contacts(file: &hdf5::File) -> Result<(Vec<ContactSummary>, Vec<usize>),
     if !is_filled(file, "contact") {
         return Ok((Vec::new(), vec![0]));
     }
-    let names = Dataset::column(file, "/contact/name", None)?.strings()?;
+    let names = Dataset::column(file, "/contact/name", None)?.contact_names()?;
     let contact = Dataset::column(file, "/contact/contact", None)?;
     let rows = contact.rows();
     let place = Dataset::column(file, "/contact/place", Some(rows))?;

@@ -2,8 +2,12 @@
 
 use crate::error::InputError;
 use crate::model::PlaneState;
+use crate::name;
 use crate::problem::strings::read_strings;
 use crate::problem::{FORMAT, VERSION};
+
+/// Attribute `Type` of `/VTKHDF`.
+const GRID: &str = "UnstructuredGrid";
 
 /// What the attributes of the file say.
 pub(super) struct Header {
@@ -16,12 +20,10 @@ impl Header {
     /// Reads the attributes; a title may be absent.
     pub fn read(file: &hdf5::File) -> Result<Self, InputError> {
         read_format(file)?;
+        check_grid(file)?;
         Ok(Self {
             dim: read_dimension(file)?,
-            title: match file.attr("title") {
-                Ok(_) => text(file, "title")?,
-                Err(_) => String::new(),
-            },
+            title: read_title(file)?,
             plane: match text(file, "plane")?.as_str() {
                 "strain" => PlaneState::Strain,
                 "stress" => PlaneState::Stress,
@@ -33,6 +35,46 @@ impl Header {
             },
         })
     }
+}
+
+/// The title; empty where there is none.
+fn read_title(file: &hdf5::File) -> Result<String, InputError> {
+    if file.attr("title").is_err() {
+        return Ok(String::new());
+    }
+    let title = text(file, "title")?;
+    name::check_text(&title).map_err(|reason| {
+        InputError::new(format!(
+            "attribute title: '{}' {reason}",
+            name::shown(&title)
+        ))
+    })?;
+    Ok(title)
+}
+
+/// What ParaView goes by, if it is there, is what is read here.
+fn check_grid(file: &hdf5::File) -> Result<(), InputError> {
+    let Ok(grid) = file.group("VTKHDF") else {
+        return Ok(());
+    };
+    if let Ok(kind) = grid.attr("Type") {
+        let kind = read_strings(&kind).map(|kinds| kinds.concat());
+        if kind.as_deref() != Ok(GRID) {
+            return Err(InputError::new(format!(
+                "attribute Type of /VTKHDF is {}; expected \"{GRID}\"",
+                kind.map_or_else(|reason| reason, |kind| format!("\"{kind}\""))
+            )));
+        }
+    }
+    if let Ok(version) = grid.attr("Version") {
+        let version = version.read_raw::<i64>().unwrap_or_default();
+        if version.len() != 2 || version[0] != 2 {
+            return Err(InputError::new(format!(
+                "attribute Version of /VTKHDF is {version:?}; expected [2, 0] or a later minor one"
+            )));
+        }
+    }
+    Ok(())
 }
 
 fn read_format(file: &hdf5::File) -> Result<(), InputError> {

@@ -1,6 +1,7 @@
 //! The materials.
 
 use crate::error::InputError;
+use crate::magnitude::{LARGEST, SMALLEST_STIFFNESS};
 use crate::model::Material;
 use crate::problem::SYMMETRY_TOLERANCE;
 use crate::problem::dataset::Dataset;
@@ -32,12 +33,12 @@ pub(super) fn read(file: &hdf5::File) -> Result<Vec<Material>, InputError> {
                 ));
             }
             let row = &out_of_plane[3 * m..3 * m + 3];
-            let out_of_plane = match row.iter().filter(|x| x.is_finite()).count() {
+            let out_of_plane = match row.iter().filter(|x| x.abs() <= LARGEST).count() {
                 3 => Some([row[0], row[1], row[2]]),
                 0 if row.iter().all(|x| x.is_nan()) => None,
                 _ => {
                     return Err(InputError::new(format!(
-                        "dataset /materials/out_of_plane, row {m}: expected three finite numbers, or NaN three times where they aren't known"
+                        "dataset /materials/out_of_plane, row {m}: expected three numbers of at most {LARGEST:e} in size, or NaN three times where they aren't known"
                     )));
                 }
             };
@@ -64,5 +65,7 @@ pub(super) fn read(file: &hdf5::File) -> Result<Vec<Material>, InputError> {
 fn is_elastic(stiffness: &[[f64; 3]; 3]) -> bool {
     let c = nalgebra::Matrix3::from_fn(|i, j| stiffness[i][j]);
     let symmetric = (c - c.transpose()).amax() <= SYMMETRY_TOLERANCE * c.amax();
-    symmetric && nalgebra::Cholesky::new(c).is_some()
+    // Scaled first, so that no product under- or overflows.
+    let scaled = c / c.amax();
+    symmetric && c.amax() >= SMALLEST_STIFFNESS && nalgebra::Cholesky::new(scaled).is_some()
 }

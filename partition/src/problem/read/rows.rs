@@ -3,12 +3,17 @@
 use std::collections::{HashMap, HashSet};
 
 use super::ProblemFile;
+use super::consistency::Members;
 use super::subdomain::slice;
 use crate::error::InputError;
-use crate::problem::{ContactRow, RowEntry};
+use crate::problem::{ContactRow, RowEntry, Subdomain};
 
 impl ProblemFile {
-    pub(super) fn read_rows(&self, group: usize) -> Result<Vec<ContactRow>, InputError> {
+    pub(super) fn read_rows(
+        &self,
+        group: usize,
+        members: &[&Subdomain],
+    ) -> Result<Vec<ContactRow>, InputError> {
         if group >= self.catalog.groups.len() {
             return Err(InputError::new(format!("there is no group {group}")));
         }
@@ -22,10 +27,10 @@ impl ProblemFile {
         let gap = column("/contact/gap")?.floats(rows.clone())?;
         let shares = column("/contact/share")?;
         let share = shares.floats(rows.clone())?;
-        if let Some(at) = share.iter().position(|&s| s < 0.0) {
+        if let Some(at) = share.iter().position(|&s| s <= 0.0) {
             return Err(shares.row_error(
                 rows.start + at,
-                &format!("{}; expected a share of 0 or more", share[at]),
+                &format!("{}; expected a positive share", share[at]),
             ));
         }
         let position = table("/contact/position")?.vectors(rows.clone(), dim)?;
@@ -36,8 +41,9 @@ impl ProblemFile {
         let normal = table("/contact/normal")?.unit_vectors(rows.clone(), dim)?;
         let tag_a = column("/contact/node_a")?.integers(rows.clone())?;
         let tag_b = column("/contact/node_b")?.integers(rows.clone())?;
-        let entries = self.read_entries(group)?;
-        Ok(entries
+        let entries = self.read_entries(group, members)?;
+        let first = rows.start;
+        let list: Vec<ContactRow> = entries
             .into_iter()
             .enumerate()
             .map(|(i, entries)| ContactRow {
@@ -53,11 +59,20 @@ impl ProblemFile {
                 tag_a: tag_a[i],
                 tag_b: tag_b[i],
             })
-            .collect())
+            .collect();
+        let members = Members::new(members);
+        for (i, row) in list.iter().enumerate() {
+            members.check(row, first + i)?;
+        }
+        Ok(list)
     }
 
     /// The entries of each row of a group.
-    fn read_entries(&self, group: usize) -> Result<Vec<Vec<RowEntry>>, InputError> {
+    fn read_entries(
+        &self,
+        group: usize,
+        members: &[&Subdomain],
+    ) -> Result<Vec<Vec<RowEntry>>, InputError> {
         let dim = self.catalog.dim;
         let rows = slice(&self.offsets.groups, group);
         let subdomain = self.column("/contact/entry_subdomain")?;
@@ -77,10 +92,12 @@ impl ProblemFile {
             subdomain.indices(span.clone(), self.catalog.subdomains.len(), "subdomain")?;
         let nodes = node.integers(span.clone())?;
         let coefficients = coefficient.vectors(span.clone(), dim)?;
-        let foreign = self.foreign_nodes(group)?;
+        let foreign = self.foreign_nodes(members);
         let mut entries = Vec::with_capacity(rows.len());
+        let mut named = HashSet::new();
         for row in rows {
             let mut list = Vec::with_capacity(offsets[row + 1] - offsets[row]);
+            named.clear();
             for at in offsets[row]..offsets[row + 1] {
                 let i = at - span.start;
                 let summary = &self.catalog.subdomains[subdomains[i] as usize];
@@ -112,13 +129,16 @@ impl ProblemFile {
                         ),
                     ));
                 }
+                if !named.insert((subdomains[i], number)) {
+                    return Err(node.row_error(at, "the row named the node before"));
+                }
                 list.push(RowEntry {
                     subdomain: subdomains[i],
                     node: number,
                     coefficient: coefficients[i],
                 });
             }
-            if list.iter().all(|e| e.coefficient == [0.0; 3]) {
+            if list.iter().all(|e: &RowEntry| e.coefficient == [0.0; 3]) {
                 return Err(offset.row_error(row, "expected a row that isn't zero"));
             }
             entries.push(list);
@@ -127,23 +147,19 @@ impl ProblemFile {
     }
 
     /// Nodes of a group (subdomain, node) that a subdomain outside it shares.
-    fn foreign_nodes(&self, group: usize) -> Result<HashSet<(u32, u32)>, InputError> {
-        let catalog = &self.catalog;
-        let members: Vec<usize> = (0..catalog.subdomains.len())
-            .filter(|&i| catalog.subdomains[i].group == Some(group))
-            .collect();
+    fn foreign_nodes(&self, members: &[&Subdomain]) -> HashSet<(u32, u32)> {
         let mut inside: HashMap<u32, u32> = HashMap::new();
-        for &number in members.iter().flat_map(|&i| &catalog.interface[i]) {
-            *inside.entry(number).or_default() += 1;
+        for on in members.iter().flat_map(|member| &member.interface) {
+            *inside.entry(on.interface).or_default() += 1;
         }
         let mut foreign = HashSet::new();
-        for &i in &members {
-            for on in self.read_interface(i)? {
+        for member in members {
+            for on in &member.interface {
                 if inside.get(&on.interface) != Some(&self.sharing[on.interface as usize]) {
-                    foreign.insert((i as u32, on.node));
+                    foreign.insert((member.index as u32, on.node));
                 }
             }
         }
-        Ok(foreign)
+        foreign
     }
 }

@@ -101,7 +101,7 @@ impl Forces {
 }
 
 /// The nodes of Γ of consecutive subdomains; `None` where there are none.
-pub(super) fn interface(
+fn interface(
     file: &ProblemFile,
     subdomains: Range<usize>,
 ) -> Result<Option<Slab<i64>>, InputError> {

@@ -4,9 +4,11 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 use super::ProblemFile;
-use super::slabs::{Slabs, interface};
+use super::slabs::Slabs;
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
+use crate::magnitude::SMALLEST_AREA;
+use crate::mesh::topology::{CellFacet, Facets};
 use crate::model::Support;
 use crate::problem::slab::Slab;
 use crate::problem::{InterfaceNode, Subdomain, UNIT_TOLERANCE};
@@ -102,10 +104,18 @@ impl ProblemFile {
                     &format!("offset {end}; expected at most {}", nodes.len()),
                 ));
             };
+            if let Some(twice) =
+                (1..its_nodes.len()).find(|&i| its_nodes[..i].contains(&its_nodes[i]))
+            {
+                return Err(connectivity.row_error(
+                    entries.start + at + twice,
+                    &format!("cell {} has the node twice", rows.start + cell),
+                ));
+            }
             at_nodes.clear();
             at_nodes.extend(its_nodes.iter().map(|&n| points[n as usize]));
             let size = kind.measure(&at_nodes);
-            if !(size > 0.0 && size.is_finite()) {
+            if !(size > SMALLEST_AREA && size.is_finite()) {
                 return Err(connectivity.row_error(
                     entries.start + at,
                     &format!(
@@ -138,13 +148,38 @@ impl ProblemFile {
                 &format!("offset {at}; expected {}", nodes.len()),
             ));
         }
-        match used.iter().position(|used| !used) {
-            Some(node) => Err(InputError::new(format!(
+        if let Some(node) = used.iter().position(|used| !used) {
+            return Err(InputError::new(format!(
                 "dataset /VTKHDF/Points, row {}: the point belongs to no cell",
                 self.offsets.points[index] + node
-            ))),
-            None => Ok(elements),
+            )));
         }
+        let refused = |[one, other]: [CellFacet; 2], what: &str| {
+            let [one, other] = [one.cell.min(other.cell), one.cell.max(other.cell)];
+            let [one, other] = [one as usize, other as usize];
+            Err(connectivity.row_error(
+                entries.start + elements.offsets()[other],
+                &format!(
+                    "the cells {} and {} {what}",
+                    rows.start + one,
+                    rows.start + other
+                ),
+            ))
+        };
+        if let Some(cells) = Facets::new(&elements, points.len()).overlap(&elements) {
+            return refused(
+                cells,
+                "lie on the same side of an edge that they share; expected cells that don't overlap",
+            );
+        }
+        if let Some(cells) = Facets::torn(&elements, points.len()) {
+            return refused(
+                cells,
+                "share the ends of an edge, but not the node between them; expected the same nodes \
+                 on both sides",
+            );
+        }
+        Ok(elements)
     }
 
     fn take_supports(
@@ -217,11 +252,6 @@ impl ProblemFile {
             ));
         }
         Ok(nodes_of.into_iter().zip(slab.value.vectors(rows)).collect())
-    }
-
-    /// The nodes of Γ of one subdomain.
-    pub(super) fn read_interface(&self, index: usize) -> Result<Vec<InterfaceNode>, InputError> {
-        self.take_interface(interface(self, index..index + 1)?.as_ref(), index)
     }
 
     fn take_interface(

@@ -1,0 +1,43 @@
+//! How large and how small a number may be so that what is calculated with it stays a number.
+
+/// The largest number, by its absolute value: its square is still far from overflow.
+pub const LARGEST: f64 = 1e120;
+
+/// The smallest stiffness (Pa).
+pub const SMALLEST_STIFFNESS: f64 = 1e-120;
+
+/// The smallest area of a cell (m²), below which its edges' squares lose digits.
+pub const SMALLEST_AREA: f64 = 1e-250;
+
+/// Widest gap relative to the extent of the bodies around it. In the bilateral start every gap is
+/// closed: beyond, the round-off of displacements as large as the gap would be all that is left.
+pub const WIDEST_GAP: f64 = 1e10;
+
+/// Checks that a number is finite and not beyond all measure.
+///
+/// # Errors
+/// What was expected in its place.
+pub fn check(value: f64) -> Result<f64, String> {
+    if !value.is_finite() {
+        Err("a finite number".into())
+    } else if value.abs() > LARGEST {
+        Err(format!("a number of at most {LARGEST:e} in size"))
+    } else {
+        Ok(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_overflows_when_it_is_squared_is_no_number() {
+        for value in [0.0, -1e120, 5e-324] {
+            assert_eq!(check(value), Ok(value));
+        }
+        for value in [f64::NAN, f64::INFINITY, 1.1e120, -1e300] {
+            assert!(check(value).is_err(), "{value}");
+        }
+    }
+}

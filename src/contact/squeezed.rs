@@ -1,0 +1,119 @@
+//! Nodes to which rigid obstacles and supports leave no place.
+
+use std::collections::BTreeMap;
+
+use contact_dd_partition::problem::Catalog;
+use nalgebra::{DMatrix, DVector};
+
+use crate::error::Failure;
+use crate::rigid::nonnegative::residual;
+use crate::run::read::OwnedBlock;
+
+/// How far obstacles may overlap, relative to the gaps and displacements that they prescribe.
+const OVERLAP: f64 = 1e-9;
+
+/// ‖r‖ up to which conditions count as contradictory; it is 1 where they leave most room.
+const CONTRADICTORY: f64 = 1e-6;
+
+/// n·u ≤ g.
+type HalfSpace = ([f64; 3], f64);
+
+/// Checks that every node on which several obstacles act can keep to them and to its supports.
+///
+/// # Errors
+/// The first node that can't, with its contacts.
+pub fn check(owned: &OwnedBlock, catalog: &Catalog) -> Result<(), Failure> {
+    let mut at_node: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for (row, condition) in owned.conditions.iter().enumerate() {
+        if let [(node, _)] = condition.entries[..] {
+            at_node.entry(node).or_default().push(row);
+        }
+    }
+    let block = &owned.block;
+    let mut supports: BTreeMap<u32, Vec<HalfSpace>> = BTreeMap::new();
+    for (member, node_of) in block.members.iter().zip(&block.node_of) {
+        for support in &member.supports {
+            let node = node_of[support.node as usize];
+            if at_node.contains_key(&node) {
+                let (d, value) = (support.direction, support.value);
+                let both = [(d, value), (d.map(|c| -c), -value)];
+                supports.entry(node).or_default().extend(both);
+            }
+        }
+    }
+    for (node, rows) in at_node {
+        let of_rows = rows.iter().map(|&row| {
+            let condition = &owned.conditions[row];
+            (condition.entries[0].1, condition.gap)
+        });
+        let held = supports.remove(&node).unwrap_or_default();
+        let all: Vec<HalfSpace> = of_rows.chain(held).collect();
+        if rows.len() > 1 && !leave_a_place(&all) {
+            let names = rows.iter().map(|&row| owned.rows[row].contact as usize);
+            let names: Vec<String> = names
+                .map(|contact| format!("'{}'", catalog.contacts[contact].name))
+                .collect();
+            return Err(Failure::input(format!(
+                "contact {}: what is prescribed at node {} leaves no place for it; expected \
+                 obstacles and displacements that don't contradict each other",
+                names.join(" and "),
+                block.tags[node as usize]
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Whether some u keeps to all half spaces: if not, by Farkas, λ ≥ 0 exist with Σ λ n = 0 and
+/// Σ λ g < 0.
+fn leave_a_place(half_spaces: &[HalfSpace]) -> bool {
+    let scale = half_spaces
+        .iter()
+        .fold(0.0, |m, (_, g)| f64::max(m, g.abs()));
+    if scale == 0.0 {
+        return true;
+    }
+    let a = DMatrix::from_fn(4, half_spaces.len(), |i, j| match half_spaces[j] {
+        (n, _) if i < 3 => n[i],
+        (_, g) => g / scale + OVERLAP,
+    });
+    let b = DVector::from_vec(vec![0.0, 0.0, 0.0, -1.0]);
+    residual(&a, &b).norm() > CONTRADICTORY
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn along(degrees: f64, gap: f64) -> HalfSpace {
+        let (y, x) = degrees.to_radians().sin_cos();
+        ([x, y, 0.0], gap)
+    }
+
+    #[test]
+    fn walls_leave_a_place_unless_they_overlap() {
+        for (walls, expected) in [
+            (vec![along(0.0, -0.1), along(180.0, 0.2)], true),
+            (vec![along(0.0, -0.1), along(180.0, 0.1)], true),
+            (vec![along(0.0, -0.2), along(180.0, 0.1)], false),
+            (vec![along(0.0, -0.2), along(90.0, -0.2)], true),
+            (vec![along(0.0, 0.0), along(180.0, 0.0)], true),
+            (vec![along(0.0, 1e-9), along(180.0, -1.0)], false),
+            // Three walls around a point, which lie 1 apart from it on one side or the other.
+            (
+                vec![along(0.0, 1.0), along(120.0, 1.0), along(240.0, 1.0)],
+                true,
+            ),
+            (
+                vec![along(0.0, -1.0), along(120.0, 0.4), along(240.0, 0.4)],
+                false,
+            ),
+            (
+                vec![along(10.0, -1e30), along(130.0, 5e29), along(250.0, 6e29)],
+                true,
+            ),
+        ] {
+            assert_eq!(leave_a_place(&walls), expected, "{walls:?}");
+        }
+    }
+}
