@@ -1,22 +1,24 @@
 //! A file that appears under its name only when it is whole.
 
+mod temporary;
+
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::TempPath;
-
+use self::temporary::Temporary;
 use crate::error::OutputError;
 
 /// A name for a file and, in the same folder, the temporary file that will take it.
 ///
 /// Dropped without [`commit`](Self::commit), the temporary file goes and what stood under the name
-/// stays.
+/// stays. A run that is killed leaves its temporary file behind; the next one on the same machine
+/// that writes to the same name removes it.
 #[derive(Debug)]
 pub struct Destination {
     path: PathBuf,
     target: PathBuf,
-    temporary: TempPath,
+    temporary: Temporary,
 }
 
 impl Destination {
@@ -47,21 +49,8 @@ impl Destination {
             let reason = format!("there is no folder '{}'", folder.display());
             return Err(failure(path, reason));
         }
-        let mut prefix = std::ffi::OsString::from(".");
-        prefix.push(name);
-        prefix.push(".");
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix).suffix(".part");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // The umask has its say: the same permissions as any file that the user makes.
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        let temporary = builder
-            .tempfile_in(folder)
-            .map_err(|error| failure(path, plain_words(&error)))?
-            .into_temp_path();
+        let temporary =
+            Temporary::new(folder, name).map_err(|error| failure(path, plain_words(&error)))?;
         Ok(Self {
             path: path.to_path_buf(),
             target,
@@ -71,7 +60,7 @@ impl Destination {
 
     /// The file to write to.
     pub fn temporary(&self) -> &Path {
-        &self.temporary
+        self.temporary.path()
     }
 
     /// An error that names the file.
@@ -85,10 +74,10 @@ impl Destination {
     /// What the system said.
     pub fn commit(self) -> Result<(), OutputError> {
         let sync = |file: &Path| File::open(file).and_then(|file| file.sync_all());
-        sync(&self.temporary).map_err(|error| failure(&self.path, plain_words(&error)))?;
+        sync(self.temporary.path()).map_err(|error| failure(&self.path, plain_words(&error)))?;
         self.temporary
             .persist(&self.target)
-            .map_err(|error| failure(&self.path, plain_words(&error.error)))?;
+            .map_err(|error| failure(&self.path, plain_words(&error)))?;
         // The file has its name; a file system that can't sync folders doesn't make that untrue.
         let _ = sync(folder_of(&self.target));
         Ok(())
@@ -129,8 +118,9 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// The system's words without the path of the temporary file, which means nothing to the user.
-fn plain_words(error: &io::Error) -> String {
+pub fn plain_words(error: &io::Error) -> String {
     match error.kind() {
+        io::ErrorKind::NotFound => "its folder is gone".into(),
         io::ErrorKind::PermissionDenied => "no permission to write into its folder".into(),
         io::ErrorKind::ReadOnlyFilesystem => "its file system is read-only".into(),
         io::ErrorKind::StorageFull => "its file system is full".into(),
