@@ -5,6 +5,9 @@
 
 mod environment;
 mod message;
+#[cfg(debug_assertions)]
+mod on_purpose;
+mod watch;
 
 use std::cell::Cell;
 
@@ -12,6 +15,7 @@ use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
 
+use environment::current_phase;
 pub use environment::{World, phase, start};
 pub use message::{Message, MessageReader};
 
@@ -26,6 +30,7 @@ const PIECE: usize = 1 << 27;
 /// All ranks of a run.
 pub struct Comm {
     world: SimpleCommunicator,
+    hosts: usize,
     bytes_sent: Cell<u64>,
 }
 
@@ -45,11 +50,20 @@ impl Comm {
         self.rank() == ROOT
     }
 
+    /// Number of hosts that they run on.
+    pub fn hosts(&self) -> usize {
+        self.hosts
+    }
+
     /// Makes the failure of the lowest failing rank the result of all. Collective.
+    ///
+    /// Where others have no failure its message ends with the rank and the phase.
     ///
     /// # Errors
     /// The failure that the ranks agreed on.
     pub fn agree<T>(&self, result: Result<T, Failure>) -> Result<T, Failure> {
+        #[cfg(debug_assertions)]
+        let result = on_purpose::failure().map_or(result, Err);
         let mine = match &result {
             Ok(_) => self.size() as i32,
             Err(_) => self.rank() as i32,
@@ -60,12 +74,23 @@ impl Comm {
         if lowest as usize == self.size() {
             return result;
         }
+        let mut failed = 0i32;
+        self.world.all_reduce_into(
+            &i32::from(result.is_err()),
+            &mut failed,
+            SystemOperation::sum(),
+        );
         let mut message = match &result {
             Err(failure) if self.rank() == lowest as usize => Message::of_failure(failure),
             _ => Message::default(),
         };
         self.broadcast_from(lowest as usize, &mut message);
-        Err(message.into_failure())
+        let mut failure = message.into_failure();
+        if (failed as usize) < self.size() {
+            let place = format!(" (rank {lowest} of {}, {})", self.size(), current_phase());
+            failure.message += &place;
+        }
+        Err(failure)
     }
 
     /// Gives all ranks the root's message. Collective.

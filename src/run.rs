@@ -97,6 +97,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         narrator.check(&survey);
         return Ok(Ending::Converged);
     }
+    phase("creating the result file");
     let mut output = comm.agree(create_output(comm, settings, catalog, &plan, &blocks))?;
     take_out_descent(&mut blocks, &survey, catalog.dim);
     seconds.read = began.elapsed().as_secs_f64();

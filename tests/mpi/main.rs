@@ -12,6 +12,7 @@
 mod bad_input;
 mod endings;
 mod resting;
+mod sudden_ends;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -58,6 +59,7 @@ fn main() -> ExitCode {
     endings::not_converged(&mut trials);
     endings::unwritable_output(&mut trials);
     endings::killed_rank(&mut trials);
+    sudden_ends::sudden_ends(&mut trials);
     libtest_mimic::run(&arguments, trials.0).exit_code()
 }
 
