@@ -3,11 +3,13 @@
 //! Ranks agree on errors at the end of every phase: nobody leaves between matching calls, so no
 //! rank waits for one that is gone.
 
+mod board;
 mod environment;
+mod host;
 mod message;
 #[cfg(debug_assertions)]
 mod on_purpose;
-mod watch;
+mod watcher;
 
 use std::cell::Cell;
 
@@ -16,8 +18,9 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
 
 use environment::current_phase;
-pub use environment::{World, phase, start};
+pub use environment::{World, library, phase, start};
 pub use message::{Message, MessageReader};
+pub use watcher::watch_if_asked;
 
 use crate::error::{Failure, FailureKind};
 

@@ -25,7 +25,8 @@ const ROUND_OFF_OF_TERMS: f64 = 1e-12;
 const NOT_BALANCED_OF_LOAD: f64 = 1e-2;
 
 /// How U is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Method {
     /// Newton: S_0 + S_CON is inverted, contact conditions included.
     Newton,

@@ -117,13 +117,27 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
+/// What a library said of a call that failed, in the system's words where it quotes `errno` among file
+/// descriptors and addresses, as HDF5 does.
+pub fn quoted_words(said: &str) -> String {
+    let number = said.split_once("errno = ").and_then(|(_, rest)| {
+        let digits = rest.split(|c: char| !c.is_ascii_digit()).next()?;
+        digits.parse().ok()
+    });
+    match number {
+        Some(number) => plain_words(&io::Error::from_raw_os_error(number)),
+        None => said.to_owned(),
+    }
+}
+
 /// The system's words without the path of the temporary file, which means nothing to the user.
 pub fn plain_words(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::NotFound => "its folder is gone".into(),
         io::ErrorKind::PermissionDenied => "no permission to write into its folder".into(),
         io::ErrorKind::ReadOnlyFilesystem => "its file system is read-only".into(),
-        io::ErrorKind::StorageFull => "its file system is full".into(),
+        io::ErrorKind::StorageFull => "no space is left on its file system".into(),
+        io::ErrorKind::QuotaExceeded => "its quota of space is used up".into(),
         _ => error.to_string(),
     }
 }
@@ -173,6 +187,15 @@ mod tests {
         assert!(refused(&folder.path().join("no/result")).contains("there is no folder"));
         assert!(refused(Path::new("/dev/null")).contains("isn't a file"));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_system_is_quoted_alone() {
+        let said = "H5Fflush(): file write failed: errno = 28, \
+                    error message = 'No space left on device', buf = 0x55ed55b88fd8";
+        assert_eq!(quoted_words(said), "no space is left on its file system");
+        assert_eq!(quoted_words("unable to write"), "unable to write");
     }
 
     #[test]

@@ -9,21 +9,21 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
 
 use super::Comm;
+use super::host::Host;
 #[cfg(debug_assertions)]
 use super::on_purpose;
-use super::watch::Board;
 use crate::error::Failure;
 
 static PHASE: Mutex<&str> = Mutex::new("starting");
 
-/// What the ranks of this host are doing, where there are several.
-static BOARD: OnceLock<Board> = OnceLock::new();
+/// The ranks of this host, where somebody watches them.
+static HOST: OnceLock<Host> = OnceLock::new();
 
 /// Names what this rank is doing, for the message of its end should it be a sudden one.
 pub fn phase(name: &'static str) {
     *PHASE.lock().unwrap_or_else(PoisonError::into_inner) = name;
-    if let Some(board) = BOARD.get() {
-        board.write(name);
+    if let Some(host) = HOST.get() {
+        host.note(name);
     }
     #[cfg(debug_assertions)]
     on_purpose::end(name);
@@ -53,8 +53,8 @@ impl World {
 
 impl Drop for World {
     fn drop(&mut self) {
-        if let Some(board) = BOARD.get() {
-            board.leave();
+        if let Some(host) = HOST.get() {
+            host.leave();
         }
     }
 }
@@ -72,7 +72,7 @@ pub fn start() -> Result<World, Failure> {
     let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         // Ranks that panic for one reason say so once.
-        if BOARD.get().is_none_or(Board::claim_message) {
+        if HOST.get().is_none_or(Host::claim_message) {
             let phase = current_phase();
             eprintln!("error: rank {rank} of {size} panicked while {phase}");
             report(panic);
@@ -89,8 +89,10 @@ pub fn start() -> Result<World, Failure> {
         &mut hosts,
         SystemOperation::sum(),
     );
-    if let Some(board) = Board::share(&host, rank) {
-        BOARD.get_or_init(|| board).watch(size);
+    if size > 1
+        && let Some(host) = Host::watched(&host, rank, size)
+    {
+        HOST.get_or_init(|| host);
     }
     phase("starting");
     Ok(World {
@@ -99,7 +101,17 @@ pub fn start() -> Result<World, Failure> {
     })
 }
 
-pub(super) fn abort_all() {
+/// The MPI library and its version, as it calls itself.
+pub fn library() -> String {
+    let said = mpi::environment::library_version().unwrap_or_default();
+    // MPICH tells in further lines how it was configured.
+    let name = said.lines().next().unwrap_or_default();
+    // Open MPI counts the end of its string to it.
+    let name = name.trim_end_matches('\0');
+    name.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn abort_all() {
     SimpleCommunicator::world().abort(1);
 }
 
