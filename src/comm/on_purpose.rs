@@ -1,8 +1,9 @@
-//! Ranks that end on purpose, in a phase of the tests' choice.
+//! Ranks that end or stop on purpose, in a phase of the tests' choice.
 //!
-//! `CONTACT_DD_END="RANK KIND PHASE"` makes a rank end when it comes to a phase. Only a build with
-//! debug assertions, which is what tests run, looks at it: there is no way to come across it in the
-//! program that users run, and no feature that one could forget to switch off.
+//! `CONTACT_DD_END="RANK KIND PHASE"` makes a rank end when it comes to a phase, or stop until it is
+//! continued. Only a build with debug assertions, which is what tests run, looks at it: there is no way
+//! to come across it in the program that users run, and no feature that one could forget to switch
+//! off.
 
 use std::sync::OnceLock;
 use std::{env, hint, process, thread};
@@ -19,7 +20,7 @@ pub fn set_rank(rank: i32) {
     RANK.get_or_init(|| rank);
 }
 
-/// Ends this rank if it is to end suddenly in `phase`.
+/// Ends or stops this rank if that is to happen suddenly in `phase`.
 #[expect(clippy::panic, reason = "that's the purpose")]
 pub fn end(phase: &str) {
     match wish(phase).as_deref() {
@@ -31,6 +32,9 @@ pub fn end(phase: &str) {
         Some("kill") => {
             let _ = kill_process(getpid(), Signal::KILL);
             thread::park();
+        }
+        Some("stop") => {
+            let _ = kill_process(getpid(), Signal::STOP);
         }
         _ => {}
     }

@@ -123,6 +123,21 @@ impl Running {
             .collect()
     }
 
+    /// Waits until one of its processes, or itself, is stopped, and returns which.
+    #[track_caller]
+    pub fn stopped(&self, limit: Duration) -> u32 {
+        let deadline = Instant::now() + limit;
+        loop {
+            let all = processes();
+            let own = |p: &&Process| p.id == self.child.id() || p.parent == self.child.id();
+            if let Some(process) = all.iter().filter(own).find(|p| p.state == "T") {
+                return process.id;
+            }
+            assert!(Instant::now() < deadline, "nothing was stopped");
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+
     pub fn is_running(&mut self) -> bool {
         self.child.try_wait().unwrap().is_none()
     }
@@ -172,15 +187,11 @@ pub fn kill(id: u32) {
     }
 }
 
-/// Whether the process is there and hasn't ended.
-pub fn is_alive(id: u32) -> bool {
-    processes().iter().any(|process| process.id == id)
-}
-
 struct Process {
     id: u32,
     parent: u32,
     name: String,
+    state: String,
 }
 
 /// All processes but zombies, by ascending id, from /proc.
@@ -196,8 +207,12 @@ fn processes() -> Vec<Process> {
             let mut fields = tail.split(' ');
             let state = fields.next()?;
             let parent = fields.next()?.parse().ok()?;
-            let name = name.to_owned();
-            (state != "Z").then_some(Process { id, parent, name })
+            (state != "Z").then(|| Process {
+                id,
+                parent,
+                name: name.to_owned(),
+                state: state.to_owned(),
+            })
         })
         .collect();
     all.sort_by_key(|process| process.id);
