@@ -3,9 +3,15 @@
 //! Ranks agree on errors at the end of every phase: nobody leaves between matching calls, so no
 //! rank waits for one that is gone.
 
+mod board;
 mod environment;
+mod host;
 mod message;
+#[cfg(debug_assertions)]
+mod on_purpose;
+
 mod signal;
+mod watcher;
 
 use std::cell::Cell;
 
@@ -13,9 +19,11 @@ use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
 
-pub use environment::{World, phase, start};
+use environment::current_phase;
+pub use environment::{World, library, phase, start};
 pub use message::{Message, MessageReader};
 pub use signal::is_asked_to_stop;
+pub use watcher::watch_if_asked;
 
 use crate::error::{Failure, FailureKind};
 
@@ -28,6 +36,7 @@ const PIECE: usize = 1 << 27;
 /// All ranks of a run.
 pub struct Comm {
     world: SimpleCommunicator,
+    hosts: usize,
     bytes_sent: Cell<u64>,
 }
 
@@ -52,11 +61,20 @@ impl Comm {
         self.rank() == ROOT
     }
 
+    /// Number of hosts that they run on.
+    pub fn hosts(&self) -> usize {
+        self.hosts
+    }
+
     /// Makes the failure of the lowest failing rank the result of all. Collective.
+    ///
+    /// Where others have no failure its message ends with the rank and the phase.
     ///
     /// # Errors
     /// The failure that the ranks agreed on.
     pub fn agree<T>(&self, result: Result<T, Failure>) -> Result<T, Failure> {
+        #[cfg(debug_assertions)]
+        let result = on_purpose::failure().map_or(result, Err);
         let mine = match &result {
             Ok(_) => self.size() as i32,
             Err(_) => self.rank() as i32,
@@ -67,12 +85,23 @@ impl Comm {
         if lowest as usize == self.size() {
             return result;
         }
+        let mut failed = 0i32;
+        self.world.all_reduce_into(
+            &i32::from(result.is_err()),
+            &mut failed,
+            SystemOperation::sum(),
+        );
         let mut message = match &result {
             Err(failure) if self.rank() == lowest as usize => Message::of_failure(failure),
             _ => Message::default(),
         };
         self.broadcast_from(lowest as usize, &mut message);
-        Err(message.into_failure())
+        let mut failure = message.into_failure();
+        if (failed as usize) < self.size() {
+            let place = format!(" (rank {lowest} of {}, {})", self.size(), current_phase());
+            failure.message += &place;
+        }
+        Err(failure)
     }
 
     /// Whether any rank was asked to stop. Collective.

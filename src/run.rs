@@ -45,7 +45,7 @@ use self::reactions::reactions;
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
 use self::refine::refine;
-use self::report::{Narrator, Totals};
+use self::report::{Narrator, Outputs, Totals};
 use self::settle::{settle_free_motions, settle_loose_motions};
 use self::stresses::{error_estimate, stresses};
 use self::substitute::Factors;
@@ -54,7 +54,7 @@ use crate::comm::{Comm, Message, phase};
 use crate::contact::s_con::SCon;
 use crate::error::Failure;
 use crate::output::progress::Progress;
-use crate::output::report::PhaseSeconds;
+use crate::output::report::{PhaseSeconds, ReportFile};
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
@@ -112,7 +112,8 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         narrator.check(&survey, &demands, available);
         return Ok(Ending::Converged);
     }
-    let mut output = comm.agree(create_output(comm, settings, catalog, &plan, &blocks))?;
+    phase("creating the outputs");
+    let mut outputs = comm.agree(create_outputs(comm, settings, catalog, &plan, &blocks))?;
     take_out_descent(&mut blocks, &survey, catalog.dim);
     seconds.read = began.elapsed().as_secs_f64();
 
@@ -219,14 +220,15 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     };
     let mut resultants = Resultants::new(catalog, reactions);
     let contacts = &mut resultants.contacts;
-    let written = write_solution(comm, &blocks, fields, &plan, output.as_mut(), contacts);
+    let result = outputs.as_mut().map(|outputs| &mut outputs.result);
+    let written = write_solution(comm, &blocks, fields, &plan, result, contacts);
     comm.agree(written.map_err(Failure::from))?;
     seconds.write = lap.elapsed().as_secs_f64();
     seconds.total = began.elapsed().as_secs_f64();
 
     let ranks = report::collect(comm, &seconds, &plan, condensed.repeats.found);
-    let finished = match (&outcome, &interface, output) {
-        (Some(outcome), Some((_, interface)), Some(output)) => {
+    let finished = match (&outcome, &interface, outputs) {
+        (Some(outcome), Some((_, interface)), Some(outputs)) => {
             let totals = Totals {
                 catalog,
                 plan: &plan,
@@ -246,7 +248,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
                 ]
                 .concat(),
             };
-            let finished = narrator.finish(&totals, output);
+            let finished = narrator.finish(&totals, outputs);
             if finished.is_ok() && outcome.status == SweepStatus::Converged {
                 checkpoints.remove();
             }
@@ -268,15 +270,15 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     })
 }
 
-/// Makes the result file, so that a place where it can't be is found before the work. Collective;
-/// the root has the file.
-fn create_output(
+/// Makes the files of the outputs, so that a place where they can't be is found before the work.
+/// Collective; the root has the files.
+fn create_outputs(
     comm: &Comm,
     settings: &Settings,
     catalog: &Catalog,
     plan: &Plan,
     blocks: &BTreeMap<usize, OwnedBlock>,
-) -> Result<Option<ResultFile>, Failure> {
+) -> Result<Option<Outputs>, Failure> {
     let owners: Vec<usize> = plan
         .block_of
         .iter()
@@ -300,5 +302,9 @@ fn create_output(
         return Ok(None);
     }
     let layout = Layout::new(catalog, &connectivity, !settings.no_stress);
-    Ok(Some(ResultFile::create(&settings.result_path(), &layout)?))
+    let report = settings.report.as_deref().map(ReportFile::create);
+    Ok(Some(Outputs {
+        result: ResultFile::create(&settings.result_path(), &layout)?,
+        report: report.transpose()?,
+    }))
 }

@@ -4,6 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
+use serde::{Serialize, Serializer};
 
 use crate::error::Failure;
 use crate::output::default_result_path;
@@ -11,7 +12,7 @@ use crate::plan::cluster::Merging;
 use crate::sweep::{Method, SweepSettings};
 
 /// Solves unilateral contact problems by domain decomposition after J. Daněk.
-#[derive(Clone, Debug, Parser)]
+#[derive(Clone, Debug, PartialEq, Parser, Serialize)]
 #[command(
     version,
     after_help = "Examples:\n  contact-dd-partition --example granite -n 8 -o granite.h5\n  \
@@ -23,12 +24,15 @@ use crate::sweep::{Method, SweepSettings};
 )]
 pub struct Settings {
     /// Problem file, made by contact-dd-partition.
+    #[serde(serialize_with = "as_text")]
     pub problem: PathBuf,
     /// Result file [default: the problem's name with the extension vtkhdf].
     #[arg(short, long, value_name = "FILE")]
+    #[serde(serialize_with = "as_optional_text")]
     pub output: Option<PathBuf>,
     /// Write the report as JSON, too.
     #[arg(long, value_name = "FILE")]
+    #[serde(serialize_with = "as_optional_text")]
     pub report: Option<PathBuf>,
     /// How the interface problem is solved.
     #[arg(long, value_enum, default_value_t = Method::Newton)]
@@ -68,6 +72,15 @@ impl Settings {
         self.output
             .clone()
             .unwrap_or_else(|| default_result_path(&self.problem))
+    }
+
+    /// The same with the name of the result file.
+    #[must_use]
+    pub fn resolved(&self) -> Self {
+        Self {
+            output: Some(self.result_path()),
+            ..self.clone()
+        }
     }
 
     /// Checks that the results don't replace the problem.
@@ -120,8 +133,8 @@ impl Settings {
         }
     }
 
-    /// The settings as they were resolved, by name.
-    pub fn resolved(&self) -> Vec<(&'static str, String)> {
+    /// The settings as they were resolved, by name, for people.
+    pub fn in_words(&self) -> Vec<(&'static str, String)> {
         let mut list = vec![
             ("method", self.method.name().to_string()),
             ("tolerance", format!("{:e}", self.tolerance)),
@@ -146,6 +159,19 @@ impl Settings {
 /// Whether two paths lead to one place.
 fn same_file(a: &Path, b: &Path) -> bool {
     a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+/// A path of whatever bytes.
+fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
+}
+
+fn as_optional_text<S: Serializer>(
+    path: &Option<PathBuf>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let text = path.as_ref().map(|path| path.display().to_string());
+    text.serialize(serializer)
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -1,22 +1,24 @@
 //! A file that appears under its name only when it is whole.
 
+mod temporary;
+
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::TempPath;
-
+use self::temporary::Temporary;
 use crate::error::OutputError;
 
 /// A name for a file and, in the same folder, the temporary file that will take it.
 ///
 /// Dropped without [`commit`](Self::commit), the temporary file goes and what stood under the name
-/// stays.
+/// stays. A run that is killed leaves its temporary file behind; the next one on the same machine
+/// that writes to the same name removes it.
 #[derive(Debug)]
 pub struct Destination {
     path: PathBuf,
     target: PathBuf,
-    temporary: TempPath,
+    temporary: Temporary,
 }
 
 impl Destination {
@@ -47,21 +49,8 @@ impl Destination {
             let reason = format!("there is no folder '{}'", folder.display());
             return Err(failure(path, reason));
         }
-        let mut prefix = std::ffi::OsString::from(".");
-        prefix.push(name);
-        prefix.push(".");
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix).suffix(".part");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // The umask has its say: the same permissions as any file that the user makes.
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        let temporary = builder
-            .tempfile_in(folder)
-            .map_err(|error| failure(path, plain_words(&error)))?
-            .into_temp_path();
+        let temporary =
+            Temporary::new(folder, name).map_err(|error| failure(path, plain_words(&error)))?;
         Ok(Self {
             path: path.to_path_buf(),
             target,
@@ -71,7 +60,7 @@ impl Destination {
 
     /// The file to write to.
     pub fn temporary(&self) -> &Path {
-        &self.temporary
+        self.temporary.path()
     }
 
     /// An error that names the file.
@@ -85,10 +74,10 @@ impl Destination {
     /// What the system said.
     pub fn commit(self) -> Result<(), OutputError> {
         let sync = |file: &Path| File::open(file).and_then(|file| file.sync_all());
-        sync(&self.temporary).map_err(|error| failure(&self.path, plain_words(&error)))?;
+        sync(self.temporary.path()).map_err(|error| failure(&self.path, plain_words(&error)))?;
         self.temporary
             .persist(&self.target)
-            .map_err(|error| failure(&self.path, plain_words(&error.error)))?;
+            .map_err(|error| failure(&self.path, plain_words(&error)))?;
         // The file has its name; a file system that can't sync folders doesn't make that untrue.
         let _ = sync(folder_of(&self.target));
         Ok(())
@@ -128,12 +117,27 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
+/// What a library said of a call that failed, in the system's words where it quotes `errno` among file
+/// descriptors and addresses, as HDF5 does.
+pub fn quoted_words(said: &str) -> String {
+    let number = said.split_once("errno = ").and_then(|(_, rest)| {
+        let digits = rest.split(|c: char| !c.is_ascii_digit()).next()?;
+        digits.parse().ok()
+    });
+    match number {
+        Some(number) => plain_words(&io::Error::from_raw_os_error(number)),
+        None => said.to_owned(),
+    }
+}
+
 /// The system's words without the path of the temporary file, which means nothing to the user.
-fn plain_words(error: &io::Error) -> String {
+pub fn plain_words(error: &io::Error) -> String {
     match error.kind() {
+        io::ErrorKind::NotFound => "its folder is gone".into(),
         io::ErrorKind::PermissionDenied => "no permission to write into its folder".into(),
         io::ErrorKind::ReadOnlyFilesystem => "its file system is read-only".into(),
-        io::ErrorKind::StorageFull => "its file system is full".into(),
+        io::ErrorKind::StorageFull => "no space is left on its file system".into(),
+        io::ErrorKind::QuotaExceeded => "its quota of space is used up".into(),
         _ => error.to_string(),
     }
 }
@@ -183,6 +187,15 @@ mod tests {
         assert!(refused(&folder.path().join("no/result")).contains("there is no folder"));
         assert!(refused(Path::new("/dev/null")).contains("isn't a file"));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_system_is_quoted_alone() {
+        let said = "H5Fflush(): file write failed: errno = 28, \
+                    error message = 'No space left on device', buf = 0x55ed55b88fd8";
+        assert_eq!(quoted_words(said), "no space is left on its file system");
+        assert_eq!(quoted_words("unable to write"), "unable to write");
     }
 
     #[test]

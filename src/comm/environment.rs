@@ -1,24 +1,43 @@
-//! Starting MPI, and what happens when a rank panics.
+//! Starting MPI, and what happens when a rank fails without a word to the others.
 
 use std::cell::Cell;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
+use mpi::collective::SystemOperation;
 use mpi::environment::Universe;
+use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
 
 use super::Comm;
+use super::host::Host;
+#[cfg(debug_assertions)]
+use super::on_purpose;
 use crate::error::Failure;
 
 static PHASE: Mutex<&str> = Mutex::new("starting");
 
-/// Names what this rank is doing, for the message of a panic.
+/// The ranks of this host, where somebody watches them.
+static HOST: OnceLock<Host> = OnceLock::new();
+
+/// Names what this rank is doing, for the message of its end should it be a sudden one.
 pub fn phase(name: &'static str) {
     *PHASE.lock().unwrap_or_else(PoisonError::into_inner) = name;
+    if let Some(host) = HOST.get() {
+        host.note(name);
+    }
+    #[cfg(debug_assertions)]
+    on_purpose::end(name);
+}
+
+/// What this rank is doing.
+pub(super) fn current_phase() -> &'static str {
+    *PHASE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// MPI while it runs; it ends when this is dropped.
 pub struct World {
     universe: Universe,
+    hosts: usize,
 }
 
 impl World {
@@ -26,12 +45,21 @@ impl World {
     pub fn comm(&self) -> Comm {
         Comm {
             world: self.universe.world(),
+            hosts: self.hosts,
             bytes_sent: Cell::new(0),
         }
     }
 }
 
-/// Starts MPI, and makes a panic of any rank end all of them.
+impl Drop for World {
+    fn drop(&mut self) {
+        if let Some(host) = HOST.get() {
+            host.leave();
+        }
+    }
+}
+
+/// Starts MPI, and makes the sudden end of any rank the end of all. Collective.
 ///
 /// # Errors
 /// MPI was started already, or the launcher belongs to another MPI than the program: then it
@@ -43,24 +71,55 @@ pub fn start() -> Result<World, Failure> {
     let (rank, size) = (world.rank(), world.size());
     let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        let phase = *PHASE.lock().unwrap_or_else(PoisonError::into_inner);
-        eprintln!("error: rank {rank} of {size} panicked while {phase}");
-        report(panic);
-        universe_abort();
+        // Ranks that panic for one reason say so once.
+        if HOST.get().is_none_or(Host::claim_message) {
+            let phase = current_phase();
+            eprintln!("error: rank {rank} of {size} panicked while {phase}");
+            report(panic);
+        }
+        abort_all();
     }));
     check_launcher(size)?;
     super::signal::listen()
         .map_err(|error| Failure::internal(format!("signals can't be listened to: {error}")))?;
-    Ok(World { universe })
+    #[cfg(debug_assertions)]
+    on_purpose::set_rank(rank);
+    let host = world.split_shared(rank);
+    let mut hosts = 0i32;
+    world.all_reduce_into(
+        &i32::from(host.rank() == 0),
+        &mut hosts,
+        SystemOperation::sum(),
+    );
+    if size > 1
+        && let Some(host) = Host::watched(&host, rank, size)
+    {
+        HOST.get_or_init(|| host);
+    }
+    phase("starting");
+    Ok(World {
+        universe,
+        hosts: hosts as usize,
+    })
 }
 
-fn universe_abort() {
-    mpi::topology::SimpleCommunicator::world().abort(1);
+/// The MPI library and its version, as it calls itself.
+pub fn library() -> String {
+    let said = mpi::environment::library_version().unwrap_or_default();
+    // MPICH tells in further lines how it was configured.
+    let name = said.lines().next().unwrap_or_default();
+    // Open MPI counts the end of its string to it.
+    let name = name.trim_end_matches('\0');
+    name.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn abort_all() {
+    SimpleCommunicator::world().abort(1);
 }
 
 /// The launcher's own count of ranks must be MPI's.
 fn check_launcher(size: i32) -> Result<(), Failure> {
-    for name in ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS"] {
+    for name in ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"] {
         let launched = std::env::var(name).ok().and_then(|n| n.parse::<i32>().ok());
         if let Some(launched) = launched
             && launched != size

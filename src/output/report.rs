@@ -1,13 +1,15 @@
 //! The report: what a run was, in JSON.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use contact_dd_partition::destination::{Destination, failure};
+use contact_dd_partition::destination::{Destination, failure, plain_words};
 use contact_dd_partition::error::OutputError;
 use serde::Serialize;
 
+use super::build::Build;
 use super::resultants::Resultants;
+use crate::settings::Settings;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -152,6 +154,8 @@ pub struct Report {
     pub contact_pairs: usize,
     /// Number of ranks.
     pub ranks: usize,
+    /// Number of hosts that they ran on.
+    pub hosts: usize,
     /// Number of threads of each rank.
     pub threads: usize,
     /// Checks of the solution.
@@ -174,8 +178,13 @@ pub struct Report {
     pub skipped: Vec<String>,
     /// What the user should know, in words.
     pub warnings: Vec<String>,
+    /// The settings, with the name of the result file where none was given; `null` is what the method
+    /// decides.
+    pub settings: Settings,
     /// Version of the program.
     pub version: String,
+    /// Its build.
+    pub build: Build,
 }
 
 impl Report {
@@ -186,25 +195,51 @@ impl Report {
     }
 }
 
-/// Writes `report` under a temporary name and renames it when it is whole. Into what isn't a file,
-/// a terminal or a pipe, it is written as it comes.
-///
-/// # Errors
-/// The file can't be written.
-pub fn write_report(path: &Path, report: &Report) -> Result<(), OutputError> {
-    let text = report.to_json() + "\n";
-    let stream = fs::metadata(path).is_ok_and(|at| !at.is_file() && !at.is_dir());
-    if stream {
-        return fs::write(path, text).map_err(|error| failure(path, error));
+/// Where a report goes.
+#[derive(Debug)]
+pub enum ReportFile {
+    /// A file, under a temporary name until it is whole.
+    File(Destination),
+    /// What isn't a file, a terminal or a pipe.
+    Stream(PathBuf),
+}
+
+impl ReportFile {
+    /// Makes the temporary file.
+    ///
+    /// # Errors
+    /// The file can't be made: no such folder, no permission, a name that a folder has.
+    pub fn create(path: &Path) -> Result<Self, OutputError> {
+        let stream = fs::metadata(path).is_ok_and(|at| !at.is_file() && !at.is_dir());
+        Ok(match stream {
+            true => Self::Stream(path.to_path_buf()),
+            false => Self::File(Destination::new(path)?),
+        })
     }
-    let destination = Destination::new(path)?;
-    fs::write(destination.temporary(), text).map_err(|error| destination.failure(error))?;
-    destination.commit()
+
+    /// Writes the report and gives the file its name.
+    ///
+    /// # Errors
+    /// The file can't be written.
+    pub fn write(self, report: &Report) -> Result<(), OutputError> {
+        let text = report.to_json() + "\n";
+        match self {
+            Self::File(destination) => {
+                fs::write(destination.temporary(), text)
+                    .map_err(|error| destination.failure(plain_words(&error)))?;
+                destination.commit()
+            }
+            Self::Stream(path) => {
+                fs::write(&path, text).map_err(|error| failure(&path, plain_words(&error)))
+            }
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::Parser;
     use serde_json::{Value, json};
 
     fn report() -> Report {
@@ -222,6 +257,7 @@ mod tests {
             subdomains: 2,
             contact_pairs: 1,
             ranks: 1,
+            hosts: 1,
             threads: 1,
             certificate: Certificate {
                 equilibrium: f64::NAN,
@@ -235,7 +271,9 @@ mod tests {
             resultants: Resultants::default(),
             skipped: Vec::new(),
             warnings: vec!["a \"quoted\"\nwarning".into()],
+            settings: Settings::parse_from(["contact-dd-mpi", "problem.h5"]).resolved(),
             version: "0.1.0".into(),
+            build: Build::of_this_program("MPI".into()),
         }
     }
 
@@ -283,6 +321,7 @@ mod tests {
             keys(&value),
             [
                 "active_contacts",
+                "build",
                 "certificate",
                 "condition",
                 "contact_conditions",
@@ -291,6 +330,7 @@ mod tests {
                 "dofs",
                 "error_estimate",
                 "fallbacks",
+                "hosts",
                 "inner_steps",
                 "interface_dofs",
                 "interface_residual",
@@ -300,6 +340,7 @@ mod tests {
                 "ranks",
                 "reactions",
                 "seconds",
+                "settings",
                 "skipped",
                 "status",
                 "subdomains",
@@ -309,6 +350,14 @@ mod tests {
                 "warnings",
             ]
         );
+        assert_eq!(
+            keys(&value["build"]),
+            ["commit", "compiler", "hdf5", "mpi", "profile", "target"]
+        );
+        let settings = &value["settings"];
+        assert_eq!(settings["output"], "problem.vtkhdf");
+        assert_eq!(settings["method"], "newton");
+        assert_eq!(settings["relaxation"], Value::Null);
         assert_eq!(value["status"], "not_converged");
         assert_eq!(value["warnings"], json!(["a \"quoted\"\nwarning"]));
     }
@@ -335,13 +384,12 @@ mod tests {
     fn a_written_report_is_the_report() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("report.json");
-        write_report(&path, &report()).unwrap();
+        let write = |path: &Path| ReportFile::create(path)?.write(&report());
+        write(&path).unwrap();
         let text = fs::read_to_string(&path).unwrap();
         assert_eq!(text, report().to_json() + "\n");
-        write_report(Path::new("/dev/null"), &report()).unwrap();
-        let error = write_report(folder.path(), &report())
-            .unwrap_err()
-            .to_string();
+        write(Path::new("/dev/null")).unwrap();
+        let error = write(folder.path()).unwrap_err().to_string();
         assert!(error.contains("isn't a file"), "{error}");
     }
 }

@@ -10,7 +10,7 @@ mod grid;
 use std::ops::Range;
 use std::path::Path;
 
-use contact_dd_partition::destination::Destination;
+use contact_dd_partition::destination::{Destination, quoted_words};
 use contact_dd_partition::error::OutputError;
 use contact_dd_partition::problem::{Catalog, ContactSummary, SubdomainSummary};
 use hdf5::File;
@@ -162,25 +162,5 @@ impl ResultFile {
 }
 
 fn failure(destination: &Destination, error: &hdf5::Error) -> OutputError {
-    let words = error.to_string();
-    destination.failure(system_words(&words).unwrap_or(&words))
-}
-
-/// What the system said, where HDF5 quotes it among file descriptors and buffer addresses.
-fn system_words(words: &str) -> Option<&str> {
-    let (_, rest) = words.split_once("error message = '")?;
-    rest.split_once('\'').map(|(message, _)| message)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_system_is_quoted_alone() {
-        let words = "H5Fflush(): file write failed: errno = 28, \
-                     error message = 'No space left on device', buf = 0x55ed55b88fd8";
-        assert_eq!(system_words(words), Some("No space left on device"));
-        assert_eq!(system_words("unable to create dataset"), None);
-    }
+    destination.failure(quoted_words(&error.to_string()))
 }

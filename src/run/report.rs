@@ -6,13 +6,14 @@ use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
 
 use crate::checkpoint::Checkpoint;
-use crate::comm::{Comm, Message};
+use crate::comm::{self, Comm, Message};
 use crate::error::Failure;
 use crate::fem::estimate::CellError;
 use crate::interface::operator::Interface;
+use crate::output::build::Build;
 use crate::output::memory::peak_memory_bytes;
 use crate::output::report::{
-    Certificate, ErrorEstimate, PhaseSeconds, RankReport, Report, Status, write_report,
+    Certificate, ErrorEstimate, PhaseSeconds, RankReport, Report, ReportFile, Status,
 };
 use crate::output::result::ConvergenceRow;
 use crate::output::resultants::Resultants;
@@ -34,6 +35,15 @@ const BAD_CONDITION: f64 = 1e10;
 pub struct Narrator<'a> {
     comm: &'a Comm,
     settings: &'a Settings,
+}
+
+/// The files of a run, still under temporary names. On the root.
+#[derive(Debug)]
+pub struct Outputs {
+    /// The results.
+    pub result: ResultFile,
+    /// The report, where one is asked for.
+    pub report: Option<ReportFile>,
 }
 
 /// Everything the report is made of. On the root.
@@ -93,7 +103,7 @@ impl<'a> Narrator<'a> {
         // A closed pipe is no reason to stop a run that writes its results to a file.
         let _ = terminal::summary(&mut stdout(), &summary);
         if !self.settings.check {
-            let _ = terminal::settings(&mut stdout(), &self.settings.resolved());
+            let _ = terminal::settings(&mut stdout(), &self.settings.in_words());
         }
     }
 
@@ -135,12 +145,16 @@ impl<'a> Narrator<'a> {
         }
     }
 
-    /// Writes the report and finishes the result file. On the root.
+    /// Finishes the result file and writes the report. On the root.
     ///
     /// # Errors
     /// One of them can't be written.
-    pub fn finish(&self, totals: &Totals<'_>, mut file: ResultFile) -> Result<(), Failure> {
-        let report = report(totals, self.settings, self.comm.size());
+    pub fn finish(&self, totals: &Totals<'_>, outputs: Outputs) -> Result<(), Failure> {
+        let Outputs {
+            result: mut file,
+            report: report_file,
+        } = outputs;
+        let report = report(totals, self.settings, self.comm);
         let rows: Vec<ConvergenceRow> = totals
             .outcome
             .records
@@ -153,8 +167,8 @@ impl<'a> Narrator<'a> {
             .collect();
         file.write_convergence(&rows)?;
         file.finish(&report.to_json())?;
-        if let Some(path) = &self.settings.report {
-            write_report(path, &report)?;
+        if let Some(file) = report_file {
+            file.write(&report)?;
         }
         if self.speaks() {
             let reason = reason(totals);
@@ -221,7 +235,7 @@ pub fn collect(
         .collect()
 }
 
-fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
+fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
     let Totals {
         catalog,
         plan,
@@ -277,7 +291,8 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
         active_contacts: totals.active,
         subdomains: catalog.subdomains.len(),
         contact_pairs: plan.pairs.len(),
-        ranks,
+        ranks: comm.size(),
+        hosts: comm.hosts(),
         threads: usize::from(settings.threads),
         certificate: totals.certificate,
         condition: totals.condition,
@@ -292,7 +307,9 @@ fn report(totals: &Totals<'_>, settings: &Settings, ranks: usize) -> Report {
         resultants: totals.resultants.clone(),
         skipped: skipped(totals),
         warnings,
+        settings: settings.resolved(),
         version: env!("CARGO_PKG_VERSION").into(),
+        build: Build::of_this_program(comm::library()),
     }
 }
 

@@ -11,8 +11,11 @@
 
 mod bad_input;
 mod endings;
+mod outputs;
+mod random_kills;
 mod restarting;
 mod resting;
+mod sudden_ends;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -28,7 +31,7 @@ use libtest_mimic::{Arguments, Trial};
 
 use contact_dd_partition::model::Model;
 use support::blocks::{Blocks, jittered};
-use support::process::{Ended, Running, is_alive, kill, send};
+use support::process::{Ended, Running, kill, send};
 use support::scenes::{
     BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks,
 };
@@ -57,8 +60,11 @@ fn main() -> ExitCode {
     resting::no_rest(&mut trials);
     resting::just_rest(&mut trials);
     endings::not_converged(&mut trials);
-    endings::unwritable_output(&mut trials);
-    endings::killed_rank(&mut trials);
+    outputs::unwritable_output(&mut trials);
+    outputs::full_disk(&mut trials);
+    outputs::vanished_folder(&mut trials);
+    random_kills::random_kills(&mut trials);
+    sudden_ends::sudden_ends(&mut trials);
     restarting::stopped_and_restarted(&mut trials);
     restarting::stopped_while_factorizing(&mut trials);
     restarting::every_sweep(&mut trials);
@@ -168,6 +174,7 @@ fn same_results(trials: &mut Trials) {
             }
             let report = Solution::read(&case.result()).report;
             assert_eq!(report["ranks"], ranks);
+            assert_eq!(report["hosts"], 1);
             assert_eq!(report["per_rank"].as_array().unwrap().len(), ranks);
             // The title of the run stands once, whoever printed it.
             assert_eq!(ended.stdout.matches("certificate").count(), 1);

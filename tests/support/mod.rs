@@ -10,6 +10,7 @@ pub mod blocks;
 pub mod comparison;
 pub mod isoparametric;
 pub mod monolithic;
+pub mod mounted;
 pub mod process;
 pub mod random;
 pub mod round;

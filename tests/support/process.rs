@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io::Read;
+use std::path::PathBuf;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -17,6 +18,7 @@ pub struct Ended {
     pub stdout: String,
     pub stderr: String,
     pub took: Duration,
+    temporary: PathBuf,
 }
 
 impl Ended {
@@ -42,12 +44,35 @@ impl Ended {
         let lines = self.stderr.lines().chain(self.stdout.lines());
         lines.filter(|line| line.starts_with("error:")).collect()
     }
+
+    /// Fails unless all that it started ends within `limit`: a launcher doesn't wait until the system
+    /// has buried its ranks.
+    #[track_caller]
+    pub fn leaves_no_process(&self, limit: Duration) {
+        let deadline = Instant::now() + limit;
+        let mark = format!("TMPDIR={}", self.temporary.display()).into_bytes();
+        loop {
+            let is_left = |id: &u32| {
+                let environment = fs::read(format!("/proc/{id}/environ")).unwrap_or_default();
+                environment
+                    .split(|&byte| byte == 0)
+                    .any(|entry| entry == mark)
+            };
+            let all = processes().into_iter().map(|process| process.id);
+            let left: Vec<u32> = all.filter(is_left).collect();
+            if left.is_empty() {
+                return;
+            }
+            assert!(Instant::now() < deadline, "processes {left:?} live on");
+            thread::sleep(Duration::from_millis(20));
+        }
+    }
 }
 
 /// A program on its way.
 pub struct Running {
     child: Child,
-    _temporary: TempDir,
+    temporary: TempDir,
     began: Instant,
     stdout: thread::JoinHandle<String>,
     stderr: thread::JoinHandle<String>,
@@ -69,7 +94,7 @@ impl Running {
         let stderr = collect(child.stderr.take());
         Self {
             child,
-            _temporary: temporary,
+            temporary,
             began: Instant::now(),
             stdout,
             stderr,
@@ -98,6 +123,21 @@ impl Running {
             .collect()
     }
 
+    /// Waits until one of its processes, or itself, is stopped, and returns which.
+    #[track_caller]
+    pub fn stopped(&self, limit: Duration) -> u32 {
+        let deadline = Instant::now() + limit;
+        loop {
+            let all = processes();
+            let own = |p: &&Process| p.id == self.child.id() || p.parent == self.child.id();
+            if let Some(process) = all.iter().filter(own).find(|p| p.state == "T") {
+                return process.id;
+            }
+            assert!(Instant::now() < deadline, "nothing was stopped");
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+
     pub fn is_running(&mut self) -> bool {
         self.child.try_wait().unwrap().is_none()
     }
@@ -120,6 +160,7 @@ impl Running {
             took: self.began.elapsed(),
             stdout: self.stdout.join().unwrap(),
             stderr: self.stderr.join().unwrap(),
+            temporary: self.temporary.path().to_path_buf(),
         }
     }
 
@@ -151,15 +192,11 @@ pub fn send(id: u32, signal: Signal) {
     }
 }
 
-/// Whether the process is there and hasn't ended.
-pub fn is_alive(id: u32) -> bool {
-    processes().iter().any(|process| process.id == id)
-}
-
 struct Process {
     id: u32,
     parent: u32,
     name: String,
+    state: String,
 }
 
 /// All processes but zombies, by ascending id, from /proc.
@@ -175,8 +212,12 @@ fn processes() -> Vec<Process> {
             let mut fields = tail.split(' ');
             let state = fields.next()?;
             let parent = fields.next()?.parse().ok()?;
-            let name = name.to_owned();
-            (state != "Z").then_some(Process { id, parent, name })
+            (state != "Z").then(|| Process {
+                id,
+                parent,
+                name: name.to_owned(),
+                state: state.to_owned(),
+            })
         })
         .collect();
     all.sort_by_key(|process| process.id);

@@ -6,7 +6,7 @@ use hdf5::H5Type;
 use hdf5::types::{FixedAscii, VarLenUnicode};
 
 use super::{ContactRow, FORMAT, Problem, Subdomain, VERSION};
-use crate::destination::Destination;
+use crate::destination::{Destination, quoted_words};
 use crate::error::OutputError;
 use crate::model::PlaneState;
 
@@ -26,7 +26,7 @@ impl Problem {
         hdf5::silence_errors(true);
         let destination = Destination::new(path)?;
         self.write_all(destination.temporary())
-            .map_err(|error| destination.failure(error))?;
+            .map_err(|error| destination.failure(quoted_words(&error.to_string())))?;
         destination.commit()
     }
 

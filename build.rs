@@ -1,0 +1,48 @@
+//! What the program's report says of its build.
+
+use std::path::Path;
+use std::process::Command;
+use std::{env, fs};
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    let set = |name: &str, value: &str| println!("cargo::rustc-env={name}={value}");
+    let given = |name: &str| env::var(name).unwrap_or_default();
+    let profile = given("PROFILE");
+    set("BUILD_PROFILE", &profile);
+    set("BUILD_TARGET", &given("TARGET"));
+    let compiler = said_by(&given("RUSTC"), &["--version"]);
+    set("BUILD_COMPILER", &compiler.unwrap_or_default());
+    // A debug build is made of what is being written, which is no commit; it would only be made again
+    // after each.
+    if profile != "release" {
+        return;
+    }
+    for source in ["src", "partition/src", "Cargo.toml", "Cargo.lock"] {
+        println!("cargo::rerun-if-changed={source}");
+    }
+    // Every commit and every checkout adds a line to it.
+    if let Some(log) = said_by("git", &["rev-parse", "--git-path", "logs/HEAD"])
+        && fs::exists(Path::new(&log)).is_ok_and(|exists| exists)
+    {
+        println!("cargo::rerun-if-changed={log}");
+    }
+    let describe = [
+        "describe",
+        "--always",
+        "--dirty",
+        "--abbrev=40",
+        "--exclude=*",
+    ];
+    if let Some(commit) = said_by("git", &describe) {
+        set("BUILD_COMMIT", &commit);
+    }
+}
+
+/// What a program prints, in one line; `None` where it can't be run or fails.
+fn said_by(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok()?;
+    let said = String::from_utf8(output.stdout).ok()?;
+    let line = said.trim();
+    (output.status.success() && !line.is_empty()).then(|| line.replace('\n', " "))
+}

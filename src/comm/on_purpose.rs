@@ -1,0 +1,56 @@
+//! Ranks that end or stop on purpose, in a phase of the tests' choice.
+//!
+//! `CONTACT_DD_END="RANK KIND PHASE"` makes a rank end when it comes to a phase, or stop until it is
+//! continued. Only a build with debug assertions, which is what tests run, looks at it: there is no way
+//! to come across it in the program that users run, and no feature that one could forget to switch
+//! off.
+
+use std::sync::OnceLock;
+use std::{env, hint, process, thread};
+
+use rustix::process::{Signal, getpid, kill_process};
+
+use super::environment::current_phase;
+use crate::error::Failure;
+
+static RANK: OnceLock<i32> = OnceLock::new();
+
+/// Makes known which rank this is.
+pub fn set_rank(rank: i32) {
+    RANK.get_or_init(|| rank);
+}
+
+/// Ends or stops this rank if that is to happen suddenly in `phase`.
+#[expect(clippy::panic, reason = "that's the purpose")]
+pub fn end(phase: &str) {
+    match wish(phase).as_deref() {
+        Some("panic") => panic!("on purpose"),
+        Some("abort") => process::abort(),
+        Some("memory") => {
+            hint::black_box(Vec::<u8>::with_capacity(isize::MAX as usize));
+        }
+        Some("kill") => {
+            let _ = kill_process(getpid(), Signal::KILL);
+            thread::park();
+        }
+        Some("stop") => {
+            let _ = kill_process(getpid(), Signal::STOP);
+        }
+        _ => {}
+    }
+}
+
+/// The failure that this rank is to have in the phase it is in.
+pub fn failure() -> Option<Failure> {
+    let wish = wish(current_phase())?;
+    (wish == "failure").then(|| Failure::ill_posed("on purpose"))
+}
+
+/// What is to become of this rank in `phase`.
+fn wish(phase: &str) -> Option<String> {
+    let wish = env::var("CONTACT_DD_END").ok()?;
+    let mut words = wish.splitn(3, ' ');
+    let rank: i32 = words.next()?.parse().ok()?;
+    let kind = words.next()?;
+    (RANK.get() == Some(&rank) && words.next() == Some(phase)).then(|| kind.to_owned())
+}

@@ -1,0 +1,83 @@
+//! Outputs that can't be written: exit code 5, one message, the older file as it was.
+
+use rustix::process::{Pid, Signal, kill_process};
+
+use super::*;
+use support::mounted::Mounted;
+
+pub fn unwritable_output(trials: &mut Trials) {
+    let outputs: [(&str, &[&str]); 4] = [
+        ("no_folder", &["-o", "/nowhere/at/all/result.vtkhdf"]),
+        ("a_folder", &["-o", "/tmp"]),
+        ("a_device", &["-o", "/dev/full"]),
+        ("report", &["--report", "/nowhere/at/all/report.json"]),
+    ];
+    for (name, args) in outputs {
+        trials.on_all_ranks(&format!("unwritable_output::{name}"), move |ranks| {
+            let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 3);
+            failed_once(&run(&case, ranks, args), 5, &[args[1]]);
+            assert_eq!(case.files(), ["problem.h5"]);
+        });
+    }
+}
+
+/// A file system without space, whenever that comes out, and one that is read-only.
+pub fn full_disk(trials: &mut Trials) {
+    let full = "no space is left";
+    // The result has some 150 kB, the report some 4 kB, and yesterday's file has a page of 4.
+    let places: [(&str, Mounted, &str, &str); 6] = [
+        ("from_the_start", Mounted::OfSize(4 << 10), "-o", full),
+        ("soon", Mounted::OfSize(20 << 10), "-o", full),
+        ("half_way", Mounted::OfSize(70 << 10), "-o", full),
+        ("for_the_report", Mounted::OfSize(4 << 10), "--report", full),
+        ("read_only", Mounted::ReadOnly, "-o", "read-only"),
+        (
+            "read_only_for_the_report",
+            Mounted::ReadOnly,
+            "--report",
+            "read-only",
+        ),
+    ];
+    for (name, place, option, words) in places {
+        trials.on_all_ranks(&format!("full_disk::{name}"), move |ranks| {
+            let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 9);
+            let folder = case.folder().join("mounted");
+            fs::create_dir(&folder).unwrap();
+            let output = folder.join("output");
+            let mut command = program(ranks);
+            command.arg(case.problem()).arg(option).arg(&output);
+            let Some(mut command) = place.around(&folder, &command) else {
+                eprintln!("skipped: nothing may be mounted here");
+                return;
+            };
+            let ended = Running::start(&mut command).wait(LIMIT);
+            failed_once(&ended, 5, &[&output.display().to_string(), words]);
+        });
+    }
+}
+
+/// A folder that is gone by the time its result is whole.
+pub fn vanished_folder(trials: &mut Trials) {
+    // A program that is optimized doesn't wait on purpose.
+    if cfg!(not(debug_assertions)) {
+        return;
+    }
+    for option in ["-o", "--report"] {
+        trials.once(&format!("vanished_folder::{option}"), move || {
+            let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 9);
+            let folder = case.folder().join("vanishes");
+            fs::create_dir(&folder).unwrap();
+            let output = folder.join("output");
+            let mut command = program(0);
+            command.arg(case.problem()).arg(option).arg(&output);
+            command.env("CONTACT_DD_END", "0 stop writing");
+            let running = Running::start(&mut command);
+            let id = running.stopped(LIMIT);
+            assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+            fs::remove_dir_all(&folder).unwrap();
+            kill_process(Pid::from_raw(id as i32).unwrap(), Signal::CONT).unwrap();
+            let words = [&*output.display().to_string(), "its folder is gone"];
+            failed_once(&running.wait(LIMIT), 5, &words);
+        });
+    }
+}

@@ -1,0 +1,84 @@
+//! Ranks that fail, panic, run out of memory or are killed, on purpose, in every phase of a run.
+
+use super::*;
+
+/// What can become of a rank, as the program reads it from `CONTACT_DD_END`.
+const KINDS: [&str; 5] = ["failure", "panic", "abort", "memory", "kill"];
+
+/// Phases in which nothing returns an error, so that a rank can only end suddenly.
+const WITHOUT_FAILURES: [&str; 3] = ["starting", "sweeping", "recovering"];
+
+/// Within this time a rank's end has to be that of all.
+const SOON: Duration = Duration::from_secs(10);
+
+/// The end of one rank is the end of all, whichever it is and whatever it was doing: with a message
+/// that names both, no process left and the older result untouched.
+pub fn sudden_ends(trials: &mut Trials) {
+    // A program that is optimized ends no rank on purpose.
+    if cfg!(not(debug_assertions)) {
+        return;
+    }
+    for phase in phases() {
+        for kind in KINDS {
+            if kind == "failure" && WITHOUT_FAILURES.contains(&phase) {
+                continue;
+            }
+            for ranks in RANKS.into_iter().filter(|&ranks| ranks > 1) {
+                let name = format!("sudden_end::{kind}_while_{phase}::on_{ranks}_ranks");
+                trials.once(&name.replace(' ', "_"), move || {
+                    let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 9);
+                    fs::write(case.result(), "the result of yesterday").unwrap();
+                    for rank in [0, ranks - 1] {
+                        sudden_end(&case, [rank, ranks], kind, phase);
+                    }
+                    // What ranks left that couldn't clear up goes with the next run.
+                    if kind == "kill" {
+                        assert_eq!(case.run(&[]).code(), 0);
+                    }
+                    if kind == "kill" || kind == "failure" {
+                        assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
+                    }
+                });
+            }
+        }
+    }
+}
+
+/// All phases of a run by the names that it gives them.
+fn phases() -> impl Iterator<Item = &'static str> {
+    let run = include_str!("../../src/run.rs").split("phase(\"").skip(1);
+    let named = run.filter_map(|call| call.split('"').next());
+    ["starting"].into_iter().chain(named)
+}
+
+#[track_caller]
+fn sudden_end(case: &Case, [rank, ranks]: [usize; 2], kind: &str, phase: &str) {
+    let mut command = program(ranks);
+    command
+        .arg(case.problem())
+        .env("CONTACT_DD_END", format!("{rank} {kind} {phase}"));
+    let ended = Running::start(&mut command).wait(LIMIT);
+    let said = format!("rank {rank}\n{}{}", ended.stdout, ended.stderr);
+    match kind {
+        "failure" => assert_eq!(ended.code(), 4, "{said}"),
+        "panic" => assert_eq!(ended.code(), 1, "{said}"),
+        _ => assert_ne!(ended.code(), 0, "{said}"),
+    }
+    assert!(ended.took < SOON, "{:?} for {said}", ended.took);
+    ended.leaves_no_process(SOON);
+    let [error] = ended.errors()[..] else {
+        panic!("expected one message\n{said}");
+    };
+    assert!(
+        error.contains(&format!("rank {rank} of {ranks}")),
+        "{error}"
+    );
+    assert!(error.contains(phase), "{error}\nlacks '{phase}'");
+    let result = fs::read_to_string(case.result()).unwrap();
+    assert_eq!(result, "the result of yesterday");
+    let visible = case
+        .files()
+        .into_iter()
+        .filter(|name| !name.starts_with('.'));
+    assert_eq!(visible.count(), 2);
+}

@@ -1,0 +1,53 @@
+//! File systems that are full or read-only, mounted where only the program under test sees them.
+
+use std::path::Path;
+use std::process::Command;
+
+/// A file system of its own in a folder, with the file `output` of yesterday in it.
+#[derive(Clone, Copy, Debug)]
+pub enum Mounted {
+    /// With so many bytes, rounded up to pages.
+    OfSize(u64),
+    /// Which can't be written any more.
+    ReadOnly,
+}
+
+impl Mounted {
+    /// The command that runs `command` with the file system in `folder`, and then fails unless
+    /// `output` is that of yesterday and nothing else is there; otherwise it ends with the exit code of
+    /// `command`. `None` where nothing may be mounted.
+    pub fn around(self, folder: &Path, command: &Command) -> Option<Command> {
+        let privilege = privilege()?;
+        let (size, then) = match self {
+            Self::OfSize(bytes) => (bytes, "true"),
+            Self::ReadOnly => (1 << 20, "mount -o remount,ro \"$0\""),
+        };
+        let script = format!(
+            "mount -t tmpfs -o size={size} none \"$0\" && echo yesterday >\"$0/output\" && {then} || \
+             exit 77\n\
+             \"$@\"\n\
+             code=$?\n\
+             [ \"$(ls -A \"$0\")\" = output ] || {{ ls -lA \"$0\"; exit 78; }}\n\
+             [ \"$(cat \"$0/output\")\" = yesterday ] || exit 79\n\
+             exit $code"
+        );
+        let mut whole = Command::new("unshare");
+        whole.args([privilege, "sh", "-c", &script]).arg(folder);
+        whole.arg(command.get_program()).args(command.get_args());
+        for (name, value) in command.get_envs() {
+            if let Some(value) = value {
+                whole.env(name, value);
+            }
+        }
+        Some(whole)
+    }
+}
+
+/// How one gets a view of file systems in which one may mount: as root, or as one's own root.
+fn privilege() -> Option<&'static str> {
+    ["-m", "-rm"].into_iter().find(|&option| {
+        let mut mount = Command::new("unshare");
+        mount.args([option, "mount", "-t", "tmpfs", "none", "/mnt"]);
+        mount.output().is_ok_and(|output| output.status.success())
+    })
+}
