@@ -9,10 +9,6 @@ pub const SMALLEST_STIFFNESS: f64 = 1e-120;
 /// The smallest area of a cell (m²), below which its edges' squares lose digits.
 pub const SMALLEST_AREA: f64 = 1e-250;
 
-/// Widest gap relative to the extent of the bodies around it. In the bilateral start every gap is
-/// closed: beyond, the round-off of displacements as large as the gap would be all that is left.
-pub const WIDEST_GAP: f64 = 1e10;
-
 /// Checks that a number is finite and not beyond all measure.
 ///
 /// # Errors

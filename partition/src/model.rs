@@ -5,7 +5,6 @@
 
 mod bodies;
 mod contact;
-mod facing;
 mod groups;
 mod loads;
 mod mortar;
@@ -135,7 +134,6 @@ impl Model {
         let support_names = supports::names(scene);
         let supports = supports::supports(scene, &support_names, &bodies.mesh, &topology)?;
         let forces = loads::forces(scene, &bodies, &topology)?;
-        facing::check(scene, &bodies.mesh)?;
         let sides = contact::Contacts::new(&bodies.mesh, &topology, &supports);
         let contacts = (scene.contact.iter())
             .map(|keys| sides.contact(keys, &mut warnings))

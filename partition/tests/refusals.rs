@@ -57,11 +57,6 @@ fn what_is_wrong_between_scene_and_mesh_is_said_with_the_scene() {
             ["scene.toml: contact 'interface'", "face"],
         ),
         (
-            "gap = 0.0",
-            "gap = 1e90",
-            ["scene.toml: contact 'interface'", "at most 1e10 times"],
-        ),
-        (
             "value = 1e6",
             "value = \"1e119*1e3\"",
             ["scene.toml: line", "at most 1e120"],

@@ -9,7 +9,6 @@ use super::surface::Surface;
 use super::{Contact, ContactCondition, Support, groups, mortar, node_pairs, obstacle};
 use crate::element::geometry::{advance, dot, length};
 use crate::error::InputError;
-use crate::magnitude::WIDEST_GAP;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::condition::{self, Names, Pairing, Partner};
@@ -72,14 +71,6 @@ impl<'a> Contacts<'a> {
                 condition.gap = (gap.at(condition.position))
                     .map_err(|reason| InputError::new(format!("{what}.gap: {reason}")))?;
             }
-        }
-        let too_wide = |c: &&ContactCondition| c.gap.abs() > WIDEST_GAP * self.size;
-        if let Some(wide) = conditions.iter().find(too_wide) {
-            return Err(InputError::new(format!(
-                "{what}: the gap at node {} is {:e} m; expected at most {WIDEST_GAP:e} times the \
-                 size of the scene, {:e} m",
-                wide.tag_a, wide.gap, self.size
-            )));
         }
         let slack = ROUNDING * self.size;
         let deepest = conditions.iter().map(|c| c.gap).fold(0.0, f64::min);

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use crate::element::geometry::{advance, difference, dot, length};
 use crate::error::InputError;
-use crate::magnitude::WIDEST_GAP;
 use crate::problem::{ContactRow, RowEntry, Subdomain};
 
 /// How far coefficients may be from what the normal says, relative to the largest of them.
@@ -51,13 +50,6 @@ impl<'a> Members<'a> {
     /// What is wrong with a row, and in which dataset.
     fn fault(&self, row: &ContactRow) -> Option<(&'static str, String)> {
         let extent = self.extent;
-        if row.gap.abs() > WIDEST_GAP * extent {
-            let what = format!(
-                "{:e}; expected at most {WIDEST_GAP:e} times the extent of the group, {extent:e}",
-                row.gap
-            );
-            return Some(("gap", what));
-        }
         if row.share > LARGEST_SHARE * extent {
             let what = format!(
                 "{:e}; expected a share of a side of the group, whose extent is {extent:e}",
