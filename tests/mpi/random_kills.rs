@@ -28,7 +28,7 @@ pub fn random_kills(trials: &mut Trials) {
         let kills = env::var("KILLS").map_or(6, |kills| kills.parse().unwrap());
         let seed = env::var("SEED").map_or(1, |seed| seed.parse().unwrap());
         let mut random = Random::new(seed);
-        let case = Case::of(&built_in_model("granite", 1), 8);
+        let case = Case::of(&built_in_model("granite", 0), 8);
         let began = Instant::now();
         assert_eq!(run(&case, 2, &[]).code(), 0);
         let whole_run = began.elapsed();
@@ -64,7 +64,10 @@ pub fn random_kills(trials: &mut Trials) {
     });
 }
 
-/// A run of which a rank is killed some time after its start, and which rank it was.
+/// A run of which a rank is killed some time after all are there, and which rank it was.
+///
+/// Before that it is the launcher's affair: mpirun of Open MPI 4.1.4 has been seen to wait for ever, with
+/// no rank left, when one died while MPI was connecting it.
 fn killed_run(
     case: &Case,
     ranks: usize,
@@ -73,12 +76,11 @@ fn killed_run(
     tally: &mut Tally,
 ) -> (Ended, Option<usize>) {
     let mut running = Running::start(program(ranks).arg(case.problem()));
-    thread::sleep(after);
-    let mut victims = running.descendants("contact-dd-mpi");
-    while victims.is_empty() && running.is_running() {
-        thread::sleep(Duration::from_millis(5));
-        victims = running.descendants("contact-dd-mpi");
+    while running.descendants("rank-watcher").is_empty() && running.is_running() {
+        thread::sleep(Duration::from_millis(1));
     }
+    thread::sleep(after);
+    let victims = running.descendants("contact-dd-mpi");
     let victim = (!victims.is_empty()).then(|| random.pick(&victims));
     let rank = victim.and_then(rank_of);
     let killed = Instant::now();
