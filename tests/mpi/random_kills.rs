@@ -17,6 +17,9 @@ struct Tally {
     whole: usize,
     /// The program's own message named the rank and what it was doing.
     named: usize,
+    /// It named another one, which fell over the memory of the killed one before the system had closed
+    /// the latter's files.
+    of_another: usize,
     /// Longest time from a kill to the launcher's end.
     slowest: Duration,
 }
@@ -44,11 +47,10 @@ pub fn random_kills(trials: &mut Trials) {
             let named: Vec<&str> = ended.errors();
             assert!(named.len() <= 1, "{said}");
             if let Some((message, rank)) = named.first().zip(victim) {
-                assert!(
-                    message.contains(&format!("rank {rank} of {ranks}")),
-                    "{said}"
-                );
-                tally.named += 1;
+                match message.contains(&format!("rank {rank} of {ranks}")) {
+                    true => tally.named += 1,
+                    false => tally.of_another += 1,
+                }
             }
             match ended.code() {
                 0 => tally.whole += 1,
