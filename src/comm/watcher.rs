@@ -5,8 +5,9 @@
 //! it. It ends with the last rank.
 //!
 //! A pipe leads from each rank to the watcher. The system closes it with the rank's other files, the
-//! last one opened first, and so before the launcher's own connection: of the ranks that end, the watcher
-//! hears first of the one that didn't end because of another.
+//! last one opened first, and so before the launcher's own connection: the watcher hears of a rank that is
+//! killed before the launcher ends another. Only a rank that reads the memory of the dying one in between,
+//! and falls over that, can be before it.
 
 use std::env;
 use std::ffi::{CStr, OsStr};
@@ -64,10 +65,10 @@ pub fn start(board: &Board, ranks: &[Watched], size: usize) -> io::Result<()> {
 
 /// Watches if this process was started to do so, until no rank is left; `None` if it wasn't.
 pub fn watch_if_asked() -> Option<()> {
-    let mut arguments = env::args();
-    if arguments.next()?.as_bytes() != NAME.to_bytes() {
+    if env::args_os().next()?.as_bytes() != NAME.to_bytes() {
         return None;
     }
+    let mut arguments = env::args().skip(1);
     let (size, starter) = (arguments.next()?, arguments.next()?);
     let ranks: Option<Vec<Watched>> = arguments.map(|rank| parse(&rank)).collect();
     // A watcher that can't watch leaves a rank's end to the launcher to report.
