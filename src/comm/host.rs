@@ -1,7 +1,10 @@
 //! The ranks of one host.
 
+use std::fs::{self, File};
+use std::io::{self, PipeReader, PipeWriter};
+use std::os::fd::AsRawFd;
 use std::os::unix::fs::MetadataExt;
-use std::{fs, process};
+use std::process;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
@@ -14,6 +17,8 @@ use super::watcher::{self, Watched};
 pub struct Host {
     board: Board,
     place: usize,
+    /// The watcher has the other end: it hears when this one is closed, be it by the system.
+    _line: File,
 }
 
 impl Host {
@@ -21,37 +26,43 @@ impl Host {
     ///
     /// `None` on all of them where the system lacks what it takes.
     pub fn watched(ranks: &SimpleCommunicator, rank: i32, size: i32) -> Option<Self> {
-        let place = ranks.rank() as usize;
-        let own = (place == 0).then(Board::new).and_then(Result::ok);
+        let (place, count) = (ranks.rank() as usize, ranks.size() as usize);
+        let made = (place == 0).then(|| Made::new(count)).and_then(Result::ok);
         let mine = [
             process::id().into(),
             rank.into(),
             process_space().map_or(-1, |space| space as i64),
-            own.as_ref().map_or(-1, Board::descriptor),
+            made.as_ref().map_or(-1, |made| made.board.descriptor()),
         ];
-        let mut all = vec![0i64; mine.len() * ranks.size() as usize];
+        let mut all = vec![0i64; mine.len() * count];
         ranks.all_gather_into(&mine, &mut all);
         let all = all.as_chunks::<4>().0;
+        let mut lines = vec![-1i64; count];
+        if let Some(made) = &made {
+            let ends = made.lines.iter().map(|(_, end)| end.as_raw_fd().into());
+            lines = ends.collect();
+        }
+        ranks.process_at_rank(0).broadcast_into(&mut lines);
         let [maker, _, space, descriptor] = all[0];
         // The number of a process means the same to all only if they are in one name space.
         let comparable = space != -1 && descriptor != -1 && all.iter().all(|rank| rank[2] == space);
-        let board = match own {
-            _ if !comparable => None,
-            Some(board) => {
-                let list = all
-                    .iter()
-                    .map(|&[process, rank, ..]| Watched { process, rank });
-                let started = watcher::start(&board, &list.collect::<Vec<_>>(), size as usize);
-                started.ok().map(|()| board)
+        let host = || {
+            if let Some(made) = &made {
+                made.start_watcher(all, size as usize)?;
             }
-            None => Board::of(maker, descriptor).ok(),
+            let line = format!("/proc/{maker}/fd/{}", lines[place]);
+            io::Result::Ok(Self {
+                board: Board::of(maker, descriptor)?,
+                place,
+                _line: File::options().write(true).open(line)?,
+            })
         };
-        let mut everywhere = vec![false; all.len()];
-        ranks.all_gather_into(&board.is_some(), &mut everywhere);
-        let everywhere = everywhere.into_iter().all(|shared| shared);
-        board
-            .filter(|_| everywhere)
-            .map(|board| Self { board, place })
+        let host = comparable.then(host).and_then(Result::ok);
+        let mut everywhere = vec![false; count];
+        ranks.all_gather_into(&host.is_some(), &mut everywhere);
+        // By now all have opened what the first one made.
+        drop(made);
+        host.filter(|_| everywhere.into_iter().all(|watched| watched))
     }
 
     /// Notes what this rank is doing.
@@ -67,6 +78,31 @@ impl Host {
     /// Whether this rank is the one of its host that reports how the run ended.
     pub fn claim_message(&self) -> bool {
         self.board.claim_message()
+    }
+}
+
+/// What the first rank of a host makes for all of them.
+struct Made {
+    board: Board,
+    lines: Vec<(PipeReader, PipeWriter)>,
+}
+
+impl Made {
+    fn new(count: usize) -> io::Result<Self> {
+        Ok(Self {
+            board: Board::new()?,
+            lines: (0..count).map(|_| io::pipe()).collect::<io::Result<_>>()?,
+        })
+    }
+
+    fn start_watcher(&self, all: &[[i64; 4]], size: usize) -> io::Result<()> {
+        let watched = all.iter().zip(&self.lines);
+        let watched = watched.map(|(&[process, rank, ..], (end, _))| Watched {
+            process,
+            rank,
+            line: end.as_raw_fd(),
+        });
+        watcher::start(&self.board, &watched.collect::<Vec<_>>(), size)
     }
 }
 
