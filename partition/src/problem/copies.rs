@@ -56,8 +56,10 @@ impl Subdomain {
 pub struct NodeCopies {
     /// The first subdomain that has each node of Γ, and what it says of it.
     first: Vec<Option<(usize, SharedNode)>>,
-    /// Tag and subdomain of every node, those of Γ once.
-    tags: Vec<(i64, usize)>,
+    /// Tags of all nodes, those of Γ once, subdomain by subdomain.
+    tags: Vec<i64>,
+    /// Every subdomain and where its tags end.
+    ends: Vec<(usize, usize)>,
     /// The first disagreement.
     fault: Option<InputError>,
 }
@@ -68,18 +70,18 @@ impl NodeCopies {
         Self {
             first: vec![None; catalog.interface_nodes],
             tags: Vec::new(),
+            ends: Vec::new(),
             fault: None,
         }
     }
 
     /// Takes in the nodes of subdomain `index`.
     pub fn add(&mut self, index: usize, nodes: OwnNodes) {
-        self.tags
-            .extend(nodes.inner.iter().map(|&tag| (tag, index)));
+        self.tags.extend(nodes.inner);
         for node in nodes.shared {
             match &self.first[node.interface as usize] {
                 None => {
-                    self.tags.push((node.tag, index));
+                    self.tags.push(node.tag);
                     let place = node.interface as usize;
                     self.first[place] = Some((index, node));
                 }
@@ -93,6 +95,7 @@ impl NodeCopies {
                 }
             }
         }
+        self.ends.push((index, self.tags.len()));
     }
 
     /// Checks that all copies of a node on Γ have the same place, tag and supports, and that no
@@ -100,21 +103,47 @@ impl NodeCopies {
     ///
     /// # Errors
     /// The first node for which that isn't so.
-    pub fn check(mut self) -> Result<(), InputError> {
+    pub fn check(self) -> Result<(), InputError> {
         if let Some(fault) = self.fault {
             return Err(fault);
         }
-        self.tags.sort_unstable();
-        match self.tags.windows(2).find(|w| w[0].0 == w[1].0) {
-            Some(same) => Err(InputError::new(format!(
-                "dataset /VTKHDF/PointData/GlobalNodeId: the subdomains {} and {} have a node of \
-                 tag {} each that isn't one node on Γ; expected copies of a node under one number \
-                 in /interface/interface, and other tags for other nodes",
-                same[0].1, same[1].1, same[0].0
-            ))),
-            None => Ok(()),
-        }
+        let Some(repeated) = repeated(&self.tags) else {
+            return Ok(());
+        };
+        let places = (0..self.tags.len()).filter(|&place| self.tags[place] == repeated);
+        let of: Vec<String> = places
+            .take(2)
+            .map(|place| self.ends.partition_point(|&(_, end)| end <= place))
+            .map(|subdomain| self.ends[subdomain].0.to_string())
+            .collect();
+        Err(InputError::new(format!(
+            "dataset /VTKHDF/PointData/GlobalNodeId: the subdomains {} have a node of tag {repeated} \
+             each that isn't one node on Γ; expected copies of a node under one number in \
+             /interface/interface, and other tags for other nodes",
+            of.join(" and ")
+        )))
     }
+}
+
+/// A number that stands in a list twice.
+fn repeated(list: &[i64]) -> Option<i64> {
+    let (&least, &most) = (list.iter().min()?, list.iter().max()?);
+    let range = most.abs_diff(least);
+    // Meshers number nodes nearly without gaps: a bit each is several times faster than sorting.
+    if range < 64 * list.len() as u64 {
+        let mut seen = vec![0u64; range as usize / 64 + 1];
+        return list.iter().copied().find(|&number| {
+            let place = number.abs_diff(least) as usize;
+            let bit = 1 << (place % 64);
+            let was = seen[place / 64] & bit != 0;
+            seen[place / 64] |= bit;
+            was
+        });
+    }
+    let mut sorted = list.to_vec();
+    sorted.sort_unstable();
+    let twice = sorted.windows(2).find(|two| two[0] == two[1]);
+    twice.map(|two| two[0])
 }
 
 /// What two copies of a node differ in.
@@ -127,5 +156,22 @@ fn difference(a: &SharedNode, b: &SharedNode) -> Option<&'static str> {
         Some("supports (/support)")
     } else {
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_that_stands_there_twice_is_found_however_far_apart_numbers_are() {
+        for step in [1, 1 << 40] {
+            let mut list: Vec<i64> = (0..1000).map(|k| (k * 7 % 1000 - 300) * step).collect();
+            assert_eq!(repeated(&list), None);
+            list[900] = list[17];
+            assert_eq!(repeated(&list), Some(list[17]));
+        }
+        assert_eq!(repeated(&[]), None);
+        assert_eq!(repeated(&[i64::MIN, 0, i64::MAX]), None);
     }
 }
