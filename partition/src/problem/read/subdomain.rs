@@ -166,7 +166,9 @@ impl ProblemFile {
                 ),
             ))
         };
-        if let Some(cells) = Facets::new(&elements, points.len()).overlap(&elements) {
+        if Facets::repeat_themselves(&elements, points.len())
+            && let Some(cells) = Facets::new(&elements, points.len()).overlap(&elements)
+        {
             return refused(
                 cells,
                 "lie on the same side of an edge that they share; expected cells that don't overlap",
