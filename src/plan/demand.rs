@@ -1,7 +1,7 @@
 //! What a run will cost: memory and arithmetic of every rank, before either is spent.
 //!
 //! The constants are measured: on 45 peaks of 1 and 2 ranks, from 20 thousand to 2 million dofs, in 8
-//! to 1000 subdomains, with up to 5000 contact conditions, the estimate is within a fifth of each.
+//! to 1000 subdomains, with up to 5000 contact conditions, the estimate is within a quarter of each.
 
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::hierarchy::{Front, condensation};
@@ -12,8 +12,8 @@ use super::Plan;
 const AT_REST: f64 = 2.8e7;
 /// A block of n dofs, by nested dissection n log n, in bytes: its factor and its mesh.
 const PER_DOF: f64 = 50.0;
-/// How much more that is for each node that a cell has to itself, against triangles of three nodes.
-const PER_NODE_OF_CELL: [f64; 2] = [0.95, 0.18];
+/// That of other cells over that of triangles of three nodes: a constant, and for each node by cell.
+const PER_NODE_OF_CELL: [f64; 2] = [0.82, 0.4];
 /// The part of a block's factor that its boundary adds, by its size times √n (bytes).
 const PER_BOUNDARY: f64 = 165.0;
 /// An entry of the largest matrix that blocks are merged in (bytes): it and its children.
