@@ -54,6 +54,7 @@ fn main() -> ExitCode {
     same_results(&mut trials);
     without_stresses(&mut trials);
     trials.once("equal_subdomains_are_factorized_once", one_factorization);
+    trials.once("memory_is_about_what_was_estimated", memory);
     bad_input::bad_input(&mut trials);
     bad_input::bad_usage(&mut trials);
     endings::no_equilibrium(&mut trials);
@@ -234,4 +235,19 @@ fn one_factorization() {
             .iter()
             .any(|s| s.as_str().unwrap().starts_with("factorizations: 7 of 16"))
     );
+}
+
+/// What `--check` says of memory is what a run of the same problem needs, by a third.
+fn memory() {
+    let case = Case::of(&built_in_model("granite", 3), 30);
+    let checked = run(&case, 2, &["--check"]);
+    assert_eq!(checked.code(), 0, "{}", checked.stderr);
+    let mut lines = checked.stdout.lines().map(str::trim_start);
+    let line = lines.find(|line| line.starts_with("memory")).unwrap();
+    let estimated: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
+    assert_eq!(run(&case, 2, &[]).code(), 0);
+    let report = Solution::read(&case.result()).report;
+    let needed = report["peak_memory_bytes"].as_f64().unwrap() / 1e9;
+    let ratio = estimated / needed;
+    assert!((0.7..1.4).contains(&ratio), "{estimated} GB, {needed} GB");
 }
