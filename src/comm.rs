@@ -9,7 +9,6 @@ mod host;
 mod message;
 #[cfg(debug_assertions)]
 mod on_purpose;
-
 mod signal;
 mod watcher;
 
