@@ -10,4 +10,3 @@ pub mod limits;
 pub mod open_factor;
 pub mod pair;
 pub mod s_con;
-pub mod squeezed;

@@ -20,6 +20,7 @@ pub mod recover;
 pub mod refine;
 mod report;
 pub mod settle;
+mod squeezed;
 mod stresses;
 pub mod substitute;
 pub mod write;

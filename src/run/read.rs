@@ -7,8 +7,8 @@ use std::ops::Range;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::{ContactRow, Subdomain};
 
+use super::squeezed;
 use crate::comm::Comm;
-use crate::contact::squeezed;
 use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;

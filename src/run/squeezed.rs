@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use contact_dd_partition::problem::Catalog;
 use nalgebra::{DMatrix, DVector};
 
+use super::read::OwnedBlock;
 use crate::error::Failure;
 use crate::rigid::nonnegative::residual;
-use crate::run::read::OwnedBlock;
 
 /// How far obstacles may overlap, relative to the gaps and displacements that they prescribe.
 const OVERLAP: f64 = 1e-9;
