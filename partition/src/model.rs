@@ -136,7 +136,7 @@ impl Model {
         let topology = Topology::new(&bodies.mesh);
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
         let loads = steps::Loads::new(scene, &bodies, &topology)?;
-        let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads.supports);
+        let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads);
         let contacts = (scene.contact.iter())
             .map(|keys| sides.contact(keys, &mut warnings))
             .collect::<Result<_, _>>()?;

@@ -68,6 +68,14 @@ impl Loads {
             supports: all.swap_remove(0).0,
         })
     }
+
+    /// The values of support i in all steps, its one value where there are none.
+    pub fn values(&self, i: usize) -> Vec<f64> {
+        match self.steps.is_empty() {
+            true => vec![self.supports[i].value],
+            false => self.steps.iter().map(|step| step.supports[i]).collect(),
+        }
+    }
 }
 
 /// Checks that step k prescribes displacements where the first step does, in the same directions: the

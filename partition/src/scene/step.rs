@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, Error, MapAccess, Visitor};
+use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, Visitor};
 
 use super::Scene;
 use super::condition::{Displacement, Names, Pressure, Traction};
-use super::number::{Constant, Number, Vector};
+use super::number::{Constant, Vector};
 use super::place;
 
 /// A load step as a scene gives it.
@@ -91,11 +91,15 @@ impl<'de> Deserialize<'de> for Scale {
             }
 
             fn visit_i64<E: Error>(self, factor: i64) -> Result<Scale, E> {
-                Ok(Scale::all(factor as f64))
+                self.visit_f64(factor as f64)
             }
 
             fn visit_f64<E: Error>(self, factor: f64) -> Result<Scale, E> {
-                constant(Number::Constant(factor)).map(Scale::all)
+                Constant::deserialize(factor.into_deserializer()).map(|Constant(f)| Scale::all(f))
+            }
+
+            fn visit_str<E: Error>(self, factor: &str) -> Result<Scale, E> {
+                Constant::deserialize(factor.into_deserializer()).map(|Constant(f)| Scale::all(f))
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Scale, A::Error> {
@@ -111,12 +115,6 @@ impl<'de> Deserialize<'de> for Scale {
         }
         deserializer.deserialize_any(ScaleVisitor)
     }
-}
-
-fn constant<E: Error>(number: Number) -> Result<f64, E> {
-    let value = number.at([0.0; 3]).map_err(E::custom)?;
-    crate::magnitude::check(value)
-        .map_err(|expected| E::custom(format!("{value:e} isn't {expected}")))
 }
 
 fn time<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
