@@ -1,6 +1,6 @@
-"""Compares what VTK's own reader finds in a result with what h5py reads.
+"""Compares what VTK's own reader finds in a file with what h5py reads.
 
-    python opened_by_vtk.py RESULT PARTITIONS
+    python opened_by_vtk.py FILE PARTITIONS FIELD...
 """
 
 import sys
@@ -61,12 +61,12 @@ def by_h5py(path):
 
 
 def main():
-    path, partitions = sys.argv[1], int(sys.argv[2])
+    path, partitions, fields = sys.argv[1], int(sys.argv[2]), set(sys.argv[3:])
     opened, written = by_vtk(path), by_h5py(path)
     assert len(opened) == len(written) == partitions, (len(opened), len(written))
     for i, (one, other) in enumerate(zip(opened, written)):
         assert one.keys() == other.keys(), (one.keys(), other.keys())
-        assert {"PointData/Displacement", "PointData/Stress", "CellData/VonMises"} <= one.keys()
+        assert fields <= one.keys(), fields - one.keys()
         for name, array in one.items():
             assert array.shape == other[name].shape, (i, name, array.shape, other[name].shape)
             assert np.array_equal(array, other[name]), (i, name)

@@ -1,4 +1,4 @@
-//! Results opened by VTK's own reader, as ParaView and PyVista do.
+//! Results and problem files opened by VTK's own reader, as ParaView and PyVista do.
 
 use std::process::Command;
 
@@ -16,7 +16,8 @@ pub const CASES: [(&str, usize, &str); 4] = [
 /// Number of subdomains of the cases.
 const SUBDOMAINS: &str = "6";
 
-/// A test: `vtkHDFReader` finds the same partitions, points, cells and fields in a result as h5py.
+/// A test: `vtkHDFReader` finds the same partitions, points, cells and fields as h5py, in the result and in
+/// the problem file.
 pub fn reads_the_same(ranks: usize, element: &str) {
     let folder = Folder::new();
     let ranks = ranks.to_string();
@@ -34,9 +35,21 @@ pub fn reads_the_same(ranks: usize, element: &str) {
         "-o",
         "result.vtkhdf",
     ]);
-    let mut compare = Command::new(python);
-    compare.arg(check).args(["result.vtkhdf", SUBDOMAINS]);
-    for mut command in [partition, solve, compare] {
+    let compare = |file: &str, fields: &[&str]| {
+        let mut compare = Command::new(&python);
+        compare.arg(&check).args([file, SUBDOMAINS]).args(fields);
+        compare
+    };
+    let compare_problem = compare("problem.h5", &["CellData/Subdomain"]);
+    let compare_result = compare(
+        "result.vtkhdf",
+        &[
+            "PointData/Displacement",
+            "PointData/Stress",
+            "CellData/VonMises",
+        ],
+    );
+    for mut command in [partition, solve, compare_problem, compare_result] {
         let ended = folder.run(&mut command);
         assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
     }
