@@ -44,8 +44,17 @@ pub enum Action<'a> {
 impl Preface {
     /// `None` where a piece of HTML is no such comment.
     pub fn of_comment(html: &str) -> Option<Self> {
+        Self::not_run("not run:", html)
+    }
+
+    /// The same for a comment that holds for all blocks below it.
+    pub fn of_page(html: &str) -> Option<Self> {
+        Self::not_run("none of this page is run:", html)
+    }
+
+    fn not_run(mark: &str, html: &str) -> Option<Self> {
         let comment = html.trim().strip_prefix("<!--")?.strip_suffix("-->")?;
-        let reason = comment.trim().strip_prefix("not run:")?;
+        let reason = comment.trim().strip_prefix(mark)?;
         Some(Self::NotRun(reason.trim().to_owned()))
     }
 
@@ -77,7 +86,7 @@ impl Block {
             (Preface::Prints, "text") => Ok(Action::Compare),
             (_, "text") => Ok(Action::Read),
             (Preface::File(name), _) => Ok(Action::Write(name)),
-            (_, "sh") => Ok(Action::Script),
+            (_, "sh" | "bash") => Ok(Action::Script),
             (_, "console") => Ok(Action::Session),
             (_, "python") => Ok(Action::Python),
             (_, language) => Err(format!(
@@ -120,6 +129,12 @@ pub fn are_split() {
     let lines: Vec<_> = page.blocks.iter().map(|block| block.line).collect();
     assert_eq!(lines, [5, 9, 15, 21, 27, 31, 35]);
     assert_eq!(page.headings[0].text, "Title");
+
+    let text = "```sh\nls\n```\n\n<!-- none of this page is run: needs Slurm -->\n\nWords.\n\n```sh\nsrun\n```\n\nA `file`:\n\n```c\n```\n";
+    let page = Page::parse("page.md", text);
+    let actions: Vec<_> = page.blocks.iter().map(|b| b.action().unwrap()).collect();
+    let skip = Action::Skip("needs Slurm");
+    assert_eq!(actions, [Action::Script, skip, Action::Skip("needs Slurm")]);
 }
 
 /// A test: a block that is neither run nor marked is an error.

@@ -3,7 +3,7 @@
 //!
 //! A page is run in a fresh folder, its blocks in order:
 //!
-//! - `sh` is a shell script that has to end with 0;
+//! - `sh` and `bash` are shell scripts that have to end with 0;
 //! - `console` holds commands behind `$ ` with what they print; a command that fails has to be followed by
 //!   `$ echo $?`;
 //! - `python` is run by the documents' Python;
@@ -11,10 +11,12 @@
 //!   file;
 //! - `text` after a paragraph that ends with "prints:" is what the block before has to print.
 //!
-//! In what is printed `…` stands for anything; a line of nothing else stands for any number of lines. What can't be run here
-//! has a comment `<!-- not run: reason -->` before it; anything else that isn't run is an error.
+//! In what is printed `…` stands for anything; a line of nothing else stands for any number of lines. What
+//! can't be run here has a comment `<!-- not run: reason -->` before it, or, for all that follows,
+//! `<!-- none of this page is run: reason -->`; anything else that isn't run is an error.
 //!
-//! `DOCUMENTS_PYTHON` names the Python, which `scripts/setup --documents` makes; without it what needs it is ignored.
+//! `DOCUMENTS_PYTHON` names the Python, which `scripts/setup --documents` makes; without it what needs it
+//! is ignored.
 //! `DOCUMENTS_KEEP` names a folder that keeps what the pages made.
 
 #![expect(

@@ -10,6 +10,9 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
+# Nodes of VTK's types of cells.
+NODES = {5: 3, 22: 6, 9: 4, 23: 8, 28: 9}
+
 
 def by_vtk(path):
     """A list over the partitions; each maps the names of arrays to arrays."""
@@ -70,7 +73,20 @@ def main():
         for name, array in one.items():
             assert array.shape == other[name].shape, (i, name, array.shape, other[name].shape)
             assert np.array_equal(array, other[name]), (i, name)
-        assert len(one["types"]) > 0
+        check_cells(one)
+    # The partitions make the whole.
+    with h5py.File(path) as file:
+        wholes = [("points", "Points"), ("types", "Types"), ("connectivity", "Connectivity")]
+        for name, dataset in wholes:
+            assert sum(len(one[name]) for one in opened) == len(file["VTKHDF"][dataset]), name
+
+
+def check_cells(grid):
+    """Every cell has as many nodes as its type, and they are nodes of its partition."""
+    assert len(grid["types"]) > 0
+    nodes = [NODES[kind] for kind in grid["types"]]
+    assert np.array_equal(np.diff(grid["offsets"]), nodes)
+    assert set(grid["connectivity"]) == set(range(len(grid["points"])))
 
 
 main()

@@ -74,6 +74,7 @@ impl Page {
         let mut preface = Preface::None;
         let mut language = String::new();
         let mut html = String::new();
+        let mut elsewhere = None;
         let mut link = (String::new(), 0);
         for (event, range) in Parser::new_ext(text, Options::ENABLE_TABLES).into_offset_iter() {
             let line = line_at(&range);
@@ -85,6 +86,7 @@ impl Page {
                 Event::Html(line) => html.push_str(&line),
                 Event::End(TagEnd::HtmlBlock) => {
                     preface = Preface::of_comment(&html).unwrap_or(preface);
+                    elsewhere = elsewhere.or(Preface::of_page(&html));
                 }
                 Event::Start(Tag::Link { dest_url, .. }) => {
                     link = (dest_url.into_string(), inline.len());
@@ -106,7 +108,10 @@ impl Page {
                     line,
                     language: std::mem::take(&mut language),
                     text: inline.drain(..).map(Inline::into_text).collect(),
-                    preface: std::mem::take(&mut preface),
+                    preface: match std::mem::take(&mut preface) {
+                        marked @ Preface::NotRun(_) => marked,
+                        other => elsewhere.clone().unwrap_or(other),
+                    },
                 }),
                 Event::End(TagEnd::Paragraph) => {
                     preface = Preface::of_paragraph(&inline);
