@@ -7,6 +7,7 @@ use std::fs;
 use std::os::unix::fs::{PermissionsExt as _, symlink};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Once;
 use std::time::Duration;
 
 use tempfile::TempDir;
@@ -19,6 +20,9 @@ use crate::process::{Ended, Running};
 /// Longer than any block takes on a machine that is busy with other tests.
 const LIMIT: Duration = Duration::from_secs(180);
 
+/// Longer than it takes to build the programs.
+const BUILD_LIMIT: Duration = Duration::from_secs(1800);
+
 /// What of the repository is at hand where the commands are run.
 const CHECKOUT: [&str; 3] = ["scripts", "docs", "hostfile.example"];
 
@@ -26,6 +30,28 @@ const CHECKOUT: [&str; 3] = ["scripts", "docs", "hostfile.example"];
 pub fn python() -> Option<PathBuf> {
     let named = env::var_os("DOCUMENTS_PYTHON").filter(|name| !name.is_empty())?;
     Some(PathBuf::from(named))
+}
+
+/// The folder with both programs. Cargo builds that of the other package along with its own tests only, so
+/// that it is asked to; there is nothing to do where all tests are run.
+fn programs() -> &'static Path {
+    static BUILT: Once = Once::new();
+    let folder = Path::new(env!("CARGO_BIN_EXE_contact-dd-mpi"))
+        .parent()
+        .unwrap();
+    BUILT.call_once(|| {
+        let profile = match folder.file_name().and_then(|name| name.to_str()) {
+            Some("debug") | None => "dev",
+            Some(profile) => profile,
+        };
+        let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        cargo.args(["build", "--workspace", "--bins", "--profile", profile]);
+        let ended = Running::start(cargo.current_dir(root())).wait(BUILD_LIMIT);
+        assert_eq!(ended.code(), 0, "{}", ended.stderr);
+        let partition = folder.join("contact-dd-partition");
+        assert!(partition.exists(), "{} is missing", partition.display());
+    });
+    folder
 }
 
 /// A test: every block of the page does what the page says.
@@ -97,15 +123,8 @@ impl Folder {
 
     /// Runs a command here, as `source scripts/environment` has it.
     pub fn run(&self, command: &mut Command) -> Ended {
-        let built = Path::new(env!("CARGO_BIN_EXE_contact-dd-mpi"))
-            .parent()
-            .unwrap();
-        assert!(
-            built.join("contact-dd-partition").exists(),
-            "contact-dd-partition isn't built: cargo build --workspace --bins"
-        );
         let python = python().and_then(|python| Some(python.parent()?.to_path_buf()));
-        let mut places = vec![self.programs.path().to_path_buf(), built.to_path_buf()];
+        let mut places = vec![self.programs.path().to_path_buf(), programs().to_path_buf()];
         places.extend(python);
         places.extend(env::split_paths(&env::var_os("PATH").unwrap_or_default()));
         let path: OsString = env::join_paths(places).unwrap();
