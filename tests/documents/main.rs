@@ -86,8 +86,8 @@ fn main() -> ExitCode {
         "failures_that_the_page_hides_fail",
         run::show_failures,
     ));
-    for (name, ranks, element) in vtk::CASES {
-        let case = move || vtk::reads_the_same(ranks, element);
+    for (name, ranks, element, steps) in vtk::CASES {
+        let case = move || vtk::reads_the_same(ranks, element, steps);
         trials.push(needs_python(trial(
             format!("vtk_reads_what_h5py_reads::{name}"),
             case,

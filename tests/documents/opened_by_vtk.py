@@ -14,14 +14,24 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 NODES = {5: 3, 22: 6, 9: 4, 23: 8, 28: 9}
 
 
-def by_vtk(path):
-    """A list over the partitions; each maps the names of arrays to arrays."""
+def by_vtk(path, step):
+    """A list over the partitions of a load step; each maps the names of arrays to arrays."""
     reader = vtkHDFReader()
     assert reader.CanReadFile(path), f"VTK can't read {path}"
     reader.SetFileName(path)
+    reader.UpdateInformation()
+    assert reader.GetNumberOfSteps() == steps_of(path), reader.GetNumberOfSteps()
+    reader.SetStep(step)
     reader.Update()
     whole = reader.GetOutputDataObject(0)
     return [of_grid(whole.GetPartition(i)) for i in range(whole.GetNumberOfPartitions())]
+
+
+def steps_of(path):
+    """The number of load steps, 1 in a file without any."""
+    with h5py.File(path) as file:
+        steps = file["VTKHDF"].get("Steps")
+        return 1 if steps is None else len(steps["Values"])
 
 
 def of_grid(grid):
@@ -38,8 +48,8 @@ def of_grid(grid):
     return arrays
 
 
-def by_h5py(path):
-    """The same from the datasets."""
+def by_h5py(path, step):
+    """The same from the datasets, of which fields hold all steps one after the other."""
     partitions = []
     with h5py.File(path) as file:
         grid = file["VTKHDF"]
@@ -57,15 +67,22 @@ def by_h5py(path):
                 "types": grid["Types"][cells],
             }
             for kind, rows in ("PointData", points), ("CellData", cells):
+                whole = len(grid["Points" if kind == "PointData" else "Types"])
                 for name, data in grid[kind].items():
-                    arrays[f"{kind}/{name}"] = data[rows]
+                    first = step * whole if len(data) > whole else 0
+                    arrays[f"{kind}/{name}"] = data[first + rows.start : first + rows.stop]
             partitions.append(arrays)
     return partitions
 
 
 def main():
     path, partitions, fields = sys.argv[1], int(sys.argv[2]), set(sys.argv[3:])
-    opened, written = by_vtk(path), by_h5py(path)
+    for step in range(steps_of(path)):
+        compare(path, step, partitions, fields)
+
+
+def compare(path, step, partitions, fields):
+    opened, written = by_vtk(path, step), by_h5py(path, step)
     assert len(opened) == len(written) == partitions, (len(opened), len(written))
     for i, (one, other) in enumerate(zip(opened, written)):
         assert one.keys() == other.keys(), (one.keys(), other.keys())
