@@ -82,7 +82,7 @@ fn scatter(block: &Block, dofs: &Dofs, materials: &[Material], system: &mut Bloc
         nodes.extend(cell.nodes());
         points.clear();
         points.extend(nodes.iter().map(|&n| block.points[n as usize]));
-        k.set(cell.kind, &points, &materials[cell.material].stiffness);
+        k.set(&cell.kind, &points, &materials[cell.material].stiffness);
         direct.clear();
         direct.extend(nodes.iter().filter_map(|&node| dofs.direct(node)));
         if direct.len() == nodes.len() {

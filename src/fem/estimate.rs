@@ -82,7 +82,7 @@ impl Compliance {
     ) -> CellError {
         let mut sum = CellError::default();
         let references = kind.stiffness_points().iter();
-        for (reference, point) in references.zip(stiffness_points(kind, points)) {
+        for (reference, point) in references.zip(stiffness_points(&kind, points)) {
             let stress = stress_in_plane(material, &strain(&point, u));
             let mut smooth = [0.0; COMPONENTS];
             for (n, at_node) in reference.shape.iter().zip(recovered) {
