@@ -124,13 +124,9 @@ impl Settings {
         }
     }
 
-    /// What becomes of contact when Schur complements are merged: picard inverts S_0 alone, which has
-    /// to be that of all linear subdomains.
+    /// What becomes of contact when Schur complements are merged.
     pub fn merging(&self) -> Merging {
-        match self.method {
-            Method::Picard => Merging::Linear,
-            Method::Newton | Method::Anderson => Merging::All,
-        }
+        self.method.merging()
     }
 
     /// The settings as they were resolved, by name, for people.

@@ -219,7 +219,11 @@ mod tests {
 
     #[test]
     fn there_is_room_for_every_kind() {
-        assert!(ElementKind::ALL.iter().all(|kind| kind.nodes() <= MAX_NODES));
+        assert!(
+            ElementKind::ALL
+                .iter()
+                .all(|kind| kind.nodes() <= MAX_NODES)
+        );
     }
 
     #[test]

@@ -8,7 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::anderson::Chords;
-use super::progress::Memory;
+use super::method::Memory;
 use super::{Next, ROUND_OFF, Residual, SweepStatus, Sweeps, axpy};
 use crate::interface::coupled::CoupledContact;
 
@@ -45,8 +45,7 @@ impl Sweeps<'_, '_> {
             return self.fall_back(before, "newton's contact problem didn't converge");
         }
         axpy(1.0, &step.u, &mut self.progress.u);
-        let residual = self.residual(Some(&step.open));
-        self.record(&residual);
+        let residual = self.evaluate(Some(&step.open));
         let stalled = residual.totals.changed == 0 && residual.relative >= 0.5 * before.relative;
         stalls = if stalled { stalls + 1 } else { 0 };
         if stalls == PATIENCE && !self.is_converged(&residual) {
