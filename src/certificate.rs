@@ -2,16 +2,43 @@
 
 use std::collections::HashMap;
 
+use serde::Serialize;
+
 use crate::comm::{Message, MessageReader};
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;
 use crate::fem::frame::{Frame, dot};
 use crate::fem::node_frames::supported_frames;
-use crate::output::report::Certificate;
 
 /// Sum of forces, relative to the terms that they are sums of, that is no load.
 const NO_LOAD: f64 = 1e-12;
+
+/// Checks of the full discrete problem, all relative to the scale of what they check.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Certificate {
+    /// ‖K u − f + Bᵀλ‖∞ / ‖|K||u| + |f| + |Bᵀλ|‖∞.
+    pub equilibrium: f64,
+    /// ‖K u − f + Bᵀλ‖∞ over the largest load, contact force or reaction at a node: what the
+    /// condition of the scene makes of round-off.
+    pub equilibrium_of_load: f64,
+    /// The largest load at a node over that scale: near 0 where the forces are round-off of a scene
+    /// without load, or displacements drive it.
+    #[serde(skip)]
+    pub load_share: f64,
+    /// Largest penetration over the largest displacement.
+    pub penetration: f64,
+    /// Largest tension in a contact over the load scale.
+    pub tension: f64,
+    /// Largest product of contact force and gap over the product of their scales.
+    pub complementarity: f64,
+    /// Sum of loads and reactions over the load scale.
+    pub force_balance: f64,
+    /// Sum of their moments over the load scale times the size of the scene.
+    pub moment_balance: f64,
+    /// Largest jump of the displacement across Γ over the largest displacement.
+    pub interface_jump: f64,
+}
 
 /// What a block says of its own part of the solution.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -9,4 +9,3 @@ pub mod law;
 pub mod limits;
 pub mod open_factor;
 pub mod pair;
-pub mod s_con;

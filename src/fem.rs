@@ -11,6 +11,7 @@ mod elimination;
 pub mod estimate;
 pub mod frame;
 pub mod node_frames;
+pub mod owned;
 pub mod patch;
 pub mod recovery;
 mod sites;

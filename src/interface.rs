@@ -3,3 +3,4 @@
 pub mod coupled;
 pub mod numbering;
 pub mod operator;
+pub mod s_con;

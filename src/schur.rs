@@ -16,3 +16,4 @@ mod partial;
 pub mod pattern;
 pub mod repeats;
 mod supernodes;
+pub mod trace;

@@ -1,13 +1,15 @@
 //! The command line.
 
+pub mod result_path;
+
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use serde::{Serialize, Serializer};
 
+use self::result_path::default_result_path;
 use crate::error::Failure;
-use crate::output::default_result_path;
 use crate::plan::cluster::Merging;
 use crate::sweep::{Method, SweepSettings};
 

@@ -17,8 +17,8 @@ use self::method::Memory;
 pub use self::method::Method;
 pub use self::outcome::{SweepOutcome, SweepRecord, SweepStatus};
 use self::progress::Progress;
-use crate::contact::s_con::{ConState, ConTotals, SCon};
 use crate::interface::operator::Interface;
+use crate::interface::s_con::{ConState, ConTotals, SCon};
 use crate::schur::factor::BoundaryLastCholesky;
 
 /// Residual that is round-off and nothing else.

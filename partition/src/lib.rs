@@ -18,6 +18,7 @@ pub mod destination;
 pub mod element;
 pub mod error;
 pub mod example;
+pub mod flops;
 mod lists;
 pub mod magnitude;
 pub mod mesh;

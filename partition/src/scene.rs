@@ -5,6 +5,7 @@ pub mod expression;
 pub mod material;
 pub mod number;
 mod place;
+pub mod plane;
 pub mod suggest;
 
 use std::collections::{BTreeMap, HashMap};
@@ -14,11 +15,11 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::error::InputError;
-use crate::model::PlaneState;
 use crate::{name, source};
 use condition::{Bilateral, Body, Contact, Displacement, Names, Partner, Pressure, Traction};
 use material::Elasticity;
 use place::Step;
+use plane::PlaneState;
 
 /// Size beyond which a file isn't a scene (bytes).
 const LARGEST: u64 = 16 << 20;

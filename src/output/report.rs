@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::build::Build;
 use super::resultants::Resultants;
+use crate::certificate::Certificate;
 use crate::settings::Settings;
 
 /// How a run ended.
@@ -19,32 +20,6 @@ pub enum Status {
     Converged,
     /// It isn't.
     NotConverged,
-}
-
-/// Checks of the full discrete problem, all relative to the scale of what they check.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Certificate {
-    /// ‖K u − f + Bᵀλ‖∞ / ‖|K||u| + |f| + |Bᵀλ|‖∞.
-    pub equilibrium: f64,
-    /// ‖K u − f + Bᵀλ‖∞ over the largest load, contact force or reaction at a node: what the
-    /// condition of the scene makes of round-off.
-    pub equilibrium_of_load: f64,
-    /// The largest load at a node over that scale: near 0 where the forces are round-off of a scene
-    /// without load, or displacements drive it.
-    #[serde(skip)]
-    pub load_share: f64,
-    /// Largest penetration over the largest displacement.
-    pub penetration: f64,
-    /// Largest tension in a contact over the load scale.
-    pub tension: f64,
-    /// Largest product of contact force and gap over the product of their scales.
-    pub complementarity: f64,
-    /// Sum of loads and reactions over the load scale.
-    pub force_balance: f64,
-    /// Sum of their moments over the load scale times the size of the scene.
-    pub moment_balance: f64,
-    /// Largest jump of the displacement across Γ over the largest displacement.
-    pub interface_jump: f64,
 }
 
 /// What the mesh does to the stress, after Zienkiewicz and Zhu, in the energy norm.

@@ -5,8 +5,9 @@
 use std::io::{Result, Write};
 use std::path::Path;
 
-use super::report::{Certificate, PhaseSeconds, RankReport, Report};
+use super::report::{PhaseSeconds, RankReport, Report};
 use super::resultants;
+use crate::certificate::Certificate;
 use crate::plan::demand::Demand;
 
 /// What is to be solved, and on what.

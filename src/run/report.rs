@@ -5,6 +5,7 @@ use std::io::stdout;
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
 
+use crate::certificate::Certificate;
 use crate::checkpoint::Checkpoint;
 use crate::comm::{self, Comm, Message};
 use crate::error::Failure;
@@ -12,9 +13,7 @@ use crate::fem::estimate::CellError;
 use crate::interface::operator::Interface;
 use crate::output::build::Build;
 use crate::output::memory::peak_memory_bytes;
-use crate::output::report::{
-    Certificate, ErrorEstimate, PhaseSeconds, RankReport, Report, ReportFile, Status,
-};
+use crate::output::report::{ErrorEstimate, PhaseSeconds, RankReport, Report, ReportFile, Status};
 use crate::output::result::ConvergenceRow;
 use crate::output::resultants::Resultants;
 use crate::output::terminal::{self, Summary, SweepLine};

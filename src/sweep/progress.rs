@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::method::{Memory, Method};
 use super::outcome::{SweepOutcome, SweepRecord, SweepStatus};
-use crate::contact::s_con::ConTotals;
+use crate::interface::s_con::ConTotals;
 
 /// How far sweeps have come: all that the next one depends on beside the pairs' answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -5,11 +5,11 @@ use contact_dd_mpi::contact::approach::ApproachOf;
 use contact_dd_mpi::contact::law::PairLaw;
 use contact_dd_mpi::contact::limits::Limits;
 use contact_dd_mpi::contact::pair::ContactPair;
-use contact_dd_mpi::fem::dofs::TraceDof;
 use contact_dd_mpi::interface::numbering::Numbering;
 use contact_dd_mpi::interface::operator::{Contribution, Interface};
 use contact_dd_mpi::rigid::energy::RigidDrive;
 use contact_dd_mpi::schur::condensed::Condensed;
+use contact_dd_mpi::schur::trace::TraceDof;
 use faer::{Mat, Par};
 use nalgebra::{DMatrix, DVector};
 

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use contact_dd_mpi::comm::{Comm, start};
 use contact_dd_mpi::contact::pair::ContactPair;
-use contact_dd_mpi::contact::s_con::{ConState, SCon};
 use contact_dd_mpi::interface::operator::Interface;
+use contact_dd_mpi::interface::s_con::{ConState, SCon};
 use contact_dd_mpi::sweep::progress::Progress;
 use contact_dd_mpi::sweep::{Method, Pause, SweepOutcome, SweepSettings, SweepStatus, Sweeps};
 

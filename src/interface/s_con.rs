@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::pair::{ContactPair, PairMemory, PairResponse};
+use super::operator::Interface;
 use crate::comm::{Comm, Message, MessageReader};
-use crate::interface::operator::Interface;
+use crate::contact::pair::{ContactPair, PairMemory, PairResponse};
 
 /// S_CON = Σ R_kᵀ S_kl R_k, (15), as the root drives it and the other ranks serve it.
 pub struct SCon<'a> {
