@@ -12,6 +12,7 @@ mod element;
 #[path = "../../partition/tests/element/laws.rs"]
 mod laws;
 mod layer;
+mod page;
 mod quad6;
 mod small;
 #[path = "../support/mod.rs"]
