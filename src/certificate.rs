@@ -1,4 +1,6 @@
-//! The certificate: the full discrete problem, checked without any Schur complement.
+//! The certificate: the full discrete problem (1), checked without any Schur complement.
+//!
+//! > K u − f + Bᵀ λ = 0,   B u ≤ g,   λ ≥ 0,   λᵀ (g − B u) = 0
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Sweeps: how U is found on Γ, started from the bilateral problem (16)-(17).
+//! Sweeps: how S_0 U + S_CON(U) = F, (14), is solved for U, from the bilateral start (16)-(17).
 //!
 //! All methods share the residual r(U) = F − S_0 U − S_CON(U) and differ in what is inverted:
 //! M δ = r with M = S_0 ([`picard`], the paper's (18)), S_0 + S_CON' of the bilateral problem

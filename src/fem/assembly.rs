@@ -1,4 +1,4 @@
-//! Assembly: the stiffness and load of a block over its unknowns.
+//! Assembly: Tᵀ K T and Tᵀ (f − K c), K = Σ K_e, over the unknowns x of a block, u = T x + c.
 
 use contact_dd_partition::model::Material;
 

@@ -1,4 +1,4 @@
-//! Equilibrium of a block, node by node, checked element by element without any factor.
+//! Balance: K u − f + Bᵀ λ of a block, node by node, summed element by element without any factor.
 
 use contact_dd_partition::model::Material;
 

@@ -1,4 +1,6 @@
-//! Linear elasticity of one element in the plane: strains, stresses, stiffness.
+//! Linear elasticity of one element in the plane: K_e = ∫ Bᵀ C B dx, (2).
+//!
+//! ε = B u holds ε_xx, ε_yy and γ_xy = 2 ε_xy, from the gradients of the shape functions; σ = C ε.
 
 use contact_dd_partition::element::reference::ReferenceElement;
 use contact_dd_partition::element::tabulation::TabulatedPoint;

@@ -1,5 +1,7 @@
-//! The estimate of Zienkiewicz and Zhu: the error of the stress is about its difference to the
-//! recovered one.
+//! The estimate of Zienkiewicz and Zhu: the error of the stress σ_h is about its difference to the
+//! recovered one σ*.
+//!
+//! > ‖e‖² ≈ ∫ (σ* − σ_h)ᵀ C⁻¹ (σ* − σ_h) dx
 
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::model::Material;

@@ -1,4 +1,4 @@
-//! The unknowns on Γ, in the order in which the root eliminates them.
+//! R̄_i of (15): the unknowns on Γ, in the order in which the root eliminates them.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 

@@ -1,4 +1,6 @@
-//! S_CON over all ranks: every pair is evaluated by the rank that owns it.
+//! S_CON of (15) over all ranks: every pair is evaluated by the rank that owns it.
+//!
+//! > S_CON(U) = Σ_ϑ R̄_klᵀ S_kl(R̄_kl U)
 
 use std::collections::BTreeMap;
 

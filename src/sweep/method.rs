@@ -1,4 +1,4 @@
-//! The methods, an entry each: name, memory, and what a sweep of it does.
+//! The methods, M δ = r(U) with an M each: name, memory, and what a sweep of it does.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,5 +1,5 @@
-//! Newton's method for generalized equations: every sweep solves the contact problem of all pairs,
-//! coupled through the interface.
+//! Newton's method for generalized equations, S_0 δ + S_CON(U + δ) − S_CON(U) = r: every sweep solves the
+//! contact problem of all pairs, coupled through the interface.
 //!
 //! S_CON is piecewise linear. Freezing every pair's active set at U^(k−1) gives semismooth Newton,
 //! whose sets may peel off one condition a sweep; keeping the law as it stands, λ ≥ 0, t ≤ g, gives

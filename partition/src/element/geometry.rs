@@ -1,4 +1,4 @@
-//! The map of a reference element to its place in space, and what follows from it.
+//! x(ξ) = Σ N_i(ξ) x_i, the map of a reference element to its place in space, and what follows from it.
 
 use super::domain::Domain;
 use super::reference::ReferenceElement;

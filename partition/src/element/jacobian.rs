@@ -1,4 +1,4 @@
-//! Whether the map of a cell is one to one: the sign of its Jacobian everywhere, not at some points.
+//! det ∂x/∂ξ > 0: whether the map of a cell is one to one, everywhere and not at some points.
 
 use std::array::from_fn;
 

@@ -1,4 +1,4 @@
-//! The facets of the plane: points and lines.
+//! Points and lines, the facets of the plane: N and ∂N/∂ξ on −1 ≤ ξ ≤ 1.
 
 use super::ElementKind::Point1;
 use super::domain::Domain;

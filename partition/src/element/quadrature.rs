@@ -1,4 +1,4 @@
-//! Quadrature rules on the reference elements.
+//! ∫ f dξ ≈ Σ w_q f(ξ_q): quadrature rules on the reference elements.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Quadrilaterals.
+//! Quadrilaterals: N and ∂N/∂ξ on −1 ≤ ξ, η ≤ 1.
 
 use super::ElementKind::{self, Line2, Line3};
 use super::domain::Domain;

@@ -1,4 +1,4 @@
-//! Triangles.
+//! Triangles: N and ∂N/∂ξ on 0 ≤ ξ, η, ξ + η ≤ 1.
 
 use super::ElementKind::{Line2, Line3};
 use super::domain::Domain;

@@ -1,4 +1,4 @@
-//! Γ_τ and body forces as consistent nodal forces.
+//! Γ_τ and body forces as consistent nodal forces: f_i = ∫ N_i b dx + ∫ N_i τ dS, (3).
 
 use std::collections::BTreeMap;
 
