@@ -42,6 +42,26 @@ pub struct Certificate {
     pub interface_jump: f64,
 }
 
+impl Certificate {
+    /// For every check the worse of two.
+    #[must_use]
+    pub fn worse(self, other: Self) -> Self {
+        // What isn't a number is worse than any.
+        let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
+        Self {
+            equilibrium: worse(self.equilibrium, other.equilibrium),
+            equilibrium_of_load: worse(self.equilibrium_of_load, other.equilibrium_of_load),
+            load_share: worse(self.load_share, other.load_share),
+            penetration: worse(self.penetration, other.penetration),
+            tension: worse(self.tension, other.tension),
+            complementarity: worse(self.complementarity, other.complementarity),
+            force_balance: worse(self.force_balance, other.force_balance),
+            moment_balance: worse(self.moment_balance, other.moment_balance),
+            interface_jump: worse(self.interface_jump, other.interface_jump),
+        }
+    }
+}
+
 /// What a block says of its own part of the solution.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BlockCheck {

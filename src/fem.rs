@@ -1,4 +1,4 @@
-//! Finite elements of a block: K and f of the energy ½ uᵀ K u − fᵀ u, its unknowns, its stresses.
+//! Finite elements of a block: K and f of the energy ½ uᵀ K u − fᵀ u, its unknowns, its loads, its stresses.
 //!
 //! > uᵀ K u = a(u, u) = Σ ∫ c_ijkl e_ij(u) e_kl(u) dx,   (2)
 
@@ -12,6 +12,7 @@ pub mod elasticity;
 mod elimination;
 pub mod estimate;
 pub mod frame;
+pub mod load;
 pub mod node_frames;
 pub mod owned;
 pub mod patch;

@@ -77,6 +77,7 @@ fn layout(cells: &[usize], conditions: &[usize]) -> Layout {
     Layout {
         partitions: cells.iter().map(|&cells| size(cells)).collect(),
         contacts: conditions.iter().enumerate().map(contact).collect(),
+        times: Vec::new(),
         stress: true,
     }
 }
@@ -93,7 +94,9 @@ fn write(path: &Path, cells: &[usize], runs: &[(usize, usize)], report: &str) {
         .unwrap();
     file.write_contacts(&[row(0, 3), row(2, 0), row(0, 2)])
         .unwrap();
+    file.finish_step().unwrap();
     file.write_convergence(&[ConvergenceRow {
+        step: 0,
         residual: 0.5,
         active: 7,
         seconds: 0.25,

@@ -100,6 +100,34 @@ pub struct RankReport {
     pub repeated: usize,
 }
 
+/// A load step. Of sweeps that ended without converging the answer is there all the same.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepReport {
+    /// Its name.
+    pub name: String,
+    /// What it stands at on the axis of time.
+    pub time: f64,
+    /// How its sweeps ended.
+    pub status: Status,
+    /// Number of sweeps after the start.
+    pub sweeps: usize,
+    /// Number of linear systems solved within contact problems.
+    pub inner_steps: usize,
+    /// Relative residual of the interface problem at the end.
+    pub interface_residual: f64,
+    /// Number of contact conditions that are closed.
+    pub active_contacts: usize,
+    /// Checks of its solution.
+    pub certificate: Certificate,
+    /// Estimate of the condition number; `null` where it can't be made.
+    pub condition: Option<f64>,
+    /// Estimate of the mesh's error; `null` where stresses are left out.
+    pub error_estimate: Option<ErrorEstimate>,
+    /// What contacts and supports carry.
+    #[serde(flatten)]
+    pub resultants: Resultants,
+}
+
 /// The report. A number that isn't finite is `null` in its JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
@@ -149,6 +177,9 @@ pub struct Report {
     /// What contacts and supports carry.
     #[serde(flatten)]
     pub resultants: Resultants,
+    /// The load steps, where the problem has any. Above, sweeps and inner steps are those of all,
+    /// residual, certificate and condition those of the worst, and all else is that of the last one.
+    pub steps: Vec<StepReport>,
     /// What the scene didn't need, in words.
     pub skipped: Vec<String>,
     /// What the user should know, in words.
@@ -244,6 +275,7 @@ mod tests {
             peak_memory_bytes: 1,
             error_estimate: None,
             resultants: Resultants::default(),
+            steps: Vec::new(),
             skipped: Vec::new(),
             warnings: vec!["a \"quoted\"\nwarning".into()],
             settings: Settings::parse_from(["contact-dd-mpi", "problem.h5"]).resolved(),
@@ -318,6 +350,7 @@ mod tests {
                 "settings",
                 "skipped",
                 "status",
+                "steps",
                 "subdomains",
                 "sweeps",
                 "threads",

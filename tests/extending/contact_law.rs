@@ -13,12 +13,12 @@ const M: usize = APPROACHES;
 fn by_trial(pair: &Cluster, u: &[f64]) -> (Exact, Vec<f64>) {
     let s = &pair.condensed.s;
     let h = DMatrix::from_fn(M, M, |i, j| s[(i, j)]);
-    let driven = |i: usize| pair.condensed.load[i] - along(pair, i, u);
+    let driven = |i: usize| pair.load[i] - along(pair, i, u);
     let c = DVector::from_fn(M, |i, _| driven(i));
     let answer = exact(&h, &c, &pair.gaps, &pair.compliances);
     let reaction = (M..s.nrows()).map(|i| {
         let by_t: f64 = (0..M).map(|j| s[(i, j)] * answer.x[j]).sum();
-        along(pair, i, u) + by_t - pair.condensed.load[i]
+        along(pair, i, u) + by_t - pair.load[i]
     });
     let reaction = reaction.collect();
     (answer, reaction)
@@ -83,11 +83,7 @@ fn forces_balance_the_pair_itself() {
             .collect();
         for (i, &force) in forces.iter().enumerate() {
             let held: f64 = (0..M).map(|j| pair.condensed.s[(i, j)] * t[j]).sum();
-            close(
-                held + along(&pair, i, &u) + force,
-                pair.condensed.load[i],
-                2e-11,
-            );
+            close(held + along(&pair, i, &u) + force, pair.load[i], 2e-11);
         }
     }
 }

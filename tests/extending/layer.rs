@@ -7,44 +7,61 @@
 //!
 //! > λ = G (c − S_tΓ U − H τ) ≥ 0,  τ ≤ g,  λ (g − τ) = 0,  G = (1 + H E)⁻¹,
 //!
-//! so that the Schur complement on [τ | U] takes the place of that on [t | U], and nothing else changes.
+//! so that the Schur complement on [τ | U] takes the place of that on [t | U], the load with it, and
+//! nothing else changes.
 
 use contact_dd_mpi::schur::condensed::Condensed;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
-/// The Schur complement of a pair, of which both triangles are filled, behind a layer of these
-/// `compliances`.
-pub fn behind_layer(pair: &Condensed, compliances: &[f64]) -> Condensed {
-    let m = pair.approaches;
-    let n = pair.s.nrows() - m;
-    let h = pair.s.submatrix(0, 0, m, m);
-    let one_plus_he = Mat::from_fn(m, m, |i, j| {
-        f64::from(u8::from(i == j)) + h[(i, j)] * compliances[j]
-    });
-    // G [H | S_tΓ | c].
-    let right = Mat::from_fn(m, m + n + 1, |i, j| match j < m + n {
-        true => pair.s[(i, j)],
-        false => pair.load[i],
-    });
-    let solved = one_plus_he.partial_piv_lu().solve(right);
-    let mut layered = pair.clone();
-    for i in 0..m {
-        for j in 0..m + n {
-            layered.s[(i, j)] = solved[(i, j)];
-            layered.s[(j, i)] = solved[(i, j)];
+/// The layer between the sides of a pair.
+pub struct Layer {
+    /// G.
+    g: Mat<f64>,
+    /// S_Γt E.
+    give: Mat<f64>,
+}
+
+impl Layer {
+    /// The layer of these `compliances` E between the sides of `pair`, of which both triangles are
+    /// filled.
+    pub fn new(pair: &Condensed, compliances: &[f64]) -> Self {
+        let m = pair.approaches;
+        let unit = |i, j| f64::from(u8::from(i == j));
+        let one_plus_he = Mat::from_fn(m, m, |i, j| unit(i, j) + pair.s[(i, j)] * compliances[j]);
+        let traces = pair.s.nrows() - m;
+        Self {
+            g: one_plus_he.partial_piv_lu().solve(Mat::from_fn(m, m, unit)),
+            give: Mat::from_fn(traces, m, |i, j| pair.s[(m + i, j)] * compliances[j]),
         }
-        layered.load[i] = solved[(i, m + n)];
     }
-    // S_ΓΓ − S_Γt E G S_tΓ, and the load likewise.
-    for j in m..m + n {
-        for k in 0..m {
-            let give = pair.s[(k, j)] * compliances[k];
-            for i in m..m + n {
-                layered.s[(i, j)] -= give * solved[(k, i)];
+
+    /// The Schur complement on [τ | U]: G H, G S_tΓ and S_ΓΓ − S_Γt E G S_tΓ.
+    pub fn before(&self, pair: &Condensed) -> Condensed {
+        let (m, n) = (pair.approaches, pair.s.nrows());
+        let rows = &self.g * pair.s.submatrix(0, 0, m, n);
+        let given = &self.give * &rows;
+        let mut layered = pair.clone();
+        for j in 0..n {
+            for i in 0..m {
+                layered.s[(i, j)] = rows[(i, j)];
+                layered.s[(j, i)] = rows[(i, j)];
             }
-            layered.load[j] -= give * solved[(k, m + n)];
         }
+        for j in m..n {
+            for i in m..n {
+                layered.s[(i, j)] -= given[(i - m, j)];
+            }
+        }
+        layered
     }
-    layered
+
+    /// The load on it: G c and f_Γ − S_Γt E G c.
+    pub fn load(&self, load: &[f64]) -> Vec<f64> {
+        let (c, f) = load.split_at(self.g.nrows());
+        let c = &self.g * Mat::from_fn(c.len(), 1, |i, _| c[i]);
+        let given = &self.give * &c;
+        let on_traces = f.iter().enumerate().map(|(i, f)| f - given[(i, 0)]);
+        (0..c.nrows()).map(|i| c[(i, 0)]).chain(on_traces).collect()
+    }
 }

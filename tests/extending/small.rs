@@ -6,14 +6,14 @@ use contact_dd_mpi::contact::law::PairLaw;
 use contact_dd_mpi::contact::limits::Limits;
 use contact_dd_mpi::contact::pair::ContactPair;
 use contact_dd_mpi::interface::numbering::Numbering;
-use contact_dd_mpi::interface::operator::{Contribution, Interface};
+use contact_dd_mpi::interface::operator::{ClusterLoad, Contribution, Interface};
 use contact_dd_mpi::rigid::energy::RigidDrive;
 use contact_dd_mpi::schur::condensed::Condensed;
 use contact_dd_mpi::schur::trace::TraceDof;
 use faer::{Mat, Par};
 use nalgebra::{DMatrix, DVector};
 
-use crate::layer::behind_layer;
+use crate::layer::Layer;
 use crate::support::random::Random;
 
 /// Approaches of a pair.
@@ -23,8 +23,10 @@ pub const APPROACHES: usize = 3;
 pub struct Cluster {
     /// Nodes of Γ.
     nodes: Vec<u32>,
-    /// S on [t | U], both triangles, and its load.
+    /// S on [t | U], both triangles.
     pub condensed: Condensed,
+    /// The load on both.
+    pub load: Vec<f64>,
     /// g of every approach.
     pub gaps: Vec<f64>,
     /// What the layer between the sides gives way.
@@ -52,11 +54,11 @@ impl Cluster {
                 approaches,
                 traces: dofs(nodes),
                 s: Mat::from_fn(n, n, |i, j| s[(i, j)]),
-                load: (0..n).map(|_| 3.0 * random.signed()).collect(),
                 stiffness: (0..n).map(|i| s[(i, i)]).collect(),
                 smallest_pivot: 1.0,
                 eliminated: 0,
             },
+            load: (0..n).map(|_| 3.0 * random.signed()).collect(),
             gaps: (0..approaches).map(|_| 0.3 * random.signed()).collect(),
             compliances: vec![0.0; approaches],
         }
@@ -72,7 +74,10 @@ impl Cluster {
             })
             .collect();
         let limits = Limits::new(of.len(), &of, &self.gaps, 0.0);
-        ContactPair::new(behind_layer(&self.condensed, &self.compliances), limits)
+        let layer = Layer::new(&self.condensed, &self.compliances);
+        let mut pair = ContactPair::new(layer.before(&self.condensed), limits.clone());
+        pair.prescribe(layer.load(&self.load), limits);
+        pair
     }
 }
 
@@ -121,7 +126,6 @@ impl Small {
         let numbering = Numbering::new(&traces, &nodes, &in_contact).unwrap();
         let mut contributions = vec![Contribution {
             s: self.linear.condensed.s.clone(),
-            load: self.linear.condensed.load.clone(),
             smallest_pivot: 1.0,
             eliminated: 0,
             law: None,
@@ -131,7 +135,6 @@ impl Small {
             PairLaw::pack(pair, &mut message);
             Contribution {
                 s: pair.bilateral().to_owned(),
-                load: pair.bilateral_load().to_vec(),
                 smallest_pivot: 1.0,
                 eliminated: 0,
                 law: Some(PairLaw::unpack(
@@ -140,9 +143,17 @@ impl Small {
                 )),
             }
         }));
-        let motions = RigidDrive::default();
-        let interface =
-            Interface::new(&numbering, contributions, &in_contact, &motions, Par::Seq).unwrap();
+        let mut interface =
+            Interface::new(&numbering, contributions, &in_contact, Par::Seq).unwrap();
+        let of_pairs = pairs.iter().map(|pair| pair.bilateral_load());
+        let loads = [&self.linear.load[..]].into_iter().chain(of_pairs);
+        let loads: Vec<ClusterLoad> = loads
+            .map(|load| ClusterLoad {
+                load: load.to_vec(),
+                scale: 0.0,
+            })
+            .collect();
+        interface.prescribe(&numbering, &loads, &RigidDrive::default());
         (interface, numbering.traces[0].clone())
     }
 
@@ -161,7 +172,7 @@ impl Small {
                 for (j, &column) in places.iter().enumerate() {
                     k[(row, column)] += cluster.condensed.s[(i, j)];
                 }
-                f[row] += cluster.condensed.load[i];
+                f[row] += cluster.load[i];
             }
         }
         exact(

@@ -8,7 +8,9 @@ use contact_dd_mpi::contact::pair::ContactPair;
 use contact_dd_mpi::interface::operator::Interface;
 use contact_dd_mpi::interface::s_con::{ConState, SCon};
 use contact_dd_mpi::sweep::progress::Progress;
-use contact_dd_mpi::sweep::{Method, Pause, SweepOutcome, SweepSettings, SweepStatus, Sweeps};
+use contact_dd_mpi::sweep::{
+    Method, Pause, Start, SweepOutcome, SweepSettings, SweepStatus, Sweeps,
+};
 
 use crate::small::{APPROACHES, Small};
 use crate::support::close;
@@ -43,7 +45,7 @@ impl Aitken {
     ) -> SweepOutcome {
         let mut observer = |_: &_| {};
         let (mut sweeps, mut residual) =
-            Sweeps::begin(interface, s_con, settings, None, &mut observer);
+            Sweeps::begin(interface, s_con, settings, Start::Bilateral, &mut observer);
         while !sweeps.is_converged(&residual) && sweeps.sweeps_done() < limit {
             let step = self.step(interface, residual.r);
             for (u, step) in sweeps.u().iter_mut().zip(step) {
@@ -102,7 +104,7 @@ fn solve(comm: &Comm, small: &Small, way: Way) -> (SweepOutcome, Vec<u32>) {
                 &interface,
                 &mut s_con,
                 settings,
-                None,
+                Start::Bilateral,
                 &mut Never,
                 &mut observer,
             );
