@@ -13,8 +13,8 @@ use contact_dd_partition::error::OutputError;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::pair::PairMemory;
-use crate::contact::s_con::ConState;
 use crate::interface::operator::Interface;
+use crate::interface::s_con::ConState;
 use crate::sweep::progress::Progress;
 
 /// The first bytes of the file.

@@ -1,13 +1,15 @@
 //! The command line.
 
+pub mod result_path;
+
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use serde::{Serialize, Serializer};
 
+use self::result_path::default_result_path;
 use crate::error::Failure;
-use crate::output::default_result_path;
 use crate::plan::cluster::Merging;
 use crate::sweep::{Method, SweepSettings};
 
@@ -124,13 +126,9 @@ impl Settings {
         }
     }
 
-    /// What becomes of contact when Schur complements are merged: picard inverts S_0 alone, which has
-    /// to be that of all linear subdomains.
+    /// What becomes of contact when Schur complements are merged.
     pub fn merging(&self) -> Merging {
-        match self.method {
-            Method::Picard => Merging::Linear,
-            Method::Newton | Method::Anderson => Merging::All,
-        }
+        self.method.merging()
     }
 
     /// The settings as they were resolved, by name, for people.

@@ -22,16 +22,7 @@ use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
-
-/// Which plane state a two-dimensional scene is in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum PlaneState {
-    /// ε_zz = 0.
-    Strain,
-    /// σ_zz = 0.
-    Stress,
-}
+pub use crate::scene::plane::PlaneState;
 
 /// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane).
 #[derive(Clone, Debug, PartialEq)]

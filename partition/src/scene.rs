@@ -6,6 +6,7 @@ mod fault;
 pub mod material;
 pub mod number;
 mod place;
+pub mod plane;
 pub mod step;
 pub mod suggest;
 
@@ -16,10 +17,10 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::error::InputError;
-use crate::model::PlaneState;
 use crate::source;
 use condition::{Bilateral, Body, Contact, Displacement, Names, Pressure, Traction};
 use material::Elasticity;
+use plane::PlaneState;
 use step::LoadStep;
 
 /// Size beyond which a file isn't a scene (bytes).

@@ -1,4 +1,4 @@
-//! Approaches: contact conditions as bounds.
+//! Approaches t = b·u: contact conditions B u ≤ g as bounds t ≤ g.
 //!
 //! A condition `b·v ≤ g` bounds the approach t = b·v of the two sides. Solving that equation for
 //! one of its unknowns makes t an unknown in that one's place, so that a pair's problem has nothing

@@ -1,4 +1,4 @@
-//! The law of a pair: what its answer to a trace follows from.
+//! The law of a pair, λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0: what S_kl(U) of (12) follows from.
 
 use faer::Mat;
 

@@ -1,4 +1,6 @@
 //! A contact pair: the common, nonlinear Schur complement S_kl of two subdomains, (12).
+//!
+//! > S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ
 
 use faer::MatRef;
 use serde::{Deserialize, Serialize};

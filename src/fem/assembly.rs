@@ -1,4 +1,4 @@
-//! Assembly: the stiffness of a block over its unknowns, Tᵀ K T for u = T x + c.
+//! Assembly: Tᵀ K T, K = Σ K_e, over the unknowns x of a block, u = T x + c.
 
 use contact_dd_partition::model::Material;
 
@@ -66,7 +66,7 @@ fn scatter(block: &Block, dofs: &Dofs, materials: &[Material], stiffness: &mut S
         nodes.extend(cell.nodes());
         points.clear();
         points.extend(nodes.iter().map(|&n| block.points[n as usize]));
-        k.set(cell.kind, &points, &materials[cell.material].stiffness);
+        k.set(&cell.kind, &points, &materials[cell.material].stiffness);
         direct.clear();
         direct.extend(nodes.iter().filter_map(|&node| dofs.direct(node)));
         if direct.len() == nodes.len() {

@@ -1,4 +1,4 @@
-//! Equilibrium of a block, node by node, checked element by element without any factor.
+//! Balance: K u − f + Bᵀ λ of a block, node by node, summed element by element without any factor.
 
 use contact_dd_partition::model::Material;
 
@@ -54,7 +54,7 @@ impl Balance {
                 points.push(block.points[node]);
                 u_e.extend_from_slice(&u[dim * node..dim * (node + 1)]);
             }
-            k.set(cell.kind, &points, &materials[cell.material].stiffness);
+            k.set(&cell.kind, &points, &materials[cell.material].stiffness);
             for (a, node) in cell.nodes().enumerate() {
                 for component in 0..dim {
                     let (mut sum, mut absolute) = (0.0, 0.0);

@@ -1,4 +1,4 @@
-//! The contact conditions of a block as bounds on approaches.
+//! The contact conditions of a block, b·u ≤ g, as bounds on approaches, t ≤ g.
 
 use std::collections::BTreeMap;
 

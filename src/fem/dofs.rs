@@ -13,15 +13,7 @@ use super::node_frames::NodeFrames;
 use super::sites::Sites;
 use crate::contact::approach::{ApproachOf, Approaches, OnInterface, SolvingOrder, Variable};
 use crate::schur::pattern::Cliques;
-
-/// An unknown on Γ: the node's number on Γ and the axis of its frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct TraceDof {
-    /// Number on Γ.
-    pub node: u32,
-    /// Axis of the node's frame.
-    pub axis: u32,
-}
+use crate::schur::trace::TraceDof;
 
 /// Why a block's unknowns can't be numbered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -52,7 +52,7 @@ fn subtract_held(block: &Block, dofs: &Dofs, materials: &[Material], f: &mut [f6
         }
         points.clear();
         points.extend(cell.nodes().map(|node| block.points[node as usize]));
-        k.set(cell.kind, &points, &materials[cell.material].stiffness);
+        k.set(&cell.kind, &points, &materials[cell.material].stiffness);
         for (a, node) in cell.nodes().enumerate() {
             for component in 0..dim {
                 let row = k.row(dim * a + component).iter();

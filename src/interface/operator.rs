@@ -1,4 +1,6 @@
-//! S_0, the bilateral operator S_0 + S_CON', and the solve at the root.
+//! S_0 and F of (15), and the bilateral operator S_0 + S_CON' of (16)-(17) with its factor at the root.
+//!
+//! > S_0 = Σ_T R̄_iᵀ S_i R̄_i,   U^0 = (S_0 + S_CON')⁻¹ F
 
 use std::cell::OnceCell;
 

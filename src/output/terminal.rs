@@ -7,8 +7,9 @@ use std::path::Path;
 
 use contact_dd_partition::problem::LoadStep;
 
-use super::report::{Certificate, PhaseSeconds, RankReport, Report, StepReport};
+use super::report::{PhaseSeconds, RankReport, Report, StepReport};
 use super::resultants;
+use crate::certificate::Certificate;
 use crate::plan::demand::Demand;
 
 /// What is to be solved, and on what.

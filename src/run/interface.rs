@@ -7,12 +7,12 @@ use super::merge::CondensedBlocks;
 use crate::comm::{Comm, Message};
 use crate::contact::law::PairLaw;
 use crate::error::Failure;
-use crate::fem::dofs::TraceDof;
 use crate::interface::coupled::MAX_APPROACHES;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::{Contribution, Interface};
 use crate::plan::Plan;
 use crate::schur::condensed::Condensed;
+use crate::schur::trace::TraceDof;
 
 /// Numbers what clusters share of Γ and assembles S_0 and the bilateral operator on the root. Collective; the other
 /// ranks get nothing.

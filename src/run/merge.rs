@@ -12,7 +12,7 @@ use crate::comm::{Comm, Message, is_asked_to_stop};
 use crate::contact::pair::ContactPair;
 use crate::error::Failure;
 use crate::fem::assembly::Spring;
-use crate::fem::dofs::{Dofs, TraceDof};
+use crate::fem::dofs::Dofs;
 use crate::interface::numbering::check_agreement;
 use crate::output::progress::Progress;
 use crate::rigid::survey::Survey;
@@ -20,6 +20,7 @@ use crate::schur::condensed::Condensed;
 use crate::schur::local::LocalSchur;
 use crate::schur::merge::{LooseTrace, Merge, Spare};
 use crate::schur::repeats::Repeats;
+use crate::schur::trace::TraceDof;
 
 /// What this rank has of the condensed blocks and of what they were merged into.
 #[derive(Debug, Default)]

@@ -4,9 +4,9 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use crate::checkpoint::{Checkpoint, Digest, digest};
-use crate::contact::s_con::{ConState, SCon};
 use crate::error::Failure;
 use crate::interface::operator::Interface;
+use crate::interface::s_con::{ConState, SCon};
 use crate::settings::Settings;
 use crate::sweep::Pause;
 use crate::sweep::progress::Progress;

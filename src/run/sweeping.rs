@@ -6,9 +6,9 @@ use super::pausing::Checkpoints;
 use super::report::Narrator;
 use crate::comm::Comm;
 use crate::contact::pair::ContactPair;
-use crate::contact::s_con::SCon;
 use crate::error::Failure;
 use crate::interface::operator::Interface;
+use crate::interface::s_con::SCon;
 use crate::settings::Settings;
 use crate::sweep::{Method, Start, SweepOutcome, SweepRecord, Sweeps};
 

@@ -3,8 +3,9 @@
 use contact_dd_partition::problem::Catalog;
 
 use super::solution::Solution;
+use crate::certificate::Certificate;
 use crate::fem::estimate::CellError;
-use crate::output::report::{Certificate, ErrorEstimate, RankReport, Status, StepReport};
+use crate::output::report::{ErrorEstimate, RankReport, Status, StepReport};
 use crate::output::resultants::Resultants;
 use crate::plan::Plan;
 use crate::rigid::survey::Survey;

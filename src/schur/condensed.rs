@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use crate::fem::dofs::TraceDof;
+use crate::schur::trace::TraceDof;
 
 /// The Schur complement of a node of the hierarchy on what it keeps: approaches, then traces on Γ.
 #[derive(Clone, Debug)]

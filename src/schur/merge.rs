@@ -17,7 +17,7 @@ use faer::{Accum, Mat, MatMut, Par};
 use super::condensed::Condensed;
 use super::local::CondensedLoad;
 use super::partial::partial_cholesky;
-use crate::fem::dofs::TraceDof;
+use crate::schur::trace::TraceDof;
 
 /// What a merge leaves behind for solving.
 #[derive(Debug)]

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::s_con::ConTotals;
-use crate::output::report::Certificate;
+use crate::certificate::Certificate;
+use crate::interface::s_con::ConTotals;
 
 /// Equilibrium and penetration of a certificate that isn't one.
 const NOT_BALANCED: f64 = 1e-10;

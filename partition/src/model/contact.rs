@@ -1,4 +1,4 @@
-//! Γ_c: contacts as rows of B u ≤ g.
+//! Γ_c: contacts n·(u_a − u_b) ≤ g as rows of B u ≤ g.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,11 +1,10 @@
-//! Γ_τ and body forces as consistent nodal forces.
+//! Γ_τ and body forces as consistent nodal forces: f_i = ∫ N_i b dx + ∫ N_i τ dS, (3).
 
 use std::collections::BTreeMap;
 
 use super::bodies::Bodies;
 use super::groups;
 use super::surface::Surface;
-use crate::element::ElementKind;
 use crate::element::geometry::{advance, length};
 use crate::error::InputError;
 use crate::magnitude;
@@ -17,20 +16,6 @@ use crate::scene::step::Loading;
 /// Degree of exactness on facets: a cubic pressure along a curved quadratic one times a shape
 /// function and n dS needs 9.
 const FACET_DEGREE: usize = 9;
-
-/// Degree of exactness in cells: for a constant load in a cell of any shape, and for a cubic one in
-/// a cell with straight edges and nodes in their middle; on quadrilaterals in each direction.
-fn cell_degree(kind: ElementKind, is_constant: bool) -> usize {
-    match (kind, is_constant) {
-        (ElementKind::Triangle6, true) => 4,
-        (ElementKind::Triangle3 | ElementKind::Triangle6, false) => 5,
-        (ElementKind::Quad4, true) => 2,
-        (ElementKind::Quad4, false) => 5,
-        (ElementKind::Quad8 | ElementKind::Quad9, true) => 5,
-        (ElementKind::Quad8 | ElementKind::Quad9, false) => 6,
-        _ => 1,
-    }
-}
 
 /// The nodal forces of a loading of `scene`, node by node.
 pub(super) fn forces(
@@ -106,9 +91,13 @@ fn body_force(
         if bodies.cell_body[cell] != body {
             continue;
         }
-        let rule = rules
-            .entry(kind)
-            .or_insert_with(|| kind.tabulate(cell_degree(kind, force.is_constant())));
+        let rule = rules.entry(kind).or_insert_with(|| {
+            let degree = kind.rules().map(|rules| match force.is_constant() {
+                true => rules.constant_load,
+                false => rules.cubic_load,
+            });
+            degree.map_or_else(Vec::new, |degree| kind.tabulate(degree))
+        });
         let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
         for point in rule.iter() {
             let shape = point.shape.iter();
