@@ -22,7 +22,7 @@ const HEIGHT: f64 = 0.125;
 const ALONG: usize = 5;
 
 /// Cells in the height of a brick, and in half its length.
-const CELLS: usize = 8;
+const CELLS: usize = 4;
 
 /// The bricks of each course, from below and from the left.
 const COURSES: [&[&str]; 6] = [
