@@ -91,6 +91,6 @@ def in_units(values, unit):
     for factor, prefix in ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m")):
         if unit == "m" and factor > 1.0:
             continue
-        if largest >= factor:
+        if largest * (1 + 1e-6) >= factor:
             return values / factor, prefix + unit
     return (values / 1e-6, "µ" + unit) if largest > 0 else (values, unit)

@@ -26,7 +26,7 @@ AROUND = 1.8
 LONGEST = 0.09
 
 # Around panels (inches).
-LEFT, BETWEEN, RIGHT, BELOW, ABOVE = 0.25, 0.2, 0.85, 0.75, 0.4
+LEFT, BETWEEN, RIGHT, BELOW, ABOVE = 0.25, 0.2, 0.85, 0.75, 0.5
 
 # Most contacts whose largest pressure is written beside it, one by one.
 MOST_LABELS = 6
