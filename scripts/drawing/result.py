@@ -18,7 +18,7 @@ class Result:
             self.tags = grid["PointData/GlobalNodeId"][:]
             self.displacement = grid["PointData/Displacement"][:, :2]
             if "Stress" not in grid["PointData"]:
-                sys.exit(f"figures: {path}: without stresses, as --no-stress leaves it; run it without")
+                sys.exit(f"figures: {path}: there are no stresses; expected a run without --no-stress")
             self.stress = grid["PointData/Stress"][:]
             self.cell_stress = grid["CellData/Stress"][:]
             subdomain = grid["CellData/Subdomain"][:]
