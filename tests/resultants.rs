@@ -174,3 +174,65 @@ fn supports_without_names_have_one_reaction() {
     let [_, up, _] = resultant(&reactions[0]);
     close(up, 3e6 * 10.0, 1e-9 * 3e8);
 }
+
+/// Above a bed joint of the wall are 18e3 × 1.25 × 0.125 N/m a course and the load of 50e3 × 1.25 N/m. Head
+/// joints press along x, as much as the pillars do on both ends.
+#[test]
+fn the_joints_of_the_wall_carry_what_is_above_them() {
+    let solution = solve(&built_in_model("wall", 0), 33);
+    let force = |name: &str| resultant(named(&solution, "contacts", "name", name));
+    let (course, load, slack) = (18e3 * 1.25 * 0.125, 50e3 * 1.25, 1e-4);
+    let [x, y, _] = force("ground");
+    close(x, 0.0, slack);
+    close(y, load + 6.0 * course, slack);
+    for below in 1..=5 {
+        let [x, y, moment] = force(&format!("bed joint {below}"));
+        close(x, 0.0, slack);
+        close(y, load + f64::from(6 - below) * course, slack);
+        // The wall is its own mirror image.
+        close(moment, 0.625 * y, slack);
+    }
+    let pillars = resultant(named(
+        &solution,
+        "reactions",
+        "support",
+        "bilateral[1] on 'left end', 'right end'",
+    ));
+    close(pillars[0], 0.0, slack);
+}
+
+/// Flanks press along the line of action, a tangent of the base circle: P r_b = M. The largest pressure of
+/// each pair is Hertz's with its own force and radii, r₁ sin α ± s and r₂ sin α ∓ s at half a base pitch s
+/// from the pitch point, and moments are as numbers of teeth.
+#[test]
+fn gears_transmit_the_torque_and_press_as_hertz_says() {
+    let solution = solve(&built_in_model("gears", 0), 8);
+    let (module, alpha, torque) = (5e-3, 20_f64.to_radians(), 30e3);
+    let radii = [17.0, 24.0].map(|teeth| 0.5 * module * teeth);
+    let along = 0.5 * std::f64::consts::PI * module * alpha.cos();
+    let stiffness = 210e9 / (2.0 * (1.0 - 0.3 * 0.3));
+    let mut moments = 0.0;
+    for (name, s) in [("approach", -along), ("recess", along)] {
+        let pair = named(&solution, "contacts", "name", name);
+        let [x, y, moment] = resultant(pair);
+        let force = x.hypot(y);
+        close(moment / (force * radii[0] * alpha.cos()), -1.0, 2e-4);
+        close(x / y, alpha.tan(), 1e-2);
+        let curvatures = [radii[0], radii[1]].map(|r| r * alpha.sin());
+        let curvature = 1.0 / (curvatures[0] + s) + 1.0 / (curvatures[1] - s);
+        let largest = (force * stiffness * curvature / std::f64::consts::PI).sqrt();
+        let pressure = pair["largest_pressure"].as_f64().unwrap();
+        close(pressure / largest, 1.0, 5e-3);
+        moments += moment;
+    }
+    close(moments / torque, -1.0, 1e-7);
+    let rim = named(
+        &solution,
+        "reactions",
+        "support",
+        "displacement[1] on 'rim'",
+    );
+    let [_, y, moment] = resultant(rim);
+    let about_wheel = moment - (radii[0] + radii[1]) * y;
+    close(about_wheel / torque, 24.0 / 17.0, 1e-3 * 24.0 / 17.0);
+}

@@ -2,6 +2,7 @@
 
 mod blocks;
 mod crack;
+mod gears;
 mod granite;
 mod hertz;
 mod junction;
@@ -10,6 +11,7 @@ mod pattern;
 mod plain;
 mod rollers;
 mod stack;
+mod wall;
 
 use std::path::{Path, PathBuf};
 
@@ -29,7 +31,9 @@ pub const EXAMPLES: &[Example] = &[
     patch::EXAMPLE,
     junction::EXAMPLE,
     stack::EXAMPLE,
+    wall::EXAMPLE,
     rollers::EXAMPLE,
+    gears::EXAMPLE,
     plain::EXAMPLE,
 ];
 
@@ -44,7 +48,19 @@ pub struct Example {
     pub subdomains: usize,
     /// The scene as a user would write it, with its mesh in `mesh.msh`.
     pub scene: &'static str,
-    patches: fn() -> Vec<Patch>,
+    shape: Shape,
+}
+
+/// What a mesh is made from.
+#[derive(Clone, Copy, Debug)]
+enum Shape {
+    /// Mapped squares, to be filled with cells of any kind and size.
+    Squares(fn() -> Vec<Patch>),
+    /// A geometry of Gmsh, and the mesh that Gmsh made of it.
+    Gmsh {
+        geometry: &'static str,
+        mesh: &'static [u8],
+    },
 }
 
 /// Name of the mesh file of every built-in scene.
@@ -77,25 +93,41 @@ impl Example {
         Ok((Scene::parse(self.scene)?, self.mesh(refine)?))
     }
 
-    /// Makes its mesh of linear triangles with the mesh size halved `refine` times.
+    /// Makes its mesh with the mesh size halved `refine` times: linear triangles, or what Gmsh made.
     ///
     /// # Errors
-    /// A refinement too large to be made.
+    /// A refinement too large to be made, or any at all of a mesh by Gmsh.
     pub fn mesh(&self, refine: u32) -> Result<Mesh, InputError> {
-        self.mesh_of(ElementKind::Triangle3, refine)
+        match self.shape {
+            Shape::Squares(_) => self.mesh_of(ElementKind::Triangle3, refine),
+            Shape::Gmsh { mesh, .. } if refine == 0 => gmsh::parse(mesh),
+            Shape::Gmsh { .. } => Err(self.as_gmsh_made_it()),
+        }
     }
 
     /// Makes its mesh of cells of `kind` with the mesh size halved `refine` times; where the mesh
     /// size changes, there are triangles between quadrilaterals.
     ///
     /// # Errors
-    /// A refinement too large to be made.
+    /// A refinement too large to be made; a mesh by Gmsh.
     pub fn mesh_of(&self, kind: ElementKind, refine: u32) -> Result<Mesh, InputError> {
-        blocks::mesh(&(self.patches)(), refine, kind)
+        match self.shape {
+            Shape::Squares(patches) => blocks::mesh(&patches(), refine, kind),
+            Shape::Gmsh { .. } => Err(self.as_gmsh_made_it()),
+        }
     }
 
-    /// Writes `scene.toml` and `mesh.msh` into `directory`, which is made where it isn't there,
-    /// and returns the path of the scene.
+    fn as_gmsh_made_it(&self) -> InputError {
+        let name = self.name;
+        InputError::new(format!(
+            "the mesh of example `{name}` is one by Gmsh, which takes neither --refine nor --element; \
+             expected `--write-scene DIR`, which writes its geometry: then \
+             `gmsh -2 -order 2 -clscale 0.5 DIR/{name}.geo -o DIR/{MESH}` halves the mesh size"
+        ))
+    }
+
+    /// Writes `scene.toml`, `mesh.msh` and the geometry, where it is one of Gmsh, into `directory`,
+    /// which is made where it isn't there, and returns the path of the scene.
     ///
     /// # Errors
     /// The files can't be written.
@@ -107,6 +139,10 @@ impl Example {
         gmsh::write(mesh, &directory.join(MESH))?;
         let scene = directory.join("scene.toml");
         destination::write_bytes(&scene, |out| out.write_all(self.scene.as_bytes()))?;
+        if let Shape::Gmsh { geometry, .. } = self.shape {
+            let path = directory.join(self.name).with_extension("geo");
+            destination::write_bytes(&path, |out| out.write_all(geometry.as_bytes()))?;
+        }
         Ok(scene)
     }
 }

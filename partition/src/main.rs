@@ -45,10 +45,10 @@ struct Args {
     refine: u32,
 
     /// Cells of the built-in scene: triangle3, triangle6, quad4, quad8 or quad9; where the mesh
-    /// size changes, there are triangles between quadrilaterals
+    /// size changes, there are triangles between quadrilaterals [default: triangle3]
     #[arg(long, value_name = "KIND", requires = "example", conflicts_with = "scene",
-          default_value = "triangle3", value_parser = element)]
-    element: ElementKind,
+          value_parser = element)]
+    element: Option<ElementKind>,
 
     /// Write scene.toml and mesh.msh of the built-in scene into DIR, to start from; the problem
     /// file is then written only with -o
@@ -185,7 +185,10 @@ fn read(args: &Args) -> Result<Option<Source>, Failure> {
         }));
     }
     let example = example::find(args.example.as_deref().unwrap_or_default())?;
-    let mesh = example.mesh_of(args.element, args.refine)?;
+    let mesh = match args.element {
+        Some(kind) => example.mesh_of(kind, args.refine)?,
+        None => example.mesh(args.refine)?,
+    };
     if let Some(directory) = &args.write_scene {
         let scene = example.write(&mesh, directory)?;
         if let Some(output) = &args.output {

@@ -15,6 +15,11 @@ fn mesh_of(name: &str, refine: u32) -> Mesh {
     example::find(name).unwrap().mesh(refine).unwrap()
 }
 
+/// The examples whose meshes are made for any cells and size.
+fn adjustable() -> impl Iterator<Item = &'static example::Example> {
+    EXAMPLES.iter().filter(|example| example.name != "gears")
+}
+
 fn area(mesh: &Mesh) -> f64 {
     (0..mesh.cells.len()).map(|cell| mesh.measure(cell)).sum()
 }
@@ -54,6 +59,7 @@ fn every_mesh_covers_its_scene_exactly_at_every_refinement() {
         ("patch", 4.0),
         ("junction", 100.0),
         ("stack", 9.0),
+        ("wall", 1.25 * 0.75),
     ] {
         for refine in 0..2 {
             let area = area(&mesh_of(name, refine));
@@ -105,7 +111,7 @@ fn edges_of_graded_meshes_are_straight_with_nodes_in_their_middle() {
 
 #[test]
 fn examples_of_any_cells_are_the_same_scene() {
-    for example in EXAMPLES {
+    for example in adjustable() {
         let triangles = example.mesh(0).unwrap();
         for kind in [Triangle6, Quad4, Quad8, Quad9] {
             let mesh = example.mesh_of(kind, 0).unwrap();
@@ -135,7 +141,7 @@ fn examples_of_any_cells_are_the_same_scene() {
 
 #[test]
 fn refinement_cuts_every_cell_into_four_and_every_facet_into_two() {
-    for example in EXAMPLES {
+    for example in adjustable() {
         let (coarse, fine) = (example.mesh(0).unwrap(), example.mesh(1).unwrap());
         assert_eq!(fine.cells.len(), 4 * coarse.cells.len());
         assert_eq!(fine.facets.len(), 2 * coarse.facets.len());
@@ -172,6 +178,7 @@ fn meshes_are_conforming_and_their_sides_lie_on_the_boundary() {
             "patch" => 8.0 + 2.0 * 2.0_f64.hypot(0.4),
             "junction" => 40.0 + 2.0 * (10.0_f64.hypot(6.0) + 5.0 + 5.0),
             "stack" => 2.0 * (4.0 + 3.0 + 2.0 + 3.0),
+            "wall" => 27.0 * 0.75 + 6.0 * 0.5,
             _ => continue,
         };
         assert!((boundary / exact - 1.0).abs() < 1e-12, "{}", example.name);
@@ -216,7 +223,9 @@ fn bodies_hang_together_and_are_never_glued() {
         ("patch", 2),
         ("junction", 4),
         ("stack", 3),
+        ("wall", 33),
         ("rollers", 5),
+        ("gears", 2),
         ("plain", 1),
     ] {
         let mesh = mesh_of(name, 0);
@@ -256,6 +265,81 @@ fn the_granite_block_is_the_papers_and_its_own_mirror_image() {
     };
     let all = |mirror| -> BTreeSet<_> { (0..4880).map(|c| triangle(c, mirror)).collect() };
     assert_eq!(all(false), all(true));
+}
+
+#[test]
+fn every_joint_of_the_wall_has_bricks_on_both_sides() {
+    let mesh = mesh_of("wall", 0);
+    let places = |side: &str| -> BTreeSet<[i64; 2]> {
+        let nodes = nodes_of(&mesh, side).into_iter();
+        nodes.map(|n| key(mesh.points[n as usize])).collect()
+    };
+    for course in 1..=5 {
+        let sides = ["above", "below"].map(|side| format!("bed joint {course} {side}"));
+        assert_eq!(places(&sides[0]), places(&sides[1]));
+        assert!((length(&mesh, &sides[0]) - 1.25).abs() < 1e-12);
+    }
+    for course in 1..=6 {
+        let sides = ["left", "right"].map(|side| format!("head joints {course} {side}"));
+        assert_eq!(places(&sides[0]), places(&sides[1]));
+        let joints = if course % 2 == 1 { 4.0 } else { 5.0 };
+        assert!((length(&mesh, &sides[0]) - 0.125 * joints).abs() < 1e-12);
+    }
+}
+
+/// An involute of the base circle r_b that passes a point keeps φ ± (tan a − a), where φ is the angle of
+/// a point as seen from the axis and cos a = r_b/r. Gmsh's spline is off by some nanometres, most at the base
+/// circle, where the curvature of an involute has no bound.
+#[test]
+fn flanks_of_the_gears_are_involutes_that_touch_on_the_line_of_action() {
+    let (module, alpha) = (5e-3, 20_f64.to_radians());
+    let radii = [17.0, 24.0].map(|teeth| 0.5 * module * teeth);
+    let base_pitch = std::f64::consts::PI * module * alpha.cos();
+    let mesh = mesh_of("gears", 0);
+    for (side, along) in [
+        ("approach", -0.5 * base_pitch),
+        ("recess", 0.5 * base_pitch),
+    ] {
+        let touching = [radii[0] + along * alpha.sin(), along * alpha.cos()];
+        for (gear, axis, radius) in [
+            ("pinion", 0.0, radii[0]),
+            ("wheel", radii[0] + radii[1], radii[1]),
+        ] {
+            let base = radius * alpha.cos();
+            let start = |x: f64, y: f64| {
+                // The wheel turned by half a turn looks as the pinion does.
+                let (x, y) = if axis > 0.0 { (axis - x, -y) } else { (x, y) };
+                let a = (base / x.hypot(y)).min(1.0).acos();
+                (y.atan2(x) + a.tan() - a, x.hypot(y))
+            };
+            let (expected, _) = start(touching[0], touching[1]);
+            let flank = nodes_of(&mesh, &format!("{gear} flank in {side}"));
+            for &node in &flank {
+                let [x, y, _] = mesh.points[node as usize];
+                let (found, r) = start(x, y);
+                assert!(
+                    ((found - expected) * base).abs() < 3e-8,
+                    "{gear} in {side} at radius {r}: {}",
+                    (found - expected) * base
+                );
+            }
+            assert!(flank.len() > 40);
+        }
+    }
+}
+
+#[test]
+fn a_mesh_by_gmsh_is_refined_by_gmsh_only() {
+    let gears = example::find("gears").unwrap();
+    for refused in [gears.mesh(1), gears.mesh_of(Triangle6, 0)] {
+        let error = refused.unwrap_err().to_string();
+        assert!(error.contains("gmsh -2 -order 2 -clscale 0.5"), "{error}");
+        assert_eq!(error.lines().count(), 1);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    gears.write(&gears.mesh(0).unwrap(), folder.path()).unwrap();
+    let geometry = std::fs::read_to_string(folder.path().join("gears.geo")).unwrap();
+    assert!(geometry.contains("Physical Curve(\"bore\")"));
 }
 
 #[test]
@@ -304,10 +388,13 @@ fn scenes_name_groups_that_their_meshes_have() {
                 }
                 toml::Value::Array(entries) => {
                     for entry in entries {
-                        let on = entry.get("on").into_iter();
-                        let sides = entry.get("sides").and_then(|s| s.as_array());
-                        let names = on.chain(sides.into_iter().flatten());
-                        dims.extend(names.map(|name| (name.as_str().unwrap(), 1)));
+                        let keys = ["on", "sides"].map(|key| entry.get(key));
+                        for names in keys.into_iter().flatten() {
+                            let one = names.as_str().into_iter();
+                            let list = names.as_array().into_iter().flatten();
+                            let names = one.chain(list.map(|name| name.as_str().unwrap()));
+                            dims.extend(names.map(|name| (name, 1)));
+                        }
                     }
                 }
                 _ => {}

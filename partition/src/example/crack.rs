@@ -3,16 +3,16 @@
 //! The plate is turned so that the crack lies along x. Of the far load σ at the angle ψ to the crack
 //! the crack transmits the pressure σ sin²ψ and none of the shear σ sinψ cosψ.
 
-use super::Example;
 use super::blocks::Patch;
 use super::pattern::Pattern;
+use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
     name: "crack",
     about: "a closed inclined crack in a wide plate, exact answer known",
     subdomains: 6,
     scene: include_str!("crack.toml"),
-    patches,
+    shape: Shape::Squares(patches),
 };
 
 /// Half the side of the plate (m); half the length of the crack is 1 m.

@@ -4,16 +4,16 @@
 //! from the left and 7-8 from the right, whose tips 6 and 7 both sides share. The horizontal line
 //! of the mesh at mid-height follows 5-6-7-8, and cells are half as large on both sides of it.
 
-use super::Example;
 use super::blocks::{Patch, quadrilateral};
 use super::pattern::Pattern;
+use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
     name: "granite",
     about: "a loaded granite block with two edge cracks, the paper's problem",
     subdomains: 8,
     scene: include_str!("granite.toml"),
-    patches,
+    shape: Shape::Squares(patches),
 };
 
 /// Side of the block (m).

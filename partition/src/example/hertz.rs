@@ -7,16 +7,16 @@
 
 use std::f64::consts::PI;
 
-use super::Example;
 use super::blocks::Patch;
 use super::pattern::Pattern;
+use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
     name: "hertz",
     about: "line contact of two cylinders, graded mesh, exact answer known",
     subdomains: 4,
     scene: include_str!("hertz.toml"),
-    patches,
+    shape: Shape::Squares(patches),
 };
 
 /// Side of the square (m).

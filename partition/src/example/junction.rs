@@ -5,16 +5,16 @@
 //! Under 1 MPa from the right and from above the pressure is 1 MPa on every contact, and nothing
 //! jumps: u = −p (1+ν)(1−2ν)/E · (x+5, y+5).
 
-use super::Example;
 use super::blocks::{Patch, quadrilateral};
 use super::pattern::Pattern;
+use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
     name: "junction",
     about: "four blocks and three contacts that meet in one point, exact answer known",
     subdomains: 4,
     scene: include_str!("junction.toml"),
-    patches,
+    shape: Shape::Squares(patches),
 };
 
 /// Half of the square's side (m).

@@ -3,16 +3,16 @@
 //! Under the same pressure p from above and from the right the stress is −p I in the plane
 //! whatever the inclination, and u = −p (1+ν)(1−2ν)/E · (x, y).
 
-use super::Example;
 use super::blocks::{Patch, quadrilateral};
 use super::pattern::Pattern;
+use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
     name: "patch",
     about: "two blocks in uniform compression through an inclined contact, exact answer known",
     subdomains: 4,
     scene: include_str!("patch.toml"),
-    patches,
+    shape: Shape::Squares(patches),
 };
 
 fn patches() -> Vec<Patch> {

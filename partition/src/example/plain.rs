@@ -4,16 +4,16 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use super::Example;
 use super::blocks::Patch;
 use super::pattern::Pattern;
+use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
     name: "plain",
     about: "a quarter of a plate with a hole under tension, without contact",
     subdomains: 4,
     scene: include_str!("plain.toml"),
-    patches,
+    shape: Shape::Squares(patches),
 };
 
 /// Radius of the hole and half the side of the plate (m).

@@ -6,16 +6,16 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use super::Example;
 use super::blocks::Patch;
 use super::pattern::Pattern;
+use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
     name: "rollers",
     about: "three rollers between two plates, curved contact of meshes that don't match",
     subdomains: 8,
     scene: include_str!("rollers.toml"),
-    patches,
+    shape: Shape::Squares(patches),
 };
 
 /// Radius of the rollers (m).

@@ -2,16 +2,16 @@
 //!
 //! All loads are vertical, so the two upper blocks are free to slide without load along it.
 
-use super::Example;
 use super::blocks::{Patch, quadrilateral};
 use super::pattern::Pattern;
+use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
     name: "stack",
     about: "three blocks held by contact alone under gravity and an eccentric pressure",
     subdomains: 6,
     scene: include_str!("stack.toml"),
-    patches,
+    shape: Shape::Squares(patches),
 };
 
 /// Half of the blocks' widths, from below (m).

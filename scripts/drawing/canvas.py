@@ -1,0 +1,96 @@
+"""Axes, units and files of pictures."""
+
+import io
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection
+from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
+from PIL import Image
+
+from drawing.result import curves
+
+LARGEST_PNG = 300_000
+
+# Of 255, what counts as white in a palette.
+NEARLY_WHITE = 247
+
+# Pixels in one direction for each one of the picture: where antialiased triangles meet, hairlines
+# would shine through.
+OVERSAMPLED = 2
+
+
+def canvas(title):
+    figure, axes = plt.subplots(figsize=(6.8, 5.8), layout="constrained")
+    axes.set_aspect("equal")
+    axes.set_title(title)
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+    axes.spines[["top", "right"]].set_visible(False)
+    return figure, axes
+
+
+def lines(axes, points, facets, **style):
+    axes.add_collection(LineCollection(curves(points, facets), capstyle="round", **style))
+
+
+def legend(axes, columns):
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncol=columns, frameon=False)
+
+
+def scale_bar(axes, width):
+    """A bar of a round length, about a fifth of `width`, below the axes on the left."""
+    length = round_below(0.25 * width)
+    (shown,), unit = in_units(np.array([length]), "m")
+    bar = AnchoredSizeBar(
+        axes.transData, length, f"{shown:g} {unit}", loc="upper left", pad=0.2, sep=4,
+        frameon=False, size_vertical=0.006 * width, bbox_to_anchor=(0, 0),
+        bbox_transform=axes.transAxes,
+    )
+    axes.add_artist(bar)
+
+
+def round_below(value):
+    """The largest of 1, 2 and 5 times a power of ten that isn't above `value`."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(power * max(step for step in (1, 2, 5) if step * power <= value * (1 + 1e-9)))
+
+
+def save(figure, path):
+    """Saves a PNG of at most LARGEST_PNG bytes: with a palette, and with fewer pixels if need be."""
+    for dpi in (160, 140, 120, 100, 80, 60):
+        drawn = io.BytesIO()
+        figure.savefig(drawn, dpi=OVERSAMPLED * dpi)
+        image = Image.open(drawn).convert("RGB")
+        image = image.resize([side // OVERSAMPLED for side in image.size], Image.Resampling.BOX)
+        image.quantize(palette=palette(image), dither=Image.Dither.NONE).save(path, optimize=True)
+        if path.stat().st_size <= LARGEST_PNG:
+            break
+    plt.close(figure)
+    print(path)
+
+
+def palette(image):
+    """256 colours for an image, white among them; those of few pixels get more than their share."""
+    colours, counts = np.unique(np.asarray(image).reshape(-1, 3), axis=0, return_counts=True)
+    sample = np.repeat(colours, np.ceil(counts**0.4).astype(int), axis=0)
+    chosen = Image.fromarray(sample[None].astype(np.uint8)).quantize(256, kmeans=1)
+    entries = np.array(chosen.getpalette()[: 3 * 256]).reshape(-1, 3)
+    entries[entries.min(axis=1) >= NEARLY_WHITE] = 255
+    entries[entries.sum(axis=1).argmax()] = 255
+    chosen.putpalette(entries.ravel().tolist())
+    return chosen
+
+
+def in_units(values, unit):
+    """Values and unit with the prefix that suits them."""
+    largest = np.abs(values).max(initial=0.0)
+    for factor, prefix in ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m")):
+        if unit == "m" and factor > 1.0:
+            continue
+        if largest * (1 + 1e-6) >= factor:
+            return values / factor, prefix + unit
+    return (values / 1e-6, "µ" + unit) if largest > 0 else (values, unit)

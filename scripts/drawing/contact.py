@@ -1,0 +1,55 @@
+"""Contact conditions of a result along the sides that they belong to."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass
+class PressedSide:
+    """Side a of a contact: its conditions, moved with it, and segments between neighbours."""
+
+    foot: np.ndarray
+    normal: np.ndarray
+    pressure: np.ndarray
+    segments: np.ndarray
+
+    def tips(self, length):
+        """Where ordinates along the normals end that are as long as the pressure times `length`."""
+        return self.foot + length * self.pressure[:, None] * self.normal
+
+
+def pressed_sides(result, moved):
+    """The sides of all contacts that have conditions, at the places to which nodes have moved."""
+    order = np.argsort(result.tags, kind="stable")
+    sorted_tags = result.tags[order]
+    middle = result.outline[:, 1]
+    is_bent = middle >= 0
+    edges = np.concatenate(
+        [
+            result.outline[~is_bent][:, [0, 2]],
+            result.outline[is_bent][:, [0, 1]],
+            result.outline[is_bent][:, [1, 2]],
+        ]
+    )
+    edges = result.tags[edges]
+    sides = []
+    for table in result.contacts.values():
+        tags = table["node_a"]
+        if len(tags) == 0:
+            continue
+        found = order[np.searchsorted(sorted_tags, tags).clip(max=len(order) - 1)]
+        known = (result.tags[found] == tags)[:, None]
+        foot = np.where(known, moved[found], table["position"][:, :2])
+        sides.append(
+            PressedSide(foot, table["normal"][:, :2], table["pressure"], along(edges, tags))
+        )
+    return sides
+
+
+def along(edges, tags):
+    """The pairs of rows whose nodes, by their tags, are the ends of an edge."""
+    order = np.argsort(tags, kind="stable")
+    rows = order[np.searchsorted(tags[order], edges).clip(max=len(order) - 1)]
+    both = (tags[rows] == edges).all(axis=1)
+    return np.unique(np.sort(rows[both], axis=1), axis=0)

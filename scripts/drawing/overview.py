@@ -1,0 +1,202 @@
+"""The picture to look at first: the deformed shape by von Mises stress, contact pressures on it."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch, Rectangle
+from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
+from matplotlib.tri import Triangulation
+
+from drawing.canvas import in_units, lines, save, scale_bar
+from drawing.contact import pressed_sides
+from drawing.result import von_mises
+
+RED = "#d6202c"
+DASHES = (0, (5, 3))
+
+# Where contacts press within so small a part of the size, a second panel shows that part.
+SMALL = 1 / 6
+
+# Width of that part over the width of what presses.
+AROUND = 1.8
+
+# The longest ordinate of a pressure over the size of a panel.
+LONGEST = 0.09
+
+# Around panels (inches).
+LEFT, BETWEEN, RIGHT, BELOW, ABOVE = 0.25, 0.2, 0.85, 0.75, 0.5
+
+# Most contacts whose largest pressure is written beside it, one by one.
+MOST_LABELS = 6
+
+
+def overview(result, scale, path):
+    moved = result.deformed(scale)
+    sides = pressed_sides(result, moved)
+    part = part_that_presses(sides, result.size)
+    panels = [window([moved], 0.02), part] if part else [whole(result, moved, sides)]
+    longest = LONGEST * max(panels[-1][1] - panels[-1][0])
+
+    mesh = Triangulation(*result.at_points(moved).T, result.triangles)
+    values = von_mises(result.at_points(result.stress))
+    highest = bound(mesh, values, panels[-1])
+    (shown,), unit = in_units(np.array([highest]), "Pa")
+    values = values * (shown / highest)
+
+    figure, all_axes, of_colours = layout(panels)
+    has_moved = np.abs(moved - result.points).max() > 0.004 * result.size
+    for axes, (low, high) in zip(all_axes, panels):
+        colours = axes.tripcolor(mesh, values, shading="gouraud", cmap="viridis", vmin=0, vmax=shown)
+        if has_moved:
+            lines(axes, result.points, result.outline, colors="0.45", linewidths=0.6, linestyles=DASHES)
+        lines(axes, moved, result.outline, colors="k", linewidths=0.9)
+        axes.set_xlim(low[0], high[0])
+        axes.set_ylim(low[1], high[1])
+        scale_bar(axes, high[0] - low[0])
+    if part:
+        frame = Rectangle(part[0], *(part[1] - part[0]), fill=False, ec="k", lw=1.0)
+        all_axes[0].add_patch(frame)
+    largest = max((side.pressure.max() for side in sides), default=0.0)
+    if largest > 0:
+        pressures(all_axes[-1], sides, longest / largest)
+        labels(all_axes[-1], sides, longest / largest)
+    exceeded = "max" if values.max() > 1.001 * shown else "neither"
+    figure.colorbar(colours, cax=of_colours, extend=exceeded, label=f"von Mises stress [{unit}]")
+    what = "Von Mises stress and contact pressure" if sides else "Von Mises stress"
+    title = f"{what}, deformation × {scale:g}"
+    figure.suptitle(title, y=1 - 0.12 / figure.get_figheight(), va="top", fontsize=12)
+    key(figure, sides, largest, has_moved)
+    save(figure, path)
+
+
+def whole(result, moved, sides):
+    """A window on the bodies as they were and are, with the pressures on them."""
+    largest = max((side.pressure.max() for side in sides), default=0.0)
+    longest = LONGEST * max(np.ptp(moved, axis=0))
+    tips = [side.tips(longest / largest) for side in sides] if largest > 0 else []
+    return window([result.points, moved, *tips], 0.02)
+
+
+def window(places, margin):
+    """The corners of a rectangle around all of `places`."""
+    points = np.concatenate(places)
+    low, high = points.min(axis=0), points.max(axis=0)
+    around = margin * max(high - low)
+    return low - around, high + around
+
+
+def part_that_presses(sides, size):
+    """The square around all that presses, where it is a small part of the size."""
+    pressing = [side.foot[side.pressure > 0] for side in sides if side.pressure.max() > 0]
+    if not pressing:
+        return None
+    low, high = window(pressing, 0.0)
+    width = max(high - low)
+    if not 0 < width < SMALL * size:
+        return None
+    middle, half = (low + high) / 2, AROUND * width / 2
+    return middle - half, middle + half
+
+
+def bound(mesh, values, panel):
+    """The value that all but a hundredth of the panel's area stays below; twice one that is uniform."""
+    corners = np.stack([mesh.x, mesh.y], axis=1)[mesh.triangles]
+    middle = corners.mean(axis=1)
+    inside = np.all((middle > panel[0]) & (middle < panel[1]), axis=1)
+    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    area = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[inside]
+    value = values[mesh.triangles[inside]].max(axis=1)
+    order = np.argsort(value)
+    share = np.cumsum(area[order]) / area.sum()
+    found = value[order][min(np.searchsorted(share, 0.99), len(order) - 1)]
+    return max(2 * found if np.ptp(value) < 1e-3 * found else found, 1e-300)
+
+
+def layout(panels):
+    """Axes side by side, as wide as the shapes of the panels ask for, and those of the colours."""
+    ratios = [(high - low)[0] / (high - low)[1] for low, high in panels]
+    height = float(np.clip((6.4 if len(panels) == 1 else 7.6) / sum(ratios), 2.4, 5.2))
+    widths = [height * ratio for ratio in ratios]
+    total = LEFT + sum(widths) + BETWEEN * len(panels) + RIGHT
+    tall = BELOW + height + ABOVE
+    figure = plt.figure(figsize=(total, tall))
+
+    def place(x, width):
+        return figure.add_axes((x / total, BELOW / tall, width / total, height / tall))
+
+    axes, x = [], LEFT
+    for k, width in enumerate(widths):
+        axes.append(place(x, width))
+        axes[k].set_xticks([])
+        axes[k].set_yticks([])
+        axes[k].spines[:].set_visible(k > 0)
+        x += width + BETWEEN
+    return figure, axes, place(x, 0.16)
+
+
+def pressures(axes, sides, length):
+    """Bands along closed contacts, as wide as the pressure times `length`, and open contacts in white."""
+    for side in sides:
+        tip = side.tips(length)
+        a, b = side.segments.T
+        closed = (side.pressure[a] > 0) | (side.pressure[b] > 0)
+        a, b = a[closed], b[closed]
+        shape = band(side.foot[a], tip[a], tip[b], side.foot[b])
+        axes.add_patch(PathPatch(shape, fc=RED, alpha=0.45, lw=0))
+        for ends in ([tip[a], tip[b]], [side.foot[a], side.foot[b]]):
+            strokes(axes, ends, colors=RED, linewidths=1.1)
+        a, b = side.segments[~closed].T
+        for color, width in (("k", 2.4), ("w", 1.2)):
+            strokes(axes, [side.foot[a], side.foot[b]], colors=color, linewidths=width)
+
+
+def strokes(axes, ends, **style):
+    axes.add_collection(LineCollection(np.stack(ends, axis=1), capstyle="round", **style))
+
+
+def labels(axes, sides, length):
+    """The largest pressure of each contact, or of all where there are many."""
+    labelled = [side for side in sides if side.pressure.max() > 0]
+    if len(labelled) > MOST_LABELS:
+        labelled = [max(labelled, key=lambda side: side.pressure.max())]
+    for side in labelled:
+        k = middle_of_largest(side)
+        (shown,), unit = in_units(side.pressure[k : k + 1], "Pa")
+        axes.annotate(
+            f"{shown:.3g} {unit}", side.tips(length)[k], xytext=8 * side.normal[k],
+            textcoords="offset points", ha="center", va="center", fontsize=8, color=RED,
+            path_effects=[withStroke(linewidth=2.2, foreground="w")],
+        )
+
+
+def middle_of_largest(side):
+    """Of the places where the pressure is largest, all but rounding, the one in their middle."""
+    largest = np.flatnonzero(side.pressure > 0.999 * side.pressure.max())
+    away = side.foot[largest] - side.foot[largest].mean(axis=0)
+    return largest[np.linalg.norm(away, axis=1).argmin()]
+
+
+def band(*corners):
+    """One path of quadrilaterals that run the same way round, so that none is filled twice."""
+    quads = np.stack(corners, axis=1)
+    diagonals = quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1]
+    clockwise = diagonals[0][:, 0] * diagonals[1][:, 1] < diagonals[0][:, 1] * diagonals[1][:, 0]
+    quads[clockwise] = quads[clockwise, ::-1]
+    closed = np.concatenate([quads, quads[:, :1]], axis=1)
+    codes = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
+    return Path(closed.reshape(-1, 2), np.tile(codes, len(quads)))
+
+
+def key(figure, sides, largest, has_moved):
+    entries = []
+    if has_moved:
+        entries.append(Line2D([], [], color="0.45", lw=0.8, ls=DASHES, label="undeformed"))
+    if largest > 0:
+        (shown,), unit = in_units(np.array([largest]), "Pa")
+        entries.append(Patch(fc=RED, alpha=0.6, label=f"contact pressure, at most {shown:.3g} {unit}"))
+    if any((side.pressure <= 0).any() for side in sides):
+        halo = [withStroke(linewidth=2.6, foreground="k")]
+        entries.append(Line2D([], [], color="w", lw=1.2, path_effects=halo, label="open contact"))
+    figure.legend(handles=entries, loc="lower center", ncol=3, frameon=False, fontsize=9)

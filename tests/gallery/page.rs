@@ -1,0 +1,77 @@
+//! A page of the gallery.
+
+use std::fs;
+use std::path::PathBuf;
+
+use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag, TagEnd};
+
+use super::expected::Expected;
+
+/// What a page says.
+pub struct Page {
+    /// What it shows of its scene.
+    pub scene: Vec<String>,
+    /// The lines of its first block of commands.
+    pub commands: Vec<String>,
+    /// The rows of its table.
+    pub expected: Vec<Expected>,
+}
+
+pub fn folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("docs/gallery")
+}
+
+/// All pages but the index, with the names of their scenes.
+pub fn all() -> Vec<(Page, String)> {
+    let mut pages: Vec<(Page, String)> = Vec::new();
+    for entry in fs::read_dir(folder()).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        if path.extension().is_some_and(|ending| ending == "md") && name != "README" {
+            pages.push((Page::parse(&fs::read_to_string(&path).unwrap()), name));
+        }
+    }
+    pages.sort_by(|(_, one), (_, other)| one.cmp(other));
+    pages
+}
+
+impl Page {
+    /// # Panics
+    /// If a row of its table can't be read.
+    pub fn parse(text: &str) -> Self {
+        let mut page = Self {
+            scene: Vec::new(),
+            commands: Vec::new(),
+            expected: Vec::new(),
+        };
+        let (mut words, mut language) = (String::new(), None);
+        let mut row: Vec<String> = Vec::new();
+        for event in Parser::new_ext(text, Options::ENABLE_TABLES) {
+            match event {
+                Event::Start(Tag::CodeBlock(CodeBlockKind::Fenced(of))) => {
+                    language = Some(of.into_string());
+                    words.clear();
+                }
+                Event::End(TagEnd::CodeBlock) => match language.take().as_deref() {
+                    Some("toml") => page.scene.push(std::mem::take(&mut words)),
+                    Some("sh") if page.commands.is_empty() => {
+                        page.commands = words.lines().map(str::to_owned).collect();
+                    }
+                    _ => {}
+                },
+                Event::Start(Tag::TableCell) => words.clear(),
+                Event::End(TagEnd::TableCell) => row.push(std::mem::take(&mut words)),
+                Event::End(TagEnd::TableHead) => row.clear(),
+                Event::End(TagEnd::TableRow) => {
+                    // Tables of pictures and the like have other widths.
+                    if let Ok(cells) = <[String; 5]>::try_from(std::mem::take(&mut row)) {
+                        page.expected.push(Expected::parse(&cells));
+                    }
+                }
+                Event::Text(text) | Event::Code(text) => words.push_str(&text),
+                _ => {}
+            }
+        }
+        page
+    }
+}
