@@ -25,7 +25,9 @@ const ROUND_OFF: f64 = 1e-15;
 const FALL_BACK_TOLERANCE: f64 = 1e-13;
 
 /// How U is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
     /// Newton: S_0 + S_CON is inverted, contact conditions included.
