@@ -320,7 +320,8 @@ def read(path):
                 if len(table["pressure"]) > 0
             }
     except (OSError, KeyError, ValueError) as error:
-        sys.exit(f"summary: {path}: isn't a result of contact-dd-mpi: {error}")
+        print(f"summary: {path}: isn't a result of contact-dd-mpi: {error}", file=sys.stderr)
+        sys.exit(2)
     return report, sweeps, tables
 
 

@@ -2,25 +2,23 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
 use serde_json::Value;
 use tempfile::tempdir;
 
 use super::report;
+use super::support::process::{Ended, Running};
+use super::support::solver::LIMIT;
 
 /// What the script makes of the files; `None` where there is no Python.
-fn collect(files: &[&Path]) -> Option<Output> {
+fn collect(files: &[&Path]) -> Option<Ended> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/collect");
     if Command::new("python3").arg("--version").output().is_err() {
         eprintln!("skipped: there is no python3");
         return None;
     }
-    Some(Command::new(script).args(files).output().unwrap())
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
+    Some(Running::start(Command::new(script).args(files)).wait(LIMIT))
 }
 
 #[test]
@@ -33,11 +31,11 @@ fn every_report_is_a_row_of_the_same_columns() {
     report["error_estimate"] = Value::Null;
     report["warnings"] = serde_json::json!(["one, two", "three"]);
     fs::write(&older, report.to_string()).unwrap();
-    let Some(output) = collect(&[&whole, &older]) else {
+    let Some(ended) = collect(&[&whole, &older]) else {
         return;
     };
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let table = text(&output.stdout);
+    assert_eq!(ended.code(), 0, "{}", ended.stderr);
+    let table = ended.stdout;
     let lines: Vec<&str> = table.lines().collect();
     assert_eq!(lines.len(), 3, "{table}");
     let columns: Vec<&str> = lines[0].split(',').collect();
@@ -74,18 +72,18 @@ fn what_is_no_report_is_named() {
         ("dofs,ranks", "isn't a report"),
     ] {
         fs::write(&other, content).unwrap();
-        let Some(output) = collect(&[&other]) else {
+        let Some(ended) = collect(&[&other]) else {
             return;
         };
-        let said = text(&output.stderr);
-        assert!(!output.status.success() && output.stdout.is_empty());
+        let said = &ended.stderr;
+        assert!(ended.code() == 2 && ended.stdout.is_empty());
         assert!(
             said.contains("other.json") && said.contains(words),
             "{said}"
         );
     }
     let missing = folder.path().join("missing.json");
-    if let Some(output) = collect(&[&missing]) {
-        assert!(text(&output.stderr).contains("missing.json: No such file"));
+    if let Some(ended) = collect(&[&missing]) {
+        assert!(ended.stderr.contains("missing.json: No such file"));
     }
 }

@@ -11,6 +11,7 @@
 mod collecting;
 mod page;
 mod schema;
+mod summary;
 #[path = "../support/mod.rs"]
 mod support;
 
