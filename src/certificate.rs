@@ -17,7 +17,7 @@ use crate::fem::node_frames::supported_frames;
 const NO_LOAD: f64 = 1e-12;
 
 /// Checks of the full discrete problem, all relative to the scale of what they check.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct Certificate {
     /// ‖K u − f + Bᵀλ‖∞ / ‖|K||u| + |f| + |Bᵀλ|‖∞.
     pub equilibrium: f64,

@@ -6,6 +6,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use self::result_path::default_result_path;
@@ -14,7 +15,8 @@ use crate::plan::cluster::Merging;
 use crate::sweep::{Method, SweepSettings};
 
 /// Solves unilateral contact problems by domain decomposition after J. Daněk.
-#[derive(Clone, Debug, PartialEq, Parser, Serialize)]
+#[derive(Clone, Debug, PartialEq, Parser, Serialize, JsonSchema)]
+#[schemars(description = "The options of a run.")]
 #[command(
     version,
     after_help = "Examples:\n  contact-dd-partition --example granite -n 8 -o granite.h5\n  \
@@ -27,14 +29,17 @@ use crate::sweep::{Method, SweepSettings};
 pub struct Settings {
     /// Problem file, made by contact-dd-partition.
     #[serde(serialize_with = "as_text")]
+    #[schemars(with = "String")]
     pub problem: PathBuf,
     /// Result file [default: the problem's name with the extension vtkhdf].
     #[arg(short, long, value_name = "FILE")]
     #[serde(serialize_with = "as_optional_text")]
+    #[schemars(with = "Option<String>")]
     pub output: Option<PathBuf>,
     /// Write the report as JSON, too.
     #[arg(long, value_name = "FILE")]
     #[serde(serialize_with = "as_optional_text")]
+    #[schemars(with = "Option<String>")]
     pub report: Option<PathBuf>,
     /// How the interface problem is solved.
     #[arg(long, value_enum, default_value_t = Method::Newton)]

@@ -1,9 +1,10 @@
 //! What a program was made of: the same of everything gives the same bits.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The build of this program.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Build {
     /// Commit of its source, with `-dirty` behind it where files were changed; `null` in a debug
     /// build and where the source was no repository.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use contact_dd_partition::destination::{Destination, failure, plain_words};
 use contact_dd_partition::error::OutputError;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::build::Build;
@@ -13,17 +14,17 @@ use crate::certificate::Certificate;
 use crate::settings::Settings;
 
 /// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// The tolerance is met and the active set stays.
     Converged,
-    /// It isn't.
+    /// The tolerance isn't met, or contacts still change; the results are written all the same.
     NotConverged,
 }
 
 /// What the mesh does to the stress, after Zienkiewicz and Zhu, in the energy norm.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct ErrorEstimate {
     /// ‖σ* − σ_h‖ / ‖σ‖, with σ* the recovered stress and ‖σ‖² = ‖σ_h‖² + ‖σ* − σ_h‖².
     pub relative: f64,
@@ -34,7 +35,7 @@ pub struct ErrorEstimate {
 }
 
 /// Time that each phase of a run took, in seconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct PhaseSeconds {
     /// From start to end.
     pub total: f64,
@@ -85,7 +86,7 @@ impl PhaseSeconds {
 }
 
 /// What one rank had to do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct RankReport {
     /// Its time in each phase.
     #[serde(flatten)]
@@ -101,7 +102,7 @@ pub struct RankReport {
 }
 
 /// A load step. Of sweeps that ended without converging the answer is there all the same.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct StepReport {
     /// Its name.
     pub name: String,
@@ -129,7 +130,7 @@ pub struct StepReport {
 }
 
 /// The report. A number that isn't finite is `null` in its JSON.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Report {
     /// How the run ended.
     pub status: Status,

@@ -3,6 +3,7 @@
 use std::io::{Result, Write};
 
 use contact_dd_partition::problem::Catalog;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::result::ContactResult;
@@ -11,7 +12,7 @@ use super::result::ContactResult;
 const LINES: usize = 12;
 
 /// A force and its moment about the origin (N and N m, per metre of thickness in the plane).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Resultant {
     /// Force.
     pub force: [f64; 3],
@@ -31,7 +32,7 @@ impl Resultant {
 }
 
 /// What a contact transfers.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct ContactResultant {
     /// Name of the contact.
     pub name: String,
@@ -56,7 +57,7 @@ impl ContactResultant {
 }
 
 /// What a condition that prescribes displacements exerts on the bodies.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Reaction {
     /// The condition: its kind, its number among those, and where it holds.
     pub support: String,
@@ -66,7 +67,7 @@ pub struct Reaction {
 }
 
 /// All of them.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Resultants {
     /// Contacts, in the order of the scene.
     pub contacts: Vec<ContactResultant>,

@@ -9,7 +9,7 @@ use super::{Next, Residual, Sweeps};
 use crate::plan::cluster::Merging;
 
 /// How U is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
     /// Newton: S_0 + S_CON is inverted, contact conditions included.

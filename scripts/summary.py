@@ -1,0 +1,349 @@
+"""One page on a run, from its result file; run it by scripts/summary."""
+
+import argparse
+import html
+import io
+import json
+import pathlib
+import sys
+
+import h5py
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import EngFormatter, MaxNLocator
+
+PHASES = ["read", "assemble", "factorize", "interface", "sweeps", "recover", "write"]
+COLORS = ["#9aa5b1", "#5b8ff9", "#1f5fa8", "#d62728", "#ff9d4d", "#3a9d5d", "#6b7785"]
+# What the checks of the solution mean, and what is demanded of them, where something is.
+CERTIFICATE = {
+    "equilibrium": (1e-14, "forces at the nodes balance, relative to their terms"),
+    "equilibrium_of_load": (1e-6, "the same, relative to the largest load"),
+    "penetration": (1e-14, "bodies don't overlap, relative to the largest displacement"),
+    "tension": (1e-12, "contacts don't pull, relative to the load"),
+    "complementarity": (None, "where there is a gap there is no force"),
+    "force_balance": (None, "loads and reactions sum to zero"),
+    "moment_balance": (None, "so do their moments"),
+    "interface_jump": (None, "the displacement is one across Γ"),
+}
+# More of them are on the page in words only: one has to be able to look at it.
+MOST_CURVES = 12
+MOST_ROWS = 24
+
+STYLE = """
+body { font: 14px/1.45 system-ui, sans-serif; color: #1d2733; max-width: 62em; margin: 2em auto; padding: 0 1.5em }
+h1 { font-size: 1.6em; margin: 0 } h2 { font-size: 1.1em; margin: 2em 0 .5em; border-bottom: 1px solid #d5dbe1 }
+p.sub { color: #5d6b79; margin: .2em 0 1.2em } small, td.note { color: #5d6b79 }
+.badge { font-size: .55em; padding: .2em .7em; border-radius: 1em; vertical-align: middle; margin-left: .6em }
+.good { background: #dff3e4; color: #17682f } .bad { background: #fbe0de; color: #9b1c14 }
+.cards { display: grid; grid-template-columns: repeat(auto-fit, minmax(7.9em, 1fr)); gap: .7em }
+.card { border: 1px solid #d5dbe1; border-radius: .5em; padding: .5em .8em }
+.card b { display: block; font-size: 1.1em; white-space: nowrap } .card span { color: #5d6b79 }
+table { border-collapse: collapse; width: 100% } th { text-align: left; color: #5d6b79; font-weight: 600 }
+th, td { padding: .2em .8em .2em 0; border-bottom: 1px solid #eceff2; vertical-align: top }
+.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
+.key span { margin-right: 1em } .key span::before { content: ""; display: inline-block; width: .8em; height: .8em;
+  background: var(--c); margin-right: .35em }
+svg { max-width: 100%; height: auto } li { margin: .2em 0 }
+ul.warnings li::marker { content: "⚠ "; } code { font-size: .95em }
+@media print { * { print-color-adjust: exact } body { margin: 0; max-width: none; font-size: 11px } section { break-inside: avoid } }
+"""
+
+
+def escape(value):
+    return html.escape(str(value))
+
+
+def si(value, unit, digits=3):
+    """A number with a prefix of its unit: 8.32 MPa."""
+    if value is None:
+        return "–"
+    if value == 0:
+        return f"0 {unit}"
+    power = int(np.clip(np.floor(np.log10(abs(value)) / 3), -3, 3))
+    prefix = {-3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}[power]
+    return f"{value / 10.0 ** (3 * power):.{digits}g} {prefix}{unit}"
+
+
+def forces(found):
+    """Forces with their units; what is round-off of the largest is nothing."""
+    largest = max((abs(f) for one in found for f in one["force"] if f is not None), default=0)
+    return [[si(f if f is None or abs(f) > 1e-9 * largest else 0, "N/m") for f in one["force"][:2]] for one in found]
+
+
+def more(found, words):
+    count = len(found) - MOST_ROWS
+    return f"<p><small>and {count} more{words}; the report has all</small></p>" if count > 0 else ""
+
+
+def short(value):
+    """A number small or large, in few digits."""
+    return "–" if value is None else f"{value:.2g}" if value else "0"
+
+
+def table(head, rows, numbers=()):
+    """A table; the columns in `numbers` are set right. Cells are escaped already."""
+    def line(tag, cells):
+        kinds = (' class="number"' if i in numbers else "" for i in range(len(cells)))
+        return "<tr>" + "".join(f"<{tag}{k}>{c}</{tag}>" for k, c in zip(kinds, cells)) + "</tr>"
+
+    return "<table>" + line("th", head) + "".join(line("td", row) for row in rows) + "</table>"
+
+
+def section(title, *content):
+    return f"<section><h2>{escape(title)}</h2>{''.join(content)}</section>"
+
+
+def svg(figure):
+    text = io.StringIO()
+    figure.savefig(text, format="svg", metadata={"Date": None})
+    plt.close(figure)
+    return text.getvalue()[text.getvalue().index("<svg") :]
+
+
+def axes_of(width, height, layout="constrained", **options):
+    figure, axes = plt.subplots(figsize=(width, height), layout=layout, **options)
+    for one in np.ravel(axes):
+        one.spines[["top", "right"]].set_visible(False)
+        one.grid(alpha=0.25, lw=0.5)
+        one.set_axisbelow(True)
+    return figure, axes
+
+
+def head(report, path):
+    good = report["status"] == "converged"
+    status = "converged" if good else "not converged"
+    problem = pathlib.Path(report["settings"]["problem"]).name
+    ranks = f"{report['ranks']} rank{'s' * (report['ranks'] > 1)}"
+    hosts = f"{report['hosts']} host{'s' * (report['hosts'] > 1)}"
+    commit = report["build"]["commit"]
+    cards = [
+        (f"{report['dofs']:,}".replace(",", " "), "degrees of freedom"),
+        (report["subdomains"], "subdomains"),
+        (f"{report['active_contacts']} of {report['contact_conditions']}", "contact conditions closed"),
+        (report["sweeps"], f"sweeps of {escape(report['method'])}"),
+        (si(report["seconds"]["total"], "s"), "from start to end"),
+        (si(report["peak_memory_bytes"], "B"), "memory of all ranks"),
+    ]
+    if report.get("error_estimate"):
+        cards.append((f"{100 * report['error_estimate']['relative']:.2g} %", "error of the mesh, estimated"))
+    return (
+        f'<h1>{escape(problem)}<span class="badge {"good" if good else "bad"}">{status}</span></h1>'
+        f'<p class="sub">{escape(path)} · {ranks} with {report["threads"]} thread{"s" * (report["threads"] > 1)} '
+        f'on {hosts} · contact-dd-mpi {escape(report["version"])}{f" ({escape(commit[:10])})" if commit else ""}</p>'
+        '<div class="cards">'
+        + "".join(f'<div class="card"><b>{value}</b><span>{words}</span></div>' for value, words in cards)
+        + "</div>"
+    )
+
+
+def warnings(report):
+    if not report["warnings"]:
+        return ""
+    items = "".join(f"<li>{escape(text)}</li>" for text in report["warnings"])
+    return section("Warnings", f'<ul class="warnings">{items}</ul>')
+
+
+def certificate(report):
+    rows = []
+    for name, (limit, meaning) in CERTIFICATE.items():
+        value = report["certificate"].get(name)
+        mark = ""
+        if limit is not None:
+            holds = value is not None and value <= limit
+            mark = '<b style="color:#17682f">✓</b>' if holds else '<b style="color:#9b1c14">✗</b>'
+        rows.append([mark, name.replace("_", " "), short(value), short(limit) if limit else "", escape(meaning)])
+    return section(
+        "Certificate: the full discrete problem, checked",
+        table(["", "", "found", "at most", ""], rows, numbers=(2, 3)),
+    )
+
+
+def convergence(report, rows):
+    if report["contact_conditions"] == 0:
+        return section("Convergence", "<p>No contact: one linear solve, no sweeps.</p>")
+    residual, active = rows["residual"], rows["active"]
+    sweeps = np.arange(len(residual))
+    figure, (left, right) = axes_of(9.2, 2.7, ncols=2)
+    many = len(sweeps) > 40
+    left.semilogy(sweeps, np.maximum(residual, 1e-18), "-" if many else "o-", color="#1f5fa8", ms=4, lw=1.4)
+    left.axhline(report["settings"]["tolerance"], color="#d62728", lw=1, ls="--")
+    left.annotate("tolerance", (1, report["settings"]["tolerance"]), xycoords=("axes fraction", "data"),
+                  ha="right", va="bottom", color="#d62728", fontsize=8)
+    left.set_ylabel("residual")
+    right.plot(sweeps, active, "-" if many else "o-", color="#3a9d5d", ms=4, lw=1.4)
+    right.set_ylim(0, 1.08 * max(1, active.max()))
+    right.set_ylabel("closed conditions")
+    for axes in (left, right):
+        axes.set_xlabel("sweep (0: bilateral start)")
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    return section("Convergence", svg(figure))
+
+
+def ranks(report):
+    times = np.array([[rank[phase] for phase in PHASES] for rank in report["per_rank"]])
+    totals = np.array([rank["total"] for rank in report["per_rank"]])
+    memory = np.array([rank["peak_memory_bytes"] for rank in report["per_rank"]])
+    count = len(times)
+    places = np.arange(count)
+    figure, (left, right) = axes_of(9.2, min(2.2 + 0.12 * count, 7.5), ncols=2, sharey=True, width_ratios=[2.2, 1])
+    start = np.zeros(count)
+    for phase, color, column in zip(PHASES, COLORS, times.T):
+        left.barh(places, column, 0.8, left=start, color=color, label=phase)
+        start += column
+    left.barh(places, np.maximum(totals - start, 0), 0.8, left=start, color="#e3e7eb", label="waiting, other")
+    left.set_xlabel("time")
+    left.xaxis.set_major_formatter(EngFormatter("s"))
+    left.set_ylabel("rank")
+    left.set_yticks(places[:: max(1, -(-count // 32))])
+    left.set_ylim(count - 0.4, -0.6)
+    right.barh(places, memory, 0.8, color="#8d7bb8")
+    right.set_xlabel("memory")
+    right.xaxis.set_major_formatter(EngFormatter("B"))
+    right.xaxis.set_major_locator(MaxNLocator(4))
+    key = "".join(f'<span style="--c:{color}">{phase}</span>' for phase, color in
+                  [*zip(PHASES, COLORS), ("waiting, other", "#e3e7eb")])
+    rows = []
+    for phase, column in [*zip(PHASES, times.T), ("total", totals)]:
+        share = column.mean() / totals.mean() if totals.mean() > 0 else 0
+        rows.append([phase, *(si(number, "s") for number in (column.min(), column.mean(), column.max())),
+                     f"{100 * share:.0f} %"])
+    return section("Time and memory", f'<p class="key">{key}</p>', svg(figure),
+                   table(["phase", "least", "mean", "largest of a rank", "share"], rows, numbers=(1, 2, 3, 4)))
+
+
+def along(points):
+    """An order in which neighbours follow each other, and the way to each; a jump leaves the line open."""
+    left = np.ones(len(points), dtype=bool)
+    at = int(np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1)))
+    order, steps = [at], [0.0]
+    left[at] = False
+    while left.any():
+        others = np.flatnonzero(left)
+        distance = np.linalg.norm(points[others] - points[at], axis=1)
+        nearest = int(np.argmin(distance))
+        at = others[nearest]
+        order.append(at)
+        steps.append(float(distance[nearest]))
+        left[at] = False
+    steps = np.array(steps)
+    jumps = steps > 6 * np.median(steps[1:]) if len(steps) > 2 else np.zeros(len(steps), dtype=bool)
+    return np.array(order), np.cumsum(steps), jumps
+
+
+def curve(axes, name, contact):
+    order, way, jumps = along(contact["position"])
+    pressure = contact["pressure"][order]
+    closed = contact["status"][order] == 1
+    starts = [0, *np.flatnonzero(jumps), len(way)]
+    for first, last in zip(starts, starts[1:]):
+        axes.fill_between(way[first:last], pressure[first:last], color="#5b8ff9", alpha=0.25, lw=0)
+        axes.plot(way[first:last], pressure[first:last], color="#1f5fa8", lw=1.3)
+    if len(way) <= 60:
+        # On the axis they would be half of a circle.
+        style = {"ls": "", "marker": "o", "ms": 2.6, "clip_on": False, "zorder": 3}
+        axes.plot(way[closed], pressure[closed], color="#1f5fa8", **style)
+        axes.plot(way[~closed], pressure[~closed], mfc="white", mec="#8795a3", mew=0.8, **style)
+    axes.set_title(name if len(name) < 32 else name[:30] + "…", fontsize=9, loc="left")
+    axes.set_ylim(0, 1.1 * pressure.max() if pressure.max() > 0 else 1)
+    axes.xaxis.set_major_formatter(EngFormatter("m", sep=" "))
+    axes.yaxis.set_major_formatter(EngFormatter("Pa", sep=" "))
+    axes.xaxis.set_major_locator(MaxNLocator(4))
+    axes.yaxis.set_major_locator(MaxNLocator(4))
+    axes.tick_params(labelsize=7.5)
+
+
+def contacts(report, tables):
+    found = sorted(report["contacts"], key=lambda contact: -(contact["largest_pressure"] or 0))
+    if not found:
+        return ""
+    shown = [contact["name"] for contact in found if contact["name"] in tables][:MOST_CURVES]
+    columns = min(3, len(shown))
+    lines = -(-len(shown) // columns)
+    height = 1.95 * lines + 0.1
+    figure, panels = axes_of(9.2, height, layout=None, ncols=columns, nrows=lines, squeeze=False)
+    # By hand: constrained_layout takes the room of a long name from the curves.
+    figure.subplots_adjust(left=0.07, right=0.99, bottom=0.3 / height, top=1 - 0.25 / height, wspace=0.27, hspace=0.42)
+    for name, axes in zip(shown, panels.flat):
+        curve(axes, name, tables[name])
+    for axes in panels.flat[len(shown) :]:
+        axes.set_visible(False)
+    rows = [
+        [escape(c["name"]), f"{c['closed']} of {c['conditions']}", si(c["largest_pressure"], "Pa"), *force]
+        for c, force in zip(found[:MOST_ROWS], forces(found))
+    ]
+    text = "Pressure along side a of each contact, undeformed; hollow where it is open. "
+    if len(found) > len(shown):
+        text += f"The {len(shown)} of {len(found)} contacts with the largest pressures. "
+    return section(
+        "Contacts", f"<p><small>{text}</small></p>", svg(figure),
+        table(["contact", "closed", "largest pressure", "force on side a, x", "y"], rows, numbers=(1, 2, 3, 4)),
+        more(found, " with lower pressures"),
+    )
+
+
+def reactions(report):
+    if not report["reactions"]:
+        return ""
+    found = report["reactions"]
+    rows = [[escape(r["support"]), *force] for r, force in zip(found[:MOST_ROWS], forces(found))]
+    return section("Reactions of supports", table(["support", "x", "y"], rows, numbers=(1, 2)), more(found, ""))
+
+
+def rest(report):
+    settings = ", ".join(
+        f"{name.replace('_', ' ')} {json.dumps(value) if isinstance(value, bool) else value}"
+        for name, value in report["settings"].items()
+        if value not in (None, False)
+    )
+    rows = [["settings", escape(settings)]]
+    rows += [[f"{name} " if i == 0 else "", escape(text)] for name in ("skipped", "fallbacks")
+             for i, text in enumerate(report[name])]
+    rows += [[name, escape(report["build"][name])] for name in ("mpi", "hdf5", "compiler", "profile", "commit")
+             if report["build"][name]]
+    if report["condition"] is not None:
+        rows.insert(1, ["condition", f"about {short(report['condition'])}"])
+    return section("How it was made", table(["", ""], rows))
+
+
+def read(path):
+    """The report, the rows of the sweeps and the tables of the contacts."""
+    try:
+        with h5py.File(path) as file:
+            report = json.loads(file.attrs["report"])
+            sweeps = {name: file["convergence"][name][:] for name in ("residual", "active")}
+            tables = {
+                name: {key: table[key][:] for key in ("position", "pressure", "status")}
+                for name, table in file.get("contact", {}).items()
+                if len(table["pressure"]) > 0
+            }
+    except (OSError, KeyError, ValueError) as error:
+        print(f"summary: {path}: isn't a result of contact-dd-mpi: {error}", file=sys.stderr)
+        sys.exit(2)
+    return report, sweeps, tables
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="summary", description=__doc__.splitlines()[0])
+    parser.add_argument("result", type=pathlib.Path, help="result file of contact-dd-mpi")
+    parser.add_argument("page", type=pathlib.Path, nargs="?", help="default: the result's name with .html")
+    arguments = parser.parse_args()
+    page = arguments.page or arguments.result.with_suffix(".html")
+    plt.rcParams.update({"svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif",
+                         "font.sans-serif": ["DejaVu Sans", "Arial", "Helvetica"]})
+    report, sweeps, tables = read(arguments.result)
+    parts = [
+        head(report, arguments.result.name), warnings(report), contacts(report, tables), convergence(report, sweeps),
+        certificate(report), reactions(report), ranks(report), rest(report),
+    ]
+    title = escape(pathlib.Path(report["settings"]["problem"]).name)
+    page.write_text(
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
+        f"<style>{STYLE}</style></head>\n<body>\n" + "\n".join(parts) + "\n</body></html>\n"
+    )
+    print(page)
+
+
+main()

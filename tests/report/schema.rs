@@ -1,0 +1,47 @@
+//! The schema of the report, from the types.
+
+use contact_dd_mpi::output::report::Report;
+use schemars::Schema;
+use schemars::generate::SchemaSettings;
+use schemars::transform::RecursiveTransform;
+use serde_json::{Value, json};
+
+/// The schema as it stands in the docs: a later version may write more fields than it names.
+pub fn published() -> Value {
+    let settings = SchemaSettings::draft2020_12()
+        .for_serialize()
+        .with_transform(RecursiveTransform(as_written));
+    let mut schema = settings
+        .into_generator()
+        .into_root_schema_for::<Report>()
+        .to_value();
+    schema["title"] = json!("Report of contact-dd-mpi");
+    schema
+}
+
+/// What JSON makes of the types: a number that isn't finite is null.
+fn as_written(schema: &mut Schema) {
+    // Names of Rust's types are no formats of JSON.
+    schema.remove("format");
+    if schema.get("type") == Some(&json!("number")) {
+        schema.insert("type".into(), json!(["number", "null"]));
+    }
+    // Lines of a doc comment end where it suits the source.
+    if let Some(Value::String(text)) = schema.get_mut("description") {
+        *text = text.replace('\n', " ");
+    }
+}
+
+/// Forbids all fields that aren't named.
+pub fn close(schema: &mut Value) {
+    match schema {
+        Value::Object(fields) => {
+            fields.values_mut().for_each(close);
+            if fields.get("properties").is_some_and(Value::is_object) {
+                fields.insert("additionalProperties".into(), json!(false));
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(close),
+        _ => {}
+    }
+}
