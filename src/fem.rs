@@ -1,4 +1,4 @@
-//! Finite elements of a block: unknowns, elasticity, assembly, balance, stresses.
+//! Finite elements of a block: unknowns, elasticity, assembly, loads, balance, stresses.
 
 pub mod assembly;
 pub mod balance;
@@ -10,6 +10,7 @@ pub mod elasticity;
 mod elimination;
 pub mod estimate;
 pub mod frame;
+pub mod load;
 pub mod node_frames;
 pub mod patch;
 pub mod recovery;

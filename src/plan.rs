@@ -226,6 +226,7 @@ mod tests {
             bodies: vec![Body { name: "b".into() }],
             supports: Vec::new(),
             contacts: Vec::new(),
+            steps: Vec::new(),
             subdomains: sizes
                 .iter()
                 .enumerate()

@@ -1,4 +1,5 @@
-//! Sweeps: how U is found on Γ, started from the bilateral problem (16)-(17).
+//! Sweeps: how U is found on Γ, started from the bilateral problem (16)-(17), or from the solution of
+//! the load step before.
 //!
 //! All methods share the residual r(U) = F − S_0 U − S_CON(U) and differ in what is inverted:
 //! M δ = r with M = S_0 ([`picard`], the paper's (18)), S_0 + S_CON' of the bilateral problem
@@ -91,6 +92,17 @@ enum Next {
     End(SweepStatus),
 }
 
+/// Where sweeps begin.
+#[derive(Debug)]
+pub enum Start {
+    /// At the solution of the bilateral problem, (16)-(17).
+    Bilateral,
+    /// At the solution under other loads: U, and which conditions of every pair were open.
+    Before(Vec<f64>, Vec<Vec<bool>>),
+    /// Where the sweeps of an earlier run stopped.
+    Earlier(Progress, ConState),
+}
+
 /// What sweeps are asked for between two of them.
 pub trait Pause {
     /// Sees what has been found so far; tells whether the sweeps stop here and are to go on in
@@ -99,22 +111,27 @@ pub trait Pause {
 }
 
 impl<'a, 'c> Sweeps<'a, 'c> {
-    /// Solves S_0 U + S_CON(U) = F, (14), from the bilateral start, or from where a run before had
-    /// come. On the root, while the other ranks serve S_CON; `observer` sees every sweep. `None`
-    /// where `pause` stops them.
+    /// Solves S_0 U + S_CON(U) = F, (14), from the `start`. On the root, while the other ranks serve
+    /// S_CON; `observer` sees every sweep. `None` where `pause` stops them.
     pub fn solve(
         interface: &'a Interface,
         s_con: &'a mut SCon<'c>,
         settings: SweepSettings,
-        earlier: Option<(Progress, ConState)>,
+        start: Start,
         pause: &mut dyn Pause,
         observer: &'a mut dyn FnMut(&SweepRecord),
     ) -> Option<SweepOutcome> {
-        let goes_on = earlier.is_some();
-        let (progress, state) = earlier.unwrap_or_else(|| {
-            let start = Progress::new(interface.bilateral_start(), settings.method);
-            (start, ConState::default())
-        });
+        let fresh = |u| (Progress::new(u, settings.method), ConState::default());
+        let goes_on = matches!(start, Start::Earlier(..));
+        let mut expected = None;
+        let (progress, state) = match start {
+            Start::Bilateral => fresh(interface.bilateral_start()),
+            Start::Before(u, open) => {
+                expected = Some(open);
+                fresh(u)
+            }
+            Start::Earlier(progress, state) => (progress, state),
+        };
         let mut sweeps = Self {
             interface,
             s_con,
@@ -129,7 +146,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         let residual = match goes_on {
             true => sweeps.unbalanced(sweeps.progress.totals),
             false => {
-                let residual = sweeps.residual(None);
+                let residual = sweeps.residual(expected.as_deref());
                 sweeps.record(&residual);
                 residual
             }
@@ -140,7 +157,8 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         }
         // The pairs keep the approaches and forces of their last evaluation: it has to be S_CON(U).
         let last = sweeps.residual(None);
-        Some(sweeps.progress.outcome(status, last.relative))
+        let open = sweeps.state.open();
+        Some(sweeps.progress.outcome(status, last.relative, open))
     }
 
     /// Sweeps until that ends; `None` where `pause` stops it.

@@ -2,10 +2,10 @@
 
 use contact_dd_partition::model::Material;
 
-use super::assembly::nodal_forces;
 use super::block::Block;
 use super::condition::BlockCondition;
 use super::elasticity::{ElementMatrix, MAX_NODES};
+use super::load::nodal_forces;
 
 /// f − K u − Bᵀλ of a block and the scale of its terms, node by node (N/m).
 #[derive(Clone, Debug)]

@@ -47,6 +47,26 @@ pub struct Certificate {
     pub interface_jump: f64,
 }
 
+impl Certificate {
+    /// For every check the worse of two.
+    #[must_use]
+    pub fn worse(self, other: Self) -> Self {
+        // What isn't a number is worse than any.
+        let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
+        Self {
+            equilibrium: worse(self.equilibrium, other.equilibrium),
+            equilibrium_of_load: worse(self.equilibrium_of_load, other.equilibrium_of_load),
+            load_share: worse(self.load_share, other.load_share),
+            penetration: worse(self.penetration, other.penetration),
+            tension: worse(self.tension, other.tension),
+            complementarity: worse(self.complementarity, other.complementarity),
+            force_balance: worse(self.force_balance, other.force_balance),
+            moment_balance: worse(self.moment_balance, other.moment_balance),
+            interface_jump: worse(self.interface_jump, other.interface_jump),
+        }
+    }
+}
+
 /// What the mesh does to the stress, after Zienkiewicz and Zhu, in the energy norm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ErrorEstimate {
@@ -125,6 +145,34 @@ pub struct RankReport {
     pub repeated: usize,
 }
 
+/// A load step. Of sweeps that ended without converging the answer is there all the same.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepReport {
+    /// Its name.
+    pub name: String,
+    /// What it stands at on the axis of time.
+    pub time: f64,
+    /// How its sweeps ended.
+    pub status: Status,
+    /// Number of sweeps after the start.
+    pub sweeps: usize,
+    /// Number of linear systems solved within contact problems.
+    pub inner_steps: usize,
+    /// Relative residual of the interface problem at the end.
+    pub interface_residual: f64,
+    /// Number of contact conditions that are closed.
+    pub active_contacts: usize,
+    /// Checks of its solution.
+    pub certificate: Certificate,
+    /// Estimate of the condition number; `null` where it can't be made.
+    pub condition: Option<f64>,
+    /// Estimate of the mesh's error; `null` where stresses are left out.
+    pub error_estimate: Option<ErrorEstimate>,
+    /// What contacts and supports carry.
+    #[serde(flatten)]
+    pub resultants: Resultants,
+}
+
 /// The report. A number that isn't finite is `null` in its JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
@@ -174,6 +222,9 @@ pub struct Report {
     /// What contacts and supports carry.
     #[serde(flatten)]
     pub resultants: Resultants,
+    /// The load steps, where the problem has any. Above, sweeps and inner steps are those of all,
+    /// residual, certificate and condition those of the worst, and all else is that of the last one.
+    pub steps: Vec<StepReport>,
     /// What the scene didn't need, in words.
     pub skipped: Vec<String>,
     /// What the user should know, in words.
@@ -269,6 +320,7 @@ mod tests {
             peak_memory_bytes: 1,
             error_estimate: None,
             resultants: Resultants::default(),
+            steps: Vec::new(),
             skipped: Vec::new(),
             warnings: vec!["a \"quoted\"\nwarning".into()],
             settings: Settings::parse_from(["contact-dd-mpi", "problem.h5"]).resolved(),
@@ -343,6 +395,7 @@ mod tests {
                 "settings",
                 "skipped",
                 "status",
+                "steps",
                 "subdomains",
                 "sweeps",
                 "threads",

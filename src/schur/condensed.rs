@@ -13,8 +13,6 @@ pub struct Condensed {
     pub traces: Vec<TraceDof>,
     /// S (Pa); only the lower triangle counts.
     pub s: Mat<f64>,
-    /// The condensed load (N/m).
-    pub load: Vec<f64>,
     /// The diagonal of the matrix that S is condensed from (Pa).
     pub stiffness: Vec<f64>,
     /// The smallest pivot of what was eliminated, relative to its diagonal entry.

@@ -59,6 +59,8 @@ pub struct SweepOutcome {
     pub residual: f64,
     /// Totals of the last evaluation of S_CON.
     pub totals: ConTotals,
+    /// Which approaches and dependent conditions of every pair are open then.
+    pub open: Vec<Vec<bool>>,
 }
 
 impl SweepOutcome {
@@ -103,6 +105,7 @@ mod tests {
             fallbacks: Vec::new(),
             residual: 0.0,
             totals: ConTotals::default(),
+            open: Vec::new(),
         };
         outcome.accept(&Certificate {
             equilibrium,

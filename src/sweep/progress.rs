@@ -79,7 +79,12 @@ impl Progress {
         }
     }
 
-    pub(super) fn outcome(self, status: SweepStatus, residual: f64) -> SweepOutcome {
+    pub(super) fn outcome(
+        self,
+        status: SweepStatus,
+        residual: f64,
+        open: Vec<Vec<bool>>,
+    ) -> SweepOutcome {
         SweepOutcome {
             u: self.u,
             status,
@@ -90,6 +95,7 @@ impl Progress {
             fallbacks: self.fallbacks,
             residual,
             totals: self.totals,
+            open,
         }
     }
 }

@@ -30,7 +30,7 @@ use support::solver::{LIMIT, program};
 use walk::{Place, places};
 
 /// Where a change makes another problem that nothing in the file contradicts.
-const FREE: [&str; 25] = [
+const FREE: [&str; 27] = [
     "/@title",
     "/@plane",
     "/VTKHDF/Points",
@@ -43,6 +43,8 @@ const FREE: [&str; 25] = [
     "/materials/poisson",
     "/hierarchy/parent",
     "/warnings",
+    "/steps/name",
+    "/steps/time",
     "/support/node",
     "/support/direction",
     "/support/value",

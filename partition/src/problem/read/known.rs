@@ -10,7 +10,7 @@ use crate::scene::suggest::nearest;
 const FREE: [&str; 2] = ["/VTKHDF/PointData", "/VTKHDF/CellData"];
 
 /// What each of the other groups may hold.
-const KNOWN: [(&str, &[&str]); 10] = [
+const KNOWN: [(&str, &[&str]); 11] = [
     (
         "/",
         &[
@@ -23,6 +23,7 @@ const KNOWN: [(&str, &[&str]); 10] = [
             "support",
             "force",
             "contact",
+            "steps",
             "warnings",
         ],
     ),
@@ -54,6 +55,7 @@ const KNOWN: [(&str, &[&str]); 10] = [
         &["offset", "node", "direction", "value", "condition", "name"],
     ),
     ("/force", &["offset", "node", "value"]),
+    ("/steps", &["name", "time"]),
     (
         "/contact",
         &[

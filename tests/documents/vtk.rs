@@ -1,0 +1,56 @@
+//! Results and problem files opened by VTK's own reader, as ParaView and PyVista do.
+
+use std::process::Command;
+
+use crate::page::root;
+use crate::run::{Folder, python};
+
+/// Name, number of ranks and kind of cells.
+pub const CASES: [(&str, usize, &str); 4] = [
+    ("on_1_rank", 1, "triangle3"),
+    ("on_3_ranks", 3, "triangle6"),
+    ("of_8_nodes", 1, "quad8"),
+    ("of_9_nodes", 3, "quad9"),
+];
+
+/// Number of subdomains of the cases.
+const SUBDOMAINS: &str = "6";
+
+/// A test: `vtkHDFReader` finds the same partitions, points, cells and fields as h5py, in the result and in
+/// the problem file.
+pub fn reads_the_same(ranks: usize, element: &str) {
+    let folder = Folder::new();
+    let ranks = ranks.to_string();
+    let python = python().expect("cases that need Python are ignored without it");
+    let check = root().join("tests/documents/opened_by_vtk.py");
+    let mut partition = Command::new("contact-dd-partition");
+    partition.args(["--example", "junction", "--element", element]);
+    partition.args(["-n", SUBDOMAINS, "-o", "problem.h5"]);
+    let mut solve = Command::new("mpirun");
+    solve.args([
+        "-n",
+        &ranks,
+        "contact-dd-mpi",
+        "problem.h5",
+        "-o",
+        "result.vtkhdf",
+    ]);
+    let compare = |file: &str, fields: &[&str]| {
+        let mut compare = Command::new(&python);
+        compare.arg(&check).args([file, SUBDOMAINS]).args(fields);
+        compare
+    };
+    let compare_problem = compare("problem.h5", &["CellData/Subdomain"]);
+    let compare_result = compare(
+        "result.vtkhdf",
+        &[
+            "PointData/Displacement",
+            "PointData/Stress",
+            "CellData/VonMises",
+        ],
+    );
+    for mut command in [partition, solve, compare_problem, compare_result] {
+        let ended = folder.run(&mut command);
+        assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+    }
+}
