@@ -61,9 +61,10 @@ def main():
     parser.add_argument("outdir", type=pathlib.Path, nargs="?", help="folder (default: figures beside the result)")
     parser.add_argument("--scale", type=factor, default="auto", help="enlargement of the deformation (default: auto, which shows it)")
     parser.add_argument("--only", nargs="+", choices=PICTURES, default=list(PICTURES), metavar="PICTURE", help=f"which to draw (default: all of {', '.join(PICTURES)})")
+    parser.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
     arguments = parser.parse_args()
     try:
-        result = Result(arguments.result)
+        result = Result(arguments.result, arguments.step)
     except (OSError, KeyError) as error:
         sys.exit(f"figures: {arguments.result}: not a result file: {error}")
     scale = arguments.scale or automatic_scale(result)

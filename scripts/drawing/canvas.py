@@ -66,23 +66,32 @@ def save(figure, path):
         figure.savefig(drawn, dpi=OVERSAMPLED * dpi)
         image = Image.open(drawn).convert("RGB")
         image = image.resize([side // OVERSAMPLED for side in image.size], Image.Resampling.BOX)
-        image.quantize(palette=palette(image), dither=Image.Dither.NONE).save(path, optimize=True)
+        with_palette(image).save(path, optimize=True)
         if path.stat().st_size <= LARGEST_PNG:
             break
     plt.close(figure)
     print(path)
 
 
-def palette(image):
-    """256 colours for an image, white among them; those of few pixels get more than their share."""
-    colours, counts = np.unique(np.asarray(image).reshape(-1, 3), axis=0, return_counts=True)
+def with_palette(image):
+    """The image in 256 colours, white among them; those of few pixels get more than their share.
+
+    Each pixel gets the nearest of them; Pillow's own choice may be another, which shows in plain areas."""
+    red, green, blue = np.moveaxis(np.asarray(image).astype(np.int32), 2, 0)
+    packed, pixels, counts = np.unique(
+        red << 16 | green << 8 | blue, return_inverse=True, return_counts=True
+    )
+    colours = np.stack([packed >> 16, packed >> 8 & 255, packed & 255], axis=1)
     sample = np.repeat(colours, np.ceil(counts**0.4).astype(int), axis=0)
     chosen = Image.fromarray(sample[None].astype(np.uint8)).quantize(256, kmeans=1)
     entries = np.array(chosen.getpalette()[: 3 * 256]).reshape(-1, 3)
     entries[entries.min(axis=1) >= NEARLY_WHITE] = 255
     entries[entries.sum(axis=1).argmax()] = 255
-    chosen.putpalette(entries.ravel().tolist())
-    return chosen
+    # |c - e|² without |c|², which is the same for all entries.
+    nearest = ((entries**2).sum(axis=1) - 2 * colours @ entries.T).argmin(axis=1)
+    indexed = Image.fromarray(nearest[pixels].reshape(red.shape).astype(np.uint8))
+    indexed.putpalette(entries.ravel().tolist())
+    return indexed
 
 
 def in_units(values, unit):

@@ -65,7 +65,8 @@ def overview(result, scale, path):
     exceeded = "max" if values.max() > 1.001 * shown else "neither"
     figure.colorbar(colours, cax=of_colours, extend=exceeded, label=f"von Mises stress [{unit}]")
     what = "Von Mises stress and contact pressure" if sides else "Von Mises stress"
-    title = f"{what}, deformation × {scale:g}"
+    step = f", step {result.step} of {result.steps}" if result.steps > 1 else ""
+    title = f"{what}, deformation × {scale:g}{step}"
     figure.suptitle(title, y=1 - 0.12 / figure.get_figheight(), va="top", fontsize=12)
     key(figure, sides, largest, has_moved)
     save(figure, path)

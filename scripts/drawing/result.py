@@ -7,24 +7,31 @@ import numpy as np
 
 from drawing import shapes
 
+# What of a contact table changes from step to step.
+STATES = ("gap", "force", "pressure", "status")
+
 
 class Result:
     """What a result file holds, with the partitions joined; nodes keep their subdomain."""
 
-    def __init__(self, path):
+    def __init__(self, path, step=None):
         with h5py.File(path) as file:
             grid = file["VTKHDF"]
-            self.points = grid["Points"][:, :2]
-            self.tags = grid["PointData/GlobalNodeId"][:]
-            self.displacement = grid["PointData/Displacement"][:, :2]
+            self.steps = int(grid["Steps"].attrs["NSteps"]) if "Steps" in grid else 1
+            self.step = self.steps if step is None else step
+            if not 1 <= self.step <= self.steps:
+                sys.exit(f"figures: {path}: there is no step {step}; expected 1 to {self.steps}")
             if "Stress" not in grid["PointData"]:
                 sys.exit(f"figures: {path}: there are no stresses; expected a run without --no-stress")
-            self.stress = grid["PointData/Stress"][:]
-            self.cell_stress = grid["CellData/Stress"][:]
+            self.points = grid["Points"][:, :2]
+            self.tags = grid["PointData/GlobalNodeId"][:]
+            self.displacement = self.of_step(grid["PointData/Displacement"])[:, :2]
+            self.stress = self.of_step(grid["PointData/Stress"])
+            self.cell_stress = self.of_step(grid["CellData/Stress"])
             subdomain = grid["CellData/Subdomain"][:]
             self.cells = list(cells_of(grid))
             self.contacts = {
-                name: {key: table[key][:] for key in table}
+                name: {key: self.state(table[key]) for key in table}
                 for name, table in file.get("contact", {}).items()
             }
         if not self.cells:
@@ -38,6 +45,16 @@ class Result:
         # Linear cells don't bend, and that many quadratic ones show no kinks.
         steps = 3 if len(self.cell_stress) < 20_000 else 2
         self.weights, self.nodes, self.triangles, self.cell_of_triangle = self.cut(steps)
+
+    def of_step(self, field):
+        """The rows of this step; those of all steps follow each other."""
+        rows = len(field) // self.steps
+        return field[(self.step - 1) * rows : self.step * rows]
+
+    def state(self, column):
+        """What a contact table has in this step: of what changes there is a row for every step."""
+        changes = column.ndim == 2 and column.name.rsplit("/", 1)[-1] in STATES
+        return column[self.step - 1] if changes else column[:]
 
     def all_facets(self, subdomain):
         """Facets of all cells from corner to corner, three nodes each, and the subdomain of each.
