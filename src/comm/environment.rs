@@ -119,16 +119,49 @@ fn abort_all() {
 
 /// The launcher's own count of ranks must be MPI's.
 fn check_launcher(size: i32) -> Result<(), Failure> {
-    for name in ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"] {
-        let launched = std::env::var(name).ok().and_then(|n| n.parse::<i32>().ok());
-        if let Some(launched) = launched
-            && launched != size
-        {
-            return Err(Failure::input(format!(
-                "the launcher started {launched} ranks ({name}), but MPI counts {size}: mpirun \
-                 belongs to another MPI than the one this program was built with"
-            )));
-        }
+    let number = |name: &str| std::env::var(name).ok()?.parse().ok();
+    match launched(number) {
+        Some((name, launched)) if launched != size => Err(Failure::input(format!(
+            "the launcher started {launched} ranks ({name}), but MPI counts {size}: {}",
+            match name {
+                SRUN_RANKS =>
+                    "srun doesn't know how this MPI's ranks find each other; expected \
+                     srun --mpi=pmix with OpenMPI, --mpi=pmi2 with MPICH, or mpirun",
+                _ => "mpirun belongs to another MPI than the one this program was built with",
+            }
+        ))),
+        _ => Ok(()),
     }
-    Ok(())
+}
+
+/// What srun counts.
+const SRUN_RANKS: &str = "SLURM_STEP_NUM_TASKS";
+
+/// How many ranks the launcher started, and the variable in which it says so.
+fn launched(number: impl Fn(&str) -> Option<i32>) -> Option<(&'static str, i32)> {
+    // Where mpirun starts its daemons by srun, srun counts these.
+    ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", SRUN_RANKS]
+        .into_iter()
+        .find_map(|name| Some((name, number(name)?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn srun_is_believed_where_no_launcher_of_mpi_counts() {
+        let of = |given: &[(&str, i32)]| {
+            launched(|name| {
+                given
+                    .iter()
+                    .find(|(n, _)| *n == name)
+                    .map(|(_, count)| *count)
+            })
+        };
+        assert_eq!(of(&[]), None);
+        assert_eq!(of(&[(SRUN_RANKS, 4)]), Some((SRUN_RANKS, 4)));
+        let daemons_of_two_nodes = [(SRUN_RANKS, 2), ("PMI_SIZE", 16)];
+        assert_eq!(of(&daemons_of_two_nodes), Some(("PMI_SIZE", 16)));
+    }
 }
