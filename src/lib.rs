@@ -30,15 +30,16 @@
 //!
 //! > S_0 U + S_CON(U) = F,   (14)
 //! >
-//! > S_0 = Σ_T R̄_iᵀ S_i R̄_i,   S_CON = Σ_ϑ R̄_klᵀ S_kl R̄_kl,   F = Σ R̄_iᵀ f_i:   (15)
+//! > S_0 = Σ_T R̄_iᵀ S_i R̄_i,   S_CON = Σ_ϑ R̄_klᵀ S_kl R̄_kl,   F = Σ_T R̄_iᵀ f_i,   (15)
 //!
-//! S_0 and F are the root's ([`Interface`](interface::operator::Interface)), S_CON is evaluated by the ranks
-//! that own the pairs ([`SCon`](interface::s_con::SCon)).
+//! where the load of a pair stands in its S_kl. S_0 and F are the root's
+//! ([`Interface`](interface::operator::Interface)), S_CON is evaluated by the ranks that own the pairs
+//! ([`SCon`](interface::s_con::SCon)).
 //!
 //! **The start.** Contacts tied in the normal direction and free along it, t = 0, give the linear,
 //! bilateral problem
 //!
-//! > n·(u_k − u_l) = 0 on Γ_c,   U^0 = (S_0 + S_CON')⁻¹ F,   (16)-(17)
+//! > n·(u_k − u_l) = 0 on Γ_c,   (S_0 + Σ_ϑ R̄_klᵀ S_ΓΓ R̄_kl) U^0 = F + Σ_ϑ R̄_klᵀ f_Γ,   (16)-(17)
 //!
 //! whose factor serves all that follows ([`bilateral_start`](interface::operator::Interface::bilateral_start)).
 //!

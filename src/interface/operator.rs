@@ -1,6 +1,6 @@
 //! S_0 and F of (15), and the bilateral operator S_0 + S_CON' of (16)-(17) with its factor at the root.
 //!
-//! > S_0 = Σ_T R̄_iᵀ S_i R̄_i,   U^0 = (S_0 + S_CON')⁻¹ F
+//! > S_0 = Σ_T R̄_iᵀ S_i R̄_i,   F = Σ_T R̄_iᵀ f_i,   S_CON' = Σ_ϑ R̄_klᵀ S_ΓΓ R̄_kl
 
 use std::cell::OnceCell;
 
