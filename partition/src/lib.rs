@@ -13,16 +13,22 @@
 //! splits it into subdomains so that Γ never meets Γ_c, and [`problem`] is the one definition of
 //! the problem file, for its writer here and for its reader in `contact-dd-mpi`.
 
+pub mod command_line;
 pub mod decompose;
 pub mod destination;
 pub mod element;
 pub mod error;
 pub mod example;
+pub mod file_kind;
 mod lists;
 pub mod magnitude;
+pub mod manual;
 pub mod mesh;
+pub mod message;
 pub mod model;
 pub mod name;
 pub mod problem;
 pub mod scene;
+pub mod solver;
 pub mod source;
+pub mod usage;

@@ -20,6 +20,7 @@ use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
+use crate::solver::SolverSettings;
 
 /// Which plane state a two-dimensional scene is in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
@@ -93,6 +94,8 @@ pub struct Contact {
 pub struct Model {
     /// Title of the scene.
     pub title: String,
+    /// How the scene wants to be solved.
+    pub solver: SolverSettings,
     /// Plane state.
     pub plane: PlaneState,
     /// Mesh.
@@ -143,6 +146,7 @@ impl Model {
             .transpose()?;
         Ok(Self {
             title: scene.title.clone(),
+            solver: scene.solver,
             plane,
             materials: bodies::materials(scene, plane),
             bodies: scene.bodies.keys().cloned().collect(),

@@ -7,16 +7,18 @@ pub mod build;
 pub mod copies;
 mod dataset;
 pub mod hierarchy;
+pub mod info;
 mod order;
 pub mod read;
 mod slab;
-mod strings;
+pub(crate) mod strings;
 pub mod summary;
 pub mod write;
 
 use self::hierarchy::Hierarchy;
 use crate::element::Elements;
 use crate::model::{Material, PlaneState, Support};
+use crate::solver::SolverSettings;
 
 /// Version of the format, attribute `version` of the file.
 pub const VERSION: i64 = 1;
@@ -154,6 +156,8 @@ pub struct Catalog {
     pub groups: Vec<usize>,
     /// The tree along which Schur complements are merged.
     pub hierarchy: Hierarchy,
+    /// How the problem wants to be solved.
+    pub solver: SolverSettings,
     /// Warnings of the partition tool, to be repeated in the report.
     pub warnings: Vec<String>,
 }
