@@ -13,6 +13,7 @@ pub mod frozen;
 pub mod interface;
 pub mod merge;
 pub mod motions;
+mod narrator;
 mod pausing;
 mod reactions;
 pub mod read;
@@ -41,12 +42,13 @@ use self::frozen::{Frozen, FrozenRoot};
 use self::interface::assemble_interface;
 use self::merge::condense_clusters;
 use self::motions::Motions;
+use self::narrator::Narrator;
 use self::pausing::Checkpoints;
 use self::reactions::reactions;
 use self::read::{OwnedBlock, read_blocks};
 use self::recover::recover;
 use self::refine::refine;
-use self::report::{Narrator, Outputs, Totals};
+use self::report::{Outputs, Totals};
 use self::settle::{settle_free_motions, settle_loose_motions};
 use self::stresses::{error_estimate, stresses};
 use self::substitute::Factors;
@@ -54,13 +56,13 @@ use self::write::{Fields, write_solution};
 use crate::comm::{Comm, Message, phase};
 use crate::contact::s_con::SCon;
 use crate::error::Failure;
-use crate::output::progress::Progress;
 use crate::output::report::{PhaseSeconds, ReportFile};
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
 use crate::rigid::survey::survey;
 use crate::settings::Settings;
+use crate::settings::given::Given;
 use crate::sweep::{SweepRecord, SweepStatus, Sweeps};
 
 /// How a run ended that didn't fail.
@@ -72,33 +74,35 @@ pub enum Ending {
     NotConverged,
 }
 
-/// Solves the problem that `settings` names and writes the results. Collective.
+/// Solves the problem file that was `given` and writes the results. Collective.
 ///
 /// # Errors
 /// Bad input, a scene without equilibrium, or an output that can't be written; the same on all
 /// ranks.
-pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
+pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
     let began = Instant::now();
     let mut seconds = PhaseSeconds::default();
+    // What a problem file asks for counts where nobody says otherwise.
+    phase("reading");
+    let file = comm.agree(ProblemFile::open(&given.problem()).map_err(Failure::from))?;
+    let settings = &given.resolve(&file.catalog().solver);
+    comm.agree(settings.check_paths())?;
     let par = match settings.threads {
         1 => Par::Seq,
         n => Par::rayon(usize::from(n)),
     };
     // Dense algebra, which takes no such argument everywhere, would use all cores.
     faer::set_global_parallelism(par);
-    let narrator = Narrator::new(comm, settings);
+    let narrator = Narrator::new(comm, settings, began);
 
     // Every rank reads its own subdomains and pairs.
-    phase("reading");
-    comm.agree(settings.check_paths())?;
-    let file = comm.agree(ProblemFile::open(&settings.problem).map_err(Failure::from))?;
     let catalog = file.catalog();
     let plan = Plan::new(catalog, comm.size(), settings.merging());
     let demands = plan.demands(catalog, comm.size());
     let available = afford(comm, &demands)?;
+    narrator.problem(catalog, &plan);
     let mut blocks = comm.agree(read_blocks(comm, &file, &plan))?;
     comm.agree(check_copies(comm, &file, &plan, &blocks))?;
-    narrator.problem(catalog, &plan);
     let mut checkpoints = Checkpoints::new(settings);
     let earlier = match comm.is_root() {
         true => checkpoints.last(),
@@ -107,32 +111,30 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let earlier = comm.agree(earlier)?;
 
     // Rigid motions that neither supports nor contact hold, and those by which bodies come to rest.
-    phase("looking for free rigid motions");
+    narrator.phase("looking for free rigid motions", None);
     let survey = survey(comm, &blocks, catalog, &plan)?;
     if settings.check {
         narrator.check(&survey, &demands, available);
         return Ok(Ending::Converged);
     }
-    phase("creating the outputs");
+    narrator.phase("creating the outputs", None);
     let mut outputs = comm.agree(create_outputs(comm, settings, catalog, &plan, &blocks))?;
     take_out_descent(&mut blocks, &survey, catalog.dim);
     seconds.read = began.elapsed().as_secs_f64();
 
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy.
-    phase("factorizing");
-    let progress = Progress::factorization(blocks.len(), settings.quiet || !comm.is_root());
+    narrator.phase("factorizing", Some(blocks.len()));
     let condensation = Condensation {
         catalog,
         plan: &plan,
         pins: &survey.motions.pins,
         par,
     };
-    let mut condensed = condense_clusters(comm, &condensation, &blocks, &survey, &progress)?;
-    progress.finish();
+    let mut condensed = condense_clusters(comm, &condensation, &blocks, &survey, &narrator.bar)?;
     [seconds.assemble, seconds.factorize] = condensed.seconds;
 
     // The root assembles S_0 and F, (15), and the bilateral operator.
-    phase("assembling the interface problem");
+    narrator.phase("assembling the interface problem", None);
     let lap = Instant::now();
     let interface = comm.agree(assemble_interface(
         comm, &condensed, catalog, &plan, &survey, par,
@@ -140,7 +142,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     seconds.interface = lap.elapsed().as_secs_f64();
 
     // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17).
-    phase("sweeping");
+    narrator.phase("sweeping", None);
     let lap = Instant::now();
     let pair_owners = plan.contact_owners();
     let mut s_con = SCon::new(comm, &pair_owners, &mut condensed.pairs);
@@ -167,7 +169,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     seconds.sweeps = lap.elapsed().as_secs_f64();
 
     // Back-substitution, and the check of the full discrete problem.
-    phase("recovering");
+    narrator.phase("recovering", None);
     let lap = Instant::now();
     let root = outcome.as_ref().zip(interface.as_ref());
     let trace_of_root = root.map(|(o, (numbering, _))| (&o.u[..], &numbering.traces[..]));
@@ -212,7 +214,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     seconds.recover = lap.elapsed().as_secs_f64();
 
     // Results travel to the root in slabs of subdomains and are written as they arrive.
-    phase("writing");
+    narrator.phase("writing", None);
     let lap = Instant::now();
     let fields = Fields {
         solutions: &solutions,
@@ -305,7 +307,7 @@ fn create_outputs(
     let layout = Layout::new(catalog, &connectivity, !settings.no_stress);
     let report = settings.report.as_deref().map(ReportFile::create);
     Ok(Some(Outputs {
-        result: ResultFile::create(&settings.result_path(), &layout)?,
+        result: ResultFile::create(&settings.output, &layout)?,
         report: report.transpose()?,
     }))
 }

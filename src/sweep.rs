@@ -12,6 +12,8 @@ pub mod progress;
 
 use std::time::Instant;
 
+pub use contact_dd_partition::solver::Method;
+
 pub use self::outcome::{SweepOutcome, SweepRecord, SweepStatus};
 use self::progress::{Memory, Progress};
 use crate::contact::s_con::{ConState, ConTotals, SCon};
@@ -23,29 +25,6 @@ const ROUND_OFF: f64 = 1e-15;
 
 /// Residual to which a method goes that took over: there may be nothing to refine with afterwards.
 const FALL_BACK_TOLERANCE: f64 = 1e-13;
-
-/// How U is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Method {
-    /// Newton: S_0 + S_CON is inverted, contact conditions included.
-    Newton,
-    /// Accelerated chord: S_0 + S_CON' of the bilateral problem is inverted.
-    Anderson,
-    /// The paper's successive approximations (18): S_0 is inverted.
-    Picard,
-}
-
-impl Method {
-    /// Its name on the command line and in the report.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Newton => "newton",
-            Self::Anderson => "anderson",
-            Self::Picard => "picard",
-        }
-    }
-}
 
 /// What a user sets.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -117,9 +117,19 @@ fn abort_all() {
     SimpleCommunicator::world().abort(1);
 }
 
+/// Where launchers tell a rank of how many it is.
+const SIZES: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"];
+
+/// Whether a launcher started this process, be it as the only rank.
+pub fn is_launched() -> bool {
+    // PMIx, as of Slurm, tells the size only to who asks.
+    let names = SIZES.iter().chain(&["PMIX_RANK", "PMI_RANK"]);
+    names.copied().any(|name| std::env::var_os(name).is_some())
+}
+
 /// The launcher's own count of ranks must be MPI's.
 fn check_launcher(size: i32) -> Result<(), Failure> {
-    for name in ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"] {
+    for name in SIZES {
         let launched = std::env::var(name).ok().and_then(|n| n.parse::<i32>().ok());
         if let Some(launched) = launched
             && launched != size

@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::build::Build;
 use super::resultants::Resultants;
 use crate::settings::Settings;
+use crate::settings::origin::Origins;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -178,9 +179,10 @@ pub struct Report {
     pub skipped: Vec<String>,
     /// What the user should know, in words.
     pub warnings: Vec<String>,
-    /// The settings, with the name of the result file where none was given; `null` is what the method
-    /// decides.
+    /// The settings; `null` is what the method decides.
     pub settings: Settings,
+    /// What settled each of them.
+    pub settings_from: Origins,
     /// Version of the program.
     pub version: String,
     /// Its build.
@@ -239,10 +241,10 @@ impl ReportFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::Parser;
     use serde_json::{Value, json};
 
     fn report() -> Report {
+        let settings = Settings::of_options(&["problem.h5"]);
         Report {
             status: Status::NotConverged,
             method: "newton".into(),
@@ -271,7 +273,8 @@ mod tests {
             resultants: Resultants::default(),
             skipped: Vec::new(),
             warnings: vec!["a \"quoted\"\nwarning".into()],
-            settings: Settings::parse_from(["contact-dd-mpi", "problem.h5"]).resolved(),
+            settings_from: settings.from.clone(),
+            settings,
             version: "0.1.0".into(),
             build: Build::of_this_program("MPI".into()),
         }
@@ -341,6 +344,7 @@ mod tests {
                 "reactions",
                 "seconds",
                 "settings",
+                "settings_from",
                 "skipped",
                 "status",
                 "subdomains",

@@ -1,15 +1,11 @@
-//! What a run says of itself: on the terminal, in the report, in the result file.
-
-use std::io::stdout;
+//! What a run says of itself when it is done: in the report and in the result file.
 
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
 
-use crate::checkpoint::Checkpoint;
 use crate::comm::{self, Comm, Message};
 use crate::error::Failure;
 use crate::fem::estimate::CellError;
-use crate::interface::operator::Interface;
 use crate::output::build::Build;
 use crate::output::memory::peak_memory_bytes;
 use crate::output::report::{
@@ -17,25 +13,16 @@ use crate::output::report::{
 };
 use crate::output::result::ConvergenceRow;
 use crate::output::resultants::Resultants;
-use crate::output::terminal::{self, Summary, SweepLine};
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
-use crate::plan::demand::Demand;
-use crate::rigid::survey::Survey;
 use crate::settings::Settings;
-use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
+use crate::sweep::{SweepOutcome, SweepStatus};
 
 /// Pivot relative to its diagonal entry that may as well be zero.
 const SUSPICIOUS_PIVOT: f64 = 1e-13;
 
 /// Condition number from which round-off is worth a warning.
 const BAD_CONDITION: f64 = 1e10;
-
-/// Prints on the root what a user wants to follow, and nothing elsewhere.
-pub struct Narrator<'a> {
-    comm: &'a Comm,
-    settings: &'a Settings,
-}
 
 /// The files of a run, still under temporary names. On the root.
 #[derive(Debug)]
@@ -44,6 +31,35 @@ pub struct Outputs {
     pub result: ResultFile,
     /// The report, where one is asked for.
     pub report: Option<ReportFile>,
+}
+
+impl Outputs {
+    /// Finishes the result file and writes the report.
+    ///
+    /// # Errors
+    /// One of them can't be written.
+    pub fn finish(self, totals: &Totals<'_>, report: &Report) -> Result<(), Failure> {
+        let Self {
+            mut result,
+            report: report_file,
+        } = self;
+        let rows: Vec<ConvergenceRow> = totals
+            .outcome
+            .records
+            .iter()
+            .map(|r| ConvergenceRow {
+                residual: r.residual,
+                active: r.active,
+                seconds: r.seconds,
+            })
+            .collect();
+        result.write_convergence(&rows)?;
+        result.finish(&report.to_json())?;
+        if let Some(file) = report_file {
+            file.write(report)?;
+        }
+        Ok(())
+    }
 }
 
 /// Everything the report is made of. On the root.
@@ -72,118 +88,6 @@ pub struct Totals<'a> {
     pub estimate: Option<CellError>,
     /// What the ranks noticed on the way.
     pub warnings: Vec<String>,
-}
-
-impl<'a> Narrator<'a> {
-    /// Speaks on the root unless `settings` ask for quiet.
-    pub fn new(comm: &'a Comm, settings: &'a Settings) -> Self {
-        Self { comm, settings }
-    }
-
-    fn speaks(&self) -> bool {
-        self.comm.is_root() && !self.settings.quiet
-    }
-
-    /// What is to be solved, and how.
-    pub fn problem(&self, catalog: &Catalog, plan: &Plan) {
-        if !self.speaks() {
-            return;
-        }
-        let summary = Summary {
-            problem: &self.settings.problem,
-            title: &catalog.title,
-            dofs: dofs(catalog),
-            interface_dofs: catalog.dim * plan.sharing.iter().filter(|&&n| n > 1).count(),
-            subdomains: catalog.subdomains.len(),
-            contact_pairs: plan.pairs.len(),
-            contact_conditions: conditions(catalog),
-            ranks: self.comm.size(),
-            threads: usize::from(self.settings.threads),
-        };
-        // A closed pipe is no reason to stop a run that writes its results to a file.
-        let _ = terminal::summary(&mut stdout(), &summary);
-        if !self.settings.check {
-            let _ = terminal::settings(&mut stdout(), &self.settings.in_words());
-        }
-    }
-
-    /// What validating found, and what solving would cost.
-    pub fn check(&self, survey: &Survey, demands: &[Demand], available: f64) {
-        if self.comm.is_root() {
-            for warning in &survey.motions.warnings {
-                eprintln!("warning: {warning}");
-            }
-        }
-        if self.speaks() {
-            let _ = terminal::demands(&mut stdout(), demands, available);
-            println!("\nthe problem file is valid");
-        }
-    }
-
-    /// The head of the table of sweeps, if there are going to be any, and those of an `earlier` run.
-    pub fn sweeps(&self, interface: &Interface, earlier: Option<&Checkpoint>) {
-        if self.speaks() && !interface.pair_traces.is_empty() {
-            let _ = terminal::sweep_header(&mut stdout());
-        }
-        let earlier = earlier.map(|checkpoint| &checkpoint.progress.records[..]);
-        for record in earlier.unwrap_or_default() {
-            self.sweep(interface, record);
-        }
-    }
-
-    /// One sweep.
-    pub fn sweep(&self, interface: &Interface, record: &SweepRecord) {
-        if self.speaks() && !interface.pair_traces.is_empty() {
-            let line = SweepLine {
-                sweep: record.sweep,
-                residual: record.residual,
-                active: record.active,
-                changed: (record.sweep > 0).then_some(record.changed),
-                seconds: record.seconds,
-            };
-            let _ = terminal::sweep(&mut stdout(), &line);
-        }
-    }
-
-    /// Finishes the result file and writes the report. On the root.
-    ///
-    /// # Errors
-    /// One of them can't be written.
-    pub fn finish(&self, totals: &Totals<'_>, outputs: Outputs) -> Result<(), Failure> {
-        let Outputs {
-            result: mut file,
-            report: report_file,
-        } = outputs;
-        let report = report(totals, self.settings, self.comm);
-        let rows: Vec<ConvergenceRow> = totals
-            .outcome
-            .records
-            .iter()
-            .map(|r| ConvergenceRow {
-                residual: r.residual,
-                active: r.active,
-                seconds: r.seconds,
-            })
-            .collect();
-        file.write_convergence(&rows)?;
-        file.finish(&report.to_json())?;
-        if let Some(file) = report_file {
-            file.write(&report)?;
-        }
-        if self.speaks() {
-            let reason = reason(totals);
-            let result = self.settings.result_path();
-            let _ = terminal::closing(&mut stdout(), &reason, &report, &result);
-        } else {
-            for warning in &report.warnings {
-                eprintln!("warning: {warning}");
-            }
-        }
-        if let SweepStatus::NotConverged(why) = &totals.outcome.status {
-            eprintln!("error: not converged: {why}");
-        }
-        Ok(())
-    }
 }
 
 /// Brings every rank's times and memory to the root. Collective.
@@ -235,7 +139,8 @@ pub fn collect(
         .collect()
 }
 
-fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
+/// Makes the report. On the root.
+pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
     let Totals {
         catalog,
         plan,
@@ -307,7 +212,8 @@ fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         resultants: totals.resultants.clone(),
         skipped: skipped(totals),
         warnings,
-        settings: settings.resolved(),
+        settings: settings.clone(),
+        settings_from: settings.from.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
         build: Build::of_this_program(comm::library()),
     }
@@ -364,15 +270,17 @@ fn skipped(totals: &Totals<'_>) -> Vec<String> {
     skipped
 }
 
-fn reason(totals: &Totals<'_>) -> String {
+/// Why the sweeps ended, in words.
+pub(super) fn reason(totals: &Totals<'_>) -> String {
     let sweeps = totals.outcome.records.len().saturating_sub(1);
     match &totals.outcome.status {
         SweepStatus::Converged if totals.plan.pairs.is_empty() => {
             "solved: the scene is linear".into()
         }
         SweepStatus::Converged => format!(
-            "converged after {sweeps} sweeps: the residual is below the tolerance and no contact \
+            "converged after {sweeps} sweep{}: the residual is below the tolerance and no contact \
              changes any more; {} of {} conditions are closed",
+            if sweeps == 1 { "" } else { "s" },
             totals.active,
             conditions(totals.catalog)
         ),
@@ -381,12 +289,13 @@ fn reason(totals: &Totals<'_>) -> String {
 }
 
 /// Number of dofs, those of shared nodes counted once.
-fn dofs(catalog: &Catalog) -> usize {
+pub(super) fn dofs(catalog: &Catalog) -> usize {
     let nodes: usize = catalog.subdomains.iter().map(|s| s.nodes).sum();
     let copies: usize = catalog.interface.iter().map(Vec::len).sum();
     catalog.dim * (nodes - copies + catalog.interface_nodes)
 }
 
-fn conditions(catalog: &Catalog) -> usize {
+/// Number of contact conditions.
+pub(super) fn conditions(catalog: &Catalog) -> usize {
     catalog.contacts.iter().map(|c| c.conditions).sum()
 }
