@@ -151,13 +151,21 @@ impl Settings {
             let every = format!("every {n} sweeps");
             list.push(("checkpoint", settled("checkpoint_every", every)));
         }
+        if self.restart {
+            let from = settled("restart", "from the last checkpoint".to_string());
+            list.push(("restart", from));
+        }
         if self.no_stress {
             list.push(("stress", settled("no_stress", "left out".to_string())));
         }
         if let Some(file) = &self.settings {
             list.push(("settings", file.display().to_string()));
         }
-        list.push(("result", self.output.display().to_string()));
+        let path = |name: &str, path: &Path| settled(name, path.display().to_string());
+        if let Some(report) = &self.report {
+            list.push(("report", path("report", report)));
+        }
+        list.push(("result", path("output", &self.output)));
         list
     }
 }

@@ -1,5 +1,8 @@
 //! Errors and warnings of both programs on stderr, in colour where a terminal shows them.
 
+use std::io::{Write, stderr};
+
+use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
 
 /// How the word "error:" is shown.
@@ -10,10 +13,19 @@ pub const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 
 /// Prints an error.
 pub fn error(text: &str) {
-    anstream::eprintln!("{ERROR}error:{ERROR:#} {text}");
+    print(ERROR, "error:", text);
 }
 
 /// Prints a warning.
 pub fn warning(text: &str) {
-    anstream::eprintln!("{WARNING}warning:{WARNING:#} {text}");
+    print(WARNING, "warning:", text);
+}
+
+fn print(style: Style, word: &str, text: &str) {
+    let line = match AutoStream::choice(&stderr()) {
+        ColorChoice::Never => format!("{word} {text}\n"),
+        _ => format!("{style}{word}{style:#} {text}\n"),
+    };
+    // In one piece: a launcher may be speaking, too. Where it can't be printed there is nobody to tell.
+    let _ = stderr().write_all(line.as_bytes());
 }

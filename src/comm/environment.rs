@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
+use contact_dd_partition::message;
 use mpi::collective::SystemOperation;
 use mpi::environment::Universe;
 use mpi::topology::SimpleCommunicator;
@@ -74,7 +75,7 @@ pub fn start() -> Result<World, Failure> {
         // Ranks that panic for one reason say so once.
         if HOST.get().is_none_or(Host::claim_message) {
             let phase = current_phase();
-            eprintln!("error: rank {rank} of {size} panicked while {phase}");
+            message::error(&format!("rank {rank} of {size} panicked while {phase}"));
             report(panic);
         }
         abort_all();

@@ -26,27 +26,34 @@ impl Bar {
     pub fn new(quiet: bool) -> Self {
         let now = Instant::now();
         let shown = !quiet && stderr().is_terminal();
-        Self {
-            bar: match shown {
-                true => ProgressBar::no_length(),
-                false => ProgressBar::hidden(),
-            },
+        let bar = match shown {
+            true => ProgressBar::no_length(),
+            false => ProgressBar::hidden(),
+        };
+        let bar = Self {
+            bar,
             told: (!quiet && !shown).then(|| Cell::new(now)),
             began: now,
+        };
+        // Before the first phase there is nothing to show.
+        bar.look("");
+        bar
+    }
+
+    fn look(&self, template: &str) {
+        // The templates are constant; were one wrong, the default bar would do.
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            self.bar.set_style(style.progress_chars("=> "));
         }
     }
 
     /// Begins a phase, of so many steps where that is known.
     pub fn begin(&self, phase: &'static str, steps: Option<usize>) {
         self.tell(|| phase.to_owned());
-        let template = match steps {
+        self.look(match steps {
             Some(_) => "{msg} [{bar:32}] {pos}/{len} {elapsed}",
             None => "{msg} {spinner} {elapsed}",
-        };
-        // The templates are constant; were one wrong, the default bar would do.
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            self.bar.set_style(style.progress_chars("=> "));
-        }
+        });
         self.bar.reset();
         self.bar.set_message(phase);
         match steps {

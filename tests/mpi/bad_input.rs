@@ -114,6 +114,8 @@ pub fn bad_settings(trials: &mut Trials) {
         let settings = open(&case).group("settings").unwrap();
         let tolerance = settings.attr("tolerance").unwrap();
         tolerance.write_scalar(&-1.0).unwrap();
+        // What is open isn't written yet.
+        drop((settings, tolerance));
         let words = ["problem.h5", "tolerance of /settings", "positive"];
         failed_once(&run(&case, ranks, &[]), 2, &words);
         assert_eq!(case.files(), ["problem.h5"]);

@@ -13,8 +13,10 @@ pub(super) fn of(manual: &Manual, command: Command) -> String {
     let mut page = Vec::new();
     // Writing to memory doesn't fail.
     let _: io::Result<()> = write(manual, command, &mut page);
+    // Where a list of values begins, an empty line is meant.
+    let page = String::from_utf8_lossy(&page).replace("\n.br\n\n.br\n", "\n.sp\n");
     let mut text = String::new();
-    for c in String::from_utf8_lossy(&page).chars() {
+    for c in page.chars() {
         // Not every reader of man pages takes more than ASCII.
         match c.is_ascii() {
             true => text.push(c),
@@ -29,8 +31,11 @@ fn write(manual: &Manual, command: Command, out: &mut impl Write) -> io::Result<
     let command = command
         .after_help(None::<&str>)
         .after_long_help(None::<&str>);
-    let page = Man::new(command).manual("User Commands");
-    page.render_title(out)?;
+    let name = command.get_name().to_owned();
+    let version = command.get_version().unwrap_or_default().to_owned();
+    let page = Man::new(command);
+    // Without a date: a page of one version is the same whenever it is made.
+    writeln!(out, r#".TH {name} 1 "" "{name} {version}" "User Commands""#)?;
     page.render_name_section(out)?;
     page.render_synopsis_section(out)?;
     page.render_description_section(out)?;

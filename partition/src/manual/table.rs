@@ -14,7 +14,11 @@ pub(super) fn of_options(mut command: Command) -> String {
     });
     let rows = rows.map(|option| {
         let (meaning, default) = meaning(option);
-        format!("| `{}` | {meaning} | {default} |\n", written(option))
+        let default = match default.is_empty() {
+            true => " ".to_owned(),
+            false => format!(" {default} "),
+        };
+        format!("| `{}` | {meaning} |{default}|\n", written(option))
     });
     let head = "| option | meaning | default |\n|---|---|---|\n";
     head.to_owned() + &rows.collect::<String>()
@@ -54,11 +58,27 @@ fn meaning(option: &Arg) -> (String, String) {
         false => &[],
     };
     let given: Vec<_> = values.iter().map(|value| value.to_string_lossy()).collect();
-    match help
+    let split = help
         .strip_suffix(']')
-        .and_then(|all| all.split_once(DEFAULT))
-    {
+        .and_then(|all| all.split_once(DEFAULT));
+    let (meaning, default) = match split {
         Some((meaning, default)) => (meaning.to_owned(), default.to_owned()),
         None => (help, given.join(" ")),
+    };
+    (meaning + &choice(option), default)
+}
+
+/// The values that an option may have, where it is one of a few.
+fn choice(option: &Arg) -> String {
+    let values = match option.get_action().takes_values() {
+        true => option.get_possible_values(),
+        false => Vec::new(),
+    };
+    let names: Vec<String> = (values.iter())
+        .map(|value| format!("`{}`", value.get_name()))
+        .collect();
+    match names.split_last() {
+        Some((last, others)) => format!(": {} or {last}", others.join(", ")),
+        None => String::new(),
     }
 }
