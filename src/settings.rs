@@ -1,6 +1,6 @@
 //! The settings of a run, resolved.
 //!
-//! [`command_line`] parses options, [`file`] reads those of `--settings`, the problem file may hold
+//! [`command_line`] parses options, [`mod@file`] reads those of `--settings`, the problem file may hold
 //! some, and [`given`] lets the first that says something win; [`origin`] remembers which it was.
 
 pub mod command_line;
