@@ -1,6 +1,10 @@
-//! The certificate: the full discrete problem, checked without any Schur complement.
+//! The certificate: the full discrete problem (1), checked without any Schur complement.
+//!
+//! > K u − f + Bᵀ λ = 0,   B u ≤ g,   λ ≥ 0,   λᵀ (g − B u) = 0
 
 use std::collections::HashMap;
+
+use serde::Serialize;
 
 use crate::comm::{Message, MessageReader};
 use crate::fem::balance::Balance;
@@ -8,10 +12,55 @@ use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;
 use crate::fem::frame::{Frame, dot};
 use crate::fem::node_frames::supported_frames;
-use crate::output::report::Certificate;
 
 /// Sum of forces, relative to the terms that they are sums of, that is no load.
 const NO_LOAD: f64 = 1e-12;
+
+/// Checks of the full discrete problem, all relative to the scale of what they check.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Certificate {
+    /// ‖K u − f + Bᵀλ‖∞ / ‖|K||u| + |f| + |Bᵀλ|‖∞.
+    pub equilibrium: f64,
+    /// ‖K u − f + Bᵀλ‖∞ over the largest load, contact force or reaction at a node: what the
+    /// condition of the scene makes of round-off.
+    pub equilibrium_of_load: f64,
+    /// The largest load at a node over that scale: near 0 where the forces are round-off of a scene
+    /// without load, or displacements drive it.
+    #[serde(skip)]
+    pub load_share: f64,
+    /// Largest penetration over the largest displacement.
+    pub penetration: f64,
+    /// Largest tension in a contact over the load scale.
+    pub tension: f64,
+    /// Largest product of contact force and gap over the product of their scales.
+    pub complementarity: f64,
+    /// Sum of loads and reactions over the load scale.
+    pub force_balance: f64,
+    /// Sum of their moments over the load scale times the size of the scene.
+    pub moment_balance: f64,
+    /// Largest jump of the displacement across Γ over the largest displacement.
+    pub interface_jump: f64,
+}
+
+impl Certificate {
+    /// For every check the worse of two.
+    #[must_use]
+    pub fn worse(self, other: Self) -> Self {
+        // What isn't a number is worse than any.
+        let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
+        Self {
+            equilibrium: worse(self.equilibrium, other.equilibrium),
+            equilibrium_of_load: worse(self.equilibrium_of_load, other.equilibrium_of_load),
+            load_share: worse(self.load_share, other.load_share),
+            penetration: worse(self.penetration, other.penetration),
+            tension: worse(self.tension, other.tension),
+            complementarity: worse(self.complementarity, other.complementarity),
+            force_balance: worse(self.force_balance, other.force_balance),
+            moment_balance: worse(self.moment_balance, other.moment_balance),
+            interface_jump: worse(self.interface_jump, other.interface_jump),
+        }
+    }
+}
 
 /// What a block says of its own part of the solution.
 #[derive(Clone, Debug, Default, PartialEq)]

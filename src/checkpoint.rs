@@ -13,12 +13,12 @@ use contact_dd_partition::error::OutputError;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::pair::PairMemory;
-use crate::contact::s_con::ConState;
 use crate::interface::operator::Interface;
+use crate::interface::s_con::ConState;
 use crate::sweep::progress::Progress;
 
 /// The first bytes of the file.
-const HEAD: &[u8] = b"contact-dd-mpi checkpoint 1\n";
+const HEAD: &[u8] = b"contact-dd-mpi checkpoint 2\n";
 
 /// A digest of bytes.
 pub type Digest = [u8; blake3::OUT_LEN];
@@ -32,6 +32,8 @@ pub struct Checkpoint {
     pub problem: Digest,
     /// The method's name.
     pub method: String,
+    /// The load step that the sweeps are of.
+    pub step: usize,
     /// U, and what the method remembers.
     pub progress: Progress,
     /// The answers of the pairs at U.

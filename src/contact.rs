@@ -1,4 +1,6 @@
-//! Unilateral contact: approaches, the pair's small problem, S_kl and S_CON.
+//! Unilateral contact: S_kl of a pair, (12), with its contact problem condensed onto approaches.
+//!
+//! > S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ,   t(U) = arg min ½ tᵀ H t − (c − S_tΓ U)ᵀ t   over   t ≤ g
 
 pub mod active_set;
 pub mod approach;
@@ -9,4 +11,3 @@ pub mod law;
 pub mod limits;
 pub mod open_factor;
 pub mod pair;
-pub mod s_con;

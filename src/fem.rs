@@ -1,4 +1,6 @@
-//! Finite elements of a block: unknowns, elasticity, assembly, balance, stresses.
+//! Finite elements of a block: K and f of the energy ½ uᵀ K u − fᵀ u, its unknowns, its loads, its stresses.
+//!
+//! > uᵀ K u = a(u, u) = Σ ∫ c_ijkl e_ij(u) e_kl(u) dx,   (2)
 
 pub mod assembly;
 pub mod balance;
@@ -10,7 +12,9 @@ pub mod elasticity;
 mod elimination;
 pub mod estimate;
 pub mod frame;
+pub mod load;
 pub mod node_frames;
+pub mod owned;
 pub mod patch;
 pub mod recovery;
 mod sites;

@@ -1,5 +1,6 @@
-//! The interface problem on Γ: its numbering, S_0, and the solve at the root.
+//! The interface problem S_0 U + S_CON(U) = F, (14), on Γ: its numbering, S_0, S_CON, and what solves it.
 
 pub mod coupled;
 pub mod numbering;
 pub mod operator;
+pub mod s_con;

@@ -5,8 +5,8 @@ pub mod cluster;
 pub mod demand;
 pub mod tree;
 
+use contact_dd_partition::flops::Front;
 use contact_dd_partition::problem::Catalog;
-use contact_dd_partition::problem::hierarchy::Front;
 
 use self::assign::{assign, block_cost, front_cost};
 use self::cluster::{ClusterPlan, Merging, cluster_nodes};
@@ -227,6 +227,7 @@ mod tests {
             bodies: vec![Body { name: "b".into() }],
             supports: Vec::new(),
             contacts: Vec::new(),
+            steps: Vec::new(),
             subdomains: sizes
                 .iter()
                 .enumerate()

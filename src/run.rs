@@ -1,6 +1,6 @@
 //! The whole solve on one page.
 //!
-//! read → assemble → condense → S_0 at the root → sweeps → recover → certificate → write
+//! read → assemble → condense → S_0 at the root → for each load step: F → sweeps → recover → write
 
 mod affording;
 mod clusters;
@@ -11,6 +11,8 @@ mod copies;
 mod descend;
 pub mod frozen;
 pub mod interface;
+mod limits;
+pub mod load;
 pub mod merge;
 pub mod motions;
 mod narrator;
@@ -21,9 +23,13 @@ pub mod recover;
 pub mod refine;
 mod report;
 pub mod settle;
+pub mod solution;
 mod squeezed;
+mod steps;
 mod stresses;
 pub mod substitute;
+mod sweeping;
+mod totals;
 pub mod write;
 
 use std::collections::BTreeMap;
@@ -35,35 +41,30 @@ use faer::Par;
 
 use self::affording::afford;
 use self::condense::Condensation;
-use self::conditioning::condition_number;
 use self::copies::check_copies;
-use self::descend::{take_out_descent, with_descent};
 use self::frozen::{Frozen, FrozenRoot};
 use self::interface::assemble_interface;
+use self::load::Loading;
 use self::merge::condense_clusters;
 use self::motions::Motions;
 use self::narrator::Narrator;
 use self::pausing::Checkpoints;
-use self::reactions::reactions;
 use self::read::{OwnedBlock, read_blocks};
-use self::recover::recover;
-use self::refine::refine;
-use self::report::{Outputs, Totals};
-use self::settle::{settle_free_motions, settle_loose_motions};
-use self::stresses::{error_estimate, stresses};
-use self::substitute::Factors;
-use self::write::{Fields, write_solution};
+use self::report::Outputs;
+use self::solution::Solution;
+use self::steps::{in_step, survey_steps, take_step};
+use self::sweeping::Sweeping;
+use self::totals::{StepTotals, Totals};
+use self::write::write_solution;
 use crate::comm::{Comm, Message, phase};
-use crate::contact::s_con::SCon;
 use crate::error::Failure;
 use crate::output::report::{PhaseSeconds, ReportFile};
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
-use crate::rigid::survey::survey;
 use crate::settings::Settings;
 use crate::settings::given::Given;
-use crate::sweep::{SweepRecord, SweepStatus, Sweeps};
+use crate::sweep::{SweepOutcome, SweepStatus};
 
 /// How a run ended that didn't fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,22 +105,22 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
     let mut blocks = comm.agree(read_blocks(comm, &file, &plan))?;
     comm.agree(check_copies(comm, &file, &plan, &blocks))?;
     let mut checkpoints = Checkpoints::new(settings);
-    let earlier = match comm.is_root() {
-        true => checkpoints.last(),
-        false => Ok(None),
+    let looked = match comm.is_root() {
+        true => checkpoints.look(),
+        false => Ok(()),
     };
-    let earlier = comm.agree(earlier)?;
+    comm.agree(looked)?;
 
     // Rigid motions that neither supports nor contact hold, and those by which bodies come to rest.
     narrator.phase("looking for free rigid motions", None);
-    let survey = survey(comm, &blocks, catalog, &plan)?;
+    let surveys = survey_steps(comm, &mut blocks, catalog, &plan)?;
     if settings.check {
-        narrator.check(&survey, &demands, available);
+        narrator.check(&surveys, &demands, available);
         return Ok(Ending::Converged);
     }
     narrator.phase("creating the outputs", None);
     let mut outputs = comm.agree(create_outputs(comm, settings, catalog, &plan, &blocks))?;
-    take_out_descent(&mut blocks, &survey, catalog.dim);
+    take_step(&mut blocks, 0, &surveys[0], catalog.dim);
     seconds.read = began.elapsed().as_secs_f64();
 
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy.
@@ -127,132 +128,120 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
     let condensation = Condensation {
         catalog,
         plan: &plan,
-        pins: &survey.motions.pins,
+        pins: &surveys[0].motions.pins,
         par,
     };
-    let mut condensed = condense_clusters(comm, &condensation, &blocks, &survey, &narrator.bar)?;
+    let mut condensed =
+        condense_clusters(comm, &condensation, &blocks, &surveys[0], &narrator.bar)?;
     [seconds.assemble, seconds.factorize] = condensed.seconds;
 
-    // The root assembles S_0 and F, (15), and the bilateral operator.
+    // The root assembles S_0, (15), and the bilateral operator.
     narrator.phase("assembling the interface problem", None);
     let lap = Instant::now();
-    let interface = comm.agree(assemble_interface(
-        comm, &condensed, catalog, &plan, &survey, par,
-    ))?;
+    let mut interface = comm.agree(assemble_interface(comm, &condensed, catalog, &plan, par))?;
     seconds.interface = lap.elapsed().as_secs_f64();
 
-    // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17).
-    narrator.phase("sweeping", None);
-    let lap = Instant::now();
+    // All that depends on loads, load step by load step.
     let pair_owners = plan.contact_owners();
-    let mut s_con = SCon::new(comm, &pair_owners, &mut condensed.pairs);
-    let outcome = match &interface {
-        Some((_, interface)) => {
-            narrator.sweeps(interface, earlier.as_ref());
-            let mut observer = |record: &SweepRecord| narrator.sweep(interface, record);
-            let restored = checkpoints.restore(earlier, interface, &mut s_con);
-            let solved = restored.and_then(|earlier| {
-                let sweeps = settings.sweeps();
-                let pause = &mut checkpoints;
-                Sweeps::solve(interface, &mut s_con, sweeps, earlier, pause, &mut observer)
-                    .ok_or_else(|| checkpoints.stopped())
-            });
-            s_con.stop();
-            solved.map(Some)
-        }
-        None => {
-            s_con.serve();
-            Ok(None)
-        }
+    let sweeping = Sweeping {
+        comm,
+        settings,
+        narrator: &narrator,
+        pair_owners: &pair_owners,
     };
-    let mut outcome = comm.agree(outcome)?;
-    seconds.sweeps = lap.elapsed().as_secs_f64();
+    let mut before: Option<SweepOutcome> = None;
+    let mut steps = Vec::new();
+    for (k, survey) in surveys.iter().enumerate() {
+        // F, condensed like the blocks, and the bounds on approaches.
+        narrator.phase("condensing the load", None);
+        let lap = Instant::now();
+        if k > 0 {
+            take_step(&mut blocks, k, survey, catalog.dim);
+        }
+        let loading = Loading {
+            comm,
+            catalog,
+            plan: &plan,
+            blocks: &blocks,
+            survey,
+        };
+        let loads = loading.condense(&mut condensed);
+        let loads = loads.map_err(|failure| in_step(failure, catalog, k))?;
+        loading.assemble(&condensed, &loads, interface.as_mut());
+        seconds.interface += lap.elapsed().as_secs_f64();
 
-    // Back-substitution, and the check of the full discrete problem.
-    narrator.phase("recovering", None);
-    let lap = Instant::now();
-    let root = outcome.as_ref().zip(interface.as_ref());
-    let trace_of_root = root.map(|(o, (numbering, _))| (&o.u[..], &numbering.traces[..]));
-    let factors = Factors {
-        comm,
-        plan: &plan,
-        condensed: &condensed,
-    };
-    let mut solutions = recover(factors, trace_of_root);
-    let frozen = Frozen {
-        comm,
-        blocks: &blocks,
-        condensed: &condensed,
-        catalog,
-        plan: &plan,
-        descent: survey.longest_descent(),
-        free: Motions {
-            list: &survey.motions.free,
-            frames: &survey.frames,
-        },
-        root: root.map(|(outcome, (numbering, interface))| FrozenRoot {
-            numbering,
-            interface,
-            converged: outcome.status == SweepStatus::Converged,
-        }),
-    };
-    settle_free_motions(&frozen, &mut solutions);
-    let mut certificate = refine(&frozen, &mut solutions);
-    let settled = settle_loose_motions(&frozen, &survey, &mut solutions, &mut certificate);
-    // What is loose has no stiffness that could be compared.
-    let condition = match settled.is_loose {
-        true => None,
-        false => condition_number(&frozen, &solutions),
-    };
-    let reactions = reactions(&frozen, &solutions);
-    let stress = (!settings.no_stress).then(|| stresses(comm, &blocks, &solutions, catalog, &plan));
-    let estimate = (stress.as_ref()).map(|stress| error_estimate(comm, stress, &plan));
-    let displacement = with_descent(&blocks, &solutions, &survey, catalog.dim);
-    if let Some(outcome) = &mut outcome {
-        outcome.accept(&certificate);
+        // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the step before.
+        narrator.phase("sweeping", None);
+        let lap = Instant::now();
+        narrator.step(catalog, k);
+        let problem = interface.as_ref().map(|(_, interface)| interface);
+        let pairs = &mut condensed.pairs;
+        let mut outcome = sweeping.sweep(k, problem, pairs, before.as_ref(), &mut checkpoints)?;
+        seconds.sweeps += lap.elapsed().as_secs_f64();
+
+        // Back-substitution, and the check of the full discrete problem.
+        narrator.phase("recovering", None);
+        let lap = Instant::now();
+        let root = outcome.as_ref().zip(interface.as_ref());
+        let frozen = Frozen {
+            comm,
+            blocks: &blocks,
+            condensed: &condensed,
+            catalog,
+            plan: &plan,
+            descent: survey.longest_descent(),
+            free: Motions {
+                list: &survey.motions.free,
+                frames: &survey.frames,
+            },
+            root: root.map(|(outcome, (numbering, interface))| FrozenRoot {
+                numbering,
+                interface,
+                converged: outcome.status == SweepStatus::Converged,
+            }),
+        };
+        let u = outcome.as_ref().map(|outcome| &outcome.u[..]);
+        let solution = Solution::new(&frozen, survey, &loads, u, !settings.no_stress);
+        if let Some(outcome) = &mut outcome {
+            outcome.accept(&solution.certificate);
+        }
+        seconds.recover += lap.elapsed().as_secs_f64();
+
+        // Results travel to the root in slabs of subdomains and are written as they arrive.
+        narrator.phase("writing", None);
+        let lap = Instant::now();
+        let mut resultants = Resultants::new(catalog, solution.reactions.clone());
+        let result = outputs.as_mut().map(|outputs| &mut outputs.result);
+        let contacts = &mut resultants.contacts;
+        let written = write_solution(comm, &blocks, &solution, &plan, result, contacts);
+        comm.agree(written.map_err(Failure::from))?;
+        seconds.write += lap.elapsed().as_secs_f64();
+        // A step that went nowhere is no place to start from.
+        before = outcome
+            .clone()
+            .filter(|outcome| outcome.status == SweepStatus::Converged);
+        let totals = outcome.map(|o| StepTotals::new(o, &solution, resultants, survey));
+        steps.extend(totals);
     }
-    seconds.recover = lap.elapsed().as_secs_f64();
-
-    // Results travel to the root in slabs of subdomains and are written as they arrive.
-    narrator.phase("writing", None);
-    let lap = Instant::now();
-    let fields = Fields {
-        solutions: &solutions,
-        displacement: &displacement,
-        stress: stress.as_ref(),
-    };
-    let mut resultants = Resultants::new(catalog, reactions);
-    let contacts = &mut resultants.contacts;
-    let result = outputs.as_mut().map(|outputs| &mut outputs.result);
-    let written = write_solution(comm, &blocks, fields, &plan, result, contacts);
-    comm.agree(written.map_err(Failure::from))?;
-    seconds.write = lap.elapsed().as_secs_f64();
     seconds.total = began.elapsed().as_secs_f64();
 
     let ranks = report::collect(comm, &seconds, &plan, condensed.repeats.found);
-    let finished = match (&outcome, &interface, outputs) {
-        (Some(outcome), Some((_, interface)), Some(outputs)) => {
+    let converged = steps
+        .iter()
+        .all(|step| step.outcome.status == SweepStatus::Converged);
+    let finished = match (&interface, outputs) {
+        (Some((_, interface)), Some(outputs)) => {
             let totals = Totals {
                 catalog,
                 plan: &plan,
-                outcome,
-                active: outcome.totals.active - settled.opened,
+                steps,
                 interface_dofs: interface.len + interface.eliminated,
                 smallest_pivot: interface.smallest_pivot(),
-                certificate,
-                condition,
                 ranks,
-                resultants,
-                estimate,
-                warnings: [
-                    checkpoints.warnings.clone(),
-                    survey.motions.warnings,
-                    settled.warnings,
-                ]
-                .concat(),
+                warnings: checkpoints.warnings.clone(),
             };
             let finished = narrator.finish(&totals, outputs);
-            if finished.is_ok() && outcome.status == SweepStatus::Converged {
+            if finished.is_ok() && converged {
                 checkpoints.remove();
             }
             finished
@@ -260,14 +249,12 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
         _ => Ok(()),
     };
     comm.agree(finished)?;
-    let mut converged = Message {
-        integers: vec![i64::from(
-            outcome.is_none_or(|o| o.status == SweepStatus::Converged),
-        )],
+    let mut ended = Message {
+        integers: vec![i64::from(converged)],
         reals: Vec::new(),
     };
-    comm.broadcast(&mut converged);
-    Ok(match converged.read().integer() {
+    comm.broadcast(&mut ended);
+    Ok(match ended.read().integer() {
         0 => Ending::NotConverged,
         _ => Ending::Converged,
     })

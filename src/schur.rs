@@ -1,5 +1,7 @@
-//! Local Schur complements: ordering, sparse factorization with the boundary last, condensation and
-//! recovery.
+//! Local Schur complements, (11): ordering, sparse factorization with the boundary last, condensation
+//! and recovery.
+//!
+//! > S = K_BB − K_BI K_II⁻¹ K_IB,   u_I = K_II⁻¹ (f_I − K_IB u_B)
 
 mod columns;
 pub mod condensed;
@@ -16,3 +18,4 @@ mod partial;
 pub mod pattern;
 pub mod repeats;
 mod supernodes;
+pub mod trace;

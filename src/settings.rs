@@ -7,6 +7,7 @@ pub mod command_line;
 pub mod file;
 pub mod given;
 pub mod origin;
+pub mod result_path;
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -17,7 +18,7 @@ use self::command_line::LogFormat;
 use self::origin::{Origin, Origins};
 use crate::error::Failure;
 use crate::plan::cluster::Merging;
-use crate::sweep::{Method, SweepSettings};
+use crate::sweep::{Method, SweepSettings, merging};
 
 /// Relative residual of the interface problem at which sweeps end.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -119,13 +120,9 @@ impl Settings {
         }
     }
 
-    /// What becomes of contact when Schur complements are merged: picard inverts S_0 alone, which has
-    /// to be that of all linear subdomains.
+    /// What becomes of contact when Schur complements are merged.
     pub fn merging(&self) -> Merging {
-        match self.method {
-            Method::Picard => Merging::Linear,
-            Method::Newton | Method::Anderson => Merging::All,
-        }
+        merging(self.method)
     }
 
     /// The settings by name, for people: those that aren't the default with what settled them.

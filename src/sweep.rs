@@ -1,10 +1,12 @@
-//! Sweeps: how U is found on Γ, started from the bilateral problem (16)-(17).
+//! Sweeps: how S_0 U + S_CON(U) = F, (14), is solved for U, from the bilateral start (16)-(17) or from the
+//! solution of the load step before.
 //!
 //! All methods share the residual r(U) = F − S_0 U − S_CON(U) and differ in what is inverted:
 //! M δ = r with M = S_0 ([`picard`], the paper's (18)), S_0 + S_CON' of the bilateral problem
 //! ([`anderson`]), or S_0 + S_CON(U + ·) as it is, the contact conditions included ([`newton`]).
 
 pub mod anderson;
+pub mod method;
 pub mod newton;
 mod outcome;
 pub mod picard;
@@ -12,12 +14,12 @@ pub mod progress;
 
 use std::time::Instant;
 
-pub use contact_dd_partition::solver::Method;
-
+use self::method::Memory;
+pub use self::method::{Method, merging};
 pub use self::outcome::{SweepOutcome, SweepRecord, SweepStatus};
-use self::progress::{Memory, Progress};
-use crate::contact::s_con::{ConState, ConTotals, SCon};
+use self::progress::Progress;
 use crate::interface::operator::Interface;
+use crate::interface::s_con::{ConState, ConTotals, SCon};
 use crate::schur::factor::BoundaryLastCholesky;
 
 /// Residual that is round-off and nothing else.
@@ -56,10 +58,13 @@ pub struct Sweeps<'a, 'c> {
 
 /// r(U) = F − S_0 U − S_CON(U).
 #[derive(Clone, Debug)]
-struct Residual {
-    r: Vec<f64>,
-    relative: f64,
-    totals: ConTotals,
+pub struct Residual {
+    /// r (N/m).
+    pub r: Vec<f64>,
+    /// ‖r‖∞ relative to the terms that r is a sum of.
+    pub relative: f64,
+    /// What the pairs said at U.
+    pub totals: ConTotals,
 }
 
 /// What a sweep leads to.
@@ -70,6 +75,17 @@ enum Next {
     End(SweepStatus),
 }
 
+/// Where sweeps begin.
+#[derive(Debug)]
+pub enum Start {
+    /// At the solution of the bilateral problem, (16)-(17).
+    Bilateral,
+    /// At the solution under other loads: U, and which conditions of every pair were open.
+    Before(Vec<f64>, Vec<Vec<bool>>),
+    /// Where the sweeps of an earlier run stopped.
+    Earlier(Progress, ConState),
+}
+
 /// What sweeps are asked for between two of them.
 pub trait Pause {
     /// Sees what has been found so far; tells whether the sweeps stop here and are to go on in
@@ -78,22 +94,41 @@ pub trait Pause {
 }
 
 impl<'a, 'c> Sweeps<'a, 'c> {
-    /// Solves S_0 U + S_CON(U) = F, (14), from the bilateral start, or from where a run before had
-    /// come. On the root, while the other ranks serve S_CON; `observer` sees every sweep. `None`
-    /// where `pause` stops them.
+    /// Solves S_0 U + S_CON(U) = F, (14), from the `start`. On the root, while the other ranks serve
+    /// S_CON; `observer` sees every sweep. `None` where `pause` stops them.
     pub fn solve(
         interface: &'a Interface,
         s_con: &'a mut SCon<'c>,
         settings: SweepSettings,
-        earlier: Option<(Progress, ConState)>,
+        start: Start,
         pause: &mut dyn Pause,
         observer: &'a mut dyn FnMut(&SweepRecord),
     ) -> Option<SweepOutcome> {
-        let goes_on = earlier.is_some();
-        let (progress, state) = earlier.unwrap_or_else(|| {
-            let start = Progress::new(interface.bilateral_start(), settings.method);
-            (start, ConState::default())
-        });
+        let (mut sweeps, residual) = Self::begin(interface, s_con, settings, start, observer);
+        let status = sweeps.sweep(residual, pause)?;
+        Some(sweeps.end(status))
+    }
+
+    /// Before the first sweep, and the residual there: of the bilateral start (16)-(17), of the
+    /// load step before, or of where a run before had come.
+    pub fn begin(
+        interface: &'a Interface,
+        s_con: &'a mut SCon<'c>,
+        settings: SweepSettings,
+        start: Start,
+        observer: &'a mut dyn FnMut(&SweepRecord),
+    ) -> (Self, Residual) {
+        let fresh = |u| (Progress::new(u, settings.method), ConState::default());
+        let goes_on = matches!(start, Start::Earlier(..));
+        let mut expected = None;
+        let (progress, state) = match start {
+            Start::Bilateral => fresh(interface.bilateral_start()),
+            Start::Before(u, open) => {
+                expected = Some(open);
+                fresh(u)
+            }
+            Start::Earlier(progress, state) => (progress, state),
+        };
         let mut sweeps = Self {
             interface,
             s_con,
@@ -107,19 +142,33 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         };
         let residual = match goes_on {
             true => sweeps.unbalanced(sweeps.progress.totals),
-            false => {
-                let residual = sweeps.residual(None);
-                sweeps.record(&residual);
-                residual
-            }
+            false => sweeps.evaluate(expected.as_deref()),
         };
-        let status = sweeps.sweep(residual, pause)?;
+        (sweeps, residual)
+    }
+
+    /// U, to be moved; then [`evaluate`](Self::evaluate) makes a sweep of it.
+    pub fn u(&mut self) -> &mut [f64] {
+        &mut self.progress.u
+    }
+
+    /// r(U), and a line of the history; the pairs' searches begin at the conditions `expected` to be
+    /// open, else at those of last time.
+    pub fn evaluate(&mut self, expected: Option<&[Vec<bool>]>) -> Residual {
+        let residual = self.residual(expected);
+        self.record(&residual);
+        residual
+    }
+
+    /// What was found, refined if it is the solution.
+    pub fn end(mut self, status: SweepStatus) -> SweepOutcome {
         if status == SweepStatus::Converged {
-            sweeps.refine();
+            self.refine();
         }
         // The pairs keep the approaches and forces of their last evaluation: it has to be S_CON(U).
-        let last = sweeps.residual(None);
-        Some(sweeps.progress.outcome(status, last.relative))
+        let last = self.residual(None);
+        let open = self.state.open();
+        self.progress.outcome(status, last.relative, open)
     }
 
     /// Sweeps until that ends; `None` where `pause` stops it.
@@ -128,12 +177,8 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             if pause.pause(&self.progress, &self.state, self.s_con) {
                 return None;
             }
-            let next = match std::mem::take(&mut self.progress.memory) {
-                Memory::Newton(memory) => self.newton(memory, residual),
-                Memory::Anderson(memory) => self.anderson(memory, residual),
-                Memory::Picard(memory) => self.picard(memory, residual),
-            };
-            match next {
+            let memory = std::mem::take(&mut self.progress.memory);
+            match memory.sweep(self, residual) {
                 Next::Sweep(memory, after) => {
                     self.progress.memory = memory;
                     residual = after;
@@ -178,7 +223,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
 
     /// Whether the residual is small and the active set settled, or the residual is round-off: S_CON
     /// is evaluated exactly, so that then nothing is left that could change.
-    fn is_converged(&self, residual: &Residual) -> bool {
+    pub fn is_converged(&self, residual: &Residual) -> bool {
         let small = residual.relative <= self.tolerance() && residual.totals.changed == 0;
         residual.totals.failed_pairs == 0 && (small || residual.relative <= ROUND_OFF)
     }
@@ -191,7 +236,8 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         }
     }
 
-    fn sweeps_done(&self) -> usize {
+    /// Number of sweeps so far.
+    pub fn sweeps_done(&self) -> usize {
         self.progress.records.len() - 1
     }
 

@@ -20,7 +20,6 @@ use contact_dd_mpi::fem::dofs::Dofs;
 use contact_dd_mpi::fem::stress::BlockStress;
 use contact_dd_mpi::interface::numbering::Numbering;
 use contact_dd_mpi::interface::operator::{Contribution, Interface};
-use contact_dd_mpi::rigid::energy::RigidDrive;
 use contact_dd_mpi::schur::condensed::Condensed;
 use contact_dd_mpi::schur::local::LocalSchur;
 use contact_dd_mpi::schur::merge::{Merge, Spare};
@@ -36,7 +35,7 @@ fn subdomain(c: &mut Criterion) {
         let b = scene.largest_linear();
         let (block, conditions) = &scene.blocks[b];
         let materials = scene.materials();
-        let (dofs, system) = scene.assembled(b);
+        let (dofs, stiffness) = scene.assembled(b);
         let (_, schur, _, load) = scene.condensed(b);
         let x_b = vec![1e-3; load.boundary().len()];
         let u = dofs.displacement(&schur.recover(&load, &x_b));
@@ -50,7 +49,7 @@ fn subdomain(c: &mut Criterion) {
             bench.iter(|| assemble(block, &dofs, materials, &[]).unwrap());
         });
         group.bench_function("factorize and condense", |bench| {
-            bench.iter(|| LocalSchur::new(&system.stiffness, dofs.interior, Par::Seq).unwrap());
+            bench.iter(|| LocalSchur::new(&stiffness, dofs.interior, Par::Seq).unwrap());
         });
         group.bench_function("recover", |bench| {
             bench.iter(|| dofs.displacement(&schur.recover(&load, black_box(&x_b))));
@@ -126,10 +125,7 @@ fn interface(c: &mut Criterion) {
     c.bench_function("S_0", |bench| {
         bench.iter_batched(
             || condensed.iter().map(contribution).collect(),
-            |parts| {
-                let motions = RigidDrive::default();
-                Interface::new(&numbering, parts, &is_pair, &motions, Par::Seq).unwrap()
-            },
+            |parts| Interface::new(&numbering, parts, &is_pair, Par::Seq).unwrap(),
             BatchSize::LargeInput,
         );
     });
@@ -142,7 +138,6 @@ fn contribution(condensed: &Condensed) -> Contribution {
     condensed.fill_upper_triangle();
     Contribution {
         s: condensed.s.submatrix(m, m, n, n).to_owned(),
-        load: condensed.load[m..].to_vec(),
         smallest_pivot: condensed.smallest_pivot,
         eliminated: 0,
         law: None,

@@ -1,13 +1,15 @@
 //! The blocks of a built-in scene, as one rank would have them.
 
-use contact_dd_mpi::fem::assembly::{BlockSystem, assemble};
+use contact_dd_mpi::fem::assembly::assemble;
 use contact_dd_mpi::fem::block::Block;
 use contact_dd_mpi::fem::condition::BlockCondition;
 use contact_dd_mpi::fem::dofs::Dofs;
+use contact_dd_mpi::fem::load::load;
 use contact_dd_mpi::plan::Plan;
 use contact_dd_mpi::plan::cluster::Merging;
 use contact_dd_mpi::schur::condensed::Condensed;
 use contact_dd_mpi::schur::local::{CondensedLoad, LocalSchur};
+use contact_dd_mpi::schur::pattern::SparseSymmetric;
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::example;
 use contact_dd_partition::model::{Material, Model};
@@ -58,30 +60,29 @@ impl Scene {
         linear.max_by_key(|&b| self.blocks[b].0.nodes()).unwrap()
     }
 
-    /// A block's unknowns, stiffness and load.
-    pub fn assembled(&self, b: usize) -> (Dofs, BlockSystem) {
+    /// A block's unknowns and stiffness.
+    pub fn assembled(&self, b: usize) -> (Dofs, SparseSymmetric) {
         let (block, conditions) = &self.blocks[b];
         let dofs = Dofs::new(block, conditions, self.materials()).unwrap();
-        let system = assemble(block, &dofs, self.materials(), &[]).unwrap();
-        (dofs, system)
+        let (stiffness, _) = assemble(block, &dofs, self.materials(), &[]).unwrap();
+        (dofs, stiffness)
     }
 
     /// A block condensed onto its boundary.
     pub fn condensed(&self, b: usize) -> (Dofs, LocalSchur, Mat<f64>, CondensedLoad) {
-        let (dofs, system) = self.assembled(b);
-        let (schur, s) = LocalSchur::new(&system.stiffness, dofs.interior, Par::Seq).unwrap();
-        let load = schur.condense(system.load);
+        let (dofs, stiffness) = self.assembled(b);
+        let (schur, s) = LocalSchur::new(&stiffness, dofs.interior, Par::Seq).unwrap();
+        let load = schur.condense(load(&self.blocks[b].0, &dofs, self.materials(), &[]));
         (dofs, schur, s, load)
     }
 
     /// The same as what a merge takes.
     pub fn of_block(&self, b: usize) -> Condensed {
-        let (dofs, schur, s, load) = self.condensed(b);
+        let (dofs, schur, s, _) = self.condensed(b);
         Condensed {
             approaches: dofs.approaches,
             traces: dofs.traces.clone(),
             smallest_pivot: schur.smallest_pivot(),
-            load: load.boundary().to_vec(),
             stiffness: schur.stiffness,
             s,
             eliminated: 0,

@@ -1,10 +1,22 @@
-//! Reference elements: their nodes and facets, shape functions, quadrature, and geometry.
+//! Elements: x(ξ) = Σ N_i(ξ) x_i, u(ξ) = Σ N_i(ξ) u_i over a reference element.
+//!
+//! An [`ElementKind`] is what lists and files hold, a byte; it stands for a [`ReferenceElement`], which
+//! has nodes, shape functions, facets and rules. To add one is to write its
+//! [`Definition`](reference::Definition) and to name it here.
 
+pub mod domain;
 pub mod geometry;
 pub mod jacobian;
+pub mod lines;
 pub mod quadrature;
-pub mod shape;
+pub mod quadrilaterals;
+pub mod reference;
 pub mod tabulation;
+pub mod triangles;
+
+use std::ops::Deref;
+
+use self::reference::ReferenceElement;
 
 /// The kind of a cell or of a facet.
 ///
@@ -43,64 +55,23 @@ impl ElementKind {
         Self::Quad9,
     ];
 
-    /// Dimension of the reference element.
-    pub fn dim(self) -> usize {
+    /// What it is: nodes, shape functions, facets, rules.
+    pub fn reference(self) -> &'static ReferenceElement {
         match self {
-            Self::Point1 => 0,
-            Self::Line2 | Self::Line3 => 1,
-            Self::Triangle3 | Self::Triangle6 | Self::Quad4 | Self::Quad8 | Self::Quad9 => 2,
+            Self::Point1 => &lines::POINT1,
+            Self::Line2 => &lines::LINE2,
+            Self::Line3 => &lines::LINE3,
+            Self::Triangle3 => &triangles::TRIANGLE3,
+            Self::Triangle6 => &triangles::TRIANGLE6,
+            Self::Quad4 => &quadrilaterals::QUAD4,
+            Self::Quad8 => &quadrilaterals::QUAD8,
+            Self::Quad9 => &quadrilaterals::QUAD9,
         }
     }
 
-    /// Number of nodes.
-    pub fn nodes(self) -> usize {
-        match self {
-            Self::Point1 => 1,
-            Self::Line2 => 2,
-            Self::Line3 | Self::Triangle3 => 3,
-            Self::Quad4 => 4,
-            Self::Triangle6 => 6,
-            Self::Quad8 => 8,
-            Self::Quad9 => 9,
-        }
-    }
-
-    /// Number of corners, which are the first of its nodes.
-    pub fn corners(self) -> usize {
-        match self {
-            Self::Point1 => 1,
-            Self::Line2 | Self::Line3 => 2,
-            Self::Triangle3 | Self::Triangle6 => 3,
-            Self::Quad4 | Self::Quad8 | Self::Quad9 => 4,
-        }
-    }
-
-    /// Its name in words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Point1 => "point",
-            Self::Line2 => "line of 2 nodes",
-            Self::Line3 => "line of 3 nodes",
-            Self::Triangle3 => "triangle of 3 nodes",
-            Self::Triangle6 => "triangle of 6 nodes",
-            Self::Quad4 => "quadrilateral of 4 nodes",
-            Self::Quad8 => "quadrilateral of 8 nodes",
-            Self::Quad9 => "quadrilateral of 9 nodes",
-        }
-    }
-
-    /// VTK's number of the cell type.
-    pub fn vtk(self) -> u8 {
-        match self {
-            Self::Point1 => 1,
-            Self::Line2 => 3,
-            Self::Line3 => 21,
-            Self::Triangle3 => 5,
-            Self::Triangle6 => 22,
-            Self::Quad4 => 9,
-            Self::Quad8 => 23,
-            Self::Quad9 => 28,
-        }
+    /// All kinds of dimension `dim`.
+    pub fn of_dim(dim: usize) -> impl Iterator<Item = Self> + Clone {
+        Self::ALL.into_iter().filter(move |kind| kind.dim() == dim)
     }
 
     /// The kind of a cell of dimension `dim` that VTK numbers `code`.
@@ -108,7 +79,7 @@ impl ElementKind {
     /// # Errors
     /// In words: a cell type that isn't supported, and those that are.
     pub fn cell_from_vtk(code: i64, dim: usize) -> Result<Self, String> {
-        let cells = Self::ALL.into_iter().filter(|kind| kind.dim() == dim);
+        let cells = Self::of_dim(dim);
         let found = cells.clone().find(|kind| i64::from(kind.vtk()) == code);
         found.ok_or_else(|| {
             let known = cells.map(|kind| format!("{} ({})", kind.vtk(), kind.name()));
@@ -116,63 +87,13 @@ impl ElementKind {
             format!("VTK cell type {code}; expected {}", known.join(", "))
         })
     }
+}
 
-    /// Facets of a cell: kind and local nodes, in the order in which the cell lies to their left.
-    pub fn facets(self) -> &'static [(ElementKind, &'static [usize])] {
-        match self {
-            Self::Point1 => &[],
-            Self::Line2 | Self::Line3 => &[(Self::Point1, &[0]), (Self::Point1, &[1])],
-            Self::Triangle3 => &[
-                (Self::Line2, &[0, 1]),
-                (Self::Line2, &[1, 2]),
-                (Self::Line2, &[2, 0]),
-            ],
-            Self::Triangle6 => &[
-                (Self::Line3, &[0, 1, 3]),
-                (Self::Line3, &[1, 2, 4]),
-                (Self::Line3, &[2, 0, 5]),
-            ],
-            Self::Quad4 => &[
-                (Self::Line2, &[0, 1]),
-                (Self::Line2, &[1, 2]),
-                (Self::Line2, &[2, 3]),
-                (Self::Line2, &[3, 0]),
-            ],
-            Self::Quad8 | Self::Quad9 => &[
-                (Self::Line3, &[0, 1, 4]),
-                (Self::Line3, &[1, 2, 5]),
-                (Self::Line3, &[2, 3, 6]),
-                (Self::Line3, &[3, 0, 7]),
-            ],
-        }
-    }
+impl Deref for ElementKind {
+    type Target = ReferenceElement;
 
-    /// The order of local nodes that turns the element inside out.
-    pub fn reversed(self) -> &'static [usize] {
-        match self {
-            Self::Point1 => &[0],
-            Self::Line2 => &[1, 0],
-            Self::Line3 => &[1, 0, 2],
-            Self::Triangle3 => &[0, 2, 1],
-            Self::Triangle6 => &[0, 2, 1, 5, 4, 3],
-            Self::Quad4 => &[0, 3, 2, 1],
-            Self::Quad8 => &[0, 3, 2, 1, 7, 6, 5, 4],
-            Self::Quad9 => &[0, 3, 2, 1, 7, 6, 5, 4, 8],
-        }
-    }
-
-    /// The local nodes of a line from its start to its end; those of other kinds as they are.
-    pub fn along(self) -> &'static [usize] {
-        const AS_NUMBERED: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8];
-        match self {
-            Self::Line3 => &[0, 2, 1],
-            _ => &AS_NUMBERED[..self.nodes()],
-        }
-    }
-
-    /// Whether its nodes lie at its corners alone.
-    pub fn is_linear(self) -> bool {
-        self.nodes() == self.corners()
+    fn deref(&self) -> &ReferenceElement {
+        self.reference()
     }
 }
 

@@ -6,8 +6,6 @@ use std::io::Read as _;
 use std::path::Path;
 
 use crate::error::InputError;
-use crate::problem::FORMAT;
-use crate::problem::strings::read_strings;
 
 /// How every HDF5 file begins.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
@@ -46,7 +44,12 @@ impl FileKind {
         let file = File::open(path).ok()?;
         file.take(64).read_to_end(&mut start).ok()?;
         if start.starts_with(HDF5) {
-            return Self::of_hdf5(path);
+            // Both are laid out as VTKHDF; only results have its ending.
+            let is_result = path.extension().is_some_and(|ending| ending == "vtkhdf");
+            return Some(match is_result {
+                true => Self::Result,
+                false => Self::Problem,
+            });
         }
         if start.starts_with(MESH) {
             return Some(Self::Mesh);
@@ -59,17 +62,6 @@ impl FileKind {
             "geo" | "geo_unrolled" | "step" | "stp" | "brep" | "iges" => Some(Self::Geometry),
             _ => None,
         }
-    }
-
-    fn of_hdf5(path: &Path) -> Option<Self> {
-        let file = open(path)?;
-        let names = file.attr_names().ok()?;
-        let has = |name: &str| names.iter().any(|known| known == name);
-        if has("format") {
-            let format = read_strings(&*file.attr("format").ok()?).ok()?;
-            return (format.first()? == FORMAT).then_some(Self::Problem);
-        }
-        has("report").then_some(Self::Result)
     }
 
     /// The error of a reader that expected the kind `wanted`: where the file is of another kind, it
@@ -86,7 +78,6 @@ impl FileKind {
 
     /// What to do with such a file, in a sentence.
     fn use_of(self, path: &Path) -> String {
-        let problem = problem_of(path);
         let path = path.display();
         match self {
             Self::Scene => {
@@ -101,32 +92,12 @@ impl FileKind {
                 "contact-dd-mpi {path} solves it, contact-dd-partition --info {path} tells what it \
                  holds"
             ),
-            Self::Result => match problem {
-                Some(problem) => format!("ParaView opens {path}; it was made from {problem}"),
-                None => format!("ParaView opens {path}"),
-            },
+            Self::Result => format!("ParaView opens {path}"),
             Self::Checkpoint => {
                 "contact-dd-mpi goes on from it with --restart and the problem file".into()
             }
         }
     }
-}
-
-/// The problem file that a result was made from, as its report says.
-fn problem_of(result: &Path) -> Option<String> {
-    let file = open(result)?;
-    let report = read_strings(&*file.attr("report").ok()?).ok()?;
-    let report: serde_json::Value = serde_json::from_str(report.first()?).ok()?;
-    Some(report["settings"]["problem"].as_str()?.to_owned())
-}
-
-/// Opens an HDF5 file without a word where it can't be.
-fn open(path: &Path) -> Option<hdf5::File> {
-    hdf5::silence_errors(true);
-    hdf5::File::with_options()
-        .with_fapl(|access| access.file_locking(false))
-        .open(path)
-        .ok()
 }
 
 impl fmt::Display for FileKind {

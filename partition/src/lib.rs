@@ -8,10 +8,29 @@
 //! mesh.msh  ── mesh ──┘
 //! ```
 //!
-//! [`scene`] is what a user writes, [`mesh`] what a mesher writes, [`model`] what the scene means
-//! on its mesh (materials, supports, nodal forces, contact conditions `B u ≤ g`), [`decompose`]
-//! splits it into subdomains so that Γ never meets Γ_c, and [`problem`] is the one definition of
-//! the problem file, for its writer here and for its reader in `contact-dd-mpi`.
+//! **The scene** is what a user writes ([`scene`]), the **mesh** what a mesher writes ([`mesh`]), of cells
+//! over which u(ξ) = Σ N_i(ξ) u_i ([`element`]). [`example`] has some of both.
+//!
+//! **The model** is what the scene means on its mesh ([`model`]): bodies and their materials σ = C ε, the
+//! supports of Γ_u and Γ_o, the nodal forces of Γ_τ, and for every contact of Γ_c
+//!
+//! > n·(u_a − u_b) ≤ g,   together   B u ≤ g,
+//!
+//! the set K over which (1) minimizes.
+//!
+//! Node pairs, dual mortar weights and rigid obstacles each make such rows, and nothing behind them knows
+//! which did.
+//!
+//! **The partition** ([`decompose`]) cuts bodies into subdomains Ω^i that meet on
+//!
+//! > Γ = ∪ ∂Ω^i ∩ ∂Ω^j,   Γ ∩ Γ_c = ∅ but for the tips of cracks,
+//!
+//! by METIS on a graph whose vertices are what must not be divided. Subdomains in contact are the pairs ϑ,
+//! the others T.
+//!
+//! **The problem file** ([`problem`]) is defined once, for its writer here and for its reader in
+//! `contact-dd-mpi`, and holds the [`hierarchy`](problem::hierarchy) up which Schur complements are merged,
+//! judged by estimated [`flops`]. It gets its name when it is whole ([`destination`]).
 
 pub mod command_line;
 pub mod decompose;
@@ -20,6 +39,7 @@ pub mod element;
 pub mod error;
 pub mod example;
 pub mod file_kind;
+pub mod flops;
 mod lists;
 pub mod magnitude;
 pub mod manual;

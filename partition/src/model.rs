@@ -13,24 +13,17 @@ mod obstacle;
 mod partition;
 mod sides;
 mod sight;
+mod steps;
 mod supports;
 mod surface;
 
+pub use self::steps::ModelStep;
 use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
+pub use crate::scene::plane::PlaneState;
 use crate::solver::SolverSettings;
-
-/// Which plane state a two-dimensional scene is in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum PlaneState {
-    /// ε_zz = 0.
-    Strain,
-    /// σ_zz = 0.
-    Stress,
-}
 
 /// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane).
 #[derive(Clone, Debug, PartialEq)]
@@ -110,11 +103,13 @@ pub struct Model {
     pub cell_body: Vec<u32>,
     /// Names of the conditions that prescribe displacements.
     pub support_names: Vec<String>,
-    /// Supports in ascending order of nodes.
+    /// Supports in ascending order of nodes, with the values of the first step.
     pub supports: Vec<Support>,
-    /// Consistent nodal forces in ascending order of nodes, one entry a loaded node (N per metre
-    /// of thickness).
+    /// Consistent nodal forces of the first step in ascending order of nodes, one entry for every node
+    /// that is loaded in any step (N per metre of thickness).
     pub forces: Vec<(u32, [f64; 3])>,
+    /// Load steps; none where all loads are there at once.
+    pub steps: Vec<ModelStep>,
     /// Contacts in the order of the scene.
     pub contacts: Vec<Contact>,
     /// The partition that the scene asks for, a subdomain for every cell.
@@ -134,10 +129,8 @@ impl Model {
         let bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
         let topology = Topology::new(&bodies.mesh);
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
-        let support_names = supports::names(scene);
-        let supports = supports::supports(scene, &support_names, &bodies.mesh, &topology)?;
-        let forces = loads::forces(scene, &bodies, &topology)?;
-        let sides = contact::Contacts::new(&bodies.mesh, &topology, &supports);
+        let loads = steps::Loads::new(scene, &bodies, &topology)?;
+        let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads);
         let contacts = (scene.contact.iter())
             .map(|keys| sides.contact(keys, &mut warnings))
             .collect::<Result<_, _>>()?;
@@ -153,9 +146,10 @@ impl Model {
             cell_material: bodies.cell_material,
             cell_body: bodies.cell_body,
             mesh: bodies.mesh,
-            support_names,
-            supports,
-            forces,
+            support_names: loads.names,
+            supports: loads.supports,
+            forces: loads.forces,
+            steps: loads.steps,
             contacts,
             prescribed_subdomains,
             warnings,

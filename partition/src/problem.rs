@@ -11,7 +11,7 @@ pub mod info;
 mod order;
 pub mod read;
 mod slab;
-pub(crate) mod strings;
+mod strings;
 pub mod summary;
 pub mod write;
 
@@ -62,6 +62,32 @@ pub struct Subdomain {
     pub forces: Vec<(u32, [f64; 3])>,
     /// Its nodes on Γ, in ascending order of their number on Γ.
     pub interface: Vec<InterfaceNode>,
+    /// Values of its supports and forces in every load step; none where the problem has none.
+    pub steps: Vec<StepLoads>,
+}
+
+/// What a load step does to a subdomain.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepLoads {
+    /// Prescribed displacement of every support (m).
+    pub supports: Vec<f64>,
+    /// Force on every loaded node (N per metre of thickness).
+    pub forces: Vec<[f64; 3]>,
+}
+
+impl Subdomain {
+    /// Gives supports and forces their values in a load step.
+    pub fn take_step(&mut self, step: usize) {
+        let Some(loads) = self.steps.get(step) else {
+            return;
+        };
+        for (support, &value) in self.supports.iter_mut().zip(&loads.supports) {
+            support.value = value;
+        }
+        for ((_, force), &value) in self.forces.iter_mut().zip(&loads.forces) {
+            *force = value;
+        }
+    }
 }
 
 /// One entry of a contact row.
@@ -122,6 +148,15 @@ pub struct ContactSummary {
     pub conditions: usize,
 }
 
+/// A load step: quasi-static and without friction its solution depends on its own loads alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadStep {
+    /// Name.
+    pub name: String,
+    /// What it stands at on the axis of time.
+    pub time: f64,
+}
+
 /// A body: one piece of the mesh that hangs together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Body {
@@ -146,6 +181,8 @@ pub struct Catalog {
     pub supports: Vec<String>,
     /// Contacts.
     pub contacts: Vec<ContactSummary>,
+    /// Load steps; none where all loads are there at once.
+    pub steps: Vec<LoadStep>,
     /// Subdomains.
     pub subdomains: Vec<SubdomainSummary>,
     /// The nodes of Γ of each subdomain, by their number on Γ, ascending.

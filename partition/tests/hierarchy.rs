@@ -9,8 +9,9 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::flops::Front;
 use contact_dd_partition::model::Model;
-use contact_dd_partition::problem::hierarchy::{Front, Hierarchy};
+use contact_dd_partition::problem::hierarchy::Hierarchy;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::{Catalog, Problem};
 use problem_scenes::{cracked, shuffled, stacked};

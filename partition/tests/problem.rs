@@ -10,7 +10,7 @@ use std::path::Path;
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::element::ElementKind::{Quad4, Quad8, Quad9, Triangle6};
 use contact_dd_partition::example;
-use contact_dd_partition::model::Model;
+use contact_dd_partition::model::{Model, ModelStep};
 use contact_dd_partition::problem::Problem;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::scene::Scene;
@@ -40,6 +40,47 @@ fn written(problem: &Problem, folder: &Path) -> ProblemFile {
     ProblemFile::open(&path).unwrap()
 }
 
+/// The model with its loads in three steps, the second of which has none.
+fn with_steps(model: &Model) -> Model {
+    let mut model = model.clone();
+    model.steps = [1.0, 0.0, -2.5]
+        .map(|factor| ModelStep {
+            name: format!("times {factor}"),
+            time: 10.0 - factor,
+            supports: model.supports.iter().map(|s| factor + s.value).collect(),
+            forces: (model.forces.iter())
+                .map(|(_, force)| force.map(|f| factor * f))
+                .collect(),
+        })
+        .into();
+    let first = &model.steps[0];
+    for (support, &value) in model.supports.iter_mut().zip(&first.supports) {
+        support.value = value;
+    }
+    model
+}
+
+#[test]
+fn a_step_gives_supports_and_forces_its_values() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = with_steps(&shuffled(&stacked(3, 6, 3), 5));
+    let problem = Problem::new(&model, &halves(&model, 3.0)).unwrap();
+    let file = written(&problem, folder.path());
+    let mut loaded = 0;
+    for mut subdomain in file.problem().unwrap().subdomains {
+        let first = subdomain.clone();
+        subdomain.take_step(2);
+        for (before, after) in first.supports.iter().zip(&subdomain.supports) {
+            assert_eq!(after.value, before.value - 3.5);
+        }
+        for ((_, before), (_, after)) in first.forces.iter().zip(&subdomain.forces) {
+            assert_eq!(*after, before.map(|f| -2.5 * f));
+            loaded += 1;
+        }
+    }
+    assert!(loaded > 0);
+}
+
 #[test]
 fn what_is_written_is_read() {
     let folder = tempfile::tempdir().unwrap();
@@ -57,10 +98,12 @@ fn what_is_written_is_read() {
         subdomain: halves(&crack, 4.0).subdomain,
     };
     let stack = shuffled(&stacked(3, 6, 3), 5);
+    let in_steps = with_steps(&stack);
     for (model, decomposition) in [
         (&bare, &whole),
         (&crack, &upright),
         (&stack, &halves(&stack, 3.0)),
+        (&in_steps, &halves(&stack, 3.0)),
     ] {
         let problem = Problem::new(model, decomposition).unwrap();
         assert_eq!(written(&problem, folder.path()).problem().unwrap(), problem);

@@ -1,4 +1,4 @@
-//! Approaches: contact conditions as bounds.
+//! Approaches t = b·u: contact conditions B u ≤ g as bounds t ≤ g.
 //!
 //! A condition `b·v ≤ g` bounds the approach t = b·v of the two sides. Solving that equation for
 //! one of its unknowns makes t an unknown in that one's place, so that a pair's problem has nothing
@@ -146,6 +146,17 @@ pub struct Approaches {
     pub of: Vec<ApproachOf>,
     /// Number of unknown approaches.
     pub len: usize,
+    /// How they were found.
+    pub order: SolvingOrder,
+}
+
+/// In which order conditions are solved for an unknown each. Together with their coefficients it says
+/// which unknowns go; gaps and what supports prescribe make nothing but constants.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SolvingOrder {
+    conditions: Vec<usize>,
+    /// Those last of which elimination leaves less than this share of their largest coefficient.
+    least: f64,
 }
 
 impl Approaches {
@@ -164,23 +175,28 @@ impl Approaches {
         may_go: impl Fn(u32) -> bool,
         stiffness: impl Fn(u32) -> f64,
     ) -> Result<Self, OnInterface> {
-        let mut order: Vec<usize> = (0..rows.len()).collect();
-        let as_given = Self::in_order(rows, &order, 0.0, &may_go, &stiffness)?;
+        let mut order = SolvingOrder {
+            conditions: (0..rows.len()).collect(),
+            least: 0.0,
+        };
+        let as_given = Self::in_order(rows, order.clone(), &may_go, &stiffness)?;
         let dependent = |of: &ApproachOf| matches!(of, ApproachOf::Combination { .. });
         if !as_given.of.iter().any(dependent) {
             return Ok(as_given);
         }
         let left = |j: usize| rows[j].gap - rows[j].constant;
-        order.sort_by(|&i, &j| left(i).total_cmp(&left(j)));
-        Self::in_order(rows, &order, PARALLEL, &may_go, &stiffness)
+        (order.conditions).sort_by(|&i, &j| left(i).total_cmp(&left(j)));
+        order.least = PARALLEL;
+        Self::in_order(rows, order, &may_go, &stiffness)
     }
 
-    /// Solves `rows` in this `order`, those last of which elimination leaves less than the share
-    /// `least` of their largest coefficient.
-    fn in_order(
+    /// Solves `rows` in an `order` that is known.
+    ///
+    /// # Errors
+    /// The first condition that lies on Γ.
+    pub fn in_order(
         rows: &[ApproachRow],
-        order: &[usize],
-        least: f64,
+        order: SolvingOrder,
         may_go: &impl Fn(u32) -> bool,
         stiffness: &impl Fn(u32) -> f64,
     ) -> Result<Self, OnInterface> {
@@ -214,14 +230,15 @@ impl Approaches {
         };
         let unknown = |&&j: &&usize| !rows[j].terms.is_empty();
         let mut later = Vec::new();
-        for &j in order.iter().filter(unknown) {
-            if !solve(j, least)? {
+        for &j in order.conditions.iter().filter(unknown) {
+            if !solve(j, order.least)? {
                 later.push(j);
             }
         }
         for j in later {
             solve(j, 0.0)?;
         }
+        approaches.order = order;
         Ok(approaches)
     }
 

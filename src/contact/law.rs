@@ -1,4 +1,4 @@
-//! The law of a pair: what its answer to a trace follows from.
+//! The law of a pair, λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0: what S_kl(U) of (12) follows from.
 
 use faer::Mat;
 
@@ -18,7 +18,7 @@ pub struct PairLaw {
     pub stiffness: Vec<f64>,
     /// D.
     pub rows: DependentRows,
-    /// The largest displacement prescribed in the pair (m).
+    /// The largest displacement prescribed in the pair by the loads that there are now (m).
     pub scale: f64,
     /// The condition that each approach is the unknown of.
     pub defining: Vec<usize>,
@@ -45,7 +45,6 @@ impl PairLaw {
         message.push_matrix(pair.s_t_gamma());
         message.reals.extend(stiffness);
         pair.limits().rows.pack(message);
-        message.reals.push(pair.limits().scale);
     }
 
     /// The law of a pair with `traces` traces.
@@ -57,7 +56,7 @@ impl PairLaw {
             s_t_gamma: reader.matrix(m, traces),
             stiffness: reader.reals(m),
             rows: DependentRows::unpack(reader),
-            scale: reader.real(),
+            scale: 0.0,
         }
     }
 }

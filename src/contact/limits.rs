@@ -1,4 +1,4 @@
-//! What bounds the approaches of a pair.
+//! The limits of a pair: t ≤ g, D t ≤ d.
 
 use super::approach::{ApproachOf, defining_conditions};
 use super::dependent::DependentRows;

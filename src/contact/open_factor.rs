@@ -1,4 +1,6 @@
-//! H on the open conditions, factorized even where it is singular.
+//! H_NN⁻¹: H on the open conditions N, factorized even where it is singular.
+//!
+//! > S_kl'(U) = S_ΓΓ − S_ΓN H_NN⁻¹ S_NΓ
 
 use faer::linalg::solvers::{Llt, SolveCore};
 use faer::{Conj, Mat, MatMut, MatRef, Side};

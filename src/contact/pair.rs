@@ -1,4 +1,6 @@
 //! A contact pair: the common, nonlinear Schur complement S_kl of two subdomains, (12).
+//!
+//! > S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ
 
 use faer::MatRef;
 use serde::{Deserialize, Serialize};
@@ -15,6 +17,8 @@ use crate::schur::local::multiply_add;
 pub struct ContactPair {
     /// S on [t | U], both triangles.
     condensed: Condensed,
+    /// The condensed load on [t | Γ] (N/m).
+    load: Vec<f64>,
     limits: Limits,
     open: Vec<bool>,
     contact: GapSolution,
@@ -57,12 +61,21 @@ pub struct PairMemory {
 impl ContactPair {
     /// A pair whose approaches lie within `limits`, bilateral at first; both triangles of S are filled.
     pub fn new(condensed: Condensed, limits: Limits) -> Self {
+        let condensed_len = condensed.s.nrows();
         Self {
             condensed,
             open: vec![false; limits.bounds.len()],
             contact: GapSolution::bilateral(limits.approaches(), limits.bounds.len()),
+            load: vec![0.0; condensed_len],
             limits,
         }
+    }
+
+    /// Gives it a condensed `load`, on approaches and traces, and other values of its limits. What is open
+    /// and how far sides have come stays: the next evaluation begins there.
+    pub fn prescribe(&mut self, load: Vec<f64>, limits: Limits) {
+        self.load = load;
+        self.limits = limits;
     }
 
     /// Its Schur complement.
@@ -122,7 +135,7 @@ impl ContactPair {
 
     /// Load on the traces with every approach zero.
     pub fn bilateral_load(&self) -> &[f64] {
-        &self.condensed.load[self.limits.approaches()..]
+        &self.load[self.limits.approaches()..]
     }
 
     /// The diagonal of the matrix that H is condensed from.
@@ -140,7 +153,7 @@ impl ContactPair {
     pub fn evaluate(&mut self, u: &[f64], expected: Option<Vec<bool>>) -> PairResponse {
         let m = self.limits.approaches();
         let before = expected.unwrap_or_else(|| self.open.clone());
-        let mut c = self.condensed.load[..m].to_vec();
+        let mut c = self.load[..m].to_vec();
         let mut c_scale: Vec<f64> = c.iter().map(|f| f.abs()).collect();
         for (j, &u_j) in u.iter().enumerate() {
             let column = self.condensed.s.col_as_slice(m + j);

@@ -1,4 +1,4 @@
-//! Assembly: the stiffness and load of a block over its unknowns.
+//! Assembly: Tᵀ K T, K = Σ K_e, over the unknowns x of a block, u = T x + c.
 
 use contact_dd_partition::model::Material;
 
@@ -7,31 +7,19 @@ use super::dofs::Dofs;
 use super::elasticity::{ElementMatrix, MAX_NODES};
 use crate::schur::pattern::{LowerPattern, SparseSymmetric};
 
-/// Tᵀ K T and Tᵀ (f − K c) of a block, for u = T x + c.
-#[derive(Clone, Debug)]
-pub struct BlockSystem {
-    /// Stiffness.
-    pub stiffness: SparseSymmetric,
-    /// Load.
-    pub load: Vec<f64>,
+/// A spring on a component of a node, which holds what nothing else does and no load moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// Node of the block.
+    pub node: u32,
+    /// Component.
+    pub component: usize,
+    /// Its stiffness, that of the node itself (Pa).
+    pub stiffness: f64,
 }
 
-/// Nodal forces of a block, node by node (N per metre of thickness).
-pub fn nodal_forces(block: &Block) -> Vec<f64> {
-    let mut f = vec![0.0; block.nodes() * block.dim];
-    for (member, node_of) in block.members.iter().zip(&block.node_of) {
-        for &(node, force) in &member.forces {
-            let node = node_of[node as usize] as usize;
-            for component in 0..block.dim {
-                f[node * block.dim + component] += force[component];
-            }
-        }
-    }
-    f
-}
-
-/// Assembles `block` by scattering every element into the pattern; `pins` are components of nodes
-/// that a spring holds, because nothing else does and no load moves them.
+/// Assembles Tᵀ K T of `block`, for u = T x + c, by scattering every element into the pattern, and adds a
+/// spring at every one of `pins`, components of nodes.
 ///
 /// Returns `None` where the matrix has more than 2³² entries.
 pub fn assemble(
@@ -39,39 +27,35 @@ pub fn assemble(
     dofs: &Dofs,
     materials: &[Material],
     pins: &[(u32, usize)],
-) -> Option<BlockSystem> {
+) -> Option<(SparseSymmetric, Vec<Spring>)> {
     let cliques = dofs.cliques(block);
     let pattern = LowerPattern::of_sites(dofs.site_starts(), &cliques)?;
-    let mut system = BlockSystem {
-        stiffness: SparseSymmetric::zeros(pattern),
-        load: vec![0.0; dofs.len()],
-    };
-    dofs.add_load(&nodal_forces(block), &mut system.load);
-    scatter(block, dofs, materials, &mut system);
-    for &(node, component) in pins {
-        pin(dofs, node, component, &mut system);
-    }
-    Some(system)
+    let mut stiffness = SparseSymmetric::zeros(pattern);
+    scatter(block, dofs, materials, &mut stiffness);
+    let pins = pins.iter();
+    let springs = pins.map(|&(node, component)| pin(dofs, node, component, &mut stiffness));
+    let springs = springs.collect();
+    Some((stiffness, springs))
 }
 
 /// Adds a spring as stiff as the node itself.
-fn pin(dofs: &Dofs, node: u32, component: usize, system: &mut BlockSystem) {
+fn pin(dofs: &Dofs, node: u32, component: usize, k: &mut SparseSymmetric) -> Spring {
     let terms = dofs.terms(node, component);
-    let diagonal = system.stiffness.diagonal();
-    let spring = terms
+    let diagonal = k.diagonal();
+    let stiffness = terms
         .iter()
         .map(|&(dof, _)| diagonal[dof as usize])
         .fold(0.0, f64::max);
     let unknowns: Vec<u32> = terms.iter().map(|&(dof, _)| dof).collect();
-    system
-        .stiffness
-        .add(&unknowns, |a, b| spring * terms[a].1 * terms[b].1);
-    for &(dof, c) in terms {
-        system.load[dof as usize] -= spring * c * dofs.constant(node, component);
+    k.add(&unknowns, |a, b| stiffness * terms[a].1 * terms[b].1);
+    Spring {
+        node,
+        component,
+        stiffness,
     }
 }
 
-fn scatter(block: &Block, dofs: &Dofs, materials: &[Material], system: &mut BlockSystem) {
+fn scatter(block: &Block, dofs: &Dofs, materials: &[Material], stiffness: &mut SparseSymmetric) {
     let dim = block.dim;
     let mut nodes = Vec::with_capacity(MAX_NODES);
     let mut points = Vec::with_capacity(MAX_NODES);
@@ -82,15 +66,15 @@ fn scatter(block: &Block, dofs: &Dofs, materials: &[Material], system: &mut Bloc
         nodes.extend(cell.nodes());
         points.clear();
         points.extend(nodes.iter().map(|&n| block.points[n as usize]));
-        k.set(cell.kind, &points, &materials[cell.material].stiffness);
+        k.set(&cell.kind, &points, &materials[cell.material].stiffness);
         direct.clear();
         direct.extend(nodes.iter().filter_map(|&node| dofs.direct(node)));
         if direct.len() == nodes.len() {
-            system.stiffness.add_runs(&direct, dim, |a, b| k.row(a)[b]);
+            stiffness.add_runs(&direct, dim, |a, b| k.row(a)[b]);
             continue;
         }
         let unknowns = &dofs.unknowns(&nodes);
-        let rows: Vec<(Vec<f64>, f64)> = nodes
+        let rows: Vec<Vec<f64>> = nodes
             .iter()
             .flat_map(|&node| (0..dim).map(move |component| (node, component)))
             .map(|(node, component)| {
@@ -100,21 +84,16 @@ fn scatter(block: &Block, dofs: &Dofs, materials: &[Material], system: &mut Bloc
                         row[place] = c;
                     }
                 }
-                (row, dofs.constant(node, component))
+                row
             })
             .collect();
         let n = rows.len();
-        let t = nalgebra::DMatrix::from_fn(n, unknowns.len(), |i, j| rows[i].0[j]);
+        let t = nalgebra::DMatrix::from_fn(n, unknowns.len(), |i, j| rows[i][j]);
         let k = nalgebra::DMatrix::from_fn(n, n, |i, j| k.row(i)[j]);
-        let c = nalgebra::DVector::from_fn(n, |i, _| rows[i].1);
         let reduced = t.transpose() * &k * &t;
-        let load = t.transpose() * (&k * c);
-        system.stiffness.add(unknowns, |a, b| {
+        stiffness.add(unknowns, |a, b| {
             // The lower triangle speaks for both, so that round-off can't make them differ.
             reduced[(a.max(b), a.min(b))]
         });
-        for (&dof, load) in unknowns.iter().zip(load.iter()) {
-            system.load[dof as usize] -= load;
-        }
     }
 }

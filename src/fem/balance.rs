@@ -1,11 +1,11 @@
-//! Equilibrium of a block, node by node, checked element by element without any factor.
+//! Balance: K u − f + Bᵀ λ of a block, node by node, summed element by element without any factor.
 
 use contact_dd_partition::model::Material;
 
-use super::assembly::nodal_forces;
 use super::block::Block;
 use super::condition::BlockCondition;
 use super::elasticity::{ElementMatrix, MAX_NODES};
+use super::load::nodal_forces;
 
 /// f − K u − Bᵀλ of a block and the scale of its terms, node by node (N/m).
 #[derive(Clone, Debug)]
@@ -54,7 +54,7 @@ impl Balance {
                 points.push(block.points[node]);
                 u_e.extend_from_slice(&u[dim * node..dim * (node + 1)]);
             }
-            k.set(cell.kind, &points, &materials[cell.material].stiffness);
+            k.set(&cell.kind, &points, &materials[cell.material].stiffness);
             for (a, node) in cell.nodes().enumerate() {
                 for component in 0..dim {
                     let (mut sum, mut absolute) = (0.0, 0.0);

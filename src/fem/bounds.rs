@@ -1,4 +1,4 @@
-//! The contact conditions of a block as bounds on approaches.
+//! The contact conditions of a block, b·u ≤ g, as bounds on approaches, t ≤ g.
 
 use std::collections::BTreeMap;
 
@@ -8,9 +8,9 @@ use super::block::Block;
 use super::condition::BlockCondition;
 use super::frame::{Frame, dot};
 use super::node_frames::NodeFrames;
-use crate::contact::approach::{ApproachRow, Approaches, OnInterface};
+use crate::contact::approach::{ApproachRow, Approaches, OnInterface, SolvingOrder};
 
-/// The approaches of `conditions`.
+/// The approaches of `conditions`, found in an `order` that is known or in one that suits them.
 ///
 /// # Errors
 /// A condition that lies on Γ.
@@ -19,7 +19,7 @@ pub(super) fn approaches(
     conditions: &[BlockCondition],
     materials: &[Material],
     frames: &NodeFrames,
-    on_interface: &[bool],
+    order: Option<&SolvingOrder>,
 ) -> Result<Approaches, OnInterface> {
     if conditions.is_empty() {
         return Ok(Approaches::default());
@@ -30,9 +30,17 @@ pub(super) fn approaches(
         .iter()
         .map(|c| in_frames(c, frame, dim))
         .collect();
+    let mut on_interface = vec![false; block.nodes()];
+    for &(node, _) in &block.interface {
+        on_interface[node as usize] = true;
+    }
     let may_go = |v: u32| !on_interface[v as usize / dim];
-    let stiffness = node_stiffness(block, materials);
-    Approaches::new(&rows, may_go, |v| stiffness[v as usize / dim])
+    let of_nodes = node_stiffness(block, materials);
+    let stiffness = |v: u32| of_nodes[v as usize / dim];
+    match order {
+        Some(order) => Approaches::in_order(&rows, order.clone(), &may_go, &stiffness),
+        None => Approaches::new(&rows, may_go, stiffness),
+    }
 }
 
 /// The stiffest material around every node (Pa).

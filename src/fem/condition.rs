@@ -1,4 +1,4 @@
-//! Contact conditions over the nodes of a block.
+//! Contact conditions n·(u_a − u_b) ≤ g, rows of B u ≤ g over the nodes of a block.
 
 use contact_dd_partition::problem::ContactRow;
 

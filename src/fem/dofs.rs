@@ -11,17 +11,9 @@ use super::elimination::elimination_order;
 use super::frame::Frame;
 use super::node_frames::NodeFrames;
 use super::sites::Sites;
-use crate::contact::approach::{ApproachOf, Approaches, OnInterface, Variable};
+use crate::contact::approach::{ApproachOf, Approaches, OnInterface, SolvingOrder, Variable};
 use crate::schur::pattern::Cliques;
-
-/// An unknown on Γ: the node's number on Γ and the axis of its frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct TraceDof {
-    /// Number on Γ.
-    pub node: u32,
-    /// Axis of the node's frame.
-    pub axis: u32,
-}
+use crate::schur::trace::TraceDof;
 
 /// Why a block's unknowns can't be numbered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +33,7 @@ pub struct Dofs {
     constants: Vec<f64>,
     first: Vec<u32>,
     sites: Sites,
+    order: SolvingOrder,
     /// Number of interior unknowns I.
     pub interior: usize,
     /// Number of approaches; approach j is unknown `interior + j`.
@@ -69,12 +62,12 @@ impl Dofs {
             return Err(DofError::Size);
         }
         let frames = NodeFrames::new(block, conditions);
+        let approaches = approaches(block, conditions, materials, &frames, None)
+            .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
         let mut on_interface = vec![false; block.nodes()];
         for &(node, _) in &block.interface {
             on_interface[node as usize] = true;
         }
-        let approaches = approaches(block, conditions, materials, &frames, &on_interface)
-            .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
         let mut is_free = vec![true; block.nodes() * dim];
         for (node, frame) in frames.special() {
             for axis in 0..dim {
@@ -124,12 +117,13 @@ impl Dofs {
             dim,
             offsets: Vec::with_capacity(number.len() + 1),
             terms: Vec::with_capacity(number.len()),
-            constants: Vec::with_capacity(number.len()),
+            constants: vec![0.0; number.len()],
             first: Vec::with_capacity(block.nodes()),
             sites,
             interior,
             approaches: approaches.len,
             approach_of: approaches.of.clone(),
+            order: approaches.order.clone(),
             traces,
         };
         dofs.offsets.push(0);
@@ -146,37 +140,85 @@ impl Dofs {
                 }
             }
         }
+        dofs.set_constants(&frames, &approaches);
         Ok(dofs)
     }
 
-    /// Appends the rows of T and c for a node whose components are unknowns.
+    /// Gives c and the constants of approaches the values that supports and `conditions` have now; T stays
+    /// as it is.
+    ///
+    /// # Errors
+    /// A condition that lies on Γ.
+    pub fn prescribe(
+        &mut self,
+        block: &Block,
+        conditions: &[BlockCondition],
+        materials: &[Material],
+    ) -> Result<(), DofError> {
+        let frames = NodeFrames::new(block, conditions);
+        let approaches = approaches(block, conditions, materials, &frames, Some(&self.order))
+            .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
+        self.set_constants(&frames, &approaches);
+        self.approach_of = approaches.of;
+        Ok(())
+    }
+
+    fn set_constants(&mut self, frames: &NodeFrames, approaches: &Approaches) {
+        let dim = self.dim;
+        self.constants.fill(0.0);
+        let axis_of =
+            |node: u32, axis: usize| frames.of(node).unwrap_or(&Frame::CARTESIAN).axes[axis];
+        for (node, frame) in frames.special() {
+            for (axis, value) in frame.prescribed[..dim].iter().enumerate() {
+                if let &Some(value) = value {
+                    self.add_constant(node, axis_of(node, axis), value);
+                }
+            }
+        }
+        // In the order of the unknowns: a hash map has none.
+        let replaced: BTreeMap<u32, f64> = (approaches.replaced.iter())
+            .map(|(&raw, value)| (raw, value.constant))
+            .collect();
+        for (raw, value) in replaced {
+            let (node, axis) = (raw / dim as u32, raw as usize % dim);
+            self.add_constant(node, axis_of(node, axis), value);
+        }
+    }
+
+    fn add_constant(&mut self, node: u32, along: [f64; 3], value: f64) {
+        let start = node as usize * self.dim;
+        let constants = &mut self.constants[start..start + self.dim];
+        for (constant, along) in constants.iter_mut().zip(along) {
+            *constant += along * value;
+        }
+    }
+
+    /// Appends the rows of T for a node whose components are unknowns.
     fn push_direct(&mut self, node: u32, number: &[u32]) {
         let raw = node as usize * self.dim;
         for &dof in &number[raw..raw + self.dim] {
             self.terms.push((dof, 1.0));
-            self.constants.push(0.0);
             self.offsets.push(self.terms.len() as u32);
         }
         self.first.push(number[raw]);
     }
 
-    /// Appends the rows of T and c for `node`.
+    /// Appends the rows of T for `node`.
     fn push_node(&mut self, node: u32, frame: &Frame, number: &[u32], approaches: &Approaches) {
         let dim = self.dim;
         let start = self.offsets.len() - 1;
         for component in 0..dim {
             let mut row: BTreeMap<u32, f64> = BTreeMap::new();
-            let mut constant = 0.0;
             for axis in 0..dim {
                 let along = frame.axes[axis][component];
                 if along == 0.0 {
                     continue;
                 }
                 let raw = node * dim as u32 + axis as u32;
-                if let Some(value) = frame.prescribed[axis] {
-                    constant += along * value;
-                } else if let Some(value) = approaches.replaced.get(&raw) {
-                    constant += along * value.constant;
+                if frame.prescribed[axis].is_some() {
+                    continue;
+                }
+                if let Some(value) = approaches.replaced.get(&raw) {
                     for &(variable, c) in &value.terms {
                         let dof = match variable {
                             Variable::Displacement(v) => number[v as usize],
@@ -189,7 +231,6 @@ impl Dofs {
                 }
             }
             self.terms.extend(row);
-            self.constants.push(constant);
             self.offsets.push(self.terms.len() as u32);
         }
         self.first.push(self.direct_from(node, start));
@@ -204,7 +245,6 @@ impl Dofs {
                 .iter()
                 .enumerate()
                 .all(|(k, &(dof, c))| c == 1.0 && dof == base[0].0 + k as u32)
-            && self.constants[start..].iter().all(|&c| c == 0.0)
             && self.sites.unknowns_of(node) == (base[0].0..base[0].0 + self.dim as u32);
         if direct { base[0].0 } else { NOT_DIRECT }
     }
@@ -228,6 +268,11 @@ impl Dofs {
     /// The constant part of a component of a node's displacement (m).
     pub fn constant(&self, node: u32, component: usize) -> f64 {
         self.constants[node as usize * self.dim + component]
+    }
+
+    /// Whether c isn't zero.
+    pub fn has_constants(&self) -> bool {
+        self.constants.iter().any(|&c| c != 0.0)
     }
 
     /// The first of the consecutive unknowns that simply are the node's components, if so.

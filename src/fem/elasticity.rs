@@ -1,6 +1,8 @@
-//! Linear elasticity of one element in the plane: strains, stresses, stiffness.
+//! Linear elasticity of one element in the plane: K_e = ∫ Bᵀ C B dx, (2).
+//!
+//! ε = B u holds ε_xx, ε_yy and γ_xy = 2 ε_xy, from the gradients of the shape functions; σ = C ε.
 
-use contact_dd_partition::element::ElementKind;
+use contact_dd_partition::element::reference::ReferenceElement;
 use contact_dd_partition::element::tabulation::TabulatedPoint;
 use contact_dd_partition::model::{Material, PlaneState};
 
@@ -20,10 +22,10 @@ pub struct PointGradients {
 
 /// The quadrature points of an element's stiffness.
 pub fn stiffness_points(
-    kind: ElementKind,
+    element: &ReferenceElement,
     points: &[[f64; 3]],
 ) -> impl Iterator<Item = PointGradients> {
-    let reference = kind.stiffness_points().iter();
+    let reference = element.stiffness_points().iter();
     reference.map(move |reference| gradients(reference, points))
 }
 
@@ -109,18 +111,18 @@ impl ElementMatrix {
     }
 
     /// Becomes K_e = ∫ Bᵀ C B over an element of unit thickness (Pa), dofs node by node.
-    pub fn set(&mut self, kind: ElementKind, points: &[[f64; 3]], c: &[[f64; 3]; 3]) {
-        self.order = 2 * kind.nodes();
+    pub fn set(&mut self, element: &ReferenceElement, points: &[[f64; 3]], c: &[[f64; 3]; 3]) {
+        self.order = 2 * element.nodes();
         self.values[..self.order * self.order].fill(0.0);
-        for point in stiffness_points(kind, points) {
+        for point in stiffness_points(element, points) {
             // The compiler unrolls what it knows the size of.
-            match kind {
-                ElementKind::Triangle3 => self.add_lower(3, &point, c),
-                ElementKind::Quad4 => self.add_lower(4, &point, c),
-                ElementKind::Triangle6 => self.add_lower(6, &point, c),
-                ElementKind::Quad8 => self.add_lower(8, &point, c),
-                ElementKind::Quad9 => self.add_lower(9, &point, c),
-                ElementKind::Point1 | ElementKind::Line2 | ElementKind::Line3 => {}
+            match element.nodes() {
+                3 => self.add_lower(3, &point, c),
+                4 => self.add_lower(4, &point, c),
+                6 => self.add_lower(6, &point, c),
+                8 => self.add_lower(8, &point, c),
+                9 => self.add_lower(9, &point, c),
+                nodes => self.add_lower(nodes, &point, c),
             }
         }
         // Symmetric to the last bit, so that assembling one triangle is assembling both.
@@ -182,15 +184,10 @@ pub fn von_mises(s: &[f64; 6]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use contact_dd_partition::element::ElementKind;
+
     use super::*;
 
-    const CELLS: [ElementKind; 5] = [
-        ElementKind::Triangle3,
-        ElementKind::Triangle6,
-        ElementKind::Quad4,
-        ElementKind::Quad8,
-        ElementKind::Quad9,
-    ];
     const C: [[f64; 3]; 3] = [[3.0, 1.0, 0.2], [1.0, 2.5, -0.1], [0.2, -0.1, 0.9]];
 
     fn material() -> Material {
@@ -218,18 +215,27 @@ mod tests {
 
     fn stiffness(kind: ElementKind) -> ElementMatrix {
         let mut k = ElementMatrix::default();
-        k.set(kind, &points(kind), &C);
+        k.set(&kind, &points(kind), &C);
         k
     }
 
     #[test]
+    fn there_is_room_for_every_kind() {
+        assert!(
+            ElementKind::ALL
+                .iter()
+                .all(|kind| kind.nodes() <= MAX_NODES)
+        );
+    }
+
+    #[test]
     fn a_linear_displacement_has_its_own_strain() {
-        for kind in CELLS {
+        for kind in ElementKind::of_dim(2) {
             let points = points(kind);
             let u: Vec<f64> = (points.iter())
                 .flat_map(|x| [0.1 * x[0] + 0.2 * x[1], -0.3 * x[0] + 0.4 * x[1]])
                 .collect();
-            for point in stiffness_points(kind, &points) {
+            for point in stiffness_points(&kind, &points) {
                 let e = strain(&point, &u);
                 for (e, exact) in e.iter().zip([0.1, 0.4, -0.1]) {
                     assert!((e - exact).abs() < 1e-14, "{kind:?}");
@@ -240,7 +246,7 @@ mod tests {
 
     #[test]
     fn stiffness_is_symmetric_and_rigid_motions_cost_nothing() {
-        for kind in CELLS {
+        for kind in ElementKind::of_dim(2) {
             let k = stiffness(kind);
             let rotation: Vec<f64> = points(kind).iter().flat_map(|x| [-x[1], x[0]]).collect();
             for (i, row) in k.rows().enumerate() {
@@ -255,7 +261,7 @@ mod tests {
     /// ∫ Bᵀ σ for a uniform stress is ∮ N σ n, with nothing at nodes inside.
     #[test]
     fn the_forces_of_a_uniform_stress_are_its_tractions_on_the_edges() {
-        for kind in CELLS {
+        for kind in ElementKind::of_dim(2) {
             let (k, at) = (stiffness(kind), points(kind));
             let u: Vec<f64> = (at.iter())
                 .flat_map(|x| [0.1 * x[0] + 0.2 * x[1], -0.3 * x[0] + 0.4 * x[1]])
@@ -283,7 +289,7 @@ mod tests {
 
     #[test]
     fn the_energy_is_half_stress_times_strain_times_area() {
-        for kind in CELLS {
+        for kind in ElementKind::of_dim(2) {
             let u: Vec<f64> = (0..2 * kind.nodes())
                 .map(|i| (1.7 * i as f64).sin())
                 .collect();
@@ -292,7 +298,7 @@ mod tests {
                 .rows()
                 .map(|row| row.iter().zip(&u).map(|(k, u)| k * u).sum::<f64>());
             let energy: f64 = forces.zip(&u).map(|(force, u)| force * u).sum();
-            let exact: f64 = stiffness_points(kind, &points(kind))
+            let exact: f64 = stiffness_points(&kind, &points(kind))
                 .map(|point| {
                     let e = strain(&point, &u);
                     let s = stress(&material(), PlaneState::Strain, &e);

@@ -1,5 +1,7 @@
-//! The estimate of Zienkiewicz and Zhu: the error of the stress is about its difference to the
-//! recovered one.
+//! The estimate of Zienkiewicz and Zhu: the error of the stress σ_h is about its difference to the
+//! recovered one σ*.
+//!
+//! > ‖e‖² ≈ ∫ (σ* − σ_h)ᵀ C⁻¹ (σ* − σ_h) dx
 
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::model::Material;
@@ -82,7 +84,7 @@ impl Compliance {
     ) -> CellError {
         let mut sum = CellError::default();
         let references = kind.stiffness_points().iter();
-        for (reference, point) in references.zip(stiffness_points(kind, points)) {
+        for (reference, point) in references.zip(stiffness_points(&kind, points)) {
             let stress = stress_in_plane(material, &strain(&point, u));
             let mut smooth = [0.0; COMPONENTS];
             for (n, at_node) in reference.shape.iter().zip(recovered) {

@@ -154,6 +154,6 @@ fn vertices_of(kind: ElementKind, local: usize) -> &'static [usize] {
     let mut edges = kind.facets().iter();
     match edges.find(|(_, nodes)| nodes.get(2) == Some(&local)) {
         Some((_, nodes)) => &nodes[..2],
-        None => &[0, 1, 2, 3],
+        None => &[0, 1, 2, 3][..kind.corners()],
     }
 }

@@ -1,8 +1,6 @@
 //! Stresses: the mean over each cell, at nodes by recovery, and the error that their difference
 //! tells of.
 
-use std::sync::LazyLock;
-
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::element::tabulation::TabulatedPoint;
 use contact_dd_partition::model::{Material, PlaneState};
@@ -64,7 +62,7 @@ impl BlockStress {
             for (corner, node) in corners(&cell).enumerate() {
                 around[node].add_cell(local.angle(corner), !cell.kind.is_linear());
             }
-            for point in superconvergent_points(cell.kind) {
+            for point in cell.kind.stress_points() {
                 let (at, sigma) = local.at(point, material, plane);
                 for node in corners(&cell) {
                     let from = &block.points[node];
@@ -173,7 +171,7 @@ impl LocalCell {
     /// The mean stress.
     fn mean(&self, material: &Material, plane: PlaneState) -> [f64; 6] {
         let (mut sum, mut area) = ([0.0; 6], 0.0);
-        for point in stiffness_points(self.kind, &self.points) {
+        for point in stiffness_points(&self.kind, &self.points) {
             let sigma = stress(material, plane, &strain(&point, &self.u));
             for (sum, s) in sum.iter_mut().zip(sigma) {
                 *sum += point.weight * s;
@@ -202,35 +200,25 @@ impl LocalCell {
 
     /// The angle between the edges at a corner (rad).
     fn angle(&self, corner: usize) -> f64 {
-        let corners = self.kind.corners();
+        let edges = self.kind.facets();
         let vertex = self.points[corner];
-        let tangent = |other: usize, middle: usize| {
+        let tangent = |other: usize, edge: &[usize]| {
             let end = self.points[other];
             let way = [0, 1].map(|k| end[k] - vertex[k]);
-            match self.kind.is_linear() {
-                true => way,
+            match edge.get(2) {
+                None => way,
                 // The derivative at the end of a parabola through three points.
-                false => [0, 1].map(|k| 4.0 * (self.points[middle][k] - vertex[k]) - way[k]),
+                Some(&middle) => {
+                    [0, 1].map(|k| 4.0 * (self.points[middle][k] - vertex[k]) - way[k])
+                }
             }
         };
-        let before = (corner + corners - 1) % corners;
-        let out = tangent((corner + 1) % corners, corners + corner);
-        let back = tangent(before, corners + before);
+        let (after, before) = (
+            edges[corner].1,
+            edges[(corner + edges.len() - 1) % edges.len()].1,
+        );
+        let out = tangent(after[1], after);
+        let back = tangent(before[0], before);
         (out[0] * back[1] - out[1] * back[0]).atan2(out[0] * back[0] + out[1] * back[1])
     }
-}
-
-/// Where stresses are more accurate than elsewhere in a cell, or make patches that are.
-///
-/// Barlow, Int. J. Numer. Meth. Eng. 10 (1976); Zienkiewicz and Zhu 1992.
-fn superconvergent_points(kind: ElementKind) -> &'static [TabulatedPoint] {
-    static POINTS: LazyLock<[Vec<TabulatedPoint>; ElementKind::ALL.len()]> = LazyLock::new(|| {
-        ElementKind::ALL.map(|kind| match kind {
-            ElementKind::Point1 | ElementKind::Line2 | ElementKind::Line3 => Vec::new(),
-            ElementKind::Triangle3 | ElementKind::Quad4 => kind.tabulate(1),
-            ElementKind::Triangle6 => kind.tabulate(2),
-            ElementKind::Quad8 | ElementKind::Quad9 => kind.tabulate(3),
-        })
-    });
-    &POINTS[kind as usize]
 }

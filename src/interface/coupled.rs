@@ -19,7 +19,7 @@ use crate::contact::active_set::GapProblem;
 use crate::contact::dependent::DependentRows;
 use crate::contact::law::PairLaw;
 use crate::contact::pair::PairResponse;
-use crate::contact::s_con::ConState;
+use crate::interface::s_con::ConState;
 use crate::schur::local::multiply_add;
 
 /// Most approaches of all pairs together for which their problem is solved at once: its matrix is

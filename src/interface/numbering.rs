@@ -1,10 +1,10 @@
-//! The unknowns on Γ, in the order in which the root eliminates them.
+//! R̄_i of (15): the unknowns on Γ, in the order in which the root eliminates them.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::error::Failure;
-use crate::fem::dofs::TraceDof;
 use crate::schur::pattern::Cliques;
+use crate::schur::trace::TraceDof;
 
 /// The numbering of the interface's unknowns.
 #[derive(Clone, Debug, Default)]

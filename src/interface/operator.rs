@@ -1,4 +1,6 @@
-//! S_0, the bilateral operator S_0 + S_CON', and the solve at the root.
+//! S_0 and F of (15), and the bilateral operator S_0 + S_CON' of (16)-(17) with its factor at the root.
+//!
+//! > S_0 = Σ_T R̄_iᵀ S_i R̄_i,   U^0 = (S_0 + S_CON')⁻¹ F
 
 use std::cell::OnceCell;
 
@@ -20,8 +22,6 @@ const SINGULAR_PIVOT: f64 = 1e-13;
 pub struct Contribution {
     /// Its Schur complement on its traces, with every contact closed.
     pub s: Mat<f64>,
-    /// Its condensed load.
-    pub load: Vec<f64>,
     /// The smallest pivot of its interior relative to its diagonal entry.
     pub smallest_pivot: f64,
     /// Number of unknowns on Γ that were eliminated within it.
@@ -29,6 +29,15 @@ pub struct Contribution {
     /// The law of a pair; `None` for a linear subdomain, and where all pairs have too many
     /// approaches to be solved for at once.
     pub law: Option<PairLaw>,
+}
+
+/// What loads a cluster.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ClusterLoad {
+    /// Its condensed load on its traces, with every contact closed.
+    pub load: Vec<f64>,
+    /// The largest displacement that is prescribed in a cluster in contact (m).
+    pub scale: f64,
 }
 
 /// The interface problem S_0 U + S_CON(U) = F, (14), as the root holds it.
@@ -53,6 +62,8 @@ pub struct Interface {
     f_scale: Vec<f64>,
     /// F of the pairs with every contact closed.
     f_bilateral: Vec<f64>,
+    /// Which clusters are in contact.
+    is_pair: Vec<bool>,
     factor: BoundaryLastCholesky,
     condensed_laws: OnceCell<Mat<f64>>,
     smallest_pivot: f64,
@@ -60,9 +71,9 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// Assembles S_0, F and the bilateral operator from all blocks, in their order, and factorizes
-    /// the latter. `pair[b]` tells whether block b is a pair; `motions` are the pairs' approaches
-    /// against the rigid motions of the bodies.
+    /// Assembles S_0 and the bilateral operator from all clusters, in their order, and factorizes
+    /// the latter. `pair[c]` tells whether cluster c is in contact. Nothing loads it before
+    /// [`prescribe`](Self::prescribe).
     ///
     /// # Errors
     /// The bilateral problem is singular.
@@ -70,7 +81,6 @@ impl Interface {
         numbering: &Numbering,
         contributions: Vec<Contribution>,
         pair: &[bool],
-        motions: &RigidDrive,
         par: Par,
     ) -> Result<Self, Failure> {
         let n = numbering.len;
@@ -87,20 +97,12 @@ impl Interface {
         let mut sum = SparseSymmetric::zeros(LowerPattern::new(n, &all).ok_or_else(too_large)?);
         let mut pair_traces = Vec::new();
         let mut laws = Vec::new();
-        let mut f = vec![0.0; n];
-        let mut f_bilateral = vec![0.0; n];
-        let mut f_scale = vec![0.0; n];
         let mut smallest_pivot = f64::INFINITY;
         let mut eliminated = 0;
         for ((part, traces), &is_pair) in contributions.into_iter().zip(&numbering.traces).zip(pair)
         {
             smallest_pivot = smallest_pivot.min(part.smallest_pivot);
             eliminated += part.eliminated;
-            let load_of_kind = if is_pair { &mut f_bilateral } else { &mut f };
-            for (&dof, load) in traces.iter().zip(&part.load) {
-                load_of_kind[dof as usize] += load;
-                f_scale[dof as usize] += load.abs();
-            }
             if is_pair {
                 sum.add_large(traces, part.s.as_ref());
                 pair_traces.push(traces.clone());
@@ -121,17 +123,43 @@ impl Interface {
             eliminated,
             linear: numbering.linear,
             pair_traces,
-            motions: RigidBasis::new(motions, &stiffness_of(&laws)),
+            motions: RigidBasis::default(),
             laws,
             s_0,
-            f,
-            f_scale,
-            f_bilateral,
+            f: vec![0.0; n],
+            f_scale: vec![0.0; n],
+            f_bilateral: vec![0.0; n],
+            is_pair: pair.to_vec(),
             smallest_pivot: smallest_pivot.min(factor.smallest_pivot()),
             factor,
             condensed_laws: OnceCell::new(),
             par,
         })
+    }
+
+    /// Assembles F of the `loads` of all clusters, in their order; `drive` has the pairs' approaches
+    /// against the rigid motions of the bodies, and the load along these.
+    pub fn prescribe(&mut self, numbering: &Numbering, loads: &[ClusterLoad], drive: &RigidDrive) {
+        for f in [&mut self.f, &mut self.f_bilateral, &mut self.f_scale] {
+            f.fill(0.0);
+        }
+        let mut laws = self.laws.iter_mut();
+        for ((of_cluster, traces), &is_pair) in
+            loads.iter().zip(&numbering.traces).zip(&self.is_pair)
+        {
+            let f = match is_pair {
+                true => &mut self.f_bilateral,
+                false => &mut self.f,
+            };
+            for (&dof, load) in traces.iter().zip(&of_cluster.load) {
+                f[dof as usize] += load;
+                self.f_scale[dof as usize] += load.abs();
+            }
+            if is_pair && let Some(law) = laws.next() {
+                law.scale = of_cluster.scale;
+            }
+        }
+        self.motions = RigidBasis::new(drive, &stiffness_of(&self.laws));
     }
 
     /// The smallest pivot of all blocks and of the bilateral operator, each relative to its

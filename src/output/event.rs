@@ -53,6 +53,17 @@ pub enum Event<'a> {
         /// Since the run began (s).
         seconds: f64,
     },
+    /// A load step begins, where the problem has any.
+    Step {
+        /// Its number, from 1.
+        step: usize,
+        /// Number of all.
+        steps: usize,
+        /// Its name.
+        name: &'a str,
+        /// What it stands at on the axis of time.
+        time: f64,
+    },
     /// A sweep is done.
     Sweep {
         /// Its number; 0 is the bilateral start.

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::build::Build;
 use super::resultants::Resultants;
+use crate::certificate::Certificate;
 use crate::settings::Settings;
 use crate::settings::origin::Origins;
 
@@ -20,32 +21,6 @@ pub enum Status {
     Converged,
     /// It isn't.
     NotConverged,
-}
-
-/// Checks of the full discrete problem, all relative to the scale of what they check.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Certificate {
-    /// ‖K u − f + Bᵀλ‖∞ / ‖|K||u| + |f| + |Bᵀλ|‖∞.
-    pub equilibrium: f64,
-    /// ‖K u − f + Bᵀλ‖∞ over the largest load, contact force or reaction at a node: what the
-    /// condition of the scene makes of round-off.
-    pub equilibrium_of_load: f64,
-    /// The largest load at a node over that scale: near 0 where the forces are round-off of a scene
-    /// without load, or displacements drive it.
-    #[serde(skip)]
-    pub load_share: f64,
-    /// Largest penetration over the largest displacement.
-    pub penetration: f64,
-    /// Largest tension in a contact over the load scale.
-    pub tension: f64,
-    /// Largest product of contact force and gap over the product of their scales.
-    pub complementarity: f64,
-    /// Sum of loads and reactions over the load scale.
-    pub force_balance: f64,
-    /// Sum of their moments over the load scale times the size of the scene.
-    pub moment_balance: f64,
-    /// Largest jump of the displacement across Γ over the largest displacement.
-    pub interface_jump: f64,
 }
 
 /// What the mesh does to the stress, after Zienkiewicz and Zhu, in the energy norm.
@@ -126,6 +101,34 @@ pub struct RankReport {
     pub repeated: usize,
 }
 
+/// A load step. Of sweeps that ended without converging the answer is there all the same.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepReport {
+    /// Its name.
+    pub name: String,
+    /// What it stands at on the axis of time.
+    pub time: f64,
+    /// How its sweeps ended.
+    pub status: Status,
+    /// Number of sweeps after the start.
+    pub sweeps: usize,
+    /// Number of linear systems solved within contact problems.
+    pub inner_steps: usize,
+    /// Relative residual of the interface problem at the end.
+    pub interface_residual: f64,
+    /// Number of contact conditions that are closed.
+    pub active_contacts: usize,
+    /// Checks of its solution.
+    pub certificate: Certificate,
+    /// Estimate of the condition number; `null` where it can't be made.
+    pub condition: Option<f64>,
+    /// Estimate of the mesh's error; `null` where stresses are left out.
+    pub error_estimate: Option<ErrorEstimate>,
+    /// What contacts and supports carry.
+    #[serde(flatten)]
+    pub resultants: Resultants,
+}
+
 /// The report. A number that isn't finite is `null` in its JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
@@ -175,6 +178,9 @@ pub struct Report {
     /// What contacts and supports carry.
     #[serde(flatten)]
     pub resultants: Resultants,
+    /// The load steps, where the problem has any. Above, sweeps and inner steps are those of all,
+    /// residual, certificate and condition those of the worst, and all else is that of the last one.
+    pub steps: Vec<StepReport>,
     /// What the scene didn't need, in words.
     pub skipped: Vec<String>,
     /// What the user should know, in words.
@@ -271,6 +277,7 @@ mod tests {
             peak_memory_bytes: 1,
             error_estimate: None,
             resultants: Resultants::default(),
+            steps: Vec::new(),
             skipped: Vec::new(),
             warnings: vec!["a \"quoted\"\nwarning".into()],
             settings_from: settings.from.clone(),
@@ -347,6 +354,7 @@ mod tests {
                 "settings_from",
                 "skipped",
                 "status",
+                "steps",
                 "subdomains",
                 "sweeps",
                 "threads",

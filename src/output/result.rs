@@ -117,6 +117,8 @@ pub struct ContactResult {
 /// One sweep; the first row of a run is its bilateral start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConvergenceRow {
+    /// Number of the load step.
+    pub step: usize,
     /// Relative residual of the interface problem after the sweep.
     pub residual: f64,
     /// Number of closed contact conditions.

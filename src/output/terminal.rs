@@ -10,9 +10,11 @@ use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
 use contact_dd_partition::message::{ERROR, WARNING};
+use contact_dd_partition::problem::LoadStep;
 
-use super::report::{Certificate, Report, Status};
+use super::report::{Report, Status, StepReport};
 use super::resultants;
+use crate::certificate::Certificate;
 use crate::plan::demand::Demand;
 
 /// How the reason is shown for which sweeps ended well.
@@ -134,6 +136,21 @@ pub fn settings(out: &mut dyn Write, settings: &[(&str, String)]) -> Result<()> 
     Ok(())
 }
 
+/// Prints which load step comes, number k of `count`.
+///
+/// # Errors
+/// `out` can't be written.
+pub fn step(out: &mut dyn Write, step: &LoadStep, k: usize, count: usize) -> Result<()> {
+    writeln!(out)?;
+    writeln!(
+        out,
+        "step {} of {count}: '{}' at {}",
+        k + 1,
+        step.name,
+        step.time
+    )
+}
+
 /// Prints the head of the table of sweeps.
 ///
 /// # Errors
@@ -185,6 +202,7 @@ pub fn closing(out: &mut dyn Write, reason: &str, report: &Report, result: &Path
         )?;
     }
     writeln!(out)?;
+    steps(out, &report.steps)?;
     resultants::print(out, &report.resultants)?;
     writeln!(out)?;
     timing::print(out, &report.per_rank)?;
@@ -199,6 +217,33 @@ pub fn closing(out: &mut dyn Write, reason: &str, report: &Report, result: &Path
         writeln!(out, "{WARNING}warning:{WARNING:#} {warning}")?;
     }
     writeln!(out, "results: {}", result.display())
+}
+
+/// Prints a line a load step; nothing where there is none.
+fn steps(out: &mut dyn Write, steps: &[StepReport]) -> Result<()> {
+    if steps.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "{:>5}  {:>10}  {:>8}  {:>8}  {:>12}  {:>12}  name",
+        "step", "time", "sweeps", "active", "pressure", "equilibrium"
+    )?;
+    for (k, step) in steps.iter().enumerate() {
+        let contacts = step.resultants.contacts.iter();
+        let pressure = contacts.fold(0.0, |most: f64, contact| most.max(contact.largest_pressure));
+        writeln!(
+            out,
+            "{:>5}  {:>10}  {:>8}  {:>8}  {pressure:>12.4e}  {:>12.1e}  {}",
+            k + 1,
+            step.time,
+            step.sweeps,
+            step.active_contacts,
+            step.certificate.equilibrium,
+            step.name
+        )?;
+    }
+    writeln!(out, "\nin the last step:")
 }
 
 /// Prints the certificate.

@@ -6,6 +6,7 @@
 mod column;
 mod contact_table;
 mod grid;
+mod time_series;
 
 use std::ops::Range;
 use std::path::Path;
@@ -21,12 +22,14 @@ use self::grid::Grid;
 use super::result::{ContactResult, ConvergenceRow, PartitionSize, SubdomainResults};
 
 /// How much room everything takes.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
     /// One entry a subdomain.
     pub partitions: Vec<PartitionSize>,
     /// One entry a contact.
     pub contacts: Vec<ContactSummary>,
+    /// What every load step stands at on the axis of time; none where the problem has none.
+    pub times: Vec<f64>,
     /// Whether there are stresses.
     pub stress: bool,
 }
@@ -48,6 +51,7 @@ impl Layout {
                 .map(size)
                 .collect(),
             contacts: catalog.contacts.clone(),
+            times: catalog.steps.iter().map(|step| step.time).collect(),
             stress,
         }
     }
@@ -61,6 +65,7 @@ impl Layout {
 pub struct ResultFile {
     grid: Grid,
     contacts: ContactTables,
+    has_steps: bool,
     // Closed before `destination` removes or renames it: fields are dropped in this order.
     file: File,
     destination: Destination,
@@ -78,14 +83,15 @@ impl ResultFile {
                 // A temporary file has no other reader, and not every file system can lock.
                 .with_fapl(|access| access.file_locking(false))
                 .create(destination.temporary())?;
-            let grid = Grid::create(&file, &layout.partitions, layout.stress)?;
-            let contacts = ContactTables::create(&file, &layout.contacts)?;
+            let grid = Grid::create(&file, layout)?;
+            let contacts = ContactTables::create(&file, &layout.contacts, layout.times.len())?;
             Ok((file, grid, contacts))
         };
         match make() {
             Ok((file, grid, contacts)) => Ok(Self {
                 grid,
                 contacts,
+                has_steps: !layout.times.is_empty(),
                 file,
                 destination,
             }),
@@ -118,13 +124,27 @@ impl ResultFile {
             .map_err(|error| failure(&self.destination, &error))
     }
 
-    /// Writes `/convergence`: a row for the bilateral start and one for every sweep. Called once.
+    /// Ends a load step: what is written from now on belongs to the next one.
+    ///
+    /// # Errors
+    /// A subdomain or a contact condition is missing.
+    pub fn finish_step(&mut self) -> Result<(), OutputError> {
+        let grid = self.grid.finish_step();
+        grid.and_then(|()| self.contacts.finish_step())
+            .map_err(|error| failure(&self.destination, &error))
+    }
+
+    /// Writes `/convergence`: a row for the start and one for every sweep, load step by load step. Called
+    /// once.
     ///
     /// # Errors
     /// The file can't be written.
     pub fn write_convergence(&mut self, rows: &[ConvergenceRow]) -> Result<(), OutputError> {
         let write = || {
             let group = self.file.create_group("convergence")?;
+            if self.has_steps {
+                column::whole(&group, "step", rows.iter().map(|row| row.step as i64))?;
+            }
             column::whole(&group, "residual", rows.iter().map(|row| row.residual))?;
             column::whole(&group, "active", rows.iter().map(|row| row.active as i64))?;
             column::whole(&group, "seconds", rows.iter().map(|row| row.seconds))
@@ -135,13 +155,14 @@ impl ResultFile {
     /// Adds the report, brings the file to the disk and gives it its name.
     ///
     /// # Errors
-    /// The file can't be written, or a subdomain or a contact condition is missing.
+    /// The file can't be written, or results are missing.
     pub fn finish(self, report_json: &str) -> Result<(), OutputError> {
         let Self {
             grid,
             contacts,
             file,
             destination,
+            ..
         } = self;
         let write = move || {
             grid.finish()?;

@@ -1,6 +1,6 @@
 //! Who owns what: subtrees of the hierarchy are handed out by estimated cost.
 
-use contact_dd_partition::problem::hierarchy::{Front, condensation};
+use contact_dd_partition::flops::{Front, condensation};
 
 use super::tree::Tree;
 

@@ -3,8 +3,8 @@
 //! The constants are measured: on 45 peaks of 1 and 2 ranks, from 20 thousand to 2 million dofs, in 8
 //! to 1000 subdomains, with up to 5000 contact conditions, the estimate is within a quarter of each.
 
+use contact_dd_partition::flops::{Front, condensation};
 use contact_dd_partition::problem::Catalog;
-use contact_dd_partition::problem::hierarchy::{Front, condensation};
 
 use super::Plan;
 

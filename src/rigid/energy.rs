@@ -6,6 +6,8 @@
 
 use faer::Mat;
 
+use super::projection::dot;
+
 /// Part of a motion, relative to all of it, that is new.
 const INDEPENDENT: f64 = 1e-8;
 
@@ -124,10 +126,6 @@ impl RigidBasis {
             }
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

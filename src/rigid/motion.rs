@@ -1,4 +1,4 @@
-//! Rigid motions of a body: translations, and rotations about its center scaled by its size.
+//! Rigid motions z of a body: translations, and rotations ω × (x − x_0) about its center scaled by its size.
 
 /// The frame in which the rigid motions of a body are written.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! Non-negative least squares: can contact forces λ ≥ 0 balance a load?
+//! min ‖b − A λ‖₂ over λ ≥ 0, non-negative least squares: can contact forces balance a load?
 
 use faer::Mat;
 use nalgebra::{DMatrix, DVector};

@@ -77,7 +77,7 @@ impl MotionProducts {
 }
 
 /// Over the components that both have.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 

@@ -12,8 +12,8 @@ use super::inner::inner_motions;
 use super::motion::BodyFrame;
 use crate::comm::{Comm, Message, MessageReader};
 use crate::error::Failure;
+use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
-use crate::run::read::OwnedBlock;
 
 /// Free rigid motions, and the frames that they are written in.
 #[derive(Clone, Debug, Default)]

@@ -7,8 +7,6 @@ use faer::Par;
 
 use super::merge::CondensedBlocks;
 use super::read::OwnedBlock;
-use crate::contact::approach::ApproachOf;
-use crate::contact::limits::Limits;
 use crate::error::Failure;
 use crate::fem::assembly::assemble;
 use crate::fem::block::Block;
@@ -52,34 +50,28 @@ impl Condensation<'_> {
         let dofs = Dofs::new(block, conditions, &catalog.materials)
             .map_err(|error| dof_failure(error, owned, catalog))?;
         let pins = pins_of(block, self.pins);
-        let system =
+        let (stiffness, springs) =
             assemble(block, &dofs, &catalog.materials, &pins).ok_or_else(|| size(plan, number))?;
         let assembled = Instant::now();
         let (schur, s) = condensed
             .repeats
-            .factorize(owned.shape(), &system.stiffness, dofs.interior, par)
+            .factorize(owned.shape(), &stiffness, dofs.interior, par)
             .map_err(|error| match error {
                 FactorError::Size => size(plan, number),
                 FactorError::Pivot(unknown) => moves(owned, &dofs, unknown, catalog),
             })?;
-        let load = schur.condense(system.load);
         let of_block = Condensed {
             approaches: dofs.approaches,
             traces: dofs.traces.clone(),
             s,
-            load: load.boundary().to_vec(),
             stiffness: schur.stiffness.clone(),
             smallest_pivot: schur.smallest_pivot(),
             eliminated: 0,
         };
-        if let Some(pair) = plan.pair_of(number) {
-            let limits = limits(owned, &dofs, catalog)?;
-            condensed.limits.insert(pair, limits);
-        }
-        (condensed.diagonals).insert(number, system.stiffness.diagonal().to_vec());
+        (condensed.diagonals).insert(number, stiffness.diagonal().to_vec());
+        condensed.springs.insert(number, springs);
         condensed.dofs.insert(number, dofs);
         condensed.factors.insert(number, schur);
-        condensed.loads.insert(number, load);
         condensed.seconds[0] += (assembled - began).as_secs_f64();
         condensed.seconds[1] += assembled.elapsed().as_secs_f64();
         Ok(of_block)
@@ -97,45 +89,6 @@ fn pins_of(block: &Block, pins: &[Pin]) -> Vec<(u32, usize)> {
         .collect()
 }
 
-/// The bounds on a block's approaches.
-fn limits(owned: &OwnedBlock, dofs: &Dofs, catalog: &Catalog) -> Result<Limits, Failure> {
-    let scale = prescribed_scale(owned);
-    for (j, of) in dofs.approach_of.iter().enumerate() {
-        let gap = owned.conditions[j].gap;
-        if let &ApproachOf::Prescribed(approach) = of
-            && approach > gap + 1e-12 * scale
-        {
-            let row = &owned.rows[j];
-            let contact = &catalog.contacts[row.contact as usize].name;
-            return Err(Failure::input(format!(
-                "contact '{contact}': nodes {} and {} are prescribed to penetrate by {:.3e}; \
-                 expected displacements that leave a gap",
-                row.tag_a,
-                row.tag_b,
-                approach - gap
-            )));
-        }
-    }
-    let gaps: Vec<f64> = owned.conditions.iter().map(|c| c.gap).collect();
-    Ok(Limits::new(
-        dofs.approaches,
-        &dofs.approach_of,
-        &gaps,
-        scale,
-    ))
-}
-
-/// The largest displacement that is prescribed in a block, initial gaps among them (m).
-fn prescribed_scale(owned: &OwnedBlock) -> f64 {
-    let prescribed = owned
-        .block
-        .members
-        .iter()
-        .flat_map(|m| m.supports.iter().map(|s| s.value.abs()));
-    let gaps = owned.conditions.iter().map(|c| c.gap.abs());
-    prescribed.chain(gaps).fold(0.0, f64::max)
-}
-
 fn size(plan: &Plan, number: usize) -> Failure {
     Failure::internal(format!(
         "subdomain {}: its factor needs more memory than there is; expected more, smaller \
@@ -144,7 +97,7 @@ fn size(plan: &Plan, number: usize) -> Failure {
     ))
 }
 
-fn dof_failure(error: DofError, owned: &OwnedBlock, catalog: &Catalog) -> Failure {
+pub(super) fn dof_failure(error: DofError, owned: &OwnedBlock, catalog: &Catalog) -> Failure {
     let DofError::OnInterface(j) = error else {
         return Failure::internal("a subdomain has more than 2^32 unknowns");
     };

@@ -50,12 +50,13 @@ fn pack(nodes: OwnNodes) -> Message {
     message.integers.push(nodes.shared.len() as i64);
     for node in nodes.shared {
         let supports = node.supports.len() as i64;
-        let head = [i64::from(node.interface), node.tag, supports];
+        let values = node.supports.first().map_or(0, |(_, values)| values.len());
+        let head = [i64::from(node.interface), node.tag, supports, values as i64];
         message.integers.extend(head);
         message.reals.extend(node.point);
-        for (direction, value) in node.supports {
+        for (direction, values) in node.supports {
             message.reals.extend(direction);
-            message.reals.push(value);
+            message.reals.extend(values);
         }
     }
     message
@@ -66,9 +67,10 @@ fn unpack(message: Message) -> OwnNodes {
     let count = reader.count();
     let inner = reader.integers(count);
     let shared = (0..reader.count()).map(|_| {
-        let (interface, tag, supports) = (reader.count(), reader.integer(), reader.count());
+        let (interface, tag) = (reader.count(), reader.integer());
+        let (supports, values) = (reader.count(), reader.count());
         let point = std::array::from_fn(|_| reader.real());
-        let mut support = || (std::array::from_fn(|_| reader.real()), reader.real());
+        let mut support = || (std::array::from_fn(|_| reader.real()), reader.reals(values));
         SharedNode {
             interface: interface as u32,
             tag,
@@ -92,7 +94,9 @@ mod tests {
             interface,
             tag: 100 + i64::from(interface),
             point: [0.1, 0.2, f64::from(interface)],
-            supports: (supports.iter()).map(|&v| ([0.6, 0.8, 0.0], v)).collect(),
+            supports: (supports.iter())
+                .map(|&v| ([0.6, 0.8, 0.0], vec![v, 2.0 * v]))
+                .collect(),
         };
         let nodes = OwnNodes {
             inner: vec![7, 3, 1 << 40],

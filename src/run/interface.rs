@@ -1,4 +1,4 @@
-//! Bringing the clusters together at the root: Γ, S_0, F and the bilateral operator.
+//! Bringing the clusters together at the root: Γ, S_0 and the bilateral operator.
 
 use contact_dd_partition::problem::Catalog;
 use faer::Par;
@@ -7,16 +7,14 @@ use super::merge::CondensedBlocks;
 use crate::comm::{Comm, Message};
 use crate::contact::law::PairLaw;
 use crate::error::Failure;
-use crate::fem::dofs::TraceDof;
 use crate::interface::coupled::MAX_APPROACHES;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::{Contribution, Interface};
 use crate::plan::Plan;
-use crate::rigid::energy::RigidDrive;
-use crate::rigid::survey::Survey;
 use crate::schur::condensed::Condensed;
+use crate::schur::trace::TraceDof;
 
-/// Numbers what clusters share of Γ and assembles S_0, F and the bilateral operator on the root. Collective; the other
+/// Numbers what clusters share of Γ and assembles S_0 and the bilateral operator on the root. Collective; the other
 /// ranks get nothing.
 ///
 /// # Errors
@@ -26,7 +24,6 @@ pub fn assemble_interface(
     blocks: &CondensedBlocks,
     catalog: &Catalog,
     plan: &Plan,
-    survey: &Survey,
     par: Par,
 ) -> Result<Option<(Numbering, Interface)>, Failure> {
     let with_laws = with_laws(catalog);
@@ -51,29 +48,8 @@ pub fn assemble_interface(
     let in_contact: Vec<bool> = plan.clusters.iter().map(|c| c.is_in_contact()).collect();
     let traces: Vec<&[TraceDof]> = traces.iter().map(Vec::as_slice).collect();
     let numbering = Numbering::new(&traces, &nodes.collect::<Vec<_>>(), &in_contact)?;
-    let motions = motions_of_approaches(survey, plan, &contributions);
-    let interface = Interface::new(&numbering, contributions, &in_contact, &motions, par)?;
+    let interface = Interface::new(&numbering, contributions, &in_contact, par)?;
     Ok(Some((numbering, interface)))
-}
-
-/// The approaches of all pairs against the motions that supports leave to the bodies.
-fn motions_of_approaches(
-    survey: &Survey,
-    plan: &Plan,
-    contributions: &[Contribution],
-) -> RigidDrive {
-    let Some(scene) = survey.scene.as_ref().filter(|_| survey.movable) else {
-        return RigidDrive::default();
-    };
-    let laws = contributions.iter().filter_map(|c| c.law.as_ref());
-    let defining: Vec<usize> = laws
-        .zip(&plan.contact)
-        .flat_map(|(law, &c)| {
-            let conditions = scene.conditions_of(&plan.clusters[c].pairs);
-            law.defining.iter().map(move |&j| conditions[j])
-        })
-        .collect();
-    scene.against(&defining)
 }
 
 /// Whether the pairs have few enough conditions for the root to solve for all of them at once.
@@ -87,11 +63,9 @@ fn pack(blocks: &CondensedBlocks, plan: &Plan, c: usize, with_laws: bool) -> Mes
     if let Some(linear) = blocks.linear.get(&c) {
         pack_head(linear, false, &mut message);
         message.push_lower(linear.s.as_ref());
-        message.reals.extend(&linear.load);
     } else if let Some(pair) = plan.contact_place(c).and_then(|p| blocks.pairs.get(&p)) {
         pack_head(pair.condensed(), with_laws, &mut message);
         message.push_lower(pair.bilateral());
-        message.reals.extend(pair.bilateral_load());
         if with_laws {
             PairLaw::pack(pair, &mut message);
         }
@@ -128,7 +102,6 @@ fn unpack(message: Message) -> (Vec<TraceDof>, Contribution) {
         eliminated,
         smallest_pivot: reader.real(),
         s: reader.symmetric(n),
-        load: reader.reals(n),
         law: has_law.then(|| PairLaw::unpack(&mut reader, n)),
     };
     (traces, contribution)

@@ -6,19 +6,21 @@ use std::time::Instant;
 
 use super::clusters::take_clusters;
 use super::condense::Condensation;
+use super::limits::limits_of_clusters;
 use super::read::OwnedBlock;
 use crate::comm::{Comm, Message, is_asked_to_stop};
-use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
 use crate::error::Failure;
-use crate::fem::dofs::{Dofs, TraceDof};
+use crate::fem::assembly::Spring;
+use crate::fem::dofs::Dofs;
 use crate::interface::numbering::check_agreement;
 use crate::output::bar::Bar;
 use crate::rigid::survey::Survey;
 use crate::schur::condensed::Condensed;
-use crate::schur::local::{CondensedLoad, LocalSchur};
+use crate::schur::local::LocalSchur;
 use crate::schur::merge::{LooseTrace, Merge, Spare};
 use crate::schur::repeats::Repeats;
+use crate::schur::trace::TraceDof;
 
 /// What this rank has of the condensed blocks and of what they were merged into.
 #[derive(Debug, Default)]
@@ -27,16 +29,14 @@ pub struct CondensedBlocks {
     pub dofs: BTreeMap<usize, Dofs>,
     /// The diagonal of every block's stiffness (Pa).
     pub diagonals: BTreeMap<usize, Vec<f64>>,
+    /// The springs in it.
+    pub springs: BTreeMap<usize, Vec<Spring>>,
     /// The factor of every block.
     pub factors: BTreeMap<usize, Arc<LocalSchur>>,
     /// What equal blocks share.
     pub repeats: Repeats,
     /// The merge at every inner node of the hierarchy.
     pub merges: BTreeMap<usize, Merge>,
-    /// The condensed load of every node of the hierarchy.
-    pub loads: BTreeMap<usize, CondensedLoad>,
-    /// The bounds on the approaches of every pair, where its block is.
-    pub limits: BTreeMap<usize, Limits>,
     /// T: the clusters without contact, by their place among all.
     pub linear: BTreeMap<usize, Condensed>,
     /// ϑ: the clusters in contact, by their place among those.
@@ -95,7 +95,9 @@ pub fn condense_clusters(
         waiting,
         ..
     } = merging;
-    take_clusters(comm, plan, survey, waiting, &mut condensed);
+    let catalog = condensation.catalog;
+    let limits = limits_of_clusters(comm, plan, catalog, blocks, &condensed)?;
+    take_clusters(plan, survey, limits, waiting, &mut condensed);
     Ok(condensed)
 }
 
@@ -184,7 +186,7 @@ impl Merging<'_> {
             .iter()
             .map(|&child| &plan.tree.nodes[child].kept[..]);
         check_agreement(&traces, &kept.collect::<Vec<_>>())?;
-        let (merge, condensed, load) = Merge::new(
+        let (merge, condensed) = Merge::new(
             children,
             &node.eliminated,
             &mut self.spare,
@@ -192,7 +194,6 @@ impl Merging<'_> {
         )
         .map_err(|LooseTrace(dof)| self.moves(v, dof))?;
         self.condensed.merges.insert(v, merge);
-        self.condensed.loads.insert(v, load);
         self.waiting.insert(v, condensed);
         self.condensed.seconds[1] += began.elapsed().as_secs_f64();
         Ok(())
@@ -237,7 +238,6 @@ fn pack(condensed: Condensed) -> Message {
         message.integers.extend([node, axis]);
     }
     message.reals.push(condensed.smallest_pivot);
-    message.reals.extend(&condensed.load);
     message.reals.extend(&condensed.stiffness);
     message.push_lower(condensed.s.as_ref());
     message
@@ -260,7 +260,6 @@ fn unpack(message: Message) -> Option<Condensed> {
             .collect(),
         eliminated,
         smallest_pivot: reader.real(),
-        load: reader.reals(n),
         stiffness: reader.reals(n),
         s: reader.lower(n),
     })

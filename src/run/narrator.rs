@@ -1,11 +1,13 @@
 //! What a run says of itself on the way: text for people, or events for programs.
 
+use std::collections::BTreeSet;
 use std::io::{Write, stdout};
 use std::time::Instant;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::report::{Outputs, Totals, conditions, dofs, reason, report};
+use super::report::{Outputs, conditions, dofs, failures, reason, report};
+use super::totals::Totals;
 use crate::checkpoint::Checkpoint;
 use crate::comm::{self, Comm};
 use crate::error::Failure;
@@ -19,7 +21,7 @@ use crate::plan::demand::Demand;
 use crate::rigid::survey::Survey;
 use crate::settings::Settings;
 use crate::settings::command_line::LogFormat;
-use crate::sweep::{SweepRecord, SweepStatus};
+use crate::sweep::SweepRecord;
 
 /// Exit code of sweeps that don't converge.
 const NOT_CONVERGED: u8 = 3;
@@ -109,10 +111,12 @@ impl<'a> Narrator<'a> {
     }
 
     /// What validating found, and what solving would cost.
-    pub fn check(&self, survey: &Survey, demands: &[Demand], available: f64) {
+    pub fn check(&self, surveys: &[Survey], demands: &[Demand], available: f64) {
         self.bar.finish();
+        let all = surveys.iter().flat_map(|survey| &survey.motions.warnings);
+        let warnings: BTreeSet<&String> = all.collect();
         if self.comm.is_root() {
-            for warning in &survey.motions.warnings {
+            for warning in warnings {
                 message::warning(self.settings.log, warning);
             }
         }
@@ -125,6 +129,20 @@ impl<'a> Narrator<'a> {
             available_bytes: available,
             flops: demands.iter().map(|demand| demand.flops).sum(),
             busiest_rank_flops: most(|demand| demand.flops),
+        });
+    }
+
+    /// Which load step comes, where there are any.
+    pub fn step(&self, catalog: &Catalog, k: usize) {
+        let Some(step) = catalog.steps.get(k) else {
+            return;
+        };
+        self.say(|out| terminal::step(out, step, k, catalog.steps.len()));
+        self.log(&Event::Step {
+            step: k + 1,
+            steps: catalog.steps.len(),
+            name: &step.name,
+            time: step.time,
         });
     }
 
@@ -187,7 +205,7 @@ impl<'a> Narrator<'a> {
             }
         }
         let mut exit_code = 0;
-        if let SweepStatus::NotConverged(why) = &totals.outcome.status {
+        for why in failures(totals) {
             exit_code = NOT_CONVERGED;
             message::error(
                 self.settings.log,

@@ -4,9 +4,9 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use crate::checkpoint::{Checkpoint, Digest, digest};
-use crate::contact::s_con::{ConState, SCon};
 use crate::error::Failure;
 use crate::interface::operator::Interface;
+use crate::interface::s_con::{ConState, SCon};
 use crate::settings::Settings;
 use crate::sweep::Pause;
 use crate::sweep::progress::Progress;
@@ -17,6 +17,10 @@ pub struct Checkpoints<'a> {
     path: PathBuf,
     older: PathBuf,
     problem: Option<Digest>,
+    /// What an earlier run left, until its load step comes.
+    earlier: Option<Checkpoint>,
+    /// The load step that the sweeps are of.
+    step: usize,
     /// Why the sweeps stopped short.
     stopped: Option<Failure>,
     /// What a user should know.
@@ -36,18 +40,20 @@ impl<'a> Checkpoints<'a> {
             path: beside(".checkpoint"),
             older: beside(".checkpoint.old"),
             problem: None,
+            earlier: None,
+            step: 0,
             stopped: None,
             warnings: Vec::new(),
         }
     }
 
-    /// The last good checkpoint, if one is asked for and there.
+    /// Looks for the last good checkpoint, if one is asked for.
     ///
     /// # Errors
     /// It is that of another problem or method, or of another version of the program.
-    pub fn last(&mut self) -> Result<Option<Checkpoint>, Failure> {
+    pub fn look(&mut self) -> Result<(), Failure> {
         if !self.settings.restart {
-            return Ok(None);
+            return Ok(());
         }
         for path in [self.path.clone(), self.older.clone()] {
             if !path.exists() {
@@ -56,10 +62,10 @@ impl<'a> Checkpoints<'a> {
             let name = path.display();
             match Checkpoint::read(&path) {
                 Ok(checkpoint) => {
-                    let checkpoint = self.accept(checkpoint);
-                    return checkpoint
-                        .map(Some)
-                        .map_err(|why| Failure::input(format!("--restart: {name}: {why}")));
+                    let accepted = self.accept(checkpoint);
+                    let refused = |why| Failure::input(format!("--restart: {name}: {why}"));
+                    self.earlier = Some(accepted.map_err(refused)?);
+                    return Ok(());
                 }
                 Err(why) => self.warnings.push(format!("--restart: {name}: {why}")),
             }
@@ -68,7 +74,13 @@ impl<'a> Checkpoints<'a> {
             "--restart: there is no good checkpoint {}: this run begins at the start",
             self.path.display()
         ));
-        Ok(None)
+        Ok(())
+    }
+
+    /// Begins with the sweeps of load step k; gives back the checkpoint that is of them.
+    pub fn begin(&mut self, k: usize) -> Option<Checkpoint> {
+        self.step = k;
+        self.earlier.take_if(|checkpoint| checkpoint.step == k)
     }
 
     /// The checkpoint if this run may go on from it; else why it may not.
@@ -154,6 +166,7 @@ impl<'a> Checkpoints<'a> {
             version: env!("CARGO_PKG_VERSION").into(),
             problem: self.problem()?,
             method: self.settings.method.name().into(),
+            step: self.step,
             progress: progress.clone(),
             state: state.clone(),
             memories: s_con.memories(),

@@ -1,52 +1,21 @@
 //! Reading: every rank takes its own blocks from the problem file.
 
 use std::collections::BTreeMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
 
+use contact_dd_partition::problem::Subdomain;
 use contact_dd_partition::problem::read::ProblemFile;
-use contact_dd_partition::problem::{ContactRow, Subdomain};
 
 use super::squeezed;
 use crate::comm::Comm;
 use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;
+pub use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
-use crate::schur::repeats::BlockShape;
 
 /// Most subdomains that are read at once: what HDF5 hands over is there twice for a while.
 const AT_ONCE: usize = 64;
-
-/// A block as it was read.
-#[derive(Clone, Debug)]
-pub struct OwnedBlock {
-    /// Its subdomains.
-    pub block: Block,
-    /// Its contact rows.
-    pub rows: Vec<ContactRow>,
-    /// The same over the nodes of the block.
-    pub conditions: Vec<BlockCondition>,
-}
-
-impl OwnedBlock {
-    /// What it has in common with blocks that are equal to it.
-    pub fn shape(&self) -> BlockShape {
-        let mut mesh = DefaultHasher::new();
-        let points = &self.block.points;
-        for (point, first) in points.iter().flat_map(|p| p.iter().zip(&points[0])) {
-            mesh.write_u64((point - first).to_bits());
-        }
-        for member in &self.block.members {
-            member.cells.connectivity().hash(&mut mesh);
-        }
-        BlockShape {
-            interface: self.block.interface.len(),
-            conditions: self.conditions.len(),
-            mesh: mesh.finish(),
-        }
-    }
-}
 
 /// Reads the blocks of `plan` that this rank owns, by their number.
 ///

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::substitute::Factors;
 use crate::comm::Message;
+use crate::schur::local::CondensedLoad;
 
 /// The solution on a block.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,9 +18,10 @@ pub struct BlockSolution {
 }
 
 /// Sends every cluster its part of U and recovers its interior. Collective; `root` holds U and the
-/// numbers of every cluster's traces.
+/// numbers of every cluster's traces, `loads` are the condensed ones.
 pub fn recover(
     factors: Factors<'_>,
+    loads: &BTreeMap<usize, CondensedLoad>,
     root: Option<(&[f64], &[Vec<u32>])>,
 ) -> BTreeMap<usize, BlockSolution> {
     let Factors {
@@ -45,7 +47,7 @@ pub fn recover(
     );
     let mut conditions = conditions(factors);
     factors
-        .recover(&condensed.loads, boundaries)
+        .recover(loads, boundaries)
         .into_iter()
         .filter_map(|(b, x)| {
             let (forces, closed) = conditions.remove(&b).unwrap_or_default();

@@ -6,10 +6,9 @@ use std::collections::BTreeMap;
 use super::frozen::{BlockLoad, Frozen};
 use super::motions::Field;
 use super::recover::BlockSolution;
-use crate::certificate::{BlockCheck, certificate};
+use crate::certificate::{BlockCheck, Certificate, certificate};
 use crate::comm::Message;
 use crate::fem::balance::Balance;
-use crate::output::report::Certificate;
 
 /// Equilibrium and penetration above which a solution is refined.
 const LIMIT: f64 = 4e-15;

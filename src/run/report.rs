@@ -3,20 +3,18 @@
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
 
+use super::totals::{StepTotals, Totals};
 use crate::comm::{self, Comm, Message};
 use crate::error::Failure;
-use crate::fem::estimate::CellError;
 use crate::output::build::Build;
 use crate::output::memory::peak_memory_bytes;
-use crate::output::report::{
-    Certificate, ErrorEstimate, PhaseSeconds, RankReport, Report, ReportFile, Status,
-};
+use crate::output::report::{PhaseSeconds, RankReport, Report, ReportFile};
 use crate::output::result::ConvergenceRow;
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
 use crate::settings::Settings;
-use crate::sweep::{SweepOutcome, SweepStatus};
+use crate::sweep::SweepStatus;
 
 /// Pivot relative to its diagonal entry that may as well be zero.
 const SUSPICIOUS_PIVOT: f64 = 1e-13;
@@ -43,11 +41,11 @@ impl Outputs {
             mut result,
             report: report_file,
         } = self;
-        let rows: Vec<ConvergenceRow> = totals
-            .outcome
-            .records
-            .iter()
-            .map(|r| ConvergenceRow {
+        let sweeps = (totals.steps.iter().enumerate())
+            .flat_map(|(k, step)| step.outcome.records.iter().map(move |r| (k, r)));
+        let rows: Vec<ConvergenceRow> = sweeps
+            .map(|(step, r)| ConvergenceRow {
+                step,
                 residual: r.residual,
                 active: r.active,
                 seconds: r.seconds,
@@ -60,34 +58,6 @@ impl Outputs {
         }
         Ok(())
     }
-}
-
-/// Everything the report is made of. On the root.
-pub struct Totals<'a> {
-    /// The problem.
-    pub catalog: &'a Catalog,
-    /// Who owned what.
-    pub plan: &'a Plan,
-    /// What the sweeps found.
-    pub outcome: &'a SweepOutcome,
-    /// Closed conditions.
-    pub active: usize,
-    /// Number of unknowns on Γ.
-    pub interface_dofs: usize,
-    /// The smallest pivot of all factorizations relative to its diagonal entry.
-    pub smallest_pivot: f64,
-    /// The certificate.
-    pub certificate: Certificate,
-    /// The condition number.
-    pub condition: Option<f64>,
-    /// Every rank's times.
-    pub ranks: Vec<RankReport>,
-    /// What contacts and supports carry.
-    pub resultants: Resultants,
-    /// The estimate of the mesh's error, where there are stresses.
-    pub estimate: Option<CellError>,
-    /// What the ranks noticed on the way.
-    pub warnings: Vec<String>,
 }
 
 /// Brings every rank's times and memory to the root. Collective.
@@ -141,17 +111,14 @@ pub fn collect(
 
 /// Makes the report. On the root.
 pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
-    let Totals {
-        catalog,
-        plan,
-        outcome,
-        ..
-    } = totals;
+    let Totals { catalog, plan, .. } = totals;
     let seconds: Vec<PhaseSeconds> = totals.ranks.iter().map(|r| r.seconds).collect();
     let mut warnings = catalog.warnings.clone();
     warnings.extend(unknown_stress(catalog));
     warnings.extend(totals.warnings.iter().cloned());
-    let certificate = &totals.certificate;
+    warnings.extend(totals.step_warnings());
+    let certificate = totals.certificate();
+    let condition = totals.condition();
     if certificate.equilibrium > 1e-14 || certificate.penetration > 1e-14 {
         warnings.push(format!(
             "the certificate falls short of 1e-14: equilibrium {:.1e}, penetration {:.1e}",
@@ -165,7 +132,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
             certificate.equilibrium_of_load
         ));
     }
-    if let Some(condition) = totals.condition.filter(|&c| c > BAD_CONDITION) {
+    if let Some(condition) = condition.filter(|&c| c > BAD_CONDITION) {
         warnings.push(format!(
             "the condition number is about {condition:.0e}: round-off alone makes an error of about \
              {:.0e} in the softest part's displacement",
@@ -179,37 +146,33 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
             totals.smallest_pivot
         ));
     }
-    warnings.extend(outcome.notes.iter().cloned());
+    let last = totals.last();
+    let sum = |of: fn(&StepTotals) -> usize| totals.steps.iter().map(of).sum();
     Report {
-        status: match outcome.status {
-            SweepStatus::Converged => Status::Converged,
-            SweepStatus::NotConverged(_) => Status::NotConverged,
-        },
+        status: totals.status(),
         method: settings.method.name().into(),
-        sweeps: outcome.records.len().saturating_sub(1),
-        inner_steps: outcome.inner_steps,
-        fallbacks: outcome.fallbacks.clone(),
-        interface_residual: outcome.residual,
+        sweeps: sum(StepTotals::sweeps),
+        inner_steps: sum(|step| step.outcome.inner_steps),
+        fallbacks: totals.fallbacks(),
+        interface_residual: (totals.steps.iter())
+            .fold(0.0, |worst: f64, step| worst.max(step.outcome.residual)),
         dofs: dofs(catalog),
         interface_dofs: totals.interface_dofs,
         contact_conditions: conditions(catalog),
-        active_contacts: totals.active,
+        active_contacts: last.map_or(0, |step| step.active),
         subdomains: catalog.subdomains.len(),
         contact_pairs: plan.pairs.len(),
         ranks: comm.size(),
         hosts: comm.hosts(),
         threads: usize::from(settings.threads),
-        certificate: totals.certificate,
-        condition: totals.condition,
+        certificate,
+        condition,
         seconds: PhaseSeconds::slowest(&seconds),
         peak_memory_bytes: totals.ranks.iter().map(|r| r.peak_memory_bytes).sum(),
         per_rank: totals.ranks.clone(),
-        error_estimate: totals.estimate.map(|estimate| ErrorEstimate {
-            relative: estimate.relative(),
-            error: estimate.error.sqrt(),
-            energy_norm: estimate.energy.sqrt(),
-        }),
-        resultants: totals.resultants.clone(),
+        error_estimate: last.and_then(StepTotals::error_estimate),
+        resultants: last.map_or_else(Resultants::default, |step| step.resultants.clone()),
+        steps: totals.step_reports(),
         skipped: skipped(totals),
         warnings,
         settings: settings.clone(),
@@ -257,14 +220,15 @@ fn skipped(totals: &Totals<'_>) -> Vec<String> {
             totals.plan.blocks.len()
         ));
     }
-    let [made, unmade] = totals.outcome.evaluations;
+    let evaluations = totals.steps.iter().map(|step| step.outcome.evaluations);
+    let [made, unmade] = evaluations.fold([0; 2], |[a, b], [made, unmade]| [a + made, b + unmade]);
     if unmade > 0 {
         skipped.push(format!(
             "updates of pairs: {unmade} of {}, their traces hadn't changed",
             made + unmade
         ));
     }
-    if totals.estimate.is_none() {
+    if totals.steps.iter().any(|step| step.estimate.is_none()) {
         skipped.push("stresses: left out by --no-stress".into());
     }
     skipped
@@ -272,20 +236,41 @@ fn skipped(totals: &Totals<'_>) -> Vec<String> {
 
 /// Why the sweeps ended, in words.
 pub(super) fn reason(totals: &Totals<'_>) -> String {
-    let sweeps = totals.outcome.records.len().saturating_sub(1);
-    match &totals.outcome.status {
-        SweepStatus::Converged if totals.plan.pairs.is_empty() => {
-            "solved: the scene is linear".into()
-        }
-        SweepStatus::Converged => format!(
+    let sweeps: usize = totals.steps.iter().map(StepTotals::sweeps).sum();
+    let in_the_end = match totals.catalog.steps.is_empty() {
+        true => "",
+        false => " in the end",
+    };
+    match failures(totals).first() {
+        Some(why) => format!("not converged: {why}"),
+        None if totals.plan.pairs.is_empty() => "solved: the scene is linear".into(),
+        None => format!(
             "converged after {sweeps} sweep{}: the residual is below the tolerance and no contact \
-             changes any more; {} of {} conditions are closed",
+             changes any more; {} of {} conditions are closed{in_the_end}",
             if sweeps == 1 { "" } else { "s" },
-            totals.active,
+            totals.last().map_or(0, |step| step.active),
             conditions(totals.catalog)
         ),
-        SweepStatus::NotConverged(why) => format!("not converged: {why}"),
     }
+}
+
+/// Why load steps didn't converge.
+pub(super) fn failures(totals: &Totals<'_>) -> Vec<String> {
+    let of_step = |(k, step): (usize, &StepTotals)| {
+        let SweepStatus::NotConverged(why) = &step.outcome.status else {
+            return None;
+        };
+        Some(match totals.catalog.steps.get(k) {
+            Some(step) => format!("step '{}': {why}", step.name),
+            None => why.clone(),
+        })
+    };
+    totals
+        .steps
+        .iter()
+        .enumerate()
+        .filter_map(of_step)
+        .collect()
 }
 
 /// Number of dofs, those of shared nodes counted once.

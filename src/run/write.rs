@@ -9,23 +9,12 @@ use contact_dd_partition::error::OutputError;
 use self::parcel::{Parcel, pack, unpack};
 use super::read::OwnedBlock;
 use super::recover::BlockSolution;
-use super::stresses::Stress;
+use super::solution::Solution;
 use crate::comm::{Comm, Message, ROOT};
 use crate::output::result::{ContactResult, SubdomainResults};
 use crate::output::resultants::ContactResultant;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
-
-/// What this rank's blocks have found.
-#[derive(Clone, Copy, Debug)]
-pub struct Fields<'a> {
-    /// Solutions, without the bodies' descent.
-    pub solutions: &'a BTreeMap<usize, BlockSolution>,
-    /// Displacement with it, node by node (m).
-    pub displacement: &'a BTreeMap<usize, Vec<f64>>,
-    /// Stresses, unless they are left out.
-    pub stress: Option<&'a BTreeMap<usize, Stress>>,
-}
 
 /// Streams all subdomains and contact rows to the root, which writes a slab of subdomains as soon
 /// as it is complete. Collective; `file` is the root's.
@@ -39,7 +28,7 @@ pub struct Fields<'a> {
 pub fn write_solution(
     comm: &Comm,
     blocks: &BTreeMap<usize, OwnedBlock>,
-    fields: Fields<'_>,
+    solution: &Solution,
     plan: &Plan,
     mut file: Option<&mut ResultFile>,
     contacts: &mut [ContactResultant],
@@ -62,13 +51,13 @@ pub fn write_solution(
                 return Message::default();
             }
             sent.restart(parcels[p].subdomains.start);
-            parcels[p].append_to(&mut sent, blocks, fields, plan);
+            parcels[p].append_to(&mut sent, blocks, solution, plan);
             pack(&sent)
         },
         |p, message| {
             let parcel = &parcels[p];
             match parcel.owner {
-                ROOT => parcel.append_to(&mut slab, blocks, fields, plan),
+                ROOT => parcel.append_to(&mut slab, blocks, solution, plan),
                 _ => unpack(&message, &mut slab),
             }
             if parcel.ends_slab {
@@ -81,7 +70,7 @@ pub fn write_solution(
         &plan.pair_owners(),
         |p| {
             let b = plan.pairs[p];
-            match (blocks.get(&b), fields.solutions.get(&b)) {
+            match (blocks.get(&b), solution.blocks.get(&b)) {
                 (Some(owned), Some(solution)) => pack_contacts(owned, solution),
                 _ => Message::default(),
             }
@@ -94,6 +83,7 @@ pub fn write_solution(
             write(&mut |file| file.write_contacts(&rows));
         },
     );
+    write(&mut ResultFile::finish_step);
     failed
 }
 

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use crate::fem::dofs::TraceDof;
+use crate::schur::trace::TraceDof;
 
 /// The Schur complement of a node of the hierarchy on what it keeps: approaches, then traces on Γ.
 #[derive(Clone, Debug)]
@@ -13,8 +13,6 @@ pub struct Condensed {
     pub traces: Vec<TraceDof>,
     /// S (Pa); only the lower triangle counts.
     pub s: Mat<f64>,
-    /// The condensed load (N/m).
-    pub load: Vec<f64>,
     /// The diagonal of the matrix that S is condensed from (Pa).
     pub stiffness: Vec<f64>,
     /// The smallest pivot of what was eliminated, relative to its diagonal entry.

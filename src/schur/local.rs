@@ -1,4 +1,5 @@
-//! A block condensed onto its boundary: S_i of a linear subdomain, S_kl of a pair in contact.
+//! S_i of a linear subdomain, (11), and the linear part of a pair's S_kl, (12): a block condensed onto
+//! its boundary.
 
 use faer::{Mat, MatRef, Par};
 

@@ -17,7 +17,7 @@ use faer::{Accum, Mat, MatMut, Par};
 use super::condensed::Condensed;
 use super::local::CondensedLoad;
 use super::partial::partial_cholesky;
-use crate::fem::dofs::TraceDof;
+use crate::schur::trace::TraceDof;
 
 /// What a merge leaves behind for solving.
 #[derive(Debug)]
@@ -81,14 +81,13 @@ impl Merge {
         eliminated: &[u32],
         spare: &mut Spare,
         par: Par,
-    ) -> Result<(Self, Condensed, CondensedLoad), LooseTrace> {
+    ) -> Result<(Self, Condensed), LooseTrace> {
         let (gone, traces) = union_of_traces(&children, eliminated);
         let approaches = children.iter().map(|c| c.approaches).sum();
         let e = gone.len();
         let k = approaches + traces.len();
         let mut columns = Mat::<f64>::zeros(e + k, e);
         let mut s = spare.zeros(k);
-        let mut load = vec![0.0; e + k];
         let mut stiffness = vec![0.0; e + k];
         let mut places = Vec::with_capacity(children.len());
         let mut smallest_pivot = f64::INFINITY;
@@ -97,8 +96,7 @@ impl Merge {
         for child in children {
             let place = places_of(&child, first_approach, &gone, &traces, e + approaches);
             first_approach += child.approaches;
-            for ((&to, f), d) in place.iter().zip(&child.load).zip(&child.stiffness) {
-                load[to as usize] += f;
+            for (&to, d) in place.iter().zip(&child.stiffness) {
                 stiffness[to as usize] += d;
             }
             add(&child.s, &place, e, &mut columns, &mut s);
@@ -117,17 +115,15 @@ impl Merge {
         for (j, d) in stiffness[..e].iter().enumerate() {
             smallest_pivot = smallest_pivot.min(merge.columns[(j, j)].powi(2) / d);
         }
-        merge.forward(&mut load);
         let condensed = Condensed {
             approaches,
             traces,
             s,
-            load: load[e..].to_vec(),
             stiffness: stiffness[e..].to_vec(),
             smallest_pivot,
             eliminated: eliminated_before + e,
         };
-        Ok((merge, condensed, CondensedLoad::new(load, e)))
+        Ok((merge, condensed))
     }
 
     /// Condenses the loads on the children's boundaries, in their order.

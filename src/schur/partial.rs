@@ -1,4 +1,4 @@
-//! The partial Cholesky factorization of a dense front, by faer.
+//! A_EE = L Lᵀ, P = A_KE L⁻ᵀ, A_KK − P Pᵀ: the partial Cholesky factorization of a dense front, by faer.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};

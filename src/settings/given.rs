@@ -9,8 +9,8 @@ use contact_dd_partition::solver::{Method, Positive, SolverSettings};
 use super::command_line::{CommandLine, LogFormat};
 use super::file::SettingsFile;
 use super::origin::Origins;
+use super::result_path::default_result_path;
 use super::{DEFAULT_TOLERANCE, Settings};
-use crate::output::default_result_path;
 
 /// The command line, and the settings file that it names.
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::progress::Memory;
+use super::method::Memory;
 use super::{Next, Residual, Sweeps, axpy};
 
 /// Steps that are remembered.
@@ -62,8 +62,7 @@ impl Sweeps<'_, '_> {
             axpy(-weight, du, u);
             axpy(-weight, dc, u);
         }
-        let residual = self.residual(None);
-        self.record(&residual);
+        let residual = self.evaluate(None);
         Next::Sweep(Memory::Anderson(chords), residual)
     }
 }

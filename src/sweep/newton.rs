@@ -1,5 +1,5 @@
-//! Newton's method for generalized equations: every sweep solves the contact problem of all pairs,
-//! coupled through the interface.
+//! Newton's method for generalized equations, S_0 δ + S_CON(U + δ) − S_CON(U) = r: every sweep solves the
+//! contact problem of all pairs, coupled through the interface.
 //!
 //! S_CON is piecewise linear. Freezing every pair's active set at U^(k−1) gives semismooth Newton,
 //! whose sets may peel off one condition a sweep; keeping the law as it stands, λ ≥ 0, t ≤ g, gives
@@ -8,7 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::anderson::Chords;
-use super::progress::Memory;
+use super::method::Memory;
 use super::{Next, ROUND_OFF, Residual, SweepStatus, Sweeps, axpy};
 use crate::interface::coupled::CoupledContact;
 
@@ -45,8 +45,7 @@ impl Sweeps<'_, '_> {
             return self.fall_back(before, "newton's contact problem didn't converge");
         }
         axpy(1.0, &step.u, &mut self.progress.u);
-        let residual = self.residual(Some(&step.open));
-        self.record(&residual);
+        let residual = self.evaluate(Some(&step.open));
         let stalled = residual.totals.changed == 0 && residual.relative >= 0.5 * before.relative;
         stalls = if stalled { stalls + 1 } else { 0 };
         if stalls == PATIENCE && !self.is_converged(&residual) {

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::s_con::ConTotals;
-use crate::output::report::Certificate;
+use crate::certificate::Certificate;
+use crate::interface::s_con::ConTotals;
 
 /// Equilibrium and penetration of a certificate that isn't one.
 const NOT_BALANCED: f64 = 1e-10;
@@ -59,6 +59,8 @@ pub struct SweepOutcome {
     pub residual: f64,
     /// Totals of the last evaluation of S_CON.
     pub totals: ConTotals,
+    /// Which approaches and dependent conditions of every pair are open then.
+    pub open: Vec<Vec<bool>>,
 }
 
 impl SweepOutcome {
@@ -103,6 +105,7 @@ mod tests {
             fallbacks: Vec::new(),
             residual: 0.0,
             totals: ConTotals::default(),
+            open: Vec::new(),
         };
         outcome.accept(&Certificate {
             equilibrium,

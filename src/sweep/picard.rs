@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::progress::Memory;
+use super::method::Memory;
 use super::{Next, Residual, SweepStatus, Sweeps, axpy, dot, maximum};
 use crate::schur::factor::BoundaryLastCholesky;
 
@@ -64,8 +64,7 @@ impl Sweeps<'_, '_> {
         let mut step = before.r;
         s_0.solve(&mut step);
         axpy(theta, &step, &mut self.progress.u);
-        let residual = self.residual(None);
-        self.record(&residual);
+        let residual = self.evaluate(None);
         self.s_0 = Some(s_0);
         Next::Sweep(Memory::Picard(Some(relaxation)), residual)
     }

@@ -2,12 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Method;
-use super::anderson::Chords;
-use super::newton::Stalls;
+use super::method::{Memory, Method};
 use super::outcome::{SweepOutcome, SweepRecord, SweepStatus};
-use super::picard::Relaxation;
-use crate::contact::s_con::ConTotals;
+use crate::interface::s_con::ConTotals;
 
 /// How far sweeps have come: all that the next one depends on beside the pairs' answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,32 +23,13 @@ pub struct Progress {
     fallbacks: Vec<String>,
 }
 
-/// What the method that has its turn remembers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) enum Memory {
-    Newton(Stalls),
-    Anderson(Chords),
-    /// `None` before ρ(S_0⁻¹ S_CON') is known.
-    Picard(Option<Relaxation>),
-}
-
-impl Default for Memory {
-    fn default() -> Self {
-        Self::Newton(Stalls::default())
-    }
-}
-
 impl Progress {
     /// Before the first sweep.
     pub(super) fn new(u: Vec<f64>, method: Method) -> Self {
         Self {
             u,
             records: Vec::new(),
-            memory: match method {
-                Method::Newton => Memory::Newton(Stalls::default()),
-                Method::Anderson => Memory::Anderson(Chords::default()),
-                Method::Picard => Memory::Picard(None),
-            },
+            memory: Memory::before(method),
             has_fallen_back: false,
             totals: ConTotals::default(),
             notes: Vec::new(),
@@ -79,7 +57,12 @@ impl Progress {
         }
     }
 
-    pub(super) fn outcome(self, status: SweepStatus, residual: f64) -> SweepOutcome {
+    pub(super) fn outcome(
+        self,
+        status: SweepStatus,
+        residual: f64,
+        open: Vec<Vec<bool>>,
+    ) -> SweepOutcome {
         SweepOutcome {
             u: self.u,
             status,
@@ -90,6 +73,7 @@ impl Progress {
             fallbacks: self.fallbacks,
             residual,
             totals: self.totals,
+            open,
         }
     }
 }

@@ -9,8 +9,8 @@ use crate::support::process::Ended;
 use crate::{case, report};
 
 /// All kinds of events.
-const EVENTS: [&str; 8] = [
-    "problem", "settings", "phase", "sweep", "warning", "check", "finished", "error",
+const EVENTS: [&str; 9] = [
+    "problem", "settings", "phase", "step", "sweep", "warning", "check", "finished", "error",
 ];
 
 /// The events of a stream, each with its name.

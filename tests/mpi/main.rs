@@ -15,6 +15,7 @@ mod outputs;
 mod random_kills;
 mod restarting;
 mod resting;
+mod steps;
 mod sudden_ends;
 #[path = "../support/mod.rs"]
 mod support;
@@ -33,7 +34,7 @@ use contact_dd_partition::model::Model;
 use support::blocks::{Blocks, jittered};
 use support::process::{Ended, Running, kill, send};
 use support::scenes::{
-    BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks,
+    BODIES, JOINT, SUPPORTS, built_in, built_in_model, model, two_block_scene, two_blocks,
 };
 use support::solution::{Solution, datasets};
 use support::solver::{Case, LIMIT, names_in, program};
@@ -71,6 +72,9 @@ fn main() -> ExitCode {
     restarting::stopped_while_factorizing(&mut trials);
     restarting::every_sweep(&mut trials);
     restarting::other_checkpoints(&mut trials);
+    steps::no_equilibrium(&mut trials);
+    steps::not_converged(&mut trials);
+    steps::restarted(&mut trials);
     libtest_mimic::run(&arguments, trials.0).exit_code()
 }
 
@@ -122,7 +126,7 @@ type Solved = OnceLock<(Case, BTreeMap<String, Vec<u64>>)>;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 16] = [
+    let cases: [(&str, MakeCase); 17] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
@@ -154,6 +158,7 @@ fn same_results(trials: &mut Trials) {
         ("fallen", || Case::of(&resting::fallen(), 5)),
         ("equal_subdomains", || Case::of(&equal_squares(), 16)),
         ("mortar", || Case::of(&resting::uneven(), 7)),
+        ("in_steps", || Case::of(&steps::two_blocks_in_steps(), 6)),
         ("on_circles", || Case::of(&resting::on_circles(), 6)),
     ];
     for (name, make) in cases {
@@ -174,7 +179,7 @@ fn same_results(trials: &mut Trials) {
             for (name, values) in &found {
                 assert!(values == &expected[name], "{name} differs");
             }
-            let report = Solution::read(&case.result()).report;
+            let report = Solution::read_report(&case.result());
             assert_eq!(report["ranks"], ranks);
             assert_eq!(report["hosts"], 1);
             assert_eq!(report["per_rank"].as_array().unwrap().len(), ranks);

@@ -36,10 +36,17 @@ sides = ['top bottom', 'middle top']
 name = 'table'
 sides = ['base bottom']
 obstacle = { point = [0.0, -1e-4], normal = [0.0, 1.0] }
+[[step]]
+name = 'half'
+scale = 0.5
+[[step]]
+[[step.pressure]]
+on = 'top top'
+value = 1e6
 ";
 
 /// Three blocks of quadratic cells of all kinds on a table, in matching and mortar contact, with
-/// supports, forces, a hierarchy, settings and a warning.
+/// supports, forces in two load steps, a hierarchy, settings and a warning.
 pub fn everything() -> Problem {
     let mesh = Blocks::new()
         .rectangle("base", [0.0, 2.0], [0.0, 1.0], [6, 3])

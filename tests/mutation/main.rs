@@ -30,7 +30,7 @@ use support::solver::{LIMIT, program};
 use walk::{Place, places};
 
 /// Where a change makes another problem that nothing in the file contradicts.
-const FREE: [&str; 30] = [
+const FREE: [&str; 32] = [
     "/@title",
     "/@plane",
     "/VTKHDF/Points",
@@ -48,6 +48,8 @@ const FREE: [&str; 30] = [
     "/settings/@relaxation",
     "/settings/@tolerance",
     "/warnings",
+    "/steps/name",
+    "/steps/time",
     "/support/node",
     "/support/direction",
     "/support/value",

@@ -48,22 +48,50 @@ fn table<const N: usize>(file: &File, name: &str) -> Vec<[f64; N]> {
 
 impl Solution {
     pub fn read(path: &Path) -> Self {
+        Self::of_step(path, None)
+    }
+
+    /// The report of a whole run.
+    pub fn read_report(path: &Path) -> Value {
+        let file = File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        let report: VarLenUnicode = file.attr("report").unwrap().read_scalar().unwrap();
+        serde_json::from_str(report.as_str()).unwrap()
+    }
+
+    /// The solutions of all load steps, each with the report's entry as its report.
+    pub fn steps(path: &Path) -> Vec<Self> {
+        let file = File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        let times = column::<f64>(&file, "VTKHDF/Steps/Values");
+        let steps = 0..times.len();
+        steps
+            .map(|k| Self::of_step(path, Some((k, times.len()))))
+            .collect()
+    }
+
+    /// Step k of so many; `None` for a file without steps.
+    fn of_step(path: &Path, step: Option<(usize, usize)>) -> Self {
         let file = File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         let tags = column::<i64>(&file, "VTKHDF/PointData/GlobalNodeId");
-        let displacement = table::<3>(&file, "VTKHDF/PointData/Displacement");
+        let displacement = field::<3>(&file, "VTKHDF/PointData/Displacement", step);
         let report: VarLenUnicode = file.attr("report").unwrap().read_scalar().unwrap();
         let names = file.group("contact").map(|g| g.member_names().unwrap());
         let contacts = (names.unwrap_or_default().into_iter())
-            .map(|name| (name.clone(), points(&file, &format!("contact/{name}"))))
+            .map(|name| {
+                (
+                    name.clone(),
+                    points(&file, &format!("contact/{name}"), step),
+                )
+            })
             .collect();
-        let nodal_stress = table::<6>(&file, "VTKHDF/PointData/Stress");
+        let nodal_stress = field::<6>(&file, "VTKHDF/PointData/Stress", step);
+        let report: Value = serde_json::from_str(report.as_str()).unwrap();
         Self {
             nodal_stress: tags.iter().copied().zip(nodal_stress).collect(),
             types: column::<u8>(&file, "VTKHDF/Types"),
             displacement: tags.into_iter().zip(displacement).collect(),
-            cells: cells(&file),
+            cells: cells(&file, step),
             contacts,
-            report: serde_json::from_str(report.as_str()).unwrap(),
+            report: step.map_or(&report, |(k, _)| &report["steps"][k]).clone(),
         }
     }
 
@@ -146,14 +174,27 @@ pub fn datasets(result: &Path) -> BTreeMap<String, Vec<u64>> {
     all
 }
 
-fn points(file: &File, group: &str) -> Vec<ContactPoint> {
-    let reals = |name: &str| column::<f64>(file, &format!("{group}/{name}"));
+/// The part of a list that belongs to step k of so many.
+fn part<T: Copy>(all: Vec<T>, step: Option<(usize, usize)>) -> Vec<T> {
+    let Some((k, count)) = step else {
+        return all;
+    };
+    let rows = all.len() / count;
+    all[k * rows..(k + 1) * rows].to_vec()
+}
+
+fn field<const N: usize>(file: &File, name: &str, step: Option<(usize, usize)>) -> Vec<[f64; N]> {
+    part(table::<N>(file, name), step)
+}
+
+fn points(file: &File, group: &str, step: Option<(usize, usize)>) -> Vec<ContactPoint> {
+    let reals = |name: &str| part(column::<f64>(file, &format!("{group}/{name}")), step);
     let vectors = |name: &str| table::<3>(file, &format!("{group}/{name}"));
     let tags = |name: &str| column::<i64>(file, &format!("{group}/{name}"));
     let (a, b) = (tags("node_a"), tags("node_b"));
     let (position, normal) = (vectors("position"), vectors("normal"));
     let (gap, force, pressure) = (reals("gap"), reals("force"), reals("pressure"));
-    let status = column::<u8>(file, &format!("{group}/status"));
+    let status = part(column::<u8>(file, &format!("{group}/status")), step);
     let all = [position.len(), normal.len(), gap.len(), force.len()];
     assert!(all.iter().all(|&n| n == a.len()), "{group}: {all:?} rows");
     (0..a.len())
@@ -169,12 +210,12 @@ fn points(file: &File, group: &str) -> Vec<ContactPoint> {
         .collect()
 }
 
-fn cells(file: &File) -> Vec<([f64; 3], [f64; 6])> {
+fn cells(file: &File, step: Option<(usize, usize)>) -> Vec<([f64; 3], [f64; 6])> {
     let counts = |name: &str| column::<i64>(file, &format!("VTKHDF/{name}"));
     let points = table::<3>(file, "VTKHDF/Points");
     let connectivity = counts("Connectivity");
     let offsets = counts("Offsets");
-    let stress = table::<6>(file, "VTKHDF/CellData/Stress");
+    let stress = field::<6>(file, "VTKHDF/CellData/Stress", step);
     let mut list = Vec::with_capacity(stress.len());
     let (mut first_point, mut first_entry, mut first_offset) = (0, 0, 0);
     for ((n, m), c) in (counts("NumberOfPoints").iter())

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use super::atoms::Around;
 use super::disjoint_sets::DisjointSets;
+use crate::flops::{Front, condensation};
 use crate::mesh::topology::Topology;
 use crate::model::Model;
-use crate::problem::hierarchy::{Front, condensation};
 
 /// Estimated flops that growing saves at least.
 const WORTH: f64 = 1e8;

@@ -1,10 +1,10 @@
-//! Whether the map of a cell is one to one: the sign of its Jacobian everywhere, not at some points.
+//! det ∂x/∂ξ > 0: whether the map of a cell is one to one, everywhere and not at some points.
 
 use std::array::from_fn;
-use std::sync::LazyLock;
 
-use super::ElementKind;
+use super::domain::Domain;
 use super::geometry::{difference, length};
+use super::reference::ReferenceElement;
 
 /// Degree in each direction of the Jacobian's polynomial on the unit square.
 const DEGREE: usize = 3;
@@ -24,7 +24,7 @@ pub struct Fold {
     pub node: usize,
 }
 
-impl ElementKind {
+impl ReferenceElement {
     /// A place at which det ∂x/∂ξ of a cell of the plane isn't above `floor`; `None` where it is
     /// above it in the whole cell.
     ///
@@ -32,8 +32,8 @@ impl ElementKind {
     /// direction, that of a triangle by way of the collapse (s, t) → (s, t(1 − s)). Its
     /// coefficients in Bernstein's basis bound it from both sides (Johnen, Remacle and Geuzaine,
     /// J. Comput. Phys. 233, 2013); where they don't decide, the square is halved.
-    pub fn fold(self, at: &[[f64; 3]], floor: f64) -> Option<Fold> {
-        if self == Self::Triangle3 {
+    pub fn fold(&self, at: &[[f64; 3]], floor: f64) -> Option<Fold> {
+        if self.domain() == Domain::Triangle && self.is_linear() {
             let jacobian = 2.0 * self.measure(at);
             let holds = jacobian > floor;
             return (!holds).then_some(Fold {
@@ -52,14 +52,6 @@ impl ElementKind {
             node: node.unwrap_or_default(),
         })
     }
-
-    /// The point of the reference cell that a point of the unit square stands for.
-    fn of_square(self, [s, t]: [f64; 2]) -> [f64; 3] {
-        match self {
-            Self::Triangle3 | Self::Triangle6 => [s, t * (1.0 - s), 0.0],
-            _ => [2.0 * s - 1.0, 2.0 * t - 1.0, 0.0],
-        }
-    }
 }
 
 /// A rectangle of the unit square with Bernstein's coefficients of the Jacobian over it.
@@ -73,10 +65,10 @@ struct Piece {
 
 impl Piece {
     /// The coefficients over the whole square from values at 4 × 4 places.
-    fn whole(kind: ElementKind, at: &[[f64; 3]]) -> Self {
-        let gradients = lattice(kind);
+    fn whole(element: &ReferenceElement, at: &[[f64; 3]]) -> Self {
+        let gradients = element.lattice();
         let values: [[f64; COUNT]; COUNT] =
-            from_fn(|i| from_fn(|j| kind.determinant(&gradients[i * COUNT + j], at)));
+            from_fn(|i| from_fn(|j| element.determinant(&gradients[i * COUNT + j], at)));
         let rows = values.map(bernstein);
         Self {
             coefficients: transposed(transposed(rows).map(bernstein)),
@@ -87,7 +79,7 @@ impl Piece {
     }
 
     /// A point of the reference cell at which the Jacobian isn't above `floor`.
-    fn find(self, kind: ElementKind, floor: f64) -> Option<[f64; 3]> {
+    fn find(self, element: &ReferenceElement, floor: f64) -> Option<[f64; 3]> {
         let mut open = vec![self];
         while let Some(piece) = open.pop() {
             // So that NaN isn't above anything.
@@ -97,7 +89,7 @@ impl Piece {
             let (value, corner) = piece.least_corner();
             let is_above = value > floor;
             if !is_above || piece.halvings == HALVINGS {
-                return Some(kind.of_square(corner));
+                return Some(element.domain().of_unit_square(corner));
             }
             open.extend(piece.halves());
         }
@@ -146,19 +138,12 @@ impl Piece {
 }
 
 /// Gradients of the shape functions at the 4 × 4 places.
-fn lattice(kind: ElementKind) -> &'static [Vec<[f64; 3]>] {
-    static LATTICES: LazyLock<[Vec<Vec<[f64; 3]>>; ElementKind::ALL.len()]> = LazyLock::new(|| {
-        let share = |i: usize| i as f64 / DEGREE as f64;
-        let places = (0..COUNT).flat_map(|i| (0..COUNT).map(move |j| [share(i), share(j)]));
-        let places: Vec<[f64; 2]> = places.collect();
-        ElementKind::ALL.map(|kind| {
-            let gradients = places
-                .iter()
-                .map(|&place| kind.gradients(kind.of_square(place)));
-            gradients.collect()
-        })
-    });
-    &LATTICES[kind as usize]
+pub(super) fn lattice(element: &ReferenceElement) -> Vec<Vec<[f64; 3]>> {
+    let share = |i: usize| i as f64 / DEGREE as f64;
+    let places = (0..COUNT).flat_map(|i| (0..COUNT).map(move |j| [share(i), share(j)]));
+    places
+        .map(|place| element.gradients(element.domain().of_unit_square(place)))
+        .collect()
 }
 
 /// Bernstein's coefficients of the cubic with these values at 0, 1/3, 2/3, 1.
@@ -190,58 +175,7 @@ fn transposed(rows: [[f64; COUNT]; COUNT]) -> [[f64; COUNT]; COUNT] {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
-    const CELLS: [ElementKind; 5] = [
-        ElementKind::Triangle3,
-        ElementKind::Triangle6,
-        ElementKind::Quad4,
-        ElementKind::Quad8,
-        ElementKind::Quad9,
-    ];
-
-    /// The reference cell, its nodes moved by up to `amount` as a linear congruence draws them.
-    fn shaken(kind: ElementKind, amount: f64, seed: &mut u64) -> Vec<[f64; 3]> {
-        let mut draw = || {
-            *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            amount * ((*seed >> 33) as f64 / f64::from(1_u32 << 30) - 1.0)
-        };
-        let nodes = kind.node_coordinates().iter();
-        nodes
-            .map(|&[x, y, _]| [x + draw(), y + draw(), 0.0])
-            .collect()
-    }
-
-    #[test]
-    fn no_point_of_a_cell_without_a_fold_has_a_jacobian_below_the_floor() {
-        let mut seed = 5;
-        let (mut sound, mut folded) = (0, 0);
-        for round in 0..400 {
-            for kind in CELLS {
-                let at = shaken(kind, 0.001 * f64::from(round), &mut seed);
-                let floor = 1e-3;
-                let mut least = f64::INFINITY;
-                for i in 0..=40 {
-                    for j in 0..=40 {
-                        let xi = kind.of_square([f64::from(i) / 40.0, f64::from(j) / 40.0]);
-                        least = least.min(kind.jacobian(&at, xi));
-                    }
-                }
-                match kind.fold(&at, floor) {
-                    None => {
-                        sound += 1;
-                        assert!(least > floor, "{kind:?}: {least}");
-                    }
-                    Some(fold) => {
-                        folded += 1;
-                        assert!(fold.jacobian <= floor + 1e-6, "{kind:?}: {fold:?}");
-                        assert!(least < floor + 0.1, "{kind:?}: {least}");
-                    }
-                }
-            }
-        }
-        assert!(sound > 100 && folded > 100, "{sound} {folded}");
-    }
+    use super::super::ElementKind;
 
     #[test]
     fn a_mid_side_node_at_the_quarter_of_its_edge_makes_the_corner_singular() {

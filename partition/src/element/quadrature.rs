@@ -1,8 +1,9 @@
-//! Quadrature rules on the reference elements.
+//! ∫ f dξ ≈ Σ w_q f(ξ_q): quadrature rules on the reference elements.
 
 use std::f64::consts::PI;
 
-use super::ElementKind;
+use super::domain::Domain;
+use super::reference::ReferenceElement;
 
 /// A quadrature rule: ∫ f dξ ≈ Σ weights·f(points) over a reference element.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,23 +14,23 @@ pub struct Quadrature {
     pub weights: Vec<f64>,
 }
 
-impl ElementKind {
-    /// A rule that is exact for polynomials up to `degree`, on quadrilaterals in each direction.
-    pub fn quadrature(self, degree: usize) -> Quadrature {
-        match self {
-            Self::Point1 => Quadrature {
+impl ReferenceElement {
+    /// A rule that is exact for polynomials up to `degree`, on the square in each direction.
+    pub fn quadrature(&self, degree: usize) -> Quadrature {
+        match self.domain() {
+            Domain::Point => Quadrature {
                 points: vec![[0.0; 3]],
                 weights: vec![1.0],
             },
-            Self::Line2 | Self::Line3 => {
+            Domain::Line => {
                 let (points, weights) = gauss_legendre(degree / 2 + 1);
                 Quadrature {
                     points: points.into_iter().map(|x| [x, 0.0, 0.0]).collect(),
                     weights,
                 }
             }
-            Self::Triangle3 | Self::Triangle6 => triangle(degree),
-            Self::Quad4 | Self::Quad8 | Self::Quad9 => quadrilateral(degree),
+            Domain::Triangle => triangle(degree),
+            Domain::Square => square(degree),
         }
     }
 }
@@ -88,7 +89,7 @@ fn triangle(degree: usize) -> Quadrature {
 }
 
 /// Products of Gauss-Legendre, exact for polynomials up to `degree` in each direction.
-fn quadrilateral(degree: usize) -> Quadrature {
+fn square(degree: usize) -> Quadrature {
     let (points, weights) = gauss_legendre(degree / 2 + 1);
     let pairs = || (0..points.len()).flat_map(|i| (0..points.len()).map(move |j| (i, j)));
     Quadrature {
@@ -129,7 +130,7 @@ fn gauss_legendre(count: usize) -> (Vec<f64>, Vec<f64>) {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::super::ElementKind;
 
     #[test]
     fn rules_of_quadrilaterals_are_exact_to_their_degree_in_each_direction() {

@@ -11,7 +11,7 @@ const CORNERS: usize = 4;
 /// The smallest nodes of a facet, ascending.
 type Key = [u32; CORNERS];
 
-/// A facet of a cell: the cell and the facet's place in [`crate::element::ElementKind::facets`].
+/// A facet of a cell: the cell and the facet's place in [`crate::element::reference::ReferenceElement::facets`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct CellFacet {
     /// Cell.

@@ -1,12 +1,13 @@
-//! Γ_c: contacts as rows of B u ≤ g.
+//! Γ_c: contacts n·(u_a − u_b) ≤ g as rows of B u ≤ g.
 
 use std::collections::{HashMap, HashSet};
 
 use super::node_pairs::Unpaired;
 use super::sides::{Sides, side_nodes};
+use super::steps::Loads;
 use super::supports::PARALLEL;
 use super::surface::Surface;
-use super::{Contact, ContactCondition, Support, groups, mortar, node_pairs, obstacle};
+use super::{Contact, ContactCondition, groups, mortar, node_pairs, obstacle};
 use crate::element::geometry::{advance, dot, length};
 use crate::error::InputError;
 use crate::mesh::Mesh;
@@ -20,16 +21,18 @@ const ROUNDING: f64 = 1e-12;
 pub(super) struct Contacts<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
-    supports: HashMap<u32, Vec<Support>>,
+    /// Directions in which every node is held, and how far in each load step (m).
+    supports: HashMap<u32, Vec<([f64; 3], Vec<f64>)>>,
     /// The largest coordinate (m).
     size: f64,
 }
 
 impl<'a> Contacts<'a> {
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, supports: &[Support]) -> Self {
-        let mut by_node: HashMap<u32, Vec<Support>> = HashMap::new();
-        for support in supports {
-            by_node.entry(support.node).or_default().push(*support);
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, loads: &Loads) -> Self {
+        let mut by_node: HashMap<u32, Vec<([f64; 3], Vec<f64>)>> = HashMap::new();
+        for (i, support) in loads.supports.iter().enumerate() {
+            let held = by_node.entry(support.node).or_default();
+            held.push((support.direction, loads.values(i)));
         }
         let coordinates = mesh.points.iter().flatten();
         Self {
@@ -86,11 +89,14 @@ impl<'a> Contacts<'a> {
         for condition in conditions {
             match self.prescribed_approach(&condition) {
                 None => kept.push(condition),
-                Some(approach) if approach <= condition.gap + slack => {}
-                Some(approach) => {
+                Some(approaches) => {
+                    let closest = approaches.into_iter().fold(f64::NEG_INFINITY, f64::max);
+                    if closest <= condition.gap + slack {
+                        continue;
+                    }
                     return Err(InputError::new(format!(
                         "{what}: at node {} displacements are prescribed on both sides that close \
-                         the gap of {} m by {approach} m; expected no penetration",
+                         the gap of {} m by {closest} m; expected no penetration",
                         condition.tag_a, condition.gap
                     )));
                 }
@@ -135,17 +141,24 @@ impl<'a> Contacts<'a> {
         }
     }
 
-    /// Σ coefficient·u of a condition all of whose entries are prescribed. `None` if one is free.
-    fn prescribed_approach(&self, condition: &ContactCondition) -> Option<f64> {
-        condition.entries.iter().try_fold(0.0, |sum, &(node, row)| {
+    /// Σ coefficient·u in every load step of a condition all of whose entries are prescribed. `None` if one
+    /// is free.
+    fn prescribed_approach(&self, condition: &ContactCondition) -> Option<Vec<f64>> {
+        let mut approaches = Vec::new();
+        for &(node, row) in &condition.entries {
             let mut free = row;
-            let mut approach = sum;
-            for support in self.supports.get(&node)? {
-                let along = dot(row, support.direction);
-                free = advance(free, -along, support.direction);
-                approach += along * support.value;
+            for (direction, values) in self.supports.get(&node)? {
+                let along = dot(row, *direction);
+                free = advance(free, -along, *direction);
+                approaches.resize(values.len(), 0.0);
+                for (approach, value) in approaches.iter_mut().zip(values) {
+                    *approach += along * value;
+                }
             }
-            (length(free) <= PARALLEL).then_some(approach)
-        })
+            if length(free) > PARALLEL {
+                return None;
+            }
+        }
+        Some(approaches)
     }
 }

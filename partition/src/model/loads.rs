@@ -1,70 +1,56 @@
-//! Γ_τ and body forces as consistent nodal forces.
+//! Γ_τ and body forces as consistent nodal forces: f_i = ∫ N_i b dx + ∫ N_i τ dS, (3).
 
 use std::collections::BTreeMap;
 
 use super::bodies::Bodies;
 use super::groups;
 use super::surface::Surface;
-use crate::element::ElementKind;
 use crate::element::geometry::{advance, length};
 use crate::error::InputError;
 use crate::magnitude;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 use crate::scene::number::Vector;
+use crate::scene::step::Loading;
 
 /// Degree of exactness on facets: a cubic pressure along a curved quadratic one times a shape
 /// function and n dS needs 9.
 const FACET_DEGREE: usize = 9;
 
-/// Degree of exactness in cells: for a constant load in a cell of any shape, and for a cubic one in
-/// a cell with straight edges and nodes in their middle; on quadrilaterals in each direction.
-fn cell_degree(kind: ElementKind, is_constant: bool) -> usize {
-    match (kind, is_constant) {
-        (ElementKind::Triangle6, true) => 4,
-        (ElementKind::Triangle3 | ElementKind::Triangle6, false) => 5,
-        (ElementKind::Quad4, true) => 2,
-        (ElementKind::Quad4, false) => 5,
-        (ElementKind::Quad8 | ElementKind::Quad9, true) => 5,
-        (ElementKind::Quad8 | ElementKind::Quad9, false) => 6,
-        _ => 1,
-    }
-}
-
-/// The nodal forces of a scene, ascending by node, without those that are zero.
+/// The nodal forces of a loading of `scene`, node by node.
 pub(super) fn forces(
     scene: &Scene,
+    loading: &Loading,
     bodies: &Bodies,
     topology: &Topology,
-) -> Result<Vec<(u32, [f64; 3])>, InputError> {
+) -> Result<Vec<[f64; 3]>, InputError> {
     let mesh = &bodies.mesh;
+    let scale = &loading.scale;
     let mut forces = vec![[0.0; 3]; mesh.points.len()];
-    for (body, (name, keys)) in scene.bodies.iter().enumerate() {
-        let Some(force) = &keys.body_force else {
-            continue;
-        };
-        let what = format!("bodies.{name}.body_force");
+    for (body, (name, force)) in scene.bodies.keys().zip(&loading.body_force).enumerate() {
+        let Some(force) = force else { continue };
+        let what = loading.body_force_label(name);
         expect_dim(force, mesh.dim, &what)?;
-        body_force(bodies, body as u32, force, &mut forces)
+        body_force(bodies, body as u32, force, scale.body_force, &mut forces)
             .map_err(|reason| InputError::new(format!("{what}: {reason}")))?;
     }
-    for (index, traction) in scene.traction.iter().enumerate() {
-        let what = format!("traction[{}] on {}", index + 1, traction.on);
+    for (index, traction) in loading.traction.iter().enumerate() {
+        let what = loading.traction_label(index, &traction.on);
         expect_dim(&traction.value, mesh.dim, &what)?;
         let facets = groups::facets(mesh, &traction.on, &what)?;
         let surface = Surface::new(mesh, topology, &facets, &what)?;
         surface_load(&surface, &mut forces, |x, area| {
             let traction = traction.value.at(x)?;
-            Ok(traction.map(|c| c * length(area)))
+            Ok(traction.map(|c| scale.traction * c * length(area)))
         })
         .map_err(|reason| InputError::new(format!("{what}: {reason}")))?;
     }
-    for (index, pressure) in scene.pressure.iter().enumerate() {
-        let what = format!("pressure[{}] on {}", index + 1, pressure.on);
+    for (index, pressure) in loading.pressure.iter().enumerate() {
+        let what = loading.pressure_label(index, &pressure.on);
         let facets = groups::facets(mesh, &pressure.on, &what)?;
         let surface = Surface::new(mesh, topology, &facets, &what)?;
         surface_load(&surface, &mut forces, |x, area| {
-            let pressure = pressure.value.at(x)?;
+            let pressure = scale.pressure * pressure.value.at(x)?;
             Ok(area.map(|c| -pressure * c))
         })
         .map_err(|reason| InputError::new(format!("{what}: {reason}")))?;
@@ -78,10 +64,7 @@ pub(super) fn forces(
             })?;
         }
     }
-    Ok((0_u32..)
-        .zip(forces)
-        .filter(|(_, force)| *force != [0.0; 3])
-        .collect())
+    Ok(forces)
 }
 
 fn expect_dim(vector: &Vector, dim: usize, what: &str) -> Result<(), InputError> {
@@ -94,11 +77,12 @@ fn expect_dim(vector: &Vector, dim: usize, what: &str) -> Result<(), InputError>
     )))
 }
 
-/// Adds ∫ N_i b dx over the cells of a body.
+/// Adds ∫ N_i b dx over the cells of a body, b a `factor` of the force.
 fn body_force(
     bodies: &Bodies,
     body: u32,
     force: &Vector,
+    factor: f64,
     forces: &mut [[f64; 3]],
 ) -> Result<(), String> {
     let mesh = &bodies.mesh;
@@ -107,15 +91,19 @@ fn body_force(
         if bodies.cell_body[cell] != body {
             continue;
         }
-        let rule = rules
-            .entry(kind)
-            .or_insert_with(|| kind.tabulate(cell_degree(kind, force.is_constant())));
+        let rule = rules.entry(kind).or_insert_with(|| {
+            let degree = kind.rules().map(|rules| match force.is_constant() {
+                true => rules.constant_load,
+                false => rules.cubic_load,
+            });
+            degree.map_or_else(Vec::new, |degree| kind.tabulate(degree))
+        });
         let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
         for point in rule.iter() {
             let shape = point.shape.iter();
             let x = (shape.clone().zip(&at)).fold([0.0; 3], |sum, (&n, &p)| advance(sum, n, p));
             let load = force.at(x)?;
-            let weight = point.weight * kind.determinant(&point.gradients, &at);
+            let weight = factor * point.weight * kind.determinant(&point.gradients, &at);
             for (&node, value) in nodes.iter().zip(shape) {
                 let sum = &mut forces[node as usize];
                 *sum = advance(*sum, weight * value, load);

@@ -1,4 +1,4 @@
-//! Contact with a rigid obstacle: rows of one node.
+//! Contact with a rigid obstacle, n·u ≤ g: rows of one node.
 
 use super::ContactCondition;
 use super::sides::SideNode;

@@ -9,6 +9,7 @@ use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
+use crate::scene::step::Loading;
 
 /// Relative difference up to which two prescribed values of one component agree.
 const AGREE: f64 = 1e-12;
@@ -26,35 +27,34 @@ struct Row<'a> {
     name: &'a str,
 }
 
-/// The names of a scene's conditions, displacements before bilateral ones.
-pub(super) fn names(scene: &Scene) -> Vec<String> {
-    let label = |key: &str, index: usize, on: &dyn std::fmt::Display| {
-        format!("{key}[{}] on {on}", index + 1)
-    };
-    let displacement = (scene.displacement.iter().enumerate())
-        .map(|(i, condition)| label("displacement", i, &condition.on));
+/// The names of the conditions that prescribe displacements in a loading of `scene`, displacements before
+/// bilateral ones.
+pub(super) fn names(scene: &Scene, loading: &Loading) -> Vec<String> {
+    let displacement = (loading.displacement.iter().enumerate())
+        .map(|(i, condition)| loading.displacement_label(i, &condition.on));
     let bilateral = (scene.bilateral.iter().enumerate())
-        .map(|(i, condition)| label("bilateral", i, &condition.on));
+        .map(|(i, condition)| format!("bilateral[{}] on {}", i + 1, condition.on));
     displacement.chain(bilateral).collect()
 }
 
-/// The supports of a scene whose conditions have these names, ascending by node, the rows of one
-/// node orthonormal.
+/// The supports of a loading of `scene`, ascending by node, the rows of one node orthonormal.
 pub(super) fn supports(
     scene: &Scene,
-    names: &[String],
+    loading: &Loading,
     mesh: &Mesh,
     topology: &Topology,
 ) -> Result<Vec<Support>, InputError> {
-    let mut rows: BTreeMap<u32, Vec<Row>> = BTreeMap::new();
+    let names = names(scene, loading);
     let mut names = names.iter().enumerate();
-    for (condition, (number_of, label)) in scene.displacement.iter().zip(&mut names) {
+    let mut rows: BTreeMap<u32, Vec<Row>> = BTreeMap::new();
+    for (condition, (number_of, label)) in loading.displacement.iter().zip(&mut names) {
         for node in groups::nodes(mesh, &condition.on, label)? {
             for (axis, number) in condition.components.iter().enumerate() {
                 let Some(number) = number else { continue };
                 let value = number
                     .at(mesh.points[node as usize])
-                    .map_err(|reason| InputError::new(format!("{label}: {reason}")))?;
+                    .map_err(|reason| InputError::new(format!("{label}: {reason}")))?
+                    * loading.scale.displacement;
                 let mut direction = [0.0; 3];
                 direction[axis] = 1.0;
                 rows.entry(node).or_default().push(Row {

@@ -8,8 +8,8 @@ use self::bodies::Bodies;
 use self::groups::Groups;
 use super::hierarchy::Hierarchy;
 use super::{
-    Body, Catalog, ContactRow, ContactSummary, InterfaceNode, Problem, RowEntry, Subdomain,
-    SubdomainSummary,
+    Body, Catalog, ContactRow, ContactSummary, InterfaceNode, LoadStep, Problem, RowEntry,
+    StepLoads, Subdomain, SubdomainSummary,
 };
 use crate::decompose::Decomposition;
 use crate::element::Elements;
@@ -49,6 +49,12 @@ impl Problem {
                 .map(|contact| ContactSummary {
                     name: contact.name.clone(),
                     conditions: contact.conditions.len(),
+                })
+                .collect(),
+            steps: (model.steps.iter())
+                .map(|step| LoadStep {
+                    name: step.name.clone(),
+                    time: step.time,
                 })
                 .collect(),
             subdomains: subdomains
@@ -160,6 +166,7 @@ fn cut(
             supports: Vec::new(),
             forces: Vec::new(),
             interface: Vec::new(),
+            steps: vec![StepLoads::default(); model.steps.len()],
         })
         .collect();
     for (node, list) in owners.of.iter().enumerate() {
@@ -193,15 +200,23 @@ fn cut(
         subdomain.cells.push(kind, &local);
         subdomain.cell_material.push(model.cell_material[cell]);
     }
-    for support in &model.supports {
+    for (i, support) in model.supports.iter().enumerate() {
         for &(owner, node) in owners.of.of(support.node as usize) {
-            let supports = &mut subdomains[owner as usize].supports;
-            supports.push(crate::model::Support { node, ..*support });
+            let subdomain = &mut subdomains[owner as usize];
+            let support = crate::model::Support { node, ..*support };
+            subdomain.supports.push(support);
+            for (of_subdomain, step) in subdomain.steps.iter_mut().zip(&model.steps) {
+                of_subdomain.supports.push(step.supports[i]);
+            }
         }
     }
-    for &(node, force) in &model.forces {
+    for (i, &(node, force)) in model.forces.iter().enumerate() {
         if let Some(&(owner, node)) = owners.of.of(node as usize).first() {
-            subdomains[owner as usize].forces.push((node, force));
+            let subdomain = &mut subdomains[owner as usize];
+            subdomain.forces.push((node, force));
+            for (of_subdomain, step) in subdomain.steps.iter_mut().zip(&model.steps) {
+                of_subdomain.forces.push(step.forces[i]);
+            }
         }
     }
     Ok(subdomains)

@@ -12,8 +12,8 @@ pub struct SharedNode {
     pub tag: i64,
     /// Coordinates (m).
     pub point: [f64; 3],
-    /// Directions and values of its supports.
-    pub supports: Vec<([f64; 3], f64)>,
+    /// Directions of its supports, and their values, one for each load step.
+    pub supports: Vec<([f64; 3], Vec<f64>)>,
 }
 
 /// The nodes of a subdomain, as far as others are concerned.
@@ -33,13 +33,17 @@ impl Subdomain {
             let node = on.node as usize;
             is_shared[node] = true;
             let start = self.supports.partition_point(|s| s.node < on.node);
-            let rows = self.supports[start..].iter();
-            let rows = rows.take_while(|s| s.node == on.node);
+            let rows = self.supports.iter().enumerate().skip(start);
+            let rows = rows.take_while(|(_, s)| s.node == on.node);
+            let values = |i: usize| match self.steps.is_empty() {
+                true => vec![self.supports[i].value],
+                false => self.steps.iter().map(|step| step.supports[i]).collect(),
+            };
             SharedNode {
                 interface: on.interface,
                 tag: self.node_tags[node],
                 point: self.points[node],
-                supports: rows.map(|s| (s.direction, s.value)).collect(),
+                supports: rows.map(|(i, s)| (s.direction, values(i))).collect(),
             }
         });
         let shared = shared.collect();

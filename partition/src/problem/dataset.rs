@@ -277,9 +277,13 @@ impl Dataset {
             self.inner
                 .read_slice_1d::<T, _>(rows)
                 .map(|array| array.into_raw_vec_and_offset().0)
-        } else {
+        } else if self.shape.len() == 2 {
             self.inner
                 .read_slice_2d::<T, _>((rows, ..))
+                .map(|array| array.into_raw_vec_and_offset().0)
+        } else {
+            self.inner
+                .read_slice::<T, _, ndarray::Ix3>((rows, .., ..))
                 .map(|array| array.into_raw_vec_and_offset().0)
         };
         data.map_err(|reason| self.error(&format!("can't be read: {reason}")))

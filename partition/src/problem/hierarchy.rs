@@ -9,7 +9,7 @@ use self::blocks::Blocks;
 use self::dissect::Dissection;
 use super::Catalog;
 
-pub use self::work::{Front, Work, condensation};
+pub use self::work::Work;
 
 /// A tree over the subdomains, dissected so that the fronts of its inner nodes are cheap.
 ///

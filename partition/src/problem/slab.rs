@@ -15,6 +15,11 @@ pub(super) struct Slab<T> {
 }
 
 impl<T> Slab<T> {
+    /// Number of numbers a row.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
     /// The numbers in some of the rows.
     pub fn rows(&self, rows: Range<usize>) -> &[T] {
         let at = |row: usize| self.width * (row - self.first);

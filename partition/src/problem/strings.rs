@@ -6,7 +6,7 @@ use hdf5::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenU
 const LONGEST_FIXED: usize = 1024;
 
 /// Reads the strings of a dataset or attribute.
-pub(crate) fn read_strings(container: &hdf5::Container) -> Result<Vec<String>, String> {
+pub(super) fn read_strings(container: &hdf5::Container) -> Result<Vec<String>, String> {
     let text = |bytes: &[u8]| {
         String::from_utf8(bytes.to_vec()).map_err(|_| "holds a string that isn't UTF-8".to_owned())
     };

@@ -76,6 +76,11 @@ impl Problem {
         let hierarchy = Section::new(file, "hierarchy")?;
         let parents = catalog.hierarchy.parent.iter();
         hierarchy.column("parent", parents.map(|p| p.map_or(-1, i64::from)))?;
+        if !catalog.steps.is_empty() {
+            let steps = Section::new(file, "steps")?;
+            steps.strings("name", catalog.steps.iter().map(|step| step.name.as_str()))?;
+            steps.column("time", catalog.steps.iter().map(|step| step.time))?;
+        }
         self.write_settings(file)?;
         if !catalog.warnings.is_empty() {
             let root = Section::root(file)?;
@@ -151,7 +156,8 @@ impl Problem {
     }
 
     fn write_conditions(&self, file: &hdf5::File) -> hdf5::Result<()> {
-        let dim = self.catalog.dim;
+        let catalog = &self.catalog;
+        let dim = catalog.dim;
         let all = &self.subdomains;
         let interface = Section::new(file, "interface")?;
         interface.offsets("offset", all.iter().map(|s| s.interface.len()))?;
@@ -164,7 +170,17 @@ impl Problem {
         let rows = || all.iter().flat_map(|s: &Subdomain| &s.supports);
         support.column("node", rows().map(|s| i64::from(s.node)))?;
         support.vectors("direction", dim, rows().map(|s| &s.direction))?;
-        support.column("value", rows().map(|s| s.value))?;
+        let steps = catalog.steps.len();
+        match steps {
+            0 => support.column("value", rows().map(|s| s.value))?,
+            _ => {
+                let values: Vec<f64> = (all.iter())
+                    .flat_map(|s| (0..s.supports.len()).map(move |i| (s, i)))
+                    .flat_map(|(s, i)| s.steps.iter().map(move |step| step.supports[i]))
+                    .collect();
+                support.put("value", &[values.len() / steps, steps], &values)?;
+            }
+        }
         support.column("condition", rows().map(|s| i64::from(s.condition)))?;
         support.strings("name", self.catalog.supports.iter().map(String::as_str))?;
 
@@ -172,7 +188,18 @@ impl Problem {
         force.offsets("offset", all.iter().map(|s| s.forces.len()))?;
         let rows = || all.iter().flat_map(|s: &Subdomain| &s.forces);
         force.column("node", rows().map(|&(node, _)| i64::from(node)))?;
-        force.vectors("value", dim, rows().map(|(_, value)| value))
+        match steps {
+            0 => force.vectors("value", dim, rows().map(|(_, value)| value)),
+            _ => {
+                let values: Vec<f64> = (all.iter())
+                    .flat_map(|s| (0..s.forces.len()).map(move |i| (s, i)))
+                    .flat_map(|(s, i)| s.steps.iter().map(move |step| &step.forces[i][..dim]))
+                    .flatten()
+                    .copied()
+                    .collect();
+                force.put("value", &[rows().count(), steps, dim], &values)
+            }
+        }
     }
 
     fn write_contacts(&self, file: &hdf5::File) -> hdf5::Result<()> {

@@ -15,4 +15,5 @@ mod mortar;
 mod mortar_discs;
 mod obstacle;
 mod quadratic;
+mod steps;
 mod supports;

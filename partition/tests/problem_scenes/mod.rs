@@ -114,6 +114,7 @@ impl Builder {
                 groups: BTreeMap::new(),
             },
             cell_body: self.cell_body,
+            steps: Vec::new(),
             contacts: self.contacts,
             prescribed_subdomains: None,
             warnings: vec!["something".into()],

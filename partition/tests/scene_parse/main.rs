@@ -7,6 +7,7 @@ use contact_dd_partition::scene::Scene;
 use contact_dd_partition::scene::condition::{Obstacle, Partner};
 use contact_dd_partition::scene::material::Elasticity;
 use contact_dd_partition::scene::number::Number;
+use contact_dd_partition::scene::step::Scale;
 
 const WHOLE: &str = r#"title = "Loaded granite block with cracks"
 mesh  = "block.msh"
@@ -50,6 +51,22 @@ obstacle = { point = [0.0, 0.0], normal = [0.0, 2.0] }
 name = "ring"
 sides = ["rim"]
 obstacle = { center = [0, 0], radius = "2*pi", inside = true }
+[[step]]
+name = "first"
+time = 0.5
+scale = { pressure = 0.25, displacement = "1/8" }
+body_force = { "left block" = [1, "2*x"] }
+[[step]]
+time = "pi"
+scale = 2
+pressure = []
+[[step.traction]]
+on = "left"
+value = [0, 1]
+[[step.displacement]]
+on = "bottom"
+x = 1
+y = 2
 "#;
 
 #[test]
@@ -139,4 +156,43 @@ fn files_that_are_no_scene_are_named() {
     assert!(said(&path).contains("scene.toml: line 2: isn't UTF-8"));
     std::fs::write(&path, "mesh = 1").unwrap();
     assert!(said(&path).contains("scene.toml: line 1: mesh: "));
+}
+
+#[test]
+fn every_key_of_a_step_is_read() {
+    let scene = Scene::parse(WHOLE).unwrap();
+    let [first, second] = &scene.step[..] else {
+        panic!("{:?}", scene.step);
+    };
+    assert_eq!(
+        [first, second].map(|step| step.time),
+        [Some(0.5), Some(std::f64::consts::PI)]
+    );
+    assert_eq!(first.name_or_number(0), "first");
+    assert_eq!(second.name_or_number(1), "2");
+    let Scale {
+        body_force,
+        traction,
+        pressure,
+        displacement,
+    } = first.scale;
+    assert_eq!(
+        [body_force, traction, pressure, displacement],
+        [1.0, 1.0, 0.25, 0.125]
+    );
+    assert_eq!(second.scale.traction, 2.0);
+    assert_eq!(
+        first.body_force["left block"].at([3.0, 0.0, 0.0]),
+        Ok([1.0, 6.0, 0.0])
+    );
+    assert_eq!((&first.traction, &first.pressure), (&None, &None));
+    assert_eq!(second.pressure, Some(Vec::new()));
+    let loadings = scene.loadings();
+    assert_eq!(loadings[0].pressure.len(), 1);
+    assert_eq!(loadings[0].body_force.iter().flatten().count(), 2);
+    assert_eq!(
+        (loadings[1].pressure.len(), loadings[1].traction.len()),
+        (0, 1)
+    );
+    assert_eq!(loadings[1].displacement[0].on.to_string(), "'bottom'");
 }

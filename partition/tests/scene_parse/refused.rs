@@ -265,3 +265,77 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
         assert!(message.contains(expected), "{to}: {message}");
     }
 }
+
+#[test]
+fn steps_that_cannot_be_are_refused_at_their_line_and_key() {
+    for (from, to, expected) in [
+        (
+            "time = \"pi\"",
+            "time = 0.5",
+            "line 49: step[2].time: 0.5 comes after 0.5; expected times that ascend",
+        ),
+        (
+            "time = \"pi\"\n",
+            "",
+            "line 48: step[2]: expected a 'time' in every step or in none",
+        ),
+        (
+            "time = 0.5\n",
+            "",
+            "line 48: step[2].time: expected a 'time' in every step or in none",
+        ),
+        (
+            "time = 0.5",
+            "time = \"x\"",
+            "line 45: step[1] 'first'.time: 'x' depends on the place",
+        ),
+        (
+            "\"first\"",
+            "\"a\\tb\"",
+            "line 44: step[1].name: 'a\\tb' holds a control character",
+        ),
+        ("scale = 2\n", "scale = [2]\n", "line 50: step[2].scale"),
+        (
+            "scale = 2\n",
+            "scale = inf\n",
+            "line 50: step[2].scale: inf isn't a finite number",
+        ),
+        (
+            "pressure = 0.25",
+            "presure = 0.25",
+            "line 46: step[1] 'first'.scale.presure: unknown key 'presure'; did you mean 'pressure'?",
+        ),
+        (
+            "\"left block\" = [1",
+            "\"lft block\" = [1",
+            "line 47: step[1] 'first'.body_force.\"lft block\": there is no body 'lft block'; did you mean 'left block'?",
+        ),
+        (
+            "\"left block\" = [1, ",
+            "\"left block\" = [1, 2, ",
+            "line 47: step[1] 'first'.body_force.\"left block\": a plane scene",
+        ),
+        (
+            "value = [0, 1]",
+            "value = [0, 1, 2]",
+            "step[2].traction[1].value: a plane scene",
+        ),
+        (
+            "x = 1\ny = 2",
+            "x = 1\nz = 2",
+            "step[2].displacement[1].z: a plane scene has no 'z'",
+        ),
+        (
+            "pressure = []",
+            "presure = []",
+            "step[2].presure: unknown key 'presure'; did you mean 'pressure'?",
+        ),
+    ] {
+        let message = said(from, to);
+        assert!(
+            message.starts_with(expected)
+                || (!expected.starts_with("line") && message.contains(expected)),
+            "{message}\n{expected}"
+        );
+    }
+}

@@ -35,6 +35,7 @@ fn square(index: usize, at: [f64; 2]) -> Subdomain {
         supports: Vec::new(),
         forces: Vec::new(),
         interface: Vec::new(),
+        steps: Vec::new(),
     }
 }
 

@@ -18,6 +18,19 @@ pub(super) fn empty_table<T: H5Type>(
     group.new_dataset::<T>().shape((rows, width)).create(name)
 }
 
+/// A column of `rows` rows for each of some load `steps`, (steps, rows); a plain one where there are none.
+pub(super) fn empty_by_step<T: H5Type>(
+    group: &Group,
+    name: &str,
+    steps: usize,
+    rows: usize,
+) -> Result<Dataset> {
+    match steps {
+        0 => empty::<T>(group, name, rows),
+        _ => empty_table::<T>(group, name, steps, rows),
+    }
+}
+
 /// A column that is filled at once.
 pub(super) fn whole<T: H5Type>(
     group: &Group,
@@ -31,6 +44,22 @@ pub(super) fn whole<T: H5Type>(
 /// Fills a column from row `start` on.
 pub(super) fn fill<T: H5Type>(column: &Dataset, start: usize, values: &[T]) -> Result<()> {
     column.write_slice(ArrayView1::from(values), start..start + values.len())
+}
+
+/// Fills the column of a load step from row `start` on.
+pub(super) fn fill_by_step<T: H5Type>(
+    columns: &Dataset,
+    step: usize,
+    start: usize,
+    values: &[T],
+) -> Result<()> {
+    match columns.ndim() {
+        1 => fill(columns, start, values),
+        _ => columns.write_slice(
+            ArrayView1::from(values),
+            (step, start..start + values.len()),
+        ),
+    }
 }
 
 /// Fills a table from row `start` on.

@@ -6,10 +6,12 @@ use hdf5::{Dataset, File, Group, Result};
 use super::super::result::ContactResult;
 use super::column;
 
-/// The table of every contact, and how many of its rows have been written.
+/// The table of every contact, and which of its rows have been written in a load step.
 #[derive(Debug)]
 pub(super) struct ContactTables {
     tables: Vec<Table>,
+    steps: usize,
+    step: usize,
 }
 
 #[derive(Debug)]
@@ -28,13 +30,17 @@ struct Table {
 
 impl ContactTables {
     /// Makes all tables in their final sizes.
-    pub(super) fn create(file: &File, contacts: &[ContactSummary]) -> Result<Self> {
+    pub(super) fn create(file: &File, contacts: &[ContactSummary], steps: usize) -> Result<Self> {
         let parent = file.create_group("contact")?;
         let tables = contacts
             .iter()
-            .map(|contact| Table::create(&parent, contact))
+            .map(|contact| Table::create(&parent, contact, steps))
             .collect::<Result<_>>()?;
-        Ok(Self { tables })
+        Ok(Self {
+            tables,
+            steps: steps.max(1),
+            step: 0,
+        })
     }
 
     /// Writes `rows`, which may belong to several contacts.
@@ -49,47 +55,57 @@ impl ContactTables {
                 let count = self.tables.len();
                 return Err(format!("contact {contact} of {count} has no place").into());
             };
-            table.write(run)?;
+            table.write(run, self.step)?;
         }
         Ok(())
     }
 
-    /// Checks that every row was written.
-    pub(super) fn finish(self) -> Result<()> {
-        for Table { name, written, .. } in &self.tables {
+    /// Checks that every row of the load step was written, and begins with the next one.
+    pub(super) fn finish_step(&mut self) -> Result<()> {
+        for Table { name, written, .. } in &mut self.tables {
             if let Some(place) = written.iter().position(|&written| !written) {
                 return Err(format!("contact '{name}': condition {place} is missing").into());
             }
+            written.fill(false);
         }
+        self.step += 1;
         Ok(())
+    }
+
+    /// Checks that all load steps were written.
+    pub(super) fn finish(self) -> Result<()> {
+        match self.step == self.steps {
+            true => Ok(()),
+            false => Err(format!("step {} is missing", self.step).into()),
+        }
     }
 }
 
 impl Table {
-    fn create(parent: &Group, contact: &ContactSummary) -> Result<Self> {
+    fn create(parent: &Group, contact: &ContactSummary, steps: usize) -> Result<Self> {
         let (name, rows) = (&contact.name, contact.conditions);
         let group = parent
             .create_group(name)
             .map_err(|error| format!("contact '{name}': {error}"))?;
         let tags = |name| column::empty::<i64>(&group, name, rows);
         let vectors = |name| column::empty_table::<f64>(&group, name, rows, 3);
-        let reals = |name| column::empty::<f64>(&group, name, rows);
+        let states = |name| column::empty_by_step::<f64>(&group, name, steps, rows);
         Ok(Self {
             name: name.clone(),
             node_a: tags("node_a")?,
             node_b: tags("node_b")?,
             position: vectors("position")?,
             normal: vectors("normal")?,
-            gap: reals("gap")?,
-            force: reals("force")?,
-            pressure: reals("pressure")?,
-            status: column::empty::<u8>(&group, "status", rows)?,
+            gap: states("gap")?,
+            force: states("force")?,
+            pressure: states("pressure")?,
+            status: column::empty_by_step::<u8>(&group, "status", steps, rows)?,
             written: vec![false; rows],
         })
     }
 
     /// Writes rows whose places follow each other.
-    fn write(&mut self, run: &[ContactResult]) -> Result<()> {
+    fn write(&mut self, run: &[ContactResult], step: usize) -> Result<()> {
         let start = run[0].place;
         let Some(written) = self.written.get_mut(start..start + run.len()) else {
             let (name, last) = (&self.name, run[run.len() - 1].place);
@@ -103,17 +119,19 @@ impl Table {
             column::fill_table(table, start, &run.iter().map(of).collect::<Vec<_>>())
         };
         let reals = |column, of: fn(&ContactResult) -> f64| {
-            column::fill(column, start, &run.iter().map(of).collect::<Vec<_>>())
+            column::fill_by_step(column, step, start, &run.iter().map(of).collect::<Vec<_>>())
         };
-        tags(&self.node_a, |row| row.tag_a)?;
-        tags(&self.node_b, |row| row.tag_b)?;
-        vectors(&self.position, |row| row.position)?;
-        vectors(&self.normal, |row| row.normal)?;
+        if step == 0 {
+            tags(&self.node_a, |row| row.tag_a)?;
+            tags(&self.node_b, |row| row.tag_b)?;
+            vectors(&self.position, |row| row.position)?;
+            vectors(&self.normal, |row| row.normal)?;
+        }
         reals(&self.gap, |row| row.gap)?;
         reals(&self.force, |row| row.force)?;
         reals(&self.pressure, |row| row.pressure)?;
         let status: Vec<u8> = run.iter().map(|row| u8::from(row.closed)).collect();
-        column::fill(&self.status, start, &status)?;
+        column::fill_by_step(&self.status, step, start, &status)?;
         written.fill(true);
         Ok(())
     }

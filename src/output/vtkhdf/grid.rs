@@ -7,7 +7,7 @@ use hdf5::types::FixedAscii;
 use hdf5::{Dataset, File, Group, Result};
 
 use super::super::result::{PartitionSize, SubdomainResults};
-use super::column;
+use super::{Layout, column, time_series};
 
 /// Most nodes of a slab of more than one subdomain. With its cells it is about 6 MB, which is still
 /// in the cache when it is written and doesn't count beside what the root holds anyway; yet its
@@ -22,6 +22,9 @@ type GridType = FixedAscii<16>;
 #[derive(Debug)]
 pub(super) struct Grid {
     arrays: Arrays,
+    total: PartitionSize,
+    steps: usize,
+    step: usize,
     sizes: Vec<PartitionSize>,
     starts: Vec<PartitionSize>,
     written: Vec<bool>,
@@ -54,7 +57,8 @@ struct StressArrays {
 
 impl Grid {
     /// Makes all arrays in their final sizes.
-    pub(super) fn create(file: &File, sizes: &[PartitionSize], stress: bool) -> Result<Self> {
+    pub(super) fn create(file: &File, layout: &Layout) -> Result<Self> {
+        let (sizes, times) = (&layout.partitions, &layout.times);
         let group = file.create_group("VTKHDF")?;
         group
             .new_attr_builder()
@@ -84,8 +88,16 @@ impl Grid {
             end.cells += size.cells;
             end.connectivity += size.connectivity;
         }
+        let steps = times.len().max(1);
+        let arrays = Arrays::create(&group, end, sizes.len(), steps, layout.stress)?;
+        if !times.is_empty() {
+            time_series::create(&group, layout, end)?;
+        }
         Ok(Self {
-            arrays: Arrays::create(&group, end, sizes.len(), stress)?,
+            arrays,
+            total: end,
+            steps,
+            step: 0,
             sizes: sizes.to_vec(),
             starts,
             written: vec![false; sizes.len()],
@@ -119,33 +131,52 @@ impl Grid {
         };
         check_sizes(results, sizes, self.arrays.stress.is_some())?;
         if let Some(&start) = self.starts.get(first) {
-            self.arrays.fill(results, start)?;
+            if self.step == 0 {
+                self.arrays.fill_mesh(results, start)?;
+            }
+            let start = PartitionSize {
+                points: self.step * self.total.points + start.points,
+                cells: self.step * self.total.cells + start.cells,
+                ..start
+            };
+            self.arrays.fill_fields(results, start)?;
         }
         self.written[first..end].fill(true);
         Ok(())
     }
 
-    /// Checks that every partition was written.
+    /// Checks that every partition was written, and begins with the next load step.
+    pub(super) fn finish_step(&mut self) -> Result<()> {
+        if let Some(index) = self.written.iter().position(|&written| !written) {
+            return Err(format!("subdomain {index} is missing").into());
+        }
+        self.written.fill(false);
+        self.step += 1;
+        Ok(())
+    }
+
+    /// Checks that all load steps were written.
     pub(super) fn finish(self) -> Result<()> {
-        match self.written.iter().position(|&written| !written) {
-            Some(index) => Err(format!("subdomain {index} is missing").into()),
-            None => Ok(()),
+        match self.step == self.steps {
+            true => Ok(()),
+            false => Err(format!("step {} is missing", self.step).into()),
         }
     }
 }
 
 impl Arrays {
-    /// Makes them for `partitions` partitions of the size `total` together.
+    /// Makes them for `partitions` partitions of the size `total` together, fields for each of the `steps`.
     fn create(
         group: &Group,
         total: PartitionSize,
         partitions: usize,
+        steps: usize,
         stress: bool,
     ) -> Result<Self> {
         let points = group.create_group("PointData")?;
         let cells = group.create_group("CellData")?;
         let stress = match stress {
-            true => Some(StressArrays::create(&points, &cells, total)?),
+            true => Some(StressArrays::create(&points, &cells, total, steps)?),
             false => None,
         };
         Ok(Self {
@@ -155,7 +186,12 @@ impl Arrays {
             types: column::empty::<u8>(group, "Types", total.cells)?,
 
             node_tags: column::empty::<i64>(&points, "GlobalNodeId", total.points)?,
-            displacement: column::empty_table::<f64>(&points, "Displacement", total.points, 3)?,
+            displacement: column::empty_table::<f64>(
+                &points,
+                "Displacement",
+                steps * total.points,
+                3,
+            )?,
 
             subdomains: column::empty::<i32>(&cells, "Subdomain", total.cells)?,
             materials: column::empty::<i32>(&cells, "Material", total.cells)?,
@@ -163,8 +199,8 @@ impl Arrays {
         })
     }
 
-    /// Writes partitions, the first of which starts at `start`.
-    fn fill(&self, results: &SubdomainResults, start: PartitionSize) -> Result<()> {
+    /// Writes the mesh of partitions, the first of which starts at `start`.
+    fn fill_mesh(&self, results: &SubdomainResults, start: PartitionSize) -> Result<()> {
         let (points, cells) = (start.points, start.cells);
         column::fill_table(&self.points, points, &results.points)?;
         column::fill(
@@ -177,14 +213,18 @@ impl Arrays {
         column::fill(&self.types, cells, &results.types)?;
 
         column::fill(&self.node_tags, points, &results.node_tags)?;
-        column::fill_table(&self.displacement, points, &results.displacement)?;
 
         let subdomains: Vec<i32> = (results.first as i32..)
             .zip(&results.sizes)
             .flat_map(|(index, size)| repeat_n(index, size.cells))
             .collect();
         column::fill(&self.subdomains, cells, &subdomains)?;
-        column::fill(&self.materials, cells, &results.materials)?;
+        column::fill(&self.materials, cells, &results.materials)
+    }
+
+    /// Writes the fields on partitions, which stand from `start` on.
+    fn fill_fields(&self, results: &SubdomainResults, start: PartitionSize) -> Result<()> {
+        column::fill_table(&self.displacement, start.points, &results.displacement)?;
         match &self.stress {
             Some(stress) => stress.fill(results, start),
             None => Ok(()),
@@ -193,13 +233,14 @@ impl Arrays {
 }
 
 impl StressArrays {
-    fn create(points: &Group, cells: &Group, total: PartitionSize) -> Result<Self> {
+    fn create(points: &Group, cells: &Group, total: PartitionSize, steps: usize) -> Result<Self> {
+        let (nodes, of_cells) = (steps * total.points, steps * total.cells);
         Ok(Self {
-            at_nodes: column::empty_table::<f64>(points, "Stress", total.points, 6)?,
-            of_cells: column::empty_table::<f64>(cells, "Stress", total.cells, 6)?,
-            principal: column::empty_table::<f64>(cells, "PrincipalStress", total.cells, 3)?,
-            von_mises: column::empty::<f64>(cells, "VonMises", total.cells)?,
-            energy_error: column::empty::<f64>(cells, "EnergyError", total.cells)?,
+            at_nodes: column::empty_table::<f64>(points, "Stress", nodes, 6)?,
+            of_cells: column::empty_table::<f64>(cells, "Stress", of_cells, 6)?,
+            principal: column::empty_table::<f64>(cells, "PrincipalStress", of_cells, 3)?,
+            von_mises: column::empty::<f64>(cells, "VonMises", of_cells)?,
+            energy_error: column::empty::<f64>(cells, "EnergyError", of_cells)?,
         })
     }
 

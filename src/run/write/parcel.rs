@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::Fields;
 use crate::comm::{Comm, Message};
 use crate::fem::block::Block;
 use crate::fem::elasticity::{principal_stresses, von_mises};
 use crate::output::result::{PartitionSize, SubdomainResults};
 use crate::plan::Plan;
 use crate::run::read::OwnedBlock;
+use crate::run::solution::Solution;
 use crate::run::stresses::Stress;
 
 /// A slab of the result file, or a part of one.
@@ -40,17 +40,18 @@ impl Parcel {
         &self,
         results: &mut SubdomainResults,
         blocks: &BTreeMap<usize, OwnedBlock>,
-        fields: Fields<'_>,
+        solution: &Solution,
         plan: &Plan,
     ) {
         for index in self.subdomains.clone() {
             let b = plan.block_of[index];
             let block = blocks.get(&b).map(|owned| &owned.block);
             let member = block.and_then(|block| Some((block, block.member(index)?)));
-            match member.zip(fields.displacement.get(&b)) {
+            match member.zip(solution.displacement.get(&b)) {
                 Some(((block, m), displacement)) => {
                     append_member(results, block, m, displacement);
-                    if let Some(stress) = fields.stress.and_then(|stress| stress.get(&b)) {
+                    if let Some(stress) = solution.stress.as_ref().and_then(|stress| stress.get(&b))
+                    {
                         append_stress(results, block, m, stress);
                     }
                 }

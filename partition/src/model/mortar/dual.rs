@@ -1,4 +1,4 @@
-//! The dual basis on the covered part of a facet.
+//! The dual basis on the covered part of a facet: ∫ φ_j N_k = δ_jk ∫ N_k.
 
 use nalgebra::DMatrix;
 

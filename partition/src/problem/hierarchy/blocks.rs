@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::work::condensation;
+use crate::flops::condensation;
 use crate::lists::Lists;
 use crate::problem::Catalog;
 

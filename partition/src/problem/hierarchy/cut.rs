@@ -1,7 +1,7 @@
 //! One cut of a set of blocks into two.
 
 use super::blocks::Blocks;
-use super::work::{Front, condensation};
+use crate::flops::{Front, condensation};
 
 /// Some of the blocks.
 #[derive(Clone, Debug, Default)]

@@ -2,24 +2,8 @@
 
 use super::Hierarchy;
 use super::blocks::Blocks;
+use crate::flops::Front;
 use crate::problem::Catalog;
-
-/// The dense matrix of an inner node.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Front {
-    /// Dofs of the nodes of Γ all of whose blocks are under this node, but not under one child.
-    pub eliminated: usize,
-    /// Dofs of the other nodes of Γ that the children have left, and contact conditions.
-    pub kept: usize,
-}
-
-impl Front {
-    /// Flops of the partial Cholesky factorization.
-    pub fn flops(&self) -> f64 {
-        let (e, b) = (self.eliminated as f64, self.kept as f64);
-        e * e * e / 3.0 + e * e * b + e * b * b
-    }
-}
 
 /// What the nodes of a tree cost.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,15 +21,6 @@ impl Work {
         // The empty sum of floats is −0.
         self.fronts.iter().map(Front::flops).fold(0.0, |a, b| a + b)
     }
-}
-
-/// Estimated flops to condense a planar mesh by nested dissection, with `interior` dofs to be
-/// eliminated and `kept` on its boundary: 829/84 n^1.5 multiplications, and as many additions, for
-/// n nodes of one dof (George 1973), eight times as many with two; and the boundary carried
-/// through fronts as large as the separators.
-pub fn condensation(interior: f64, kept: f64) -> f64 {
-    let separator = (2.0 * interior).sqrt();
-    56.0 * interior.powf(1.5) + separator * kept * kept + 2.0 * interior * kept
 }
 
 impl Hierarchy {

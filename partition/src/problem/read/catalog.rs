@@ -9,7 +9,7 @@ use crate::decompose::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::problem::dataset::Dataset;
 use crate::problem::hierarchy::Hierarchy;
-use crate::problem::{Body, Catalog, ContactSummary, SubdomainSummary};
+use crate::problem::{Body, Catalog, ContactSummary, LoadStep, SubdomainSummary};
 
 /// Reads and checks the catalog, and where the slices lie.
 pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> {
@@ -43,6 +43,7 @@ pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> 
         bodies: bodies.into_iter().map(|name| Body { name }).collect(),
         supports: support_names,
         contacts,
+        steps: read_steps(file)?,
         subdomains,
         interface,
         interface_nodes,
@@ -218,6 +219,28 @@ fn read_support_names(file: &hdf5::File) -> Result<Vec<String>, InputError> {
         return Dataset::column(file, "/support/name", None)?.strings();
     }
     Ok(vec!["supports".into()])
+}
+
+/// Load steps; none where the file has none.
+fn read_steps(file: &hdf5::File) -> Result<Vec<LoadStep>, InputError> {
+    if !file.link_exists("steps") {
+        return Ok(Vec::new());
+    }
+    let names = Dataset::column(file, "/steps/name", None)?.names()?;
+    let time = Dataset::column(file, "/steps/time", Some(names.len()))?;
+    let times = time.floats(0..names.len())?;
+    if let Some(row) = times.windows(2).position(|w| w[0] >= w[1]) {
+        return Err(time.row_error(
+            row + 1,
+            &format!(
+                "{} comes after {}; expected times that ascend",
+                times[row + 1],
+                times[row]
+            ),
+        ));
+    }
+    let steps = names.into_iter().zip(times);
+    Ok(steps.map(|(name, time)| LoadStep { name, time }).collect())
 }
 
 /// Contacts, and the offsets of the groups' rows.

@@ -11,7 +11,7 @@ use crate::solver::SolverSettings;
 const FREE: [&str; 2] = ["/VTKHDF/PointData", "/VTKHDF/CellData"];
 
 /// What each of the other groups may hold.
-const KNOWN: [(&str, &[&str]); 11] = [
+const KNOWN: [(&str, &[&str]); 12] = [
     (
         "/",
         &[
@@ -25,6 +25,7 @@ const KNOWN: [(&str, &[&str]); 11] = [
             "force",
             "contact",
             "settings",
+            "steps",
             "warnings",
         ],
     ),
@@ -57,6 +58,7 @@ const KNOWN: [(&str, &[&str]); 11] = [
     ),
     ("/force", &["offset", "node", "value"]),
     ("/settings", &[]),
+    ("/steps", &["name", "time"]),
     (
         "/contact",
         &[

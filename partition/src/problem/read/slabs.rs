@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::ProblemFile;
 use crate::error::InputError;
+use crate::problem::dataset::Dataset;
 use crate::problem::slab::Slab;
 
 /// The slices of consecutive subdomains, whose values aren't checked against each other yet.
@@ -23,6 +24,7 @@ pub(super) struct Slabs {
 pub(super) struct Supports {
     pub node: Slab<i64>,
     pub direction: Slab<f64>,
+    /// A number a row, or one for each load step.
     pub value: Slab<f64>,
     /// Absent from files that don't tell conditions apart.
     pub condition: Option<Slab<i64>>,
@@ -31,6 +33,7 @@ pub(super) struct Supports {
 /// Nodal forces of consecutive subdomains.
 pub(super) struct Forces {
     pub node: Slab<i64>,
+    /// A vector a row, or one for each load step.
     pub value: Slab<f64>,
 }
 
@@ -65,14 +68,18 @@ impl Supports {
         let dim = file.catalog.dim;
         let node = file.column("/support/node")?;
         let direction = file.table("/support/direction", dim)?;
-        let value = file.column("/support/value")?;
+        let value = Dataset::open(&file.file, "/support/value")?;
         let total = Some(node.rows());
         let direction = direction.shaped(total, &[dim])?;
-        let value = value.shaped(total, &[])?;
+        let steps = file.catalog.steps.len();
+        let value = match steps {
+            0 => value.shaped(total, &[])?,
+            _ => value.shaped(total, &[steps])?,
+        };
         Ok(Some(Self {
             node: Slab::integers(node, rows.clone())?,
             direction: Slab::unit_vectors(direction, rows.clone(), dim)?,
-            value: Slab::floats(value, rows.clone(), 1)?,
+            value: Slab::floats(value, rows.clone(), steps.max(1))?,
             condition: match file.file.link_exists("support/condition") {
                 true => Some(Slab::integers(
                     file.column("/support/condition")?.shaped(total, &[])?,
@@ -91,11 +98,16 @@ impl Forces {
         }
         let dim = file.catalog.dim;
         let node = file.column("/force/node")?;
-        let value = file.table("/force/value", dim)?;
-        let value = value.shaped(Some(node.rows()), &[dim])?;
+        let value = Dataset::open(&file.file, "/force/value")?;
+        let total = Some(node.rows());
+        let steps = file.catalog.steps.len();
+        let value = match steps {
+            0 => value.shaped(total, &[dim])?,
+            _ => value.shaped(total, &[steps, dim])?,
+        };
         Ok(Some(Self {
             node: Slab::integers(node, rows.clone())?,
-            value: Slab::floats(value, rows, dim)?,
+            value: Slab::floats(value, rows, steps.max(1) * dim)?,
         }))
     }
 }

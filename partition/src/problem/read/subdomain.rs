@@ -11,7 +11,7 @@ use crate::magnitude::SMALLEST_AREA;
 use crate::mesh::topology::{CellFacet, Facets};
 use crate::model::Support;
 use crate::problem::slab::Slab;
-use crate::problem::{InterfaceNode, Subdomain, UNIT_TOLERANCE};
+use crate::problem::{InterfaceNode, StepLoads, Subdomain, UNIT_TOLERANCE};
 
 impl ProblemFile {
     pub(super) fn read_subdomains(
@@ -46,9 +46,38 @@ impl ProblemFile {
             supports: self.take_supports(slabs, index, points.len())?,
             forces: self.take_forces(slabs, index, points.len())?,
             interface: self.take_interface(slabs.interface.as_ref(), index)?,
+            steps: self.take_steps(slabs, index),
             points,
             cells: elements,
         })
+    }
+
+    fn take_steps(&self, slabs: &Slabs, index: usize) -> Vec<StepLoads> {
+        let (dim, steps) = (self.catalog.dim, self.catalog.steps.len());
+        let rows = |slab: Option<&Slab<f64>>, offsets| -> Vec<f64> {
+            slab.map_or_else(Vec::new, |slab| slab.rows(slice(offsets, index)).to_vec())
+        };
+        let supports = rows(
+            slabs.supports.as_ref().map(|s| &s.value),
+            &self.offsets.supports,
+        );
+        let forces = rows(
+            slabs.forces.as_ref().map(|f| &f.value),
+            &self.offsets.forces,
+        );
+        let force = |row: &[f64], k: usize| {
+            let mut force = [0.0; 3];
+            force[..dim].copy_from_slice(&row[k * dim..][..dim]);
+            force
+        };
+        (0..steps)
+            .map(|k| StepLoads {
+                supports: supports.chunks_exact(steps).map(|row| row[k]).collect(),
+                forces: (forces.chunks_exact(steps * dim))
+                    .map(|row| force(row, k))
+                    .collect(),
+            })
+            .collect()
     }
 
     fn take_points(&self, slabs: &Slabs, rows: Range<usize>) -> Result<Vec<[f64; 3]>, InputError> {
@@ -201,6 +230,7 @@ impl ProblemFile {
             .indices(rows.clone(), nodes, "node of its subdomain")?;
         let directions = slab.direction.vectors(rows.clone());
         let values = slab.value.rows(rows.clone());
+        let values = values.iter().step_by(slab.value.width());
         let conditions = match &slab.condition {
             Some(slab) => slab.indices(rows.clone(), self.catalog.supports.len(), "condition")?,
             None => vec![0; rows.len()],
@@ -253,7 +283,14 @@ impl ProblemFile {
                 "expected the nodes of a subdomain in strictly ascending order",
             ));
         }
-        Ok(nodes_of.into_iter().zip(slab.value.vectors(rows)).collect())
+        let first_step = |row: &[f64]| {
+            let mut force = [0.0; 3];
+            let dim = self.catalog.dim;
+            force[..dim].copy_from_slice(&row[..dim]);
+            force
+        };
+        let forces = slab.value.rows(rows).chunks_exact(slab.value.width());
+        Ok(nodes_of.into_iter().zip(forces.map(first_step)).collect())
     }
 
     fn take_interface(

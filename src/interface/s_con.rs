@@ -1,12 +1,14 @@
-//! S_CON over all ranks: every pair is evaluated by the rank that owns it.
+//! S_CON of (15) over all ranks: every pair is evaluated by the rank that owns it.
+//!
+//! > S_CON(U) = Σ_ϑ R̄_klᵀ S_kl(R̄_kl U)
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::pair::{ContactPair, PairMemory, PairResponse};
+use super::operator::Interface;
 use crate::comm::{Comm, Message, MessageReader};
-use crate::interface::operator::Interface;
+use crate::contact::pair::{ContactPair, PairMemory, PairResponse};
 
 /// S_CON = Σ R_kᵀ S_kl R_k, (15), as the root drives it and the other ranks serve it.
 pub struct SCon<'a> {

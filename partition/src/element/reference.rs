@@ -1,0 +1,180 @@
+//! A reference element: what a kind of cell or facet is, all in one place.
+
+use std::sync::OnceLock;
+
+use super::ElementKind;
+use super::domain::Domain;
+use super::jacobian::lattice;
+use super::tabulation::TabulatedPoint;
+
+/// What somebody who adds a kind writes down; the rest follows from it.
+#[derive(Debug)]
+pub struct Definition {
+    /// Its name in words.
+    pub name: &'static str,
+    /// What it fills.
+    pub domain: Domain,
+    /// Reference coordinates of its nodes, in the order of VTK: corners first, counter-clockwise,
+    /// the first one at the domain's first; nodes on edges; nodes in the middle.
+    pub node_coordinates: &'static [[f64; 3]],
+    /// N_i(ξ), one for each node.
+    pub shape: fn([f64; 3]) -> Vec<f64>,
+    /// ∂N_i/∂ξ_j, one for each node; 0 beyond its dimension.
+    pub gradients: fn([f64; 3]) -> Vec<[f64; 3]>,
+    /// Kind and local nodes of every facet, in the order in which the cell lies to their left; facet
+    /// i begins at corner i.
+    pub facets: &'static [(ElementKind, &'static [usize])],
+    /// The order of its nodes that turns it inside out.
+    pub reversed: &'static [usize],
+    /// VTK's number of the cell type.
+    pub vtk: u8,
+    /// The rules by which it is integrated; facets have none.
+    pub rules: Option<CellRules>,
+}
+
+/// The rules by which a cell is integrated: degrees up to which they are exact, on the square in each
+/// direction.
+#[derive(Clone, Copy, Debug)]
+pub struct CellRules {
+    /// Of ∫ Bᵀ C B: exact for ∫ ∇N_i, and with it the patch test, on cells of any shape with curved
+    /// edges, and for the stiffness of cells with an affine map.
+    pub stiffness: usize,
+    /// Of the points where stresses are more accurate than elsewhere, or make patches that are
+    /// (Barlow, Int. J. Numer. Meth. Eng. 10, 1976; Zienkiewicz and Zhu 1992).
+    pub stress: usize,
+    /// Of ∫ N_i b for a constant load, in a cell of any shape.
+    pub constant_load: usize,
+    /// Of the same for a cubic load, in a cell with straight edges and nodes in their middle.
+    pub cubic_load: usize,
+}
+
+/// A reference element.
+#[derive(Debug)]
+pub struct ReferenceElement {
+    pub(super) definition: Definition,
+    tables: OnceLock<Tables>,
+}
+
+/// What follows from a definition, made when first asked for.
+#[derive(Debug)]
+struct Tables {
+    along: Vec<usize>,
+    stiffness: Vec<TabulatedPoint>,
+    stress: Vec<TabulatedPoint>,
+    lattice: Vec<Vec<[f64; 3]>>,
+}
+
+impl ReferenceElement {
+    /// The element that is defined so.
+    pub const fn new(definition: Definition) -> Self {
+        Self {
+            definition,
+            tables: OnceLock::new(),
+        }
+    }
+
+    /// Its name in words.
+    pub fn name(&self) -> &'static str {
+        self.definition.name
+    }
+
+    /// What it fills.
+    pub fn domain(&self) -> Domain {
+        self.definition.domain
+    }
+
+    /// Its dimension.
+    pub fn dim(&self) -> usize {
+        self.definition.domain.dim()
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.definition.node_coordinates.len()
+    }
+
+    /// Number of corners, which are the first of its nodes.
+    pub fn corners(&self) -> usize {
+        self.definition.domain.corners()
+    }
+
+    /// VTK's number of the cell type.
+    pub fn vtk(&self) -> u8 {
+        self.definition.vtk
+    }
+
+    /// Whether its nodes lie at its corners alone.
+    pub fn is_linear(&self) -> bool {
+        self.nodes() == self.corners()
+    }
+
+    /// Reference coordinates of the nodes.
+    pub fn node_coordinates(&self) -> &'static [[f64; 3]] {
+        self.definition.node_coordinates
+    }
+
+    /// Values of the shape functions N_i(ξ), one for each node; their sum is 1.
+    pub fn shape(&self, xi: [f64; 3]) -> Vec<f64> {
+        (self.definition.shape)(xi)
+    }
+
+    /// Gradients ∂N_i/∂ξ_j of the shape functions, one for each node; components beyond the
+    /// element's dimension are zero.
+    pub fn gradients(&self, xi: [f64; 3]) -> Vec<[f64; 3]> {
+        (self.definition.gradients)(xi)
+    }
+
+    /// Facets of a cell: kind and local nodes, in the order in which the cell lies to their left.
+    pub fn facets(&self) -> &'static [(ElementKind, &'static [usize])] {
+        self.definition.facets
+    }
+
+    /// The rules by which a cell is integrated.
+    pub fn rules(&self) -> Option<CellRules> {
+        self.definition.rules
+    }
+
+    /// The order of local nodes that turns the element inside out.
+    pub fn reversed(&self) -> &'static [usize] {
+        self.definition.reversed
+    }
+
+    /// The local nodes of a line from its start to its end; those of other kinds as they are.
+    pub fn along(&self) -> &[usize] {
+        &self.tables().along
+    }
+
+    /// The points at which a cell's stiffness is integrated; facets have none.
+    pub fn stiffness_points(&self) -> &[TabulatedPoint] {
+        &self.tables().stiffness
+    }
+
+    /// The points of a cell at which stresses are taken for their recovery; facets have none.
+    pub fn stress_points(&self) -> &[TabulatedPoint] {
+        &self.tables().stress
+    }
+
+    /// Gradients of the shape functions where the Jacobian is sampled.
+    pub(super) fn lattice(&self) -> &[Vec<[f64; 3]>] {
+        &self.tables().lattice
+    }
+
+    fn tables(&self) -> &Tables {
+        self.tables.get_or_init(|| {
+            let at = self.node_coordinates();
+            let mut along: Vec<usize> = (0..self.nodes()).collect();
+            if self.domain() == Domain::Line {
+                along.sort_by(|&a, &b| at[a][0].total_cmp(&at[b][0]));
+            }
+            let rule = |degree: fn(CellRules) -> usize| {
+                (self.rules()).map_or_else(Vec::new, |rules| self.tabulate(degree(rules)))
+            };
+            Tables {
+                along,
+                stiffness: rule(|rules| rules.stiffness),
+                stress: rule(|rules| rules.stress),
+                lattice: lattice(self),
+            }
+        })
+    }
+}

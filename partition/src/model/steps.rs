@@ -1,0 +1,105 @@
+//! Load steps on the mesh: the values of supports and forces in each of them.
+
+use super::bodies::Bodies;
+use super::{Support, loads, supports};
+use crate::error::InputError;
+use crate::mesh::topology::Topology;
+use crate::scene::Scene;
+
+/// A load step of a model: what is prescribed and what acts, where that is in any step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelStep {
+    /// Name.
+    pub name: String,
+    /// What it stands at on the axis of time.
+    pub time: f64,
+    /// Prescribed displacement of every support (m).
+    pub supports: Vec<f64>,
+    /// Force on every loaded node (N per metre of thickness).
+    pub forces: Vec<[f64; 3]>,
+}
+
+/// The loads of a scene.
+pub(super) struct Loads {
+    /// Names of the conditions that prescribe displacements.
+    pub names: Vec<String>,
+    /// Supports, with the values of the first step.
+    pub supports: Vec<Support>,
+    /// Forces on all nodes that are loaded in any step, those of the first.
+    pub forces: Vec<(u32, [f64; 3])>,
+    /// The steps; none where the scene has none.
+    pub steps: Vec<ModelStep>,
+}
+
+impl Loads {
+    /// The loads of `scene` in all its steps.
+    pub fn new(scene: &Scene, bodies: &Bodies, topology: &Topology) -> Result<Self, InputError> {
+        let loadings = scene.loadings();
+        let mut all = Vec::with_capacity(loadings.len());
+        for loading in &loadings {
+            let supports = supports::supports(scene, loading, &bodies.mesh, topology)?;
+            let forces = loads::forces(scene, loading, bodies, topology)?;
+            all.push((supports, forces));
+        }
+        for (k, (supports, _)) in all.iter().enumerate().skip(1) {
+            check_places(k, &all[0].0, supports, &bodies.mesh.node_tags)?;
+        }
+        let is_loaded = |&node: &u32| {
+            let mut forces = all.iter().map(|(_, forces)| forces[node as usize]);
+            forces.any(|force| force != [0.0; 3])
+        };
+        let loaded: Vec<u32> = (0..bodies.mesh.points.len() as u32)
+            .filter(is_loaded)
+            .collect();
+        let at_loaded = |forces: &[[f64; 3]]| -> Vec<[f64; 3]> {
+            loaded.iter().map(|&node| forces[node as usize]).collect()
+        };
+        let steps = scene.step.iter().zip(&all).enumerate();
+        let steps = steps.map(|(k, (step, (supports, forces)))| ModelStep {
+            name: step.name_or_number(k),
+            time: step.time.unwrap_or((k + 1) as f64),
+            supports: supports.iter().map(|support| support.value).collect(),
+            forces: at_loaded(forces),
+        });
+        Ok(Self {
+            names: supports::names(scene, &loadings[0]),
+            steps: steps.collect(),
+            forces: (loaded.iter().copied().zip(at_loaded(&all[0].1))).collect(),
+            supports: all.swap_remove(0).0,
+        })
+    }
+
+    /// The values of support i in all steps, its one value where there are none.
+    pub fn values(&self, i: usize) -> Vec<f64> {
+        match self.steps.is_empty() {
+            true => vec![self.supports[i].value],
+            false => self.steps.iter().map(|step| step.supports[i]).collect(),
+        }
+    }
+}
+
+/// Checks that step k prescribes displacements where the first step does, in the same directions: the
+/// steps share one factorization.
+fn check_places(
+    k: usize,
+    first: &[Support],
+    of_step: &[Support],
+    tags: &[i64],
+) -> Result<(), InputError> {
+    let place = |support: &Support| (support.node, support.direction);
+    let differs = |(a, b): (&Support, &Support)| place(a) != place(b);
+    let same = first.len().min(of_step.len());
+    let Some(at) = (first.iter().zip(of_step).position(differs))
+        .or((first.len() != of_step.len()).then_some(same))
+    else {
+        return Ok(());
+    };
+    let nodes = [first.get(at), of_step.get(at)].into_iter().flatten();
+    let node = nodes.map(|support| support.node).min().unwrap_or_default();
+    Err(InputError::new(format!(
+        "step[{}].displacement: node {} isn't held in the same directions as in the first step; \
+         expected other values only, at the same nodes: steps share their factorization",
+        k + 1,
+        tags[node as usize]
+    )))
+}

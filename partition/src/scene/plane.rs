@@ -1,0 +1,11 @@
+//! Plane strain and plane stress.
+
+/// Which plane state a two-dimensional scene is in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PlaneState {
+    /// ε_zz = 0.
+    Strain,
+    /// σ_zz = 0.
+    Stress,
+}

@@ -1,0 +1,233 @@
+//! Load steps: what of a scene's loads each of them scales or replaces.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, Visitor};
+
+use super::Scene;
+use super::condition::{Displacement, Names, Pressure, Traction};
+use super::number::{Constant, Vector};
+use super::place;
+
+/// A load step as a scene gives it.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    default,
+    expecting = "a table of name, time, scale, body_force, traction, pressure and displacement"
+)]
+pub struct LoadStep {
+    /// Its name; its number without.
+    pub name: Option<String>,
+    /// What it stands at on the axis of time; its number without.
+    #[serde(deserialize_with = "time")]
+    pub time: Option<f64>,
+    /// What its loads are multiplied by.
+    pub scale: Scale,
+    /// Forces per volume in place of those of these bodies (N/m³).
+    pub body_force: BTreeMap<String, Vector>,
+    /// In place of all tractions of the scene.
+    #[serde(deserialize_with = "list")]
+    pub traction: Option<Vec<Traction>>,
+    /// In place of all its pressures.
+    #[serde(deserialize_with = "list")]
+    pub pressure: Option<Vec<Pressure>>,
+    /// In place of all its displacements: others at the same nodes along the same axes.
+    #[serde(deserialize_with = "list")]
+    pub displacement: Option<Vec<Displacement>>,
+}
+
+/// Factors of loads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// Of body forces.
+    pub body_force: f64,
+    /// Of tractions.
+    pub traction: f64,
+    /// Of pressures.
+    pub pressure: f64,
+    /// Of prescribed displacements.
+    pub displacement: f64,
+}
+
+impl Scale {
+    fn all(factor: f64) -> Self {
+        Self {
+            body_force: factor,
+            traction: factor,
+            pressure: factor,
+            displacement: factor,
+        }
+    }
+}
+
+impl Default for Scale {
+    fn default() -> Self {
+        Self::all(1.0)
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ScaleKeys {
+    body_force: Option<Constant>,
+    traction: Option<Constant>,
+    pressure: Option<Constant>,
+    displacement: Option<Constant>,
+}
+
+impl<'de> Deserialize<'de> for Scale {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ScaleVisitor;
+        impl<'de> Visitor<'de> for ScaleVisitor {
+            type Value = Scale;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str(
+                    "a number, or a table of body_force, traction, pressure and displacement",
+                )
+            }
+
+            fn visit_i64<E: Error>(self, factor: i64) -> Result<Scale, E> {
+                self.visit_f64(factor as f64)
+            }
+
+            fn visit_f64<E: Error>(self, factor: f64) -> Result<Scale, E> {
+                Constant::deserialize(factor.into_deserializer()).map(|Constant(f)| Scale::all(f))
+            }
+
+            fn visit_str<E: Error>(self, factor: &str) -> Result<Scale, E> {
+                Constant::deserialize(factor.into_deserializer()).map(|Constant(f)| Scale::all(f))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Scale, A::Error> {
+                let keys = ScaleKeys::deserialize(MapAccessDeserializer::new(map))?;
+                let or_one = |factor: Option<Constant>| factor.map_or(1.0, |Constant(f)| f);
+                Ok(Scale {
+                    body_force: or_one(keys.body_force),
+                    traction: or_one(keys.traction),
+                    pressure: or_one(keys.pressure),
+                    displacement: or_one(keys.displacement),
+                })
+            }
+        }
+        deserializer.deserialize_any(ScaleVisitor)
+    }
+}
+
+fn time<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    Constant::deserialize(deserializer).map(|Constant(time)| Some(time))
+}
+
+fn list<'de, D, T>(deserializer: D) -> Result<Option<Vec<T>>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    place::list(deserializer).map(Some)
+}
+
+/// All that loads the bodies at once: a scene's own loads, or those of one of its steps.
+#[derive(Clone, Debug)]
+pub struct Loading<'a> {
+    /// The step and its number.
+    step: Option<(usize, &'a LoadStep)>,
+    /// Force per volume of every body.
+    pub body_force: Vec<Option<&'a Vector>>,
+    /// Tractions.
+    pub traction: &'a [Traction],
+    /// Pressures.
+    pub pressure: &'a [Pressure],
+    /// Displacements.
+    pub displacement: &'a [Displacement],
+    /// What they are multiplied by.
+    pub scale: Scale,
+}
+
+impl Scene {
+    /// The loadings, one a step; the scene's own where it has none.
+    pub fn loadings(&self) -> Vec<Loading<'_>> {
+        match self.step.is_empty() {
+            true => vec![self.loading(None)],
+            false => (self.step.iter().enumerate())
+                .map(|step| self.loading(Some(step)))
+                .collect(),
+        }
+    }
+
+    fn loading<'a>(&'a self, step: Option<(usize, &'a LoadStep)>) -> Loading<'a> {
+        let of_step = step.map(|(_, step)| step);
+        let bodies = self.bodies.iter();
+        Loading {
+            step,
+            body_force: bodies
+                .map(|(name, body)| {
+                    let replaced = of_step.and_then(|step| step.body_force.get(name));
+                    replaced.or(body.body_force.as_ref())
+                })
+                .collect(),
+            traction: of_step
+                .and_then(|step| step.traction.as_deref())
+                .unwrap_or(&self.traction),
+            pressure: of_step
+                .and_then(|step| step.pressure.as_deref())
+                .unwrap_or(&self.pressure),
+            displacement: of_step
+                .and_then(|step| step.displacement.as_deref())
+                .unwrap_or(&self.displacement),
+            scale: of_step.map_or_else(Scale::default, |step| step.scale),
+        }
+    }
+}
+
+impl Loading<'_> {
+    /// What the force per volume of a body is called in messages.
+    pub fn body_force_label(&self, body: &str) -> String {
+        match self.step {
+            Some((k, step)) if step.body_force.contains_key(body) => {
+                format!("step[{}].body_force.{body}", k + 1)
+            }
+            _ => format!("bodies.{body}.body_force"),
+        }
+    }
+
+    /// What entry `index` of its tractions is called in messages.
+    pub fn traction_label(&self, index: usize, on: &Names) -> String {
+        self.label("traction", |step| step.traction.is_some(), index, on)
+    }
+
+    /// What entry `index` of its pressures is called in messages.
+    pub fn pressure_label(&self, index: usize, on: &Names) -> String {
+        self.label("pressure", |step| step.pressure.is_some(), index, on)
+    }
+
+    /// What entry `index` of its displacements is called in messages.
+    pub fn displacement_label(&self, index: usize, on: &Names) -> String {
+        let is_own = |step: &LoadStep| step.displacement.is_some();
+        self.label("displacement", is_own, index, on)
+    }
+
+    fn label(
+        &self,
+        kind: &str,
+        is_own: impl Fn(&LoadStep) -> bool,
+        index: usize,
+        on: &Names,
+    ) -> String {
+        let entry = format!("{kind}[{}] on {on}", index + 1);
+        match self.step {
+            Some((k, step)) if is_own(step) => format!("step[{}].{entry}", k + 1),
+            _ => entry,
+        }
+    }
+}
+
+impl LoadStep {
+    /// The name of the step with this `number`, counted from 0.
+    pub fn name_or_number(&self, number: usize) -> String {
+        let number = || (number + 1).to_string();
+        self.name.clone().unwrap_or_else(number)
+    }
+}

@@ -1,0 +1,264 @@
+//! What every reference element keeps, whoever defined it.
+
+use contact_dd_partition::element::domain::Domain;
+use contact_dd_partition::element::geometry::{advance, difference, dot, length};
+use contact_dd_partition::element::reference::{CellRules, ReferenceElement};
+
+/// Dimension, corners and nodes of the cells that VTK numbers so, from `vtkCellType.h` and the
+/// classes of these cells.
+const VTK: [(u8, [usize; 3]); 11] = [
+    (1, [0, 1, 1]),
+    (3, [1, 2, 2]),
+    (5, [2, 3, 3]),
+    (9, [2, 4, 4]),
+    (21, [1, 2, 3]),
+    (22, [2, 3, 6]),
+    (23, [2, 4, 8]),
+    (28, [2, 4, 9]),
+    (30, [2, 4, 6]),
+    (34, [2, 3, 7]),
+    (35, [1, 2, 4]),
+];
+
+/// Fails unless `element` keeps them all.
+#[track_caller]
+pub fn keeps_all(element: &ReferenceElement) {
+    is_what_vtk_has_under_its_number(element);
+    shape_functions_belong_to_nodes(element);
+    linear_fields_are_reproduced(element);
+    gradients_are_difference_quotients(element);
+    turned_over_it_has_the_opposite_measure(element);
+    if element.dim() == 2 {
+        facets_are_those_of_the_cell(element);
+        normals_close(element);
+        the_jacobian_is_bounded(element);
+    }
+    if let Some(rules) = element.rules() {
+        rules_are_exact(element, rules);
+    }
+}
+
+fn is_what_vtk_has_under_its_number(element: &ReferenceElement) {
+    let found = VTK.iter().find(|(number, _)| *number == element.vtk());
+    let counts = [element.dim(), element.corners(), element.nodes()];
+    assert_eq!(found.unwrap().1, counts, "{}", element.name());
+}
+
+/// Points all over the reference element.
+fn everywhere(domain: Domain, each_way: usize) -> impl Iterator<Item = [f64; 3]> {
+    let share = move |i: usize| i as f64 / each_way as f64;
+    let pairs = (0..=each_way).flat_map(move |i| (0..=each_way).map(move |j| (share(i), share(j))));
+    pairs.map(move |(s, t)| match domain {
+        Domain::Point => [0.0; 3],
+        Domain::Line => [2.0 * s - 1.0, 0.0, 0.0],
+        Domain::Triangle => [s, t * (1.0 - s), 0.0],
+        Domain::Square => [2.0 * s - 1.0, 2.0 * t - 1.0, 0.0],
+    })
+}
+
+fn shape_functions_belong_to_nodes(element: &ReferenceElement) {
+    for (i, &xi) in element.node_coordinates().iter().enumerate() {
+        for (j, value) in element.shape(xi).into_iter().enumerate() {
+            let expected = if i == j { 1.0 } else { 0.0 };
+            assert_eq!(value, expected, "{} {i} {j}", element.name());
+        }
+    }
+}
+
+fn linear_fields_are_reproduced(element: &ReferenceElement) {
+    for xi in everywhere(element.domain(), 5) {
+        let (shape, gradients) = (element.shape(xi), element.gradients(xi));
+        assert_eq!([shape.len(), gradients.len()], [element.nodes(); 2]);
+        assert!((shape.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+        let at = element.position(element.node_coordinates(), xi);
+        assert!(length(difference(at, xi)) < 1e-15, "{}", element.name());
+        for axis in 0..3 {
+            let sum: f64 = gradients.iter().map(|gradient| gradient[axis]).sum();
+            assert!(sum.abs() < 1e-14, "{}", element.name());
+            let beyond = gradients.iter().all(|gradient| gradient[axis] == 0.0);
+            assert_eq!(beyond, axis >= element.dim(), "{}", element.name());
+        }
+    }
+}
+
+fn gradients_are_difference_quotients(element: &ReferenceElement) {
+    let (xi, step) = ([0.2, 0.3, 0.0], 1e-5);
+    let gradients = element.gradients(xi);
+    for axis in 0..element.dim() {
+        let (mut ahead, mut behind) = (xi, xi);
+        ahead[axis] += step;
+        behind[axis] -= step;
+        let (ahead, behind) = (element.shape(ahead), element.shape(behind));
+        for i in 0..element.nodes() {
+            let quotient = (ahead[i] - behind[i]) / (2.0 * step);
+            assert!((quotient - gradients[i][axis]).abs() < 1e-9);
+        }
+    }
+}
+
+fn turned_over_it_has_the_opposite_measure(element: &ReferenceElement) {
+    let (at, order) = (element.node_coordinates(), element.reversed());
+    let mut every = order.to_vec();
+    every.sort_unstable();
+    assert!(every.into_iter().eq(0..element.nodes()), "{order:?}");
+    if element.dim() == 2 {
+        let measure = element.domain().measure();
+        assert!((element.measure(at) - measure).abs() < 1e-14);
+        let bent = bent(element);
+        let turned: Vec<_> = order.iter().map(|&i| bent[i]).collect();
+        let sum = element.measure(&bent) + element.measure(&turned);
+        assert!(sum.abs() < 1e-13, "{}: {sum:e}", element.name());
+    }
+}
+
+fn facets_are_those_of_the_cell(element: &ReferenceElement) {
+    assert_eq!(element.facets().len(), element.corners());
+    for (corner, (facet, local)) in element.facets().iter().enumerate() {
+        assert_eq!(facet.nodes(), local.len());
+        assert_eq!(local[..2], [corner, (corner + 1) % element.corners()]);
+        let at: Vec<_> = (local.iter())
+            .map(|&i| element.node_coordinates()[i])
+            .collect();
+        for xi in everywhere(Domain::Line, 4) {
+            let on_cell = element.shape(facet.position(&at, xi));
+            for (i, value) in on_cell.into_iter().enumerate() {
+                let place = local.iter().position(|&n| n == i);
+                let on_facet = place.map_or(0.0, |place| facet.shape(xi)[place]);
+                assert!((value - on_facet).abs() < 1e-15, "{} {i}", element.name());
+            }
+        }
+    }
+}
+
+/// The nodes of a cell of no special shape, its edges curved where they can be.
+pub fn bent(element: &ReferenceElement) -> Vec<[f64; 3]> {
+    let nodes = element.node_coordinates().iter();
+    nodes
+        .map(|&[x, y, _]| {
+            [
+                0.2 + 1.1 * x + 0.3 * y + 0.1 * y * y,
+                0.1 + 1.6 * y - 0.2 * x * y + 0.05 * x * x,
+                0.0,
+            ]
+        })
+        .collect()
+}
+
+/// ∮ n dS = 0, and ∮ x·n dS = ∫ div x dx = 2 |cell|.
+fn normals_close(element: &ReferenceElement) {
+    let at = bent(element);
+    let (mut sum, mut moment) = ([0.0; 3], 0.0);
+    for (facet, local) in element.facets() {
+        let on: Vec<_> = local.iter().map(|&i| at[i]).collect();
+        let rule = facet.quadrature(7);
+        for (&xi, &weight) in rule.points.iter().zip(&rule.weights) {
+            let normal = facet.area_vector(&on, xi);
+            sum = advance(sum, weight, normal);
+            moment += weight * dot(normal, facet.position(&on, xi));
+        }
+    }
+    assert!(length(sum) < 1e-14, "{}", element.name());
+    let error = moment - 2.0 * element.measure(&at);
+    assert!(error.abs() < 1e-13, "{}: {error:e}", element.name());
+}
+
+/// A cell that is said to have no fold has none, and one that is said to have one has it there.
+fn the_jacobian_is_bounded(element: &ReferenceElement) {
+    let mut seed = 5_u64;
+    let mut draw = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (seed >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
+    };
+    let (floor, mut sound, mut folded) = (1e-3, 0, 0);
+    for round in 0..200 {
+        let amount = 1e-3 * 1.045_f64.powi(round);
+        let at: Vec<[f64; 3]> = (element.node_coordinates().iter())
+            .map(|&[x, y, _]| [x + amount * draw(), y + amount * draw(), 0.0])
+            .collect();
+        let jacobians = everywhere(element.domain(), 40).map(|xi| element.jacobian(&at, xi));
+        let least = jacobians.fold(f64::INFINITY, f64::min);
+        match element.fold(&at, floor) {
+            None => {
+                sound += 1;
+                assert!(least > floor, "{}: {least}", element.name());
+            }
+            // What it names is a value of the Jacobian.
+            Some(fold) => {
+                folded += 1;
+                assert!(
+                    fold.jacobian <= floor + 1e-6,
+                    "{}: {fold:?}",
+                    element.name()
+                );
+            }
+        }
+    }
+    assert!(sound > 20 && folded > 20, "{sound} {folded}");
+}
+
+/// Rules are compared with one of far higher degree, cell by cell as they promise.
+fn rules_are_exact(element: &ReferenceElement, rules: CellRules) {
+    let (bent, stretched) = (bent(element), stretched(element));
+    for (degree, at, integrand) in [
+        // ∫ ∂N/∂x dx: the cofactors of J times ∂N/∂ξ.
+        (rules.stiffness, &bent, slope_along_x as Integrand),
+        (rules.constant_load, &bent, constant_load),
+        (rules.cubic_load, &stretched, cubic_load),
+    ] {
+        let integral = |degree: usize| {
+            let mut sums = vec![0.0; element.nodes()];
+            for point in element.tabulate(degree) {
+                let values = integrand(element, at, point.xi);
+                for (sum, value) in sums.iter_mut().zip(values) {
+                    *sum += point.weight * value;
+                }
+            }
+            sums
+        };
+        for (sum, exact) in integral(degree).into_iter().zip(integral(16)) {
+            let error = (sum - exact).abs();
+            assert!(
+                error < 1e-13,
+                "{}, degree {degree}: {error:e}",
+                element.name()
+            );
+        }
+    }
+    let area: f64 = (element.stress_points().iter())
+        .map(|point| point.weight)
+        .sum();
+    assert!((area - element.domain().measure()).abs() < 1e-14);
+}
+
+/// What is integrated over the reference element, for each node.
+type Integrand = fn(&ReferenceElement, &[[f64; 3]], [f64; 3]) -> Vec<f64>;
+
+/// The nodes of a cell with straight edges and nodes in their middle, whose map is affine.
+fn stretched(element: &ReferenceElement) -> Vec<[f64; 3]> {
+    let nodes = element.node_coordinates().iter();
+    nodes
+        .map(|&[x, y, _]| [0.3 + x + 0.4 * y, 0.8 * y - 0.1 * x, 0.0])
+        .collect()
+}
+
+fn slope_along_x(element: &ReferenceElement, at: &[[f64; 3]], xi: [f64; 3]) -> Vec<f64> {
+    let gradients = element.gradients(xi);
+    let mut y = [0.0; 2];
+    for (gradient, x) in gradients.iter().zip(at) {
+        y = [y[0] + gradient[0] * x[1], y[1] + gradient[1] * x[1]];
+    }
+    let slopes = gradients.iter().map(|g| g[0] * y[1] - g[1] * y[0]);
+    slopes.collect()
+}
+
+fn constant_load(element: &ReferenceElement, at: &[[f64; 3]], xi: [f64; 3]) -> Vec<f64> {
+    let det = element.jacobian(at, xi);
+    element.shape(xi).into_iter().map(|n| n * det).collect()
+}
+
+fn cubic_load(element: &ReferenceElement, at: &[[f64; 3]], xi: [f64; 3]) -> Vec<f64> {
+    let [x, y, _] = element.position(at, xi);
+    let load = x * x * y - y * y * y + x * x * x;
+    let values = constant_load(element, at, xi);
+    values.into_iter().map(|value| value * load).collect()
+}

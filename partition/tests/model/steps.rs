@@ -1,0 +1,166 @@
+//! Load steps on the mesh.
+
+use crate::blocks::{Blocks, close};
+use contact_dd_partition::model::Model;
+
+/// A block that is held at its bottom and loaded in every way.
+fn model(steps: &str) -> Result<Model, String> {
+    let text = format!(
+        "bodies.b = {{material = 'steel', body_force = [0, -5]}}
+        [[displacement]]
+        on = 'b bottom'
+        x = 0.25
+        y = 'x'
+        [[pressure]]
+        on = 'b top'
+        value = 3
+        [[traction]]
+        on = 'b right'
+        value = [2, 'y']
+        {steps}"
+    );
+    let blocks = Blocks::new().block("b", [0.0, 2.0], [0.0, 1.0], [4, 3]);
+    blocks.model(&text)
+}
+
+/// The sum of the forces of step k.
+fn resultant(model: &Model, k: usize) -> [f64; 2] {
+    let forces = model.steps[k].forces.iter();
+    forces.fold([0.0; 2], |[x, y], f| [x + f[0], y + f[1]])
+}
+
+#[track_caller]
+fn same(found: [f64; 2], expected: [f64; 2]) {
+    for (a, b) in found.into_iter().zip(expected) {
+        close(a, b, 1e-13);
+    }
+}
+
+#[test]
+fn factors_scale_each_kind_of_load() {
+    let steps = "
+        [[step]]
+        [[step]]
+        name = 'twice'
+        scale = 2
+        [[step]]
+        scale = { body_force = 3, pressure = -1, traction = 0.5, displacement = '1/2' }";
+    let model = model(steps).unwrap();
+    let names: Vec<&str> = model.steps.iter().map(|step| step.name.as_str()).collect();
+    assert_eq!(names, ["1", "twice", "3"]);
+    same(resultant(&model, 0), [2.0, -10.0 - 6.0 + 0.5]);
+    same(resultant(&model, 1), [4.0, -20.0 - 12.0 + 1.0]);
+    same(resultant(&model, 2), [1.0, -30.0 + 6.0 + 0.25]);
+    for (i, support) in model.supports.iter().enumerate() {
+        let values = model
+            .steps
+            .iter()
+            .map(|step| step.supports[i] / support.value);
+        if support.value != 0.0 {
+            assert_eq!(values.collect::<Vec<_>>(), [1.0, 2.0, 0.5]);
+        }
+    }
+    let first: Vec<[f64; 3]> = model.forces.iter().map(|&(_, force)| force).collect();
+    assert_eq!(first, model.steps[0].forces);
+}
+
+#[test]
+fn what_a_step_gives_stands_in_the_place_of_the_scenes_loads() {
+    let steps = "
+        [[step]]
+        pressure = []
+        body_force = { b = ['1', 0] }
+        [[step]]
+        traction = []
+        [[step.pressure]]
+        on = 'b left'
+        value = 7
+        [[step.displacement]]
+        on = 'b bottom'
+        x = -1
+        y = 0.5";
+    let model = model(steps).unwrap();
+    same(resultant(&model, 0), [2.0 + 2.0, 0.5]);
+    same(resultant(&model, 1), [7.0, -10.0]);
+    for (i, support) in model.supports.iter().enumerate() {
+        let expected = if support.direction[0] == 1.0 {
+            -1.0
+        } else {
+            0.5
+        };
+        assert_eq!(model.steps[1].supports[i], expected);
+    }
+}
+
+#[test]
+fn steps_hold_the_same_nodes() {
+    let mesh = model("").unwrap().mesh;
+    let at = |x: f64, y: f64| {
+        let place = mesh
+            .points
+            .iter()
+            .position(|p| (p[0] - x).hypot(p[1] - y) < 1e-9);
+        mesh.node_tags[place.unwrap()]
+    };
+    for (displacement, node) in [
+        ("on = 'b top'\nx = 0\ny = 0", at(0.0, 0.0)),
+        ("on = 'b bottom'\nx = 0", at(0.0, 0.0)),
+        (
+            "on = ['b bottom', 'b left']\nx = 0\ny = 0",
+            at(0.0, 1.0 / 3.0),
+        ),
+    ] {
+        let steps = format!("[[step]]\n[[step]]\n[[step.displacement]]\n{displacement}");
+        let refused = model(&steps).unwrap_err();
+        let start = format!("step[2].displacement: node {node} isn't held in the same directions");
+        assert!(refused.starts_with(&start), "{refused}");
+    }
+}
+
+#[test]
+fn a_wrong_place_in_a_step_is_named() {
+    let refused = model("[[step]]\n[[step.pressure]]\non = 'b tpo'\nvalue = 1").unwrap_err();
+    assert!(
+        refused.contains("step[1].pressure[1] on 'b tpo'"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn sides_that_only_a_later_step_pushes_into_each_other_are_refused() {
+    let blocks = Blocks::new()
+        .block("low", [0.0, 2.0], [0.0, 1.0], [4, 3])
+        .block("high", [0.0, 2.0], [1.5, 2.5], [4, 3]);
+    let held = |y: f64| {
+        format!(
+            "[[step.displacement]]
+            on = 'low top'
+            x = 0
+            y = {y}
+            [[step.displacement]]
+            on = 'high bottom'
+            x = 0
+            y = 0"
+        )
+    };
+    let scene = |y: f64| {
+        let text = format!(
+            "[[contact]]
+            name = 'joint'
+            sides = ['low top', 'high bottom']
+            [[step]]
+            {}
+            [[step]]
+            {}",
+            held(0.0),
+            held(y)
+        );
+        blocks.model(&text)
+    };
+    assert_eq!(scene(0.5).unwrap().contacts[0].conditions.len(), 0);
+    let refused = scene(0.6).unwrap_err();
+    assert!(
+        refused.contains("close the gap of 0.5 m by 0.6 m; expected no penetration"),
+        "{refused}"
+    );
+}

@@ -1,0 +1,96 @@
+//! Bounds on approaches: made where the blocks are, joined where their clusters are.
+
+use std::collections::BTreeMap;
+
+use contact_dd_partition::problem::Catalog;
+
+use super::merge::CondensedBlocks;
+use super::read::OwnedBlock;
+use crate::comm::{Comm, Message};
+use crate::contact::approach::ApproachOf;
+use crate::contact::limits::Limits;
+use crate::error::Failure;
+use crate::fem::dofs::Dofs;
+use crate::plan::Plan;
+
+/// The bounds on the approaches of every cluster in contact of this rank, by its place among those, as
+/// gaps and supports of the blocks are now. Collective.
+///
+/// # Errors
+/// Supports that make two sides penetrate.
+pub(super) fn limits_of_clusters(
+    comm: &Comm,
+    plan: &Plan,
+    catalog: &Catalog,
+    blocks: &BTreeMap<usize, OwnedBlock>,
+    condensed: &CondensedBlocks,
+) -> Result<BTreeMap<usize, Limits>, Failure> {
+    let made = plan.pairs.iter().enumerate().filter_map(|(p, b)| {
+        let (owned, dofs) = (blocks.get(b)?, condensed.dofs.get(b)?);
+        Some(of_block(owned, dofs, catalog).map(|limits| (p, limits)))
+    });
+    let made: BTreeMap<usize, Limits> = comm.agree(made.collect())?;
+    let pairs = plan.pairs_by_cluster();
+    let mut arrived: BTreeMap<usize, Limits> = BTreeMap::new();
+    comm.route(
+        plan.ways_to_clusters(),
+        |i| {
+            let mut message = Message::default();
+            if let Some(limits) = made.get(&pairs[i]) {
+                limits.pack(&mut message);
+            }
+            message
+        },
+        |i, message| {
+            arrived.insert(pairs[i], Limits::unpack(&mut message.read()));
+        },
+    );
+    let contact = plan.contact.iter().map(|&c| &plan.clusters[c]);
+    let own = (contact.enumerate()).filter(|(_, cluster)| cluster.owner == comm.rank());
+    Ok(own
+        .map(|(p, cluster)| {
+            let of_pairs = cluster.pairs.iter();
+            let of_pairs: Vec<Limits> = of_pairs.filter_map(|pair| arrived.remove(pair)).collect();
+            (p, Limits::join(&of_pairs))
+        })
+        .collect())
+}
+
+/// The bounds on a block's approaches.
+fn of_block(owned: &OwnedBlock, dofs: &Dofs, catalog: &Catalog) -> Result<Limits, Failure> {
+    let scale = prescribed_scale(owned);
+    for (j, of) in dofs.approach_of.iter().enumerate() {
+        let gap = owned.conditions[j].gap;
+        if let &ApproachOf::Prescribed(approach) = of
+            && approach > gap + 1e-12 * scale
+        {
+            let row = &owned.rows[j];
+            let contact = &catalog.contacts[row.contact as usize].name;
+            return Err(Failure::input(format!(
+                "contact '{contact}': nodes {} and {} are prescribed to penetrate by {:.3e}; \
+                 expected displacements that leave a gap",
+                row.tag_a,
+                row.tag_b,
+                approach - gap
+            )));
+        }
+    }
+    let gaps: Vec<f64> = owned.conditions.iter().map(|c| c.gap).collect();
+    Ok(Limits::new(
+        dofs.approaches,
+        &dofs.approach_of,
+        &gaps,
+        scale,
+    ))
+}
+
+/// The largest displacement that is prescribed in a block, initial gaps among them (m).
+fn prescribed_scale(owned: &OwnedBlock) -> f64 {
+    let prescribed = owned
+        .block
+        .members
+        .iter()
+        .flat_map(|m| m.supports.iter().map(|s| s.value.abs()));
+    let gaps = owned.conditions.iter().map(|c| c.gap.abs());
+    prescribed.chain(gaps).fold(0.0, f64::max)
+}

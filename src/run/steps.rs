@@ -1,0 +1,56 @@
+//! Load steps: what blocks are told of one before it is solved for.
+
+use std::collections::BTreeMap;
+
+use contact_dd_partition::problem::Catalog;
+
+use super::descend::take_out_descent;
+use super::read::OwnedBlock;
+use crate::comm::Comm;
+use crate::error::Failure;
+use crate::plan::Plan;
+use crate::rigid::survey::{Survey, survey};
+
+/// Looks at the rigid motions of the scene in every load step, one where it has none. Collective.
+///
+/// # Errors
+/// The load of a step drives a motion that nothing holds.
+pub fn survey_steps(
+    comm: &Comm,
+    blocks: &mut BTreeMap<usize, OwnedBlock>,
+    catalog: &Catalog,
+    plan: &Plan,
+) -> Result<Vec<Survey>, Failure> {
+    (0..catalog.steps.len().max(1))
+        .map(|k| {
+            set_loads(blocks, k);
+            survey(comm, blocks, catalog, plan).map_err(|failure| in_step(failure, catalog, k))
+        })
+        .collect()
+}
+
+/// Gives the blocks of this rank the supports and forces of load step k, and gaps and supports what its
+/// bodies' way to rest leaves of them.
+pub fn take_step(blocks: &mut BTreeMap<usize, OwnedBlock>, k: usize, of_step: &Survey, dim: usize) {
+    set_loads(blocks, k);
+    take_out_descent(blocks, of_step, dim);
+}
+
+fn set_loads(blocks: &mut BTreeMap<usize, OwnedBlock>, k: usize) {
+    for owned in blocks.values_mut() {
+        for member in &mut owned.block.members {
+            member.take_step(k);
+        }
+        for (row, condition) in owned.rows.iter().zip(&mut owned.conditions) {
+            condition.gap = row.gap;
+        }
+    }
+}
+
+/// A failure that says in which load step it was.
+pub fn in_step(mut failure: Failure, catalog: &Catalog, k: usize) -> Failure {
+    if let Some(step) = catalog.steps.get(k) {
+        failure.message = format!("step \'{}\': {}", step.name, failure.message);
+    }
+    failure
+}

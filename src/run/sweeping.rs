@@ -1,0 +1,81 @@
+//! The sweeps of a load step: the root solves for U, the other ranks serve S_CON.
+
+use std::collections::BTreeMap;
+
+use super::narrator::Narrator;
+use super::pausing::Checkpoints;
+use crate::comm::Comm;
+use crate::contact::pair::ContactPair;
+use crate::error::Failure;
+use crate::interface::operator::Interface;
+use crate::interface::s_con::SCon;
+use crate::settings::Settings;
+use crate::sweep::{Method, Start, SweepOutcome, SweepRecord, Sweeps};
+
+/// What sweeps of any step need.
+#[derive(Clone, Copy)]
+pub struct Sweeping<'a> {
+    /// All ranks.
+    pub comm: &'a Comm,
+    /// Method and tolerance.
+    pub settings: &'a Settings,
+    /// Tells of every sweep.
+    pub narrator: &'a Narrator<'a>,
+    /// The owner of every pair.
+    pub pair_owners: &'a [usize],
+}
+
+impl Sweeping<'_> {
+    /// Solves S_0 U + S_CON(U) = F, (14), for load step k, from the solution of the step `before`, from a
+    /// checkpoint of this step, or from the bilateral start. Collective; the outcome is the root's.
+    ///
+    /// # Errors
+    /// A signal stopped the sweeps, or the checkpoint is that of another problem.
+    pub fn sweep(
+        &self,
+        k: usize,
+        interface: Option<&Interface>,
+        pairs: &mut BTreeMap<usize, ContactPair>,
+        before: Option<&SweepOutcome>,
+        checkpoints: &mut Checkpoints<'_>,
+    ) -> Result<Option<SweepOutcome>, Failure> {
+        let mut s_con = SCon::new(self.comm, self.pair_owners, pairs);
+        let Some(interface) = interface else {
+            s_con.serve();
+            return self.comm.agree(Ok(None));
+        };
+        let solved = self.solve(k, interface, &mut s_con, before, checkpoints);
+        s_con.stop();
+        self.comm.agree(solved.map(Some))
+    }
+
+    fn solve(
+        &self,
+        k: usize,
+        interface: &Interface,
+        s_con: &mut SCon<'_>,
+        before: Option<&SweepOutcome>,
+        checkpoints: &mut Checkpoints<'_>,
+    ) -> Result<SweepOutcome, Failure> {
+        let earlier = checkpoints.begin(k);
+        self.narrator.sweeps(interface, earlier.as_ref());
+        // Picard's relaxation is that of the contacts that the bilateral solution leaves closed.
+        let before = before.filter(|_| self.settings.method != Method::Picard);
+        let start = match (checkpoints.restore(earlier, interface, s_con)?, before) {
+            (Some((progress, state)), _) => Start::Earlier(progress, state),
+            (None, Some(before)) => Start::Before(before.u.clone(), before.open.clone()),
+            (None, None) => Start::Bilateral,
+        };
+        let mut observer = |record: &SweepRecord| self.narrator.sweep(interface, record);
+        let settings = self.settings.sweeps();
+        Sweeps::solve(
+            interface,
+            s_con,
+            settings,
+            start,
+            checkpoints,
+            &mut observer,
+        )
+        .ok_or_else(|| checkpoints.stopped())
+    }
+}

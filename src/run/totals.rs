@@ -1,0 +1,173 @@
+//! Everything the report is made of, gathered on the root: load step by load step, then together.
+
+use contact_dd_partition::problem::Catalog;
+
+use super::solution::Solution;
+use crate::certificate::Certificate;
+use crate::fem::estimate::CellError;
+use crate::output::report::{ErrorEstimate, RankReport, Status, StepReport};
+use crate::output::resultants::Resultants;
+use crate::plan::Plan;
+use crate::rigid::survey::Survey;
+use crate::sweep::{SweepOutcome, SweepStatus};
+
+/// A whole run.
+pub struct Totals<'a> {
+    /// The problem.
+    pub catalog: &'a Catalog,
+    /// Who owned what.
+    pub plan: &'a Plan,
+    /// Every load step, one where the problem has none.
+    pub steps: Vec<StepTotals>,
+    /// Number of unknowns on Γ.
+    pub interface_dofs: usize,
+    /// The smallest pivot of all factorizations relative to its diagonal entry.
+    pub smallest_pivot: f64,
+    /// Every rank's times.
+    pub ranks: Vec<RankReport>,
+    /// What the ranks noticed on the way.
+    pub warnings: Vec<String>,
+}
+
+/// A load step, or a run without any.
+pub struct StepTotals {
+    /// What the sweeps found.
+    pub outcome: SweepOutcome,
+    /// Closed conditions.
+    pub active: usize,
+    /// The certificate.
+    pub certificate: Certificate,
+    /// The condition number.
+    pub condition: Option<f64>,
+    /// What contacts and supports carry.
+    pub resultants: Resultants,
+    /// The estimate of the mesh's error, where there are stresses.
+    pub estimate: Option<CellError>,
+    /// What a user should know of it.
+    pub warnings: Vec<String>,
+}
+
+impl StepTotals {
+    /// What is kept of a `solution` that the sweeps' `outcome` led to.
+    pub fn new(
+        outcome: SweepOutcome,
+        solution: &Solution,
+        resultants: Resultants,
+        survey: &Survey,
+    ) -> Self {
+        let warnings = [
+            &survey.motions.warnings[..],
+            &solution.settled.warnings,
+            &outcome.notes,
+        ];
+        Self {
+            active: outcome.totals.active - solution.settled.opened,
+            certificate: solution.certificate,
+            condition: solution.condition,
+            resultants,
+            estimate: solution.estimate,
+            warnings: warnings.concat(),
+            outcome,
+        }
+    }
+
+    /// How it ended.
+    pub fn status(&self) -> Status {
+        match self.outcome.status {
+            SweepStatus::Converged => Status::Converged,
+            SweepStatus::NotConverged(_) => Status::NotConverged,
+        }
+    }
+
+    /// Number of sweeps after the start.
+    pub fn sweeps(&self) -> usize {
+        self.outcome.records.len().saturating_sub(1)
+    }
+
+    /// The estimate as the report has it.
+    pub fn error_estimate(&self) -> Option<ErrorEstimate> {
+        self.estimate.map(|estimate| ErrorEstimate {
+            relative: estimate.relative(),
+            error: estimate.error.sqrt(),
+            energy_norm: estimate.energy.sqrt(),
+        })
+    }
+}
+
+impl Totals<'_> {
+    /// The last load step, whose state the run ends in.
+    pub fn last(&self) -> Option<&StepTotals> {
+        self.steps.last()
+    }
+
+    /// Whether all load steps converged.
+    pub fn status(&self) -> Status {
+        let mut steps = self.steps.iter();
+        match steps.all(|step| step.status() == Status::Converged) {
+            true => Status::Converged,
+            false => Status::NotConverged,
+        }
+    }
+
+    /// For every check, that of the step where it is worst.
+    pub fn certificate(&self) -> Certificate {
+        let certificates = self.steps.iter().map(|step| step.certificate);
+        certificates.fold(Certificate::default(), Certificate::worse)
+    }
+
+    /// The largest condition number, where all steps have one.
+    pub fn condition(&self) -> Option<f64> {
+        let mut conditions = self.steps.iter().map(|step| step.condition);
+        conditions.try_fold(0.0, |worst: f64, condition| Some(worst.max(condition?)))
+    }
+
+    /// Which other methods had to help, in words.
+    pub fn fallbacks(&self) -> Vec<String> {
+        let all = self.steps.iter().flat_map(|step| &step.outcome.fallbacks);
+        once_each(all.cloned())
+    }
+
+    /// The warnings of all steps, with the step where not all of several have it.
+    pub fn step_warnings(&self) -> Vec<String> {
+        let named = self.steps.iter().enumerate().flat_map(|(k, step)| {
+            step.warnings.iter().map(move |warning| {
+                let everywhere = self.steps.iter().all(|s| s.warnings.contains(warning));
+                match self.catalog.steps.get(k) {
+                    Some(step) if !everywhere => format!("step '{}': {warning}", step.name),
+                    _ => warning.clone(),
+                }
+            })
+        });
+        once_each(named)
+    }
+
+    /// The load steps as the report has them; none where the problem has none.
+    pub fn step_reports(&self) -> Vec<StepReport> {
+        let steps = self.catalog.steps.iter().zip(&self.steps);
+        steps
+            .map(|(step, totals)| StepReport {
+                name: step.name.clone(),
+                time: step.time,
+                status: totals.status(),
+                sweeps: totals.sweeps(),
+                inner_steps: totals.outcome.inner_steps,
+                interface_residual: totals.outcome.residual,
+                active_contacts: totals.active,
+                certificate: totals.certificate,
+                condition: totals.condition,
+                error_estimate: totals.error_estimate(),
+                resultants: totals.resultants.clone(),
+            })
+            .collect()
+    }
+}
+
+fn once_each(words: impl Iterator<Item = String>) -> Vec<String> {
+    let mut kept: Vec<String> = Vec::new();
+    for word in words {
+        if !kept.contains(&word) {
+            kept.push(word);
+        }
+    }
+    kept
+}
