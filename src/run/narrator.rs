@@ -205,13 +205,11 @@ impl<'a> Narrator<'a> {
             }
         }
         let mut exit_code = 0;
-        for why in failures(totals) {
+        let failures = failures(totals);
+        if !failures.is_empty() {
             exit_code = NOT_CONVERGED;
-            message::error(
-                self.settings.log,
-                exit_code,
-                &format!("not converged: {why}"),
-            );
+            let why = format!("not converged: {}", failures.join("; "));
+            message::error(self.settings.log, exit_code, &why);
         }
         self.log(&Event::Finished {
             exit_code,
