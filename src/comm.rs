@@ -19,7 +19,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
 
 use environment::current_phase;
-pub use environment::{World, library, phase, start};
+pub use environment::{World, is_launched, library, phase, start};
 pub use message::{Message, MessageReader};
 pub use signal::is_asked_to_stop;
 pub use watcher::watch_if_asked;

@@ -2,41 +2,64 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use contact_dd_mpi::comm;
+use contact_dd_mpi::comm::{self, Comm};
+use contact_dd_mpi::error::Failure;
+use contact_dd_mpi::output::message;
 use contact_dd_mpi::run::{Ending, run};
-use contact_dd_mpi::settings::Settings;
+use contact_dd_mpi::settings::command_line::{CommandLine, LogFormat};
+use contact_dd_mpi::settings::given::Given;
+use contact_dd_partition::usage::{Answer, BAD_USAGE};
 
 fn main() -> ExitCode {
     if comm::watch_if_asked().is_some() {
         return ExitCode::SUCCESS;
     }
+    let command_line = CommandLine::of_this_program();
+    if comm::is_launched() {
+        // Launchers show ranks a terminal whatever their output goes to.
+        message::without_colours();
+    } else if let Err(answer) = &command_line {
+        return tell(answer);
+    }
     let world = match comm::start() {
         Ok(world) => world,
-        Err(failure) => {
-            eprintln!("error: {failure}");
-            return failure.exit_code();
-        }
+        Err(failure) => return fail(LogFormat::of_this_program(), &failure),
     };
     let comm = world.comm();
-    let settings = match Settings::try_parse() {
-        Ok(settings) => settings,
-        Err(error) => {
-            if comm.is_root() {
-                // Where a message can't be printed there is nobody to tell.
-                let _ = error.print();
-            }
-            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
-        }
-    };
-    match run(&comm, &settings) {
+    match command_line {
+        Ok(command_line) => solve(&comm, command_line),
+        Err(answer) if comm.is_root() => tell(&answer),
+        Err(answer) => answer.exit_code(),
+    }
+}
+
+/// Runs on all ranks. Collective.
+fn solve(comm: &Comm, command_line: CommandLine) -> ExitCode {
+    let mut log = LogFormat::of_this_program();
+    let given = comm.agree(Given::read(command_line).map_err(Failure::from));
+    let ending = given.and_then(|given| {
+        log = given.log();
+        run(comm, &given)
+    });
+    match ending {
         Ok(Ending::Converged) => ExitCode::SUCCESS,
         Ok(Ending::NotConverged) => ExitCode::from(3),
-        Err(failure) => {
-            if comm.is_root() {
-                eprintln!("error: {failure}");
-            }
-            failure.exit_code()
-        }
+        Err(failure) if comm.is_root() => fail(log, &failure),
+        Err(failure) => failure.exit_code(),
     }
+}
+
+/// Answers a command line that asks for no run.
+fn tell(answer: &Answer) -> ExitCode {
+    match answer {
+        Answer::Refusal(why) => message::error(LogFormat::of_this_program(), BAD_USAGE, why),
+        Answer::Text(_) => answer.print(),
+    }
+    answer.exit_code()
+}
+
+/// Says why the program ends.
+fn fail(log: LogFormat, failure: &Failure) -> ExitCode {
+    message::error(log, failure.kind as u8, &failure.message);
+    failure.exit_code()
 }

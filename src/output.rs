@@ -2,11 +2,14 @@
 //!
 //! Only the root rank comes here. [`result`] holds what the ranks hand over, [`vtkhdf`] streams it
 //! into the result file in slabs of subdomains, [`report`] is the JSON of `--report` and of the
-//! file's attribute, [`build`] what it says of the program, [`terminal`] prints for people, [`progress`] draws the bar.
+//! file's attribute, [`build`] what it says of the program, [`terminal`] prints for people,
+//! [`event`] for programs, [`message`] what went wrong, [`mod@bar`] draws the bar.
 
+pub mod bar;
 pub mod build;
+pub mod event;
 pub mod memory;
-pub mod progress;
+pub mod message;
 pub mod report;
 pub mod result;
 pub mod resultants;

@@ -212,6 +212,7 @@ mod tests {
     use contact_dd_partition::model::PlaneState;
     use contact_dd_partition::problem::hierarchy::Hierarchy;
     use contact_dd_partition::problem::{Body, SubdomainSummary};
+    use contact_dd_partition::solver::SolverSettings;
 
     use super::*;
 
@@ -247,6 +248,7 @@ mod tests {
                     .chain([None])
                     .collect(),
             },
+            solver: SolverSettings::default(),
             warnings: Vec::new(),
         }
     }

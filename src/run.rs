@@ -15,6 +15,7 @@ mod limits;
 pub mod load;
 pub mod merge;
 pub mod motions;
+mod narrator;
 mod pausing;
 mod reactions;
 pub mod read;
@@ -46,9 +47,10 @@ use self::interface::assemble_interface;
 use self::load::Loading;
 use self::merge::condense_clusters;
 use self::motions::Motions;
+use self::narrator::Narrator;
 use self::pausing::Checkpoints;
 use self::read::{OwnedBlock, read_blocks};
-use self::report::{Narrator, Outputs};
+use self::report::Outputs;
 use self::solution::Solution;
 use self::steps::{in_step, survey_steps, take_step};
 use self::sweeping::Sweeping;
@@ -56,12 +58,12 @@ use self::totals::{StepTotals, Totals};
 use self::write::write_solution;
 use crate::comm::{Comm, Message, phase};
 use crate::error::Failure;
-use crate::output::progress::Progress;
 use crate::output::report::{PhaseSeconds, ReportFile};
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
 use crate::settings::Settings;
+use crate::settings::given::Given;
 use crate::sweep::{SweepOutcome, SweepStatus};
 
 /// How a run ended that didn't fail.
@@ -73,33 +75,35 @@ pub enum Ending {
     NotConverged,
 }
 
-/// Solves the problem that `settings` names and writes the results. Collective.
+/// Solves the problem file that was `given` and writes the results. Collective.
 ///
 /// # Errors
 /// Bad input, a scene without equilibrium, or an output that can't be written; the same on all
 /// ranks.
-pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
+pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
     let began = Instant::now();
     let mut seconds = PhaseSeconds::default();
+    // What a problem file asks for counts where nobody says otherwise.
+    phase("reading");
+    let file = comm.agree(ProblemFile::open(&given.problem()).map_err(Failure::from))?;
+    let settings = &given.resolve(&file.catalog().solver);
+    comm.agree(settings.check_paths())?;
     let par = match settings.threads {
         1 => Par::Seq,
         n => Par::rayon(usize::from(n)),
     };
     // Dense algebra, which takes no such argument everywhere, would use all cores.
     faer::set_global_parallelism(par);
-    let narrator = Narrator::new(comm, settings);
+    let narrator = Narrator::new(comm, settings, began);
 
     // Every rank reads its own subdomains and pairs.
-    phase("reading");
-    comm.agree(settings.check_paths())?;
-    let file = comm.agree(ProblemFile::open(&settings.problem).map_err(Failure::from))?;
     let catalog = file.catalog();
     let plan = Plan::new(catalog, comm.size(), settings.merging());
     let demands = plan.demands(catalog, comm.size());
     let available = afford(comm, &demands)?;
+    narrator.problem(catalog, &plan);
     let mut blocks = comm.agree(read_blocks(comm, &file, &plan))?;
     comm.agree(check_copies(comm, &file, &plan, &blocks))?;
-    narrator.problem(catalog, &plan);
     let mut checkpoints = Checkpoints::new(settings);
     let looked = match comm.is_root() {
         true => checkpoints.look(),
@@ -108,32 +112,31 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     comm.agree(looked)?;
 
     // Rigid motions that neither supports nor contact hold, and those by which bodies come to rest.
-    phase("looking for free rigid motions");
+    narrator.phase("looking for free rigid motions", None);
     let surveys = survey_steps(comm, &mut blocks, catalog, &plan)?;
     if settings.check {
         narrator.check(&surveys, &demands, available);
         return Ok(Ending::Converged);
     }
-    phase("creating the outputs");
+    narrator.phase("creating the outputs", None);
     let mut outputs = comm.agree(create_outputs(comm, settings, catalog, &plan, &blocks))?;
     take_step(&mut blocks, 0, &surveys[0], catalog.dim);
     seconds.read = began.elapsed().as_secs_f64();
 
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy.
-    phase("factorizing");
-    let progress = Progress::factorization(blocks.len(), settings.quiet || !comm.is_root());
+    narrator.phase("factorizing", Some(blocks.len()));
     let condensation = Condensation {
         catalog,
         plan: &plan,
         pins: &surveys[0].motions.pins,
         par,
     };
-    let mut condensed = condense_clusters(comm, &condensation, &blocks, &surveys[0], &progress)?;
-    progress.finish();
+    let mut condensed =
+        condense_clusters(comm, &condensation, &blocks, &surveys[0], &narrator.bar)?;
     [seconds.assemble, seconds.factorize] = condensed.seconds;
 
     // The root assembles S_0, (15), and the bilateral operator.
-    phase("assembling the interface problem");
+    narrator.phase("assembling the interface problem", None);
     let lap = Instant::now();
     let mut interface = comm.agree(assemble_interface(comm, &condensed, catalog, &plan, par))?;
     seconds.interface = lap.elapsed().as_secs_f64();
@@ -150,7 +153,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
     let mut steps = Vec::new();
     for (k, survey) in surveys.iter().enumerate() {
         // F, condensed like the blocks, and the bounds on approaches.
-        phase("condensing the load");
+        narrator.phase("condensing the load", None);
         let lap = Instant::now();
         if k > 0 {
             take_step(&mut blocks, k, survey, catalog.dim);
@@ -168,7 +171,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         seconds.interface += lap.elapsed().as_secs_f64();
 
         // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the step before.
-        phase("sweeping");
+        narrator.phase("sweeping", None);
         let lap = Instant::now();
         narrator.step(catalog, k);
         let problem = interface.as_ref().map(|(_, interface)| interface);
@@ -177,7 +180,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         seconds.sweeps += lap.elapsed().as_secs_f64();
 
         // Back-substitution, and the check of the full discrete problem.
-        phase("recovering");
+        narrator.phase("recovering", None);
         let lap = Instant::now();
         let root = outcome.as_ref().zip(interface.as_ref());
         let frozen = Frozen {
@@ -205,7 +208,7 @@ pub fn run(comm: &Comm, settings: &Settings) -> Result<Ending, Failure> {
         seconds.recover += lap.elapsed().as_secs_f64();
 
         // Results travel to the root in slabs of subdomains and are written as they arrive.
-        phase("writing");
+        narrator.phase("writing", None);
         let lap = Instant::now();
         let mut resultants = Resultants::new(catalog, solution.reactions.clone());
         let result = outputs.as_mut().map(|outputs| &mut outputs.result);
@@ -291,7 +294,7 @@ fn create_outputs(
     let layout = Layout::new(catalog, &connectivity, !settings.no_stress);
     let report = settings.report.as_deref().map(ReportFile::create);
     Ok(Some(Outputs {
-        result: ResultFile::create(&settings.result_path(), &layout)?,
+        result: ResultFile::create(&settings.output, &layout)?,
         report: report.transpose()?,
     }))
 }

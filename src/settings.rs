@@ -1,124 +1,119 @@
-//! The command line.
+//! The settings of a run, resolved.
+//!
+//! [`command_line`] parses options, [`mod@file`] reads those of `--settings`, the problem file may hold
+//! some, and [`given`] lets the first that says something win; [`origin`] remembers which it was.
 
+pub mod command_line;
+pub mod file;
+pub mod given;
+pub mod origin;
 pub mod result_path;
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use clap::Parser;
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
-use self::result_path::default_result_path;
+use self::command_line::LogFormat;
+use self::origin::{Origin, Origins};
 use crate::error::Failure;
 use crate::plan::cluster::Merging;
-use crate::sweep::{Method, SweepSettings};
+use crate::sweep::{Method, SweepSettings, merging};
 
-/// Solves unilateral contact problems by domain decomposition after J. Daněk.
-#[derive(Clone, Debug, PartialEq, Parser, Serialize, JsonSchema)]
+/// Relative residual of the interface problem at which sweeps end.
+pub const DEFAULT_TOLERANCE: f64 = 1e-10;
+
+/// The settings of a run, as the report shows them: `None` is what the method decides.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[schemars(description = "The options of a run.")]
-#[command(
-    version,
-    after_help = "Examples:\n  contact-dd-partition --example granite -n 8 -o granite.h5\n  \
-                  mpirun -n 2 contact-dd-mpi granite.h5\n  \
-                  mpirun -n 4 contact-dd-mpi problem.h5 -o out.vtkhdf --report report.json\n  \
-                  contact-dd-mpi --check problem.h5\n\n\
-                  Exit codes: 0 converged, 2 bad input, 3 not converged (results are written), \
-                  4 a body can move freely, 5 the output can't be written, 6 interrupted by a signal, 1 anything else."
-)]
 pub struct Settings {
-    /// Problem file, made by contact-dd-partition.
+    /// Problem file.
     #[serde(serialize_with = "as_text")]
     #[schemars(with = "String")]
     pub problem: PathBuf,
-    /// Result file [default: the problem's name with the extension vtkhdf].
-    #[arg(short, long, value_name = "FILE")]
-    #[serde(serialize_with = "as_optional_text")]
-    #[schemars(with = "Option<String>")]
-    pub output: Option<PathBuf>,
-    /// Write the report as JSON, too.
-    #[arg(long, value_name = "FILE")]
+    /// Result file.
+    #[serde(serialize_with = "as_text")]
+    #[schemars(with = "String")]
+    pub output: PathBuf,
+    /// Where the report goes as well.
     #[serde(serialize_with = "as_optional_text")]
     #[schemars(with = "Option<String>")]
     pub report: Option<PathBuf>,
     /// How the interface problem is solved.
-    #[arg(long, value_enum, default_value_t = Method::Newton)]
     pub method: Method,
     /// Residual of the interface problem, relative to the terms it is a sum of, at which sweeps end.
-    #[arg(long, default_value_t = 1e-10, value_parser = positive)]
     pub tolerance: f64,
-    /// Most sweeps [default: depends on the method].
-    #[arg(long, value_name = "N")]
+    /// Most sweeps.
     pub max_sweeps: Option<usize>,
-    /// Relaxation of picard [default: found automatically; 1 is the paper's (18) to the letter].
-    #[arg(long, value_name = "THETA", value_parser = positive)]
+    /// Relaxation of picard; 1 is the paper's (18) to the letter.
     pub relaxation: Option<f64>,
     /// Threads of each rank.
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: u16,
-    /// Write a checkpoint after every N sweeps, too, and not only where a signal stops them.
-    #[arg(long, value_name = "N")]
+    /// After how many sweeps there is a checkpoint, and not only where a signal stops them.
     pub checkpoint_every: Option<NonZeroUsize>,
-    /// Go on from the last checkpoint of the same run, if there is one.
-    #[arg(long)]
+    /// Whether to go on from the last checkpoint of the same run, if there is one.
     pub restart: bool,
-    /// Leave stresses out: neither recovered nor written.
-    #[arg(long)]
+    /// Whether stresses are left out: neither recovered nor written.
     pub no_stress: bool,
-    /// Validate the problem file and say what the scene holds, without solving.
-    #[arg(long)]
+    /// Whether to validate the problem file and solve nothing.
     pub check: bool,
-    /// Print nothing but warnings and errors.
-    #[arg(short, long)]
+    /// Whether to print nothing but warnings and errors.
     pub quiet: bool,
+    /// What is printed.
+    pub log: LogFormat,
+    /// The settings file.
+    #[serde(serialize_with = "as_optional_text")]
+    #[schemars(with = "Option<String>")]
+    pub settings: Option<PathBuf>,
+    /// Where each of these came from.
+    #[serde(skip)]
+    pub from: Origins,
 }
 
 impl Settings {
-    /// The result file.
-    pub fn result_path(&self) -> PathBuf {
-        self.output
-            .clone()
-            .unwrap_or_else(|| default_result_path(&self.problem))
+    /// What a command line of these words settles alone.
+    #[cfg(test)]
+    pub fn of_options(words: &[&str]) -> Self {
+        use clap::Parser;
+        let words = ["contact-dd-mpi"].iter().chain(words);
+        let command_line = command_line::CommandLine::parse_from(words);
+        let given = given::Given::read(command_line).unwrap();
+        given.resolve(&Default::default())
     }
 
-    /// The same with the name of the result file.
-    #[must_use]
-    pub fn resolved(&self) -> Self {
-        Self {
-            output: Some(self.result_path()),
-            ..self.clone()
-        }
-    }
-
-    /// Checks that the results don't replace the problem.
+    /// Checks that the results replace nothing that they are made from.
     ///
     /// # Errors
-    /// One of the outputs is the problem file or the other output.
+    /// One of the outputs is the problem file, the settings file or the other output.
     pub fn check_paths(&self) -> Result<(), Failure> {
-        let result = self.result_path();
         let outputs = [
-            ("--output", Some(&result)),
+            ("--output", Some(&self.output)),
             ("--report", self.report.as_ref()),
         ];
-        for (option, path) in outputs {
-            if path.is_some_and(|path| same_file(path, &self.problem)) {
-                return Err(Failure::input(format!(
-                    "{option} {}: that is the problem file; expected another name",
-                    self.problem.display()
-                )));
+        let inputs = [
+            ("problem", Some(&self.problem)),
+            ("settings", self.settings.as_ref()),
+        ];
+        let refuse = |option: &str, path: &Path, what: &str| {
+            let path = path.display();
+            let message =
+                format!("{option} {path}: that is the {what} file; expected another name");
+            Err(Failure::input(message))
+        };
+        for (option, output) in outputs {
+            for (what, input) in inputs {
+                if let (Some(output), Some(input)) = (output, input)
+                    && same_file(output, input)
+                {
+                    return refuse(option, input, what);
+                }
             }
         }
-        if self
-            .report
-            .as_ref()
-            .is_some_and(|report| same_file(report, &result))
-        {
-            return Err(Failure::input(format!(
-                "--report {}: that is the result file; expected another name",
-                result.display()
-            )));
+        match &self.report {
+            Some(report) if same_file(report, &self.output) => refuse("--report", report, "result"),
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     /// What the sweeps need to know.
@@ -133,28 +128,47 @@ impl Settings {
 
     /// What becomes of contact when Schur complements are merged.
     pub fn merging(&self) -> Merging {
-        self.method.merging()
+        merging(self.method)
     }
 
-    /// The settings as they were resolved, by name, for people.
+    /// The settings by name, for people: those that aren't the default with what settled them.
     pub fn in_words(&self) -> Vec<(&'static str, String)> {
+        let settled = |name: &str, value: String| match self.from.of(name) {
+            Origin::Default => value,
+            origin => format!("{value} ({origin})"),
+        };
         let mut list = vec![
-            ("method", self.method.name().to_string()),
-            ("tolerance", format!("{:e}", self.tolerance)),
+            ("method", settled("method", self.method.name().to_string())),
+            (
+                "tolerance",
+                settled("tolerance", format!("{:e}", self.tolerance)),
+            ),
         ];
         if let Some(n) = self.max_sweeps {
-            list.push(("sweeps", format!("at most {n}")));
+            list.push(("sweeps", settled("max_sweeps", format!("at most {n}"))));
         }
         if let Some(theta) = self.relaxation {
-            list.push(("relaxation", theta.to_string()));
+            list.push(("relaxation", settled("relaxation", theta.to_string())));
         }
         if let Some(n) = self.checkpoint_every {
-            list.push(("checkpoint", format!("every {n} sweeps")));
+            let every = format!("every {n} sweeps");
+            list.push(("checkpoint", settled("checkpoint_every", every)));
+        }
+        if self.restart {
+            let from = settled("restart", "from the last checkpoint".to_string());
+            list.push(("restart", from));
         }
         if self.no_stress {
-            list.push(("stress", "left out".to_string()));
+            list.push(("stress", settled("no_stress", "left out".to_string())));
         }
-        list.push(("result", self.result_path().display().to_string()));
+        if let Some(file) = &self.settings {
+            list.push(("settings", file.display().to_string()));
+        }
+        let path = |name: &str, path: &Path| settled(name, path.display().to_string());
+        if let Some(report) = &self.report {
+            list.push(("report", path("report", report)));
+        }
+        list.push(("result", path("output", &self.output)));
         list
     }
 }
@@ -175,11 +189,4 @@ fn as_optional_text<S: Serializer>(
 ) -> Result<S::Ok, S::Error> {
     let text = path.as_ref().map(|path| path.display().to_string());
     text.serialize(serializer)
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
-        _ => Err("expected a positive number".into()),
-    }
 }

@@ -15,7 +15,7 @@ pub mod progress;
 use std::time::Instant;
 
 use self::method::Memory;
-pub use self::method::Method;
+pub use self::method::{Method, merging};
 pub use self::outcome::{SweepOutcome, SweepRecord, SweepStatus};
 use self::progress::Progress;
 use crate::interface::operator::Interface;
@@ -83,7 +83,7 @@ pub enum Start {
     /// At the solution under other loads: U, and which conditions of every pair were open.
     Before(Vec<f64>, Vec<Vec<bool>>),
     /// Where the sweeps of an earlier run stopped.
-    Earlier(Progress, ConState),
+    Earlier(Box<Progress>, ConState),
 }
 
 /// What sweeps are asked for between two of them.
@@ -127,7 +127,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
                 expected = Some(open);
                 fresh(u)
             }
-            Start::Earlier(progress, state) => (progress, state),
+            Start::Earlier(progress, state) => (*progress, state),
         };
         let mut sweeps = Self {
             interface,

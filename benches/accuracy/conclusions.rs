@@ -1,7 +1,6 @@
 //! What follows from the measurements.
 
-use clap::Parser;
-use contact_dd_mpi::settings::Settings;
+use contact_dd_mpi::settings::DEFAULT_TOLERANCE;
 
 use crate::Measurements;
 use crate::document::shown;
@@ -247,5 +246,5 @@ fn row(tried: &[Tried], digits: i32) -> Row {
 
 /// Of `--tolerance`.
 pub fn default_tolerance() -> f64 {
-    Settings::parse_from(["contact-dd-mpi", "problem.h5"]).tolerance
+    DEFAULT_TOLERANCE
 }

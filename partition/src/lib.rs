@@ -32,17 +32,23 @@
 //! `contact-dd-mpi`, and holds the [`hierarchy`](problem::hierarchy) up which Schur complements are merged,
 //! judged by estimated [`flops`]. It gets its name when it is whole ([`destination`]).
 
+pub mod command_line;
 pub mod decompose;
 pub mod destination;
 pub mod element;
 pub mod error;
 pub mod example;
+pub mod file_kind;
 pub mod flops;
 mod lists;
 pub mod magnitude;
+pub mod manual;
 pub mod mesh;
+pub mod message;
 pub mod model;
 pub mod name;
 pub mod problem;
 pub mod scene;
+pub mod solver;
 pub mod source;
+pub mod usage;

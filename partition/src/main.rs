@@ -1,93 +1,21 @@
-//! Makes a problem file from a scene and its mesh, or from a built-in scene.
+//! `contact-dd-partition`: makes a problem file from a scene and its mesh, or from a built-in scene.
 
-use std::io::{self, Write as _};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
+use contact_dd_partition::command_line::{CommandLine, MANUAL};
 use contact_dd_partition::decompose::Decomposition;
-use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::error::{InputError, OutputError};
 use contact_dd_partition::example::{self, EXAMPLES};
 use contact_dd_partition::mesh::{Mesh, gmsh};
+use contact_dd_partition::message::{self, WARNING};
 use contact_dd_partition::model::Model;
 use contact_dd_partition::problem::Problem;
+use contact_dd_partition::problem::info::Info;
 use contact_dd_partition::scene::Scene;
-
-/// Splits a scene into subdomains and writes the problem file that contact-dd-mpi solves.
-#[derive(Debug, Parser)]
-#[command(version, after_help = EXAMPLES_OF_USE)]
-struct Args {
-    /// The scene
-    #[arg(value_name = "SCENE.toml", required_unless_present_any = ["example", "list_examples"])]
-    scene: Option<PathBuf>,
-
-    /// Number of subdomains; without it a number that suits the size
-    #[arg(short = 'n', long, value_name = "N", allow_negative_numbers = true)]
-    subdomains: Option<usize>,
-
-    /// Problem file to write [default: the scene's name with the ending .h5]
-    #[arg(short, long, value_name = "FILE.h5")]
-    output: Option<PathBuf>,
-
-    /// Take a built-in scene
-    #[arg(long, value_name = "NAME", conflicts_with = "scene")]
-    example: Option<String>,
-
-    /// Halve the mesh size of the built-in scene K times
-    #[arg(
-        long,
-        value_name = "K",
-        requires = "example",
-        conflicts_with = "scene",
-        default_value_t = 0
-    )]
-    refine: u32,
-
-    /// Cells of the built-in scene: triangle3, triangle6, quad4, quad8 or quad9; where the mesh
-    /// size changes, there are triangles between quadrilaterals [default: triangle3]
-    #[arg(long, value_name = "KIND", requires = "example", conflicts_with = "scene",
-          value_parser = element)]
-    element: Option<ElementKind>,
-
-    /// Write scene.toml and mesh.msh of the built-in scene into DIR, to start from; the problem
-    /// file is then written only with -o
-    #[arg(
-        long,
-        value_name = "DIR",
-        requires = "example",
-        conflicts_with = "scene"
-    )]
-    write_scene: Option<PathBuf>,
-
-    /// List the built-in scenes
-    #[arg(long, exclusive = true)]
-    list_examples: bool,
-}
-
-const EXAMPLES_OF_USE: &str = "\
-Examples:
-  contact-dd-partition scene.toml -n 8 -o problem.h5
-  contact-dd-partition --example granite --refine 2 -n 8 -o granite.h5
-  contact-dd-partition --example junction --write-scene my-scene
-
-Exit codes: 0 done, 2 bad usage or input, 5 the output can't be written.";
-
-/// The kind of cells of a name.
-fn element(name: &str) -> Result<ElementKind, String> {
-    const KINDS: [(&str, ElementKind); 5] = [
-        ("triangle3", ElementKind::Triangle3),
-        ("triangle6", ElementKind::Triangle6),
-        ("quad4", ElementKind::Quad4),
-        ("quad8", ElementKind::Quad8),
-        ("quad9", ElementKind::Quad9),
-    ];
-    let found = KINDS.iter().find(|(known, _)| *known == name);
-    found.map(|&(_, kind)| kind).ok_or_else(|| {
-        let names = KINDS.map(|(known, _)| known);
-        format!("expected one of {}", names.join(", "))
-    })
-}
+use contact_dd_partition::usage::Answer;
 
 /// Why no problem file was written.
 #[derive(Debug, thiserror::Error)]
@@ -108,38 +36,36 @@ impl Failure {
 }
 
 fn main() -> ExitCode {
-    let args = match Args::try_parse() {
+    let args = match CommandLine::try_parse() {
         Ok(args) => args,
-        Err(usage) if !usage.use_stderr() => usage.exit(),
-        Err(usage) => {
-            eprintln!("{} (--help tells more)", in_one_line(&usage.to_string()));
-            return ExitCode::from(2);
+        Err(error) => {
+            let answer = Answer::of(&error);
+            answer.print();
+            return answer.exit_code();
         }
     };
     match run(&args) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            message::error(&failure.to_string());
             failure.exit_code()
         }
     }
 }
 
-/// What clap says but for the usage and where to read of it.
-fn in_one_line(message: &str) -> String {
-    let said = message.lines().map(str::trim);
-    let said = said.take_while(|line| {
-        !line.starts_with("Usage:") && !line.starts_with("For more information")
-    });
-    let words: Vec<&str> = said.filter(|line| !line.is_empty()).collect();
-    words.join(" ").replace(" tip: ", "; ")
-}
-
-fn run(args: &Args) -> Result<(), Failure> {
+fn run(args: &CommandLine) -> Result<(), Failure> {
+    if let Some(document) = args.generate {
+        Answer::document(document, CommandLine::command(), &MANUAL).print();
+        return Ok(());
+    }
     if args.list_examples {
         for example in EXAMPLES {
             say(&format!("{:<10} {}", example.name, example.about));
         }
+        return Ok(());
+    }
+    if let Some(path) = &args.info {
+        say(&Info::read(path)?.to_string());
         return Ok(());
     }
     let Some(source) = read(args)? else {
@@ -170,7 +96,7 @@ struct Source {
 }
 
 /// Reads or makes scene and mesh; `None` where nothing but these was asked for.
-fn read(args: &Args) -> Result<Option<Source>, Failure> {
+fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
     if let Some(path) = &args.scene {
         let scene = Scene::read(path)?;
         let stem = path.file_stem().unwrap_or(path.as_os_str());
@@ -224,7 +150,7 @@ fn keep(input: &Path, output: &Path) -> Result<(), InputError> {
     }
 }
 
-fn output(args: &Args, stem: &Path) -> PathBuf {
+fn output(args: &CommandLine, stem: &Path) -> PathBuf {
     let chosen = args.output.clone();
     chosen.unwrap_or_else(|| {
         let mut name = stem.as_os_str().to_os_string();
@@ -237,8 +163,11 @@ fn output(args: &Args, stem: &Path) -> PathBuf {
 fn report(problem: &Problem, output: &Path) {
     say(&format!("title         {}", problem.catalog.title));
     say(&problem.summary().to_string());
+    if !problem.catalog.solver.is_empty() {
+        say(&format!("settings      {}", problem.catalog.solver));
+    }
     for warning in &problem.catalog.warnings {
-        say(&format!("warning       {warning}"));
+        say(&format!("{WARNING}warning{WARNING:#}       {warning}"));
     }
     let output = output.display();
     say(&format!("written       {output}"));
@@ -249,5 +178,5 @@ fn report(problem: &Problem, output: &Path) {
 
 /// Prints a line. Where nobody reads any more, as behind `| head`, there is nobody to tell.
 fn say(line: &str) {
-    let _ = writeln!(io::stdout(), "{line}");
+    let _ = writeln!(anstream::stdout(), "{line}");
 }

@@ -23,6 +23,7 @@ use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 pub use crate::scene::plane::PlaneState;
+use crate::solver::SolverSettings;
 
 /// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane).
 #[derive(Clone, Debug, PartialEq)]
@@ -86,6 +87,8 @@ pub struct Contact {
 pub struct Model {
     /// Title of the scene.
     pub title: String,
+    /// How the scene wants to be solved.
+    pub solver: SolverSettings,
     /// Plane state.
     pub plane: PlaneState,
     /// Mesh.
@@ -136,6 +139,7 @@ impl Model {
             .transpose()?;
         Ok(Self {
             title: scene.title.clone(),
+            solver: scene.solver,
             plane,
             materials: bodies::materials(scene, plane),
             bodies: scene.bodies.keys().cloned().collect(),

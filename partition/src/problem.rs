@@ -7,6 +7,7 @@ pub mod build;
 pub mod copies;
 mod dataset;
 pub mod hierarchy;
+pub mod info;
 mod order;
 pub mod read;
 mod slab;
@@ -17,6 +18,7 @@ pub mod write;
 use self::hierarchy::Hierarchy;
 use crate::element::Elements;
 use crate::model::{Material, PlaneState, Support};
+use crate::solver::SolverSettings;
 
 /// Version of the format, attribute `version` of the file.
 pub const VERSION: i64 = 1;
@@ -191,6 +193,8 @@ pub struct Catalog {
     pub groups: Vec<usize>,
     /// The tree along which Schur complements are merged.
     pub hierarchy: Hierarchy,
+    /// How the problem wants to be solved.
+    pub solver: SolverSettings,
     /// Warnings of the partition tool, to be repeated in the report.
     pub warnings: Vec<String>,
 }

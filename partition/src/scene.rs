@@ -5,26 +5,24 @@ pub mod expression;
 mod fault;
 pub mod material;
 pub mod number;
-mod place;
+pub mod place;
 pub mod plane;
 pub mod step;
 pub mod suggest;
 
 use std::collections::BTreeMap;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
 use crate::error::InputError;
+use crate::file_kind::FileKind;
+use crate::solver::SolverSettings;
 use crate::source;
 use condition::{Bilateral, Body, Contact, Displacement, Names, Pressure, Traction};
 use material::Elasticity;
 use plane::PlaneState;
 use step::LoadStep;
-
-/// Size beyond which a file isn't a scene (bytes).
-const LARGEST: u64 = 16 << 20;
 
 /// A scene as it was written, with every value checked that can be without the mesh.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -62,6 +60,9 @@ pub struct Scene {
     pub step: Vec<LoadStep>,
     /// Groups of cells that are the subdomains; `None` to leave the partition to METIS.
     pub subdomains: Option<Names>,
+    /// How it is to be solved, where the command line doesn't say otherwise.
+    #[serde(default)]
+    pub solver: SolverSettings,
 }
 
 impl Scene {
@@ -70,24 +71,9 @@ impl Scene {
     /// # Errors
     /// What is wrong with it, with line and key.
     pub fn read(path: &Path) -> Result<Self, InputError> {
-        let refused = |reason: String| InputError::new(reason).in_file(path);
-        let unreadable = |error: std::io::Error| refused(format!("can't be read: {error}"));
-        let file = source::open(path, "a scene in TOML").map_err(|error| error.in_file(path))?;
-        let mut bytes = Vec::new();
-        (file.take(LARGEST + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
-        if bytes.len() as u64 > LARGEST {
-            return Err(refused(format!(
-                "larger than {LARGEST} bytes; expected a scene in TOML"
-            )));
-        }
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let line = error.as_bytes()[..error.utf8_error().valid_up_to()]
-                .iter()
-                .filter(|&&c| c == b'\n')
-                .count();
-            refused(format!("line {}: isn't UTF-8 text", line + 1))
-        })?;
-        let mut scene = Self::parse(&text).map_err(|error| error.in_file(path))?;
+        let parsed = source::text(path, "a scene in TOML").and_then(|text| Self::parse(&text));
+        let mut scene = parsed
+            .map_err(|error| FileKind::explain(FileKind::Scene, path, error).in_file(path))?;
         if let Some(folder) = path.parent() {
             scene.mesh = folder.join(&scene.mesh);
         }

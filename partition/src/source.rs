@@ -1,9 +1,13 @@
 //! Files that are read.
 
 use std::fs::{self, File};
+use std::io::Read as _;
 use std::path::Path;
 
 use crate::error::InputError;
+
+/// Size beyond which nobody wrote a file by hand (bytes).
+const LARGEST: u64 = 16 << 20;
 
 /// Opens a file to read it. `what` is what it should hold, as in "a scene in TOML".
 ///
@@ -20,4 +24,25 @@ pub fn open(path: &Path, what: &str) -> Result<File, InputError> {
             "can't be read: it isn't a file; expected {what}"
         ))),
     }
+}
+
+/// Reads a file that somebody wrote by hand. `what` is what it should hold.
+///
+/// # Errors
+/// It can't be opened or read, is too large for that, or isn't UTF-8; then with the line.
+pub fn text(path: &Path, what: &str) -> Result<String, InputError> {
+    let file = open(path, what)?;
+    let mut bytes = Vec::new();
+    (file.take(LARGEST + 1).read_to_end(&mut bytes))
+        .map_err(|error| InputError::new(format!("can't be read: {error}")))?;
+    if bytes.len() as u64 > LARGEST {
+        return Err(InputError::new(format!(
+            "larger than {LARGEST} bytes; expected {what}"
+        )));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = good.iter().filter(|&&c| c == b'\n').count() + 1;
+        InputError::new(format!("line {line}: isn't UTF-8 text; expected {what}"))
+    })
 }

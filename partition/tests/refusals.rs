@@ -89,6 +89,75 @@ fn what_is_wrong_between_scene_and_mesh_is_said_with_the_scene() {
 }
 
 #[test]
+fn whoever_gives_the_wrong_file_is_told_what_to_do_with_it() {
+    let dir = scene();
+    let mut command = program();
+    let args = ["scene.toml", "-o", "problem.h5"];
+    let made = command.args(args).current_dir(dir.path()).output().unwrap();
+    assert!(made.status.success(), "{made:?}");
+    fs::write(dir.path().join("block.geo"), "Point(1) = {0, 0, 0};").unwrap();
+    fs::copy(
+        dir.path().join("problem.h5"),
+        dir.path().join("result.vtkhdf"),
+    )
+    .unwrap();
+    for (file, words) in [
+        (
+            "problem.h5",
+            ["is a problem file", "contact-dd-mpi problem.h5 solves it"],
+        ),
+        (
+            "result.vtkhdf",
+            ["is a result", "ParaView opens result.vtkhdf"],
+        ),
+        ("mesh.msh", ["is a mesh", "mesh = \"mesh.msh\""]),
+        ("block.geo", ["is a geometry", "gmsh -2 block.geo"]),
+    ] {
+        let words = [words[0], words[1], "expected a scene in TOML"];
+        refused(dir.path(), &[file], &words);
+    }
+    let path = dir.path().join("scene.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    for (file, word) in [
+        ("block.geo", "gmsh -2"),
+        ("problem.h5", "is a problem file"),
+    ] {
+        fs::write(&path, text.replacen("mesh.msh", file, 1)).unwrap();
+        let words = [file, word, "expected a mesh in Gmsh's format"];
+        refused(dir.path(), &["scene.toml"], &words);
+    }
+}
+
+#[test]
+fn settings_of_a_scene_are_checked_where_they_stand() {
+    let dir = scene();
+    let path = dir.path().join("scene.toml");
+    let good = fs::read_to_string(&path).unwrap();
+    for (line, words) in [
+        (
+            "method = 'newtn'",
+            ["solver.method", "did you mean 'newton'"],
+        ),
+        (
+            "tolerence = 1e-8",
+            ["solver.tolerence", "did you mean 'tolerance'"],
+        ),
+        (
+            "tolerance = 0.0",
+            ["solver.tolerance", "expected a positive number"],
+        ),
+        ("tolerance = '1e-8'", ["solver.tolerance", "string"]),
+        ("max_sweeps = -1", ["solver.max_sweeps", "-1"]),
+        ("threads = 2", ["solver.threads", "unknown key"]),
+    ] {
+        let text = format!("{good}\n[solver]\n{line}\n");
+        let at = format!("scene.toml: line {}", text.lines().count());
+        fs::write(&path, text).unwrap();
+        refused(dir.path(), &["scene.toml"], &[&at, words[0], words[1]]);
+    }
+}
+
+#[test]
 fn pipes_and_folders_are_refused_at_once() {
     let dir = scene();
     let pipe = dir.path().join("pipe");

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
+use contact_dd_partition::message;
 use mpi::collective::SystemOperation;
 use mpi::environment::Universe;
 use mpi::topology::SimpleCommunicator;
@@ -74,7 +75,7 @@ pub fn start() -> Result<World, Failure> {
         // Ranks that panic for one reason say so once.
         if HOST.get().is_none_or(Host::claim_message) {
             let phase = current_phase();
-            eprintln!("error: rank {rank} of {size} panicked while {phase}");
+            message::error(&format!("rank {rank} of {size} panicked while {phase}"));
             report(panic);
         }
         abort_all();
@@ -117,6 +118,16 @@ fn abort_all() {
     SimpleCommunicator::world().abort(1);
 }
 
+/// Where launchers tell a rank of how many it is.
+const SIZES: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"];
+
+/// Whether a launcher started this process, be it as the only rank.
+pub fn is_launched() -> bool {
+    // PMIx, as of Slurm, tells the size only to who asks.
+    let names = SIZES.iter().chain(&["PMIX_RANK", "PMI_RANK"]);
+    names.copied().any(|name| std::env::var_os(name).is_some())
+}
+
 /// The launcher's own count of ranks must be MPI's.
 fn check_launcher(size: i32) -> Result<(), Failure> {
     let number = |name: &str| std::env::var(name).ok()?.parse().ok();
@@ -140,9 +151,7 @@ const SRUN_RANKS: &str = "SLURM_STEP_NUM_TASKS";
 /// How many ranks the launcher started, and the variable in which it says so.
 fn launched(number: impl Fn(&str) -> Option<i32>) -> Option<(&'static str, i32)> {
     // Where mpirun starts its daemons by srun, srun counts these.
-    ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", SRUN_RANKS]
-        .into_iter()
-        .find_map(|name| Some((name, number(name)?)))
+    (SIZES.into_iter().chain([SRUN_RANKS])).find_map(|name| Some((name, number(name)?)))
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ use super::build::Build;
 use super::resultants::Resultants;
 use crate::certificate::Certificate;
 use crate::settings::Settings;
+use crate::settings::origin::Origins;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -185,9 +186,10 @@ pub struct Report {
     pub skipped: Vec<String>,
     /// What the user should know, in words.
     pub warnings: Vec<String>,
-    /// The settings, with the name of the result file where none was given; `null` is what the method
-    /// decides.
+    /// The settings; `null` is what the method decides.
     pub settings: Settings,
+    /// What settled each of them.
+    pub settings_from: Origins,
     /// Version of the program.
     pub version: String,
     /// Its build.
@@ -246,10 +248,10 @@ impl ReportFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::Parser;
     use serde_json::{Value, json};
 
     fn report() -> Report {
+        let settings = Settings::of_options(&["problem.h5"]);
         Report {
             status: Status::NotConverged,
             method: "newton".into(),
@@ -279,7 +281,8 @@ mod tests {
             steps: Vec::new(),
             skipped: Vec::new(),
             warnings: vec!["a \"quoted\"\nwarning".into()],
-            settings: Settings::parse_from(["contact-dd-mpi", "problem.h5"]).resolved(),
+            settings_from: settings.from.clone(),
+            settings,
             version: "0.1.0".into(),
             build: Build::of_this_program("MPI".into()),
         }
@@ -349,6 +352,7 @@ mod tests {
                 "reactions",
                 "seconds",
                 "settings",
+                "settings_from",
                 "skipped",
                 "status",
                 "steps",

@@ -94,7 +94,7 @@ impl Resultants {
 ///
 /// # Errors
 /// `out` can't be written.
-pub fn print(out: &mut impl Write, resultants: &Resultants) -> Result<()> {
+pub fn print(out: &mut dyn Write, resultants: &Resultants) -> Result<()> {
     let Resultants {
         contacts,
         reactions,
@@ -138,13 +138,13 @@ fn pad(name: &str, width: usize) -> String {
     format!("{name:<width$}")
 }
 
-fn forces(out: &mut impl Write, resultant: &Resultant) -> Result<()> {
+fn forces(out: &mut dyn Write, resultant: &Resultant) -> Result<()> {
     let [x, y, _] = resultant.force;
     let [.., z] = resultant.moment;
     write!(out, " {x:>12.4e} {y:>12.4e} {z:>12.4e}")
 }
 
-fn more(out: &mut impl Write, count: usize) -> Result<()> {
+fn more(out: &mut dyn Write, count: usize) -> Result<()> {
     match count.checked_sub(LINES) {
         Some(rest @ 1..) => writeln!(out, "… and {rest} more in the report"),
         _ => Ok(()),

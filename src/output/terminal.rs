@@ -1,16 +1,24 @@
 //! What the root rank prints: plain lines of fixed columns, the same on a terminal and in a log.
 //!
-//! Every function writes whole lines to `out`; whether to print at all is the caller's business.
+//! Every function writes whole lines to `out`; whether to print at all, and whether to show colours, is
+//! the caller's business.
+
+mod timing;
 
 use std::io::{Result, Write};
 use std::path::Path;
 
+use anstyle::{AnsiColor, Style};
+use contact_dd_partition::message::{ERROR, WARNING};
 use contact_dd_partition::problem::LoadStep;
 
-use super::report::{PhaseSeconds, RankReport, Report, StepReport};
+use super::report::{Report, Status, StepReport};
 use super::resultants;
 use crate::certificate::Certificate;
 use crate::plan::demand::Demand;
+
+/// How the reason is shown for which sweeps ended well.
+const CONVERGED: Style = AnsiColor::Green.on_default();
 
 /// What is to be solved, and on what.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +63,7 @@ pub struct SweepLine {
 ///
 /// # Errors
 /// `out` can't be written.
-pub fn demands(out: &mut impl Write, demands: &[Demand], available: f64) -> Result<()> {
+pub fn demands(out: &mut dyn Write, demands: &[Demand], available: f64) -> Result<()> {
     let gigabytes = |bytes: f64| bytes / 1e9;
     let all: f64 = demands.iter().map(|demand| demand.bytes).sum();
     let most = demands.iter().fold(0.0, |m: f64, d| m.max(d.bytes));
@@ -81,7 +89,7 @@ pub fn demands(out: &mut impl Write, demands: &[Demand], available: f64) -> Resu
 ///
 /// # Errors
 /// `out` can't be written.
-pub fn summary(out: &mut impl Write, summary: &Summary) -> Result<()> {
+pub fn summary(out: &mut dyn Write, summary: &Summary) -> Result<()> {
     let Summary {
         problem,
         title,
@@ -120,7 +128,7 @@ pub fn summary(out: &mut impl Write, summary: &Summary) -> Result<()> {
 ///
 /// # Errors
 /// `out` can't be written.
-pub fn settings(out: &mut impl Write, settings: &[(&str, String)]) -> Result<()> {
+pub fn settings(out: &mut dyn Write, settings: &[(&str, String)]) -> Result<()> {
     writeln!(out)?;
     for (name, value) in settings {
         entry(out, name, value)?;
@@ -132,7 +140,7 @@ pub fn settings(out: &mut impl Write, settings: &[(&str, String)]) -> Result<()>
 ///
 /// # Errors
 /// `out` can't be written.
-pub fn step(out: &mut impl Write, step: &LoadStep, k: usize, count: usize) -> Result<()> {
+pub fn step(out: &mut dyn Write, step: &LoadStep, k: usize, count: usize) -> Result<()> {
     writeln!(out)?;
     writeln!(
         out,
@@ -147,7 +155,7 @@ pub fn step(out: &mut impl Write, step: &LoadStep, k: usize, count: usize) -> Re
 ///
 /// # Errors
 /// `out` can't be written.
-pub fn sweep_header(out: &mut impl Write) -> Result<()> {
+pub fn sweep_header(out: &mut dyn Write) -> Result<()> {
     writeln!(out)?;
     writeln!(
         out,
@@ -160,7 +168,7 @@ pub fn sweep_header(out: &mut impl Write) -> Result<()> {
 ///
 /// # Errors
 /// `out` can't be written.
-pub fn sweep(out: &mut impl Write, line: &SweepLine) -> Result<()> {
+pub fn sweep(out: &mut dyn Write, line: &SweepLine) -> Result<()> {
     let changed = line.changed.map_or("-".into(), |count| count.to_string());
     writeln!(
         out,
@@ -174,9 +182,13 @@ pub fn sweep(out: &mut impl Write, line: &SweepLine) -> Result<()> {
 ///
 /// # Errors
 /// `out` can't be written.
-pub fn closing(out: &mut impl Write, reason: &str, report: &Report, result: &Path) -> Result<()> {
+pub fn closing(out: &mut dyn Write, reason: &str, report: &Report, result: &Path) -> Result<()> {
+    let style = match report.status {
+        Status::Converged => CONVERGED,
+        Status::NotConverged => ERROR,
+    };
     writeln!(out)?;
-    writeln!(out, "{reason}")?;
+    writeln!(out, "{style}{reason}{style:#}")?;
     writeln!(out)?;
     certificate(out, &report.certificate)?;
     if let Some(condition) = report.condition {
@@ -193,7 +205,7 @@ pub fn closing(out: &mut impl Write, reason: &str, report: &Report, result: &Pat
     steps(out, &report.steps)?;
     resultants::print(out, &report.resultants)?;
     writeln!(out)?;
-    timing(out, &report.per_rank)?;
+    timing::print(out, &report.per_rank)?;
     writeln!(out)?;
     for skipped in &report.skipped {
         writeln!(out, "skipped: {skipped}")?;
@@ -202,13 +214,13 @@ pub fn closing(out: &mut impl Write, reason: &str, report: &Report, result: &Pat
         writeln!(out, "fall-back: {fallback}")?;
     }
     for warning in &report.warnings {
-        writeln!(out, "warning: {warning}")?;
+        writeln!(out, "{WARNING}warning:{WARNING:#} {warning}")?;
     }
     writeln!(out, "results: {}", result.display())
 }
 
 /// Prints a line a load step; nothing where there is none.
-fn steps(out: &mut impl Write, steps: &[StepReport]) -> Result<()> {
+fn steps(out: &mut dyn Write, steps: &[StepReport]) -> Result<()> {
     if steps.is_empty() {
         return Ok(());
     }
@@ -238,7 +250,7 @@ fn steps(out: &mut impl Write, steps: &[StepReport]) -> Result<()> {
 ///
 /// # Errors
 /// `out` can't be written.
-pub fn certificate(out: &mut impl Write, certificate: &Certificate) -> Result<()> {
+pub fn certificate(out: &mut dyn Write, certificate: &Certificate) -> Result<()> {
     let Certificate {
         equilibrium,
         equilibrium_of_load,
@@ -262,67 +274,7 @@ pub fn certificate(out: &mut impl Write, certificate: &Certificate) -> Result<()
     )
 }
 
-/// Prints the time that each phase took over the ranks, and its share of the mean total.
-///
-/// # Errors
-/// `out` can't be written.
-pub fn timing(out: &mut impl Write, ranks: &[RankReport]) -> Result<()> {
-    let seconds: Vec<PhaseSeconds> = ranks.iter().map(|rank| rank.seconds).collect();
-    let totals: Vec<f64> = seconds.iter().map(|rank| rank.total).collect();
-    let total = Spread::of(&totals);
-    writeln!(
-        out,
-        "{:<10}  {:>10}  {:>10}  {:>10}  {:>7}",
-        "seconds", "min", "mean", "max", "share"
-    )?;
-    for (p, (name, _)) in PhaseSeconds::default().phases().into_iter().enumerate() {
-        let phase: Vec<f64> = seconds.iter().map(|rank| rank.phases()[p].1).collect();
-        Spread::of(&phase).print(out, name, total.mean)?;
-    }
-    total.print(out, "total", total.mean)?;
-    let memory = ranks.iter().map(|rank| rank.peak_memory_bytes);
-    let mebibytes = |bytes: u64| bytes as f64 / f64::from(1 << 20);
-    writeln!(
-        out,
-        "memory      {:.0} MiB on all ranks, {:.0} MiB on the largest",
-        mebibytes(memory.clone().sum()),
-        mebibytes(memory.max().unwrap_or(0)),
-    )
-}
-
-/// Least, mean and largest of a time over the ranks.
-struct Spread {
-    min: f64,
-    mean: f64,
-    max: f64,
-}
-
-impl Spread {
-    fn of(values: &[f64]) -> Self {
-        let count = values.len().max(1) as f64;
-        let max = values.iter().copied().fold(0.0, f64::max);
-        Self {
-            min: values.iter().copied().fold(max, f64::min),
-            mean: values.iter().sum::<f64>() / count,
-            max,
-        }
-    }
-
-    fn print(&self, out: &mut impl Write, name: &str, whole: f64) -> Result<()> {
-        let Self { min, mean, max } = self;
-        let share = if whole > 0.0 {
-            100.0 * mean / whole
-        } else {
-            0.0
-        };
-        writeln!(
-            out,
-            "{name:<10}  {min:>10.4}  {mean:>10.4}  {max:>10.4}  {share:>5.1} %"
-        )
-    }
-}
-
-fn entry(out: &mut impl Write, name: &str, value: impl std::fmt::Display) -> Result<()> {
+fn entry(out: &mut dyn Write, name: &str, value: impl std::fmt::Display) -> Result<()> {
     writeln!(out, "  {name:<12} {value}")
 }
 
@@ -335,7 +287,7 @@ fn counted(count: usize, noun: &str) -> String {
 mod tests {
     use super::*;
 
-    fn printed(print: impl FnOnce(&mut Vec<u8>) -> Result<()>) -> String {
+    fn printed(print: impl FnOnce(&mut dyn Write) -> Result<()>) -> String {
         let mut out = Vec::new();
         print(&mut out).unwrap();
         String::from_utf8(out).unwrap()
@@ -370,36 +322,6 @@ mod tests {
             let line = printed(|out| sweep(out, &line));
             assert_eq!(ends(line.trim_end_matches('\n')), header, "{line}");
         }
-    }
-
-    #[test]
-    fn the_timing_table_spans_from_the_fastest_to_the_slowest_rank() {
-        let rank = |factorize: f64| RankReport {
-            seconds: PhaseSeconds {
-                total: 8.0,
-                factorize,
-                ..PhaseSeconds::default()
-            },
-            peak_memory_bytes: 3 << 20,
-            bytes_sent: 0,
-            subdomains: 1,
-            repeated: 0,
-        };
-        let table = printed(|out| timing(out, &[rank(1.0), rank(2.0), rank(6.0)]));
-        let row = |name| {
-            let row = table.lines().find(|line| line.starts_with(name)).unwrap();
-            row.split_whitespace().skip(1).collect::<Vec<_>>().join(" ")
-        };
-        assert_eq!(row("factorize"), "1.0000 3.0000 6.0000 37.5 %");
-        assert_eq!(row("total"), "8.0000 8.0000 8.0000 100.0 %");
-        assert!(row("memory").starts_with("9 MiB on all ranks, 3 MiB"));
-    }
-
-    #[test]
-    fn no_rank_and_no_time_print_no_nonsense() {
-        let table =
-            printed(|out| timing(out, &[])) + &printed(|out| timing(out, &[RankReport::default()]));
-        assert!(!table.contains("NaN") && !table.contains("inf"), "{table}");
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::error::Failure;
 use crate::fem::assembly::Spring;
 use crate::fem::dofs::Dofs;
 use crate::interface::numbering::check_agreement;
-use crate::output::progress::Progress;
+use crate::output::bar::Bar;
 use crate::rigid::survey::Survey;
 use crate::schur::condensed::Condensed;
 use crate::schur::local::LocalSchur;
@@ -56,7 +56,7 @@ pub fn condense_clusters(
     condensation: &Condensation<'_>,
     blocks: &BTreeMap<usize, OwnedBlock>,
     survey: &Survey,
-    progress: &Progress,
+    bar: &Bar,
 ) -> Result<CondensedBlocks, Failure> {
     let plan = condensation.plan;
     let mut merging = Merging {
@@ -80,7 +80,7 @@ pub fn condense_clusters(
         }
         merging.own_node(v)?;
         if v < plan.blocks.len() {
-            progress.advance();
+            bar.advance();
         }
         Ok(())
     });

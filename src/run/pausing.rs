@@ -31,7 +31,7 @@ impl<'a> Checkpoints<'a> {
     /// Checkpoints beside the result.
     pub fn new(settings: &'a Settings) -> Self {
         let beside = |suffix: &str| {
-            let mut name = OsString::from(settings.result_path());
+            let mut name = OsString::from(&settings.output);
             name.push(suffix);
             PathBuf::from(name)
         };

@@ -1,40 +1,26 @@
-//! What a run says of itself: on the terminal, in the report, in the result file.
-
-use std::collections::BTreeSet;
-use std::io::stdout;
+//! What a run says of itself when it is done: in the report and in the result file.
 
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
 
 use super::totals::{StepTotals, Totals};
-use crate::checkpoint::Checkpoint;
 use crate::comm::{self, Comm, Message};
 use crate::error::Failure;
-use crate::interface::operator::Interface;
 use crate::output::build::Build;
 use crate::output::memory::peak_memory_bytes;
 use crate::output::report::{PhaseSeconds, RankReport, Report, ReportFile};
 use crate::output::result::ConvergenceRow;
 use crate::output::resultants::Resultants;
-use crate::output::terminal::{self, Summary, SweepLine};
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
-use crate::plan::demand::Demand;
-use crate::rigid::survey::Survey;
 use crate::settings::Settings;
-use crate::sweep::{SweepRecord, SweepStatus};
+use crate::sweep::SweepStatus;
 
 /// Pivot relative to its diagonal entry that may as well be zero.
 const SUSPICIOUS_PIVOT: f64 = 1e-13;
 
 /// Condition number from which round-off is worth a warning.
 const BAD_CONDITION: f64 = 1e10;
-
-/// Prints on the root what a user wants to follow, and nothing elsewhere.
-pub struct Narrator<'a> {
-    comm: &'a Comm,
-    settings: &'a Settings,
-}
 
 /// The files of a run, still under temporary names. On the root.
 #[derive(Debug)]
@@ -45,96 +31,16 @@ pub struct Outputs {
     pub report: Option<ReportFile>,
 }
 
-impl<'a> Narrator<'a> {
-    /// Speaks on the root unless `settings` ask for quiet.
-    pub fn new(comm: &'a Comm, settings: &'a Settings) -> Self {
-        Self { comm, settings }
-    }
-
-    fn speaks(&self) -> bool {
-        self.comm.is_root() && !self.settings.quiet
-    }
-
-    /// What is to be solved, and how.
-    pub fn problem(&self, catalog: &Catalog, plan: &Plan) {
-        if !self.speaks() {
-            return;
-        }
-        let summary = Summary {
-            problem: &self.settings.problem,
-            title: &catalog.title,
-            dofs: dofs(catalog),
-            interface_dofs: catalog.dim * plan.sharing.iter().filter(|&&n| n > 1).count(),
-            subdomains: catalog.subdomains.len(),
-            contact_pairs: plan.pairs.len(),
-            contact_conditions: conditions(catalog),
-            ranks: self.comm.size(),
-            threads: usize::from(self.settings.threads),
-        };
-        // A closed pipe is no reason to stop a run that writes its results to a file.
-        let _ = terminal::summary(&mut stdout(), &summary);
-        if !self.settings.check {
-            let _ = terminal::settings(&mut stdout(), &self.settings.in_words());
-        }
-    }
-
-    /// What validating found, and what solving would cost.
-    pub fn check(&self, surveys: &[Survey], demands: &[Demand], available: f64) {
-        let all = surveys.iter().flat_map(|survey| &survey.motions.warnings);
-        let warnings: BTreeSet<&String> = all.collect();
-        if self.comm.is_root() {
-            for warning in warnings {
-                eprintln!("warning: {warning}");
-            }
-        }
-        if self.speaks() {
-            let _ = terminal::demands(&mut stdout(), demands, available);
-            println!("\nthe problem file is valid");
-        }
-    }
-
-    /// Which load step comes, where there are any.
-    pub fn step(&self, catalog: &Catalog, k: usize) {
-        if let Some(step) = catalog.steps.get(k).filter(|_| self.speaks()) {
-            let _ = terminal::step(&mut stdout(), step, k, catalog.steps.len());
-        }
-    }
-
-    /// The head of the table of sweeps, if there are going to be any, and those of an `earlier` run.
-    pub fn sweeps(&self, interface: &Interface, earlier: Option<&Checkpoint>) {
-        if self.speaks() && !interface.pair_traces.is_empty() {
-            let _ = terminal::sweep_header(&mut stdout());
-        }
-        let earlier = earlier.map(|checkpoint| &checkpoint.progress.records[..]);
-        for record in earlier.unwrap_or_default() {
-            self.sweep(interface, record);
-        }
-    }
-
-    /// One sweep.
-    pub fn sweep(&self, interface: &Interface, record: &SweepRecord) {
-        if self.speaks() && !interface.pair_traces.is_empty() {
-            let line = SweepLine {
-                sweep: record.sweep,
-                residual: record.residual,
-                active: record.active,
-                changed: (record.sweep > 0).then_some(record.changed),
-                seconds: record.seconds,
-            };
-            let _ = terminal::sweep(&mut stdout(), &line);
-        }
-    }
-
-    /// Finishes the result file and writes the report. On the root.
+impl Outputs {
+    /// Finishes the result file and writes the report.
     ///
     /// # Errors
     /// One of them can't be written.
-    pub fn finish(&self, totals: &Totals<'_>, outputs: Outputs) -> Result<(), Failure> {
-        let Outputs {
-            result: mut file,
+    pub fn finish(self, totals: &Totals<'_>, report: &Report) -> Result<(), Failure> {
+        let Self {
+            mut result,
             report: report_file,
-        } = outputs;
-        let report = report(totals, self.settings, self.comm);
+        } = self;
         let sweeps = (totals.steps.iter().enumerate())
             .flat_map(|(k, step)| step.outcome.records.iter().map(move |r| (k, r)));
         let rows: Vec<ConvergenceRow> = sweeps
@@ -145,22 +51,10 @@ impl<'a> Narrator<'a> {
                 seconds: r.seconds,
             })
             .collect();
-        file.write_convergence(&rows)?;
-        file.finish(&report.to_json())?;
+        result.write_convergence(&rows)?;
+        result.finish(&report.to_json())?;
         if let Some(file) = report_file {
-            file.write(&report)?;
-        }
-        if self.speaks() {
-            let reason = reason(totals);
-            let result = self.settings.result_path();
-            let _ = terminal::closing(&mut stdout(), &reason, &report, &result);
-        } else {
-            for warning in &report.warnings {
-                eprintln!("warning: {warning}");
-            }
-        }
-        for why in failures(totals) {
-            eprintln!("error: not converged: {why}");
+            file.write(report)?;
         }
         Ok(())
     }
@@ -215,7 +109,8 @@ pub fn collect(
         .collect()
 }
 
-fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
+/// Makes the report. On the root.
+pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
     let Totals { catalog, plan, .. } = totals;
     let seconds: Vec<PhaseSeconds> = totals.ranks.iter().map(|r| r.seconds).collect();
     let mut warnings = catalog.warnings.clone();
@@ -280,7 +175,8 @@ fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         steps: totals.step_reports(),
         skipped: skipped(totals),
         warnings,
-        settings: settings.resolved(),
+        settings: settings.clone(),
+        settings_from: settings.from.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
         build: Build::of_this_program(comm::library()),
     }
@@ -338,7 +234,8 @@ fn skipped(totals: &Totals<'_>) -> Vec<String> {
     skipped
 }
 
-fn reason(totals: &Totals<'_>) -> String {
+/// Why the sweeps ended, in words.
+pub(super) fn reason(totals: &Totals<'_>) -> String {
     let sweeps: usize = totals.steps.iter().map(StepTotals::sweeps).sum();
     let in_the_end = match totals.catalog.steps.is_empty() {
         true => "",
@@ -348,8 +245,9 @@ fn reason(totals: &Totals<'_>) -> String {
         Some(why) => format!("not converged: {why}"),
         None if totals.plan.pairs.is_empty() => "solved: the scene is linear".into(),
         None => format!(
-            "converged after {sweeps} sweeps: the residual is below the tolerance and no contact \
+            "converged after {sweeps} sweep{}: the residual is below the tolerance and no contact \
              changes any more; {} of {} conditions are closed{in_the_end}",
+            if sweeps == 1 { "" } else { "s" },
             totals.last().map_or(0, |step| step.active),
             conditions(totals.catalog)
         ),
@@ -357,7 +255,7 @@ fn reason(totals: &Totals<'_>) -> String {
 }
 
 /// Why load steps didn't converge.
-fn failures(totals: &Totals<'_>) -> Vec<String> {
+pub(super) fn failures(totals: &Totals<'_>) -> Vec<String> {
     let of_step = |(k, step): (usize, &StepTotals)| {
         let SweepStatus::NotConverged(why) = &step.outcome.status else {
             return None;
@@ -376,12 +274,13 @@ fn failures(totals: &Totals<'_>) -> Vec<String> {
 }
 
 /// Number of dofs, those of shared nodes counted once.
-fn dofs(catalog: &Catalog) -> usize {
+pub(super) fn dofs(catalog: &Catalog) -> usize {
     let nodes: usize = catalog.subdomains.iter().map(|s| s.nodes).sum();
     let copies: usize = catalog.interface.iter().map(Vec::len).sum();
     catalog.dim * (nodes - copies + catalog.interface_nodes)
 }
 
-fn conditions(catalog: &Catalog) -> usize {
+/// Number of contact conditions.
+pub(super) fn conditions(catalog: &Catalog) -> usize {
     catalog.contacts.iter().map(|c| c.conditions).sum()
 }

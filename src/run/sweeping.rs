@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use super::narrator::Narrator;
 use super::pausing::Checkpoints;
-use super::report::Narrator;
 use crate::comm::Comm;
 use crate::contact::pair::ContactPair;
 use crate::error::Failure;
@@ -62,7 +62,7 @@ impl Sweeping<'_> {
         // Picard's relaxation is that of the contacts that the bilateral solution leaves closed.
         let before = before.filter(|_| self.settings.method != Method::Picard);
         let start = match (checkpoints.restore(earlier, interface, s_con)?, before) {
-            (Some((progress, state)), _) => Start::Earlier(progress, state),
+            (Some((progress, state)), _) => Start::Earlier(Box::new(progress), state),
             (None, Some(before)) => Start::Before(before.u.clone(), before.open.clone()),
             (None, None) => Start::Bilateral,
         };

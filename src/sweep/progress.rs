@@ -29,7 +29,7 @@ impl Progress {
         Self {
             u,
             records: Vec::new(),
-            memory: method.memory(),
+            memory: Memory::before(method),
             has_fallen_back: false,
             totals: ConTotals::default(),
             notes: Vec::new(),

@@ -57,6 +57,7 @@ fn main() -> ExitCode {
     trials.once("equal_subdomains_are_factorized_once", one_factorization);
     trials.once("memory_is_about_what_was_estimated", memory);
     bad_input::bad_input(&mut trials);
+    bad_input::bad_settings(&mut trials);
     bad_input::bad_usage(&mut trials);
     endings::no_equilibrium(&mut trials);
     resting::no_rest(&mut trials);

@@ -181,6 +181,10 @@ fn read(container: &Container) -> Data {
         TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_) => {
             Data::Integers(container.read_raw().unwrap())
         }
+        TypeDescriptor::Boolean => {
+            let truths: Vec<bool> = container.read_raw().unwrap();
+            Data::Integers(truths.into_iter().map(i64::from).collect())
+        }
         TypeDescriptor::Float(_) => Data::Reals(container.read_raw().unwrap()),
         TypeDescriptor::VarLenUnicode => {
             let texts = container.read_raw::<VarLenUnicode>().unwrap();

@@ -10,6 +10,7 @@ use super::support::sorts::sort;
 const SCENE: &str = "
 title = 'Everything'
 plane = 'strain'
+solver = {method = 'anderson', tolerance = 1e-9, max_sweeps = 99, relaxation = 0.5, no_stress = false}
 materials.rock = {young = 20e9, poisson = 0.22}
 materials.steel = {young = 210e9, poisson = 0.3}
 bodies.base = {material = 'rock', body_force = [0.0, -25e3]}
@@ -45,7 +46,7 @@ value = 1e6
 ";
 
 /// Three blocks of quadratic cells of all kinds on a table, in matching and mortar contact, with
-/// supports, forces in two load steps, a hierarchy and a warning.
+/// supports, forces in two load steps, a hierarchy, settings and a warning.
 pub fn everything() -> Problem {
     let mesh = Blocks::new()
         .rectangle("base", [0.0, 2.0], [0.0, 1.0], [6, 3])

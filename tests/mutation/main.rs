@@ -30,7 +30,7 @@ use support::solver::{LIMIT, program};
 use walk::{Place, places};
 
 /// Where a change makes another problem that nothing in the file contradicts.
-const FREE: [&str; 27] = [
+const FREE: [&str; 32] = [
     "/@title",
     "/@plane",
     "/VTKHDF/Points",
@@ -42,6 +42,11 @@ const FREE: [&str; 27] = [
     "/materials/out_of_plane",
     "/materials/poisson",
     "/hierarchy/parent",
+    "/settings/@max_sweeps",
+    "/settings/@method",
+    "/settings/@no_stress",
+    "/settings/@relaxation",
+    "/settings/@tolerance",
     "/warnings",
     "/steps/name",
     "/steps/time",
@@ -207,6 +212,11 @@ fn what_is_dropped_is_missed_unless_the_format_says_that_it_may_be() {
             "/hierarchy/parent",
             "/materials/out_of_plane",
             "/materials/poisson",
+            "/settings/@max_sweeps",
+            "/settings/@method",
+            "/settings/@no_stress",
+            "/settings/@relaxation",
+            "/settings/@tolerance",
             "/warnings",
         ]
     );

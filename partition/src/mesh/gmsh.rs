@@ -25,6 +25,7 @@ use self::content::Content;
 use self::cursor::{Cursor, Encoding};
 use super::Mesh;
 use crate::error::InputError;
+use crate::file_kind::FileKind;
 use crate::source;
 
 pub use self::write::write;
@@ -38,7 +39,7 @@ const HEAD: u64 = 1 << 20;
 /// What is wrong with the file and where: the line of an ASCII file, section and byte of a binary
 /// one, tags of nodes and elements.
 pub fn read(path: &Path) -> Result<Mesh, InputError> {
-    read_unnamed(path).map_err(|e| e.in_file(path))
+    read_unnamed(path).map_err(|e| FileKind::explain(FileKind::Mesh, path, e).in_file(path))
 }
 
 fn read_unnamed(path: &Path) -> Result<Mesh, InputError> {

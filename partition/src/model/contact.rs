@@ -17,22 +17,29 @@ use crate::scene::condition::{self, Names, Pairing, Partner};
 /// Gaps are exact to this fraction of the scene's coordinates.
 const ROUNDING: f64 = 1e-12;
 
+/// A direction in which a node is held, and how far in each load step (m).
+struct Held {
+    direction: [f64; 3],
+    values: Vec<f64>,
+}
+
 /// What contacts are made from.
 pub(super) struct Contacts<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
-    /// Directions in which every node is held, and how far in each load step (m).
-    supports: HashMap<u32, Vec<([f64; 3], Vec<f64>)>>,
+    supports: HashMap<u32, Vec<Held>>,
     /// The largest coordinate (m).
     size: f64,
 }
 
 impl<'a> Contacts<'a> {
     pub fn new(mesh: &'a Mesh, topology: &'a Topology, loads: &Loads) -> Self {
-        let mut by_node: HashMap<u32, Vec<([f64; 3], Vec<f64>)>> = HashMap::new();
+        let mut by_node: HashMap<u32, Vec<Held>> = HashMap::new();
         for (i, support) in loads.supports.iter().enumerate() {
-            let held = by_node.entry(support.node).or_default();
-            held.push((support.direction, loads.values(i)));
+            by_node.entry(support.node).or_default().push(Held {
+                direction: support.direction,
+                values: loads.values(i),
+            });
         }
         let coordinates = mesh.points.iter().flatten();
         Self {
@@ -147,11 +154,11 @@ impl<'a> Contacts<'a> {
         let mut approaches = Vec::new();
         for &(node, row) in &condition.entries {
             let mut free = row;
-            for (direction, values) in self.supports.get(&node)? {
-                let along = dot(row, *direction);
-                free = advance(free, -along, *direction);
-                approaches.resize(values.len(), 0.0);
-                for (approach, value) in approaches.iter_mut().zip(values) {
+            for held in self.supports.get(&node)? {
+                let along = dot(row, held.direction);
+                free = advance(free, -along, held.direction);
+                approaches.resize(held.values.len(), 0.0);
+                for (approach, value) in approaches.iter_mut().zip(&held.values) {
                     *approach += along * value;
                 }
             }

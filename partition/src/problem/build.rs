@@ -38,6 +38,7 @@ impl Problem {
         let mut catalog = Catalog {
             supports: model.support_names.clone(),
             title: model.title.clone(),
+            solver: model.solver,
             dim: model.mesh.dim,
             plane: model.plane,
             materials: model.materials.clone(),

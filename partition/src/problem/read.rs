@@ -1,5 +1,6 @@
 //! Reads `problem.h5`, a slice at a time.
 
+mod attribute;
 mod catalog;
 mod consistency;
 mod header;
@@ -7,6 +8,7 @@ mod hierarchy;
 mod known;
 mod materials;
 mod rows;
+mod settings;
 mod sizes;
 mod slabs;
 mod subdomain;
@@ -18,6 +20,7 @@ use super::copies::NodeCopies;
 use super::dataset::Dataset;
 use super::{Catalog, ContactRow, Problem, Subdomain};
 use crate::error::InputError;
+use crate::file_kind::FileKind;
 use crate::source;
 
 /// An open problem file whose catalog was read and checked.
@@ -49,7 +52,8 @@ impl ProblemFile {
     /// # Errors
     /// The dataset that is missing or not what it should be.
     pub fn open(path: &Path) -> Result<Self, InputError> {
-        Self::open_unnamed(path).map_err(|error| error.in_file(path))
+        Self::open_unnamed(path)
+            .map_err(|error| FileKind::explain(FileKind::Problem, path, error).in_file(path))
     }
 
     fn open_unnamed(path: &Path) -> Result<Self, InputError> {

@@ -47,7 +47,7 @@ pub struct Summary {
     pub contact_conditions: usize,
     /// Contacts.
     pub contacts: Vec<ContactSummary>,
-    /// How the sides of each contact are paired, in words; nothing where there are no two.
+    /// How the sides of each contact are paired, in words.
     pub pairings: Vec<&'static str>,
     /// Groups in contact.
     pub groups: Vec<GroupSummary>,
@@ -105,7 +105,7 @@ impl Problem {
         let mut pairings = vec![""; self.catalog.contacts.len()];
         for row in self.rows.iter().flatten() {
             pairings[row.contact as usize] = match (row.entries.len(), row.tag_b) {
-                (1, _) => "",
+                (1, _) => ", obstacle",
                 (_, -1) => ", mortar",
                 _ => ", node by node",
             };

@@ -45,13 +45,9 @@ impl Problem {
     fn write_catalog(&self, file: &hdf5::File) -> hdf5::Result<()> {
         let catalog = &self.catalog;
         text(file, "format", FORMAT)?;
-        file.new_attr::<i64>()
-            .create("version")?
-            .write_scalar(&VERSION)?;
+        attribute(file, "version", VERSION)?;
         text(file, "title", &catalog.title)?;
-        file.new_attr::<i64>()
-            .create("dimension")?
-            .write_scalar(&(catalog.dim as i64))?;
+        attribute(file, "dimension", catalog.dim as i64)?;
         let plane = match catalog.plane {
             PlaneState::Strain => "strain",
             PlaneState::Stress => "stress",
@@ -85,9 +81,37 @@ impl Problem {
             steps.strings("name", catalog.steps.iter().map(|step| step.name.as_str()))?;
             steps.column("time", catalog.steps.iter().map(|step| step.time))?;
         }
+        self.write_settings(file)?;
         if !catalog.warnings.is_empty() {
             let root = Section::root(file)?;
             root.strings("warnings", catalog.warnings.iter().map(String::as_str))?;
+        }
+        Ok(())
+    }
+
+    fn write_settings(&self, file: &hdf5::File) -> hdf5::Result<()> {
+        let solver = &self.catalog.solver;
+        if solver.is_empty() {
+            return Ok(());
+        }
+        let settings = file.create_group("settings")?;
+        if let Some(method) = solver.method {
+            text(&settings, "method", method.name())?;
+        }
+        let positive = [
+            ("tolerance", solver.tolerance),
+            ("relaxation", solver.relaxation),
+        ];
+        for (name, value) in positive {
+            if let Some(value) = value {
+                attribute(&settings, name, value.value())?;
+            }
+        }
+        if let Some(count) = solver.max_sweeps {
+            attribute(&settings, "max_sweeps", count as i64)?;
+        }
+        if let Some(left_out) = solver.no_stress {
+            attribute(&settings, "no_stress", left_out)?;
         }
         Ok(())
     }
@@ -263,10 +287,12 @@ impl Section {
     }
 }
 
-fn text(file: &hdf5::File, name: &str, value: &str) -> hdf5::Result<()> {
-    file.new_attr::<VarLenUnicode>()
-        .create(name)?
-        .write_scalar(&variable(value)?)
+fn text(group: &hdf5::Group, name: &str, value: &str) -> hdf5::Result<()> {
+    attribute(group, name, variable(value)?)
+}
+
+fn attribute<T: H5Type>(group: &hdf5::Group, name: &str, value: T) -> hdf5::Result<()> {
+    group.new_attr::<T>().create(name)?.write_scalar(&value)
 }
 
 /// HDF5's strings end at the first NUL.

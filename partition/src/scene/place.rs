@@ -1,4 +1,4 @@
-//! Where in the text of a scene something stands: line and key.
+//! Where in the text of a scene, or of settings, something stands: line and key.
 
 use std::ops::Range;
 
@@ -37,8 +37,8 @@ pub(super) fn error_at(text: &str, path: &[Step], message: &str) -> InputError {
     compose(text, found, path, message)
 }
 
-/// What `toml` or `serde` found, with line and key.
-pub(super) fn located(text: &str, error: &Error) -> InputError {
+/// What `toml` or `serde` found in `text`, with line and key.
+pub fn located(text: &str, error: &Error) -> InputError {
     let start = error.span().map(|span| span.start);
     let path = start
         .and_then(|start| {

@@ -10,6 +10,7 @@ mod contradictions;
 mod files;
 #[path = "../problem_scenes/mod.rs"]
 mod problem_scenes;
+mod settings;
 
 use std::path::Path;
 

@@ -12,6 +12,7 @@ use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::{
     Contact, ContactCondition, Material, Model, PlaneState, Support,
 };
+use contact_dd_partition::solver::SolverSettings;
 
 /// A model under construction on the lattice of whole numbers; nodes are told apart by their
 /// place and a layer, so that two sides of a contact can lie on each other.
@@ -78,6 +79,7 @@ impl Builder {
             .collect();
         let top = self.points.iter().map(|p| p[1]).fold(0.0, f64::max);
         Model {
+            solver: SolverSettings::default(),
             title: "Löwe & Söhne".into(),
             plane: PlaneState::Strain,
             materials: vec![

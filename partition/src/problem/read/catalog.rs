@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::header::Header;
 use super::sizes::Sizes;
-use super::{Offsets, hierarchy, materials};
+use super::{Offsets, hierarchy, materials, settings};
 use crate::decompose::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::problem::dataset::Dataset;
@@ -49,6 +49,7 @@ pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> 
         interface_nodes,
         groups: groups.windows(2).map(|w| w[1] - w[0]).collect(),
         hierarchy: Hierarchy::default(),
+        solver: settings::read(file)?,
         warnings,
     };
     catalog.hierarchy = hierarchy::read(file, &catalog)?;

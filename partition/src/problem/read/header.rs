@@ -1,5 +1,6 @@
 //! The attributes of the file.
 
+use super::attribute::Attribute;
 use crate::error::InputError;
 use crate::model::PlaneState;
 use crate::name;
@@ -88,7 +89,7 @@ fn read_format(file: &hdf5::File) -> Result<(), InputError> {
             "attribute format is \"{format}\"; expected \"{FORMAT}\""
         )));
     }
-    match integer(file, "version")? {
+    match Attribute::open(file, "version")?.integer()? {
         VERSION => Ok(()),
         other => Err(InputError::new(format!(
             "has version {other} of the format; expected {VERSION}"
@@ -97,7 +98,7 @@ fn read_format(file: &hdf5::File) -> Result<(), InputError> {
 }
 
 fn read_dimension(file: &hdf5::File) -> Result<usize, InputError> {
-    match integer(file, "dimension")? {
+    match Attribute::open(file, "dimension")?.integer()? {
         2 => Ok(2),
         other => Err(InputError::new(format!(
             "attribute dimension is {other}; expected 2"
@@ -105,36 +106,6 @@ fn read_dimension(file: &hdf5::File) -> Result<usize, InputError> {
     }
 }
 
-fn attribute(file: &hdf5::File, name: &str) -> Result<hdf5::Attribute, InputError> {
-    let attribute = file
-        .attr(name)
-        .map_err(|_| InputError::new(format!("attribute {name} is missing")))?;
-    match attribute.size() {
-        1 => Ok(attribute),
-        size => Err(InputError::new(format!(
-            "attribute {name} holds {size} values; expected one"
-        ))),
-    }
-}
-
 fn text(file: &hdf5::File, name: &str) -> Result<String, InputError> {
-    let mut strings = read_strings(&*attribute(file, name)?)
-        .map_err(|reason| InputError::new(format!("attribute {name} {reason}")))?;
-    Ok(strings.pop().unwrap_or_default())
-}
-
-fn integer(file: &hdf5::File, name: &str) -> Result<i64, InputError> {
-    use hdf5::types::TypeDescriptor::{Integer, Unsigned};
-    let attribute = attribute(file, name)?;
-    let is_integer = attribute
-        .dtype()
-        .and_then(|dtype| dtype.to_descriptor())
-        .is_ok_and(|dtype| matches!(dtype, Integer(_) | Unsigned(_)));
-    let value = attribute
-        .read_raw::<i64>()
-        .ok()
-        .and_then(|v| v.first().copied());
-    value
-        .filter(|_| is_integer)
-        .ok_or_else(|| InputError::new(format!("attribute {name} isn't an integer")))
+    Attribute::open(file, name)?.text()
 }

@@ -5,12 +5,13 @@ use hdf5::LinkType;
 
 use crate::error::InputError;
 use crate::scene::suggest::nearest;
+use crate::solver::SolverSettings;
 
 /// Groups that may hold what they like for ParaView.
 const FREE: [&str; 2] = ["/VTKHDF/PointData", "/VTKHDF/CellData"];
 
 /// What each of the other groups may hold.
-const KNOWN: [(&str, &[&str]); 11] = [
+const KNOWN: [(&str, &[&str]); 12] = [
     (
         "/",
         &[
@@ -23,6 +24,7 @@ const KNOWN: [(&str, &[&str]); 11] = [
             "support",
             "force",
             "contact",
+            "settings",
             "steps",
             "warnings",
         ],
@@ -55,6 +57,7 @@ const KNOWN: [(&str, &[&str]); 11] = [
         &["offset", "node", "direction", "value", "condition", "name"],
     ),
     ("/force", &["offset", "node", "value"]),
+    ("/settings", &[]),
     ("/steps", &["name", "time"]),
     (
         "/contact",
@@ -78,8 +81,11 @@ const KNOWN: [(&str, &[&str]); 11] = [
     ),
 ];
 
-/// Attributes of `/`.
-const ATTRIBUTES: &[&str] = &["format", "version", "title", "dimension", "plane"];
+/// Attributes of the groups that have any.
+const ATTRIBUTES: [(&str, &[&str]); 2] = [
+    ("/", &["format", "version", "title", "dimension", "plane"]),
+    ("/settings", &SolverSettings::NAMES),
+];
 
 /// Checks that the file holds nothing but what is known.
 ///
@@ -87,10 +93,19 @@ const ATTRIBUTES: &[&str] = &["format", "version", "title", "dimension", "plane"
 /// The first name that isn't, with the nearest that is.
 pub(super) fn check(file: &hdf5::File) -> Result<(), InputError> {
     let unreadable = |what: &str| InputError::new(format!("{what} can't be read"));
-    let attributes = file
-        .attr_names()
-        .map_err(|_| unreadable("the list of attributes"))?;
-    refuse("attribute ", attributes, ATTRIBUTES)?;
+    for (path, known) in ATTRIBUTES {
+        let Ok(group) = file.group(path) else {
+            continue;
+        };
+        let attributes = group
+            .attr_names()
+            .map_err(|_| unreadable("the list of attributes"))?;
+        let place = match path {
+            "/" => "attribute ".to_owned(),
+            _ => format!("attribute {path}/"),
+        };
+        refuse(&place, attributes, known)?;
+    }
     let known = KNOWN.map(|(path, known)| (path, Some(known)));
     for (path, known) in known.into_iter().chain(FREE.map(|path| (path, None))) {
         // What is missing, or is no group, is found where its datasets are opened.
@@ -128,7 +143,11 @@ fn refuse(place: &str, mut names: Vec<String>, known: &[&str]) -> Result<(), Inp
     let Some(name) = unknown else {
         return Ok(());
     };
-    let near = nearest(name, known.iter().copied()).unwrap_or_default();
+    let Some(near) = nearest(name, known.iter().copied()) else {
+        return Err(InputError::new(format!(
+            "{place}{name} isn't known; expected attributes alone"
+        )));
+    };
     Err(InputError::new(format!(
         "{place}{name} isn't known; did you mean '{near}'? Known here: {}",
         known.join(", ")

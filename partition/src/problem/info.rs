@@ -1,0 +1,232 @@
+//! What a problem file holds, for people.
+
+use std::collections::BTreeSet;
+use std::fmt;
+use std::fs;
+use std::path::Path;
+
+use super::read::ProblemFile;
+use super::summary::Summary;
+use super::{Problem, VERSION};
+use crate::error::InputError;
+use crate::model::{Material, PlaneState};
+
+/// Most lines about things of one kind.
+const MOST: usize = 20;
+
+/// What a problem file holds; its `Display` is what `contact-dd-partition --info` prints.
+#[derive(Clone, Debug)]
+pub struct Info {
+    problem: Problem,
+    summary: Summary,
+    /// Name of the file.
+    name: String,
+    /// Its size (bytes).
+    bytes: u64,
+}
+
+impl Info {
+    /// Reads and checks all of a problem file.
+    ///
+    /// # Errors
+    /// It isn't one, or the dataset and the row that isn't what it should be.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let problem = ProblemFile::open(path)?.problem()?;
+        Ok(Self {
+            summary: problem.summary(),
+            problem,
+            name: path.display().to_string(),
+            bytes: fs::metadata(path).map_or(0, |data| data.len()),
+        })
+    }
+
+    /// Sum of all loads (N per metre of thickness), and their moment about the origin (N).
+    pub fn load(&self) -> ([f64; 3], f64) {
+        let (mut force, mut moment) = ([0.0; 3], 0.0);
+        for subdomain in &self.problem.subdomains {
+            for &(node, [x, y, z]) in &subdomain.forces {
+                let at = subdomain.points[node as usize];
+                force[0] += x;
+                force[1] += y;
+                force[2] += z;
+                moment += at[0] * y - at[1] * x;
+            }
+        }
+        (force, moment)
+    }
+
+    /// How many nodes each condition of the scene supports, by name.
+    pub fn supported_nodes(&self) -> Vec<(&str, usize)> {
+        let names = &self.problem.catalog.supports;
+        let mut nodes = vec![BTreeSet::new(); names.len()];
+        for subdomain in &self.problem.subdomains {
+            for support in &subdomain.supports {
+                if let Some(nodes) = nodes.get_mut(support.condition as usize) {
+                    nodes.insert(subdomain.node_tags[support.node as usize]);
+                }
+            }
+        }
+        let names = names.iter().map(String::as_str);
+        names.zip(nodes.iter().map(BTreeSet::len)).collect()
+    }
+
+    /// Most merges between a subdomain and a root of the hierarchy.
+    pub fn depth(&self) -> usize {
+        let parent = &self.problem.catalog.hierarchy.parent;
+        let mut depth = vec![0; parent.len()];
+        // Parents come after their children.
+        for (node, above) in parent.iter().enumerate().rev() {
+            depth[node] = above.map_or(0, |above| depth[above as usize] + 1);
+        }
+        depth.into_iter().max().unwrap_or(0)
+    }
+
+    fn sizes(&self) -> String {
+        let cells = self.problem.catalog.subdomains.iter().map(|s| s.cells);
+        let (least, most) = (cells.clone().min(), cells.clone().max());
+        let count = self.summary.subdomains.max(1);
+        format!(
+            "{} to {} cells, {:.0} in the mean",
+            least.unwrap_or(0),
+            most.unwrap_or(0),
+            cells.sum::<usize>() as f64 / count as f64
+        )
+    }
+
+    fn bodies(&self) -> Vec<String> {
+        let catalog = &self.problem.catalog;
+        let bodies = catalog.bodies.iter().enumerate().map(|(index, body)| {
+            let of_body = || catalog.subdomains.iter().filter(|s| s.body == index);
+            format!(
+                "{}: {} cells in {} subdomains",
+                body.name,
+                of_body().map(|s| s.cells).sum::<usize>(),
+                of_body().count()
+            )
+        });
+        bodies.collect()
+    }
+
+    /// The least and the largest gap of every contact (m).
+    fn gaps(&self) -> Vec<String> {
+        let contacts = self.problem.catalog.contacts.iter().enumerate();
+        let gaps = contacts.filter_map(|(index, contact)| {
+            let rows = self.problem.rows.iter().flatten();
+            let gaps = rows
+                .filter(|row| row.contact as usize == index)
+                .map(|row| row.gap);
+            let least = gaps.clone().reduce(f64::min)?;
+            let most = gaps.reduce(f64::max)?;
+            Some(match least == most {
+                true => format!("{} m on {}", rounded(least), contact.name),
+                false => format!(
+                    "{} to {} m on {}",
+                    rounded(least),
+                    rounded(most),
+                    contact.name
+                ),
+            })
+        });
+        gaps.collect()
+    }
+}
+
+impl fmt::Display for Info {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let catalog = &self.problem.catalog;
+        let plane = match catalog.plane {
+            PlaneState::Strain => "strain",
+            PlaneState::Stress => "stress",
+        };
+        let entry =
+            |f: &mut fmt::Formatter<'_>, name: &str, value: &str| writeln!(f, "{name:<13} {value}");
+        entry(f, "title", &catalog.title)?;
+        let size = format!(
+            "{}, {:.1} MB, version {VERSION} of the format",
+            self.name,
+            self.bytes as f64 / 1e6
+        );
+        entry(f, "file", &size)?;
+        entry(f, "plane", plane)?;
+        writeln!(f, "{}", self.summary)?;
+        entry(f, "sizes", &self.sizes())?;
+        entry(f, "depth", &format!("{} merges at most", self.depth()))?;
+        let supports = self.supported_nodes();
+        let supports = supports
+            .iter()
+            .map(|(name, nodes)| format!("{name}: {nodes} nodes"));
+        let lists = [
+            ("gap", self.gaps()),
+            ("body", self.bodies()),
+            ("material", catalog.materials.iter().map(elastic).collect()),
+            ("support", supports.collect()),
+        ];
+        for (name, lines) in lists {
+            for line in lines.iter().take(MOST) {
+                entry(f, name, line)?;
+            }
+            if lines.len() > MOST {
+                entry(f, name, &format!("and {} more", lines.len() - MOST))?;
+            }
+        }
+        let ([x, y, _], moment) = self.load();
+        let load = format!(
+            "{}, {} N/m in sum, moment {} N about the origin",
+            rounded(x),
+            rounded(y),
+            rounded(moment)
+        );
+        entry(f, "load", &load)?;
+        let settings = match catalog.solver.is_empty() {
+            true => "none".to_owned(),
+            false => catalog.solver.to_string(),
+        };
+        entry(f, "settings", &settings)?;
+        for warning in &catalog.warnings {
+            entry(f, "warning", warning)?;
+        }
+        write!(
+            f,
+            "next          contact-dd-mpi --check {0} tells what solving it takes",
+            self.name
+        )
+    }
+}
+
+/// A material in words: by modulus and ratio where it is isotropic, else by its stiffness.
+fn elastic(material: &Material) -> String {
+    let Material {
+        name,
+        stiffness: [xx, yy, xy],
+        poisson,
+        ..
+    } = material;
+    match poisson {
+        // G = E / (2 (1 + ν)) in both plane states.
+        Some(ratio) => {
+            let young = rounded(2.0 * (1.0 + ratio) * xy[2]);
+            format!("{name}: E {young} Pa, ν {ratio}")
+        }
+        None => format!(
+            "{name}: C11 {}, C22 {}, C12 {}, C33 {} Pa",
+            rounded(xx[0]),
+            rounded(yy[1]),
+            rounded(xx[1]),
+            rounded(xy[2])
+        ),
+    }
+}
+
+/// A number to six digits, without the zeros that end it.
+fn rounded(value: f64) -> String {
+    let digits = format!("{value:.5e}");
+    let (digits, exponent) = digits.split_once('e').unwrap_or((&digits, "0"));
+    let digits = match digits.contains('.') {
+        true => digits.trim_end_matches('0').trim_end_matches('.'),
+        false => digits,
+    };
+    match exponent {
+        "0" => digits.to_owned(),
+        _ => format!("{digits}e{exponent}"),
+    }
+}

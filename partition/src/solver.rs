@@ -1,0 +1,173 @@
+//! How a problem is to be solved, as far as its author says so: `[solver]` of a scene, `/settings` of
+//! a problem file, and the options of contact-dd-mpi of the same names.
+
+use std::fmt;
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use serde::{Deserialize, Serialize};
+
+/// How U is found on Γ.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// Newton: S_0 + S_CON is inverted, contact conditions included.
+    Newton,
+    /// Accelerated chord: S_0 + S_CON' of the bilateral problem is inverted.
+    Anderson,
+    /// The paper's successive approximations (18): S_0 is inverted.
+    Picard,
+}
+
+impl Method {
+    /// Its name on the command line, in files and in the report.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Newton => "newton",
+            Self::Anderson => "anderson",
+            Self::Picard => "picard",
+        }
+    }
+}
+
+/// A finite number above 0.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "f64")]
+pub struct Positive(f64);
+
+impl Positive {
+    /// The number.
+    pub fn value(self) -> f64 {
+        self.0
+    }
+}
+
+impl TryFrom<f64> for Positive {
+    type Error = String;
+
+    fn try_from(value: f64) -> Result<Self, String> {
+        match value > 0.0 && value.is_finite() {
+            true => Ok(Self(value)),
+            false => Err(format!("{value}: expected a positive number")),
+        }
+    }
+}
+
+impl FromStr for Positive {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let value = text.parse::<f64>().ok();
+        let value = value.and_then(|value| Self::try_from(value).ok());
+        value.ok_or_else(|| "expected a positive number".into())
+    }
+}
+
+impl fmt::Display for Positive {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::LowerExp::fmt(&self.0, f)
+    }
+}
+
+/// Parses the value of an option that says yes where it has none.
+///
+/// # Errors
+/// It is neither `true` nor `false`.
+pub fn truth(text: &str) -> Result<bool, String> {
+    // A parser that told its values to shells would have them offered where a file's name belongs.
+    text.parse().map_err(|_| "expected true or false".into())
+}
+
+/// What the author of a problem may settle of its solution; what isn't said is `None`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[command(next_help_heading = "Solving")]
+pub struct SolverSettings {
+    /// How the interface problem is solved [default: newton]
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub method: Option<Method>,
+
+    /// Residual of the interface problem, relative to its terms, at which sweeps end [default: 1e-10]
+    #[arg(long, value_name = "X")]
+    pub tolerance: Option<Positive>,
+
+    /// Most sweeps [default: depends on the method]
+    #[arg(long, value_name = "N")]
+    pub max_sweeps: Option<usize>,
+
+    /// Relaxation of picard; 1 is the paper's (18) to the letter [default: found automatically]
+    #[arg(long, value_name = "THETA")]
+    pub relaxation: Option<Positive>,
+
+    /// Leave stresses out: neither recovered nor written
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true,
+          default_missing_value = "true", value_parser = truth)]
+    pub no_stress: Option<bool>,
+}
+
+impl SolverSettings {
+    /// The names of all of them, in files.
+    pub const NAMES: [&str; 5] = [
+        "method",
+        "tolerance",
+        "max_sweeps",
+        "relaxation",
+        "no_stress",
+    ];
+
+    /// Whether nothing is said.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl fmt::Display for SolverSettings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            method,
+            tolerance,
+            max_sweeps,
+            relaxation,
+            no_stress,
+        } = self;
+        let said = [
+            method.map(|method| method.name().to_owned()),
+            tolerance.map(|tolerance| tolerance.to_string()),
+            max_sweeps.map(|count| count.to_string()),
+            relaxation.map(|theta| theta.value().to_string()),
+            no_stress.map(|left_out| left_out.to_string()),
+        ];
+        let said = Self::NAMES.iter().zip(said);
+        let said = said.filter_map(|(name, value)| Some(format!("{name} = {}", value?)));
+        f.write_str(&said.collect::<Vec<_>>().join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_names_are_those_of_a_file() {
+        let file = serde_json::to_value(SolverSettings::default()).unwrap();
+        let fields: Vec<&str> = file
+            .as_object()
+            .unwrap()
+            .keys()
+            .map(String::as_str)
+            .collect();
+        let mut names = SolverSettings::NAMES;
+        names.sort_unstable();
+        assert_eq!(fields, names);
+    }
+
+    #[test]
+    fn a_positive_number_is_above_zero_and_finite() {
+        assert_eq!("1e-8".parse(), Ok(Positive(1e-8)));
+        for text in ["0", "-1", "nan", "inf", "1e-400", "x", ""] {
+            assert!(text.parse::<Positive>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! What `/settings` may not say.
+
+use std::path::Path;
+
+use contact_dd_partition::problem::read::ProblemFile;
+use contact_dd_partition::solver::{Method, SolverSettings};
+use hdf5::types::VarLenUnicode;
+
+use super::{Defect, problem, refuses};
+
+/// A file that says how it wants to be solved.
+fn write_with_settings(path: &Path) {
+    let mut problem = problem();
+    problem.catalog.solver = SolverSettings {
+        method: Some(Method::Picard),
+        tolerance: "1e-8".parse().ok(),
+        max_sweeps: Some(7),
+        relaxation: "0.5".parse().ok(),
+        no_stress: Some(true),
+    };
+    problem.write(path).unwrap();
+    let read = ProblemFile::open(path).unwrap();
+    assert_eq!(read.catalog().solver, problem.catalog.solver);
+}
+
+/// Replaces an attribute of `/settings`.
+fn set_attribute<T: hdf5::H5Type>(file: &hdf5::File, name: &str, value: T) {
+    let group = file.group("settings").unwrap();
+    group.delete_attr(name).unwrap();
+    let attribute = group.new_attr::<T>().create(name).unwrap();
+    attribute.write_scalar(&value).unwrap();
+}
+
+#[test]
+fn every_defect_of_the_settings_is_named() {
+    let defects: &[Defect] = &[
+        (
+            "unknown method",
+            |f| set_attribute(f, "method", "newtn".parse::<VarLenUnicode>().unwrap()),
+            &["method of /settings is 'newtn'", "did you mean 'newton'"],
+        ),
+        (
+            "method by number",
+            |f| set_attribute(f, "method", 1i64),
+            &["attribute method of /settings", "expected strings"],
+        ),
+        (
+            "tolerance of zero",
+            |f| set_attribute(f, "tolerance", 0.0),
+            &["tolerance of /settings is 0", "expected a positive number"],
+        ),
+        (
+            "relaxation that is no number",
+            |f| set_attribute(f, "relaxation", f64::NAN),
+            &["relaxation of /settings is NaN", "expected a positive"],
+        ),
+        (
+            "sweeps below zero",
+            |f| set_attribute(f, "max_sweeps", -1i64),
+            &["max_sweeps of /settings is -1", "expected a number of"],
+        ),
+        (
+            "half a sweep",
+            |f| set_attribute(f, "max_sweeps", 0.5),
+            &["max_sweeps of /settings isn't an integer"],
+        ),
+        (
+            "neither true nor false",
+            |f| set_attribute(f, "no_stress", 2i64),
+            &["no_stress of /settings isn't true or false"],
+        ),
+        (
+            "unknown setting",
+            |f| {
+                let group = f.group("settings").unwrap();
+                let attribute = group.new_attr::<f64>().create("tolerence").unwrap();
+                attribute.write_scalar(&1e-8).unwrap();
+            },
+            &["attribute /settings/tolerence", "did you mean 'tolerance'"],
+        ),
+        (
+            "dataset among the settings",
+            |f| {
+                let group = f.group("settings").unwrap();
+                group.new_dataset::<f64>().create("tolerance").unwrap();
+            },
+            &["/settings/tolerance", "attributes alone"],
+        ),
+        (
+            "settings that are no group",
+            |f| {
+                f.unlink("settings").unwrap();
+                f.new_dataset::<f64>().create("settings").unwrap();
+            },
+            &["/settings isn't a group"],
+        ),
+    ];
+    refuses(write_with_settings, defects);
+}

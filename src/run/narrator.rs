@@ -1,0 +1,222 @@
+//! What a run says of itself on the way: text for people, or events for programs.
+
+use std::collections::BTreeSet;
+use std::io::{Write, stdout};
+use std::time::Instant;
+
+use contact_dd_partition::problem::Catalog;
+
+use super::report::{Outputs, conditions, dofs, failures, reason, report};
+use super::totals::Totals;
+use crate::checkpoint::Checkpoint;
+use crate::comm::{self, Comm};
+use crate::error::Failure;
+use crate::interface::operator::Interface;
+use crate::output::bar::Bar;
+use crate::output::event::{Event, shown};
+use crate::output::message;
+use crate::output::terminal::{self, Summary, SweepLine};
+use crate::plan::Plan;
+use crate::plan::demand::Demand;
+use crate::rigid::survey::Survey;
+use crate::settings::Settings;
+use crate::settings::command_line::LogFormat;
+use crate::sweep::SweepRecord;
+
+/// Exit code of sweeps that don't converge.
+const NOT_CONVERGED: u8 = 3;
+
+/// Prints on the root what a user wants to follow, and nothing elsewhere.
+pub struct Narrator<'a> {
+    comm: &'a Comm,
+    settings: &'a Settings,
+    voice: Option<LogFormat>,
+    began: Instant,
+    /// What shows how far a phase has come.
+    pub bar: Bar,
+}
+
+impl<'a> Narrator<'a> {
+    /// Speaks on the root unless `settings` ask for quiet, of a run that `began` then.
+    pub fn new(comm: &'a Comm, settings: &'a Settings, began: Instant) -> Self {
+        let voice = (comm.is_root() && !settings.quiet).then_some(settings.log);
+        Self {
+            comm,
+            settings,
+            voice,
+            began,
+            bar: Bar::new(voice != Some(LogFormat::Text)),
+        }
+    }
+
+    /// Prints text, where that is what is printed.
+    fn say(&self, print: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) {
+        if self.voice == Some(LogFormat::Text) {
+            // A closed pipe is no reason to stop a run that writes its results to a file.
+            self.bar.aside(|| drop(print(&mut anstream::stdout())));
+        }
+    }
+
+    /// Prints an event, where that is what is printed.
+    fn log(&self, event: &Event<'_>) {
+        if self.voice == Some(LogFormat::Json) {
+            let _ = event.write(stdout());
+        }
+    }
+
+    /// The run comes to another phase, of so many steps where that is known.
+    pub fn phase(&self, phase: &'static str, steps: Option<usize>) {
+        comm::phase(phase);
+        self.bar.begin(phase, steps);
+        self.log(&Event::Phase {
+            phase,
+            steps,
+            seconds: self.began.elapsed().as_secs_f64(),
+        });
+    }
+
+    /// What is to be solved, and how.
+    pub fn problem(&self, catalog: &Catalog, plan: &Plan) {
+        let summary = Summary {
+            problem: &self.settings.problem,
+            title: &catalog.title,
+            dofs: dofs(catalog),
+            interface_dofs: catalog.dim * plan.sharing.iter().filter(|&&n| n > 1).count(),
+            subdomains: catalog.subdomains.len(),
+            contact_pairs: plan.pairs.len(),
+            contact_conditions: conditions(catalog),
+            ranks: self.comm.size(),
+            threads: usize::from(self.settings.threads),
+        };
+        self.say(|out| terminal::summary(out, &summary));
+        self.log(&Event::Problem {
+            version: env!("CARGO_PKG_VERSION"),
+            problem: shown(&self.settings.problem),
+            title: summary.title,
+            dofs: summary.dofs,
+            interface_dofs: summary.interface_dofs,
+            subdomains: summary.subdomains,
+            contact_pairs: summary.contact_pairs,
+            contact_conditions: summary.contact_conditions,
+            ranks: summary.ranks,
+            threads: summary.threads,
+        });
+        if !self.settings.check {
+            self.say(|out| terminal::settings(out, &self.settings.in_words()));
+            self.log(&Event::Settings {
+                settings: self.settings,
+                settings_from: &self.settings.from,
+            });
+        }
+    }
+
+    /// What validating found, and what solving would cost.
+    pub fn check(&self, surveys: &[Survey], demands: &[Demand], available: f64) {
+        self.bar.finish();
+        let all = surveys.iter().flat_map(|survey| &survey.motions.warnings);
+        let warnings: BTreeSet<&String> = all.collect();
+        if self.comm.is_root() {
+            for warning in warnings {
+                message::warning(self.settings.log, warning);
+            }
+        }
+        self.say(|out| terminal::demands(out, demands, available));
+        self.say(|out| writeln!(out, "\nthe problem file is valid"));
+        let most = |of: fn(&Demand) -> f64| demands.iter().map(of).fold(0.0, f64::max);
+        self.log(&Event::Check {
+            memory_bytes: demands.iter().map(|demand| demand.bytes).sum(),
+            largest_rank_memory_bytes: most(|demand| demand.bytes),
+            available_bytes: available,
+            flops: demands.iter().map(|demand| demand.flops).sum(),
+            busiest_rank_flops: most(|demand| demand.flops),
+        });
+    }
+
+    /// Which load step comes, where there are any.
+    pub fn step(&self, catalog: &Catalog, k: usize) {
+        let Some(step) = catalog.steps.get(k) else {
+            return;
+        };
+        self.say(|out| terminal::step(out, step, k, catalog.steps.len()));
+        self.log(&Event::Step {
+            step: k + 1,
+            steps: catalog.steps.len(),
+            name: &step.name,
+            time: step.time,
+        });
+    }
+
+    /// The head of the table of sweeps, if there are going to be any, and those of an `earlier` run.
+    pub fn sweeps(&self, interface: &Interface, earlier: Option<&Checkpoint>) {
+        if !interface.pair_traces.is_empty() {
+            self.say(|out| terminal::sweep_header(out));
+        }
+        let earlier = earlier.map(|checkpoint| &checkpoint.progress.records[..]);
+        for record in earlier.unwrap_or_default() {
+            self.sweep(interface, record);
+        }
+    }
+
+    /// One sweep.
+    pub fn sweep(&self, interface: &Interface, record: &SweepRecord) {
+        if interface.pair_traces.is_empty() {
+            return;
+        }
+        let &SweepRecord {
+            sweep,
+            residual,
+            active,
+            seconds,
+            ..
+        } = record;
+        let changed = (sweep > 0).then_some(record.changed);
+        let line = SweepLine {
+            sweep,
+            residual,
+            active,
+            changed,
+            seconds,
+        };
+        self.say(|out| terminal::sweep(out, &line));
+        self.log(&Event::Sweep {
+            sweep,
+            residual,
+            active,
+            changed,
+            seconds,
+        });
+    }
+
+    /// Finishes the result file, writes the report and says how the run ended. On the root.
+    ///
+    /// # Errors
+    /// One of them can't be written.
+    pub fn finish(&self, totals: &Totals<'_>, outputs: Outputs) -> Result<(), Failure> {
+        let report = report(totals, self.settings, self.comm);
+        outputs.finish(totals, &report)?;
+        self.bar.finish();
+        let reason = reason(totals);
+        self.say(|out| terminal::closing(out, &reason, &report, &self.settings.output));
+        for warning in &report.warnings {
+            match self.voice {
+                Some(LogFormat::Text) => {}
+                Some(LogFormat::Json) => self.log(&Event::Warning { message: warning }),
+                None => message::warning(self.settings.log, warning),
+            }
+        }
+        let mut exit_code = 0;
+        let failures = failures(totals);
+        if !failures.is_empty() {
+            exit_code = NOT_CONVERGED;
+            let why = format!("not converged: {}", failures.join("; "));
+            message::error(self.settings.log, exit_code, &why);
+        }
+        self.log(&Event::Finished {
+            exit_code,
+            result: shown(&self.settings.output),
+            reason: &reason,
+            report: &report,
+        });
+        Ok(())
+    }
+}

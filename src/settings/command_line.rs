@@ -1,0 +1,219 @@
+//! The command line.
+
+use std::num::{NonZeroU16, NonZeroUsize};
+use std::path::PathBuf;
+
+use clap::{Args, CommandFactory, Parser, ValueEnum, ValueHint};
+use contact_dd_partition::manual::{Document, Manual};
+use contact_dd_partition::solver::{SolverSettings, truth};
+use contact_dd_partition::usage::Answer;
+use serde::{Deserialize, Serialize};
+
+/// What the manual says beside the options.
+pub const MANUAL: Manual = Manual {
+    examples: &[
+        (
+            "mpirun -n 2 contact-dd-mpi problem.h5",
+            "solves a problem on 2 ranks; the result is problem.vtkhdf",
+        ),
+        (
+            "contact-dd-mpi --check problem.h5",
+            "validates a problem file and tells what solving it would take",
+        ),
+        (
+            "mpirun -n 4 contact-dd-mpi problem.h5 -o out.vtkhdf --report report.json",
+            "names the result and writes a report in JSON, too",
+        ),
+        (
+            "contact-dd-mpi problem.h5 --settings careful.toml --tolerance 1e-8",
+            "takes options from a file, but for the tolerance",
+        ),
+        (
+            "srun contact-dd-mpi problem.h5 --restart --log json",
+            "goes on from a checkpoint in a batch job whose log a program reads",
+        ),
+    ],
+    exit_codes: &[
+        ("0", "converged"),
+        (
+            "2",
+            "bad usage or bad input; the message says where and what was expected",
+        ),
+        ("3", "not converged; results are written and flagged"),
+        (
+            "4",
+            "ill-posed: a body is free to move under its load; the message names body and motion",
+        ),
+        ("5", "the output can't be written"),
+        (
+            "6",
+            "stopped by SIGTERM, SIGINT or SIGUSR1; --restart goes on",
+        ),
+        ("1", "anything else"),
+    ],
+    files: &[
+        (
+            "problem.h5",
+            "the problem, made by contact-dd-partition or by a program of yours",
+        ),
+        (
+            "problem.vtkhdf",
+            "the result, for ParaView and h5py; it gets its name when it is whole",
+        ),
+        (
+            "problem.vtkhdf.checkpoint",
+            "how far a run that was stopped had come",
+        ),
+    ],
+    environment: &[
+        ("NO_COLOR", "no colours, not even on a terminal"),
+        ("CLICOLOR_FORCE", "colours wherever the output goes"),
+    ],
+    see_also: "contact-dd-partition",
+};
+
+/// Solves unilateral contact problems by domain decomposition after J. Daněk
+#[derive(Clone, Debug, PartialEq, Parser)]
+#[command(name = "contact-dd-mpi", version, max_term_width = 100,
+          override_usage = "contact-dd-mpi [OPTIONS] PROBLEM\n       mpirun -n N contact-dd-mpi [OPTIONS] PROBLEM",
+          after_help = MANUAL.in_short(), after_long_help = MANUAL.at_length())]
+pub struct CommandLine {
+    /// Problem file, made by contact-dd-partition
+    #[arg(value_name = "PROBLEM", value_hint = ValueHint::FilePath,
+          required_unless_present = "generate")]
+    problem: Option<PathBuf>,
+
+    /// The settings that are said here.
+    #[command(flatten)]
+    pub solver: SolverSettings,
+
+    /// The settings that are said here.
+    #[command(flatten)]
+    pub run: RunSettings,
+
+    /// Take what isn't said here from a file in TOML
+    ///
+    /// It names options as in `tolerance = 1e-8`, with underscores for hyphens.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath,
+          help_heading = "Running")]
+    pub settings: Option<PathBuf>,
+
+    /// Validate the problem file, tell what it holds and what solving it would take, solve nothing
+    #[arg(long, help_heading = "Running")]
+    pub check: bool,
+
+    /// Print the man page or completions for a shell
+    #[arg(
+        long,
+        value_name = "KIND",
+        exclusive = true,
+        help_heading = "Documentation"
+    )]
+    generate: Option<Document>,
+}
+
+/// What a user may settle of a run, on the command line or in a file; what isn't said is `None`.
+#[derive(Clone, Debug, Default, PartialEq, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RunSettings {
+    /// Result file [default: the problem's stem + .vtkhdf]
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath,
+          help_heading = "Output")]
+    pub output: Option<PathBuf>,
+
+    /// Write the report in JSON, too
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = "Output")]
+    pub report: Option<PathBuf>,
+
+    /// What is printed [default: text]
+    #[arg(long, value_name = "FORMAT", value_enum, help_heading = "Output")]
+    pub log: Option<LogFormat>,
+
+    /// Print warnings and errors only
+    #[arg(short, long, value_name = "BOOL", num_args = 0..=1, require_equals = true,
+          default_missing_value = "true", value_parser = truth, help_heading = "Output")]
+    pub quiet: Option<bool>,
+
+    /// Threads of each rank [default: 1]
+    #[arg(long, value_name = "N", help_heading = "Running")]
+    pub threads: Option<NonZeroU16>,
+
+    /// Write a checkpoint after every N sweeps [default: where a signal stops the run]
+    #[arg(long, value_name = "N", help_heading = "Running")]
+    pub checkpoint_every: Option<NonZeroUsize>,
+
+    /// Go on from the last good checkpoint of the same run, if there is one
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true,
+          default_missing_value = "true", value_parser = truth, help_heading = "Running")]
+    pub restart: Option<bool>,
+}
+
+impl RunSettings {
+    /// The names of all of them, in files.
+    pub const NAMES: [&str; 7] = [
+        "output",
+        "report",
+        "log",
+        "quiet",
+        "threads",
+        "checkpoint_every",
+        "restart",
+    ];
+}
+
+/// What a run prints.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    ValueEnum,
+    Serialize,
+    Deserialize,
+    schemars::JsonSchema,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum LogFormat {
+    /// Text for people
+    #[default]
+    Text,
+    /// One JSON object in each line
+    Json,
+}
+
+impl CommandLine {
+    /// Parses the arguments that the program was started with.
+    ///
+    /// # Errors
+    /// They ask for no run, or aren't what was expected: the answer to them.
+    pub fn of_this_program() -> Result<Self, Answer> {
+        let command_line = Self::try_parse().map_err(|error| Answer::of(&error))?;
+        match command_line.generate {
+            Some(document) => Err(Answer::document(document, Self::command(), &MANUAL)),
+            None => Ok(command_line),
+        }
+    }
+
+    /// The problem file.
+    pub fn problem(&self) -> PathBuf {
+        // The parser insists on one where it is asked for.
+        self.problem.clone().unwrap_or_default()
+    }
+}
+
+impl LogFormat {
+    /// The format that the program's arguments ask for, be they right in all else or not.
+    pub fn of_this_program() -> Self {
+        let words: Vec<String> = std::env::args_os()
+            .map(|word| word.to_string_lossy().into_owned())
+            .collect();
+        let json = words.windows(2).any(|two| two == ["--log", "json"])
+            || words.iter().any(|word| word == "--log=json");
+        match json {
+            true => Self::Json,
+            false => Self::Text,
+        }
+    }
+}
