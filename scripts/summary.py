@@ -167,19 +167,49 @@ def convergence(report, rows):
     residual, active = rows["residual"], rows["active"]
     sweeps = np.arange(len(residual))
     figure, (left, right) = axes_of(9.2, 2.7, ncols=2)
-    many = len(sweeps) > 40
-    left.semilogy(sweeps, np.maximum(residual, 1e-18), "-" if many else "o-", color="#1f5fa8", ms=4, lw=1.4)
+    style = {"ms": 4, "lw": 1.4, "marker": None if len(sweeps) > 40 else "o"}
+    # A line for each load step, which begins anew.
+    starts = [0, *(1 + np.flatnonzero(np.diff(rows["step"]))), len(sweeps)]
+    for first, last in zip(starts, starts[1:]):
+        of_step = slice(first, last)
+        left.semilogy(sweeps[of_step], np.maximum(residual[of_step], 1e-18), color="#1f5fa8", **style)
+        right.plot(sweeps[of_step], active[of_step], color="#3a9d5d", **style)
     left.axhline(report["settings"]["tolerance"], color="#d62728", lw=1, ls="--")
     left.annotate("tolerance", (1, report["settings"]["tolerance"]), xycoords=("axes fraction", "data"),
                   ha="right", va="bottom", color="#d62728", fontsize=8)
     left.set_ylabel("residual")
-    right.plot(sweeps, active, "-" if many else "o-", color="#3a9d5d", ms=4, lw=1.4)
     right.set_ylim(0, 1.08 * max(1, active.max()))
     right.set_ylabel("closed conditions")
     for axes in (left, right):
-        axes.set_xlabel("sweep (0: bilateral start)")
+        axes.set_xlabel("sweeps of all load steps" if report.get("steps") else "sweep (0: bilateral start)")
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     return section("Convergence", svg(figure))
+
+
+def steps(report):
+    found = report.get("steps")
+    if not found:
+        return ""
+    pressures = [max((c["largest_pressure"] or 0 for c in step["contacts"]), default=0) for step in found]
+    times = [step["time"] for step in found]
+    figure, (left, right) = axes_of(9.2, 2.4, ncols=2)
+    left.plot(times, pressures, "o-", color="#1f5fa8", ms=4, lw=1.4)
+    left.set_ylim(0, 1.1 * max(pressures) or 1)
+    left.yaxis.set_major_formatter(EngFormatter("Pa"))
+    left.set_ylabel("largest pressure")
+    right.plot(times, [step["active_contacts"] for step in found], "o-", color="#3a9d5d", ms=4, lw=1.4)
+    right.set_ylim(0, None)
+    right.set_ylabel("closed conditions")
+    for axes in (left, right):
+        axes.set_xlabel("time")
+    rows = [
+        [escape(step["name"]), f"{step['time']:g}", escape(step["status"].replace("_", " ")), step["sweeps"],
+         step["active_contacts"], si(pressure, "Pa"), short(step["certificate"]["equilibrium"])]
+        for step, pressure in zip(found[:MOST_ROWS], pressures)
+    ]
+    head = ["step", "time", "", "sweeps", "closed", "largest pressure", "equilibrium"]
+    text = "<p><small>What follows on contacts and reactions is that of the last step.</small></p>"
+    return section("Load steps", svg(figure), table(head, rows, numbers=(1, 3, 4, 5, 6)), more(found, ""), text)
 
 
 def ranks(report):
@@ -308,16 +338,23 @@ def rest(report):
     return section("How it was made", table(["", ""], rows))
 
 
+def last(column):
+    """A column of a contact in the last load step."""
+    return column[-1] if column.ndim > 1 else column[:]
+
+
 def read(path):
     """The report, the rows of the sweeps and the tables of the contacts."""
     try:
         with h5py.File(path) as file:
             report = json.loads(file.attrs["report"])
             sweeps = {name: file["convergence"][name][:] for name in ("residual", "active")}
+            same = np.zeros(len(sweeps["residual"]), dtype=int)
+            sweeps["step"] = file["convergence"]["step"][:] if "step" in file["convergence"] else same
             tables = {
-                name: {key: table[key][:] for key in ("position", "pressure", "status")}
+                name: {"position": table["position"][:], **{key: last(table[key]) for key in ("pressure", "status")}}
                 for name, table in file.get("contact", {}).items()
-                if len(table["pressure"]) > 0
+                if len(table["position"]) > 0
             }
     except (OSError, KeyError, ValueError) as error:
         print(f"summary: {path}: isn't a result of contact-dd-mpi: {error}", file=sys.stderr)
@@ -335,8 +372,8 @@ def main():
                          "font.sans-serif": ["DejaVu Sans", "Arial", "Helvetica"]})
     report, sweeps, tables = read(arguments.result)
     parts = [
-        head(report, arguments.result.name), warnings(report), contacts(report, tables), convergence(report, sweeps),
-        certificate(report), reactions(report), ranks(report), rest(report),
+        head(report, arguments.result.name), warnings(report), steps(report), contacts(report, tables),
+        convergence(report, sweeps), certificate(report), reactions(report), ranks(report), rest(report),
     ]
     title = escape(pathlib.Path(report["settings"]["problem"]).name)
     page.write_text(

@@ -10,6 +10,7 @@ pub mod build;
 pub mod event;
 pub mod memory;
 pub mod message;
+pub mod ranks;
 pub mod report;
 pub mod result;
 pub mod resultants;

@@ -52,13 +52,14 @@ use self::pausing::Checkpoints;
 use self::read::{OwnedBlock, read_blocks};
 use self::report::Outputs;
 use self::solution::Solution;
-use self::steps::{in_step, survey_steps, take_step};
+use self::steps::{in_step, stop_if_asked, survey_steps, take_step};
 use self::sweeping::Sweeping;
 use self::totals::{StepTotals, Totals};
 use self::write::write_solution;
 use crate::comm::{Comm, Message, phase};
 use crate::error::Failure;
-use crate::output::report::{PhaseSeconds, ReportFile};
+use crate::output::ranks::PhaseSeconds;
+use crate::output::report::ReportFile;
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
@@ -101,9 +102,9 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
     let plan = Plan::new(catalog, comm.size(), settings.merging());
     let demands = plan.demands(catalog, comm.size());
     let available = afford(comm, &demands)?;
-    narrator.problem(catalog, &plan);
     let mut blocks = comm.agree(read_blocks(comm, &file, &plan))?;
     comm.agree(check_copies(comm, &file, &plan, &blocks))?;
+    narrator.problem(catalog, &plan);
     let mut checkpoints = Checkpoints::new(settings);
     let looked = match comm.is_root() {
         true => checkpoints.look(),
@@ -156,6 +157,7 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
         narrator.phase("condensing the load", None);
         let lap = Instant::now();
         if k > 0 {
+            stop_if_asked(comm, catalog, k)?;
             take_step(&mut blocks, k, survey, catalog.dim);
         }
         let loading = Loading {

@@ -63,6 +63,9 @@ fn sources(src: &str) -> Vec<Source> {
                 folders.push(path);
                 continue;
             }
+            if path.extension().is_none_or(|ending| ending != "rs") {
+                continue;
+            }
             let text = fs::read_to_string(&path).unwrap();
             let lines = text.lines();
             let code = lines.map(|line| line.split("//").next().unwrap_or_default());

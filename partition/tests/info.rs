@@ -30,7 +30,7 @@ fn the_sum_of_loads_is_what_pressures_and_lengths_say() {
     make("granite", "8", dir.path());
     let info = Info::read(&dir.path().join("problem.h5")).unwrap();
     // 6 MPa on 6.5 m at the lower right and on 3.5 m at the upper left, 3 MPa on the top of 10 m.
-    let (force, moment) = info.load();
+    let (force, moment) = info.load(0);
     let expected = [6e6 * (3.5 - 6.5), -3e6 * 10.0];
     let about_origin = 6e6 * (6.5 * 6.5 - (100.0 - 6.5 * 6.5)) / 2.0 - 3e6 * 50.0;
     for (found, expected) in [
@@ -49,6 +49,32 @@ fn the_sum_of_loads_is_what_pressures_and_lengths_say() {
         info.supported_nodes(),
         [("displacement[1] on 'bottom'", 41)]
     );
+}
+
+#[test]
+fn loads_are_those_of_every_step() {
+    let dir = tempfile::tempdir().unwrap();
+    let written = program(&["--example", "granite", "--write-scene", "."], dir.path());
+    assert!(written.status.success(), "{written:?}");
+    let path = dir.path().join("scene.toml");
+    let scene = fs::read_to_string(&path).unwrap();
+    fs::write(
+        &path,
+        scene + "\n[[step]]\nscale = -2\n[[step]]\nname = 'none'\npressure = []\n",
+    )
+    .unwrap();
+    let made = program(&["scene.toml", "-n", "8"], dir.path());
+    assert!(made.status.success(), "{made:?}");
+    let info = Info::read(&dir.path().join("scene.h5")).unwrap();
+    let sums = [0, 1].map(|step| info.load(step).0[1]);
+    assert!((sums[0] - 6e7).abs() < 1e-2 && sums[1] == 0.0, "{sums:?}");
+    let said = info.to_string();
+    for start in [
+        "load          1 at 1: ",
+        "load          none at 2: 0, 0 N/m in sum",
+    ] {
+        assert!(said.lines().any(|line| line.starts_with(start)), "{said}");
+    }
 }
 
 #[test]

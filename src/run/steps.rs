@@ -47,6 +47,21 @@ fn set_loads(blocks: &mut BTreeMap<usize, OwnedBlock>, k: usize) {
     }
 }
 
+/// Ends the run before load step k if a signal asked for that, which sweeps that take long hear by themselves.
+/// Collective.
+///
+/// # Errors
+/// A signal did.
+pub fn stop_if_asked(comm: &Comm, catalog: &Catalog, k: usize) -> Result<(), Failure> {
+    match comm.is_any_asked_to_stop() {
+        false => Ok(()),
+        true => Err(Failure::interrupted(format!(
+            "interrupted after {k} of {} load steps, between two of them: no checkpoint was written",
+            catalog.steps.len()
+        ))),
+    }
+}
+
 /// A failure that says in which load step it was.
 pub fn in_step(mut failure: Failure, catalog: &Catalog, k: usize) -> Failure {
     if let Some(step) = catalog.steps.get(k) {

@@ -74,6 +74,30 @@ fn every_line_is_an_event_that_the_documentation_names() {
 }
 
 #[test]
+fn load_steps_are_events_before_their_sweeps() {
+    let ended = case("[[step]]\nname = 'half'\ntime = 0.5\nscale = 0.5\n[[step]]\ntime = 1.5")
+        .run(&["--log=json"]);
+    assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+    let events = events(&ended.stdout);
+    let told = events
+        .iter()
+        .filter(|(name, _)| name == "step" || name == "sweep");
+    let told: Vec<&(String, Value)> = told.collect();
+    let places: Vec<usize> = (0..told.len()).filter(|&i| told[i].0 == "step").collect();
+    assert_eq!(places.len(), 2);
+    for (place, expected) in places.into_iter().zip([(1, "half", 0.5), (2, "2", 1.5)]) {
+        let event = &told[place].1;
+        let (step, name, time) = expected;
+        assert_eq!((&event["step"], &event["steps"]), (&step.into(), &2.into()));
+        assert_eq!(
+            (&event["name"], &event["time"]),
+            (&name.into(), &time.into())
+        );
+        assert_eq!(told[place + 1].1["sweep"], 0);
+    }
+}
+
+#[test]
 fn errors_are_events_on_stderr_with_the_exit_code() {
     let good = case("");
     let nothing = good.folder().join("nothing.toml");

@@ -73,6 +73,8 @@ pub fn are_the_papers(pages: &[Page]) {
     }
     let mut sources = Vec::new();
     sources_in(&root().join("src"), &mut sources);
+    // The front page cites them all.
+    sources.retain(|path| !path.ends_with("src/lib.rs"));
     let citing: BTreeMap<&Path, BTreeSet<usize>> = sources
         .iter()
         .map(|path| {

@@ -40,11 +40,14 @@ impl Info {
         })
     }
 
-    /// Sum of all loads (N per metre of thickness), and their moment about the origin (N).
-    pub fn load(&self) -> ([f64; 3], f64) {
+    /// Sum of all loads in a load step (N per metre of thickness), and their moment about the origin (N); in
+    /// a problem without steps those that are there at once.
+    pub fn load(&self, step: usize) -> ([f64; 3], f64) {
         let (mut force, mut moment) = ([0.0; 3], 0.0);
         for subdomain in &self.problem.subdomains {
-            for &(node, [x, y, z]) in &subdomain.forces {
+            let of_step = subdomain.steps.get(step);
+            for (i, &(node, at_once)) in subdomain.forces.iter().enumerate() {
+                let [x, y, z] = of_step.map_or(at_once, |step| step.forces[i]);
                 let at = subdomain.points[node as usize];
                 force[0] += x;
                 force[1] += y;
@@ -105,6 +108,27 @@ impl Info {
             )
         });
         bodies.collect()
+    }
+
+    /// The resultant of every load step, of all loads where there are no steps.
+    fn loads(&self) -> Vec<String> {
+        let resultant = |step: usize| {
+            let ([x, y, _], moment) = self.load(step);
+            format!(
+                "{}, {} N/m in sum, moment {} N about the origin",
+                rounded(x),
+                rounded(y),
+                rounded(moment)
+            )
+        };
+        let steps = self.problem.catalog.steps.iter().enumerate();
+        let of_steps: Vec<String> = steps
+            .map(|(k, step)| format!("{} at {}: {}", step.name, step.time, resultant(k)))
+            .collect();
+        match of_steps.is_empty() {
+            true => vec![resultant(0)],
+            false => of_steps,
+        }
     }
 
     /// The least and the largest gap of every contact (m).
@@ -169,14 +193,16 @@ impl fmt::Display for Info {
                 entry(f, name, &format!("and {} more", lines.len() - MOST))?;
             }
         }
-        let ([x, y, _], moment) = self.load();
-        let load = format!(
-            "{}, {} N/m in sum, moment {} N about the origin",
-            rounded(x),
-            rounded(y),
-            rounded(moment)
-        );
-        entry(f, "load", &load)?;
+        for line in self.loads().iter().take(MOST) {
+            entry(f, "load", line)?;
+        }
+        if catalog.steps.len() > MOST {
+            entry(
+                f,
+                "load",
+                &format!("and {} more", catalog.steps.len() - MOST),
+            )?;
+        }
         let settings = match catalog.solver.is_empty() {
             true => "none".to_owned(),
             false => catalog.solver.to_string(),

@@ -2,7 +2,7 @@
 
 use std::io::{Result, Write};
 
-use crate::output::report::{PhaseSeconds, RankReport};
+use crate::output::ranks::{PhaseSeconds, RankReport};
 
 /// Prints the time that each phase took over the ranks, and its share of the mean total.
 ///

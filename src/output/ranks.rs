@@ -1,0 +1,87 @@
+//! What each rank had to do, and how long it took.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// Time that each phase of a run took, in seconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
+pub struct PhaseSeconds {
+    /// From start to end.
+    pub total: f64,
+    /// Reading the problem.
+    pub read: f64,
+    /// Assembling K and f.
+    pub assemble: f64,
+    /// Factorizing the subdomains and condensing them on Γ.
+    pub factorize: f64,
+    /// Assembling and factorizing the interface problem, and the bilateral start.
+    pub interface: f64,
+    /// All sweeps.
+    pub sweeps: f64,
+    /// Back-substitution, stresses and the certificate.
+    pub recover: f64,
+    /// Writing the results.
+    pub write: f64,
+}
+
+impl PhaseSeconds {
+    /// The phases by name, in the order of a run, without the total.
+    pub fn phases(&self) -> [(&'static str, f64); 7] {
+        [
+            ("read", self.read),
+            ("assemble", self.assemble),
+            ("factorize", self.factorize),
+            ("interface", self.interface),
+            ("sweeps", self.sweeps),
+            ("recover", self.recover),
+            ("write", self.write),
+        ]
+    }
+
+    /// For every phase, the time of the rank that was slowest in it.
+    pub fn slowest(ranks: &[Self]) -> Self {
+        let worst = |of: fn(&Self) -> f64| ranks.iter().map(of).fold(0.0, f64::max);
+        Self {
+            total: worst(|seconds| seconds.total),
+            read: worst(|seconds| seconds.read),
+            assemble: worst(|seconds| seconds.assemble),
+            factorize: worst(|seconds| seconds.factorize),
+            interface: worst(|seconds| seconds.interface),
+            sweeps: worst(|seconds| seconds.sweeps),
+            recover: worst(|seconds| seconds.recover),
+            write: worst(|seconds| seconds.write),
+        }
+    }
+}
+
+/// What one rank had to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
+pub struct RankReport {
+    /// Its time in each phase.
+    #[serde(flatten)]
+    pub seconds: PhaseSeconds,
+    /// Its peak resident memory (bytes).
+    pub peak_memory_bytes: u64,
+    /// What it sent to other ranks, broadcasts counted once (bytes).
+    pub bytes_sent: u64,
+    /// Number of subdomains that it owns.
+    pub subdomains: usize,
+    /// Blocks that needed no factorization, equal to others of this rank.
+    pub repeated: usize,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_phase_is_that_of_the_rank_slowest_in_it() {
+        let ranks = [(1.0, 5.0), (2.0, 4.0)].map(|(read, write)| PhaseSeconds {
+            read,
+            write,
+            ..PhaseSeconds::default()
+        });
+        let slowest = PhaseSeconds::slowest(&ranks);
+        assert_eq!((slowest.read, slowest.write), (2.0, 5.0));
+    }
+}
