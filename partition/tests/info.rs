@@ -24,6 +24,18 @@ fn make(example: &str, count: &str, dir: &Path) {
     assert!(output.status.success(), "{output:?}");
 }
 
+/// Makes scene.h5 of the granite block with `more` at the end of its scene; returns what was printed.
+fn make_with(more: &str, dir: &Path) -> String {
+    let written = program(&["--example", "granite", "--write-scene", "."], dir);
+    assert!(written.status.success(), "{written:?}");
+    let path = dir.join("scene.toml");
+    let scene = fs::read_to_string(&path).unwrap();
+    fs::write(&path, scene + more).unwrap();
+    let made = program(&["scene.toml", "-n", "8"], dir);
+    assert!(made.status.success(), "{made:?}");
+    String::from_utf8(made.stdout).unwrap()
+}
+
 #[test]
 fn the_sum_of_loads_is_what_pressures_and_lengths_say() {
     let dir = tempfile::tempdir().unwrap();
@@ -54,17 +66,8 @@ fn the_sum_of_loads_is_what_pressures_and_lengths_say() {
 #[test]
 fn loads_are_those_of_every_step() {
     let dir = tempfile::tempdir().unwrap();
-    let written = program(&["--example", "granite", "--write-scene", "."], dir.path());
-    assert!(written.status.success(), "{written:?}");
-    let path = dir.path().join("scene.toml");
-    let scene = fs::read_to_string(&path).unwrap();
-    fs::write(
-        &path,
-        scene + "\n[[step]]\nscale = -2\n[[step]]\nname = 'none'\npressure = []\n",
-    )
-    .unwrap();
-    let made = program(&["scene.toml", "-n", "8"], dir.path());
-    assert!(made.status.success(), "{made:?}");
+    let steps = "\n[[step]]\nscale = -2\n[[step]]\nname = 'none'\npressure = []\n";
+    make_with(steps, dir.path());
     let info = Info::read(&dir.path().join("scene.h5")).unwrap();
     let sums = [0, 1].map(|step| info.load(step).0[1]);
     assert!((sums[0] - 6e7).abs() < 1e-2 && sums[1] == 0.0, "{sums:?}");
@@ -90,19 +93,9 @@ fn the_depth_is_that_of_the_tree() {
 #[test]
 fn the_program_tells_what_is_in_the_file() {
     let dir = tempfile::tempdir().unwrap();
-    let written = program(&["--example", "granite", "--write-scene", "."], dir.path());
-    assert!(written.status.success(), "{written:?}");
-    let path = dir.path().join("scene.toml");
-    let scene = fs::read_to_string(&path).unwrap();
-    fs::write(
-        &path,
-        scene + "\n[solver]\nmethod = 'picard'\ntolerance = 1e-6\n",
-    )
-    .unwrap();
-    let made = program(&["scene.toml", "-n", "8"], dir.path());
-    assert!(made.status.success(), "{made:?}");
+    let solver = "\n[solver]\nmethod = 'picard'\ntolerance = 1e-6\n";
+    let said = make_with(solver, dir.path());
     let settings = "settings      method = picard, tolerance = 1e-6";
-    let said = String::from_utf8(made.stdout).unwrap();
     assert!(said.lines().any(|line| line == settings), "{said}");
     let told = program(&["--info", "scene.h5"], dir.path());
     assert!(told.status.success(), "{told:?}");
