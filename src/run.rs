@@ -49,7 +49,7 @@ use self::merge::condense_clusters;
 use self::motions::Motions;
 use self::narrator::Narrator;
 use self::pausing::Checkpoints;
-use self::read::{OwnedBlock, read_blocks};
+use self::read::read_blocks;
 use self::report::Outputs;
 use self::solution::Solution;
 use self::steps::{in_step, stop_if_asked, survey_steps, take_step};
@@ -58,6 +58,7 @@ use self::totals::{StepTotals, Totals};
 use self::write::write_solution;
 use crate::comm::{Comm, Message, phase};
 use crate::error::Failure;
+use crate::fem::owned::OwnedBlock;
 use crate::output::ranks::PhaseSeconds;
 use crate::output::report::ReportFile;
 use crate::output::resultants::Resultants;
@@ -65,7 +66,7 @@ use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
 use crate::settings::Settings;
 use crate::settings::given::Given;
-use crate::sweep::{SweepOutcome, SweepStatus};
+use crate::sweep::SweepStatus;
 
 /// How a run ended that didn't fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,8 +151,7 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
         narrator: &narrator,
         pair_owners: &pair_owners,
     };
-    let mut before: Option<SweepOutcome> = None;
-    let mut steps = Vec::new();
+    let mut steps: Vec<StepTotals> = Vec::new();
     for (k, survey) in surveys.iter().enumerate() {
         // F, condensed like the blocks, and the bounds on approaches.
         narrator.phase("condensing the load", None);
@@ -167,8 +167,11 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
             blocks: &blocks,
             survey,
         };
+        if k > 0 {
+            let prescribed = loading.prescribe(&mut condensed);
+            prescribed.map_err(|failure| in_step(failure, catalog, k))?;
+        }
         let loads = loading.condense(&mut condensed);
-        let loads = loads.map_err(|failure| in_step(failure, catalog, k))?;
         loading.assemble(&condensed, &loads, interface.as_mut());
         seconds.interface += lap.elapsed().as_secs_f64();
 
@@ -178,7 +181,8 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
         narrator.step(catalog, k);
         let problem = interface.as_ref().map(|(_, interface)| interface);
         let pairs = &mut condensed.pairs;
-        let mut outcome = sweeping.sweep(k, problem, pairs, before.as_ref(), &mut checkpoints)?;
+        let before = steps.last().map(|step| &step.outcome);
+        let mut outcome = sweeping.sweep(k, problem, pairs, before, &mut checkpoints)?;
         seconds.sweeps += lap.elapsed().as_secs_f64();
 
         // Back-substitution, and the check of the full discrete problem.
@@ -218,10 +222,6 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
         let written = write_solution(comm, &blocks, &solution, &plan, result, contacts);
         comm.agree(written.map_err(Failure::from))?;
         seconds.write += lap.elapsed().as_secs_f64();
-        // A step that went nowhere is no place to start from.
-        before = outcome
-            .clone()
-            .filter(|outcome| outcome.status == SweepStatus::Converged);
         let totals = outcome.map(|o| StepTotals::new(o, &solution, resultants, survey));
         steps.extend(totals);
     }

@@ -61,20 +61,23 @@ pub struct PairMemory {
 impl ContactPair {
     /// A pair whose approaches lie within `limits`, bilateral at first; both triangles of S are filled.
     pub fn new(condensed: Condensed, limits: Limits) -> Self {
-        let condensed_len = condensed.s.nrows();
         Self {
+            load: vec![0.0; condensed.s.nrows()],
             condensed,
             open: vec![false; limits.bounds.len()],
             contact: GapSolution::bilateral(limits.approaches(), limits.bounds.len()),
-            load: vec![0.0; condensed_len],
             limits,
         }
     }
 
-    /// Gives it a condensed `load`, on approaches and traces, and other values of its limits. What is open
-    /// and how far sides have come stays: the next evaluation begins there.
-    pub fn prescribe(&mut self, load: Vec<f64>, limits: Limits) {
+    /// Gives it a condensed `load`, on approaches and traces.
+    pub fn set_load(&mut self, load: Vec<f64>) {
         self.load = load;
+    }
+
+    /// Gives its limits other values. What is open and how far sides have come stays: the next evaluation
+    /// begins there.
+    pub fn set_limits(&mut self, limits: Limits) {
         self.limits = limits;
     }
 

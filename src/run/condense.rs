@@ -6,11 +6,11 @@ use contact_dd_partition::problem::Catalog;
 use faer::Par;
 
 use super::merge::CondensedBlocks;
-use super::read::OwnedBlock;
 use crate::error::Failure;
 use crate::fem::assembly::assemble;
 use crate::fem::block::Block;
 use crate::fem::dofs::{DofError, Dofs};
+use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
 use crate::rigid::analysis::Pin;
 use crate::schur::condensed::Condensed;

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use contact_dd_partition::problem::copies::{NodeCopies, OwnNodes, SharedNode};
 use contact_dd_partition::problem::read::ProblemFile;
 
-use super::read::OwnedBlock;
 use crate::comm::{Comm, Message};
 use crate::error::Failure;
+use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
 
 /// Checks that subdomains agree on the nodes that they share and that no others have one tag.

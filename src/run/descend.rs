@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::read::OwnedBlock;
 use super::recover::BlockSolution;
 use crate::fem::frame::dot;
+use crate::fem::owned::OwnedBlock;
 use crate::rigid::survey::Survey;
 
 /// What is left of a length after a motion, relative to both, that is round-off: a body is stiff

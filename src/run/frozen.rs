@@ -6,9 +6,9 @@ use contact_dd_partition::problem::Catalog;
 
 use super::merge::CondensedBlocks;
 use super::motions::Motions;
-use super::read::OwnedBlock;
 use super::substitute::Factors;
 use crate::comm::{Comm, Message};
+use crate::fem::owned::OwnedBlock;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;

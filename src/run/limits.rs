@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use contact_dd_partition::problem::Catalog;
 
 use super::merge::CondensedBlocks;
-use super::read::OwnedBlock;
 use crate::comm::{Comm, Message};
 use crate::contact::approach::ApproachOf;
 use crate::contact::limits::Limits;
 use crate::error::Failure;
 use crate::fem::dofs::Dofs;
+use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
 
 /// The bounds on the approaches of every cluster in contact of this rank, by its place among those, as

@@ -8,11 +8,11 @@ use super::clusters::settle_load;
 use super::condense::dof_failure;
 use super::limits::limits_of_clusters;
 use super::merge::CondensedBlocks;
-use super::read::OwnedBlock;
 use super::substitute::Factors;
 use crate::comm::{Comm, Message};
 use crate::error::Failure;
 use crate::fem::load::load;
+use crate::fem::owned::OwnedBlock;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::{ClusterLoad, Interface};
 use crate::plan::Plan;
@@ -36,22 +36,18 @@ pub struct Loading<'a> {
 }
 
 impl Loading<'_> {
-    /// Condenses the loads of all blocks up the hierarchy, f_Γ − K_ΓI K_II⁻¹ f_I, and gives clusters in
-    /// contact theirs and the bounds on their approaches; returns the load of every node of this rank.
-    /// Collective.
+    /// Gives unknowns their constants and clusters in contact the bounds on their approaches, both of which
+    /// were made for another step. Collective.
     ///
     /// # Errors
     /// Supports that make two sides penetrate.
-    pub fn condense(
-        &self,
-        condensed: &mut CondensedBlocks,
-    ) -> Result<BTreeMap<usize, CondensedLoad>, Failure> {
+    pub fn prescribe(&self, condensed: &mut CondensedBlocks) -> Result<(), Failure> {
         let &Self {
             comm,
             catalog,
             plan,
             blocks,
-            survey,
+            ..
         } = self;
         let materials = &catalog.materials;
         let prescribed = condensed.dofs.iter_mut().try_for_each(|(b, dofs)| {
@@ -62,11 +58,28 @@ impl Loading<'_> {
                 .map_err(|error| dof_failure(error, owned, catalog))
         });
         comm.agree(prescribed)?;
-        let limits = limits_of_clusters(comm, plan, catalog, blocks, condensed)?;
+        for (p, limits) in limits_of_clusters(comm, plan, catalog, blocks, condensed)? {
+            if let Some(pair) = condensed.pairs.get_mut(&p) {
+                pair.set_limits(limits);
+            }
+        }
+        Ok(())
+    }
+
+    /// Condenses the loads of all blocks up the hierarchy, f_Γ − K_ΓI K_II⁻¹ f_I, and gives clusters in
+    /// contact theirs; returns the load of every node of this rank. Collective.
+    pub fn condense(&self, condensed: &mut CondensedBlocks) -> BTreeMap<usize, CondensedLoad> {
+        let &Self {
+            comm,
+            catalog,
+            plan,
+            blocks,
+            survey,
+        } = self;
         let of_block = |(&b, owned): (&usize, &OwnedBlock)| {
             let dofs = condensed.dofs.get(&b)?;
             let springs = condensed.springs.get(&b)?;
-            Some((b, load(&owned.block, dofs, materials, springs)))
+            Some((b, load(&owned.block, dofs, &catalog.materials, springs)))
         };
         let loads = blocks.iter().filter_map(of_block).collect();
         let factors = Factors {
@@ -75,19 +88,19 @@ impl Loading<'_> {
             condensed,
         };
         let loads = factors.condense(loads);
-        for (p, limits) in limits {
-            let node = plan.clusters[plan.contact[p]].node;
-            let (Some(pair), Some(load)) = (condensed.pairs.get_mut(&p), loads.get(&node)) else {
+        for (p, pair) in &mut condensed.pairs {
+            let Some(load) = loads.get(&plan.clusters[plan.contact[*p]].node) else {
                 continue;
             };
             let mut load = load.boundary().to_vec();
-            if let Some(drive) = survey.inner_motions.get(&p) {
+            if let Some(drive) = survey.inner_motions.get(p) {
+                let limits = pair.limits();
                 let on_approaches = &mut load[..limits.approaches()];
                 settle_load(on_approaches, &limits.defining, drive, pair.stiffness());
             }
-            pair.prescribe(load, limits);
+            pair.set_load(load);
         }
-        Ok(loads)
+        loads
     }
 
     /// Assembles F of the clusters' `loads` on the root, which holds the `interface` problem. Collective.

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use contact_dd_partition::problem::Catalog;
 
 use super::frozen::Frozen;
-use super::read::OwnedBlock;
 use crate::comm::Message;
+use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
 use crate::rigid::analysis::FreeMotion;
 use crate::rigid::motion::BodyFrame;

@@ -11,7 +11,7 @@ use crate::comm::Comm;
 use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;
-pub use crate::fem::owned::OwnedBlock;
+use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
 
 /// Most subdomains that are read at once: what HDF5 hands over is there twice for a while.

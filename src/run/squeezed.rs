@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use contact_dd_partition::problem::Catalog;
 use nalgebra::{DMatrix, DVector};
 
-use super::read::OwnedBlock;
 use crate::error::Failure;
+use crate::fem::owned::OwnedBlock;
 use crate::rigid::nonnegative::residual;
 
 /// How far obstacles may overlap, relative to the gaps and displacements that they prescribe.

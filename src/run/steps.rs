@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use contact_dd_partition::problem::Catalog;
 
 use super::descend::take_out_descent;
-use super::read::OwnedBlock;
 use crate::comm::Comm;
 use crate::error::Failure;
+use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
 use crate::rigid::survey::{Survey, survey};
 

@@ -5,11 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use contact_dd_partition::problem::Catalog;
 
-use super::read::OwnedBlock;
 use super::recover::BlockSolution;
 use crate::comm::{Comm, Message};
 use crate::fem::block::Block;
 use crate::fem::estimate::CellError;
+use crate::fem::owned::OwnedBlock;
 use crate::fem::patch::{PatchSum, Polynomial};
 use crate::fem::recovery::Recovery;
 use crate::fem::stress::{BlockStress, RecoveredStress};

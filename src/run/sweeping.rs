@@ -10,7 +10,7 @@ use crate::error::Failure;
 use crate::interface::operator::Interface;
 use crate::interface::s_con::SCon;
 use crate::settings::Settings;
-use crate::sweep::{Method, Start, SweepOutcome, SweepRecord, Sweeps};
+use crate::sweep::{Method, Start, SweepOutcome, SweepRecord, SweepStatus, Sweeps};
 
 /// What sweeps of any step need.
 #[derive(Clone, Copy)]
@@ -59,8 +59,11 @@ impl Sweeping<'_> {
     ) -> Result<SweepOutcome, Failure> {
         let earlier = checkpoints.begin(k);
         self.narrator.sweeps(interface, earlier.as_ref());
-        // Picard's relaxation is that of the contacts that the bilateral solution leaves closed.
-        let before = before.filter(|_| self.settings.method != Method::Picard);
+        // Picard's relaxation is that of the contacts that the bilateral solution leaves closed, and a step
+        // that went nowhere is no place to start from.
+        let before = before.filter(|before| {
+            self.settings.method != Method::Picard && before.status == SweepStatus::Converged
+        });
         let start = match (checkpoints.restore(earlier, interface, s_con)?, before) {
             (Some((progress, state)), _) => Start::Earlier(Box::new(progress), state),
             (None, Some(before)) => Start::Before(before.u.clone(), before.open.clone()),

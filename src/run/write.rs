@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 use contact_dd_partition::error::OutputError;
 
 use self::parcel::{Parcel, pack, unpack};
-use super::read::OwnedBlock;
 use super::recover::BlockSolution;
 use super::solution::Solution;
 use crate::comm::{Comm, Message, ROOT};
+use crate::fem::owned::OwnedBlock;
 use crate::output::result::{ContactResult, SubdomainResults};
 use crate::output::resultants::ContactResultant;
 use crate::output::vtkhdf::ResultFile;

@@ -75,8 +75,8 @@ impl Cluster {
             .collect();
         let limits = Limits::new(of.len(), &of, &self.gaps, 0.0);
         let layer = Layer::new(&self.condensed, &self.compliances);
-        let mut pair = ContactPair::new(layer.before(&self.condensed), limits.clone());
-        pair.prescribe(layer.load(&self.load), limits);
+        let mut pair = ContactPair::new(layer.before(&self.condensed), limits);
+        pair.set_load(layer.load(&self.load));
         pair
     }
 }

@@ -6,9 +6,9 @@ use std::ops::Range;
 use crate::comm::{Comm, Message};
 use crate::fem::block::Block;
 use crate::fem::elasticity::{principal_stresses, von_mises};
+use crate::fem::owned::OwnedBlock;
 use crate::output::result::{PartitionSize, SubdomainResults};
 use crate::plan::Plan;
-use crate::run::read::OwnedBlock;
 use crate::run::solution::Solution;
 use crate::run::stresses::Stress;
 
