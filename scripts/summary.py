@@ -356,8 +356,11 @@ def read(path):
                 for name, table in file.get("contact", {}).items()
                 if len(table["position"]) > 0
             }
-    except (OSError, KeyError, ValueError) as error:
-        print(f"summary: {path}: isn't a result of contact-dd-mpi: {error}", file=sys.stderr)
+    except FileNotFoundError:
+        print(f"summary: {path}: there is no such file", file=sys.stderr)
+        sys.exit(2)
+    except (OSError, KeyError, ValueError):
+        print(f"summary: {path}: isn't a result of contact-dd-mpi, a file .vtkhdf", file=sys.stderr)
         sys.exit(2)
     return report, sweeps, tables
 
@@ -368,6 +371,10 @@ def main():
     parser.add_argument("page", type=pathlib.Path, nargs="?", help="default: the result's name with .html")
     arguments = parser.parse_args()
     page = arguments.page or arguments.result.with_suffix(".html")
+    if page.suffix not in (".html", ".htm"):
+        # A second result is a likely slip, and would be overwritten.
+        print(f"summary: {page}: isn't the name of a page; expected one that ends in .html", file=sys.stderr)
+        sys.exit(2)
     plt.rcParams.update({"svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif",
                          "font.sans-serif": ["DejaVu Sans", "Arial", "Helvetica"]})
     report, sweeps, tables = read(arguments.result)
@@ -376,10 +383,15 @@ def main():
         convergence(report, sweeps), certificate(report), reactions(report), ranks(report), rest(report),
     ]
     title = escape(pathlib.Path(report["settings"]["problem"]).name)
-    page.write_text(
+    text = (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
         f"<style>{STYLE}</style></head>\n<body>\n" + "\n".join(parts) + "\n</body></html>\n"
     )
+    try:
+        page.write_text(text)
+    except OSError as error:
+        print(f"summary: {page}: can't be written: {error.strerror}", file=sys.stderr)
+        sys.exit(5)
     print(page)
 
 
