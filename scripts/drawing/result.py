@@ -21,6 +21,8 @@ class Result:
             self.step = self.steps if step is None else step
             if not 1 <= self.step <= self.steps:
                 sys.exit(f"figures: {path}: there is no step {step}; expected 1 to {self.steps}")
+            if "Displacement" not in grid["PointData"]:
+                sys.exit(f"figures: {path}: is a problem file; contact-dd-mpi {path} solves it")
             if "Stress" not in grid["PointData"]:
                 sys.exit(f"figures: {path}: there are no stresses; expected a run without --no-stress")
             self.points = grid["Points"][:, :2]
