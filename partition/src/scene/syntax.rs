@@ -1,0 +1,218 @@
+//! Text that isn't TOML, in words for somebody who doesn't know TOML.
+
+/// Longest piece of a line that is shown.
+const LONGEST: usize = 60;
+
+/// What is wrong in `text`, where the parser gave up at `start` and said `message`.
+pub(super) fn described(text: &str, start: usize, message: &str) -> String {
+    let start = text.floor_char_boundary(start.min(text.len()));
+    let from = text[..start].rfind('\n').map_or(0, |at| at + 1);
+    let line = text[from..].lines().next().unwrap_or_default().trim();
+    let found = shown(line);
+    if message.contains("duplicate key") {
+        return match line.starts_with('[') {
+            true => format!("{found} stands here for the second time; expected it once"),
+            false => {
+                let key = shown(line.split('=').next().unwrap_or_default().trim());
+                format!("'{key}' stands here for the second time; expected it once")
+            }
+        };
+    }
+    if line.starts_with('[') {
+        return format!(
+            "found {found}; expected [table] or [[list of tables]], closed on the line"
+        );
+    }
+    let Some((key, value)) = line.split_once('=') else {
+        return format!("found {found}; expected key = value");
+    };
+    let (key, value) = (key.trim(), value.trim());
+    let behind = |rest: &str| {
+        format!(
+            "found {} behind the value; expected the end of the line, or a comment that begins with #",
+            shown(rest)
+        )
+    };
+    let Some(first) = value.chars().next() else {
+        return format!("'{key}' has no value; expected key = value");
+    };
+    if first == '"' || first == '\'' {
+        let inside = &value[1..];
+        return match inside.find(first) {
+            None => format!(
+                "the text {} isn't closed; expected {first} at its end",
+                shown(value)
+            ),
+            Some(_) if message.contains("escape") => format!(
+                "{} holds a backslash, which means something else in double quotes; expected / in its \
+                 place, or single quotes",
+                shown(value)
+            ),
+            Some(end) => behind(inside[end + 1..].trim()),
+        };
+    }
+    if first == '[' || first == '{' {
+        return format!("found {found}; expected [value, value] or {{ key = value, key = value }}");
+    }
+    if matches!(value, "True" | "TRUE" | "False" | "FALSE") {
+        return format!("found {value}; expected {}", value.to_lowercase());
+    }
+    let (number, rest) = value.split_at(number_length(value));
+    let rest = rest.split('#').next().unwrap_or_default().trim();
+    if number.is_empty() {
+        let word = value.split('#').next().unwrap_or_default().trim();
+        let plain = word.trim_matches(|c: char| "“”„‟‘’".contains(c));
+        return format!(
+            "found {}; expected it in quotes: {key} = \"{}\"",
+            shown(word),
+            shown(plain)
+        );
+    }
+    let mut after = rest.chars();
+    match (after.next(), after.next()) {
+        (Some(','), Some(next)) if next.is_ascii_digit() => {
+            let pointed = format!("{number}.{}", &rest[1..]);
+            format!(
+                "found {}; expected a point in the number: {}",
+                shown(value),
+                shown(&pointed)
+            )
+        }
+        (Some('*' | '^' | '+' | '-' | '/' | '('), next) if next != Some('/') => {
+            let whole = format!("{number}{rest}");
+            format!(
+                "found {}; expected an expression in quotes: {key} = \"{}\"",
+                shown(&whole),
+                shown(&whole)
+            )
+        }
+        (Some(letter), _) if letter.is_alphabetic() || "%°".contains(letter) => format!(
+            "found {}; expected a number without a unit: {key} = {number}",
+            shown(
+                &value[..number.len() + value[number.len()..].find(rest).unwrap_or(0) + rest.len()]
+            )
+        ),
+        (Some(_), _) => behind(rest),
+        (None, _) => format!("found {found}; expected a number, as 5.2e9 or 0.3 ({message})"),
+    }
+}
+
+/// Length of the number that a value begins with, in bytes; 0 where it begins with something else.
+fn number_length(value: &str) -> usize {
+    let digits = |from: usize| {
+        let rest = value[from..].bytes();
+        rest.take_while(|c| c.is_ascii_digit() || *c == b'_')
+            .count()
+    };
+    let mut end = usize::from(value.starts_with(['+', '-']));
+    let whole = digits(end);
+    if whole == 0 {
+        return 0;
+    }
+    end += whole;
+    if value[end..].starts_with('.') {
+        end += 1 + digits(end + 1);
+    }
+    if value[end..].starts_with(['e', 'E']) {
+        let sign = end + 1 + usize::from(value[end + 1..].starts_with(['+', '-']));
+        if digits(sign) > 0 {
+            end = sign + digits(sign);
+        }
+    }
+    end
+}
+
+/// The beginning of a piece of text, without what would spoil the terminal.
+fn shown(piece: &str) -> String {
+    let mut shown: String = (piece.chars().take(LONGEST))
+        .filter(|c| !c.is_control())
+        .collect();
+    if piece.chars().count() > LONGEST {
+        shown.push('…');
+    }
+    shown
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toml::de::DeTable;
+
+    #[test]
+    fn slips_are_named_in_plain_words() {
+        for (line, expected) in [
+            (
+                "young = 210e9Pa",
+                "found 210e9Pa; expected a number without a unit: young = 210e9",
+            ),
+            (
+                "young = 210 GPa # steel",
+                "found 210 GPa; expected a number without a unit: young = 210",
+            ),
+            (
+                "young = 5,2e9",
+                "found 5,2e9; expected a point in the number: 5.2e9",
+            ),
+            (
+                "young = 5.2*10^9",
+                "found 5.2*10^9; expected an expression in quotes: young = \"5.2*10^9\"",
+            ),
+            (
+                "value = sin(x)",
+                "found sin(x); expected it in quotes: value = \"sin(x)\"",
+            ),
+            ("on = top", "found top; expected it in quotes: on = \"top\""),
+            (
+                "on = “top”",
+                "found “top”; expected it in quotes: on = \"top\"",
+            ),
+            (
+                "on = \"top",
+                "the text \"top isn't closed; expected \" at its end",
+            ),
+            (
+                "on = \"top\" // above",
+                "found // above behind the value; expected the end of the line",
+            ),
+            ("x = 0.0, y = 0.0", "found , y = 0.0 behind the value"),
+            ("x = 0.0;", "found ; behind the value"),
+            ("x = 0.0 // held", "found // held behind the value"),
+            ("on \"top\"", "found on \"top\"; expected key = value"),
+            ("on: \"top\"", "found on: \"top\"; expected key = value"),
+            ("x =", "'x' has no value"),
+            ("no_stress = True", "found True; expected true"),
+            ("mesh = \"C:\\meshes\\a.msh\"", "holds a backslash"),
+            ("[contact", "found [contact; expected [table]"),
+            (
+                "value = [0.0 1.0]",
+                "found value = [0.0 1.0]; expected [value, value]",
+            ),
+            ("a = 1\na = 2", "'a' stands here for the second time"),
+            ("[a]\n[a]", "[a] stands here for the second time"),
+        ] {
+            let text = format!("{line}\n");
+            let error = DeTable::parse(&text).unwrap_err();
+            let start = error.span().unwrap().start;
+            let said = described(&text, start, error.message());
+            assert!(
+                said.starts_with(expected) || said.contains(expected),
+                "{line}: {said}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_number_ends_where_it_ends() {
+        for (value, number) in [
+            ("210e9Pa", "210e9"),
+            ("-1.5e-3 m", "-1.5e-3"),
+            ("5 m", "5"),
+            ("3e", "3"),
+            ("2.", "2."),
+            ("e9", ""),
+            ("", ""),
+        ] {
+            assert_eq!(&value[..number_length(value)], number);
+        }
+    }
+}
