@@ -8,15 +8,10 @@ pub(super) fn described(text: &str, start: usize, message: &str) -> String {
     let start = text.floor_char_boundary(start.min(text.len()));
     let from = text[..start].rfind('\n').map_or(0, |at| at + 1);
     let line = text[from..].lines().next().unwrap_or_default().trim();
+    let line = without_comment(line);
     let found = shown(line);
     if message.contains("duplicate key") {
-        return match line.starts_with('[') {
-            true => format!("{found} stands here for the second time; expected it once"),
-            false => {
-                let key = shown(line.split('=').next().unwrap_or_default().trim());
-                format!("'{key}' stands here for the second time; expected it once")
-            }
-        };
+        return repeated(text, line);
     }
     if line.starts_with('[') {
         return format!(
@@ -26,11 +21,16 @@ pub(super) fn described(text: &str, start: usize, message: &str) -> String {
     let Some((key, value)) = line.split_once('=') else {
         return format!("found {found}; expected key = value");
     };
-    let (key, value) = (key.trim(), value.trim());
+    value_fault(key.trim(), value.trim(), message)
+}
+
+/// What is wrong with what stands behind `key =`.
+fn value_fault(key: &str, value: &str, message: &str) -> String {
+    let found = shown(value);
     let behind = |rest: &str| {
+        let rest = shown(rest.trim());
         format!(
-            "found {} behind the value; expected the end of the line, or a comment that begins with #",
-            shown(rest)
+            "found {rest} behind the value; expected the end of the line, or a comment that begins with #"
         )
     };
     let Some(first) = value.chars().next() else {
@@ -39,16 +39,12 @@ pub(super) fn described(text: &str, start: usize, message: &str) -> String {
     if first == '"' || first == '\'' {
         let inside = &value[1..];
         return match inside.find(first) {
-            None => format!(
-                "the text {} isn't closed; expected {first} at its end",
-                shown(value)
-            ),
+            None => format!("the text {found} isn't closed; expected {first} at its end"),
             Some(_) if message.contains("escape") => format!(
-                "{} holds a backslash, which means something else in double quotes; expected / in its \
-                 place, or single quotes",
-                shown(value)
+                "{found} holds a backslash, which means something else in double quotes; \
+                 expected / in its place, or single quotes"
             ),
-            Some(end) => behind(inside[end + 1..].trim()),
+            Some(end) => behind(&inside[end + 1..]),
         };
     }
     if first == '[' || first == '{' {
@@ -58,43 +54,65 @@ pub(super) fn described(text: &str, start: usize, message: &str) -> String {
         return format!("found {value}; expected {}", value.to_lowercase());
     }
     let (number, rest) = value.split_at(number_length(value));
-    let rest = rest.split('#').next().unwrap_or_default().trim();
     if number.is_empty() {
-        let word = value.split('#').next().unwrap_or_default().trim();
-        let plain = word.trim_matches(|c: char| "“”„‟‘’".contains(c));
-        return format!(
-            "found {}; expected it in quotes: {key} = \"{}\"",
-            shown(word),
-            shown(plain)
-        );
+        let plain = shown(value.trim_matches(|c: char| "“”„‟‘’".contains(c)));
+        return format!("found {found}; expected it in quotes: {key} = \"{plain}\"");
     }
+    let rest = rest.trim();
     let mut after = rest.chars();
     match (after.next(), after.next()) {
         (Some(','), Some(next)) if next.is_ascii_digit() => {
-            let pointed = format!("{number}.{}", &rest[1..]);
-            format!(
-                "found {}; expected a point in the number: {}",
-                shown(value),
-                shown(&pointed)
-            )
+            let pointed = shown(&format!("{number}.{}", &rest[1..]));
+            format!("found {found}; expected a point in the number: {pointed}")
         }
         (Some('*' | '^' | '+' | '-' | '/' | '('), next) if next != Some('/') => {
-            let whole = format!("{number}{rest}");
-            format!(
-                "found {}; expected an expression in quotes: {key} = \"{}\"",
-                shown(&whole),
-                shown(&whole)
-            )
+            format!("found {found}; expected an expression in quotes: {key} = \"{found}\"")
         }
-        (Some(letter), _) if letter.is_alphabetic() || "%°".contains(letter) => format!(
-            "found {}; expected a number without a unit: {key} = {number}",
-            shown(
-                &value[..number.len() + value[number.len()..].find(rest).unwrap_or(0) + rest.len()]
-            )
-        ),
+        (Some(letter), _) if letter.is_alphabetic() || "%°".contains(letter) => {
+            format!("found {found}; expected a number without a unit: {key} = {number}")
+        }
         (Some(_), _) => behind(rest),
         (None, _) => format!("found {found}; expected a number, as 5.2e9 or 0.3 ({message})"),
     }
+}
+
+/// What is wrong with a key or a table that is there before this `line`.
+fn repeated(text: &str, line: &str) -> String {
+    let name = line.trim_start_matches('[').trim_end_matches(']');
+    let [one, list] = [format!("[{name}]"), format!("[[{name}]]")];
+    let is_there = |header: &str| {
+        text.lines()
+            .any(|line| without_comment(line.trim()) == header)
+    };
+    if line.starts_with('[') && is_there(&one) && is_there(&list) {
+        return format!(
+            "{} stands here, and elsewhere {}; expected double brackets for all, or one in single brackets",
+            shown(line),
+            if line == one { list } else { one }
+        );
+    }
+    let what = match line.starts_with('[') {
+        true => shown(line),
+        false => format!(
+            "'{}'",
+            shown(line.split('=').next().unwrap_or_default().trim())
+        ),
+    };
+    format!("{what} stands here for the second time; expected it once")
+}
+
+/// A line up to a comment, which begins with # outside of quotes.
+fn without_comment(line: &str) -> &str {
+    let mut quote = None;
+    for (at, c) in line.char_indices() {
+        match (quote, c) {
+            (None, '#') => return line[..at].trim_end(),
+            (None, '"' | '\'') => quote = Some(c),
+            (Some(open), _) if open == c => quote = None,
+            _ => {}
+        }
+    }
+    line
 }
 
 /// Length of the number that a value begins with, in bytes; 0 where it begins with something else.
@@ -150,7 +168,7 @@ mod tests {
                 "found 210 GPa; expected a number without a unit: young = 210",
             ),
             (
-                "young = 5,2e9",
+                "young = 5,2e9   # Pa",
                 "found 5,2e9; expected a point in the number: 5.2e9",
             ),
             (
@@ -185,9 +203,13 @@ mod tests {
             ("[contact", "found [contact; expected [table]"),
             (
                 "value = [0.0 1.0]",
-                "found value = [0.0 1.0]; expected [value, value]",
+                "found [0.0 1.0]; expected [value, value]",
             ),
             ("a = 1\na = 2", "'a' stands here for the second time"),
+            (
+                "[contact]\na = 1\n[[contact]]",
+                "[[contact]] stands here, and elsewhere [contact]; expected double brackets for all",
+            ),
             ("[a]\n[a]", "[a] stands here for the second time"),
         ] {
             let text = format!("{line}\n");

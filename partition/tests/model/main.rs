@@ -9,6 +9,7 @@ mod blocks;
 mod bodies;
 mod contact;
 mod corner;
+mod doubts;
 mod invariance;
 mod loads;
 mod mortar;

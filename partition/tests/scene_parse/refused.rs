@@ -206,7 +206,7 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
         (
             "obstacle = { point = [0.0, 0.0], normal = [0.0, 2.0] }",
             "",
-            "contact[2] 'table': 'sides' has 1 entries; expected 2",
+            "contact[2] 'table': 'sides' has 1 entry; expected 2",
         ),
         (
             "\"more\"",
