@@ -71,9 +71,10 @@ def main():
     parser.add_argument("--scale", type=factor, default="auto", help="enlargement of the deformation (default: auto, which shows it, unless closed contacts would seem to overlap)")
     parser.add_argument("--only", nargs="+", choices=PICTURES, default=list(PICTURES), metavar="PICTURE", help=f"which to draw (default: all of {', '.join(PICTURES)})")
     parser.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
+    parser.add_argument("--mm", action="store_true", help="the scene is in mm, N and MPa, not in m, N and Pa")
     arguments = parser.parse_args()
     try:
-        result = Result(arguments.result, arguments.step)
+        result = Result(arguments.result, arguments.step, arguments.mm)
     except FileNotFoundError:
         sys.exit(f"figures: {arguments.result}: there is no such file")
     except (OSError, KeyError):

@@ -62,6 +62,8 @@ def si(value, unit, digits=3):
         return "–"
     if value == 0:
         return f"0 {unit}"
+    # Rounded first: 999.9 k is 1 M.
+    value = float(f"{value:.{digits}g}")
     power = int(np.clip(np.floor(np.log10(abs(value)) / 3), -3, 3))
     prefix = {-3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}[power]
     return f"{value / 10.0 ** (3 * power):.{digits}g} {prefix}{unit}"
@@ -365,10 +367,24 @@ def read(path):
     return report, sweeps, tables
 
 
+def from_mm(report, tables):
+    """Turns what is in mm, N and MPa into m, N and Pa, as far as the page shows it."""
+    for part in [report, *(report.get("steps") or [])]:
+        for contact in part["contacts"]:
+            contact["largest_pressure"] = contact["largest_pressure"] and 1e6 * contact["largest_pressure"]
+        for one in [*part["contacts"], *part["reactions"]]:
+            # Forces are per length.
+            one["force"] = [force and 1e3 * force for force in one["force"]]
+    for table in tables.values():
+        table["position"] = 1e-3 * table["position"]
+        table["pressure"] = 1e6 * table["pressure"]
+
+
 def main():
     parser = argparse.ArgumentParser(prog="summary", description=__doc__.splitlines()[0])
     parser.add_argument("result", type=pathlib.Path, help="result file of contact-dd-mpi")
     parser.add_argument("page", type=pathlib.Path, nargs="?", help="default: the result's name with .html")
+    parser.add_argument("--mm", action="store_true", help="the scene is in mm, N and MPa, not in m, N and Pa")
     arguments = parser.parse_args()
     page = arguments.page or arguments.result.with_suffix(".html")
     if page.suffix not in (".html", ".htm"):
@@ -378,6 +394,8 @@ def main():
     plt.rcParams.update({"svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif",
                          "font.sans-serif": ["DejaVu Sans", "Arial", "Helvetica"]})
     report, sweeps, tables = read(arguments.result)
+    if arguments.mm:
+        from_mm(report, tables)
     parts = [
         head(report, arguments.result.name), warnings(report), steps(report), contacts(report, tables),
         convergence(report, sweeps), certificate(report), reactions(report), ranks(report), rest(report),

@@ -1,5 +1,6 @@
 //! `scripts/figures`, which draws a result: how far it enlarges what moves.
 
+use std::fs;
 use std::path::Path;
 use std::process::Command;
 
@@ -52,6 +53,20 @@ fn gaps_that_close_are_not_enlarged_into_overlaps() {
 
     let touching = figures(&solved(0.0), &["--scale", "20"]);
     assert_eq!((touching.code(), &*touching.stderr), (0, ""));
+}
+
+#[test]
+fn a_scene_in_millimetres_is_drawn_with_its_own_units() {
+    if !can_draw() {
+        return;
+    }
+    let case = solved(0.0);
+    let pictures = [&[][..], &["--mm"]].map(|options| {
+        let drawn = figures(&case, options);
+        assert_eq!((drawn.code(), &*drawn.stderr), (0, ""));
+        fs::read(case.folder().join("pictures/overview.png")).unwrap()
+    });
+    assert!(pictures[0] != pictures[1]);
 }
 
 #[test]

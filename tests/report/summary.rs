@@ -78,6 +78,30 @@ fn what_is_no_result_gets_no_page() {
 }
 
 #[test]
+fn a_scene_in_millimetres_has_its_page_in_pascals() {
+    if !can_draw() {
+        return;
+    }
+    let case = Case::of(&built_in_model("hertz", 0), 4);
+    assert_eq!(case.run(&[]).code(), 0);
+    let pages = ["m.html", "mm.html"].map(|name| {
+        let page = case.folder().join(name);
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/summary");
+        let mut command = Command::new(script);
+        command.arg(case.result()).arg(&page);
+        if name == "mm.html" {
+            command.arg("--mm");
+        }
+        let drawn = Running::start(&mut command).wait(4 * LIMIT);
+        assert_eq!(drawn.code(), 0, "{}", drawn.stderr);
+        fs::read_to_string(page).unwrap()
+    });
+    let [in_m, in_mm] = pages;
+    assert!(in_m.contains("-5 N/m") && !in_m.contains("MPa"));
+    assert!(in_mm.contains("-5 kN/m") && in_mm.contains("MPa"));
+}
+
+#[test]
 fn a_second_result_is_not_taken_for_the_name_of_the_page() {
     if !can_draw() {
         return;
