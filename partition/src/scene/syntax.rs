@@ -5,8 +5,8 @@ const LONGEST: usize = 60;
 
 /// What is wrong in `text`, where the parser gave up at `start` and said `message`.
 pub(super) fn described(text: &str, start: usize, message: &str) -> String {
-    let start = text.floor_char_boundary(start.min(text.len()));
-    let from = text[..start].rfind('\n').map_or(0, |at| at + 1);
+    let before = text.get(..start).unwrap_or(text);
+    let from = before.rfind('\n').map_or(0, |at| at + 1);
     let line = text[from..].lines().next().unwrap_or_default().trim();
     let line = without_comment(line);
     let found = shown(line);

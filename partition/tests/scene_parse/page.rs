@@ -1,5 +1,11 @@
 //! docs/scene.md: what it shows can be read, and it names all that can be written.
 
+#![expect(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "what fails here fails the test"
+)]
+
 use std::fs;
 use std::path::Path;
 
