@@ -85,7 +85,6 @@ impl Scene {
             smallest_pivot: schur.smallest_pivot(),
             stiffness: schur.stiffness,
             s,
-            eliminated: 0,
         }
     }
 }

@@ -74,11 +74,9 @@ fn pack(blocks: &CondensedBlocks, plan: &Plan, c: usize, with_laws: bool) -> Mes
 }
 
 fn pack_head(condensed: &Condensed, has_law: bool, message: &mut Message) {
-    message.integers.extend([
-        condensed.traces.len() as i64,
-        i64::from(has_law),
-        condensed.eliminated as i64,
-    ]);
+    message
+        .integers
+        .extend([condensed.traces.len() as i64, i64::from(has_law)]);
     for dof in &condensed.traces {
         message
             .integers
@@ -91,7 +89,6 @@ fn unpack(message: Message) -> (Vec<TraceDof>, Contribution) {
     let mut reader = message.read();
     let n = reader.count();
     let has_law = reader.integer() != 0;
-    let eliminated = reader.count();
     let traces = (0..n)
         .map(|_| TraceDof {
             node: reader.integer() as u32,
@@ -99,7 +96,6 @@ fn unpack(message: Message) -> (Vec<TraceDof>, Contribution) {
         })
         .collect();
     let contribution = Contribution {
-        eliminated,
         smallest_pivot: reader.real(),
         s: reader.symmetric(n),
         law: has_law.then(|| PairLaw::unpack(&mut reader, n)),

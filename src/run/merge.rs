@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::clusters::take_clusters;
 use super::condense::Condensation;
 use super::limits::limits_of_clusters;
+use super::steps::in_step;
 use crate::comm::{Comm, Message, is_asked_to_stop};
 use crate::contact::pair::ContactPair;
 use crate::error::Failure;
@@ -96,7 +97,8 @@ pub fn condense_clusters(
         ..
     } = merging;
     let catalog = condensation.catalog;
-    let limits = limits_of_clusters(comm, plan, catalog, blocks, &condensed)?;
+    let limits = limits_of_clusters(comm, plan, catalog, blocks, &condensed)
+        .map_err(|failure| in_step(failure, catalog, 0))?;
     take_clusters(plan, survey, limits, waiting, &mut condensed);
     Ok(condensed)
 }
@@ -225,14 +227,8 @@ impl Merging<'_> {
 /// What a node sends to the owner of its parent.
 fn pack(condensed: Condensed) -> Message {
     let mut message = Message::default();
-    message.integers.extend(
-        [
-            condensed.approaches,
-            condensed.traces.len(),
-            condensed.eliminated,
-        ]
-        .map(|n| n as i64),
-    );
+    let lengths = [condensed.approaches, condensed.traces.len()];
+    message.integers.extend(lengths.map(|n| n as i64));
     for dof in &condensed.traces {
         let [node, axis] = [dof.node, dof.axis].map(i64::from);
         message.integers.extend([node, axis]);
@@ -248,7 +244,7 @@ fn unpack(message: Message) -> Option<Condensed> {
         return None;
     }
     let mut reader = message.read();
-    let (approaches, traces, eliminated) = (reader.count(), reader.count(), reader.count());
+    let (approaches, traces) = (reader.count(), reader.count());
     let n = approaches + traces;
     Some(Condensed {
         approaches,
@@ -258,7 +254,6 @@ fn unpack(message: Message) -> Option<Condensed> {
                 axis: reader.integer() as u32,
             })
             .collect(),
-        eliminated,
         smallest_pivot: reader.real(),
         stiffness: reader.reals(n),
         s: reader.lower(n),

@@ -81,7 +81,7 @@ impl<'a> Narrator<'a> {
             problem: &self.settings.problem,
             title: &catalog.title,
             dofs: dofs(catalog),
-            interface_dofs: catalog.dim * plan.sharing.iter().filter(|&&n| n > 1).count(),
+            interface_dofs: catalog.dim * plan.interface_nodes(),
             subdomains: catalog.subdomains.len(),
             contact_pairs: plan.pairs.len(),
             contact_conditions: conditions(catalog),
