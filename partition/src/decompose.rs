@@ -50,8 +50,8 @@ impl Decomposition {
     /// Every subdomain is connected across facets. All cells around a node with a contact
     /// condition are in one subdomain, and each side of a contact has its own wherever `count`
     /// allows, so that contacts lie within pairs. Where `count` allows, every subdomain is of one
-    /// material but for the cells around a contact surface that ends at another one. Equal models give equal partitions. A partition
-    /// that the scene prescribes is taken as it is.
+    /// material but for the cells around a contact surface that ends at another one. Equal models
+    /// give equal partitions. A partition that the scene prescribes is taken as it is.
     ///
     /// # Errors
     /// A count that can't be, with the range that can; a prescribed partition that doesn't fit.

@@ -54,7 +54,7 @@ pub struct SweepLine {
     pub active: usize,
     /// Number of conditions that opened or closed in this sweep; the start has none.
     pub changed: Option<usize>,
-    /// Time that the sweep took (s).
+    /// Time since the sweeps began (s).
     pub seconds: f64,
 }
 

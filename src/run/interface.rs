@@ -14,8 +14,8 @@ use crate::plan::Plan;
 use crate::schur::condensed::Condensed;
 use crate::schur::trace::TraceDof;
 
-/// Numbers what clusters share of Γ and assembles S_0 and the bilateral operator on the root. Collective; the other
-/// ranks get nothing.
+/// Numbers what clusters share of Γ and assembles S_0 and the bilateral operator on the root.
+/// Collective; the other ranks get nothing.
 ///
 /// # Errors
 /// Supports that differ between subdomains, or a singular bilateral problem.

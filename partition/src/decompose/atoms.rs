@@ -13,8 +13,8 @@ const SAME_MATERIAL: u32 = 4;
 /// The cells of a mesh, contracted to clusters wherever a cut would let Γ meet Γ_c.
 ///
 /// All cells around a node with a contact condition are one cluster, with the layers of cells behind
-/// it that make it cheaper; every other cell is an atom of its own. Where the mesh is pinched at such a node, the fans on both sides of it stay apart,
-/// so that every atom is connected across facets.
+/// it that make it cheaper; every other cell is an atom of its own. Where the mesh is pinched at such
+/// a node, the fans on both sides of it stay apart, so that every atom is connected across facets.
 pub(super) struct Atoms {
     /// The atom of every cell, numbered by first cell.
     of_cell: Vec<u32>,
