@@ -29,8 +29,8 @@ pub struct BlockPlan {
 pub struct Plan {
     /// Blocks.
     pub blocks: Vec<BlockPlan>,
-    /// The block of every pair, ascending.
-    pub pairs: Vec<usize>,
+    /// The block of every group in contact, ascending.
+    pub groups: Vec<usize>,
     /// How many blocks have each node of Γ.
     pub sharing: Vec<u32>,
     /// The block of every subdomain.
@@ -74,13 +74,13 @@ impl Plan {
                 sharing[node as usize] += 1;
             }
         }
-        let pairs = (0..blocks.len())
+        let groups = (0..blocks.len())
             .filter(|&b| blocks[b].group.is_some())
             .collect();
         let tree = Tree::new(catalog, &blocks, &block_of, &sharing);
         let mut plan = Self {
             blocks,
-            pairs,
+            groups,
             sharing,
             block_of,
             tree,
@@ -109,7 +109,7 @@ impl Plan {
             self.clusters.push(ClusterPlan {
                 node,
                 owner: self.node_owners[node],
-                pairs: under.filter_map(|b| self.pair_of(b)).collect(),
+                groups: under.filter_map(|b| self.group_of(b)).collect(),
             });
         }
         self.contact = (0..self.clusters.len())
@@ -140,14 +140,14 @@ impl Plan {
         self.blocks.iter().map(|b| b.owner).collect()
     }
 
-    /// The owner of every pair.
-    pub fn pair_owners(&self) -> Vec<usize> {
-        self.pairs.iter().map(|&b| self.blocks[b].owner).collect()
+    /// The owner of every group.
+    pub fn group_owners(&self) -> Vec<usize> {
+        self.groups.iter().map(|&b| self.blocks[b].owner).collect()
     }
 
-    /// The place of block b among the pairs.
-    pub fn pair_of(&self, block: usize) -> Option<usize> {
-        self.pairs.binary_search(&block).ok()
+    /// The place of block b among the groups.
+    pub fn group_of(&self, block: usize) -> Option<usize> {
+        self.groups.binary_search(&block).ok()
     }
 
     /// The owner of every cluster.
@@ -181,16 +181,17 @@ impl Plan {
         of
     }
 
-    /// All pairs, cluster by cluster.
-    pub fn pairs_by_cluster(&self) -> Vec<usize> {
-        self.clusters.iter().flat_map(|c| c.pairs.clone()).collect()
+    /// All groups, cluster by cluster.
+    pub fn groups_by_cluster(&self) -> Vec<usize> {
+        let clusters = self.clusters.iter();
+        clusters.flat_map(|c| c.groups.clone()).collect()
     }
 
-    /// From the owner of every pair to that of its cluster, cluster by cluster.
+    /// From the owner of every group to that of its cluster, cluster by cluster.
     pub fn ways_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.clusters.iter().flat_map(|cluster| {
-            let pairs = cluster.pairs.iter();
-            pairs.map(|&p| (self.blocks[self.pairs[p]].owner, cluster.owner))
+            let groups = cluster.groups.iter();
+            groups.map(|&g| (self.blocks[self.groups[g]].owner, cluster.owner))
         })
     }
 }
@@ -258,7 +259,7 @@ mod tests {
         let plan = Plan::new(&catalog(), 3, Merging::All);
         assert_eq!(plan.block_of, [0, 1, 2, 1, 3]);
         assert_eq!(plan.blocks[1].subdomains, [1, 3]);
-        assert_eq!((plan.pairs.clone(), plan.pair_of(1)), (vec![1], Some(0)));
+        assert_eq!((&plan.groups[..], plan.group_of(1)), (&[1][..], Some(0)));
     }
 
     #[test]

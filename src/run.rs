@@ -144,12 +144,12 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
     seconds.interface = lap.elapsed().as_secs_f64();
 
     // All that depends on loads, load step by load step.
-    let pair_owners = plan.contact_owners();
+    let contact_owners = plan.contact_owners();
     let sweeping = Sweeping {
         comm,
         settings,
         narrator: &narrator,
-        pair_owners: &pair_owners,
+        contact_owners: &contact_owners,
     };
     let mut steps: Vec<StepTotals> = Vec::new();
     for (k, survey) in surveys.iter().enumerate() {

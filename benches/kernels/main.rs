@@ -74,7 +74,7 @@ fn subdomain(c: &mut Criterion) {
 /// One evaluation of S_CON by a pair.
 fn pair(c: &mut Criterion) {
     let scene = Scene::granite(1, 20);
-    let b = scene.plan.pairs[0];
+    let b = scene.plan.groups[0];
     let (dofs, ..) = scene.condensed(b);
     let gaps: Vec<f64> = scene.blocks[b].1.iter().map(|c| c.gap).collect();
     let limits = Limits::new(dofs.approaches, &dofs.approach_of, &gaps, 0.0);
@@ -114,7 +114,7 @@ fn interface(c: &mut Criterion) {
     let scene = Scene::granite(1, 20);
     let blocks = scene.blocks.len();
     let is_pair: Vec<bool> = (0..blocks)
-        .map(|b| scene.plan.pair_of(b).is_some())
+        .map(|b| scene.plan.group_of(b).is_some())
         .collect();
     let condensed: Vec<Condensed> = (0..blocks).map(|b| scene.of_block(b)).collect();
     let traces: Vec<_> = condensed.iter().map(|c| &c.traces[..]).collect();

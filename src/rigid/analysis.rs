@@ -91,9 +91,9 @@ pub struct Scene {
     pub bodies: Vec<BodyState>,
     /// Their names.
     pub names: Vec<String>,
-    /// Conditions, pair by pair.
+    /// Conditions, group by group.
     pub rows: Vec<RigidRow>,
-    /// Number of conditions of every pair.
+    /// Number of conditions of every group.
     pub conditions: Vec<usize>,
 }
 

@@ -272,10 +272,10 @@ fn rigid_rows(
     let mut rows = Vec::new();
     let mut conditions = Vec::new();
     comm.gather(
-        &plan.pair_owners(),
-        |p| {
+        &plan.group_owners(),
+        |g| {
             let mut message = Message::default();
-            if let Some(owned) = blocks.get(&plan.pairs[p]) {
+            if let Some(owned) = blocks.get(&plan.groups[g]) {
                 for row in &owned.rows {
                     pack_row(owned, row, catalog, frames, &mut message);
                 }

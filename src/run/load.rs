@@ -150,7 +150,7 @@ impl Loading<'_> {
         let plan = self.plan;
         let defining: Vec<usize> = (interface.laws.iter().zip(&plan.contact))
             .flat_map(|(law, &c)| {
-                let conditions = scene.conditions_of(&plan.clusters[c].pairs);
+                let conditions = scene.conditions_of(&plan.clusters[c].groups);
                 law.defining.iter().map(move |&j| conditions[j])
             })
             .collect();

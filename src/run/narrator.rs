@@ -83,7 +83,7 @@ impl<'a> Narrator<'a> {
             dofs: dofs(catalog),
             interface_dofs: catalog.dim * plan.sharing.iter().filter(|&&n| n > 1).count(),
             subdomains: catalog.subdomains.len(),
-            contact_pairs: plan.pairs.len(),
+            contact_pairs: plan.groups.len(),
             contact_conditions: conditions(catalog),
             ranks: self.comm.size(),
             threads: usize::from(self.settings.threads),

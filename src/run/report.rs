@@ -162,7 +162,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         contact_conditions: conditions(catalog),
         active_contacts: last.map_or(0, |step| step.active),
         subdomains: catalog.subdomains.len(),
-        contact_pairs: plan.pairs.len(),
+        contact_pairs: plan.groups.len(),
         ranks: comm.size(),
         hosts: comm.hosts(),
         threads: usize::from(settings.threads),
@@ -201,7 +201,7 @@ fn unknown_stress(catalog: &Catalog) -> Vec<String> {
 /// What the scene didn't need.
 fn skipped(totals: &Totals<'_>) -> Vec<String> {
     let mut skipped = Vec::new();
-    if totals.plan.pairs.is_empty() {
+    if totals.plan.groups.is_empty() {
         skipped.push("sweeps: no contact, the interface problem is linear".into());
     }
     if totals.interface_dofs == 0 {
@@ -244,7 +244,7 @@ pub(super) fn reason(totals: &Totals<'_>) -> String {
     };
     match failures(totals).first() {
         Some(why) => format!("not converged: {why}"),
-        None if totals.plan.pairs.is_empty() => "solved: the scene is linear".into(),
+        None if totals.plan.groups.is_empty() => "solved: the scene is linear".into(),
         None => format!(
             "converged after {sweeps} sweep{}: the residual is below the tolerance and no contact \
              changes any more; {} of {} conditions are closed{in_the_end}",

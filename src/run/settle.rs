@@ -116,9 +116,9 @@ fn move_nearer(
         ..Settled::default()
     };
     frozen.comm.gather(
-        &frozen.plan.pair_owners(),
-        |p| {
-            let b = frozen.plan.pairs[p];
+        &frozen.plan.group_owners(),
+        |g| {
+            let b = frozen.plan.groups[g];
             let opened = solutions.get_mut(&b).map(|s| open(frozen, b, s));
             Message {
                 integers: vec![opened.unwrap_or(0) as i64],
@@ -158,9 +158,9 @@ fn loose_motions(
     let mut carrying = Vec::new();
     let mut gaps = Vec::new();
     frozen.comm.gather(
-        &frozen.plan.pair_owners(),
-        |p| {
-            let b = frozen.plan.pairs[p];
+        &frozen.plan.group_owners(),
+        |g| {
+            let b = frozen.plan.groups[g];
             solutions
                 .get(&b)
                 .and_then(|solution| conditions(frozen, b, solution))

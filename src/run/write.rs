@@ -67,9 +67,9 @@ pub fn write_solution(
         },
     );
     comm.gather(
-        &plan.pair_owners(),
-        |p| {
-            let b = plan.pairs[p];
+        &plan.group_owners(),
+        |g| {
+            let b = plan.groups[g];
             match (blocks.get(&b), solution.blocks.get(&b)) {
                 (Some(owned), Some(solution)) => pack_contacts(owned, solution),
                 _ => Message::default(),
