@@ -113,7 +113,7 @@ fn merge(c: &mut Criterion) {
 fn interface(c: &mut Criterion) {
     let scene = Scene::granite(1, 20);
     let blocks = scene.blocks.len();
-    let is_pair: Vec<bool> = (0..blocks)
+    let in_contact: Vec<bool> = (0..blocks)
         .map(|b| scene.plan.group_of(b).is_some())
         .collect();
     let condensed: Vec<Condensed> = (0..blocks).map(|b| scene.of_block(b)).collect();
@@ -121,11 +121,11 @@ fn interface(c: &mut Criterion) {
     let nodes: Vec<_> = (0..blocks)
         .map(|b| &scene.plan.tree.nodes[b].kept[..])
         .collect();
-    let numbering = Numbering::new(&traces, &nodes, &is_pair).unwrap();
+    let numbering = Numbering::new(&traces, &nodes, &in_contact).unwrap();
     c.bench_function("S_0", |bench| {
         bench.iter_batched(
             || condensed.iter().map(contribution).collect(),
-            |parts| Interface::new(&numbering, parts, &is_pair, Par::Seq).unwrap(),
+            |parts| Interface::new(&numbering, parts, &in_contact, Par::Seq).unwrap(),
             BatchSize::LargeInput,
         );
     });
