@@ -158,7 +158,7 @@ impl Interface {
                 law.scale = of_cluster.scale;
             }
         }
-        self.motions = RigidBasis::new(drive, &stiffness_of(&self.laws));
+        self.motions = RigidBasis::new(drive, &diagonal_of(&self.laws));
     }
 
     /// The smallest pivot of all clusters and of the bilateral operator, each relative to its
@@ -225,7 +225,7 @@ impl Interface {
     }
 }
 
-/// The stiffness of all approaches, side by side.
-fn stiffness_of(laws: &[PairLaw]) -> Vec<f64> {
-    laws.iter().flat_map(|law| law.stiffness.clone()).collect()
+/// The diagonal of what all laws are condensed from, side by side.
+fn diagonal_of(laws: &[PairLaw]) -> Vec<f64> {
+    laws.iter().flat_map(|law| law.diagonal.clone()).collect()
 }

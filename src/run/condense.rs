@@ -64,7 +64,7 @@ impl Condensation<'_> {
             approaches: dofs.approaches,
             traces: dofs.traces.clone(),
             s,
-            stiffness: schur.stiffness.clone(),
+            diagonal: schur.diagonal.clone(),
             smallest_pivot: schur.smallest_pivot(),
             eliminated: 0,
         };

@@ -96,7 +96,7 @@ impl Loading<'_> {
             if let Some(drive) = survey.inner_motions.get(p) {
                 let limits = pair.limits();
                 let on_approaches = &mut load[..limits.approaches()];
-                settle_load(on_approaches, &limits.defining, drive, pair.stiffness());
+                settle_load(on_approaches, &limits.defining, drive, pair.diagonal());
             }
             pair.set_load(load);
         }

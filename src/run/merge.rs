@@ -238,7 +238,7 @@ fn pack(condensed: Condensed) -> Message {
         message.integers.extend([node, axis]);
     }
     message.reals.push(condensed.smallest_pivot);
-    message.reals.extend(&condensed.stiffness);
+    message.reals.extend(&condensed.diagonal);
     message.push_lower(condensed.s.as_ref());
     message
 }
@@ -260,7 +260,7 @@ fn unpack(message: Message) -> Option<Condensed> {
             .collect(),
         eliminated,
         smallest_pivot: reader.real(),
-        stiffness: reader.reals(n),
+        diagonal: reader.reals(n),
         s: reader.lower(n),
     })
 }

@@ -14,7 +14,7 @@ pub struct LocalSchur {
     factor: BoundaryLastCholesky,
     interior: usize,
     /// The diagonal of K_BB (Pa): what S's round-off is relative to.
-    pub stiffness: Vec<f64>,
+    pub diagonal: Vec<f64>,
 }
 
 impl LocalSchur {
@@ -29,13 +29,13 @@ impl LocalSchur {
         par: Par,
     ) -> Result<(Self, Mat<f64>), FactorError> {
         let (factor, s) = BoundaryLastCholesky::condense(matrix, interior, par)?;
-        let stiffness = (interior..matrix.pattern.n())
+        let diagonal = (interior..matrix.pattern.n())
             .map(|j| matrix.values[matrix.pattern.column(j).start])
             .collect();
         let schur = Self {
             factor,
             interior,
-            stiffness,
+            diagonal,
         };
         Ok((schur, s))
     }
