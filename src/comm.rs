@@ -50,8 +50,8 @@ impl Comm {
         self.world.size() as usize
     }
 
-    /// The name of the machine that this rank is on.
-    pub fn machine(&self) -> String {
+    /// The name of the host that this rank is on.
+    pub fn host_name(&self) -> String {
         mpi::environment::processor_name().unwrap_or_default()
     }
 

@@ -88,7 +88,7 @@ pub enum Event<'a> {
         memory_bytes: f64,
         /// Memory of the largest rank (bytes).
         largest_rank_memory_bytes: f64,
-        /// Memory that their machines have left (bytes).
+        /// Memory that their hosts have left (bytes).
         available_bytes: f64,
         /// Arithmetic of all ranks (flop).
         flops: f64,

@@ -59,7 +59,7 @@ pub struct SweepLine {
 }
 
 /// Prints what solving would cost: the `demands` of all ranks against the memory that is `available`
-/// on their machines together (bytes).
+/// on their hosts together (bytes).
 ///
 /// # Errors
 /// `out` can't be written.
