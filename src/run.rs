@@ -5,6 +5,7 @@
 mod affording;
 mod clusters;
 pub mod condense;
+pub mod condensed_blocks;
 pub mod conditioning;
 mod conditions;
 mod copies;

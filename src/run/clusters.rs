@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
-use super::merge::CondensedBlocks;
+use super::condensed_blocks::CondensedBlocks;
 use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
 use crate::plan::Plan;

@@ -5,7 +5,7 @@ use std::time::Instant;
 use contact_dd_partition::problem::Catalog;
 use faer::Par;
 
-use super::merge::CondensedBlocks;
+use super::condensed_blocks::CondensedBlocks;
 use crate::error::Failure;
 use crate::fem::assembly::assemble;
 use crate::fem::block::Block;

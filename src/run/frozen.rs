@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::merge::CondensedBlocks;
+use super::condensed_blocks::CondensedBlocks;
 use super::motions::Motions;
 use super::substitute::Factors;
 use crate::comm::{Comm, Message};

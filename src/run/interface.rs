@@ -3,7 +3,7 @@
 use contact_dd_partition::problem::Catalog;
 use faer::Par;
 
-use super::merge::CondensedBlocks;
+use super::condensed_blocks::CondensedBlocks;
 use crate::comm::{Comm, Message};
 use crate::contact::law::PairLaw;
 use crate::error::Failure;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::merge::CondensedBlocks;
+use super::condensed_blocks::CondensedBlocks;
 use crate::comm::{Comm, Message};
 use crate::contact::approach::ApproachOf;
 use crate::contact::limits::Limits;

@@ -6,8 +6,8 @@ use contact_dd_partition::problem::Catalog;
 
 use super::clusters::settle_load;
 use super::condense::dof_failure;
+use super::condensed_blocks::CondensedBlocks;
 use super::limits::limits_of_clusters;
-use super::merge::CondensedBlocks;
 use super::substitute::Factors;
 use crate::comm::{Comm, Message};
 use crate::error::Failure;

@@ -1,49 +1,22 @@
 //! Up the hierarchy: blocks are condensed and merged until the clusters are left.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::time::Instant;
 
 use super::clusters::take_clusters;
 use super::condense::Condensation;
+use super::condensed_blocks::CondensedBlocks;
 use super::limits::limits_of_clusters;
 use crate::comm::{Comm, Message, is_asked_to_stop};
-use crate::contact::pair::ContactPair;
 use crate::error::Failure;
-use crate::fem::assembly::Spring;
-use crate::fem::dofs::Dofs;
 use crate::fem::owned::OwnedBlock;
 use crate::interface::numbering::check_agreement;
 use crate::output::bar::Bar;
 use crate::rigid::survey::Survey;
 use crate::schur::condensed::Condensed;
-use crate::schur::local::LocalSchur;
 use crate::schur::merge::{LooseTrace, Merge, Spare};
 use crate::schur::repeats::Repeats;
 use crate::schur::trace::TraceDof;
-
-/// What this rank has of the condensed blocks and of what they were merged into.
-#[derive(Debug, Default)]
-pub struct CondensedBlocks {
-    /// The unknowns of every block.
-    pub dofs: BTreeMap<usize, Dofs>,
-    /// The diagonal of every block's stiffness (Pa).
-    pub diagonals: BTreeMap<usize, Vec<f64>>,
-    /// The springs in it.
-    pub springs: BTreeMap<usize, Vec<Spring>>,
-    /// The factor of every block.
-    pub factors: BTreeMap<usize, Arc<LocalSchur>>,
-    /// What equal blocks share.
-    pub repeats: Repeats,
-    /// The merge at every inner node of the hierarchy.
-    pub merges: BTreeMap<usize, Merge>,
-    /// T: the clusters without contact, by their place among all.
-    pub linear: BTreeMap<usize, Condensed>,
-    /// ϑ: the clusters in contact, by their place among those.
-    pub pairs: BTreeMap<usize, ContactPair>,
-    /// Time for assembling and for factorizing (s).
-    pub seconds: [f64; 2],
-}
 
 /// Condenses the `blocks` of this rank and merges them, and what other ranks send, up to the
 /// clusters. Collective.

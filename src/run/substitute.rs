@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::merge::CondensedBlocks;
+use super::condensed_blocks::CondensedBlocks;
 use crate::comm::{Comm, Message};
 use crate::plan::Plan;
 use crate::schur::local::CondensedLoad;
