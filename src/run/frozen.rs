@@ -6,8 +6,10 @@ use contact_dd_partition::problem::Catalog;
 
 use super::condensed_blocks::CondensedBlocks;
 use super::motions::Motions;
+use super::recover::BlockSolution;
 use super::substitute::Factors;
 use crate::comm::{Comm, Message};
+use crate::fem::balance::Balance;
 use crate::fem::owned::OwnedBlock;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::numbering::Numbering;
@@ -85,6 +87,18 @@ impl<'a> Frozen<'a> {
             plan: self.plan,
             condensed: self.condensed,
         }
+    }
+
+    /// What balances at the nodes of block b of this rank; `None` for another rank's.
+    pub fn balance(&self, b: usize, solution: &BlockSolution) -> Option<Balance> {
+        let owned = self.blocks.get(&b)?;
+        Some(Balance::new(
+            &owned.block,
+            &owned.conditions,
+            &self.catalog.materials,
+            &solution.u,
+            &solution.forces,
+        ))
     }
 
     /// The change that `loads` on the blocks of this rank, and those on the others', make to them.

@@ -8,7 +8,6 @@ use super::motions::Field;
 use super::recover::BlockSolution;
 use crate::certificate::{BlockCheck, Certificate, certificate};
 use crate::comm::Message;
-use crate::fem::balance::Balance;
 
 /// Equilibrium and penetration above which a solution is refined.
 const LIMIT: f64 = 4e-15;
@@ -72,18 +71,6 @@ fn decide(frozen: &Frozen<'_>, decision: bool) -> bool {
     message.read().integer() != 0
 }
 
-/// What balances at the nodes of block b.
-pub(super) fn balance(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option<Balance> {
-    let owned = frozen.blocks.get(&b)?;
-    Some(Balance::new(
-        &owned.block,
-        &owned.conditions,
-        &frozen.catalog.materials,
-        &solution.u,
-        &solution.forces,
-    ))
-}
-
 /// The certificate, on the root. Collective.
 fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Certificate {
     let of_block = |b: usize| {
@@ -91,7 +78,7 @@ fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Cer
         let mut check = BlockCheck::new(
             &owned.block,
             &owned.conditions,
-            &balance(frozen, b, solution)?,
+            &frozen.balance(b, solution)?,
             &solution.u,
             &solution.forces,
         );
@@ -116,9 +103,8 @@ fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Cer
 /// are 0 along the motion but for theirs. It is left on all nodes that move, where it is least; the
 /// springs at the motions' pins would bear it each at one node.
 fn correct(frozen: &Frozen<'_>, solutions: &mut BTreeMap<usize, BlockSolution>) {
-    let residual = |(&b, solution): (&usize, &BlockSolution)| {
-        Some((b, balance(frozen, b, solution)?.residual))
-    };
+    let residual =
+        |(&b, solution): (&usize, &BlockSolution)| Some((b, frozen.balance(b, solution)?.residual));
     let mut residuals: BTreeMap<usize, Vec<f64>> = solutions.iter().filter_map(residual).collect();
     let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
     frozen.free.project(frozen, Field::Summed, fields);

@@ -6,7 +6,7 @@ use super::descend::with_descent;
 use super::frozen::Frozen;
 use super::motions::{Field, Motions};
 use super::recover::BlockSolution;
-use super::refine::{balance, replace_if_as_good};
+use super::refine::replace_if_as_good;
 use crate::certificate::Certificate;
 use crate::comm::Message;
 use crate::rigid::loose::LooseMotions;
@@ -179,7 +179,7 @@ fn loose_motions(
 fn conditions(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option<Message> {
     let owned = frozen.blocks.get(&b)?;
     let dim = owned.block.dim;
-    let scale = balance(frozen, b, solution)?.scale;
+    let scale = frozen.balance(b, solution)?.scale;
     let mut message = Message::default();
     for (condition, &force) in owned.conditions.iter().zip(&solution.forces) {
         let nodes = condition.entries.iter();
