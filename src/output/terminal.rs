@@ -3,6 +3,7 @@
 //! Every function writes whole lines to `out`; whether to print at all, and whether to show colours, is
 //! the caller's business.
 
+mod resultants;
 mod timing;
 
 use std::io::{Result, Write};
@@ -13,7 +14,6 @@ use contact_dd_partition::message::{ERROR, WARNING};
 use contact_dd_partition::problem::LoadStep;
 
 use super::report::{Report, Status, StepReport};
-use super::resultants;
 use crate::certificate::Certificate;
 use crate::plan::demand::Demand;
 
@@ -247,10 +247,7 @@ fn steps(out: &mut dyn Write, steps: &[StepReport]) -> Result<()> {
 }
 
 /// Prints the certificate.
-///
-/// # Errors
-/// `out` can't be written.
-pub fn certificate(out: &mut dyn Write, certificate: &Certificate) -> Result<()> {
+fn certificate(out: &mut dyn Write, certificate: &Certificate) -> Result<()> {
     let Certificate {
         equilibrium,
         equilibrium_of_load,
