@@ -104,8 +104,8 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
     let plan = Plan::new(catalog, comm.size(), settings.merging());
     let demands = plan.demands(catalog, comm.size());
     let available = afford(comm, &demands)?;
-    let mut blocks = comm.agree(read_blocks(comm, &file, &plan))?;
-    comm.agree(check_copies(comm, &file, &plan, &blocks))?;
+    let mut blocks = comm.agree(read_blocks(comm.rank(), &file, &plan))?;
+    check_copies(comm, &file, &plan, &blocks)?;
     narrator.problem(catalog, &plan);
     let mut checkpoints = Checkpoints::new(settings);
     let looked = match comm.is_root() {
@@ -122,7 +122,7 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
         return Ok(Ending::Converged);
     }
     narrator.phase("creating the outputs", None);
-    let mut outputs = comm.agree(create_outputs(comm, settings, catalog, &plan, &blocks))?;
+    let mut outputs = create_outputs(comm, settings, catalog, &plan, &blocks)?;
     take_step(&mut blocks, 0, &surveys[0], catalog.dim);
     seconds.read = began.elapsed().as_secs_f64();
 
@@ -141,7 +141,7 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
     // The root assembles S_0, (15), and the bilateral operator.
     narrator.phase("assembling the interface problem", None);
     let lap = Instant::now();
-    let mut interface = comm.agree(assemble_interface(comm, &condensed, catalog, &plan, par))?;
+    let mut interface = assemble_interface(comm, &condensed, catalog, &plan, par)?;
     seconds.interface = lap.elapsed().as_secs_f64();
 
     // All that depends on loads, load step by load step.
@@ -220,8 +220,7 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
         let mut resultants = Resultants::new(catalog, solution.reactions.clone());
         let result = outputs.as_mut().map(|outputs| &mut outputs.result);
         let contacts = &mut resultants.contacts;
-        let written = write_solution(comm, &blocks, &solution, &plan, result, contacts);
-        comm.agree(written.map_err(Failure::from))?;
+        write_solution(comm, &blocks, &solution, &plan, result, contacts)?;
         seconds.write += lap.elapsed().as_secs_f64();
         let totals = outcome.map(|o| StepTotals::new(o, &solution, resultants, survey));
         steps.extend(totals);
@@ -265,6 +264,9 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
 
 /// Makes the files of the outputs, so that a place where they can't be is found before the work.
 /// Collective; the root has the files.
+///
+/// # Errors
+/// A file can't be made.
 fn create_outputs(
     comm: &Comm,
     settings: &Settings,
@@ -291,13 +293,13 @@ fn create_outputs(
         },
         |_, message| connectivity.push(message.read().count()),
     );
-    if !comm.is_root() {
-        return Ok(None);
-    }
-    let layout = Layout::new(catalog, &connectivity, !settings.no_stress);
-    let report = settings.report.as_deref().map(ReportFile::create);
-    Ok(Some(Outputs {
-        result: ResultFile::create(&settings.output, &layout)?,
-        report: report.transpose()?,
-    }))
+    let create = || -> Result<Outputs, Failure> {
+        let layout = Layout::new(catalog, &connectivity, !settings.no_stress);
+        let report = settings.report.as_deref().map(ReportFile::create);
+        Ok(Outputs {
+            result: ResultFile::create(&settings.output, &layout)?,
+            report: report.transpose()?,
+        })
+    };
+    comm.agree(comm.is_root().then(create).transpose())
 }

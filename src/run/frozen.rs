@@ -147,7 +147,7 @@ impl<'a> Frozen<'a> {
     }
 
     /// Brings the clusters' loads and limits to the root, and what it answers back: forces of the
-    /// conditions of clusters in contact, and unknowns on the boundary of every cluster's node.
+    /// conditions of clusters in contact, and unknowns on the boundary of every cluster's node. Collective.
     fn solve_interface(
         &self,
         limits: &BTreeMap<usize, FrozenLimits>,

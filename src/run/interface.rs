@@ -38,9 +38,17 @@ pub fn assemble_interface(
             contributions.push(contribution);
         },
     );
-    if !comm.is_root() {
-        return Ok(None);
-    }
+    let assemble = || assemble(plan, &traces, contributions, par);
+    comm.agree(comm.is_root().then(assemble).transpose())
+}
+
+/// The interface problem of what the clusters sent to the root.
+fn assemble(
+    plan: &Plan,
+    traces: &[Vec<TraceDof>],
+    contributions: Vec<Contribution>,
+    par: Par,
+) -> Result<(Numbering, Interface), Failure> {
     let nodes = plan
         .clusters
         .iter()
@@ -49,7 +57,7 @@ pub fn assemble_interface(
     let traces: Vec<&[TraceDof]> = traces.iter().map(Vec::as_slice).collect();
     let numbering = Numbering::new(&traces, &nodes.collect::<Vec<_>>(), &in_contact)?;
     let interface = Interface::new(&numbering, contributions, &in_contact, par)?;
-    Ok(Some((numbering, interface)))
+    Ok((numbering, interface))
 }
 
 /// Whether the pairs have few enough conditions for the root to solve for all of them at once.

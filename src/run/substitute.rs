@@ -110,7 +110,7 @@ impl Factors<'_> {
     }
 
     /// Sends what `make` makes for every child of v along the edge between them if it joins two ranks,
-    /// and `take`s it at the other end.
+    /// and `take`s it at the other end. Collective.
     fn exchange(
         &self,
         v: usize,
