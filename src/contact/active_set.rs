@@ -14,9 +14,10 @@
 
 use faer::MatRef;
 
-use super::dependent::{DependentRows, Ties};
+use super::dependent::DependentRows;
 use super::interior_point::InGaps;
 use super::open_factor::{OpenFactor, scale_of};
+use super::ties::Ties;
 
 /// How far below zero, relative to its scale, a force must be to open a contact.
 pub(super) const FORCE_TOLERANCE: f64 = 1e-12;

@@ -5,7 +5,8 @@
 use faer::linalg::solvers::{Llt, SolveCore};
 use faer::{Conj, Mat, MatMut, MatRef, Side};
 
-use super::dependent::{DependentRows, Ties};
+use super::dependent::DependentRows;
+use super::ties::Ties;
 
 /// Pivot relative to its diagonal entry below which H is taken as singular.
 const SINGULAR_PIVOT: f64 = 1e-13;
