@@ -87,13 +87,13 @@ impl Decomposition {
     }
 }
 
-/// A number of subdomains that suits the size and gives every cluster, and every material where
+/// A number of subdomains that suits the size and gives every clump, and every material where
 /// there are few, its own.
 fn suitable(model: &Model, atoms: &Atoms, units: &Units) -> usize {
     let dofs = model.mesh.dim * model.mesh.points.len();
-    let with_contact = match atoms.graph.clusters() {
+    let with_contact = match atoms.graph.clumps() {
         0 => 1,
-        clusters => clusters + LINEAR,
+        clumps => clumps + LINEAR,
     };
     let with_materials = match units.of_one_material() {
         many if many > MATERIALS => 1,
@@ -101,7 +101,7 @@ fn suitable(model: &Model, atoms: &Atoms, units: &Units) -> usize {
     };
     let outside = dofs * atoms.outside() / model.mesh.cells.len();
     let for_speed = match dofs > SMALL {
-        true => outside.div_ceil(DOFS) + atoms.graph.clusters(),
+        true => outside.div_ceil(DOFS) + atoms.graph.clumps(),
         false => 1,
     };
     for_speed.max(with_contact).max(with_materials)
