@@ -199,6 +199,25 @@ pub struct Catalog {
     pub warnings: Vec<String>,
 }
 
+impl Catalog {
+    /// Number of nodes, those on Γ counted once.
+    pub fn nodes(&self) -> usize {
+        let nodes: usize = self.subdomains.iter().map(|s| s.nodes).sum();
+        let copies: usize = self.interface.iter().map(Vec::len).sum();
+        nodes - copies + self.interface_nodes
+    }
+
+    /// Number of dofs, those of nodes on Γ counted once.
+    pub fn dofs(&self) -> usize {
+        self.dim * self.nodes()
+    }
+
+    /// Number of contact conditions.
+    pub fn conditions(&self) -> usize {
+        self.contacts.iter().map(|contact| contact.conditions).sum()
+    }
+}
+
 /// A whole problem, as the partition tool holds it before it is written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {

@@ -63,8 +63,7 @@ impl Plan {
             demand.bytes += AT_REST + PER_ENTRY * largest * largest;
         }
         if let Some(root) = demands.first_mut() {
-            let conditions: usize = catalog.contacts.iter().map(|c| c.conditions).sum();
-            root.bytes += PER_PAIR_OF_CONDITIONS * (conditions as f64).powi(2);
+            root.bytes += PER_PAIR_OF_CONDITIONS * (catalog.conditions() as f64).powi(2);
         }
         demands
     }

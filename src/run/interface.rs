@@ -26,7 +26,8 @@ pub fn assemble_interface(
     plan: &Plan,
     par: Par,
 ) -> Result<Option<(Numbering, Interface)>, Failure> {
-    let with_laws = with_laws(catalog);
+    // Few enough conditions for the root to solve for all of them at once.
+    let with_laws = catalog.conditions() <= MAX_APPROACHES;
     let mut traces: Vec<Vec<TraceDof>> = Vec::new();
     let mut contributions: Vec<Contribution> = Vec::new();
     comm.gather(
@@ -58,12 +59,6 @@ fn assemble(
     let numbering = Numbering::new(&traces, &nodes.collect::<Vec<_>>(), &in_contact)?;
     let interface = Interface::new(&numbering, contributions, &in_contact, par)?;
     Ok((numbering, interface))
-}
-
-/// Whether the pairs have few enough conditions for the root to solve for all of them at once.
-fn with_laws(catalog: &Catalog) -> bool {
-    let conditions: usize = catalog.contacts.iter().map(|c| c.conditions).sum();
-    conditions <= MAX_APPROACHES
 }
 
 fn pack(blocks: &CondensedBlocks, plan: &Plan, c: usize, with_laws: bool) -> Message {

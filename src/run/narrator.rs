@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::report::{Outputs, conditions, dofs, failures, reason, report};
+use super::report::{Outputs, failures, reason, report};
 use super::totals::Totals;
 use crate::checkpoint::Checkpoint;
 use crate::comm::{self, Comm};
@@ -80,11 +80,11 @@ impl<'a> Narrator<'a> {
         let summary = Summary {
             problem: &self.settings.problem,
             title: &catalog.title,
-            dofs: dofs(catalog),
+            dofs: catalog.dofs(),
             interface_dofs: catalog.dim * plan.sharing.iter().filter(|&&n| n > 1).count(),
             subdomains: catalog.subdomains.len(),
             contact_pairs: plan.groups.len(),
-            contact_conditions: conditions(catalog),
+            contact_conditions: catalog.conditions(),
             ranks: self.comm.size(),
             threads: usize::from(self.settings.threads),
         };

@@ -157,9 +157,9 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         fallbacks: totals.fallbacks(),
         interface_residual: (totals.steps.iter())
             .fold(0.0, |worst: f64, step| worst.max(step.outcome.residual)),
-        dofs: dofs(catalog),
+        dofs: catalog.dofs(),
         interface_dofs: totals.interface_dofs,
-        contact_conditions: conditions(catalog),
+        contact_conditions: catalog.conditions(),
         active_contacts: last.map_or(0, |step| step.active),
         subdomains: catalog.subdomains.len(),
         contact_pairs: plan.groups.len(),
@@ -250,7 +250,7 @@ pub(super) fn reason(totals: &Totals<'_>) -> String {
              changes any more; {} of {} conditions are closed{in_the_end}",
             if sweeps == 1 { "" } else { "s" },
             totals.last().map_or(0, |step| step.active),
-            conditions(totals.catalog)
+            totals.catalog.conditions()
         ),
     }
 }
@@ -272,16 +272,4 @@ pub(super) fn failures(totals: &Totals<'_>) -> Vec<String> {
         .enumerate()
         .filter_map(of_step)
         .collect()
-}
-
-/// Number of dofs, those of shared nodes counted once.
-pub(super) fn dofs(catalog: &Catalog) -> usize {
-    let nodes: usize = catalog.subdomains.iter().map(|s| s.nodes).sum();
-    let copies: usize = catalog.interface.iter().map(Vec::len).sum();
-    catalog.dim * (nodes - copies + catalog.interface_nodes)
-}
-
-/// Number of contact conditions.
-pub(super) fn conditions(catalog: &Catalog) -> usize {
-    catalog.contacts.iter().map(|c| c.conditions).sum()
 }

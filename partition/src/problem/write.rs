@@ -8,7 +8,6 @@ use hdf5::types::{FixedAscii, VarLenUnicode};
 use super::{ContactRow, FORMAT, Problem, Subdomain, VERSION};
 use crate::destination::{Destination, quoted_words};
 use crate::error::OutputError;
-use crate::model::PlaneState;
 
 /// Version of VTKHDF's layout.
 const VTKHDF_VERSION: [i64; 2] = [2, 0];
@@ -48,11 +47,7 @@ impl Problem {
         attribute(file, "version", VERSION)?;
         text(file, "title", &catalog.title)?;
         attribute(file, "dimension", catalog.dim as i64)?;
-        let plane = match catalog.plane {
-            PlaneState::Strain => "strain",
-            PlaneState::Stress => "stress",
-        };
-        text(file, "plane", plane)?;
+        text(file, "plane", catalog.plane.name())?;
 
         let materials = Section::new(file, "materials")?;
         let all = &catalog.materials;
