@@ -6,7 +6,6 @@ use std::ops::Range;
 use contact_dd_partition::problem::Subdomain;
 use contact_dd_partition::problem::read::ProblemFile;
 
-use super::squeezed;
 use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;
@@ -19,7 +18,7 @@ const AT_ONCE: usize = 64;
 /// Reads the blocks of `plan` that `rank` owns, by their number.
 ///
 /// # Errors
-/// A slice of the problem file isn't what it should be, or obstacles leave no place for a node.
+/// A slice of the problem file isn't what it should be.
 pub fn read_blocks(
     rank: usize,
     file: &ProblemFile,
@@ -51,7 +50,6 @@ pub fn read_blocks(
             rows,
             conditions,
         };
-        squeezed::check(&owned, file.catalog())?;
         blocks.insert(number, owned);
     }
     Ok(blocks)

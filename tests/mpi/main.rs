@@ -73,6 +73,7 @@ fn main() -> ExitCode {
     restarting::every_sweep(&mut trials);
     restarting::other_checkpoints(&mut trials);
     steps::no_equilibrium(&mut trials);
+    steps::squeezed(&mut trials);
     steps::not_converged(&mut trials);
     steps::restarted(&mut trials);
     libtest_mimic::run(&arguments, trials.0).exit_code()

@@ -11,14 +11,15 @@ use super::*;
 pub fn stopped_and_restarted(trials: &mut Trials) {
     let picard = ["--method", "picard", "--tolerance", "1e-5"];
     let whole: Arc<Solved> = Arc::default();
-    let signals = [
-        ("term", Signal::TERM),
-        ("int", Signal::INT),
-        ("usr1", Signal::USR1),
+    let term: (_, &[_]) = ("term", &[Signal::TERM]);
+    let on_all_ranks = RANKS.map(|ranks| (term, ranks));
+    let others: [((_, &[_]), _); 3] = [
+        (("int", &[Signal::INT]), 2),
+        (("usr1", &[Signal::USR1]), 3),
+        // A batch system asks, and asks again otherwise; only the same one twice ends at once.
+        (("usr1_and_term", &[Signal::USR1, Signal::TERM]), 2),
     ];
-    let on_all_ranks = RANKS.map(|ranks| (signals[0], ranks));
-    let others = [(signals[1], 2), (signals[2], 3)];
-    for ((name, signal), ranks) in on_all_ranks.into_iter().chain(others) {
+    for ((name, signals), ranks) in on_all_ranks.into_iter().chain(others) {
         let whole = Arc::clone(&whole);
         trials.once(&format!("stopped::by_{name}_of_{ranks}"), move || {
             let (whole, expected) = whole.get_or_init(|| {
@@ -48,7 +49,7 @@ pub fn stopped_and_restarted(trials: &mut Trials) {
             let Some(&last) = all.last() else {
                 panic!("{:?}", running.wait(LIMIT));
             };
-            send(last, signal);
+            signals.iter().for_each(|&signal| send(last, signal));
             let ended = running.wait(LIMIT);
             failed_once(&ended, 6, &["interrupted after", "--restart"]);
             assert_eq!(fs::read_to_string(&result).unwrap(), "an older result");

@@ -1,5 +1,7 @@
 //! Load steps on several ranks.
 
+use crate::support::blocks::Blocks;
+
 use super::*;
 
 /// The two blocks with loads that open and close their joint.
@@ -29,6 +31,47 @@ pub fn no_equilibrium(trials: &mut Trials) {
         failed_once(&run(&case, ranks, &[]), 4, &words);
         assert_eq!(case.files(), ["problem.h5"]);
     });
+}
+
+/// A step in which supports and obstacles leave no place for a node is refused by name, whichever it is.
+pub fn squeezed(trials: &mut Trials) {
+    let factors = [("first", [1, 0]), ("last", [0, 1])];
+    for (name, [first, last]) in factors {
+        trials.on_all_ranks(&format!("steps::squeezed_in_the_{name}"), move |ranks| {
+            let scene = format!(
+                "plane = 'strain'
+                materials.rock = {{young = 20e9, poisson = 0.22}}
+                bodies.block = {{material = 'rock', body_force = [0, -25e3]}}
+                [[displacement]]
+                on = 'block left'
+                x = -0.01
+                [[contact]]
+                name = 'ground'
+                sides = ['block bottom']
+                obstacle = {{point = [0, 0], normal = [0, 1]}}
+                [[contact]]
+                name = 'slope'
+                sides = ['block left']
+                obstacle = {{point = [0, 0], normal = [1, -1]}}
+                gap = 0
+                [[step]]
+                name = 'first'
+                scale = {{displacement = {first}}}
+                [[step]]
+                name = 'last'
+                scale = {{displacement = {last}}}"
+            );
+            let blocks = Blocks::new().rectangle("block", [0.0, 1.0], [0.0, 1.0], [8, 8]);
+            let case = Case::of(&model(&scene, blocks.mesh), 4);
+            let step = format!("step '{name}': contact 'ground' and 'slope': what is prescribed");
+            failed_once(
+                &run(&case, ranks, &[]),
+                2,
+                &[&step, "leaves no place for it"],
+            );
+            assert_eq!(case.files(), ["problem.h5"]);
+        });
+    }
 }
 
 /// A step that doesn't converge is flagged, and the next ones are solved all the same.
