@@ -124,10 +124,7 @@ impl BlockCheck {
         let dim = block.dim;
         let frames = supported_frames(block);
         let mut frames = frames.iter().peekable();
-        let mut is_shared = vec![false; block.nodes()];
-        for &(node, _) in &block.interface {
-            is_shared[node as usize] = true;
-        }
+        let is_shared = block.is_on_interface();
         // Residual and scale along the free axes of nodes on Γ, in the order of nodes.
         let mut of_trace = Vec::new();
         let mut first_trace = vec![

@@ -112,6 +112,16 @@ impl Comm {
         any != 0
     }
 
+    /// The root's `decision`, on all ranks. Collective.
+    pub fn decide(&self, decision: bool) -> bool {
+        let mut message = Message {
+            integers: vec![i64::from(decision)],
+            reals: Vec::new(),
+        };
+        self.broadcast(&mut message);
+        message.read().integer() != 0
+    }
+
     /// Gives all ranks the root's message. Collective.
     pub fn broadcast(&self, message: &mut Message) {
         self.broadcast_from(ROOT, message);

@@ -140,6 +140,12 @@ impl Plan {
         self.blocks.iter().map(|b| b.owner).collect()
     }
 
+    /// The owner of every subdomain.
+    pub fn subdomain_owners(&self) -> Vec<usize> {
+        let blocks = self.block_of.iter();
+        blocks.map(|&b| self.blocks[b].owner).collect()
+    }
+
     /// The owner of every group.
     pub fn group_owners(&self) -> Vec<usize> {
         self.groups.iter().map(|&b| self.blocks[b].owner).collect()

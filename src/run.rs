@@ -251,14 +251,9 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
         _ => Ok(()),
     };
     comm.agree(finished)?;
-    let mut ended = Message {
-        integers: vec![i64::from(converged)],
-        reals: Vec::new(),
-    };
-    comm.broadcast(&mut ended);
-    Ok(match ended.read().integer() {
-        0 => Ending::NotConverged,
-        _ => Ending::Converged,
+    Ok(match comm.decide(converged) {
+        true => Ending::Converged,
+        false => Ending::NotConverged,
     })
 }
 
@@ -274,14 +269,9 @@ fn create_outputs(
     plan: &Plan,
     blocks: &BTreeMap<usize, OwnedBlock>,
 ) -> Result<Option<Outputs>, Failure> {
-    let owners: Vec<usize> = plan
-        .block_of
-        .iter()
-        .map(|&b| plan.blocks[b].owner)
-        .collect();
     let mut connectivity = Vec::new();
     comm.gather(
-        &owners,
+        &plan.subdomain_owners(),
         |s| {
             // Called on the owner of subdomain s, which has read its block.
             let block = &blocks[&plan.block_of[s]].block;

@@ -30,10 +30,7 @@ pub(super) fn approaches(
         .iter()
         .map(|c| in_frames(c, frame, dim))
         .collect();
-    let mut on_interface = vec![false; block.nodes()];
-    for &(node, _) in &block.interface {
-        on_interface[node as usize] = true;
-    }
+    let on_interface = block.is_on_interface();
     let may_go = |v: u32| !on_interface[v as usize / dim];
     let of_nodes = node_stiffness(block, materials);
     let stiffness = |v: u32| of_nodes[v as usize / dim];

@@ -56,11 +56,7 @@ pub fn survey(
         .values()
         .flat_map(|owned| owned.block.members.iter().map(|m| (m.index, m)))
         .collect();
-    let owners: Vec<usize> = plan
-        .block_of
-        .iter()
-        .map(|&b| plan.blocks[b].owner)
-        .collect();
+    let owners = plan.subdomain_owners();
     // Below, what is asked of a subdomain is asked on its owner, which has read it.
     let frames = body_frames(comm, &subdomains, catalog, &owners);
     let (rows, conditions) = rigid_rows(comm, blocks, catalog, plan, &frames);

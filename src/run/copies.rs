@@ -21,14 +21,9 @@ pub fn check_copies(
     plan: &Plan,
     blocks: &BTreeMap<usize, OwnedBlock>,
 ) -> Result<(), Failure> {
-    let owners: Vec<usize> = plan
-        .block_of
-        .iter()
-        .map(|&b| plan.blocks[b].owner)
-        .collect();
     let mut copies = NodeCopies::new(file.catalog());
     comm.gather(
-        &owners,
+        &plan.subdomain_owners(),
         |s| {
             // Called on the owner of subdomain s, which has read its block.
             let block = &blocks[&plan.block_of[s]].block;

@@ -82,11 +82,7 @@ fn pack_head(condensed: &Condensed, has_law: bool, message: &mut Message) {
         i64::from(has_law),
         condensed.eliminated as i64,
     ]);
-    for dof in &condensed.traces {
-        message
-            .integers
-            .extend([i64::from(dof.node), i64::from(dof.axis)]);
-    }
+    TraceDof::pack(&condensed.traces, message);
     message.reals.push(condensed.smallest_pivot);
 }
 
@@ -95,12 +91,7 @@ fn unpack(message: Message) -> (Vec<TraceDof>, Contribution) {
     let n = reader.count();
     let has_law = reader.integer() != 0;
     let eliminated = reader.count();
-    let traces = (0..n)
-        .map(|_| TraceDof {
-            node: reader.integer() as u32,
-            axis: reader.integer() as u32,
-        })
-        .collect();
+    let traces = TraceDof::unpack(&mut reader, n);
     let contribution = Contribution {
         eliminated,
         smallest_pivot: reader.real(),

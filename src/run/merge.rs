@@ -206,10 +206,7 @@ fn pack(condensed: Condensed) -> Message {
         ]
         .map(|n| n as i64),
     );
-    for dof in &condensed.traces {
-        let [node, axis] = [dof.node, dof.axis].map(i64::from);
-        message.integers.extend([node, axis]);
-    }
+    TraceDof::pack(&condensed.traces, &mut message);
     message.reals.push(condensed.smallest_pivot);
     message.reals.extend(&condensed.diagonal);
     message.push_lower(condensed.s.as_ref());
@@ -225,12 +222,7 @@ fn unpack(message: Message) -> Option<Condensed> {
     let n = approaches + traces;
     Some(Condensed {
         approaches,
-        traces: (0..traces)
-            .map(|_| TraceDof {
-                node: reader.integer() as u32,
-                axis: reader.integer() as u32,
-            })
-            .collect(),
+        traces: TraceDof::unpack(&mut reader, traces),
         eliminated,
         smallest_pivot: reader.real(),
         diagonal: reader.reals(n),

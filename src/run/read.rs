@@ -61,8 +61,8 @@ fn read_subdomains(
     file: &ProblemFile,
     plan: &Plan,
 ) -> Result<BTreeMap<usize, Subdomain>, Failure> {
-    let owner = |s: usize| plan.blocks[plan.block_of[s]].owner;
-    let own = (0..plan.block_of.len()).filter(|&s| owner(s) == rank);
+    let owners = plan.subdomain_owners();
+    let own = (0..owners.len()).filter(|&s| owners[s] == rank);
     let mut runs: Vec<Range<usize>> = Vec::new();
     for s in own {
         match runs.last_mut() {

@@ -63,12 +63,7 @@ fn decide(frozen: &Frozen<'_>, decision: bool) -> bool {
     let able = frozen
         .root
         .is_some_and(|root| root.converged && root.can_solve());
-    let mut message = Message {
-        integers: vec![i64::from(able && decision)],
-        reals: Vec::new(),
-    };
-    frozen.comm.broadcast(&mut message);
-    message.read().integer() != 0
+    frozen.comm.decide(able && decision)
 }
 
 /// The certificate, on the root. Collective.

@@ -32,7 +32,8 @@ impl Parcel {
         };
         comm.broadcast(&mut ends);
         let ends = ends.integers.iter().map(|&end| end as usize);
-        cut(ends, |s| plan.blocks[plan.block_of[s]].owner)
+        let owners = plan.subdomain_owners();
+        cut(ends, |s| owners[s])
     }
 
     /// Appends what was found on its subdomains; called on their owner.
