@@ -4,14 +4,16 @@
 
 use std::collections::HashMap;
 
+use contact_dd_partition::element::geometry::{advance, cross, dot, padded};
 use serde::Serialize;
 
 use crate::comm::{Message, MessageReader};
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;
-use crate::fem::frame::{Frame, dot};
+use crate::fem::frame::Frame;
 use crate::fem::node_frames::supported_frames;
+use crate::vector::{larger, largest};
 
 /// Sum of forces, relative to the terms that they are sums of, that is no load.
 const NO_LOAD: f64 = 1e-12;
@@ -135,11 +137,7 @@ impl BlockCheck {
                 block.nodes()
             }
         ];
-        let vector = |values: &[f64], node: usize| {
-            let mut v = [0.0; 3];
-            v[..dim].copy_from_slice(&values[node * dim..(node + 1) * dim]);
-            v
-        };
+        let vector = |values: &[f64], node: usize| padded(&values[node * dim..(node + 1) * dim]);
         for node in 0..block.nodes() {
             let frame = frames
                 .next_if(|(supported, _)| **supported as usize == node)
@@ -150,23 +148,23 @@ impl BlockCheck {
             self.force_scale += force.iter().map(|f| f.abs()).sum::<f64>();
             self.largest_external = force
                 .iter()
-                .fold(self.largest_external, |m, &f| maximum(m, f));
+                .fold(self.largest_external, |m, &f| larger(m, f));
             let first = of_trace.len();
             for axis in 0..dim {
                 let axes = &frame.axes[axis];
-                let along = dot(axes, &residual);
+                let along = dot(*axes, residual);
                 let along_scale: f64 = axes.iter().zip(&scale).map(|(a, s)| a.abs() * s).sum();
                 if frame.prescribed[axis].is_some() {
                     for (f, a) in force.iter_mut().zip(axes) {
                         *f -= along * a;
                     }
                     self.force_scale += along.abs();
-                    self.largest_external = maximum(self.largest_external, along);
+                    self.largest_external = larger(self.largest_external, along);
                 } else if is_shared[node] {
                     of_trace.push((axis as u32, along, along_scale));
                 } else {
-                    self.residual = maximum(self.residual, along);
-                    self.scale = maximum(self.scale, along_scale);
+                    self.residual = larger(self.residual, along);
+                    self.scale = larger(self.scale, along_scale);
                 }
             }
             if is_shared[node] {
@@ -184,10 +182,10 @@ impl BlockCheck {
     }
 
     fn add_force(&mut self, at: &[f64; 3], force: &[f64; 3]) {
+        self.force = advance(self.force, 1.0, *force);
+        self.moment = advance(self.moment, 1.0, cross(*at, *force));
         for k in 0..3 {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            self.force[k] += force[k];
-            self.moment[k] += at[i] * force[j] - at[j] * force[i];
             self.moment_scale += (at[i] * force[j]).abs() + (at[j] * force[i]).abs();
         }
     }
@@ -195,10 +193,10 @@ impl BlockCheck {
     fn contact(&mut self, dim: usize, conditions: &[BlockCondition], u: &[f64], forces: &[f64]) {
         for (condition, &force) in conditions.iter().zip(forces) {
             let gap = condition.gap_left(dim, u);
-            self.penetration = maximum(self.penetration, gap.min(0.0));
-            self.tension = maximum(self.tension, force.min(0.0));
-            self.largest_force = maximum(self.largest_force, force);
-            self.complementarity = maximum(self.complementarity, gap * force);
+            self.penetration = larger(self.penetration, gap.min(0.0));
+            self.tension = larger(self.tension, force.min(0.0));
+            self.largest_force = larger(self.largest_force, force);
+            self.complementarity = larger(self.complementarity, gap * force);
         }
     }
 
@@ -284,44 +282,37 @@ pub fn certificate(checks: &[BlockCheck], interface_nodes: usize, dim: usize) ->
             on_interface[dof] += r;
             interface_scale[dof] += s;
         }
-        total.residual = maximum(total.residual, check.residual);
-        total.scale = maximum(total.scale, check.scale);
-        total.penetration = maximum(total.penetration, check.penetration);
-        total.tension = maximum(total.tension, check.tension);
-        total.largest_force = maximum(total.largest_force, check.largest_force);
-        total.largest_external = maximum(total.largest_external, check.largest_external);
-        total.largest_load = maximum(total.largest_load, check.largest_load);
-        total.complementarity = maximum(total.complementarity, check.complementarity);
-        total.largest_displacement =
-            maximum(total.largest_displacement, check.largest_displacement);
-        total.rest_scale = maximum(total.rest_scale, check.rest_scale);
+        total.residual = larger(total.residual, check.residual);
+        total.scale = larger(total.scale, check.scale);
+        total.penetration = larger(total.penetration, check.penetration);
+        total.tension = larger(total.tension, check.tension);
+        total.largest_force = larger(total.largest_force, check.largest_force);
+        total.largest_external = larger(total.largest_external, check.largest_external);
+        total.largest_load = larger(total.largest_load, check.largest_load);
+        total.complementarity = larger(total.complementarity, check.complementarity);
+        total.largest_displacement = larger(total.largest_displacement, check.largest_displacement);
+        total.rest_scale = larger(total.rest_scale, check.rest_scale);
         total.force_scale += check.force_scale;
         total.moment_scale += check.moment_scale;
         for k in 0..3 {
             total.force[k] += check.force[k];
             total.moment[k] += check.moment[k];
         }
-        if !check.shared_nodes.is_empty() {
-            let dim = check.shared_displacement.len() / check.shared_nodes.len();
-            for (&node, u) in check
-                .shared_nodes
-                .iter()
-                .zip(check.shared_displacement.chunks(dim))
-            {
-                let first = known.entry(node).or_insert_with(|| u.to_vec());
-                for (a, b) in first.iter().zip(u) {
-                    jump = maximum(jump, a - b);
-                }
+        let displacement = check.shared_displacement.chunks(dim);
+        for (&node, u) in check.shared_nodes.iter().zip(displacement) {
+            let first = known.entry(node).or_insert_with(|| u.to_vec());
+            for (a, b) in first.iter().zip(u) {
+                jump = larger(jump, a - b);
             }
         }
     }
-    total.residual = maximum(total.residual, largest(&on_interface));
-    total.scale = maximum(total.scale, largest(&interface_scale));
+    total.residual = larger(total.residual, largest(&on_interface));
+    total.scale = larger(total.scale, largest(&interface_scale));
     if total.scale < NO_LOAD * total.rest_scale {
         // Bodies that only came to rest: what is left is round-off of their way.
         total.scale = total.rest_scale;
     }
-    let force_scale = maximum(total.scale, total.largest_force);
+    let force_scale = larger(total.scale, total.largest_force);
     // Without load what is left of forces is round-off of the terms that they are sums of.
     let loaded = total.force_scale >= NO_LOAD * total.scale;
     let to_load = if loaded {
@@ -347,17 +338,4 @@ pub fn certificate(checks: &[BlockCheck], interface_nodes: usize, dim: usize) ->
 
 fn ratio(a: f64, b: f64) -> f64 {
     if a == 0.0 { 0.0 } else { a / b }
-}
-
-/// max(|a|, |b|); not a number if either isn't.
-fn maximum(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() {
-        f64::NAN
-    } else {
-        a.abs().max(b.abs())
-    }
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m, &v| maximum(m, v))
 }

@@ -14,7 +14,7 @@
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, MatRef, Par};
 
-use super::operator::Interface;
+use super::operator::{Interface, diagonal_of};
 use crate::contact::active_set::GapProblem;
 use crate::contact::dependent::DependentRows;
 use crate::contact::law::PairLaw;
@@ -115,7 +115,7 @@ impl<'a> CoupledContact<'a> {
         (laws.len() == interface.pair_traces.len()).then(|| Self {
             interface,
             h: interface.condensed_laws(),
-            diagonal: laws.iter().flat_map(|law| law.diagonal.clone()).collect(),
+            diagonal: diagonal_of(laws),
             rows: all_rows(laws),
             center: vec![0.0; laws.iter().map(PairLaw::len).sum()],
             scale: laws.iter().fold(0.0, |m, law| m.max(law.scale)),

@@ -226,6 +226,6 @@ impl Interface {
 }
 
 /// The diagonal of what all laws are condensed from, side by side.
-fn diagonal_of(laws: &[PairLaw]) -> Vec<f64> {
+pub(super) fn diagonal_of(laws: &[PairLaw]) -> Vec<f64> {
     laws.iter().flat_map(|law| law.diagonal.clone()).collect()
 }

@@ -1,5 +1,6 @@
 //! Forces and moments that contacts and supports carry.
 
+use contact_dd_partition::element::geometry::{advance, cross};
 use contact_dd_partition::problem::Catalog;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -18,11 +19,8 @@ pub struct Resultant {
 impl Resultant {
     /// Adds a force that acts at a point.
     pub fn add(&mut self, at: [f64; 3], force: [f64; 3]) {
-        for k in 0..3 {
-            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            self.force[k] += force[k];
-            self.moment[k] += at[i] * force[j] - at[j] * force[i];
-        }
+        self.force = advance(self.force, 1.0, force);
+        self.moment = advance(self.moment, 1.0, cross(at, force));
     }
 }
 

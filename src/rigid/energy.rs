@@ -6,7 +6,7 @@
 
 use faer::Mat;
 
-use super::projection::dot;
+use crate::vector::dot;
 
 /// Part of a motion, relative to all of it, that is new.
 const INDEPENDENT: f64 = 1e-8;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::mesh::bounding_box::BoundingBox;
 use contact_dd_partition::problem::{Catalog, ContactRow, Subdomain};
 use nalgebra::DMatrix;
 
@@ -105,34 +106,25 @@ fn body_frames(
     catalog: &Catalog,
     owners: &[usize],
 ) -> Vec<BodyFrame> {
-    let mut bounds = vec![([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]); catalog.bodies.len()];
+    let mut bounds = vec![BoundingBox::EMPTY; catalog.bodies.len()];
     comm.gather(
         owners,
         |s| {
-            let (low, high) = subdomains[&s].points.iter().fold(
-                ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]),
-                |(low, high), x| {
-                    (
-                        std::array::from_fn(|k| f64::min(low[k], x[k])),
-                        std::array::from_fn(|k| f64::max(high[k], x[k])),
-                    )
-                },
-            );
+            let BoundingBox { low, high } = BoundingBox::around(&subdomains[&s].points);
             Message {
                 integers: Vec::new(),
                 reals: low.into_iter().chain(high).collect(),
             }
         },
         |s, message| {
-            let (low, high) = &mut bounds[catalog.subdomains[s].body];
-            for k in 0..3 {
-                low[k] = low[k].min(message.reals[k]);
-                high[k] = high[k].max(message.reals[3 + k]);
-            }
+            let mut reader = message.read();
+            let mut corner = || std::array::from_fn(|_| reader.real());
+            let (low, high) = (corner(), corner());
+            bounds[catalog.subdomains[s].body].include(&BoundingBox { low, high });
         },
     );
     let mut message = Message::default();
-    for (low, high) in bounds {
+    for BoundingBox { low, high } in bounds {
         let frame = BodyFrame::new(low, high);
         message.reals.extend(frame.center);
         message.reals.push(frame.size);
