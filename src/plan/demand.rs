@@ -30,6 +30,33 @@ pub struct Demand {
     pub flops: f64,
 }
 
+/// What a run needs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Demands {
+    /// On all ranks together.
+    pub all: Demand,
+    /// On the rank that needs most memory, and on the one that needs most arithmetic.
+    pub most: Demand,
+}
+
+impl Demands {
+    /// Of ranks that need these.
+    pub fn of(ranks: &[Demand]) -> Self {
+        let of = |part: fn(&Demand) -> f64| ranks.iter().map(part);
+        let (bytes, flops) = (of(|demand| demand.bytes), of(|demand| demand.flops));
+        Self {
+            all: Demand {
+                bytes: bytes.clone().sum(),
+                flops: flops.clone().sum(),
+            },
+            most: Demand {
+                bytes: bytes.fold(0.0, f64::max),
+                flops: flops.fold(0.0, f64::max),
+            },
+        }
+    }
+}
+
 impl Plan {
     /// What every one of `ranks` ranks needs.
     pub fn demands(&self, catalog: &Catalog, ranks: usize) -> Vec<Demand> {
