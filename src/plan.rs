@@ -3,13 +3,14 @@
 mod assign;
 pub mod cluster;
 pub mod demand;
+mod size;
 pub mod tree;
 
-use contact_dd_partition::flops::Front;
 use contact_dd_partition::problem::Catalog;
 
 use self::assign::{assign, block_cost, front_cost};
 use self::cluster::{ClusterPlan, Merging, cluster_nodes};
+use self::size::Size;
 use self::tree::Tree;
 
 /// A block of the problem: a linear subdomain, or a group in contact.
@@ -119,19 +120,9 @@ impl Plan {
 
     /// Estimated flops of condensing a block, or of merging what lies under an inner node.
     fn cost(&self, catalog: &Catalog, v: usize) -> f64 {
-        let node = &self.tree.nodes[v];
-        let kept = catalog.dim * node.kept.len() + node.conditions;
-        match self.blocks.get(v) {
-            Some(block) => {
-                let of_blocks = block.subdomains.iter();
-                let nodes: usize = of_blocks.map(|&s| catalog.subdomains[s].nodes).sum();
-                let interior = (catalog.dim * nodes).saturating_sub(kept);
-                block_cost(interior as f64, kept as f64)
-            }
-            None => front_cost(Front {
-                eliminated: catalog.dim * node.eliminated.len(),
-                kept,
-            }),
+        match self.size(catalog, v) {
+            Size::Block { interior, kept, .. } => block_cost(interior as f64, kept as f64),
+            Size::Merge(front) => front_cost(front),
         }
     }
 

@@ -13,6 +13,7 @@ pub mod read;
 mod slab;
 mod strings;
 pub mod summary;
+pub mod vtkhdf;
 pub mod write;
 
 use self::hierarchy::Hierarchy;

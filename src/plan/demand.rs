@@ -3,10 +3,11 @@
 //! The constants are measured: on 45 peaks of 1 and 2 ranks, from 20 thousand to 2 million dofs, in 8
 //! to 1000 subdomains, with up to 5000 contact conditions, the estimate is within a quarter of each.
 
-use contact_dd_partition::flops::{Front, condensation};
+use contact_dd_partition::flops::condensation;
 use contact_dd_partition::problem::Catalog;
 
 use super::Plan;
+use super::size::Size;
 
 /// What a program needs that does nothing yet (bytes).
 const AT_REST: f64 = 2.8e7;
@@ -62,28 +63,27 @@ impl Plan {
     pub fn demands(&self, catalog: &Catalog, ranks: usize) -> Vec<Demand> {
         let mut demands = vec![Demand::default(); ranks];
         let mut largest = vec![0.0f64; ranks];
-        for (v, node) in self.tree.nodes.iter().enumerate() {
-            let owner = self.node_owners[v];
+        for (v, &owner) in self.node_owners.iter().enumerate() {
             let demand = &mut demands[owner];
-            let kept = catalog.dim * node.kept.len() + node.conditions;
-            if let Some(block) = self.blocks.get(v) {
-                let subdomains = block.subdomains.iter().map(|&s| &catalog.subdomains[s]);
-                let nodes: usize = subdomains.clone().map(|s| s.nodes).sum();
-                let cells: usize = subdomains.map(|s| s.cells).sum();
-                let n = (catalog.dim * nodes).saturating_sub(kept).max(1) as f64;
-                let kept = kept as f64;
-                let [least, more] = PER_NODE_OF_CELL;
-                let of_kind = least + more * nodes as f64 / cells.max(1) as f64;
-                demand.bytes += PER_DOF * of_kind * n * n.log2() + PER_BOUNDARY * kept * n.sqrt();
-                demand.flops += condensation(n, kept);
-            } else {
-                let front = Front {
-                    eliminated: catalog.dim * node.eliminated.len(),
+            match self.size(catalog, v) {
+                Size::Block {
+                    nodes,
+                    cells,
+                    interior,
                     kept,
-                };
-                let size = (front.eliminated + front.kept) as f64;
-                largest[owner] = largest[owner].max(size);
-                demand.flops += front.flops();
+                } => {
+                    let (n, kept) = (interior.max(1) as f64, kept as f64);
+                    let [least, more] = PER_NODE_OF_CELL;
+                    let of_kind = least + more * nodes as f64 / cells.max(1) as f64;
+                    demand.bytes +=
+                        PER_DOF * of_kind * n * n.log2() + PER_BOUNDARY * kept * n.sqrt();
+                    demand.flops += condensation(n, kept);
+                }
+                Size::Merge(front) => {
+                    let size = (front.eliminated + front.kept) as f64;
+                    largest[owner] = largest[owner].max(size);
+                    demand.flops += front.flops();
+                }
             }
         }
         for (demand, largest) in demands.iter_mut().zip(largest) {

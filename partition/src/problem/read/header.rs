@@ -5,10 +5,8 @@ use crate::error::InputError;
 use crate::model::PlaneState;
 use crate::name;
 use crate::problem::strings::read_strings;
+use crate::problem::vtkhdf::GRID;
 use crate::problem::{FORMAT, VERSION};
-
-/// Attribute `Type` of `/VTKHDF`.
-const GRID: &str = "UnstructuredGrid";
 
 /// What the attributes of the file say.
 pub(super) struct Header {
