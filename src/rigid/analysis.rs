@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::free_motion::FreeMotion;
 use super::kinematics::{Kinematics, RANK_TOLERANCE, null_space};
 use super::motion::BodyFrame;
 use super::nonnegative;
@@ -62,13 +63,6 @@ pub struct Pin {
     pub node: u32,
     /// Component that is held.
     pub component: u32,
-}
-
-/// A free rigid motion without load along it: for each body that takes part its coefficients.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FreeMotion {
-    /// Bodies and their coefficients.
-    pub bodies: Vec<(usize, Vec<f64>)>,
 }
 
 /// The rigid motions of a scene.

@@ -9,9 +9,10 @@ use super::recover::BlockSolution;
 use super::refine::replace_if_as_good;
 use crate::certificate::Certificate;
 use crate::comm::Message;
+use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::loose::LooseMotions;
 use crate::rigid::motion::BodyFrame;
-use crate::rigid::survey::{Survey, pack_motions, unpack_motions};
+use crate::rigid::survey::Survey;
 
 /// A contact force, relative to the terms of the equilibrium at its nodes, that is round-off.
 const ROUND_OFF: f64 = 1e-14;
@@ -88,10 +89,10 @@ fn move_nearer(
     let loose = loose_motions(frozen, survey, solutions);
     let mut message = Message::default();
     if let Some(loose) = &loose {
-        pack_motions(&loose.motions, &mut message);
+        FreeMotion::pack(&loose.motions, &mut message);
     }
     frozen.comm.broadcast(&mut message);
-    let list = unpack_motions(&mut message.read(), BodyFrame::count(frozen.catalog.dim));
+    let list = FreeMotion::unpack(&mut message.read(), BodyFrame::count(frozen.catalog.dim));
     if list.is_empty() {
         return Settled::default();
     }
