@@ -11,7 +11,7 @@ mod scene;
 use std::hint::black_box;
 use std::time::Duration;
 
-use contact_dd_mpi::certificate::BlockCheck;
+use contact_dd_mpi::certificate::check::BlockCheck;
 use contact_dd_mpi::contact::limits::Limits;
 use contact_dd_mpi::contact::pair::ContactPair;
 use contact_dd_mpi::fem::assembly::assemble;

@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use super::frozen::{BlockLoad, Frozen};
 use super::motions::Field;
 use super::recover::BlockSolution;
-use crate::certificate::{BlockCheck, Certificate, certificate};
+use crate::certificate::check::BlockCheck;
+use crate::certificate::{Certificate, certificate};
 use crate::comm::Message;
 
 /// Equilibrium and penetration above which a solution is refined.
@@ -78,7 +79,7 @@ fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Cer
             &solution.forces,
         );
         let stiffness = frozen.condensed.diagonals.get(&b)?.iter().copied();
-        check.rest_scale = frozen.descent * stiffness.fold(0.0, f64::max);
+        check.most.rest = frozen.descent * stiffness.fold(0.0, f64::max);
         Some(check)
     };
     let mut checks = Vec::new();
