@@ -126,6 +126,11 @@ impl Plan {
         }
     }
 
+    /// Number of nodes of Γ, each counted once.
+    pub fn interface_nodes(&self) -> usize {
+        self.sharing.iter().filter(|&&blocks| blocks > 1).count()
+    }
+
     /// The owner of every block.
     pub fn owners(&self) -> Vec<usize> {
         self.blocks.iter().map(|b| b.owner).collect()

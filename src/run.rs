@@ -237,7 +237,6 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
                 catalog,
                 plan: &plan,
                 steps,
-                interface_dofs: interface.len + interface.eliminated,
                 smallest_pivot: interface.smallest_pivot(),
                 ranks,
                 warnings: checkpoints.warnings.clone(),

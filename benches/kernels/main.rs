@@ -139,7 +139,6 @@ fn contribution(condensed: &Condensed) -> Contribution {
     Contribution {
         s: condensed.s.submatrix(m, m, n, n).to_owned(),
         smallest_pivot: condensed.smallest_pivot,
-        eliminated: 0,
         law: None,
     }
 }

@@ -85,7 +85,6 @@ impl Scene {
             smallest_pivot: schur.smallest_pivot(),
             diagonal: schur.diagonal,
             s,
-            eliminated: 0,
         }
     }
 }

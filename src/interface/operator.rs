@@ -24,8 +24,6 @@ pub struct Contribution {
     pub s: Mat<f64>,
     /// The smallest pivot of its interior relative to its diagonal entry.
     pub smallest_pivot: f64,
-    /// Number of unknowns on Γ that were eliminated within it.
-    pub eliminated: usize,
     /// The law of a pair; `None` for a linear subdomain, and where all pairs have too many
     /// approaches to be solved for at once.
     pub law: Option<PairLaw>,
@@ -45,8 +43,6 @@ pub struct ClusterLoad {
 pub struct Interface {
     /// Number of unknowns on Γ that clusters share.
     pub len: usize,
-    /// Number of those that were eliminated within clusters.
-    pub eliminated: usize,
     /// Number of those that no pair has; they come first.
     pub linear: usize,
     /// The traces of every pair.
@@ -98,11 +94,9 @@ impl Interface {
         let mut pair_traces = Vec::new();
         let mut laws = Vec::new();
         let mut smallest_pivot = f64::INFINITY;
-        let mut eliminated = 0;
         let parts = contributions.into_iter().zip(&numbering.traces);
         for ((part, traces), &in_contact) in parts.zip(in_contact) {
             smallest_pivot = smallest_pivot.min(part.smallest_pivot);
-            eliminated += part.eliminated;
             if in_contact {
                 sum.add_large(traces, part.s.as_ref());
                 pair_traces.push(traces.clone());
@@ -120,7 +114,6 @@ impl Interface {
         })?;
         Ok(Self {
             len: n,
-            eliminated,
             linear: numbering.linear,
             pair_traces,
             motions: RigidBasis::default(),

@@ -66,7 +66,6 @@ impl Condensation<'_> {
             s,
             diagonal: schur.diagonal.clone(),
             smallest_pivot: schur.smallest_pivot(),
-            eliminated: 0,
         };
         (condensed.diagonals).insert(number, stiffness.diagonal().to_vec());
         condensed.springs.insert(number, springs);

@@ -77,11 +77,8 @@ fn pack(blocks: &CondensedBlocks, plan: &Plan, c: usize, with_laws: bool) -> Mes
 }
 
 fn pack_head(condensed: &Condensed, has_law: bool, message: &mut Message) {
-    message.integers.extend([
-        condensed.traces.len() as i64,
-        i64::from(has_law),
-        condensed.eliminated as i64,
-    ]);
+    let head = [condensed.traces.len() as i64, i64::from(has_law)];
+    message.integers.extend(head);
     TraceDof::pack(&condensed.traces, message);
     message.reals.push(condensed.smallest_pivot);
 }
@@ -90,10 +87,8 @@ fn unpack(message: Message) -> (Vec<TraceDof>, Contribution) {
     let mut reader = message.read();
     let n = reader.count();
     let has_law = reader.integer() != 0;
-    let eliminated = reader.count();
     let traces = TraceDof::unpack(&mut reader, n);
     let contribution = Contribution {
-        eliminated,
         smallest_pivot: reader.real(),
         s: reader.symmetric(n),
         law: has_law.then(|| PairLaw::unpack(&mut reader, n)),

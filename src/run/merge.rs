@@ -7,6 +7,7 @@ use super::clusters::take_clusters;
 use super::condense::Condensation;
 use super::condensed_blocks::CondensedBlocks;
 use super::limits::limits_of_clusters;
+use super::steps::in_step;
 use crate::comm::{Comm, Message, is_asked_to_stop};
 use crate::error::Failure;
 use crate::fem::owned::OwnedBlock;
@@ -69,7 +70,8 @@ pub fn condense_clusters(
         ..
     } = merging;
     let catalog = condensation.catalog;
-    let limits = limits_of_clusters(comm, plan, catalog, blocks, &condensed)?;
+    let limits = limits_of_clusters(comm, plan, catalog, blocks, &condensed)
+        .map_err(|failure| in_step(failure, catalog, 0))?;
     take_clusters(plan, survey, limits, waiting, &mut condensed);
     Ok(condensed)
 }
@@ -198,14 +200,8 @@ impl Merging<'_> {
 /// What a node sends to the owner of its parent.
 fn pack(condensed: Condensed) -> Message {
     let mut message = Message::default();
-    message.integers.extend(
-        [
-            condensed.approaches,
-            condensed.traces.len(),
-            condensed.eliminated,
-        ]
-        .map(|n| n as i64),
-    );
+    let lengths = [condensed.approaches, condensed.traces.len()];
+    message.integers.extend(lengths.map(|n| n as i64));
     TraceDof::pack(&condensed.traces, &mut message);
     message.reals.push(condensed.smallest_pivot);
     message.reals.extend(&condensed.diagonal);
@@ -218,12 +214,11 @@ fn unpack(message: Message) -> Option<Condensed> {
         return None;
     }
     let mut reader = message.read();
-    let (approaches, traces, eliminated) = (reader.count(), reader.count(), reader.count());
+    let (approaches, traces) = (reader.count(), reader.count());
     let n = approaches + traces;
     Some(Condensed {
         approaches,
         traces: TraceDof::unpack(&mut reader, traces),
-        eliminated,
         smallest_pivot: reader.real(),
         diagonal: reader.reals(n),
         s: reader.lower(n),

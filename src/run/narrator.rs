@@ -82,7 +82,7 @@ impl<'a> Narrator<'a> {
             problem: shown(&self.settings.problem),
             title: &catalog.title,
             dofs: catalog.dofs(),
-            interface_dofs: catalog.dim * plan.sharing.iter().filter(|&&n| n > 1).count(),
+            interface_dofs: catalog.dim * plan.interface_nodes(),
             subdomains: catalog.subdomains.len(),
             contact_pairs: plan.groups.len(),
             contact_conditions: catalog.conditions(),

@@ -17,8 +17,6 @@ pub struct Condensed {
     pub diagonal: Vec<f64>,
     /// The smallest pivot of what was eliminated, relative to its diagonal entry.
     pub smallest_pivot: f64,
-    /// Number of unknowns on Γ that were eliminated.
-    pub eliminated: usize,
 }
 
 impl Condensed {

@@ -18,8 +18,8 @@ pub struct LocalSchur {
 }
 
 impl LocalSchur {
-    /// Factorizes a block's stiffness, whose first `interior` unknowns are I; S, both triangles (Pa),
-    /// stands beside.
+    /// Factorizes a block's stiffness, whose first `interior` unknowns are I; the lower triangle
+    /// of S (Pa) stands beside.
     ///
     /// # Errors
     /// K_II isn't positive definite: the block can move with its boundary held.

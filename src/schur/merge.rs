@@ -91,7 +91,6 @@ impl Merge {
         let mut diagonal = vec![0.0; e + k];
         let mut places = Vec::with_capacity(children.len());
         let mut smallest_pivot = f64::INFINITY;
-        let mut eliminated_before = 0;
         let mut first_approach = e;
         for child in children {
             let place = places_of(&child, first_approach, &gone, &traces, e + approaches);
@@ -102,7 +101,6 @@ impl Merge {
             add(&child.s, &place, e, &mut columns, &mut s);
             spare.keep(child.s);
             smallest_pivot = smallest_pivot.min(child.smallest_pivot);
-            eliminated_before += child.eliminated;
             places.push(place);
         }
         let mut merge = Self {
@@ -121,7 +119,6 @@ impl Merge {
             s,
             diagonal: diagonal[e..].to_vec(),
             smallest_pivot,
-            eliminated: eliminated_before + e,
         };
         Ok((merge, condensed))
     }

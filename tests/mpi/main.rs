@@ -72,6 +72,7 @@ fn main() -> ExitCode {
     restarting::stopped_while_factorizing(&mut trials);
     restarting::every_sweep(&mut trials);
     restarting::other_checkpoints(&mut trials);
+    restarting::unwritable(&mut trials);
     steps::no_equilibrium(&mut trials);
     steps::squeezed(&mut trials);
     steps::not_converged(&mut trials);

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use rustix::process::Signal;
+use serde_json::Value;
 
 use super::*;
 
@@ -142,6 +143,25 @@ pub fn other_checkpoints(trials: &mut Trials) {
         assert!(said.contains("this run begins at the start"));
         assert!(datasets(&case.result()) == expected);
         assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
+    });
+}
+
+/// A checkpoint that can't be written is a warning, and one only.
+pub fn unwritable(trials: &mut Trials) {
+    trials.on_all_ranks("unwritable_checkpoints", |ranks| {
+        let case = Case::of(&built_in_model("granite", 0), 8);
+        let in_the_way = case.folder().join("problem.vtkhdf.checkpoint.old");
+        fs::create_dir_all(in_the_way.join("a folder")).unwrap();
+        let picard = ["--method", "picard", "--tolerance", "1e-3", "--report"];
+        let report = case.folder().join("report.json");
+        let every = [report.to_str().unwrap(), "--checkpoint-every", "1"];
+        let ended = run(&case, ranks, &[&picard[..], &every].concat());
+        assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+        let report: Value = serde_json::from_str(&fs::read_to_string(report).unwrap()).unwrap();
+        assert!(report["sweeps"].as_u64().unwrap() > 2);
+        let warnings = report["warnings"].as_array().unwrap().iter();
+        let of_it = warnings.filter(|w| w.as_str().unwrap().contains("checkpoint.old"));
+        assert_eq!(of_it.count(), 1, "{report}");
     });
 }
 

@@ -25,7 +25,6 @@ fn child(approaches: usize, nodes: &[u32], seed: usize) -> Condensed {
         diagonal: (0..n).map(|i| s[(i, i)]).collect(),
         s,
         smallest_pivot: 1.0,
-        eliminated: 0,
     }
 }
 
