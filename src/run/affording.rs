@@ -46,7 +46,10 @@ pub fn afford(comm: &Comm, demands: &[Demand]) -> Result<f64, Failure> {
 
 fn check(hosts: &BTreeMap<String, Host>) -> Result<(), Failure> {
     let gigabytes = |bytes: f64| bytes / 1e9;
-    match hosts.iter().find(|(_, m)| CERTAIN * m.needed > m.available) {
+    match hosts
+        .iter()
+        .find(|(_, host)| CERTAIN * host.needed > host.available)
+    {
         None => Ok(()),
         Some((name, host)) => Err(Failure::internal(format!(
             "the {} ranks on '{name}' need about {:.1} GB of memory, and {:.1} GB are available there; \
