@@ -21,7 +21,7 @@ use contact_dd_partition::model::Model;
 use faer::{Mat, Par, Side};
 
 use support::blocks::{Blocks, jittered, moved, shuffled};
-use support::close;
+use support::close::close;
 use support::scenes::{built_in, built_in_model, model, two_block_scene, two_blocks};
 use support::solution::{ContactPoint, Solution};
 use support::solver::{Case, problem, solve};

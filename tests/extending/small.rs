@@ -54,7 +54,7 @@ impl Cluster {
                 approaches,
                 traces: dofs(nodes),
                 s: Mat::from_fn(n, n, |i, j| s[(i, j)]),
-                stiffness: (0..n).map(|i| s[(i, i)]).collect(),
+                diagonal: (0..n).map(|i| s[(i, i)]).collect(),
                 smallest_pivot: 1.0,
             },
             load: (0..n).map(|_| 3.0 * random.signed()).collect(),

@@ -74,7 +74,7 @@ pub fn every_sweep(trials: &mut Trials) {
         trials.on_all_ranks(&format!("every_sweep::of_{method}"), move |ranks| {
             let case = Case::of(&built_in_model("granite", 0), 8);
             let method = ["--method", method, "--tolerance", tolerance];
-            let whole = run(&case, ranks, &method);
+            let whole = case.run_on(ranks, &method);
             let code = whole.code();
             let expected = datasets(&case.result());
             let sweeps = Solution::read(&case.result()).sweeps();
@@ -82,9 +82,9 @@ pub fn every_sweep(trials: &mut Trials) {
             for sweep in BTreeSet::from([1, sweeps.div_ceil(2), sweeps]) {
                 let count = sweep.to_string();
                 let stop = ["--max-sweeps", &count, "--checkpoint-every", &count];
-                let stopped = run(&case, ranks, &[&method[..], &stop].concat());
+                let stopped = case.run_on(ranks, &[&method[..], &stop].concat());
                 let is_last = stopped.code() == 0;
-                let on = run(&case, ranks, &[&method[..], &["--restart"]].concat());
+                let on = case.run_on(ranks, &[&method[..], &["--restart"]].concat());
                 assert_eq!(on.code(), code, "{}{}", on.stdout, on.stderr);
                 assert_eq!(on.stdout.contains("no good checkpoint"), is_last);
                 assert!(datasets(&case.result()) == expected, "{count} sweeps");
@@ -99,7 +99,7 @@ pub fn other_checkpoints(trials: &mut Trials) {
     let picard = ["--method", "picard", "--tolerance", "1e-4"];
     let leave = move |case: &Case, ranks| {
         let stop = ["--max-sweeps", "7", "--checkpoint-every", "3"];
-        let stopped = run(case, ranks, &[&picard[..], &stop].concat());
+        let stopped = case.run_on(ranks, &[&picard[..], &stop].concat());
         assert_eq!(stopped.code(), 3);
         let [newest, older] = ["problem.vtkhdf.checkpoint", "problem.vtkhdf.checkpoint.old"];
         [newest, older].map(|name| case.folder().join(name))
@@ -109,18 +109,18 @@ pub fn other_checkpoints(trials: &mut Trials) {
         leave(&case, ranks);
         let other = Case::of(&built_in_model("granite", 0), 7);
         fs::copy(other.problem(), case.problem()).unwrap();
-        let ended = run(&case, ranks, &[&picard[..], &["--restart"]].concat());
+        let ended = case.run_on(ranks, &[&picard[..], &["--restart"]].concat());
         failed_once(&ended, 2, &["checkpoint", "another problem"]);
     });
     trials.on_all_ranks("other_checkpoints::of_another_method", move |ranks| {
         let case = granite();
         leave(&case, ranks);
-        let ended = run(&case, ranks, &["--restart"]);
+        let ended = case.run_on(ranks, &["--restart"]);
         failed_once(&ended, 2, &["checkpoint", "--method picard"]);
     });
     trials.on_all_ranks("other_checkpoints::damaged", move |ranks| {
         let case = granite();
-        assert_eq!(run(&case, ranks, &picard).code(), 0);
+        assert_eq!(case.run_on(ranks, &picard).code(), 0);
         let expected = datasets(&case.result());
         let [newest, older] = leave(&case, ranks);
         let restart = [&picard[..], &["--restart"]].concat();
@@ -128,7 +128,7 @@ pub fn other_checkpoints(trials: &mut Trials) {
         let middle = bytes.len() / 2;
         bytes[middle] ^= 1;
         fs::write(&newest, &bytes).unwrap();
-        let from_older = run(&case, ranks, &restart);
+        let from_older = case.run_on(ranks, &restart);
         assert_eq!(from_older.code(), 0, "{}", from_older.stderr);
         let said = [from_older.stderr, from_older.stdout].concat();
         assert!(said.contains("damaged") && !said.contains("begins at the start"));
@@ -137,7 +137,7 @@ pub fn other_checkpoints(trials: &mut Trials) {
         leave(&case, ranks);
         fs::write(&newest, &bytes[..middle]).unwrap();
         fs::write(&older, "").unwrap();
-        let from_start = run(&case, ranks, &restart);
+        let from_start = case.run_on(ranks, &restart);
         assert_eq!(from_start.code(), 0, "{}", from_start.stderr);
         let said = [from_start.stderr, from_start.stdout].concat();
         assert!(said.contains("this run begins at the start"));
@@ -155,7 +155,7 @@ pub fn unwritable(trials: &mut Trials) {
         let picard = ["--method", "picard", "--tolerance", "1e-3", "--report"];
         let report = case.folder().join("report.json");
         let every = [report.to_str().unwrap(), "--checkpoint-every", "1"];
-        let ended = run(&case, ranks, &[&picard[..], &every].concat());
+        let ended = case.run_on(ranks, &[&picard[..], &every].concat());
         assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
         let report: Value = serde_json::from_str(&fs::read_to_string(report).unwrap()).unwrap();
         assert!(report["sweeps"].as_u64().unwrap() > 2);

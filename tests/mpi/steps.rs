@@ -28,7 +28,7 @@ pub fn no_equilibrium(trials: &mut Trials) {
         let scene = format!("{}{lift}", two_block_scene());
         let case = Case::of(&model(&scene, two_blocks().mesh), 6);
         let words = ["step 'lift'", "'upper' can move freely"];
-        failed_once(&run(&case, ranks, &[]), 4, &words);
+        failed_once(&case.run_on(ranks, &[]), 4, &words);
         assert_eq!(case.files(), ["problem.h5"]);
     });
 }
@@ -65,7 +65,7 @@ pub fn squeezed(trials: &mut Trials) {
             let case = Case::of(&model(&scene, blocks.mesh), 4);
             let step = format!("step '{name}': contact 'ground' and 'slope': what is prescribed");
             failed_once(
-                &run(&case, ranks, &[]),
+                &case.run_on(ranks, &[]),
                 2,
                 &[&step, "leaves no place for it"],
             );
@@ -78,7 +78,7 @@ pub fn squeezed(trials: &mut Trials) {
 pub fn not_converged(trials: &mut Trials) {
     trials.on_all_ranks("steps::not_converged", |ranks| {
         let case = Case::of(&two_blocks_in_steps(), 6);
-        let ended = run(&case, ranks, &["--max-sweeps", "0"]);
+        let ended = case.run_on(ranks, &["--max-sweeps", "0"]);
         assert_eq!(ended.code(), 3, "{}{}", ended.stdout, ended.stderr);
         let steps = Solution::steps(&case.result());
         let [error] = ended.errors()[..] else {
@@ -106,7 +106,7 @@ pub fn restarted(trials: &mut Trials) {
         let steps =
             "[[step]]\nscale = 0.9\n[[step]]\n[[step.pressure]]\non = 'top'\nvalue = '3e6+1e5*x'";
         let case = Case::of(&model(&format!("{text}\n{steps}"), mesh), 8);
-        let whole = run(&case, ranks, &picard);
+        let whole = case.run_on(ranks, &picard);
         assert_eq!(whole.code(), 0, "{}{}", whole.stdout, whole.stderr);
         let expected = datasets(&case.result());
         let steps = Solution::steps(&case.result());
@@ -120,13 +120,9 @@ pub fn restarted(trials: &mut Trials) {
         .map(String::from);
         let stop: Vec<&str> = stop.iter().map(String::as_str).collect();
         let every = (most - 2).to_string();
-        let stopped = run(&case, ranks, &[&picard[..], &stop, &[&every]].concat());
+        let stopped = case.run_on(ranks, &[&picard[..], &stop, &[&every]].concat());
         assert_eq!(stopped.code(), 3, "{}{}", stopped.stdout, stopped.stderr);
-        let on = run(
-            &case,
-            1 + ranks % 4,
-            &[&picard[..], &["--restart"]].concat(),
-        );
+        let on = case.run_on(1 + ranks % 4, &[&picard[..], &["--restart"]].concat());
         assert_eq!(on.code(), 0, "{}{}", on.stdout, on.stderr);
         assert!(!on.stdout.contains("no good checkpoint"));
         assert!(datasets(&case.result()) == expected);

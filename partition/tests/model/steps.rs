@@ -1,6 +1,7 @@
 //! Load steps on the mesh.
 
-use crate::blocks::{Blocks, close};
+use crate::blocks::Blocks;
+use crate::close::close;
 use contact_dd_partition::model::Model;
 
 /// A block that is held at its bottom and loaded in every way.
