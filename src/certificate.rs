@@ -2,16 +2,15 @@
 //!
 //! > K u − f + Bᵀ λ = 0,   B u ≤ g,   λ ≥ 0,   λᵀ (g − B u) = 0
 
+pub mod check;
+
 use std::collections::HashMap;
 
 use serde::Serialize;
 
-use crate::comm::{Message, MessageReader};
-use crate::fem::balance::Balance;
-use crate::fem::block::Block;
-use crate::fem::condition::BlockCondition;
-use crate::fem::frame::{Frame, dot};
-use crate::fem::node_frames::supported_frames;
+use self::check::{BlockCheck, External, Most};
+use crate::schur::trace::TraceDof;
+use crate::vector::{larger, largest};
 
 /// Sum of forces, relative to the terms that they are sums of, that is no load.
 const NO_LOAD: f64 = 1e-12;
@@ -62,305 +61,58 @@ impl Certificate {
     }
 }
 
-/// What a block says of its own part of the solution.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct BlockCheck {
-    /// The number of the node on Γ and the axis of its traces.
-    trace_dofs: Vec<(u32, u32)>,
-    /// Residual on them, to be summed over the blocks that share them.
-    traces: Vec<f64>,
-    trace_scale: Vec<f64>,
-    /// Largest residual elsewhere, along directions that are free.
-    residual: f64,
-    scale: f64,
-    penetration: f64,
-    tension: f64,
-    largest_force: f64,
-    /// Largest load, contact force or support reaction at a node.
-    largest_external: f64,
-    /// Largest load at a node.
-    largest_load: f64,
-    complementarity: f64,
-    largest_displacement: f64,
-    /// Forces that the bodies' way to rest would cause if it weren't rigid.
-    pub rest_scale: f64,
-    /// Sum of loads, contact forces and support reactions, and of their absolute values.
-    force: [f64; 3],
-    force_scale: f64,
-    moment: [f64; 3],
-    moment_scale: f64,
-    /// Displacement on the nodes that it shares.
-    shared_nodes: Vec<u32>,
-    shared_displacement: Vec<f64>,
-}
-
-impl BlockCheck {
-    /// Checks displacements `u`, node by node, and contact `forces`, one a condition.
-    pub fn new(
-        block: &Block,
-        conditions: &[BlockCondition],
-        balance: &Balance,
-        u: &[f64],
-        forces: &[f64],
-    ) -> Self {
-        let mut check = Self {
-            largest_displacement: largest(u),
-            largest_load: balance.largest_load,
-            ..Self::default()
-        };
-        check.equilibrium(block, balance);
-        check.contact(block.dim, conditions, u, forces);
-        for &(node, id) in &block.interface {
-            check.shared_nodes.push(id);
-            let start = node as usize * block.dim;
-            check
-                .shared_displacement
-                .extend_from_slice(&u[start..start + block.dim]);
-        }
-        check
-    }
-
-    fn equilibrium(&mut self, block: &Block, balance: &Balance) {
-        let dim = block.dim;
-        let frames = supported_frames(block);
-        let mut frames = frames.iter().peekable();
-        let mut is_shared = vec![false; block.nodes()];
-        for &(node, _) in &block.interface {
-            is_shared[node as usize] = true;
-        }
-        // Residual and scale along the free axes of nodes on Γ, in the order of nodes.
-        let mut of_trace = Vec::new();
-        let mut first_trace = vec![
-            0..0;
-            if block.interface.is_empty() {
-                0
-            } else {
-                block.nodes()
-            }
-        ];
-        let vector = |values: &[f64], node: usize| {
-            let mut v = [0.0; 3];
-            v[..dim].copy_from_slice(&values[node * dim..(node + 1) * dim]);
-            v
-        };
-        for node in 0..block.nodes() {
-            let frame = frames
-                .next_if(|(supported, _)| **supported as usize == node)
-                .map_or(&Frame::CARTESIAN, |(_, frame)| frame);
-            let residual = vector(&balance.residual, node);
-            let scale = vector(&balance.scale, node);
-            let mut force = vector(&balance.external, node);
-            self.force_scale += force.iter().map(|f| f.abs()).sum::<f64>();
-            self.largest_external = force
-                .iter()
-                .fold(self.largest_external, |m, &f| maximum(m, f));
-            let first = of_trace.len();
-            for axis in 0..dim {
-                let axes = &frame.axes[axis];
-                let along = dot(axes, &residual);
-                let along_scale: f64 = axes.iter().zip(&scale).map(|(a, s)| a.abs() * s).sum();
-                if frame.prescribed[axis].is_some() {
-                    for (f, a) in force.iter_mut().zip(axes) {
-                        *f -= along * a;
-                    }
-                    self.force_scale += along.abs();
-                    self.largest_external = maximum(self.largest_external, along);
-                } else if is_shared[node] {
-                    of_trace.push((axis as u32, along, along_scale));
-                } else {
-                    self.residual = maximum(self.residual, along);
-                    self.scale = maximum(self.scale, along_scale);
-                }
-            }
-            if is_shared[node] {
-                first_trace[node] = first..of_trace.len();
-            }
-            self.add_force(&block.points[node], &force);
-        }
-        for &(node, id) in &block.interface {
-            for &(axis, residual, scale) in &of_trace[first_trace[node as usize].clone()] {
-                self.trace_dofs.push((id, axis));
-                self.traces.push(residual);
-                self.trace_scale.push(scale);
-            }
-        }
-    }
-
-    fn add_force(&mut self, at: &[f64; 3], force: &[f64; 3]) {
-        for k in 0..3 {
-            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            self.force[k] += force[k];
-            self.moment[k] += at[i] * force[j] - at[j] * force[i];
-            self.moment_scale += (at[i] * force[j]).abs() + (at[j] * force[i]).abs();
-        }
-    }
-
-    fn contact(&mut self, dim: usize, conditions: &[BlockCondition], u: &[f64], forces: &[f64]) {
-        for (condition, &force) in conditions.iter().zip(forces) {
-            let gap = condition.gap_left(dim, u);
-            self.penetration = maximum(self.penetration, gap.min(0.0));
-            self.tension = maximum(self.tension, force.min(0.0));
-            self.largest_force = maximum(self.largest_force, force);
-            self.complementarity = maximum(self.complementarity, gap * force);
-        }
-    }
-
-    /// As a message.
-    pub fn pack(&self) -> Message {
-        let mut message = Message::default();
-        message.integers.push(self.traces.len() as i64);
-        message.integers.push(self.shared_nodes.len() as i64);
-        message.integers.push(self.shared_displacement.len() as i64);
-        message
-            .integers
-            .extend(self.shared_nodes.iter().map(|&id| i64::from(id)));
-        for &(node, axis) in &self.trace_dofs {
-            message.integers.extend([node, axis].map(i64::from));
-        }
-        message.reals.extend([
-            self.residual,
-            self.scale,
-            self.penetration,
-            self.tension,
-            self.largest_force,
-            self.largest_external,
-            self.largest_load,
-            self.complementarity,
-            self.largest_displacement,
-            self.rest_scale,
-            self.force_scale,
-            self.moment_scale,
-        ]);
-        message.reals.extend(self.force);
-        message.reals.extend(self.moment);
-        message.reals.extend(&self.traces);
-        message.reals.extend(&self.trace_scale);
-        message.reals.extend(&self.shared_displacement);
-        message
-    }
-
-    /// From a message.
-    pub fn unpack(message: Message) -> Self {
-        let mut reader = message.read();
-        let traces = reader.count();
-        let nodes = reader.count();
-        let components = reader.count();
-        let shared_nodes = reader.integers(nodes).iter().map(|&id| id as u32).collect();
-        let vector = |reader: &mut MessageReader| [reader.real(), reader.real(), reader.real()];
-        Self {
-            shared_nodes,
-            trace_dofs: (0..traces)
-                .map(|_| (reader.integer() as u32, reader.integer() as u32))
-                .collect(),
-            residual: reader.real(),
-            scale: reader.real(),
-            penetration: reader.real(),
-            tension: reader.real(),
-            largest_force: reader.real(),
-            largest_external: reader.real(),
-            largest_load: reader.real(),
-            complementarity: reader.real(),
-            largest_displacement: reader.real(),
-            rest_scale: reader.real(),
-            force_scale: reader.real(),
-            moment_scale: reader.real(),
-            force: vector(&mut reader),
-            moment: vector(&mut reader),
-            traces: reader.reals(traces),
-            trace_scale: reader.reals(traces),
-            shared_displacement: reader.reals(components),
-        }
-    }
-}
-
 /// The certificate of the whole solution, where Γ has so many nodes of `dim` components.
 pub fn certificate(checks: &[BlockCheck], interface_nodes: usize, dim: usize) -> Certificate {
-    let mut total = BlockCheck::default();
+    let mut most = Most::default();
+    let mut external = External::default();
     let mut on_interface = vec![0.0; interface_nodes * dim];
     let mut interface_scale = vec![0.0; interface_nodes * dim];
     let mut known: HashMap<u32, Vec<f64>> = HashMap::new();
     let mut jump = 0.0;
     for check in checks {
         let traces = check.trace_dofs.iter().zip(&check.traces);
-        for ((&(node, axis), r), s) in traces.zip(&check.trace_scale) {
+        for ((&TraceDof { node, axis }, r), s) in traces.zip(&check.trace_scale) {
             let dof = node as usize * dim + axis as usize;
             on_interface[dof] += r;
             interface_scale[dof] += s;
         }
-        total.residual = maximum(total.residual, check.residual);
-        total.scale = maximum(total.scale, check.scale);
-        total.penetration = maximum(total.penetration, check.penetration);
-        total.tension = maximum(total.tension, check.tension);
-        total.largest_force = maximum(total.largest_force, check.largest_force);
-        total.largest_external = maximum(total.largest_external, check.largest_external);
-        total.largest_load = maximum(total.largest_load, check.largest_load);
-        total.complementarity = maximum(total.complementarity, check.complementarity);
-        total.largest_displacement =
-            maximum(total.largest_displacement, check.largest_displacement);
-        total.rest_scale = maximum(total.rest_scale, check.rest_scale);
-        total.force_scale += check.force_scale;
-        total.moment_scale += check.moment_scale;
-        for k in 0..3 {
-            total.force[k] += check.force[k];
-            total.moment[k] += check.moment[k];
-        }
-        if !check.shared_nodes.is_empty() {
-            let dim = check.shared_displacement.len() / check.shared_nodes.len();
-            for (&node, u) in check
-                .shared_nodes
-                .iter()
-                .zip(check.shared_displacement.chunks(dim))
-            {
-                let first = known.entry(node).or_insert_with(|| u.to_vec());
-                for (a, b) in first.iter().zip(u) {
-                    jump = maximum(jump, a - b);
-                }
+        most.include(check.most);
+        external.include(check.external);
+        let displacement = check.shared_displacement.chunks(dim);
+        for (&node, u) in check.shared_nodes.iter().zip(displacement) {
+            let first = known.entry(node).or_insert_with(|| u.to_vec());
+            for (a, b) in first.iter().zip(u) {
+                jump = larger(jump, a - b);
             }
         }
     }
-    total.residual = maximum(total.residual, largest(&on_interface));
-    total.scale = maximum(total.scale, largest(&interface_scale));
-    if total.scale < NO_LOAD * total.rest_scale {
+    most.residual = larger(most.residual, largest(&on_interface));
+    most.scale = larger(most.scale, largest(&interface_scale));
+    if most.scale < NO_LOAD * most.rest {
         // Bodies that only came to rest: what is left is round-off of their way.
-        total.scale = total.rest_scale;
+        most.scale = most.rest;
     }
-    let force_scale = maximum(total.scale, total.largest_force);
+    let force_scale = larger(most.scale, most.contact_force);
     // Without load what is left of forces is round-off of the terms that they are sums of.
-    let loaded = total.force_scale >= NO_LOAD * total.scale;
+    let loaded = external.force_scale >= NO_LOAD * most.scale;
     let to_load = if loaded {
         1.0
     } else {
-        total.force_scale / total.scale
+        external.force_scale / most.scale
     };
     Certificate {
-        equilibrium: ratio(total.residual, total.scale),
-        equilibrium_of_load: ratio(total.residual, total.largest_external),
-        load_share: ratio(total.largest_load, total.largest_external),
-        penetration: ratio(total.penetration, total.largest_displacement),
-        tension: ratio(total.tension, force_scale),
-        complementarity: ratio(
-            total.complementarity,
-            total.largest_force * total.largest_displacement,
-        ),
-        force_balance: to_load * ratio(largest(&total.force), total.force_scale),
-        moment_balance: to_load * ratio(largest(&total.moment), total.moment_scale),
-        interface_jump: ratio(jump, total.largest_displacement),
+        equilibrium: ratio(most.residual, most.scale),
+        equilibrium_of_load: ratio(most.residual, most.external),
+        load_share: ratio(most.load, most.external),
+        penetration: ratio(most.penetration, most.displacement),
+        tension: ratio(most.tension, force_scale),
+        complementarity: ratio(most.complementarity, most.contact_force * most.displacement),
+        force_balance: to_load * ratio(largest(&external.force), external.force_scale),
+        moment_balance: to_load * ratio(largest(&external.moment), external.moment_scale),
+        interface_jump: ratio(jump, most.displacement),
     }
 }
 
 fn ratio(a: f64, b: f64) -> f64 {
     if a == 0.0 { 0.0 } else { a / b }
-}
-
-/// max(|a|, |b|); not a number if either isn't.
-fn maximum(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() {
-        f64::NAN
-    } else {
-        a.abs().max(b.abs())
-    }
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m, &v| maximum(m, v))
 }

@@ -18,7 +18,7 @@ use crate::interface::s_con::ConState;
 use crate::sweep::progress::Progress;
 
 /// The first bytes of the file.
-const HEAD: &[u8] = b"contact-dd-mpi checkpoint 2\n";
+const HEAD: &[u8] = b"contact-dd-mpi checkpoint 3\n";
 
 /// A digest of bytes.
 pub type Digest = [u8; blake3::OUT_LEN];

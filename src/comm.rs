@@ -50,8 +50,8 @@ impl Comm {
         self.world.size() as usize
     }
 
-    /// The name of the machine that this rank is on.
-    pub fn machine(&self) -> String {
+    /// The name of the host that this rank is on.
+    pub fn host_name(&self) -> String {
         mpi::environment::processor_name().unwrap_or_default()
     }
 
@@ -110,6 +110,16 @@ impl Comm {
         self.world
             .all_reduce_into(&mine, &mut any, SystemOperation::max());
         any != 0
+    }
+
+    /// The root's `decision`, on all ranks. Collective.
+    pub fn decide(&self, decision: bool) -> bool {
+        let mut message = Message {
+            integers: vec![i64::from(decision)],
+            reals: Vec::new(),
+        };
+        self.broadcast(&mut message);
+        message.read().integer() != 0
     }
 
     /// Gives all ranks the root's message. Collective.

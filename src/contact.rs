@@ -11,3 +11,4 @@ pub mod law;
 pub mod limits;
 pub mod open_factor;
 pub mod pair;
+pub mod ties;

@@ -69,3 +69,4 @@ pub mod run;
 pub mod schur;
 pub mod settings;
 pub mod sweep;
+pub mod vector;

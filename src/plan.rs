@@ -3,13 +3,14 @@
 mod assign;
 pub mod cluster;
 pub mod demand;
+mod size;
 pub mod tree;
 
-use contact_dd_partition::flops::Front;
 use contact_dd_partition::problem::Catalog;
 
 use self::assign::{assign, block_cost, front_cost};
 use self::cluster::{ClusterPlan, Merging, cluster_nodes};
+use self::size::Size;
 use self::tree::Tree;
 
 /// A block of the problem: a linear subdomain, or a group in contact.
@@ -29,8 +30,8 @@ pub struct BlockPlan {
 pub struct Plan {
     /// Blocks.
     pub blocks: Vec<BlockPlan>,
-    /// The block of every pair, ascending.
-    pub pairs: Vec<usize>,
+    /// The block of every group in contact, ascending.
+    pub groups: Vec<usize>,
     /// How many blocks have each node of Γ.
     pub sharing: Vec<u32>,
     /// The block of every subdomain.
@@ -74,13 +75,13 @@ impl Plan {
                 sharing[node as usize] += 1;
             }
         }
-        let pairs = (0..blocks.len())
+        let groups = (0..blocks.len())
             .filter(|&b| blocks[b].group.is_some())
             .collect();
         let tree = Tree::new(catalog, &blocks, &block_of, &sharing);
         let mut plan = Self {
             blocks,
-            pairs,
+            groups,
             sharing,
             block_of,
             tree,
@@ -109,7 +110,7 @@ impl Plan {
             self.clusters.push(ClusterPlan {
                 node,
                 owner: self.node_owners[node],
-                pairs: under.filter_map(|b| self.pair_of(b)).collect(),
+                groups: under.filter_map(|b| self.group_of(b)).collect(),
             });
         }
         self.contact = (0..self.clusters.len())
@@ -119,20 +120,15 @@ impl Plan {
 
     /// Estimated flops of condensing a block, or of merging what lies under an inner node.
     fn cost(&self, catalog: &Catalog, v: usize) -> f64 {
-        let node = &self.tree.nodes[v];
-        let kept = catalog.dim * node.kept.len() + node.conditions;
-        match self.blocks.get(v) {
-            Some(block) => {
-                let of_blocks = block.subdomains.iter();
-                let nodes: usize = of_blocks.map(|&s| catalog.subdomains[s].nodes).sum();
-                let interior = (catalog.dim * nodes).saturating_sub(kept);
-                block_cost(interior as f64, kept as f64)
-            }
-            None => front_cost(Front {
-                eliminated: catalog.dim * node.eliminated.len(),
-                kept,
-            }),
+        match self.size(catalog, v) {
+            Size::Block { interior, kept, .. } => block_cost(interior as f64, kept as f64),
+            Size::Merge(front) => front_cost(front),
         }
+    }
+
+    /// Number of nodes of Γ, each counted once.
+    pub fn interface_nodes(&self) -> usize {
+        self.sharing.iter().filter(|&&blocks| blocks > 1).count()
     }
 
     /// The owner of every block.
@@ -140,14 +136,20 @@ impl Plan {
         self.blocks.iter().map(|b| b.owner).collect()
     }
 
-    /// The owner of every pair.
-    pub fn pair_owners(&self) -> Vec<usize> {
-        self.pairs.iter().map(|&b| self.blocks[b].owner).collect()
+    /// The owner of every subdomain.
+    pub fn subdomain_owners(&self) -> Vec<usize> {
+        let blocks = self.block_of.iter();
+        blocks.map(|&b| self.blocks[b].owner).collect()
     }
 
-    /// The place of block b among the pairs.
-    pub fn pair_of(&self, block: usize) -> Option<usize> {
-        self.pairs.binary_search(&block).ok()
+    /// The owner of every group.
+    pub fn group_owners(&self) -> Vec<usize> {
+        self.groups.iter().map(|&b| self.blocks[b].owner).collect()
+    }
+
+    /// The place of block b among the groups.
+    pub fn group_of(&self, block: usize) -> Option<usize> {
+        self.groups.binary_search(&block).ok()
     }
 
     /// The owner of every cluster.
@@ -181,16 +183,17 @@ impl Plan {
         of
     }
 
-    /// All pairs, cluster by cluster.
-    pub fn pairs_by_cluster(&self) -> Vec<usize> {
-        self.clusters.iter().flat_map(|c| c.pairs.clone()).collect()
+    /// All groups, cluster by cluster.
+    pub fn groups_by_cluster(&self) -> Vec<usize> {
+        let clusters = self.clusters.iter();
+        clusters.flat_map(|c| c.groups.clone()).collect()
     }
 
-    /// From the owner of every pair to that of its cluster, cluster by cluster.
+    /// From the owner of every group to that of its cluster, cluster by cluster.
     pub fn ways_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.clusters.iter().flat_map(|cluster| {
-            let pairs = cluster.pairs.iter();
-            pairs.map(|&p| (self.blocks[self.pairs[p]].owner, cluster.owner))
+            let groups = cluster.groups.iter();
+            groups.map(|&g| (self.blocks[self.groups[g]].owner, cluster.owner))
         })
     }
 }
@@ -258,7 +261,7 @@ mod tests {
         let plan = Plan::new(&catalog(), 3, Merging::All);
         assert_eq!(plan.block_of, [0, 1, 2, 1, 3]);
         assert_eq!(plan.blocks[1].subdomains, [1, 3]);
-        assert_eq!((plan.pairs.clone(), plan.pair_of(1)), (vec![1], Some(0)));
+        assert_eq!((&plan.groups[..], plan.group_of(1)), (&[1][..], Some(0)));
     }
 
     #[test]

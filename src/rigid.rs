@@ -8,14 +8,17 @@
 //! is Rᵀ f in every contact problem: what round-off makes of both is taken out.
 
 pub mod analysis;
+mod bodies;
 mod columns;
 mod descent;
 mod description;
 pub mod energy;
+pub mod free_motion;
 mod inner;
 mod kinematics;
 pub mod loose;
 pub mod motion;
 pub mod nonnegative;
 pub mod projection;
+mod rows;
 pub mod survey;

@@ -5,6 +5,7 @@
 mod affording;
 mod clusters;
 pub mod condense;
+pub mod condensed_blocks;
 pub mod conditioning;
 mod conditions;
 mod copies;
@@ -103,8 +104,8 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
     let plan = Plan::new(catalog, comm.size(), settings.merging());
     let demands = plan.demands(catalog, comm.size());
     let available = afford(comm, &demands)?;
-    let mut blocks = comm.agree(read_blocks(comm, &file, &plan))?;
-    comm.agree(check_copies(comm, &file, &plan, &blocks))?;
+    let mut blocks = comm.agree(read_blocks(comm.rank(), &file, &plan))?;
+    check_copies(comm, &file, &plan, &blocks)?;
     narrator.problem(catalog, &plan);
     let mut checkpoints = Checkpoints::new(settings);
     let looked = match comm.is_root() {
@@ -121,7 +122,7 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
         return Ok(Ending::Converged);
     }
     narrator.phase("creating the outputs", None);
-    let mut outputs = comm.agree(create_outputs(comm, settings, catalog, &plan, &blocks))?;
+    let mut outputs = create_outputs(comm, settings, catalog, &plan, &blocks)?;
     take_step(&mut blocks, 0, &surveys[0], catalog.dim);
     seconds.read = began.elapsed().as_secs_f64();
 
@@ -140,16 +141,16 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
     // The root assembles S_0, (15), and the bilateral operator.
     narrator.phase("assembling the interface problem", None);
     let lap = Instant::now();
-    let mut interface = comm.agree(assemble_interface(comm, &condensed, catalog, &plan, par))?;
+    let mut interface = assemble_interface(comm, &condensed, catalog, &plan, par)?;
     seconds.interface = lap.elapsed().as_secs_f64();
 
     // All that depends on loads, load step by load step.
-    let pair_owners = plan.contact_owners();
+    let contact_owners = plan.contact_owners();
     let sweeping = Sweeping {
         comm,
         settings,
         narrator: &narrator,
-        pair_owners: &pair_owners,
+        contact_owners: &contact_owners,
     };
     let mut steps: Vec<StepTotals> = Vec::new();
     for (k, survey) in surveys.iter().enumerate() {
@@ -219,8 +220,7 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
         let mut resultants = Resultants::new(catalog, solution.reactions.clone());
         let result = outputs.as_mut().map(|outputs| &mut outputs.result);
         let contacts = &mut resultants.contacts;
-        let written = write_solution(comm, &blocks, &solution, &plan, result, contacts);
-        comm.agree(written.map_err(Failure::from))?;
+        write_solution(comm, &blocks, &solution, &plan, result, contacts)?;
         seconds.write += lap.elapsed().as_secs_f64();
         let totals = outcome.map(|o| StepTotals::new(o, &solution, resultants, survey));
         steps.extend(totals);
@@ -237,7 +237,6 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
                 catalog,
                 plan: &plan,
                 steps,
-                interface_dofs: interface.len + interface.eliminated,
                 smallest_pivot: interface.smallest_pivot(),
                 ranks,
                 warnings: checkpoints.warnings.clone(),
@@ -251,19 +250,17 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
         _ => Ok(()),
     };
     comm.agree(finished)?;
-    let mut ended = Message {
-        integers: vec![i64::from(converged)],
-        reals: Vec::new(),
-    };
-    comm.broadcast(&mut ended);
-    Ok(match ended.read().integer() {
-        0 => Ending::NotConverged,
-        _ => Ending::Converged,
+    Ok(match comm.decide(converged) {
+        true => Ending::Converged,
+        false => Ending::NotConverged,
     })
 }
 
 /// Makes the files of the outputs, so that a place where they can't be is found before the work.
 /// Collective; the root has the files.
+///
+/// # Errors
+/// A file can't be made.
 fn create_outputs(
     comm: &Comm,
     settings: &Settings,
@@ -271,14 +268,9 @@ fn create_outputs(
     plan: &Plan,
     blocks: &BTreeMap<usize, OwnedBlock>,
 ) -> Result<Option<Outputs>, Failure> {
-    let owners: Vec<usize> = plan
-        .block_of
-        .iter()
-        .map(|&b| plan.blocks[b].owner)
-        .collect();
     let mut connectivity = Vec::new();
     comm.gather(
-        &owners,
+        &plan.subdomain_owners(),
         |s| {
             // Called on the owner of subdomain s, which has read its block.
             let block = &blocks[&plan.block_of[s]].block;
@@ -290,13 +282,13 @@ fn create_outputs(
         },
         |_, message| connectivity.push(message.read().count()),
     );
-    if !comm.is_root() {
-        return Ok(None);
-    }
-    let layout = Layout::new(catalog, &connectivity, !settings.no_stress);
-    let report = settings.report.as_deref().map(ReportFile::create);
-    Ok(Some(Outputs {
-        result: ResultFile::create(&settings.output, &layout)?,
-        report: report.transpose()?,
-    }))
+    let create = || -> Result<Outputs, Failure> {
+        let layout = Layout::new(catalog, &connectivity, !settings.no_stress);
+        let report = settings.report.as_deref().map(ReportFile::create);
+        Ok(Outputs {
+            result: ResultFile::create(&settings.output, &layout)?,
+            report: report.transpose()?,
+        })
+    };
+    comm.agree(comm.is_root().then(create).transpose())
 }

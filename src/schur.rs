@@ -3,6 +3,7 @@
 //!
 //! > S = K_BB − K_BI K_II⁻¹ K_IB,   u_I = K_II⁻¹ (f_I − K_IB u_B)
 
+mod children;
 mod columns;
 pub mod condensed;
 mod dissection;

@@ -21,6 +21,7 @@ use self::progress::Progress;
 use crate::interface::operator::Interface;
 use crate::interface::s_con::{ConState, ConTotals, SCon};
 use crate::schur::factor::BoundaryLastCholesky;
+use crate::vector::largest;
 
 /// Residual that is round-off and nothing else.
 const ROUND_OFF: f64 = 1e-15;
@@ -201,7 +202,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     fn unbalanced(&self, totals: ConTotals) -> Residual {
         let (mut r, mut scale) = self.interface.linear_residual(&self.progress.u);
         self.state.subtract(self.interface, &mut r, &mut scale);
-        let (r_max, scale_max) = (maximum(&r), maximum(&scale));
+        let (r_max, scale_max) = (largest(&r), largest(&scale));
         Residual {
             r,
             relative: if r_max == 0.0 { 0.0 } else { r_max / scale_max },
@@ -252,20 +253,6 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             residual.relative
         ))
     }
-}
-
-/// ‖x‖∞; not a number where x has one.
-fn maximum(x: &[f64]) -> f64 {
-    x.iter().fold(
-        0.0,
-        |m: f64, x| {
-            if x.is_nan() { f64::NAN } else { m.max(x.abs()) }
-        },
-    )
-}
-
-fn dot(x: &[f64], y: &[f64]) -> f64 {
-    x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
 /// y ← y + a x.

@@ -13,7 +13,7 @@ use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 
 use support::blocks::{Blocks, jittered, moved};
-use support::close;
+use support::close::close;
 use support::scenes::model;
 use support::solution::Solution;
 use support::solver::solve;

@@ -12,7 +12,7 @@ mod support;
 use contact_dd_partition::mesh::Mesh;
 
 use support::blocks::{Blocks, jittered, joined};
-use support::close;
+use support::close::close;
 use support::comparison::compare;
 use support::monolithic::Monolithic;
 use support::scenes::{BODIES, JOINT, LOAD, SUPPORTS, model, two_block_scene, two_blocks};

@@ -13,7 +13,7 @@ use contact_dd_partition::example;
 use contact_dd_partition::mesh::Mesh;
 
 use support::blocks::Blocks;
-use support::close;
+use support::close::close;
 use support::scenes::{BODIES, JOINT, SUPPORTS, built_in_model, model, two_blocks};
 use support::solution::Solution;
 use support::solver::solve;

@@ -14,7 +14,7 @@ use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 
 use support::blocks::Blocks;
-use support::close;
+use support::close::close;
 use support::comparison::compare;
 use support::monolithic::Monolithic;
 use support::scenes::{BODIES, JOINT, built_in_model, model};

@@ -11,7 +11,7 @@ mod support;
 use contact_dd_partition::mesh::Mesh;
 
 use support::blocks::Blocks;
-use support::close;
+use support::close::close;
 use support::comparison::compare;
 use support::monolithic::Monolithic;
 use support::scenes::model;

@@ -12,7 +12,7 @@ use contact_dd_partition::model::Model;
 
 use support::assembled::Assembled;
 use support::blocks::Blocks;
-use support::close;
+use support::close::close;
 use support::random::Random;
 use support::scenes::{BODIES, JOINT, built_in_model, model};
 use support::solution::Solution;

@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 use contact_dd_partition::model::Model;
 
 use support::blocks::Blocks;
-use support::close;
+use support::close::close;
 use support::comparison::compare;
 use support::monolithic::Monolithic;
 use support::scenes::model;

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use contact_dd_partition::model::Model;
 use contact_dd_partition::scene::Scene;
 
-use support::close;
+use support::close::close;
 use support::scenes::{BODIES, JOINT, LOAD, SUPPORTS, model, two_block_scene, two_blocks};
 use support::solution::Solution;
 use support::solver::solve;

@@ -12,7 +12,7 @@ use hdf5::File;
 use serde_json::Value;
 
 use support::blocks::{Blocks, moved};
-use support::close;
+use support::close::close;
 use support::scenes::{BODIES, built_in_model, model, two_block_scene, two_blocks};
 use support::solution::Solution;
 use support::solver::{Case, solve};

@@ -11,7 +11,7 @@ mod scene;
 use std::hint::black_box;
 use std::time::Duration;
 
-use contact_dd_mpi::certificate::BlockCheck;
+use contact_dd_mpi::certificate::check::BlockCheck;
 use contact_dd_mpi::contact::limits::Limits;
 use contact_dd_mpi::contact::pair::ContactPair;
 use contact_dd_mpi::fem::assembly::assemble;
@@ -74,7 +74,7 @@ fn subdomain(c: &mut Criterion) {
 /// One evaluation of S_CON by a pair.
 fn pair(c: &mut Criterion) {
     let scene = Scene::granite(1, 20);
-    let b = scene.plan.pairs[0];
+    let b = scene.plan.groups[0];
     let (dofs, ..) = scene.condensed(b);
     let gaps: Vec<f64> = scene.blocks[b].1.iter().map(|c| c.gap).collect();
     let limits = Limits::new(dofs.approaches, &dofs.approach_of, &gaps, 0.0);
@@ -113,19 +113,19 @@ fn merge(c: &mut Criterion) {
 fn interface(c: &mut Criterion) {
     let scene = Scene::granite(1, 20);
     let blocks = scene.blocks.len();
-    let is_pair: Vec<bool> = (0..blocks)
-        .map(|b| scene.plan.pair_of(b).is_some())
+    let in_contact: Vec<bool> = (0..blocks)
+        .map(|b| scene.plan.group_of(b).is_some())
         .collect();
     let condensed: Vec<Condensed> = (0..blocks).map(|b| scene.of_block(b)).collect();
     let traces: Vec<_> = condensed.iter().map(|c| &c.traces[..]).collect();
     let nodes: Vec<_> = (0..blocks)
         .map(|b| &scene.plan.tree.nodes[b].kept[..])
         .collect();
-    let numbering = Numbering::new(&traces, &nodes, &is_pair).unwrap();
+    let numbering = Numbering::new(&traces, &nodes, &in_contact).unwrap();
     c.bench_function("S_0", |bench| {
         bench.iter_batched(
             || condensed.iter().map(contribution).collect(),
-            |parts| Interface::new(&numbering, parts, &is_pair, Par::Seq).unwrap(),
+            |parts| Interface::new(&numbering, parts, &in_contact, Par::Seq).unwrap(),
             BatchSize::LargeInput,
         );
     });
@@ -139,7 +139,6 @@ fn contribution(condensed: &Condensed) -> Contribution {
     Contribution {
         s: condensed.s.submatrix(m, m, n, n).to_owned(),
         smallest_pivot: condensed.smallest_pivot,
-        eliminated: 0,
         law: None,
     }
 }

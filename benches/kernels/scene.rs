@@ -83,9 +83,8 @@ impl Scene {
             approaches: dofs.approaches,
             traces: dofs.traces.clone(),
             smallest_pivot: schur.smallest_pivot(),
-            stiffness: schur.stiffness,
+            diagonal: schur.diagonal,
             s,
-            eliminated: 0,
         }
     }
 }

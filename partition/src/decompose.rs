@@ -50,8 +50,8 @@ impl Decomposition {
     /// Every subdomain is connected across facets. All cells around a node with a contact
     /// condition are in one subdomain, and each side of a contact has its own wherever `count`
     /// allows, so that contacts lie within pairs. Where `count` allows, every subdomain is of one
-    /// material but for the cells around a contact surface that ends at another one. Equal models give equal partitions. A partition
-    /// that the scene prescribes is taken as it is.
+    /// material but for the cells around a contact surface that ends at another one. Equal models
+    /// give equal partitions. A partition that the scene prescribes is taken as it is.
     ///
     /// # Errors
     /// A count that can't be, with the range that can; a prescribed partition that doesn't fit.
@@ -87,13 +87,13 @@ impl Decomposition {
     }
 }
 
-/// A number of subdomains that suits the size and gives every cluster, and every material where
+/// A number of subdomains that suits the size and gives every clump, and every material where
 /// there are few, its own.
 fn suitable(model: &Model, atoms: &Atoms, units: &Units) -> usize {
     let dofs = model.mesh.dim * model.mesh.points.len();
-    let with_contact = match atoms.graph.clusters() {
+    let with_contact = match atoms.graph.clumps() {
         0 => 1,
-        clusters => clusters + LINEAR,
+        clumps => clumps + LINEAR,
     };
     let with_materials = match units.of_one_material() {
         many if many > MATERIALS => 1,
@@ -101,7 +101,7 @@ fn suitable(model: &Model, atoms: &Atoms, units: &Units) -> usize {
     };
     let outside = dofs * atoms.outside() / model.mesh.cells.len();
     let for_speed = match dofs > SMALL {
-        true => outside.div_ceil(DOFS) + atoms.graph.clusters(),
+        true => outside.div_ceil(DOFS) + atoms.graph.clumps(),
         false => 1,
     };
     for_speed.max(with_contact).max(with_materials)

@@ -1,6 +1,5 @@
 //! The built-in scenes.
 
-mod blocks;
 mod crack;
 mod gears;
 mod granite;
@@ -10,12 +9,13 @@ mod patch;
 mod pattern;
 mod plain;
 mod rollers;
+mod squares;
 mod stack;
 mod wall;
 
 use std::path::{Path, PathBuf};
 
-use self::blocks::Patch;
+use self::squares::Square;
 use crate::destination;
 use crate::element::ElementKind;
 use crate::error::{InputError, OutputError};
@@ -55,7 +55,7 @@ pub struct Example {
 #[derive(Clone, Copy, Debug)]
 enum Shape {
     /// Mapped squares, to be filled with cells of any kind and size.
-    Squares(fn() -> Vec<Patch>),
+    Squares(fn() -> Vec<Square>),
     /// A geometry of Gmsh, and the mesh that Gmsh made of it.
     Gmsh {
         geometry: &'static str,
@@ -112,7 +112,7 @@ impl Example {
     /// A refinement too large to be made; a mesh by Gmsh.
     pub fn mesh_of(&self, kind: ElementKind, refine: u32) -> Result<Mesh, InputError> {
         match self.shape {
-            Shape::Squares(patches) => blocks::mesh(&patches(), refine, kind),
+            Shape::Squares(of_scene) => squares::mesh(&of_scene(), refine, kind),
             Shape::Gmsh { .. } => Err(self.as_gmsh_made_it()),
         }
     }

@@ -13,6 +13,7 @@ pub mod read;
 mod slab;
 mod strings;
 pub mod summary;
+pub mod vtkhdf;
 pub mod write;
 
 use self::hierarchy::Hierarchy;
@@ -197,6 +198,25 @@ pub struct Catalog {
     pub solver: SolverSettings,
     /// Warnings of the partition tool, to be repeated in the report.
     pub warnings: Vec<String>,
+}
+
+impl Catalog {
+    /// Number of nodes, those on Γ counted once.
+    pub fn nodes(&self) -> usize {
+        let nodes: usize = self.subdomains.iter().map(|s| s.nodes).sum();
+        let copies: usize = self.interface.iter().map(Vec::len).sum();
+        nodes - copies + self.interface_nodes
+    }
+
+    /// Number of dofs, those of nodes on Γ counted once.
+    pub fn dofs(&self) -> usize {
+        self.dim * self.nodes()
+    }
+
+    /// Number of contact conditions.
+    pub fn conditions(&self) -> usize {
+        self.contacts.iter().map(|contact| contact.conditions).sum()
+    }
 }
 
 /// A whole problem, as the partition tool holds it before it is written.

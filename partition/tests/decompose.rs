@@ -354,7 +354,7 @@ fn a_node_with_a_condition_at_which_the_mesh_is_pinched_keeps_its_group_together
 }
 
 #[test]
-fn clusters_grow_where_a_boundary_along_the_contact_would_be_dear() {
+fn clumps_grow_where_a_boundary_along_the_contact_would_be_dear() {
     let long = stacked(2, 400, 8);
     let catalog = |count| {
         let decomposition = Decomposition::new(&long, count).unwrap();

@@ -21,7 +21,10 @@ pub fn is_asked_to_stop() -> bool {
 pub(super) fn listen() -> io::Result<()> {
     let asked = ASKED.get_or_init(Arc::default);
     for signal in [SIGTERM, SIGINT, SIGUSR1] {
-        flag::register_conditional_default(signal, Arc::clone(asked))?;
+        // SIGUSR1 of a batch system is followed by its SIGTERM, which mustn't count as the second.
+        let came = Arc::new(AtomicBool::new(false));
+        flag::register_conditional_default(signal, Arc::clone(&came))?;
+        flag::register(signal, came)?;
         flag::register(signal, Arc::clone(asked))?;
     }
     Ok(())

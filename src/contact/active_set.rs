@@ -14,15 +14,16 @@
 
 use faer::MatRef;
 
-use super::dependent::{DependentRows, Ties};
+use super::dependent::DependentRows;
 use super::interior_point::InGaps;
 use super::open_factor::{OpenFactor, scale_of};
+use super::ties::Ties;
 
 /// How far below zero, relative to its scale, a force must be to open a contact.
 pub(super) const FORCE_TOLERANCE: f64 = 1e-12;
-/// Share of the stiffness that H is condensed from, times the displacements, in that scale: H's
+/// Share of the diagonal that H is condensed from, times the displacements, in that scale: H's
 /// round-off is relative to it.
-const STIFFNESS_SHARE: f64 = 1e-3;
+const DIAGONAL_SHARE: f64 = 1e-3;
 /// How far below zero, relative to the displacements, a gap must be to close a contact.
 const GAP_TOLERANCE: f64 = 1e-14;
 /// Attempts at flipping all wrong signs without progress before that is given up.
@@ -52,7 +53,7 @@ pub struct GapProblem<'a> {
     /// H, symmetric positive semidefinite.
     pub h: MatRef<'a, f64>,
     /// The diagonal of the matrix that H is condensed from: what H's round-off is relative to.
-    pub stiffness: &'a [f64],
+    pub diagonal: &'a [f64],
     /// c.
     pub c: &'a [f64],
     /// Scale of the terms that c is a difference of, for each condition.
@@ -152,7 +153,7 @@ impl GapProblem<'_> {
             }
         }
         let scale: Vec<f64> = (0..m)
-            .map(|j| scale_of(self.h[(j, j)], self.stiffness[j]))
+            .map(|j| scale_of(self.h[(j, j)], self.diagonal[j]))
             .collect();
         let e: Vec<f64> = (0..self.rows.len())
             .map(|j| self.bounds[m + j] - self.rows.value(j, self.bounds))
@@ -233,7 +234,7 @@ impl GapProblem<'_> {
     /// condition that says nothing beyond the others has no force.
     pub fn linear(&self, open: &[bool]) -> Trial {
         let m = self.c.len();
-        let factor = OpenFactor::new(self.h, self.stiffness, self.rows, open);
+        let factor = OpenFactor::new(self.h, self.diagonal, self.rows, open);
         let mut t: Vec<f64> = (0..m)
             .map(|j| {
                 if open[j] {
@@ -299,7 +300,7 @@ impl GapProblem<'_> {
         let row = self.h.col(i);
         let held: f64 = row.iter().zip(t).map(|(h, t)| (h * t).abs()).sum();
         let displaced = self.scale.max(t[i].abs());
-        self.c_scale[i] + held + STIFFNESS_SHARE * self.stiffness[i] * displaced
+        self.c_scale[i] + held + DIAGONAL_SHARE * self.diagonal[i] * displaced
     }
 
     /// The conditions that are open with a negative gap or closed with a negative force, beyond

@@ -5,7 +5,7 @@
 //! the way opens. The energy rises with every condition that closes, so that no set comes back.
 
 use super::active_set::{FORCE_TOLERANCE, GapProblem, GapSolution, Trial};
-use super::dependent::Ties;
+use super::ties::Ties;
 
 /// Share of a condition's normal in another's below which there is none.
 const NO_SHARE: f64 = 1e-10;

@@ -15,7 +15,7 @@ pub struct PairLaw {
     /// S_tΓ, approaches against traces (Pa).
     pub s_t_gamma: Mat<f64>,
     /// The diagonal of the matrix that H is condensed from (Pa).
-    pub stiffness: Vec<f64>,
+    pub diagonal: Vec<f64>,
     /// D.
     pub rows: DependentRows,
     /// The largest displacement prescribed in the pair by the loads that there are now (m).
@@ -27,23 +27,23 @@ pub struct PairLaw {
 impl PairLaw {
     /// Number of approaches.
     pub fn len(&self) -> usize {
-        self.stiffness.len()
+        self.diagonal.len()
     }
 
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.stiffness.is_empty()
+        self.diagonal.is_empty()
     }
 
     /// Appends the law of `pair` to a message.
     pub fn pack(pair: &ContactPair, message: &mut Message) {
-        let stiffness = pair.stiffness();
-        message.integers.push(stiffness.len() as i64);
+        let diagonal = pair.diagonal();
+        message.integers.push(diagonal.len() as i64);
         let defining = &pair.limits().defining;
         message.integers.extend(defining.iter().map(|&j| j as i64));
         message.push_lower(pair.s_tt());
         message.push_matrix(pair.s_t_gamma());
-        message.reals.extend(stiffness);
+        message.reals.extend(diagonal);
         pair.limits().rows.pack(message);
     }
 
@@ -54,7 +54,7 @@ impl PairLaw {
             defining: (reader.integers(m).iter()).map(|&j| j as usize).collect(),
             h: reader.symmetric(m),
             s_t_gamma: reader.matrix(m, traces),
-            stiffness: reader.reals(m),
+            diagonal: reader.reals(m),
             rows: DependentRows::unpack(reader),
             scale: 0.0,
         }

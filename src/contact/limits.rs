@@ -73,25 +73,25 @@ impl Limits {
         gaps
     }
 
-    /// The limits of several pairs as those of one, whose approaches, dependent conditions and
+    /// The limits of several groups as those of one pair, whose approaches, dependent conditions and
     /// conditions follow each other in the same order.
-    pub fn join(pairs: &[Self]) -> Self {
+    pub fn join(groups: &[Self]) -> Self {
         let mut all = Self::default();
         let mut dependent = (Vec::new(), Vec::new());
-        for pair in pairs {
-            let m = pair.approaches();
+        for group in groups {
+            let m = group.approaches();
             let shifted =
                 |&(condition, factor): &(usize, f64)| (all.conditions + condition, factor);
-            let (own, rows) = pair.tightest.split_at(m);
-            all.rows.append(&pair.rows, all.bounds.len());
-            dependent.0.extend(&pair.bounds[m..]);
+            let (own, rows) = group.tightest.split_at(m);
+            all.rows.append(&group.rows, all.bounds.len());
+            dependent.0.extend(&group.bounds[m..]);
             dependent.1.extend(rows.iter().map(shifted));
-            all.bounds.extend(&pair.bounds[..m]);
+            all.bounds.extend(&group.bounds[..m]);
             all.tightest.extend(own.iter().map(shifted));
             all.defining
-                .extend(pair.defining.iter().map(|j| all.conditions + j));
-            all.conditions += pair.conditions;
-            all.scale = all.scale.max(pair.scale);
+                .extend(group.defining.iter().map(|j| all.conditions + j));
+            all.conditions += group.conditions;
+            all.scale = all.scale.max(group.scale);
         }
         all.bounds.append(&mut dependent.0);
         all.tightest.append(&mut dependent.1);

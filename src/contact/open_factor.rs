@@ -5,7 +5,8 @@
 use faer::linalg::solvers::{Llt, SolveCore};
 use faer::{Conj, Mat, MatMut, MatRef, Side};
 
-use super::dependent::{DependentRows, Ties};
+use super::dependent::DependentRows;
+use super::ties::Ties;
 
 /// Pivot relative to its diagonal entry below which H is taken as singular.
 const SINGULAR_PIVOT: f64 = 1e-13;
@@ -38,12 +39,12 @@ pub struct OpenFactor {
 }
 
 impl OpenFactor {
-    /// Factorizes H_NN; `stiffness` is the diagonal of the matrix that H is condensed from, `open`
+    /// Factorizes H_NN; `diagonal` is the diagonal of the matrix that H is condensed from, `open`
     /// has a flag for every approach and one for each of `rows`.
-    pub fn new(h: MatRef<'_, f64>, stiffness: &[f64], rows: &DependentRows, open: &[bool]) -> Self {
+    pub fn new(h: MatRef<'_, f64>, diagonal: &[f64], rows: &DependentRows, open: &[bool]) -> Self {
         let ties = Ties::new(rows, open);
-        let open: Vec<usize> = (0..stiffness.len()).filter(|&j| open[j]).collect();
-        let mut stiffness: Vec<f64> = open.iter().map(|&j| stiffness[j]).collect();
+        let open: Vec<usize> = (0..diagonal.len()).filter(|&j| open[j]).collect();
+        let mut diagonal: Vec<f64> = open.iter().map(|&j| diagonal[j]).collect();
         let mut h_nn = Mat::zeros(open.len(), open.len());
         let mut untied = Vec::new();
         if ties.ties.is_empty() {
@@ -51,13 +52,13 @@ impl OpenFactor {
         } else {
             let is_pivot = |j: &usize| ties.ties.iter().any(|tie| tie.pivot == *j);
             untied = open.iter().copied().filter(|j| !is_pivot(j)).collect();
-            (h_nn, stiffness) = tied(h, &stiffness, &open, &untied, &ties);
+            (h_nn, diagonal) = tied(h, &diagonal, &open, &untied, &ties);
         }
-        let scale: Vec<f64> = (stiffness.iter().enumerate())
-            .map(|(a, &stiffness)| scale_of(h_nn[(a, a)], stiffness))
+        let scale: Vec<f64> = (diagonal.iter().enumerate())
+            .map(|(a, &diagonal)| scale_of(h_nn[(a, a)], diagonal))
             .collect();
-        let round_off = (stiffness.iter().enumerate())
-            .any(|(a, &stiffness)| h_nn[(a, a)] <= SINGULAR_DIAGONAL * stiffness);
+        let round_off = (diagonal.iter().enumerate())
+            .any(|(a, &diagonal)| h_nn[(a, a)] <= SINGULAR_DIAGONAL * diagonal);
         let regular = (!round_off).then(|| factorize(h_nn.as_ref(), &scale, 0.0));
         let singular = !scale.is_empty() && regular.as_ref().is_none_or(Option::is_none);
         let factor = regular.flatten().or_else(|| {
@@ -142,17 +143,17 @@ fn gather(h: MatRef<'_, f64>, open: &[usize], h_nn: &mut Mat<f64>) {
     }
 }
 
-/// Tᵀ H_NN T on the `untied` approaches, and the `stiffness` of the open ones seen from there.
+/// Tᵀ H_NN T on the `untied` approaches, and the `diagonal` of the open ones seen from there.
 fn tied(
     h: MatRef<'_, f64>,
-    stiffness: &[f64],
+    diagonal: &[f64],
     open: &[usize],
     untied: &[usize],
     ties: &Ties,
 ) -> (Mat<f64>, Vec<f64>) {
     let mut whole = Mat::zeros(open.len(), open.len());
     gather(h, open, &mut whole);
-    let mut stiffness = stiffness.to_vec();
+    let mut diagonal = diagonal.to_vec();
     let place = |j: usize| open.partition_point(|&i| i < j);
     for tie in &ties.ties {
         let pivot = place(tie.pivot);
@@ -162,7 +163,7 @@ fn tied(
                 let moved = c * whole[(a, pivot)];
                 whole[(a, i)] -= moved;
             }
-            stiffness[i] += c * c * stiffness[pivot];
+            diagonal[i] += c * c * diagonal[pivot];
         }
     }
     for tie in &ties.ties {
@@ -178,16 +179,16 @@ fn tied(
     let places: Vec<usize> = untied.iter().map(|&j| place(j)).collect();
     let mut h_nn = Mat::zeros(untied.len(), untied.len());
     gather(whole.as_ref(), &places, &mut h_nn);
-    let stiffness = places.iter().map(|&a| stiffness[a]).collect();
-    (h_nn, stiffness)
+    let diagonal = places.iter().map(|&a| diagonal[a]).collect();
+    (h_nn, diagonal)
 }
 
 /// What an entry of H's diagonal is measured by.
-pub fn scale_of(diagonal: f64, stiffness: f64) -> f64 {
-    if diagonal > SINGULAR_DIAGONAL * stiffness {
-        diagonal
+pub fn scale_of(entry: f64, diagonal: f64) -> f64 {
+    if entry > SINGULAR_DIAGONAL * diagonal {
+        entry
     } else {
-        stiffness
+        diagonal
     }
 }
 

@@ -142,8 +142,8 @@ impl ContactPair {
     }
 
     /// The diagonal of the matrix that H is condensed from.
-    pub fn stiffness(&self) -> &[f64] {
-        &self.condensed.stiffness[..self.limits.approaches()]
+    pub fn diagonal(&self) -> &[f64] {
+        &self.condensed.diagonal[..self.limits.approaches()]
     }
 
     /// The bounds t ≤ g and D t ≤ d.
@@ -169,7 +169,7 @@ impl ContactPair {
         let mut open = before.clone();
         let contact = GapProblem {
             h: self.s_tt(),
-            stiffness: self.stiffness(),
+            diagonal: self.diagonal(),
             c: &c,
             c_scale: &c_scale,
             rows: &self.limits.rows,
@@ -223,7 +223,7 @@ impl ContactPair {
     pub fn derivative(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         multiply_add(self.bilateral(), x, &mut y);
-        let factor = OpenFactor::new(self.s_tt(), self.stiffness(), &self.limits.rows, &self.open);
+        let factor = OpenFactor::new(self.s_tt(), self.diagonal(), &self.limits.rows, &self.open);
         let mut driven = vec![0.0; self.limits.approaches()];
         multiply_add(self.s_t_gamma(), x, &mut driven);
         let mut opened: Vec<f64> = factor.open.iter().map(|&j| -driven[j]).collect();

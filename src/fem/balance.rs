@@ -1,4 +1,4 @@
-//! Balance: K u − f + Bᵀ λ of a block, node by node, summed element by element without any factor.
+//! Balance: f − K u − Bᵀ λ of a block, node by node, summed element by element without any factor.
 
 use contact_dd_partition::model::Material;
 

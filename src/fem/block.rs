@@ -70,6 +70,15 @@ impl Block {
         self.points.len()
     }
 
+    /// Whether other blocks have a node too, node by node.
+    pub fn is_on_interface(&self) -> Vec<bool> {
+        let mut on_interface = vec![false; self.nodes()];
+        for &(node, _) in &self.interface {
+            on_interface[node as usize] = true;
+        }
+        on_interface
+    }
+
     /// The place of member subdomain `index` among the members.
     pub fn member(&self, index: usize) -> Option<usize> {
         self.members.iter().position(|m| m.index == index)

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::element::geometry::{dot, length};
 use contact_dd_partition::model::Material;
 
 use super::block::Block;
 use super::condition::BlockCondition;
-use super::frame::{Frame, dot};
+use super::frame::Frame;
 use super::node_frames::NodeFrames;
 use crate::contact::approach::{ApproachRow, Approaches, OnInterface, SolvingOrder};
 
@@ -30,10 +31,7 @@ pub(super) fn approaches(
         .iter()
         .map(|c| in_frames(c, frame, dim))
         .collect();
-    let mut on_interface = vec![false; block.nodes()];
-    for &(node, _) in &block.interface {
-        on_interface[node as usize] = true;
-    }
+    let on_interface = block.is_on_interface();
     let may_go = |v: u32| !on_interface[v as usize / dim];
     let of_nodes = node_stiffness(block, materials);
     let stiffness = |v: u32| of_nodes[v as usize / dim];
@@ -67,7 +65,7 @@ fn in_frames<'a>(
     for (node, coefficient) in &condition.entries {
         let frame = frame(*node);
         for axis in 0..dim {
-            let along = dot(coefficient, &frame.axes[axis]);
+            let along = dot(*coefficient, frame.axes[axis]);
             match frame.prescribed[axis] {
                 Some(value) => constant += along * value,
                 None => *row.entry(node * dim as u32 + axis as u32).or_default() += along,
@@ -78,7 +76,7 @@ fn in_frames<'a>(
     let scale = condition
         .entries
         .iter()
-        .map(|(_, c)| dot(c, c).sqrt())
+        .map(|&(_, c)| length(c))
         .fold(0.0, f64::max);
     ApproachRow {
         constant,

@@ -64,10 +64,7 @@ impl Dofs {
         let frames = NodeFrames::new(block, conditions);
         let approaches = approaches(block, conditions, materials, &frames, None)
             .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
-        let mut on_interface = vec![false; block.nodes()];
-        for &(node, _) in &block.interface {
-            on_interface[node as usize] = true;
-        }
+        let on_interface = block.is_on_interface();
         let mut is_free = vec![true; block.nodes() * dim];
         for (node, frame) in frames.special() {
             for axis in 0..dim {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::element::geometry::{dot, length};
 use contact_dd_partition::model::Support;
 
 /// An orthonormal frame of a node. Its displacement is u = Σ v_k·axis_k.
@@ -50,20 +51,15 @@ impl Frame {
         // Twice is enough: the second pass takes off what round-off left of the first.
         for _ in 0..2 {
             for a in &self.axes[..filled] {
-                let along = dot(a, &axis);
+                let along = dot(*a, axis);
                 for (x, a) in axis.iter_mut().zip(a) {
                     *x -= along * a;
                 }
             }
         }
-        let norm = dot(&axis, &axis).sqrt();
+        let norm = length(axis);
         axis.map(|x| x / norm)
     }
-}
-
-/// a·b.
-pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The frames of all nodes with supports; rows of one node are orthonormal.
@@ -97,7 +93,7 @@ mod tests {
             for a in 0..3 {
                 for b in 0..3 {
                     let exact = if a == b { 1.0 } else { 0.0 };
-                    assert!((dot(&frame.axes[a], &frame.axes[b]) - exact).abs() < 1e-15);
+                    assert!((dot(frame.axes[a], frame.axes[b]) - exact).abs() < 1e-15);
                 }
             }
         }

@@ -2,11 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use contact_dd_partition::element::geometry::length;
 use contact_dd_partition::model::Support;
 
 use super::block::Block;
 use super::condition::BlockCondition;
-use super::frame::{Frame, dot, support_frames};
+use super::frame::{Frame, support_frames};
 
 /// The frames of those nodes that have one of their own.
 #[derive(Clone, Debug)]
@@ -26,7 +27,7 @@ impl NodeFrames {
         };
         for condition in conditions {
             for &(node, coefficient) in &condition.entries {
-                let norm = dot(&coefficient, &coefficient).sqrt();
+                let norm = length(coefficient);
                 if norm > 0.0 && !shared.contains(&node) {
                     let direction = coefficient.map(|c| c / norm);
                     frames

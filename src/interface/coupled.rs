@@ -14,7 +14,7 @@
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, MatRef, Par};
 
-use super::operator::Interface;
+use super::operator::{Interface, diagonal_of};
 use crate::contact::active_set::GapProblem;
 use crate::contact::dependent::DependentRows;
 use crate::contact::law::PairLaw;
@@ -32,7 +32,7 @@ pub struct CoupledContact<'a> {
     interface: &'a Interface,
     /// H − Cᵀ A⁻¹ C.
     h: MatRef<'a, f64>,
-    stiffness: Vec<f64>,
+    diagonal: Vec<f64>,
     /// No change.
     center: Vec<f64>,
     /// D of all pairs.
@@ -115,7 +115,7 @@ impl<'a> CoupledContact<'a> {
         (laws.len() == interface.pair_traces.len()).then(|| Self {
             interface,
             h: interface.condensed_laws(),
-            stiffness: laws.iter().flat_map(|law| law.stiffness.clone()).collect(),
+            diagonal: diagonal_of(laws),
             rows: all_rows(laws),
             center: vec![0.0; laws.iter().map(PairLaw::len).sum()],
             scale: laws.iter().fold(0.0, |m, law| m.max(law.scale)),
@@ -182,7 +182,7 @@ impl<'a> CoupledContact<'a> {
     ) -> GapProblem<'b> {
         GapProblem {
             h: self.h,
-            stiffness: &self.stiffness,
+            diagonal: &self.diagonal,
             c: &condensed.c,
             c_scale: &condensed.c_scale,
             rows: &self.rows,

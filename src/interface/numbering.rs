@@ -13,32 +13,36 @@ pub struct Numbering {
     pub len: usize,
     /// Number of those that no pair has; they come first.
     pub linear: usize,
-    /// For every block the numbers of its traces.
+    /// For every cluster the numbers of its traces.
     pub traces: Vec<Vec<u32>>,
 }
 
 impl Numbering {
-    /// Numbers the traces of all blocks, those of pairs last; `nodes[b]` are the nodes of Γ that
-    /// block b shares with others, `pair[b]` tells whether it is a pair.
+    /// Numbers the traces of all clusters, those of pairs last; `nodes[c]` are the nodes of Γ that
+    /// cluster c shares with others, `in_contact[c]` tells whether it is a pair.
     ///
     /// # Errors
-    /// Two blocks disagree on which components of a shared node are free.
-    pub fn new(traces: &[&[TraceDof]], nodes: &[&[u32]], pair: &[bool]) -> Result<Self, Failure> {
+    /// Two clusters disagree on which components of a shared node are free.
+    pub fn new(
+        traces: &[&[TraceDof]],
+        nodes: &[&[u32]],
+        in_contact: &[bool],
+    ) -> Result<Self, Failure> {
         check_agreement(traces, nodes)?;
-        let mut blocks_of: BTreeMap<TraceDof, Vec<u32>> = BTreeMap::new();
-        for (b, list) in traces.iter().enumerate() {
+        let mut clusters_of: BTreeMap<TraceDof, Vec<u32>> = BTreeMap::new();
+        for (c, list) in traces.iter().enumerate() {
             for &dof in *list {
-                blocks_of.entry(dof).or_default().push(b as u32);
+                clusters_of.entry(dof).or_default().push(c as u32);
             }
         }
-        let faces = Faces::new(&blocks_of, traces.len());
-        let mut number: HashMap<TraceDof, u32> = HashMap::with_capacity(blocks_of.len());
+        let faces = Faces::new(&clusters_of, traces.len());
+        let mut number: HashMap<TraceDof, u32> = HashMap::with_capacity(clusters_of.len());
         let mut linear = 0;
-        for face in faces.elimination_order(pair) {
+        for face in faces.elimination_order(in_contact) {
             for &dof in &faces.dofs[face] {
                 number.insert(dof, number.len() as u32);
             }
-            if !faces.touches(face, pair) {
+            if !faces.touches(face, in_contact) {
                 linear = number.len();
             }
         }
@@ -52,11 +56,11 @@ impl Numbering {
         })
     }
 
-    /// The blocks' traces as cliques.
-    pub fn cliques(&self, blocks: impl IntoIterator<Item = usize>) -> Cliques {
+    /// The clusters' traces as cliques.
+    pub fn cliques(&self, clusters: impl IntoIterator<Item = usize>) -> Cliques {
         let mut cliques = Cliques::default();
-        for b in blocks {
-            cliques.push(self.traces[b].iter().copied());
+        for c in clusters {
+            cliques.push(self.traces[c].iter().copied());
         }
         cliques
     }
@@ -91,48 +95,49 @@ pub fn check_agreement(traces: &[&[TraceDof]], nodes: &[&[u32]]) -> Result<(), F
     }
 }
 
-/// Pieces of Γ whose unknowns belong to the same blocks: what the root eliminates at once.
+/// Pieces of Γ whose unknowns belong to the same clusters: what the root eliminates at once.
 struct Faces {
-    blocks: Vec<Vec<u32>>,
+    clusters: Vec<Vec<u32>>,
     dofs: Vec<Vec<TraceDof>>,
-    of_block: Vec<Vec<usize>>,
+    of_cluster: Vec<Vec<usize>>,
 }
 
 impl Faces {
-    fn new(blocks_of: &BTreeMap<TraceDof, Vec<u32>>, block_count: usize) -> Self {
+    fn new(clusters_of: &BTreeMap<TraceDof, Vec<u32>>, cluster_count: usize) -> Self {
         let mut faces: BTreeMap<&[u32], Vec<TraceDof>> = BTreeMap::new();
-        for (&dof, blocks) in blocks_of {
-            faces.entry(blocks).or_default().push(dof);
+        for (&dof, clusters) in clusters_of {
+            faces.entry(clusters).or_default().push(dof);
         }
-        let mut of_block = vec![Vec::new(); block_count];
-        for (face, blocks) in faces.keys().enumerate() {
-            for &b in *blocks {
-                of_block[b as usize].push(face);
+        let mut of_cluster = vec![Vec::new(); cluster_count];
+        for (face, clusters) in faces.keys().enumerate() {
+            for &c in *clusters {
+                of_cluster[c as usize].push(face);
             }
         }
         Self {
-            blocks: faces.keys().map(|blocks| blocks.to_vec()).collect(),
+            clusters: faces.keys().map(|clusters| clusters.to_vec()).collect(),
             dofs: faces.into_values().collect(),
-            of_block,
+            of_cluster,
         }
     }
 
-    /// Whether one of a face's blocks is a pair.
-    fn touches(&self, face: usize, pair: &[bool]) -> bool {
-        self.blocks[face].iter().any(|&b| pair[b as usize])
+    /// Whether one of a face's clusters is a pair.
+    fn touches(&self, face: usize, in_contact: &[bool]) -> bool {
+        let mut clusters = self.clusters[face].iter();
+        clusters.any(|&c| in_contact[c as usize])
     }
 
     /// Minimum degree on faces, each counted with its number of unknowns; those of pairs come last.
-    fn elimination_order(&self, pair: &[bool]) -> Vec<usize> {
+    fn elimination_order(&self, in_contact: &[bool]) -> Vec<usize> {
         let n = self.dofs.len();
         let mut neighbours: Vec<BTreeSet<usize>> = self
-            .blocks
+            .clusters
             .iter()
             .enumerate()
-            .map(|(face, blocks)| {
-                let mut list: BTreeSet<usize> = blocks
+            .map(|(face, clusters)| {
+                let mut list: BTreeSet<usize> = clusters
                     .iter()
-                    .flat_map(|&b| self.of_block[b as usize].iter().copied())
+                    .flat_map(|&c| self.of_cluster[c as usize].iter().copied())
                     .collect();
                 list.remove(&face);
                 list
@@ -141,7 +146,7 @@ impl Faces {
         let degree =
             |list: &BTreeSet<usize>| list.iter().map(|&f| self.dofs[f].len()).sum::<usize>();
         let place = |f: usize, neighbours: &[BTreeSet<usize>]| {
-            (self.touches(f, pair), degree(&neighbours[f]), f)
+            (self.touches(f, in_contact), degree(&neighbours[f]), f)
         };
         let mut queue: BTreeSet<(bool, usize, usize)> =
             (0..n).map(|f| place(f, &neighbours)).collect();
@@ -175,12 +180,12 @@ mod tests {
     }
 
     #[test]
-    fn every_trace_gets_one_number_whichever_block_asks() {
+    fn every_trace_gets_one_number_whichever_cluster_asks() {
         let nodes = [vec![0, 1, 2], vec![2, 3, 4], vec![0, 1, 4, 5], vec![3, 5]];
         let lists: Vec<_> = nodes.iter().map(|n| traces(n)).collect();
         let slices: Vec<&[TraceDof]> = lists.iter().map(Vec::as_slice).collect();
-        let of_block: Vec<&[u32]> = nodes.iter().map(Vec::as_slice).collect();
-        let numbering = Numbering::new(&slices, &of_block, &[false, true, false, false]).unwrap();
+        let of_cluster: Vec<&[u32]> = nodes.iter().map(Vec::as_slice).collect();
+        let numbering = Numbering::new(&slices, &of_cluster, &[false, true, false, false]).unwrap();
         let mut seen: BTreeMap<TraceDof, u32> = BTreeMap::new();
         for (list, numbers) in lists.iter().zip(&numbering.traces) {
             for (&dof, &number) in list.iter().zip(numbers) {
@@ -196,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_that_hold_a_shared_node_differently_are_told_so() {
+    fn parts_that_hold_a_shared_node_differently_are_told_so() {
         let mut lists = [traces(&[7]), traces(&[7])];
         lists[1].pop();
         let error = check_agreement(&[&lists[0], &lists[1]], &[&[7], &[7]]).unwrap_err();

@@ -24,8 +24,6 @@ pub struct Contribution {
     pub s: Mat<f64>,
     /// The smallest pivot of its interior relative to its diagonal entry.
     pub smallest_pivot: f64,
-    /// Number of unknowns on Γ that were eliminated within it.
-    pub eliminated: usize,
     /// The law of a pair; `None` for a linear subdomain, and where all pairs have too many
     /// approaches to be solved for at once.
     pub law: Option<PairLaw>,
@@ -45,8 +43,6 @@ pub struct ClusterLoad {
 pub struct Interface {
     /// Number of unknowns on Γ that clusters share.
     pub len: usize,
-    /// Number of those that were eliminated within clusters.
-    pub eliminated: usize,
     /// Number of those that no pair has; they come first.
     pub linear: usize,
     /// The traces of every pair.
@@ -63,7 +59,7 @@ pub struct Interface {
     /// F of the pairs with every contact closed.
     f_bilateral: Vec<f64>,
     /// Which clusters are in contact.
-    is_pair: Vec<bool>,
+    in_contact: Vec<bool>,
     factor: BoundaryLastCholesky,
     condensed_laws: OnceCell<Mat<f64>>,
     smallest_pivot: f64,
@@ -72,7 +68,7 @@ pub struct Interface {
 
 impl Interface {
     /// Assembles S_0 and the bilateral operator from all clusters, in their order, and factorizes
-    /// the latter. `pair[c]` tells whether cluster c is in contact. Nothing loads it before
+    /// the latter. `in_contact[c]` tells whether cluster c is in contact. Nothing loads it before
     /// [`prescribe`](Self::prescribe).
     ///
     /// # Errors
@@ -80,13 +76,13 @@ impl Interface {
     pub fn new(
         numbering: &Numbering,
         contributions: Vec<Contribution>,
-        pair: &[bool],
+        in_contact: &[bool],
         par: Par,
     ) -> Result<Self, Failure> {
         let n = numbering.len;
-        let blocks = 0..pair.len();
-        let linear = numbering.cliques(blocks.clone().filter(|&b| !pair[b]));
-        let all = numbering.cliques(blocks);
+        let clusters = 0..in_contact.len();
+        let linear = numbering.cliques(clusters.clone().filter(|&c| !in_contact[c]));
+        let all = numbering.cliques(clusters);
         let too_large = || {
             Failure::internal(format!(
                 "the interface problem of {n} unknowns has more than 2^32 entries: \
@@ -98,12 +94,10 @@ impl Interface {
         let mut pair_traces = Vec::new();
         let mut laws = Vec::new();
         let mut smallest_pivot = f64::INFINITY;
-        let mut eliminated = 0;
-        for ((part, traces), &is_pair) in contributions.into_iter().zip(&numbering.traces).zip(pair)
-        {
+        let parts = contributions.into_iter().zip(&numbering.traces);
+        for ((part, traces), &in_contact) in parts.zip(in_contact) {
             smallest_pivot = smallest_pivot.min(part.smallest_pivot);
-            eliminated += part.eliminated;
-            if is_pair {
+            if in_contact {
                 sum.add_large(traces, part.s.as_ref());
                 pair_traces.push(traces.clone());
                 laws.extend(part.law);
@@ -120,7 +114,6 @@ impl Interface {
         })?;
         Ok(Self {
             len: n,
-            eliminated,
             linear: numbering.linear,
             pair_traces,
             motions: RigidBasis::default(),
@@ -129,7 +122,7 @@ impl Interface {
             f: vec![0.0; n],
             f_scale: vec![0.0; n],
             f_bilateral: vec![0.0; n],
-            is_pair: pair.to_vec(),
+            in_contact: in_contact.to_vec(),
             smallest_pivot: smallest_pivot.min(factor.smallest_pivot()),
             factor,
             condensed_laws: OnceCell::new(),
@@ -144,10 +137,9 @@ impl Interface {
             f.fill(0.0);
         }
         let mut laws = self.laws.iter_mut();
-        for ((of_cluster, traces), &is_pair) in
-            loads.iter().zip(&numbering.traces).zip(&self.is_pair)
-        {
-            let f = match is_pair {
+        let loads = loads.iter().zip(&numbering.traces);
+        for ((of_cluster, traces), &in_contact) in loads.zip(&self.in_contact) {
+            let f = match in_contact {
                 true => &mut self.f_bilateral,
                 false => &mut self.f,
             };
@@ -155,14 +147,14 @@ impl Interface {
                 f[dof as usize] += load;
                 self.f_scale[dof as usize] += load.abs();
             }
-            if is_pair && let Some(law) = laws.next() {
+            if in_contact && let Some(law) = laws.next() {
                 law.scale = of_cluster.scale;
             }
         }
-        self.motions = RigidBasis::new(drive, &stiffness_of(&self.laws));
+        self.motions = RigidBasis::new(drive, &diagonal_of(&self.laws));
     }
 
-    /// The smallest pivot of all blocks and of the bilateral operator, each relative to its
+    /// The smallest pivot of all clusters and of the bilateral operator, each relative to its
     /// diagonal entry.
     pub fn smallest_pivot(&self) -> f64 {
         self.smallest_pivot
@@ -226,7 +218,7 @@ impl Interface {
     }
 }
 
-/// The stiffness of all approaches, side by side.
-fn stiffness_of(laws: &[PairLaw]) -> Vec<f64> {
-    laws.iter().flat_map(|law| law.stiffness.clone()).collect()
+/// The diagonal of what all laws are condensed from, side by side.
+pub(super) fn diagonal_of(laws: &[PairLaw]) -> Vec<f64> {
+    laws.iter().flat_map(|law| law.diagonal.clone()).collect()
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::report::Report;
+use super::terminal::{Summary, SweepLine};
 use crate::settings::Settings;
 use crate::settings::origin::Origins;
 
@@ -14,28 +15,7 @@ use crate::settings::origin::Origins;
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event<'a> {
     /// What is to be solved, and on what.
-    Problem {
-        /// Version of the program.
-        version: &'static str,
-        /// The problem file.
-        problem: String,
-        /// Title of the scene.
-        title: &'a str,
-        /// Number of degrees of freedom.
-        dofs: usize,
-        /// Number of those on Γ.
-        interface_dofs: usize,
-        /// Number of subdomains.
-        subdomains: usize,
-        /// Number of pairs, or groups, in contact.
-        contact_pairs: usize,
-        /// Number of contact conditions.
-        contact_conditions: usize,
-        /// Number of ranks.
-        ranks: usize,
-        /// Number of threads of each rank.
-        threads: usize,
-    },
+    Problem(&'a Summary<'a>),
     /// How it is to be solved.
     Settings {
         /// The settings, as in the report.
@@ -65,18 +45,7 @@ pub enum Event<'a> {
         time: f64,
     },
     /// A sweep is done.
-    Sweep {
-        /// Its number; 0 is the bilateral start.
-        sweep: usize,
-        /// Relative residual of the interface problem.
-        residual: f64,
-        /// Number of closed contact conditions.
-        active: usize,
-        /// Number of conditions that opened or closed in it; the start has none.
-        changed: Option<usize>,
-        /// Since the sweeps began (s).
-        seconds: f64,
-    },
+    Sweep(&'a SweepLine),
     /// What the user should know.
     Warning {
         /// In words.
@@ -88,7 +57,7 @@ pub enum Event<'a> {
         memory_bytes: f64,
         /// Memory of the largest rank (bytes).
         largest_rank_memory_bytes: f64,
-        /// Memory that their machines have left (bytes).
+        /// Memory that their hosts have left (bytes).
         available_bytes: f64,
         /// Arithmetic of all ranks (flop).
         flops: f64,

@@ -123,6 +123,6 @@ pub struct ConvergenceRow {
     pub residual: f64,
     /// Number of closed contact conditions.
     pub active: usize,
-    /// Time that the sweep took (s).
+    /// Time since the sweeps began (s).
     pub seconds: f64,
 }

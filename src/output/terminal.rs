@@ -3,6 +3,7 @@
 //! Every function writes whole lines to `out`; whether to print at all, and whether to show colours, is
 //! the caller's business.
 
+mod resultants;
 mod timing;
 
 use std::io::{Result, Write};
@@ -11,20 +12,22 @@ use std::path::Path;
 use anstyle::{AnsiColor, Style};
 use contact_dd_partition::message::{ERROR, WARNING};
 use contact_dd_partition::problem::LoadStep;
+use serde::Serialize;
 
 use super::report::{Report, Status, StepReport};
-use super::resultants;
 use crate::certificate::Certificate;
-use crate::plan::demand::Demand;
+use crate::plan::demand::Demands;
 
 /// How the reason is shown for which sweeps ended well.
 const CONVERGED: Style = AnsiColor::Green.on_default();
 
 /// What is to be solved, and on what.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary<'a> {
+    /// Version of the program.
+    pub version: &'static str,
     /// The problem file.
-    pub problem: &'a Path,
+    pub problem: String,
     /// Title of the scene.
     pub title: &'a str,
     /// Number of degrees of freedom.
@@ -44,7 +47,7 @@ pub struct Summary<'a> {
 }
 
 /// One line of the table of sweeps.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SweepLine {
     /// Number of the sweep; 0 is the bilateral start.
     pub sweep: usize,
@@ -54,34 +57,31 @@ pub struct SweepLine {
     pub active: usize,
     /// Number of conditions that opened or closed in this sweep; the start has none.
     pub changed: Option<usize>,
-    /// Time that the sweep took (s).
+    /// Time since the sweeps began (s).
     pub seconds: f64,
 }
 
-/// Prints what solving would cost: the `demands` of all ranks against the memory that is `available`
-/// on their machines together (bytes).
+/// Prints what solving would cost, against the memory that is `available` on the hosts together
+/// (bytes).
 ///
 /// # Errors
 /// `out` can't be written.
-pub fn demands(out: &mut dyn Write, demands: &[Demand], available: f64) -> Result<()> {
+pub fn demands(out: &mut dyn Write, demands: &Demands, available: f64) -> Result<()> {
+    let Demands { all, most } = demands;
     let gigabytes = |bytes: f64| bytes / 1e9;
-    let all: f64 = demands.iter().map(|demand| demand.bytes).sum();
-    let most = demands.iter().fold(0.0, |m: f64, d| m.max(d.bytes));
-    let flops: f64 = demands.iter().map(|demand| demand.flops).sum();
-    let busiest = demands.iter().fold(0.0, |m: f64, d| m.max(d.flops));
     writeln!(out, "\nsolving it would take about")?;
     writeln!(
         out,
         "  memory       {:.2} GB, {:.2} GB on the largest rank; {:.1} GB are available",
-        gigabytes(all),
-        gigabytes(most),
+        gigabytes(all.bytes),
+        gigabytes(most.bytes),
         gigabytes(available)
     )?;
     writeln!(
         out,
         "  arithmetic   {:.1} Gflop, {:.1} Gflop on the busiest rank",
-        flops / 1e9,
-        busiest / 1e9
+        all.flops / 1e9,
+        most.flops / 1e9
     )
 }
 
@@ -91,6 +91,7 @@ pub fn demands(out: &mut dyn Write, demands: &[Demand], available: f64) -> Resul
 /// `out` can't be written.
 pub fn summary(out: &mut dyn Write, summary: &Summary) -> Result<()> {
     let Summary {
+        version,
         problem,
         title,
         dofs,
@@ -101,12 +102,12 @@ pub fn summary(out: &mut dyn Write, summary: &Summary) -> Result<()> {
         ranks,
         threads,
     } = summary;
-    writeln!(out, "contact-dd-mpi {}", env!("CARGO_PKG_VERSION"))?;
+    writeln!(out, "contact-dd-mpi {version}")?;
     writeln!(out)?;
     if !title.is_empty() {
         writeln!(out, "{title}")?;
     }
-    entry(out, "problem", problem.display())?;
+    entry(out, "problem", problem)?;
     entry(
         out,
         "dofs",
@@ -247,10 +248,7 @@ fn steps(out: &mut dyn Write, steps: &[StepReport]) -> Result<()> {
 }
 
 /// Prints the certificate.
-///
-/// # Errors
-/// `out` can't be written.
-pub fn certificate(out: &mut dyn Write, certificate: &Certificate) -> Result<()> {
+fn certificate(out: &mut dyn Write, certificate: &Certificate) -> Result<()> {
     let Certificate {
         equilibrium,
         equilibrium_of_load,

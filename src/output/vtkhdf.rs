@@ -66,6 +66,10 @@ pub struct ResultFile {
     grid: Grid,
     contacts: ContactTables,
     has_steps: bool,
+    /// Number of load steps, one where the problem has none.
+    steps: usize,
+    /// The one that is being written.
+    step: usize,
     // Closed before `destination` removes or renames it: fields are dropped in this order.
     file: File,
     destination: Destination,
@@ -92,6 +96,8 @@ impl ResultFile {
                 grid,
                 contacts,
                 has_steps: !layout.times.is_empty(),
+                steps: layout.times.len().max(1),
+                step: 0,
                 file,
                 destination,
             }),
@@ -110,7 +116,7 @@ impl ResultFile {
     /// The file can't be written, or `results` doesn't have the sizes of the layout.
     pub fn write_subdomains(&mut self, results: &SubdomainResults) -> Result<(), OutputError> {
         self.grid
-            .write(results)
+            .write(results, self.step)
             .map_err(|error| failure(&self.destination, &error))
     }
 
@@ -120,7 +126,7 @@ impl ResultFile {
     /// The file can't be written, or a row has no place in the layout.
     pub fn write_contacts(&mut self, rows: &[ContactResult]) -> Result<(), OutputError> {
         self.contacts
-            .write(rows)
+            .write(rows, self.step)
             .map_err(|error| failure(&self.destination, &error))
     }
 
@@ -131,7 +137,9 @@ impl ResultFile {
     pub fn finish_step(&mut self) -> Result<(), OutputError> {
         let grid = self.grid.finish_step();
         grid.and_then(|()| self.contacts.finish_step())
-            .map_err(|error| failure(&self.destination, &error))
+            .map_err(|error| failure(&self.destination, &error))?;
+        self.step += 1;
+        Ok(())
     }
 
     /// Writes `/convergence`: a row for the start and one for every sweep, load step by load step. Called
@@ -160,13 +168,18 @@ impl ResultFile {
         let Self {
             grid,
             contacts,
+            steps,
+            step,
             file,
             destination,
             ..
         } = self;
         let write = move || {
-            grid.finish()?;
-            contacts.finish()?;
+            if step != steps {
+                return Err(format!("step {step} is missing").into());
+            }
+            // What is open keeps a file from being closed.
+            drop((grid, contacts));
             // Of variable length: an attribute of fixed length ends at 64 KiB.
             let report: VarLenUnicode = report_json
                 .parse()

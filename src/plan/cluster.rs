@@ -22,14 +22,14 @@ pub struct ClusterPlan {
     pub node: usize,
     /// The rank that owns the node.
     pub owner: usize,
-    /// Its groups, by their place among all pairs, in the order in which they are merged.
-    pub pairs: Vec<usize>,
+    /// Its groups, by their place among all of the plan, in the order in which they are merged.
+    pub groups: Vec<usize>,
 }
 
 impl ClusterPlan {
     /// Whether anything in it is in contact.
     pub fn is_in_contact(&self) -> bool {
-        !self.pairs.is_empty()
+        !self.groups.is_empty()
     }
 }
 

@@ -3,10 +3,11 @@
 //! The constants are measured: on 45 peaks of 1 and 2 ranks, from 20 thousand to 2 million dofs, in 8
 //! to 1000 subdomains, with up to 5000 contact conditions, the estimate is within a quarter of each.
 
-use contact_dd_partition::flops::{Front, condensation};
+use contact_dd_partition::flops::condensation;
 use contact_dd_partition::problem::Catalog;
 
 use super::Plan;
+use super::size::Size;
 
 /// What a program needs that does nothing yet (bytes).
 const AT_REST: f64 = 2.8e7;
@@ -30,41 +31,66 @@ pub struct Demand {
     pub flops: f64,
 }
 
+/// What a run needs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Demands {
+    /// On all ranks together.
+    pub all: Demand,
+    /// On the rank that needs most memory, and on the one that needs most arithmetic.
+    pub most: Demand,
+}
+
+impl Demands {
+    /// Of ranks that need these.
+    pub fn of(ranks: &[Demand]) -> Self {
+        let of = |part: fn(&Demand) -> f64| ranks.iter().map(part);
+        let (bytes, flops) = (of(|demand| demand.bytes), of(|demand| demand.flops));
+        Self {
+            all: Demand {
+                bytes: bytes.clone().sum(),
+                flops: flops.clone().sum(),
+            },
+            most: Demand {
+                bytes: bytes.fold(0.0, f64::max),
+                flops: flops.fold(0.0, f64::max),
+            },
+        }
+    }
+}
+
 impl Plan {
     /// What every one of `ranks` ranks needs.
     pub fn demands(&self, catalog: &Catalog, ranks: usize) -> Vec<Demand> {
         let mut demands = vec![Demand::default(); ranks];
         let mut largest = vec![0.0f64; ranks];
-        for (v, node) in self.tree.nodes.iter().enumerate() {
-            let owner = self.node_owners[v];
+        for (v, &owner) in self.node_owners.iter().enumerate() {
             let demand = &mut demands[owner];
-            let kept = catalog.dim * node.kept.len() + node.conditions;
-            if let Some(block) = self.blocks.get(v) {
-                let subdomains = block.subdomains.iter().map(|&s| &catalog.subdomains[s]);
-                let nodes: usize = subdomains.clone().map(|s| s.nodes).sum();
-                let cells: usize = subdomains.map(|s| s.cells).sum();
-                let n = (catalog.dim * nodes).saturating_sub(kept).max(1) as f64;
-                let kept = kept as f64;
-                let [least, more] = PER_NODE_OF_CELL;
-                let of_kind = least + more * nodes as f64 / cells.max(1) as f64;
-                demand.bytes += PER_DOF * of_kind * n * n.log2() + PER_BOUNDARY * kept * n.sqrt();
-                demand.flops += condensation(n, kept);
-            } else {
-                let front = Front {
-                    eliminated: catalog.dim * node.eliminated.len(),
+            match self.size(catalog, v) {
+                Size::Block {
+                    nodes,
+                    cells,
+                    interior,
                     kept,
-                };
-                let size = (front.eliminated + front.kept) as f64;
-                largest[owner] = largest[owner].max(size);
-                demand.flops += front.flops();
+                } => {
+                    let (n, kept) = (interior.max(1) as f64, kept as f64);
+                    let [least, more] = PER_NODE_OF_CELL;
+                    let of_kind = least + more * nodes as f64 / cells.max(1) as f64;
+                    demand.bytes +=
+                        PER_DOF * of_kind * n * n.log2() + PER_BOUNDARY * kept * n.sqrt();
+                    demand.flops += condensation(n, kept);
+                }
+                Size::Merge(front) => {
+                    let size = (front.eliminated + front.kept) as f64;
+                    largest[owner] = largest[owner].max(size);
+                    demand.flops += front.flops();
+                }
             }
         }
         for (demand, largest) in demands.iter_mut().zip(largest) {
             demand.bytes += AT_REST + PER_ENTRY * largest * largest;
         }
         if let Some(root) = demands.first_mut() {
-            let conditions: usize = catalog.contacts.iter().map(|c| c.conditions).sum();
-            root.bytes += PER_PAIR_OF_CONDITIONS * (conditions as f64).powi(2);
+            root.bytes += PER_PAIR_OF_CONDITIONS * (catalog.conditions() as f64).powi(2);
         }
         demands
     }

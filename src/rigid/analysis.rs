@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::free_motion::FreeMotion;
 use super::kinematics::{Kinematics, RANK_TOLERANCE, null_space};
 use super::motion::BodyFrame;
 use super::nonnegative;
@@ -64,13 +65,6 @@ pub struct Pin {
     pub component: u32,
 }
 
-/// A free rigid motion without load along it: for each body that takes part its coefficients.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FreeMotion {
-    /// Bodies and their coefficients.
-    pub bodies: Vec<(usize, Vec<f64>)>,
-}
-
 /// The rigid motions of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RigidMotions {
@@ -91,9 +85,9 @@ pub struct Scene {
     pub bodies: Vec<BodyState>,
     /// Their names.
     pub names: Vec<String>,
-    /// Conditions, pair by pair.
+    /// Conditions, group by group.
     pub rows: Vec<RigidRow>,
-    /// Number of conditions of every pair.
+    /// Number of conditions of every group.
     pub conditions: Vec<usize>,
 }
 

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::analysis::{BodyState, FreeMotion};
+use super::analysis::BodyState;
+use super::free_motion::FreeMotion;
 use super::kinematics::Kinematics;
 
 /// Motions up to which each is described: more are any basis of what bodies can do together.

@@ -6,7 +6,7 @@
 
 use faer::Mat;
 
-use super::projection::dot;
+use crate::vector::dot;
 
 /// Part of a motion, relative to all of it, that is new.
 const INDEPENDENT: f64 = 1e-8;
@@ -42,10 +42,10 @@ pub struct RigidBasis {
 }
 
 impl RigidBasis {
-    /// The basis for approaches of this `stiffness` D, by Gram and Schmidt, twice; soft bodies first, so
+    /// The basis for approaches with this `diagonal` D, by Gram and Schmidt, twice; soft bodies first, so
     /// that what is left for stiff ones leaves theirs alone, to which it would be far more.
-    pub fn new(drive: &RigidDrive, stiffness: &[f64]) -> Self {
-        let root: Vec<f64> = stiffness.iter().map(|k| k.max(0.0).sqrt()).collect();
+    pub fn new(drive: &RigidDrive, diagonal: &[f64]) -> Self {
+        let root: Vec<f64> = diagonal.iter().map(|k| k.max(0.0).sqrt()).collect();
         let mut basis = Self {
             root,
             ..Self::default()

@@ -74,13 +74,13 @@ impl Scene {
         })
     }
 
-    /// The numbers of the conditions of these pairs.
-    pub fn conditions_of(&self, pairs: &[usize]) -> Vec<usize> {
-        let of_pair = |&p: &usize| {
-            let first: usize = self.conditions[..p].iter().sum();
-            first..first + self.conditions[p]
+    /// The numbers of the conditions of these groups.
+    pub fn conditions_of(&self, groups: &[usize]) -> Vec<usize> {
+        let of_group = |&g: &usize| {
+            let first: usize = self.conditions[..g].iter().sum();
+            first..first + self.conditions[g]
         };
-        pairs.iter().flat_map(of_pair).collect()
+        groups.iter().flat_map(of_group).collect()
     }
 }
 
@@ -106,7 +106,7 @@ pub(super) fn inner_motions(
         &plan.contact_owners(),
         |p| {
             let cluster = plan.contact[p];
-            let conditions = scene.conditions_of(&plan.clusters[cluster].pairs);
+            let conditions = scene.conditions_of(&plan.clusters[cluster].groups);
             let within = |body: usize| !elsewhere[body] && home[body] == Some(cluster);
             let drive = scene.drive(&kinematics, &conditions, pins, within);
             let mut message = Message {

@@ -3,7 +3,8 @@
 use faer::Mat;
 use nalgebra::{DMatrix, DVector};
 
-use super::analysis::{BodyState, FreeMotion, RigidRow};
+use super::analysis::{BodyState, RigidRow};
+use super::free_motion::FreeMotion;
 use super::motion::BodyFrame;
 
 /// Relative size below which a singular value is zero: a support that is this much shorter than

@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::analysis::{FreeMotion, Scene};
+use super::analysis::Scene;
+use super::free_motion::FreeMotion;
 use super::kinematics::{Kinematics, null_space};
 use super::nonnegative;
 use super::projection::MotionProducts;

@@ -1,5 +1,7 @@
 //! Rigid motions z of a body: translations, and rotations ω × (x − x_0) about its center scaled by its size.
 
+use contact_dd_partition::element::geometry::cross;
+
 /// The frame in which the rigid motions of a body are written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyFrame {
@@ -29,12 +31,13 @@ impl BodyFrame {
     /// over the body's size. Also the row of a condition `force`·u.
     pub fn action(&self, dim: usize, x: &[f64; 3], force: &[f64; 3]) -> Vec<f64> {
         let r: [f64; 3] = std::array::from_fn(|k| (x[k] - self.center[k]) / self.size);
+        let moment = cross(r, *force);
         let mut action = force[..dim].to_vec();
         // In the plane the only rotation is about the third axis, which comes first here.
         for k in [2, 0, 1] {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
             if i < dim && j < dim {
-                action.push(r[i] * force[j] - r[j] * force[i]);
+                action.push(moment[k]);
             }
         }
         action

@@ -2,6 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::vector::dot;
+
 /// Sums over nodes of the products of rigid motions with each other and with a field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionProducts {
@@ -74,11 +76,6 @@ impl MotionProducts {
             .solve(&rhs, 1e-14)
             .map_or_else(|_| vec![0.0; n], |x| x.iter().copied().collect())
     }
-}
-
-/// Over the components that both have.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

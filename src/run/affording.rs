@@ -1,4 +1,4 @@
-//! Whether the machines have the memory that a run needs, asked before it is allocated.
+//! Whether the hosts have the memory that a run needs, asked before it is allocated.
 
 use std::collections::BTreeMap;
 
@@ -10,53 +10,53 @@ use crate::plan::demand::Demand;
 /// Share of the estimate that is needed for certain.
 const CERTAIN: f64 = 0.7;
 
-/// What a machine has, and what its ranks need.
+/// What a host has, and what its ranks need.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Machine {
+struct Host {
     available: f64,
     needed: f64,
     ranks: usize,
 }
 
-/// Refuses a run for which a machine has too little memory, limits of control groups among it; each of
-/// its ranks has one of `demands`. Returns what the machines have together, on the root (bytes).
+/// Refuses a run for which a host has too little memory, limits of control groups among it; each of
+/// its ranks has one of `demands`. Returns what the hosts have together, on the root (bytes).
 /// Collective.
 ///
 /// # Errors
-/// The first machine with too little.
+/// The first host with too little.
 pub fn afford(comm: &Comm, demands: &[Demand]) -> Result<f64, Failure> {
-    let name = comm.machine();
+    let name = comm.host_name();
     let message = Message {
         integers: name.bytes().map(i64::from).collect(),
         // Where the system doesn't tell, nothing is refused.
         reals: vec![available_memory_bytes().map_or(f64::INFINITY, |bytes| bytes as f64)],
     };
-    let mut machines: BTreeMap<String, Machine> = BTreeMap::new();
+    let mut hosts: BTreeMap<String, Host> = BTreeMap::new();
     for (message, demand) in comm.collect(message).into_iter().zip(demands) {
         let name: Vec<u8> = message.integers.iter().map(|&byte| byte as u8).collect();
         let name = String::from_utf8_lossy(&name).into_owned();
-        let machine = machines.entry(name).or_default();
-        machine.available = message.reals[0];
-        machine.needed += demand.bytes;
-        machine.ranks += 1;
+        let host = hosts.entry(name).or_default();
+        host.available = message.reals[0];
+        host.needed += demand.bytes;
+        host.ranks += 1;
     }
-    comm.agree(check(&machines))?;
-    Ok(machines.values().map(|machine| machine.available).sum())
+    comm.agree(check(&hosts))?;
+    Ok(hosts.values().map(|host| host.available).sum())
 }
 
-fn check(machines: &BTreeMap<String, Machine>) -> Result<(), Failure> {
+fn check(hosts: &BTreeMap<String, Host>) -> Result<(), Failure> {
     let gigabytes = |bytes: f64| bytes / 1e9;
-    match machines
+    match hosts
         .iter()
-        .find(|(_, m)| CERTAIN * m.needed > m.available)
+        .find(|(_, host)| CERTAIN * host.needed > host.available)
     {
         None => Ok(()),
-        Some((name, machine)) => Err(Failure::internal(format!(
+        Some((name, host)) => Err(Failure::internal(format!(
             "the {} ranks on '{name}' need about {:.1} GB of memory, and {:.1} GB are available there; \
              expected more memory or more machines",
-            machine.ranks,
-            gigabytes(machine.needed),
-            gigabytes(machine.available)
+            host.ranks,
+            gigabytes(host.needed),
+            gigabytes(host.available)
         ))),
     }
 }
@@ -66,22 +66,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_machine_with_too_little_memory_is_named() {
-        let machine = |available: f64, needed: f64| Machine {
+    fn a_host_with_too_little_memory_is_named() {
+        let host = |available: f64, needed: f64| Host {
             available,
             needed,
             ranks: 4,
         };
-        let of = |second: Machine| {
-            let all = [("first", machine(8e9, 6e9)), ("second", second)];
-            check(
-                &all.map(|(name, machine)| (name.to_string(), machine))
-                    .into(),
-            )
+        let of = |second: Host| {
+            let all = [("first", host(8e9, 6e9)), ("second", second)];
+            check(&all.map(|(name, host)| (name.to_string(), host)).into())
         };
-        assert!(of(machine(8e9, 9e9)).is_ok());
-        assert!(of(machine(f64::INFINITY, 9e12)).is_ok());
-        let refused = of(machine(8e9, 16e9)).unwrap_err().message;
+        assert!(of(host(8e9, 9e9)).is_ok());
+        assert!(of(host(f64::INFINITY, 9e12)).is_ok());
+        let refused = of(host(8e9, 16e9)).unwrap_err().message;
         for words in ["4 ranks on 'second'", "16.0 GB", "8.0 GB"] {
             assert!(refused.contains(words), "{refused}");
         }

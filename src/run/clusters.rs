@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
-use super::merge::CondensedBlocks;
+use super::condensed_blocks::CondensedBlocks;
 use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
 use crate::plan::Plan;
@@ -42,7 +42,7 @@ pub(super) fn take_clusters(
 /// conditions, of which the approaches are the `defining` ones.
 fn settle_stiffness(cluster: &mut Condensed, defining: &[usize], drive: &RigidDrive) {
     let m = defining.len();
-    let Some(basis) = basis(defining, drive, &cluster.stiffness[..m]) else {
+    let Some(basis) = basis(defining, drive, &cluster.diagonal[..m]) else {
         return;
     };
     let s = &mut cluster.s;
@@ -59,20 +59,20 @@ fn settle_stiffness(cluster: &mut Condensed, defining: &[usize], drive: &RigidDr
     }
 }
 
-/// The same for the `load` on the approaches, whose diagonal `stiffness` is.
+/// The same for the `load` on the approaches; `diagonal` is that of the matrix they are condensed from.
 pub(super) fn settle_load(
     load: &mut [f64],
     defining: &[usize],
     drive: &RigidDrive,
-    stiffness: &[f64],
+    diagonal: &[f64],
 ) {
-    if let Some(basis) = basis(defining, drive, stiffness) {
+    if let Some(basis) = basis(defining, drive, diagonal) {
         basis.set_load(load);
     }
 }
 
 /// The motions of `drive` as the approaches see them; `None` where there is none.
-fn basis(defining: &[usize], drive: &RigidDrive, stiffness: &[f64]) -> Option<RigidBasis> {
+fn basis(defining: &[usize], drive: &RigidDrive, diagonal: &[f64]) -> Option<RigidBasis> {
     let columns = drive.rows.ncols();
     if columns == 0 {
         return None;
@@ -81,5 +81,5 @@ fn basis(defining: &[usize], drive: &RigidDrive, stiffness: &[f64]) -> Option<Ri
         rows: Mat::from_fn(defining.len(), columns, |i, k| drive.rows[(defining[i], k)]),
         load: drive.load.clone(),
     };
-    Some(RigidBasis::new(&of_approaches, stiffness))
+    Some(RigidBasis::new(&of_approaches, diagonal))
 }

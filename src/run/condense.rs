@@ -5,7 +5,7 @@ use std::time::Instant;
 use contact_dd_partition::problem::Catalog;
 use faer::Par;
 
-use super::merge::CondensedBlocks;
+use super::condensed_blocks::CondensedBlocks;
 use crate::error::Failure;
 use crate::fem::assembly::assemble;
 use crate::fem::block::Block;
@@ -64,9 +64,8 @@ impl Condensation<'_> {
             approaches: dofs.approaches,
             traces: dofs.traces.clone(),
             s,
-            stiffness: schur.stiffness.clone(),
+            diagonal: schur.diagonal.clone(),
             smallest_pivot: schur.smallest_pivot(),
-            eliminated: 0,
         };
         (condensed.diagonals).insert(number, stiffness.diagonal().to_vec());
         condensed.springs.insert(number, springs);

@@ -18,12 +18,8 @@ pub fn condition_number(
     frozen: &Frozen<'_>,
     solutions: &BTreeMap<usize, BlockSolution>,
 ) -> Option<f64> {
-    let mut able = Message {
-        integers: vec![i64::from(frozen.root.is_some_and(|root| root.can_solve()))],
-        reals: Vec::new(),
-    };
-    frozen.comm.broadcast(&mut able);
-    if able.read().integer() == 0 {
+    let able = frozen.root.is_some_and(|root| root.can_solve());
+    if !frozen.comm.decide(able) {
         return None;
     }
     let start = |&b: &usize| {

@@ -6,7 +6,7 @@ use super::substitute::Factors;
 use crate::comm::Message;
 
 impl Factors<'_> {
-    /// Brings a message on the conditions of every block in contact to its cluster, pair after pair.
+    /// Brings a message on the conditions of every block in contact to its cluster, group after group.
     /// Collective; blocks by number, clusters by their place among those in contact.
     pub fn collect_conditions(
         &self,
@@ -54,16 +54,16 @@ impl Factors<'_> {
         of_blocks
     }
 
-    /// Cluster, by its place among those in contact, and block of every pair, cluster by cluster.
+    /// Cluster, by its place among those in contact, and block of every group, cluster by cluster.
     fn places(&self) -> Vec<(usize, usize)> {
         let plan = self.plan;
         let contact = plan.contact.iter().enumerate();
         contact
             .flat_map(|(p, &c)| {
                 plan.clusters[c]
-                    .pairs
+                    .groups
                     .iter()
-                    .map(move |&pair| (p, plan.pairs[pair]))
+                    .map(move |&g| (p, plan.groups[g]))
             })
             .collect()
     }

@@ -11,7 +11,7 @@ use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
 
 /// Checks that subdomains agree on the nodes that they share and that no others have one tag.
-/// Collective; what was found is on the root.
+/// Collective.
 ///
 /// # Errors
 /// The first node for which that isn't so.
@@ -21,14 +21,9 @@ pub fn check_copies(
     plan: &Plan,
     blocks: &BTreeMap<usize, OwnedBlock>,
 ) -> Result<(), Failure> {
-    let owners: Vec<usize> = plan
-        .block_of
-        .iter()
-        .map(|&b| plan.blocks[b].owner)
-        .collect();
     let mut copies = NodeCopies::new(file.catalog());
     comm.gather(
-        &owners,
+        &plan.subdomain_owners(),
         |s| {
             // Called on the owner of subdomain s, which has read its block.
             let block = &blocks[&plan.block_of[s]].block;
@@ -37,10 +32,10 @@ pub fn check_copies(
         },
         |s, message| copies.add(s, unpack(message)),
     );
-    match comm.is_root() {
+    comm.agree(match comm.is_root() {
         true => (copies.check()).map_err(|error| Failure::from(file.refuse(error))),
         false => Ok(()),
-    }
+    })
 }
 
 fn pack(nodes: OwnNodes) -> Message {

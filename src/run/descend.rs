@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::element::geometry::{dot, length};
+
 use super::recover::BlockSolution;
-use crate::fem::frame::dot;
 use crate::fem::owned::OwnedBlock;
 use crate::rigid::survey::Survey;
 
@@ -47,11 +48,11 @@ pub fn take_out_descent(blocks: &mut BTreeMap<usize, OwnedBlock>, survey: &Surve
 }
 
 /// Takes the part of a motion along `row` out of a length.
-fn reduce(length: &mut f64, row: &[f64; 3], moved: &[f64; 3]) {
-    let given = length.abs() + dot(row, row).sqrt() * dot(moved, moved).sqrt();
-    *length -= dot(row, moved);
-    if length.abs() <= ROUND_OFF * given {
-        *length = 0.0;
+fn reduce(whole: &mut f64, row: &[f64; 3], moved: &[f64; 3]) {
+    let given = whole.abs() + length(*row) * length(*moved);
+    *whole -= dot(*row, *moved);
+    if whole.abs() <= ROUND_OFF * given {
+        *whole = 0.0;
     }
 }
 

@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::merge::CondensedBlocks;
+use super::condensed_blocks::CondensedBlocks;
 use super::motions::Motions;
+use super::recover::BlockSolution;
 use super::substitute::Factors;
 use crate::comm::{Comm, Message};
+use crate::fem::balance::Balance;
 use crate::fem::owned::OwnedBlock;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::numbering::Numbering;
@@ -87,6 +89,18 @@ impl<'a> Frozen<'a> {
         }
     }
 
+    /// What balances at the nodes of block b of this rank; `None` for another rank's.
+    pub fn balance(&self, b: usize, solution: &BlockSolution) -> Option<Balance> {
+        let owned = self.blocks.get(&b)?;
+        Some(Balance::new(
+            &owned.block,
+            &owned.conditions,
+            &self.catalog.materials,
+            &solution.u,
+            &solution.forces,
+        ))
+    }
+
     /// The change that `loads` on the blocks of this rank, and those on the others', make to them.
     /// Collective.
     pub fn solve(&self, loads: BTreeMap<usize, BlockLoad>) -> BTreeMap<usize, BlockChange> {
@@ -133,7 +147,7 @@ impl<'a> Frozen<'a> {
     }
 
     /// Brings the clusters' loads and limits to the root, and what it answers back: forces of the
-    /// conditions of clusters in contact, and unknowns on the boundary of every cluster's node.
+    /// conditions of clusters in contact, and unknowns on the boundary of every cluster's node. Collective.
     fn solve_interface(
         &self,
         limits: &BTreeMap<usize, FrozenLimits>,

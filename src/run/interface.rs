@@ -3,7 +3,7 @@
 use contact_dd_partition::problem::Catalog;
 use faer::Par;
 
-use super::merge::CondensedBlocks;
+use super::condensed_blocks::CondensedBlocks;
 use crate::comm::{Comm, Message};
 use crate::contact::law::PairLaw;
 use crate::error::Failure;
@@ -14,8 +14,8 @@ use crate::plan::Plan;
 use crate::schur::condensed::Condensed;
 use crate::schur::trace::TraceDof;
 
-/// Numbers what clusters share of Γ and assembles S_0 and the bilateral operator on the root. Collective; the other
-/// ranks get nothing.
+/// Numbers what clusters share of Γ and assembles S_0 and the bilateral operator on the root.
+/// Collective; the other ranks get nothing.
 ///
 /// # Errors
 /// Supports that differ between subdomains, or a singular bilateral problem.
@@ -26,7 +26,8 @@ pub fn assemble_interface(
     plan: &Plan,
     par: Par,
 ) -> Result<Option<(Numbering, Interface)>, Failure> {
-    let with_laws = with_laws(catalog);
+    // Few enough conditions for the root to solve for all of them at once.
+    let with_laws = catalog.conditions() <= MAX_APPROACHES;
     let mut traces: Vec<Vec<TraceDof>> = Vec::new();
     let mut contributions: Vec<Contribution> = Vec::new();
     comm.gather(
@@ -38,9 +39,17 @@ pub fn assemble_interface(
             contributions.push(contribution);
         },
     );
-    if !comm.is_root() {
-        return Ok(None);
-    }
+    let assemble = || assemble(plan, &traces, contributions, par);
+    comm.agree(comm.is_root().then(assemble).transpose())
+}
+
+/// The interface problem of what the clusters sent to the root.
+fn assemble(
+    plan: &Plan,
+    traces: &[Vec<TraceDof>],
+    contributions: Vec<Contribution>,
+    par: Par,
+) -> Result<(Numbering, Interface), Failure> {
     let nodes = plan
         .clusters
         .iter()
@@ -49,13 +58,7 @@ pub fn assemble_interface(
     let traces: Vec<&[TraceDof]> = traces.iter().map(Vec::as_slice).collect();
     let numbering = Numbering::new(&traces, &nodes.collect::<Vec<_>>(), &in_contact)?;
     let interface = Interface::new(&numbering, contributions, &in_contact, par)?;
-    Ok(Some((numbering, interface)))
-}
-
-/// Whether the pairs have few enough conditions for the root to solve for all of them at once.
-fn with_laws(catalog: &Catalog) -> bool {
-    let conditions: usize = catalog.contacts.iter().map(|c| c.conditions).sum();
-    conditions <= MAX_APPROACHES
+    Ok((numbering, interface))
 }
 
 fn pack(blocks: &CondensedBlocks, plan: &Plan, c: usize, with_laws: bool) -> Message {
@@ -74,16 +77,9 @@ fn pack(blocks: &CondensedBlocks, plan: &Plan, c: usize, with_laws: bool) -> Mes
 }
 
 fn pack_head(condensed: &Condensed, has_law: bool, message: &mut Message) {
-    message.integers.extend([
-        condensed.traces.len() as i64,
-        i64::from(has_law),
-        condensed.eliminated as i64,
-    ]);
-    for dof in &condensed.traces {
-        message
-            .integers
-            .extend([i64::from(dof.node), i64::from(dof.axis)]);
-    }
+    let head = [condensed.traces.len() as i64, i64::from(has_law)];
+    message.integers.extend(head);
+    TraceDof::pack(&condensed.traces, message);
     message.reals.push(condensed.smallest_pivot);
 }
 
@@ -91,15 +87,8 @@ fn unpack(message: Message) -> (Vec<TraceDof>, Contribution) {
     let mut reader = message.read();
     let n = reader.count();
     let has_law = reader.integer() != 0;
-    let eliminated = reader.count();
-    let traces = (0..n)
-        .map(|_| TraceDof {
-            node: reader.integer() as u32,
-            axis: reader.integer() as u32,
-        })
-        .collect();
+    let traces = TraceDof::unpack(&mut reader, n);
     let contribution = Contribution {
-        eliminated,
         smallest_pivot: reader.real(),
         s: reader.symmetric(n),
         law: has_law.then(|| PairLaw::unpack(&mut reader, n)),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::merge::CondensedBlocks;
+use super::condensed_blocks::CondensedBlocks;
 use crate::comm::{Comm, Message};
 use crate::contact::approach::ApproachOf;
 use crate::contact::limits::Limits;
@@ -25,33 +25,33 @@ pub(super) fn limits_of_clusters(
     blocks: &BTreeMap<usize, OwnedBlock>,
     condensed: &CondensedBlocks,
 ) -> Result<BTreeMap<usize, Limits>, Failure> {
-    let made = plan.pairs.iter().enumerate().filter_map(|(p, b)| {
+    let made = plan.groups.iter().enumerate().filter_map(|(g, b)| {
         let (owned, dofs) = (blocks.get(b)?, condensed.dofs.get(b)?);
-        Some(of_block(owned, dofs, catalog).map(|limits| (p, limits)))
+        Some(of_block(owned, dofs, catalog).map(|limits| (g, limits)))
     });
     let made: BTreeMap<usize, Limits> = comm.agree(made.collect())?;
-    let pairs = plan.pairs_by_cluster();
+    let groups = plan.groups_by_cluster();
     let mut arrived: BTreeMap<usize, Limits> = BTreeMap::new();
     comm.route(
         plan.ways_to_clusters(),
         |i| {
             let mut message = Message::default();
-            if let Some(limits) = made.get(&pairs[i]) {
+            if let Some(limits) = made.get(&groups[i]) {
                 limits.pack(&mut message);
             }
             message
         },
         |i, message| {
-            arrived.insert(pairs[i], Limits::unpack(&mut message.read()));
+            arrived.insert(groups[i], Limits::unpack(&mut message.read()));
         },
     );
     let contact = plan.contact.iter().map(|&c| &plan.clusters[c]);
     let own = (contact.enumerate()).filter(|(_, cluster)| cluster.owner == comm.rank());
     Ok(own
         .map(|(p, cluster)| {
-            let of_pairs = cluster.pairs.iter();
-            let of_pairs: Vec<Limits> = of_pairs.filter_map(|pair| arrived.remove(pair)).collect();
-            (p, Limits::join(&of_pairs))
+            let groups = cluster.groups.iter();
+            let limits: Vec<Limits> = groups.filter_map(|g| arrived.remove(g)).collect();
+            (p, Limits::join(&limits))
         })
         .collect())
 }

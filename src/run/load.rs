@@ -6,8 +6,8 @@ use contact_dd_partition::problem::Catalog;
 
 use super::clusters::settle_load;
 use super::condense::dof_failure;
+use super::condensed_blocks::CondensedBlocks;
 use super::limits::limits_of_clusters;
-use super::merge::CondensedBlocks;
 use super::substitute::Factors;
 use crate::comm::{Comm, Message};
 use crate::error::Failure;
@@ -96,7 +96,7 @@ impl Loading<'_> {
             if let Some(drive) = survey.inner_motions.get(p) {
                 let limits = pair.limits();
                 let on_approaches = &mut load[..limits.approaches()];
-                settle_load(on_approaches, &limits.defining, drive, pair.stiffness());
+                settle_load(on_approaches, &limits.defining, drive, pair.diagonal());
             }
             pair.set_load(load);
         }
@@ -150,7 +150,7 @@ impl Loading<'_> {
         let plan = self.plan;
         let defining: Vec<usize> = (interface.laws.iter().zip(&plan.contact))
             .flat_map(|(law, &c)| {
-                let conditions = scene.conditions_of(&plan.clusters[c].pairs);
+                let conditions = scene.conditions_of(&plan.clusters[c].groups);
                 law.defining.iter().map(move |&j| conditions[j])
             })
             .collect();

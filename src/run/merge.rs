@@ -1,49 +1,23 @@
 //! Up the hierarchy: blocks are condensed and merged until the clusters are left.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::time::Instant;
 
 use super::clusters::take_clusters;
 use super::condense::Condensation;
+use super::condensed_blocks::CondensedBlocks;
 use super::limits::limits_of_clusters;
+use super::steps::in_step;
 use crate::comm::{Comm, Message, is_asked_to_stop};
-use crate::contact::pair::ContactPair;
 use crate::error::Failure;
-use crate::fem::assembly::Spring;
-use crate::fem::dofs::Dofs;
 use crate::fem::owned::OwnedBlock;
 use crate::interface::numbering::check_agreement;
 use crate::output::bar::Bar;
 use crate::rigid::survey::Survey;
 use crate::schur::condensed::Condensed;
-use crate::schur::local::LocalSchur;
 use crate::schur::merge::{LooseTrace, Merge, Spare};
 use crate::schur::repeats::Repeats;
 use crate::schur::trace::TraceDof;
-
-/// What this rank has of the condensed blocks and of what they were merged into.
-#[derive(Debug, Default)]
-pub struct CondensedBlocks {
-    /// The unknowns of every block.
-    pub dofs: BTreeMap<usize, Dofs>,
-    /// The diagonal of every block's stiffness (Pa).
-    pub diagonals: BTreeMap<usize, Vec<f64>>,
-    /// The springs in it.
-    pub springs: BTreeMap<usize, Vec<Spring>>,
-    /// The factor of every block.
-    pub factors: BTreeMap<usize, Arc<LocalSchur>>,
-    /// What equal blocks share.
-    pub repeats: Repeats,
-    /// The merge at every inner node of the hierarchy.
-    pub merges: BTreeMap<usize, Merge>,
-    /// T: the clusters without contact, by their place among all.
-    pub linear: BTreeMap<usize, Condensed>,
-    /// ϑ: the clusters in contact, by their place among those.
-    pub pairs: BTreeMap<usize, ContactPair>,
-    /// Time for assembling and for factorizing (s).
-    pub seconds: [f64; 2],
-}
 
 /// Condenses the `blocks` of this rank and merges them, and what other ranks send, up to the
 /// clusters. Collective.
@@ -96,7 +70,8 @@ pub fn condense_clusters(
         ..
     } = merging;
     let catalog = condensation.catalog;
-    let limits = limits_of_clusters(comm, plan, catalog, blocks, &condensed)?;
+    let limits = limits_of_clusters(comm, plan, catalog, blocks, &condensed)
+        .map_err(|failure| in_step(failure, catalog, 0))?;
     take_clusters(plan, survey, limits, waiting, &mut condensed);
     Ok(condensed)
 }
@@ -225,20 +200,11 @@ impl Merging<'_> {
 /// What a node sends to the owner of its parent.
 fn pack(condensed: Condensed) -> Message {
     let mut message = Message::default();
-    message.integers.extend(
-        [
-            condensed.approaches,
-            condensed.traces.len(),
-            condensed.eliminated,
-        ]
-        .map(|n| n as i64),
-    );
-    for dof in &condensed.traces {
-        let [node, axis] = [dof.node, dof.axis].map(i64::from);
-        message.integers.extend([node, axis]);
-    }
+    let lengths = [condensed.approaches, condensed.traces.len()];
+    message.integers.extend(lengths.map(|n| n as i64));
+    TraceDof::pack(&condensed.traces, &mut message);
     message.reals.push(condensed.smallest_pivot);
-    message.reals.extend(&condensed.stiffness);
+    message.reals.extend(&condensed.diagonal);
     message.push_lower(condensed.s.as_ref());
     message
 }
@@ -248,19 +214,13 @@ fn unpack(message: Message) -> Option<Condensed> {
         return None;
     }
     let mut reader = message.read();
-    let (approaches, traces, eliminated) = (reader.count(), reader.count(), reader.count());
+    let (approaches, traces) = (reader.count(), reader.count());
     let n = approaches + traces;
     Some(Condensed {
         approaches,
-        traces: (0..traces)
-            .map(|_| TraceDof {
-                node: reader.integer() as u32,
-                axis: reader.integer() as u32,
-            })
-            .collect(),
-        eliminated,
+        traces: TraceDof::unpack(&mut reader, traces),
         smallest_pivot: reader.real(),
-        stiffness: reader.reals(n),
+        diagonal: reader.reals(n),
         s: reader.lower(n),
     })
 }

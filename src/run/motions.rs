@@ -8,7 +8,7 @@ use super::frozen::Frozen;
 use crate::comm::Message;
 use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
-use crate::rigid::analysis::FreeMotion;
+use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::motion::BodyFrame;
 use crate::rigid::projection::MotionProducts;
 

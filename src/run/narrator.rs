@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::report::{Outputs, conditions, dofs, failures, reason, report};
+use super::report::{Outputs, failures, reason, report};
 use super::totals::Totals;
 use crate::checkpoint::Checkpoint;
 use crate::comm::{self, Comm};
@@ -17,7 +17,7 @@ use crate::output::event::{Event, shown};
 use crate::output::message;
 use crate::output::terminal::{self, Summary, SweepLine};
 use crate::plan::Plan;
-use crate::plan::demand::Demand;
+use crate::plan::demand::{Demand, Demands};
 use crate::rigid::survey::Survey;
 use crate::settings::Settings;
 use crate::settings::command_line::LogFormat;
@@ -78,29 +78,19 @@ impl<'a> Narrator<'a> {
     /// What is to be solved, and how.
     pub fn problem(&self, catalog: &Catalog, plan: &Plan) {
         let summary = Summary {
-            problem: &self.settings.problem,
+            version: env!("CARGO_PKG_VERSION"),
+            problem: shown(&self.settings.problem),
             title: &catalog.title,
-            dofs: dofs(catalog),
-            interface_dofs: catalog.dim * plan.sharing.iter().filter(|&&n| n > 1).count(),
+            dofs: catalog.dofs(),
+            interface_dofs: catalog.dim * plan.interface_nodes(),
             subdomains: catalog.subdomains.len(),
-            contact_pairs: plan.pairs.len(),
-            contact_conditions: conditions(catalog),
+            contact_pairs: plan.groups.len(),
+            contact_conditions: catalog.conditions(),
             ranks: self.comm.size(),
             threads: usize::from(self.settings.threads),
         };
         self.say(|out| terminal::summary(out, &summary));
-        self.log(&Event::Problem {
-            version: env!("CARGO_PKG_VERSION"),
-            problem: shown(&self.settings.problem),
-            title: summary.title,
-            dofs: summary.dofs,
-            interface_dofs: summary.interface_dofs,
-            subdomains: summary.subdomains,
-            contact_pairs: summary.contact_pairs,
-            contact_conditions: summary.contact_conditions,
-            ranks: summary.ranks,
-            threads: summary.threads,
-        });
+        self.log(&Event::Problem(&summary));
         if !self.settings.check {
             self.say(|out| terminal::settings(out, &self.settings.in_words()));
             self.log(&Event::Settings {
@@ -120,15 +110,15 @@ impl<'a> Narrator<'a> {
                 message::warning(self.settings.log, warning);
             }
         }
-        self.say(|out| terminal::demands(out, demands, available));
+        let demands = Demands::of(demands);
+        self.say(|out| terminal::demands(out, &demands, available));
         self.say(|out| writeln!(out, "\nthe problem file is valid"));
-        let most = |of: fn(&Demand) -> f64| demands.iter().map(of).fold(0.0, f64::max);
         self.log(&Event::Check {
-            memory_bytes: demands.iter().map(|demand| demand.bytes).sum(),
-            largest_rank_memory_bytes: most(|demand| demand.bytes),
+            memory_bytes: demands.all.bytes,
+            largest_rank_memory_bytes: demands.most.bytes,
             available_bytes: available,
-            flops: demands.iter().map(|demand| demand.flops).sum(),
-            busiest_rank_flops: most(|demand| demand.flops),
+            flops: demands.all.flops,
+            busiest_rank_flops: demands.most.flops,
         });
     }
 
@@ -162,29 +152,15 @@ impl<'a> Narrator<'a> {
         if interface.pair_traces.is_empty() {
             return;
         }
-        let &SweepRecord {
-            sweep,
-            residual,
-            active,
-            seconds,
-            ..
-        } = record;
-        let changed = (sweep > 0).then_some(record.changed);
         let line = SweepLine {
-            sweep,
-            residual,
-            active,
-            changed,
-            seconds,
+            sweep: record.sweep,
+            residual: record.residual,
+            active: record.active,
+            changed: (record.sweep > 0).then_some(record.changed),
+            seconds: record.seconds,
         };
         self.say(|out| terminal::sweep(out, &line));
-        self.log(&Event::Sweep {
-            sweep,
-            residual,
-            active,
-            changed,
-            seconds,
-        });
+        self.log(&Event::Sweep(&line));
     }
 
     /// Finishes the result file, writes the report and says how the run ended. On the root.

@@ -195,7 +195,9 @@ impl Pause for Checkpoints<'_> {
                 )),
                 Err(failure) => failure,
             });
-        } else if let Err(failure) = written {
+        } else if let Err(failure) = written
+            && !self.warnings.contains(&failure.message)
+        {
             self.warnings.push(failure.message);
         }
         asked

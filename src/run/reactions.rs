@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use super::frozen::Frozen;
 use super::recover::BlockSolution;
-use super::refine::balance;
 use crate::comm::Message;
 use crate::fem::node_frames::supports;
 use crate::output::resultants::{Reaction, Resultant};
@@ -46,7 +45,9 @@ fn of_block(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Message 
         return message;
     }
     let dim = owned.block.dim;
-    let residual = balance(frozen, b, solution).map_or_else(Vec::new, |b| b.residual);
+    let residual = frozen
+        .balance(b, solution)
+        .map_or_else(Vec::new, |b| b.residual);
     for support in held {
         let residual = residual
             .get(dim * support.node as usize..)

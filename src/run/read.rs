@@ -6,8 +6,6 @@ use std::ops::Range;
 use contact_dd_partition::problem::Subdomain;
 use contact_dd_partition::problem::read::ProblemFile;
 
-use super::squeezed;
-use crate::comm::Comm;
 use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::condition::BlockCondition;
@@ -17,20 +15,20 @@ use crate::plan::Plan;
 /// Most subdomains that are read at once: what HDF5 hands over is there twice for a while.
 const AT_ONCE: usize = 64;
 
-/// Reads the blocks of `plan` that this rank owns, by their number.
+/// Reads the blocks of `plan` that `rank` owns, by their number.
 ///
 /// # Errors
-/// A slice of the problem file isn't what it should be, or obstacles leave no place for a node.
+/// A slice of the problem file isn't what it should be.
 pub fn read_blocks(
-    comm: &Comm,
+    rank: usize,
     file: &ProblemFile,
     plan: &Plan,
 ) -> Result<BTreeMap<usize, OwnedBlock>, Failure> {
     let dim = file.catalog().dim;
-    let mut subdomains = read_subdomains(comm, file, plan)?;
+    let mut subdomains = read_subdomains(rank, file, plan)?;
     let mut blocks = BTreeMap::new();
     for (number, of_plan) in plan.blocks.iter().enumerate() {
-        if of_plan.owner != comm.rank() {
+        if of_plan.owner != rank {
             continue;
         }
         let members = of_plan.subdomains.iter();
@@ -52,20 +50,19 @@ pub fn read_blocks(
             rows,
             conditions,
         };
-        squeezed::check(&owned, file.catalog())?;
         blocks.insert(number, owned);
     }
     Ok(blocks)
 }
 
-/// The subdomains of this rank, those that follow one another in the file read at once.
+/// The subdomains of `rank`, those that follow one another in the file read at once.
 fn read_subdomains(
-    comm: &Comm,
+    rank: usize,
     file: &ProblemFile,
     plan: &Plan,
 ) -> Result<BTreeMap<usize, Subdomain>, Failure> {
-    let owner = |s: usize| plan.blocks[plan.block_of[s]].owner;
-    let own = (0..plan.block_of.len()).filter(|&s| owner(s) == comm.rank());
+    let owners = plan.subdomain_owners();
+    let own = (0..owners.len()).filter(|&s| owners[s] == rank);
     let mut runs: Vec<Range<usize>> = Vec::new();
     for s in own {
         match runs.last_mut() {

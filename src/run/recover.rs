@@ -62,6 +62,7 @@ pub fn recover(
 }
 
 /// Forces of the conditions of every block, and which are closed, from the clusters that know.
+/// Collective.
 fn conditions(factors: Factors<'_>) -> BTreeMap<usize, (Vec<f64>, Vec<bool>)> {
     let pairs = factors.condensed.pairs.iter();
     let of_clusters = pairs.map(|(&p, pair)| {

@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use super::frozen::{BlockLoad, Frozen};
 use super::motions::Field;
 use super::recover::BlockSolution;
-use crate::certificate::{BlockCheck, Certificate, certificate};
+use crate::certificate::check::BlockCheck;
+use crate::certificate::{Certificate, certificate};
 use crate::comm::Message;
-use crate::fem::balance::Balance;
 
 /// Equilibrium and penetration above which a solution is refined.
 const LIMIT: f64 = 4e-15;
@@ -64,24 +64,7 @@ fn decide(frozen: &Frozen<'_>, decision: bool) -> bool {
     let able = frozen
         .root
         .is_some_and(|root| root.converged && root.can_solve());
-    let mut message = Message {
-        integers: vec![i64::from(able && decision)],
-        reals: Vec::new(),
-    };
-    frozen.comm.broadcast(&mut message);
-    message.read().integer() != 0
-}
-
-/// What balances at the nodes of block b.
-pub(super) fn balance(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option<Balance> {
-    let owned = frozen.blocks.get(&b)?;
-    Some(Balance::new(
-        &owned.block,
-        &owned.conditions,
-        &frozen.catalog.materials,
-        &solution.u,
-        &solution.forces,
-    ))
+    frozen.comm.decide(able && decision)
 }
 
 /// The certificate, on the root. Collective.
@@ -91,12 +74,12 @@ fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Cer
         let mut check = BlockCheck::new(
             &owned.block,
             &owned.conditions,
-            &balance(frozen, b, solution)?,
+            &frozen.balance(b, solution)?,
             &solution.u,
             &solution.forces,
         );
         let stiffness = frozen.condensed.diagonals.get(&b)?.iter().copied();
-        check.rest_scale = frozen.descent * stiffness.fold(0.0, f64::max);
+        check.most.rest = frozen.descent * stiffness.fold(0.0, f64::max);
         Some(check)
     };
     let mut checks = Vec::new();
@@ -116,9 +99,8 @@ fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Cer
 /// are 0 along the motion but for theirs. It is left on all nodes that move, where it is least; the
 /// springs at the motions' pins would bear it each at one node.
 fn correct(frozen: &Frozen<'_>, solutions: &mut BTreeMap<usize, BlockSolution>) {
-    let residual = |(&b, solution): (&usize, &BlockSolution)| {
-        Some((b, balance(frozen, b, solution)?.residual))
-    };
+    let residual =
+        |(&b, solution): (&usize, &BlockSolution)| Some((b, frozen.balance(b, solution)?.residual));
     let mut residuals: BTreeMap<usize, Vec<f64>> = solutions.iter().filter_map(residual).collect();
     let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
     frozen.free.project(frozen, Field::Summed, fields);

@@ -157,12 +157,12 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         fallbacks: totals.fallbacks(),
         interface_residual: (totals.steps.iter())
             .fold(0.0, |worst: f64, step| worst.max(step.outcome.residual)),
-        dofs: dofs(catalog),
-        interface_dofs: totals.interface_dofs,
-        contact_conditions: conditions(catalog),
+        dofs: catalog.dofs(),
+        interface_dofs: catalog.dim * plan.interface_nodes(),
+        contact_conditions: catalog.conditions(),
         active_contacts: last.map_or(0, |step| step.active),
         subdomains: catalog.subdomains.len(),
-        contact_pairs: plan.pairs.len(),
+        contact_pairs: plan.groups.len(),
         ranks: comm.size(),
         hosts: comm.hosts(),
         threads: usize::from(settings.threads),
@@ -201,10 +201,10 @@ fn unknown_stress(catalog: &Catalog) -> Vec<String> {
 /// What the scene didn't need.
 fn skipped(totals: &Totals<'_>) -> Vec<String> {
     let mut skipped = Vec::new();
-    if totals.plan.pairs.is_empty() {
+    if totals.plan.groups.is_empty() {
         skipped.push("sweeps: no contact, the interface problem is linear".into());
     }
-    if totals.interface_dofs == 0 {
+    if totals.plan.interface_nodes() == 0 {
         skipped.push("interface solve: no subdomain shares a node with another".into());
     }
     let idle = totals.ranks.iter().filter(|r| r.subdomains == 0).count();
@@ -244,13 +244,13 @@ pub(super) fn reason(totals: &Totals<'_>) -> String {
     };
     match failures(totals).first() {
         Some(why) => format!("not converged: {why}"),
-        None if totals.plan.pairs.is_empty() => "solved: the scene is linear".into(),
+        None if totals.plan.groups.is_empty() => "solved: the scene is linear".into(),
         None => format!(
             "converged after {sweeps} sweep{}: the residual is below the tolerance and no contact \
              changes any more; {} of {} conditions are closed{in_the_end}",
             if sweeps == 1 { "" } else { "s" },
             totals.last().map_or(0, |step| step.active),
-            conditions(totals.catalog)
+            totals.catalog.conditions()
         ),
     }
 }
@@ -272,16 +272,4 @@ pub(super) fn failures(totals: &Totals<'_>) -> Vec<String> {
         .enumerate()
         .filter_map(of_step)
         .collect()
-}
-
-/// Number of dofs, those of shared nodes counted once.
-pub(super) fn dofs(catalog: &Catalog) -> usize {
-    let nodes: usize = catalog.subdomains.iter().map(|s| s.nodes).sum();
-    let copies: usize = catalog.interface.iter().map(Vec::len).sum();
-    catalog.dim * (nodes - copies + catalog.interface_nodes)
-}
-
-/// Number of contact conditions.
-pub(super) fn conditions(catalog: &Catalog) -> usize {
-    catalog.contacts.iter().map(|c| c.conditions).sum()
 }

@@ -6,12 +6,13 @@ use super::descend::with_descent;
 use super::frozen::Frozen;
 use super::motions::{Field, Motions};
 use super::recover::BlockSolution;
-use super::refine::{balance, replace_if_as_good};
+use super::refine::replace_if_as_good;
 use crate::certificate::Certificate;
 use crate::comm::Message;
+use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::loose::LooseMotions;
 use crate::rigid::motion::BodyFrame;
-use crate::rigid::survey::{Survey, pack_motions, unpack_motions};
+use crate::rigid::survey::Survey;
 
 /// A contact force, relative to the terms of the equilibrium at its nodes, that is round-off.
 const ROUND_OFF: f64 = 1e-14;
@@ -88,10 +89,10 @@ fn move_nearer(
     let loose = loose_motions(frozen, survey, solutions);
     let mut message = Message::default();
     if let Some(loose) = &loose {
-        pack_motions(&loose.motions, &mut message);
+        FreeMotion::pack(&loose.motions, &mut message);
     }
     frozen.comm.broadcast(&mut message);
-    let list = unpack_motions(&mut message.read(), BodyFrame::count(frozen.catalog.dim));
+    let list = FreeMotion::unpack(&mut message.read(), BodyFrame::count(frozen.catalog.dim));
     if list.is_empty() {
         return Settled::default();
     }
@@ -116,9 +117,9 @@ fn move_nearer(
         ..Settled::default()
     };
     frozen.comm.gather(
-        &frozen.plan.pair_owners(),
-        |p| {
-            let b = frozen.plan.pairs[p];
+        &frozen.plan.group_owners(),
+        |g| {
+            let b = frozen.plan.groups[g];
             let opened = solutions.get_mut(&b).map(|s| open(frozen, b, s));
             Message {
                 integers: vec![opened.unwrap_or(0) as i64],
@@ -158,9 +159,9 @@ fn loose_motions(
     let mut carrying = Vec::new();
     let mut gaps = Vec::new();
     frozen.comm.gather(
-        &frozen.plan.pair_owners(),
-        |p| {
-            let b = frozen.plan.pairs[p];
+        &frozen.plan.group_owners(),
+        |g| {
+            let b = frozen.plan.groups[g];
             solutions
                 .get(&b)
                 .and_then(|solution| conditions(frozen, b, solution))
@@ -179,7 +180,7 @@ fn loose_motions(
 fn conditions(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option<Message> {
     let owned = frozen.blocks.get(&b)?;
     let dim = owned.block.dim;
-    let scale = balance(frozen, b, solution)?.scale;
+    let scale = frozen.balance(b, solution)?.scale;
     let mut message = Message::default();
     for (condition, &force) in owned.conditions.iter().zip(&solution.forces) {
         let nodes = condition.entries.iter();

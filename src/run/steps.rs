@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use contact_dd_partition::problem::Catalog;
 
 use super::descend::take_out_descent;
+use super::squeezed;
 use crate::comm::Comm;
 use crate::error::Failure;
 use crate::fem::owned::OwnedBlock;
@@ -14,7 +15,7 @@ use crate::rigid::survey::{Survey, survey};
 /// Looks at the rigid motions of the scene in every load step, one where it has none. Collective.
 ///
 /// # Errors
-/// The load of a step drives a motion that nothing holds.
+/// What a step prescribes leaves no place for a node, or its load drives a motion that nothing holds.
 pub fn survey_steps(
     comm: &Comm,
     blocks: &mut BTreeMap<usize, OwnedBlock>,
@@ -24,7 +25,13 @@ pub fn survey_steps(
     (0..catalog.steps.len().max(1))
         .map(|k| {
             set_loads(blocks, k);
-            survey(comm, blocks, catalog, plan).map_err(|failure| in_step(failure, catalog, k))
+            comm.agree(
+                blocks
+                    .values()
+                    .try_for_each(|owned| squeezed::check(owned, catalog)),
+            )
+            .and_then(|()| survey(comm, blocks, catalog, plan))
+            .map_err(|failure| in_step(failure, catalog, k))
         })
         .collect()
 }
@@ -65,7 +72,7 @@ pub fn stop_if_asked(comm: &Comm, catalog: &Catalog, k: usize) -> Result<(), Fai
 /// A failure that says in which load step it was.
 pub fn in_step(mut failure: Failure, catalog: &Catalog, k: usize) -> Failure {
     if let Some(step) = catalog.steps.get(k) {
-        failure.message = format!("step \'{}\': {}", step.name, failure.message);
+        failure.message = format!("step '{}': {}", step.name, failure.message);
     }
     failure
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::merge::CondensedBlocks;
+use super::condensed_blocks::CondensedBlocks;
 use crate::comm::{Comm, Message};
 use crate::plan::Plan;
 use crate::schur::local::CondensedLoad;
@@ -110,7 +110,7 @@ impl Factors<'_> {
     }
 
     /// Sends what `make` makes for every child of v along the edge between them if it joins two ranks,
-    /// and `take`s it at the other end.
+    /// and `take`s it at the other end. Collective.
     fn exchange(
         &self,
         v: usize,

@@ -21,8 +21,8 @@ pub struct Sweeping<'a> {
     pub settings: &'a Settings,
     /// Tells of every sweep.
     pub narrator: &'a Narrator<'a>,
-    /// The owner of every pair.
-    pub pair_owners: &'a [usize],
+    /// The owner of every cluster in contact.
+    pub contact_owners: &'a [usize],
 }
 
 impl Sweeping<'_> {
@@ -39,7 +39,7 @@ impl Sweeping<'_> {
         before: Option<&SweepOutcome>,
         checkpoints: &mut Checkpoints<'_>,
     ) -> Result<Option<SweepOutcome>, Failure> {
-        let mut s_con = SCon::new(self.comm, self.pair_owners, pairs);
+        let mut s_con = SCon::new(self.comm, self.contact_owners, pairs);
         let Some(interface) = interface else {
             s_con.serve();
             return self.comm.agree(Ok(None));

@@ -20,8 +20,6 @@ pub struct Totals<'a> {
     pub plan: &'a Plan,
     /// Every load step, one where the problem has none.
     pub steps: Vec<StepTotals>,
-    /// Number of unknowns on Γ.
-    pub interface_dofs: usize,
     /// The smallest pivot of all factorizations relative to its diagonal entry.
     pub smallest_pivot: f64,
     /// Every rank's times.

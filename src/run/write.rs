@@ -10,6 +10,7 @@ use self::parcel::{Parcel, pack, unpack};
 use super::recover::BlockSolution;
 use super::solution::Solution;
 use crate::comm::{Comm, Message, ROOT};
+use crate::error::Failure;
 use crate::fem::owned::OwnedBlock;
 use crate::output::result::{ContactResult, SubdomainResults};
 use crate::output::resultants::ContactResultant;
@@ -24,7 +25,7 @@ use crate::plan::Plan;
 /// The slabs don't depend on who owns what: the same calls write the same numbers on any ranks.
 ///
 /// # Errors
-/// The file can't be written. All messages have arrived even then.
+/// The file can't be written.
 pub fn write_solution(
     comm: &Comm,
     blocks: &BTreeMap<usize, OwnedBlock>,
@@ -32,7 +33,7 @@ pub fn write_solution(
     plan: &Plan,
     mut file: Option<&mut ResultFile>,
     contacts: &mut [ContactResultant],
-) -> Result<(), OutputError> {
+) -> Result<(), Failure> {
     let slabs = file.as_ref().map_or(Vec::new(), |file| file.slabs());
     let mut failed = Ok(());
     let mut write = |write: &mut dyn FnMut(&mut ResultFile) -> Result<(), OutputError>| {
@@ -67,9 +68,9 @@ pub fn write_solution(
         },
     );
     comm.gather(
-        &plan.pair_owners(),
-        |p| {
-            let b = plan.pairs[p];
+        &plan.group_owners(),
+        |g| {
+            let b = plan.groups[g];
             match (blocks.get(&b), solution.blocks.get(&b)) {
                 (Some(owned), Some(solution)) => pack_contacts(owned, solution),
                 _ => Message::default(),
@@ -84,7 +85,7 @@ pub fn write_solution(
         },
     );
     write(&mut ResultFile::finish_step);
-    failed
+    comm.agree(failed.map_err(Failure::from))
 }
 
 fn pack_contacts(owned: &OwnedBlock, solution: &BlockSolution) -> Message {

@@ -14,11 +14,9 @@ pub struct Condensed {
     /// S (Pa); only the lower triangle counts.
     pub s: Mat<f64>,
     /// The diagonal of the matrix that S is condensed from (Pa).
-    pub stiffness: Vec<f64>,
+    pub diagonal: Vec<f64>,
     /// The smallest pivot of what was eliminated, relative to its diagonal entry.
     pub smallest_pivot: f64,
-    /// Number of unknowns on Γ that were eliminated.
-    pub eliminated: usize,
 }
 
 impl Condensed {

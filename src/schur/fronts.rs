@@ -4,19 +4,18 @@ use std::ops::Range;
 
 use faer::{MatMut, Par};
 
+use super::children::{Children, NO_PARENT};
 use super::factor::FactorError;
 use super::front;
 use super::pattern::SparseSymmetric;
-use super::supernodes::{ROOT, Supernodes};
+use super::supernodes::Supernodes;
 
 /// The fronts of a factorization under way.
 pub(super) struct Fronts<'a> {
     matrix: &'a SparseSymmetric,
     supernodes: &'a Supernodes,
     count: usize,
-    /// Children of each supernode, as lists.
-    first_child: Vec<u32>,
-    next_sibling: Vec<u32>,
+    children: Children,
     /// What the eliminated supernodes leave to the rows below, until their parents take it.
     updates: Vec<Vec<f64>>,
     /// Memory of updates that were taken.
@@ -29,20 +28,11 @@ pub(super) struct Fronts<'a> {
 impl<'a> Fronts<'a> {
     /// Fronts of the first `count` columns of `matrix`.
     pub fn new(matrix: &'a SparseSymmetric, supernodes: &'a Supernodes, count: usize) -> Self {
-        let mut first_child = vec![ROOT; supernodes.len()];
-        let mut next_sibling = vec![ROOT; supernodes.len()];
-        for (s, &parent) in supernodes.parents.iter().enumerate().rev() {
-            if parent != ROOT {
-                next_sibling[s] = first_child[parent as usize];
-                first_child[parent as usize] = s as u32;
-            }
-        }
         Self {
             matrix,
             supernodes,
             count,
-            first_child,
-            next_sibling,
+            children: Children::new(&supernodes.parents),
             updates: vec![Vec::new(); supernodes.len()],
             free: Vec::new(),
             place: vec![0; matrix.pattern.n()],
@@ -68,23 +58,20 @@ impl<'a> Fronts<'a> {
             let rows = columns.len() + below;
             self.gather(s, &mut panel);
             let mut update = self.zeros(below * below);
-            let mut child = self.first_child[s];
-            while child != ROOT {
-                let taken = std::mem::take(&mut self.updates[child as usize]);
-                self.targets
-                    .set(self.supernodes.below(child as usize), &self.place);
+            for child in self.children.of(s) {
+                let taken = std::mem::take(&mut self.updates[child]);
+                self.targets.set(self.supernodes.below(child), &self.place);
                 let split = self.targets.before(columns.len());
                 self.targets.add(&taken, 0..split, &mut panel, rows, 0);
                 let passed = split..self.targets.rows.len();
                 self.targets
                     .add(&taken, passed, &mut update, below, columns.len());
                 self.free.push(taken);
-                child = self.next_sibling[child as usize];
             }
             front::factorize(&mut panel, rows, columns.len(), &mut update, par)
                 .map_err(|column| FactorError::Pivot(columns.start + column))?;
             values.extend_from_slice(&panel);
-            if self.supernodes.parents[s] == ROOT {
+            if self.supernodes.parents[s] == NO_PARENT {
                 self.leave(s, &update, rest.as_mut());
                 self.free.push(update);
             } else {

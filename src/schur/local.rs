@@ -8,18 +8,18 @@ use super::pattern::SparseSymmetric;
 
 /// S = K_BB − K_BI K_II⁻¹ K_IB with everything that condensing and recovering a load needs, (11).
 ///
-/// B holds the gaps first, then the traces on Γ.
+/// B holds the approaches first, then the traces on Γ.
 #[derive(Debug)]
 pub struct LocalSchur {
     factor: BoundaryLastCholesky,
     interior: usize,
     /// The diagonal of K_BB (Pa): what S's round-off is relative to.
-    pub stiffness: Vec<f64>,
+    pub diagonal: Vec<f64>,
 }
 
 impl LocalSchur {
-    /// Factorizes a block's stiffness, whose first `interior` unknowns are I; S, both triangles (Pa),
-    /// stands beside.
+    /// Factorizes a block's stiffness, whose first `interior` unknowns are I; the lower triangle
+    /// of S (Pa) stands beside.
     ///
     /// # Errors
     /// K_II isn't positive definite: the block can move with its boundary held.
@@ -29,13 +29,13 @@ impl LocalSchur {
         par: Par,
     ) -> Result<(Self, Mat<f64>), FactorError> {
         let (factor, s) = BoundaryLastCholesky::condense(matrix, interior, par)?;
-        let stiffness = (interior..matrix.pattern.n())
+        let diagonal = (interior..matrix.pattern.n())
             .map(|j| matrix.values[matrix.pattern.column(j).start])
             .collect();
         let schur = Self {
             factor,
             interior,
-            stiffness,
+            diagonal,
         };
         Ok((schur, s))
     }

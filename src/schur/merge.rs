@@ -88,21 +88,19 @@ impl Merge {
         let k = approaches + traces.len();
         let mut columns = Mat::<f64>::zeros(e + k, e);
         let mut s = spare.zeros(k);
-        let mut stiffness = vec![0.0; e + k];
+        let mut diagonal = vec![0.0; e + k];
         let mut places = Vec::with_capacity(children.len());
         let mut smallest_pivot = f64::INFINITY;
-        let mut eliminated_before = 0;
         let mut first_approach = e;
         for child in children {
             let place = places_of(&child, first_approach, &gone, &traces, e + approaches);
             first_approach += child.approaches;
-            for (&to, d) in place.iter().zip(&child.stiffness) {
-                stiffness[to as usize] += d;
+            for (&to, d) in place.iter().zip(&child.diagonal) {
+                diagonal[to as usize] += d;
             }
             add(&child.s, &place, e, &mut columns, &mut s);
             spare.keep(child.s);
             smallest_pivot = smallest_pivot.min(child.smallest_pivot);
-            eliminated_before += child.eliminated;
             places.push(place);
         }
         let mut merge = Self {
@@ -112,16 +110,15 @@ impl Merge {
         };
         partial_cholesky(merge.columns.as_mut(), s.as_mut(), par)
             .map_err(|j| LooseTrace(gone[j]))?;
-        for (j, d) in stiffness[..e].iter().enumerate() {
+        for (j, d) in diagonal[..e].iter().enumerate() {
             smallest_pivot = smallest_pivot.min(merge.columns[(j, j)].powi(2) / d);
         }
         let condensed = Condensed {
             approaches,
             traces,
             s,
-            stiffness: stiffness[e..].to_vec(),
+            diagonal: diagonal[e..].to_vec(),
             smallest_pivot,
-            eliminated: eliminated_before + e,
         };
         Ok((merge, condensed))
     }

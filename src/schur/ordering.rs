@@ -1,5 +1,6 @@
 //! Fill-reducing elimination orders.
 
+use super::children::{Children, NO_PARENT};
 use super::dissection::dissect;
 use super::graph::Graph;
 use super::pattern::Cliques;
@@ -17,8 +18,6 @@ pub fn nested_dissection(points: &[[f64; 3]], cliques: &Cliques) -> Vec<u32> {
         .map(|j| order[j as usize])
         .collect()
 }
-
-const NO_PARENT: u32 = u32::MAX;
 
 /// Liu's elimination tree of a graph that is eliminated in this `order`, by path compression.
 fn elimination_tree(graph: &Graph, order: &[u32]) -> Vec<u32> {
@@ -47,26 +46,18 @@ fn elimination_tree(graph: &Graph, order: &[u32]) -> Vec<u32> {
 /// Children before parents, subtrees together.
 fn postorder(parents: &[u32]) -> Vec<u32> {
     let n = parents.len();
-    let mut first_child = vec![NO_PARENT; n];
-    let mut next_sibling = vec![NO_PARENT; n];
-    for j in (0..n).rev() {
-        if parents[j] != NO_PARENT {
-            next_sibling[j] = first_child[parents[j] as usize];
-            first_child[parents[j] as usize] = j as u32;
-        }
-    }
+    let mut children = Children::new(parents);
     let mut order = Vec::with_capacity(n);
     let mut stack = Vec::new();
-    for root in (0..n as u32).filter(|&j| parents[j as usize] == NO_PARENT) {
+    for root in (0..n).filter(|&j| parents[j] == NO_PARENT) {
         stack.push(root);
         while let Some(&j) = stack.last() {
-            let child = first_child[j as usize];
-            if child == NO_PARENT {
-                order.push(j);
-                stack.pop();
-            } else {
-                first_child[j as usize] = next_sibling[child as usize];
-                stack.push(child);
+            match children.take(j) {
+                Some(child) => stack.push(child),
+                None => {
+                    order.push(j as u32);
+                    stack.pop();
+                }
             }
         }
     }

@@ -4,6 +4,7 @@
 //! the structure of each is what its children in the elimination tree leave, and neighbours in that
 //! tree become one supernode where few zeros come of it.
 
+use super::children::{Children, NO_PARENT};
 use super::pattern::LowerPattern;
 
 /// Two supernodes become one where the number of columns and the share of zeros among the entries
@@ -16,8 +17,8 @@ const RELAXATION: [(usize, f64); 5] = [
     (usize::MAX, 0.05),
 ];
 
-/// No parent: the first row below isn't eliminated, or there is none.
-pub(super) const ROOT: u32 = u32::MAX;
+/// A group that no union has met yet.
+const UNSEEN: u32 = u32::MAX;
 
 /// Supernodes of the first columns of a matrix: contiguous columns with common rows below.
 #[derive(Clone, Debug, Default)]
@@ -30,7 +31,8 @@ pub(super) struct Supernodes {
     pub rows: Vec<u32>,
     /// Where each one's values begin, column by column, and the end of the last.
     pub value_offsets: Vec<usize>,
-    /// The supernode that holds the first row below, or [`ROOT`].
+    /// The supernode that holds the first row below; [`NO_PARENT`] where that row isn't eliminated, or
+    /// there is none.
     pub parents: Vec<u32>,
 }
 
@@ -98,7 +100,7 @@ impl Supernodes {
             value_offsets: vec![0],
             ..Self::default()
         };
-        let mut supernode_of = vec![ROOT; groups.eliminated];
+        let mut supernode_of = vec![NO_PARENT; groups.eliminated];
         for (s, merged) in list.iter().enumerate() {
             supernode_of[merged.first..=merged.last].fill(s as u32);
             for &i in structures.of(merged.last) {
@@ -111,7 +113,7 @@ impl Supernodes {
             supernodes.value_offsets.push(values);
         }
         let parent = |merged: &Merged| match merged.parent {
-            ROOT => ROOT,
+            NO_PARENT => NO_PARENT,
             group => supernode_of[group as usize],
         };
         supernodes.parents = list.iter().map(parent).collect();
@@ -212,20 +214,15 @@ impl Structures {
             ranges: Vec::with_capacity(groups.eliminated),
             eliminated: groups.eliminated,
         };
-        let mut first_child = vec![ROOT; groups.eliminated];
-        let mut next_sibling = vec![ROOT; groups.eliminated];
-        let mut seen = vec![ROOT; groups.len()];
+        let mut children = Children::none(groups.eliminated);
+        let mut seen = vec![UNSEEN; groups.len()];
         for g in 0..groups.eliminated {
             let first = groups.starts[g] as usize;
             let own = pattern.rows_of(first)[groups.size(g)..]
                 .iter()
                 .map(|&i| groups.of[i as usize]);
-            structures.push(g as u32, own, first_child[g], &next_sibling, &mut seen);
-            let parent = structures.parent(g);
-            if parent != ROOT {
-                next_sibling[g] = first_child[parent as usize];
-                first_child[parent as usize] = g as u32;
-            }
+            structures.push(g, own, &children, &mut seen);
+            children.add(structures.parent(g), g);
         }
         structures
     }
@@ -233,40 +230,36 @@ impl Structures {
     /// Appends the union of a group's `own` neighbours and what its children leave.
     fn push(
         &mut self,
-        g: u32,
+        g: usize,
         own: impl Iterator<Item = u32>,
-        first_child: u32,
-        next_sibling: &[u32],
+        children: &Children,
         seen: &mut [u32],
     ) {
         let start = self.members.len();
-        seen[g as usize] = g;
+        let mark = g as u32;
+        seen[g] = mark;
         for i in own {
-            if seen[i as usize] != g {
-                seen[i as usize] = g;
+            if seen[i as usize] != mark {
+                seen[i as usize] = mark;
                 self.members.push(i);
             }
         }
-        let mut child = first_child;
-        while child != ROOT {
-            let (from, to) = self.ranges[child as usize];
+        let is_only_child = children.of(g).nth(1).is_none();
+        for child in children.of(g) {
+            let (from, to) = self.ranges[child];
             for place in from..to {
                 let i = self.members[place];
-                if seen[i as usize] != g {
-                    seen[i as usize] = g;
+                if seen[i as usize] != mark {
+                    seen[i as usize] = mark;
                     self.members.push(i);
                 }
             }
             // Most groups have all that one child leaves and nothing else.
-            if next_sibling[child as usize] == ROOT
-                && child == first_child
-                && to - from == self.members.len() - start + 1
-            {
+            if is_only_child && to - from == self.members.len() - start + 1 {
                 self.members.truncate(start);
                 self.ranges.push((from + 1, to));
                 return;
             }
-            child = next_sibling[child as usize];
         }
         self.members[start..].sort_unstable();
         self.ranges.push((start, self.members.len()));
@@ -280,7 +273,7 @@ impl Structures {
     fn parent(&self, g: usize) -> u32 {
         match self.of(g).first() {
             Some(&i) if (i as usize) < self.eliminated => i,
-            _ => ROOT,
+            _ => NO_PARENT,
         }
     }
 }

@@ -10,14 +10,12 @@ use super::{Next, Residual, Sweeps, axpy};
 
 /// Steps that are remembered.
 const DEPTH: usize = 5;
-/// Sweeps before it gives up.
+/// Sweeps before it gives up, those of a method that it took over from among them.
 const MAX_SWEEPS: usize = 500;
 
 /// The steps that are remembered.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Chords {
-    /// Sweeps of other methods before.
-    first: usize,
     /// U and the chord's step there, last time.
     last: Option<(Vec<f64>, Vec<f64>)>,
     /// Changes of both.
@@ -25,14 +23,6 @@ pub struct Chords {
 }
 
 impl Chords {
-    /// None yet, after so many sweeps of another method.
-    pub(super) fn after(first: usize) -> Self {
-        Self {
-            first,
-            ..Self::default()
-        }
-    }
-
     fn remember(&mut self, u: &[f64], chord: &[f64]) {
         let now = (u.to_vec(), chord.to_vec());
         if let Some((u_last, chord_last)) = self.last.replace(now) {
@@ -49,7 +39,7 @@ impl Sweeps<'_, '_> {
     pub(super) fn anderson(&mut self, mut chords: Chords, before: Residual) -> Next {
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
         let hopeless = !before.relative.is_finite() || self.interface.len == 0;
-        if hopeless || self.sweeps_done() - chords.first >= limit {
+        if hopeless || self.sweeps_done() >= limit {
             return Next::End(self.gave_up(&before, "anderson stopped"));
         }
         let mut chord = before.r;

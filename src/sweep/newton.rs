@@ -62,8 +62,7 @@ impl Sweeps<'_, '_> {
     fn fall_back(&mut self, residual: Residual, why: &str) -> Next {
         (self.progress).fell_back(&format!("{why}; anderson took over"));
         self.progress.has_fallen_back = true;
-        let chords = Chords::after(self.sweeps_done());
-        Next::Sweep(Memory::Anderson(chords), residual)
+        Next::Sweep(Memory::Anderson(Chords::default()), residual)
     }
 
     /// Newton's steps beyond the tolerance of the sweeps, which isn't what limits the solution.

@@ -7,8 +7,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::method::Memory;
-use super::{Next, Residual, SweepStatus, Sweeps, axpy, dot, maximum};
+use super::{Next, Residual, SweepStatus, Sweeps, axpy};
 use crate::schur::factor::BoundaryLastCholesky;
+use crate::vector::{dot, largest};
 
 /// Sweeps before it gives up.
 const MAX_SWEEPS: usize = 2000;
@@ -43,7 +44,7 @@ impl Sweeps<'_, '_> {
         };
         let relaxation = relaxation.unwrap_or_else(|| self.relaxation(&s_0, before.relative));
         let Relaxation { theta, rho, .. } = relaxation;
-        let growth = maximum(&self.progress.u) / relaxation.start;
+        let growth = largest(&self.progress.u) / relaxation.start;
         let diverged = !before.relative.is_finite() || growth > DIVERGED;
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
         if diverged || self.sweeps_done() >= limit {
@@ -86,7 +87,7 @@ impl Sweeps<'_, '_> {
             theta,
             rho,
             first_residual,
-            start: maximum(&self.progress.u).max(f64::MIN_POSITIVE),
+            start: largest(&self.progress.u).max(f64::MIN_POSITIVE),
         }
     }
 

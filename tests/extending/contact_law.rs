@@ -4,7 +4,7 @@ use contact_dd_mpi::contact::pair::PairResponse;
 use nalgebra::{DMatrix, DVector};
 
 use crate::small::{APPROACHES, Cluster, Exact, Small, exact};
-use crate::support::close;
+use crate::support::close::close;
 use crate::support::random::Random;
 
 const M: usize = APPROACHES;

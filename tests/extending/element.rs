@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::laws;
 use crate::quad6::QUAD6;
-use crate::support::close;
+use crate::support::close::close;
 
 const C: [[f64; 3]; 3] = [[3.0, 1.0, 0.2], [1.0, 2.5, -0.1], [0.2, -0.1, 0.9]];
 

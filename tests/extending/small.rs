@@ -54,9 +54,8 @@ impl Cluster {
                 approaches,
                 traces: dofs(nodes),
                 s: Mat::from_fn(n, n, |i, j| s[(i, j)]),
-                stiffness: (0..n).map(|i| s[(i, i)]).collect(),
+                diagonal: (0..n).map(|i| s[(i, i)]).collect(),
                 smallest_pivot: 1.0,
-                eliminated: 0,
             },
             load: (0..n).map(|_| 3.0 * random.signed()).collect(),
             gaps: (0..approaches).map(|_| 0.3 * random.signed()).collect(),
@@ -127,7 +126,6 @@ impl Small {
         let mut contributions = vec![Contribution {
             s: self.linear.condensed.s.clone(),
             smallest_pivot: 1.0,
-            eliminated: 0,
             law: None,
         }];
         contributions.extend(pairs.iter().map(|pair| {
@@ -136,7 +134,6 @@ impl Small {
             Contribution {
                 s: pair.bilateral().to_owned(),
                 smallest_pivot: 1.0,
-                eliminated: 0,
                 law: Some(PairLaw::unpack(
                     &mut message.read(),
                     pair.bilateral().nrows(),

@@ -13,7 +13,7 @@ use contact_dd_mpi::sweep::{
 };
 
 use crate::small::{APPROACHES, Small};
-use crate::support::close;
+use crate::support::close::close;
 
 const TOLERANCE: f64 = 1e-12;
 

@@ -6,7 +6,7 @@ use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 
 use crate::support::blocks::{Blocks, moved, shuffled};
-use crate::support::close;
+use crate::support::close::close;
 use crate::support::scenes::model;
 use crate::support::solution::{ContactPoint, Solution};
 use crate::support::solver::solve;

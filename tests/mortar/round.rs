@@ -1,7 +1,7 @@
 //! Round bodies: statics and Hertz.
 
 use crate::support::blocks::Blocks;
-use crate::support::close;
+use crate::support::close::close;
 use crate::support::scenes::model;
 use crate::support::solver::solve;
 use crate::support::statics::{area, reaction};

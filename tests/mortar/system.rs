@@ -3,7 +3,7 @@
 use contact_dd_partition::model::Model;
 
 use crate::support::blocks::{Blocks, moved};
-use crate::support::close;
+use crate::support::close::close;
 use crate::support::comparison::compare;
 use crate::support::monolithic::Monolithic;
 use crate::support::scenes::{model, two_block_scene, two_blocks};

@@ -81,7 +81,7 @@ pub fn bad_input(trials: &mut Trials) {
             damage(&case);
             fs::write(case.result(), "the result of yesterday").unwrap();
             let files = case.files();
-            failed_once(&run(&case, ranks, &[]), 2, words);
+            failed_once(&case.run_on(ranks, &[]), 2, words);
             assert_eq!(case.files(), files);
             let result = fs::read_to_string(case.result()).unwrap();
             assert_eq!(result, "the result of yesterday");
@@ -101,11 +101,11 @@ pub fn bad_settings(trials: &mut Trials) {
             ("max_sweeps = -3\n", "line 1: max_sweeps"),
         ] {
             fs::write(&file, text).unwrap();
-            let ended = run(&case, ranks, &["--settings", path]);
+            let ended = case.run_on(ranks, &["--settings", path]);
             failed_once(&ended, 2, &["settings.toml", word]);
         }
         fs::remove_file(&file).unwrap();
-        failed_once(&run(&case, ranks, &["--settings", path]), 2, &[path]);
+        failed_once(&case.run_on(ranks, &["--settings", path]), 2, &[path]);
         assert_eq!(case.files(), ["problem.h5"]);
     });
     trials.on_all_ranks("bad_settings::in_the_problem", |ranks| {
@@ -117,7 +117,7 @@ pub fn bad_settings(trials: &mut Trials) {
         // What is open isn't written yet.
         drop((settings, tolerance));
         let words = ["problem.h5", "tolerance of /settings", "positive"];
-        failed_once(&run(&case, ranks, &[]), 2, &words);
+        failed_once(&case.run_on(ranks, &[]), 2, &words);
         assert_eq!(case.files(), ["problem.h5"]);
     });
 }
@@ -133,7 +133,7 @@ pub fn bad_usage(trials: &mut Trials) {
     for (name, args, word) in usages {
         trials.on_all_ranks(&format!("bad_usage::{name}"), move |ranks| {
             let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 2);
-            failed_once(&run(&case, ranks, args), 2, &[word]);
+            failed_once(&case.run_on(ranks, args), 2, &[word]);
             assert_eq!(case.files(), ["problem.h5"]);
         });
     }
@@ -142,7 +142,7 @@ pub fn bad_usage(trials: &mut Trials) {
     });
     trials.on_all_ranks("check_writes_nothing", |ranks| {
         let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 6);
-        let ended = run(&case, ranks, &["--check"]);
+        let ended = case.run_on(ranks, &["--check"]);
         assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
         assert_eq!(
             ended.stdout.matches("9 conditions").count(),

@@ -25,7 +25,7 @@ pub fn no_equilibrium(trials: &mut Trials) {
     for (name, scene) in scenes {
         trials.on_all_ranks(&format!("no_equilibrium::{name}"), move |ranks| {
             let case = Case::of(&model(&scene, two_blocks().mesh), 6);
-            failed_once(&run(&case, ranks, &[]), 4, &["upper"]);
+            failed_once(&case.run_on(ranks, &[]), 4, &["upper"]);
             assert_eq!(case.files(), ["problem.h5"]);
         });
     }
@@ -59,7 +59,7 @@ pub fn not_converged(trials: &mut Trials) {
                 true => &["not converged", "--method newton"],
                 false => &["not converged"],
             };
-            failed_once(&run(&case, ranks, args), 3, words);
+            failed_once(&case.run_on(ranks, args), 3, words);
             assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
             let report = Solution::read(&case.result()).report;
             assert_eq!(report["status"], "not_converged");

@@ -72,7 +72,9 @@ fn main() -> ExitCode {
     restarting::stopped_while_factorizing(&mut trials);
     restarting::every_sweep(&mut trials);
     restarting::other_checkpoints(&mut trials);
+    restarting::unwritable(&mut trials);
     steps::no_equilibrium(&mut trials);
+    steps::squeezed(&mut trials);
     steps::not_converged(&mut trials);
     steps::restarted(&mut trials);
     libtest_mimic::run(&arguments, trials.0).exit_code()
@@ -99,11 +101,6 @@ impl Trials {
         });
         self.0.push(trial);
     }
-}
-
-/// Runs a case on so many ranks.
-fn run(case: &Case, ranks: usize, args: &[&str]) -> Ended {
-    Running::start(program(ranks).arg(case.problem()).args(args)).wait(LIMIT)
 }
 
 /// Fails unless a run ended with `code` and said why exactly once.
@@ -172,7 +169,7 @@ fn same_results(trials: &mut Trials) {
                 (case, datasets)
             });
             let case = make();
-            let ended = run(&case, ranks, &[]);
+            let ended = case.run_on(ranks, &[]);
             assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
             let found = datasets(&case.result());
             assert!(found.keys().eq(expected.keys()), "{:?}", found.keys());
@@ -183,7 +180,7 @@ fn same_results(trials: &mut Trials) {
             assert_eq!(report["ranks"], ranks);
             assert_eq!(report["hosts"], 1);
             assert_eq!(report["per_rank"].as_array().unwrap().len(), ranks);
-            // The title of the run stands once, whoever printed it.
+            // The certificate stands once, whoever printed it.
             assert_eq!(ended.stdout.matches("certificate").count(), 1);
             assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
         });
@@ -203,7 +200,7 @@ fn without_stresses(trials: &mut Trials) {
                 .all(|left_out| !name.contains(left_out))
         });
         assert_eq!(expected.len() + 5, with);
-        let ended = run(&case, ranks, &["--no-stress"]);
+        let ended = case.run_on(ranks, &["--no-stress"]);
         assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
         assert!(datasets(&case.result()) == expected);
         assert!(ended.stdout.contains("skipped: stresses"));
@@ -246,12 +243,12 @@ fn one_factorization() {
 /// What `--check` says of memory is what a run of the same problem needs, by a third.
 fn memory() {
     let case = Case::of(&built_in_model("granite", 3), 30);
-    let checked = run(&case, 2, &["--check"]);
+    let checked = case.run_on(2, &["--check"]);
     assert_eq!(checked.code(), 0, "{}", checked.stderr);
     let mut lines = checked.stdout.lines().map(str::trim_start);
     let line = lines.find(|line| line.starts_with("memory")).unwrap();
     let estimated: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
-    assert_eq!(run(&case, 2, &[]).code(), 0);
+    assert_eq!(case.run_on(2, &[]).code(), 0);
     let report = Solution::read(&case.result()).report;
     let needed = report["peak_memory_bytes"].as_f64().unwrap() / 1e9;
     let ratio = estimated / needed;

@@ -15,7 +15,7 @@ pub fn unwritable_output(trials: &mut Trials) {
     for (name, args) in outputs {
         trials.on_all_ranks(&format!("unwritable_output::{name}"), move |ranks| {
             let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 3);
-            failed_once(&run(&case, ranks, args), 5, &[args[1]]);
+            failed_once(&case.run_on(ranks, args), 5, &[args[1]]);
             assert_eq!(case.files(), ["problem.h5"]);
         });
     }

@@ -33,7 +33,7 @@ pub fn random_kills(trials: &mut Trials) {
         let mut random = Random::new(seed);
         let case = Case::of(&built_in_model("granite", 0), 8);
         let began = Instant::now();
-        assert_eq!(run(&case, 2, &[]).code(), 0);
+        assert_eq!(case.run_on(2, &[]).code(), 0);
         let whole_run = began.elapsed();
         let expected = datasets(&case.result());
         let mut tally = Tally::default();

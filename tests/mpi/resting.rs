@@ -3,7 +3,7 @@
 use contact_dd_partition::model::Model;
 
 use crate::support::blocks::Blocks;
-use crate::support::close;
+use crate::support::close::close;
 use crate::support::statics::reaction;
 
 use super::*;
@@ -173,7 +173,7 @@ pub fn no_rest(trials: &mut Trials) {
     for (name, make, words) in scenes {
         trials.on_all_ranks(&format!("no_rest::{name}"), move |ranks| {
             let case = Case::of(&make(), 4);
-            failed_once(&run(&case, ranks, &[]), 4, &words);
+            failed_once(&case.run_on(ranks, &[]), 4, &words);
             assert_eq!(case.files(), ["problem.h5"]);
         });
     }
@@ -213,7 +213,7 @@ pub fn just_rest(trials: &mut Trials) {
     for (name, make, expected) in scenes {
         trials.on_all_ranks(&format!("just_rest::{name}"), move |ranks| {
             let case = Case::of(&make(), 1);
-            let ended = run(&case, ranks, &[]);
+            let ended = case.run_on(ranks, &[]);
             assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
             let solution = Solution::read(&case.result());
             solution.check_certificate();

@@ -1,5 +1,7 @@
 //! Load steps on several ranks.
 
+use crate::support::blocks::Blocks;
+
 use super::*;
 
 /// The two blocks with loads that open and close their joint.
@@ -26,16 +28,57 @@ pub fn no_equilibrium(trials: &mut Trials) {
         let scene = format!("{}{lift}", two_block_scene());
         let case = Case::of(&model(&scene, two_blocks().mesh), 6);
         let words = ["step 'lift'", "'upper' can move freely"];
-        failed_once(&run(&case, ranks, &[]), 4, &words);
+        failed_once(&case.run_on(ranks, &[]), 4, &words);
         assert_eq!(case.files(), ["problem.h5"]);
     });
+}
+
+/// A step in which supports and obstacles leave no place for a node is refused by name, whichever it is.
+pub fn squeezed(trials: &mut Trials) {
+    let factors = [("first", [1, 0]), ("last", [0, 1])];
+    for (name, [first, last]) in factors {
+        trials.on_all_ranks(&format!("steps::squeezed_in_the_{name}"), move |ranks| {
+            let scene = format!(
+                "plane = 'strain'
+                materials.rock = {{young = 20e9, poisson = 0.22}}
+                bodies.block = {{material = 'rock', body_force = [0, -25e3]}}
+                [[displacement]]
+                on = 'block left'
+                x = -0.01
+                [[contact]]
+                name = 'ground'
+                sides = ['block bottom']
+                obstacle = {{point = [0, 0], normal = [0, 1]}}
+                [[contact]]
+                name = 'slope'
+                sides = ['block left']
+                obstacle = {{point = [0, 0], normal = [1, -1]}}
+                gap = 0
+                [[step]]
+                name = 'first'
+                scale = {{displacement = {first}}}
+                [[step]]
+                name = 'last'
+                scale = {{displacement = {last}}}"
+            );
+            let blocks = Blocks::new().rectangle("block", [0.0, 1.0], [0.0, 1.0], [8, 8]);
+            let case = Case::of(&model(&scene, blocks.mesh), 4);
+            let step = format!("step '{name}': contact 'ground' and 'slope': what is prescribed");
+            failed_once(
+                &case.run_on(ranks, &[]),
+                2,
+                &[&step, "leaves no place for it"],
+            );
+            assert_eq!(case.files(), ["problem.h5"]);
+        });
+    }
 }
 
 /// A step that doesn't converge is flagged, and the next ones are solved all the same.
 pub fn not_converged(trials: &mut Trials) {
     trials.on_all_ranks("steps::not_converged", |ranks| {
         let case = Case::of(&two_blocks_in_steps(), 6);
-        let ended = run(&case, ranks, &["--max-sweeps", "0"]);
+        let ended = case.run_on(ranks, &["--max-sweeps", "0"]);
         assert_eq!(ended.code(), 3, "{}{}", ended.stdout, ended.stderr);
         let steps = Solution::steps(&case.result());
         let [error] = ended.errors()[..] else {
@@ -63,7 +106,7 @@ pub fn restarted(trials: &mut Trials) {
         let steps =
             "[[step]]\nscale = 0.9\n[[step]]\n[[step.pressure]]\non = 'top'\nvalue = '3e6+1e5*x'";
         let case = Case::of(&model(&format!("{text}\n{steps}"), mesh), 8);
-        let whole = run(&case, ranks, &picard);
+        let whole = case.run_on(ranks, &picard);
         assert_eq!(whole.code(), 0, "{}{}", whole.stdout, whole.stderr);
         let expected = datasets(&case.result());
         let steps = Solution::steps(&case.result());
@@ -77,13 +120,9 @@ pub fn restarted(trials: &mut Trials) {
         .map(String::from);
         let stop: Vec<&str> = stop.iter().map(String::as_str).collect();
         let every = (most - 2).to_string();
-        let stopped = run(&case, ranks, &[&picard[..], &stop, &[&every]].concat());
+        let stopped = case.run_on(ranks, &[&picard[..], &stop, &[&every]].concat());
         assert_eq!(stopped.code(), 3, "{}{}", stopped.stdout, stopped.stderr);
-        let on = run(
-            &case,
-            1 + ranks % 4,
-            &[&picard[..], &["--restart"]].concat(),
-        );
+        let on = case.run_on(1 + ranks % 4, &[&picard[..], &["--restart"]].concat());
         assert_eq!(on.code(), 0, "{}{}", on.stdout, on.stderr);
         assert!(!on.stdout.contains("no good checkpoint"));
         assert!(datasets(&case.result()) == expected);

@@ -7,6 +7,7 @@
 
 pub mod assembled;
 pub mod blocks;
+pub mod close;
 pub mod comparison;
 pub mod isoparametric;
 pub mod monolithic;
@@ -23,9 +24,3 @@ pub mod stress;
 pub mod twofold;
 pub mod uneven;
 pub mod validation;
-
-/// Fails unless both agree to within `slack`.
-#[track_caller]
-pub fn close(a: f64, b: f64, slack: f64) {
-    assert!((a - b).abs() <= slack, "{a:e}; expected {b:e} ± {slack:e}");
-}

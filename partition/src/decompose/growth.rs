@@ -1,4 +1,4 @@
-//! How far clusters grow into the bodies behind a contact surface.
+//! How far clumps grow into the bodies behind a contact surface.
 
 use std::collections::BTreeMap;
 
@@ -15,14 +15,14 @@ const WORTH: f64 = 1e8;
 /// leave the others less to do.
 const LEFT: f64 = 0.5;
 
-/// A cell that no cluster reaches.
+/// A cell that no clump reaches.
 const UNREACHED: u32 = u32::MAX;
 
-/// Adds to the clusters, the `sets` of cells around nodes in contact, the layers of cells of their
+/// Adds to the clumps, the `sets` of cells around nodes in contact, the layers of cells of their
 /// material that make them cheapest, as long as `spared` cells stay outside.
 ///
-/// A cluster of one layer of cells has a boundary as long as Γ_c, and its S is dense. Where a mesh
-/// becomes coarser behind Γ_c, the boundary of a cluster of more layers is shorter; at last a whole
+/// A clump of one layer of cells has a boundary as long as Γ_c, and its S is dense. Where a mesh
+/// becomes coarser behind Γ_c, the boundary of a clump of more layers is shorter; at last a whole
 /// body is one subdomain and has none.
 pub(super) fn grow(
     model: &Model,
@@ -35,13 +35,13 @@ pub(super) fn grow(
     let groups = Groups::new(model, around, sets);
     let mut of_group: BTreeMap<u32, Layers> = BTreeMap::new();
     for &cell in &layering.reached {
-        let group = groups.of(layering.cluster[cell as usize]);
+        let group = groups.of(layering.clump[cell as usize]);
         let layers = of_group.entry(group).or_default();
         let layer = layering.layer[cell as usize];
         layers.add_cell(layer);
         for &other in topology.neighbours(cell as usize) {
-            let cluster = layering.cluster[other as usize];
-            let is_within = cluster != UNREACHED && groups.of(cluster) == group;
+            let clump = layering.clump[other as usize];
+            let is_within = clump != UNREACHED && groups.of(clump) == group;
             layers.add_facet(layer, is_within.then_some(layering.layer[other as usize]));
         }
     }
@@ -56,18 +56,18 @@ pub(super) fn grow(
         chosen.insert(group, added as u32);
     }
     for &cell in &layering.reached {
-        let cluster = layering.cluster[cell as usize];
-        if layering.layer[cell as usize] <= chosen[&groups.of(cluster)] {
-            sets.unite(cell, cluster);
+        let clump = layering.clump[cell as usize];
+        if layering.layer[cell as usize] <= chosen[&groups.of(clump)] {
+            sets.unite(cell, clump);
         }
     }
 }
 
-/// The cells that clusters reach across facets of one material.
+/// The cells that clumps reach across facets of one material.
 struct Layering {
-    /// The nearest cluster of every cell, by a cell of it.
-    cluster: Vec<u32>,
-    /// The layer around it in which the cell is; 0 in the cluster itself.
+    /// The nearest clump of every cell, by a cell of it.
+    clump: Vec<u32>,
+    /// The layer around it in which the cell is; 0 in the clump itself.
     layer: Vec<u32>,
     /// The cells that are reached, by layers.
     reached: Vec<u32>,
@@ -76,12 +76,12 @@ struct Layering {
 impl Layering {
     fn new(model: &Model, topology: &Topology, around: &Around, sets: &mut DisjointSets) -> Self {
         let cells = model.mesh.cells.len();
-        let mut cluster = vec![UNREACHED; cells];
+        let mut clump = vec![UNREACHED; cells];
         let mut layer = vec![0; cells];
         let mut reached = Vec::new();
         for &(_, cell) in &around.cells {
-            if cluster[cell as usize] == UNREACHED {
-                cluster[cell as usize] = sets.find(cell);
+            if clump[cell as usize] == UNREACHED {
+                clump[cell as usize] = sets.find(cell);
                 reached.push(cell);
             }
         }
@@ -92,25 +92,25 @@ impl Layering {
             for &other in topology.neighbours(cell) {
                 let o = other as usize;
                 let is_same = model.cell_material[o] == model.cell_material[cell];
-                if is_same && cluster[o] == UNREACHED {
-                    cluster[o] = cluster[cell];
+                if is_same && clump[o] == UNREACHED {
+                    clump[o] = clump[cell];
                     layer[o] = layer[cell] + 1;
                     reached.push(other);
                 }
             }
         }
         Self {
-            cluster,
+            clump,
             layer,
             reached,
         }
     }
 }
 
-/// The clusters that contacts link: what is factorized together.
+/// The clumps that contacts link: what is factorized together.
 struct Groups {
-    /// The group of every cluster, by its cell.
-    of_cluster: BTreeMap<u32, u32>,
+    /// The group of every clump, by its cell.
+    of_clump: BTreeMap<u32, u32>,
     /// The number of conditions of every group.
     conditions: Vec<usize>,
 }
@@ -118,14 +118,14 @@ struct Groups {
 impl Groups {
     fn new(model: &Model, around: &Around, sets: &mut DisjointSets) -> Self {
         let mut contacts = DisjointSets::new(model.contacts.len());
-        let mut of_cluster = BTreeMap::new();
+        let mut of_clump = BTreeMap::new();
         for &(node, cell) in &around.cells {
             for &contact in &around.contacts[node as usize] {
-                let first = *of_cluster.entry(sets.find(cell)).or_insert(contact);
+                let first = *of_clump.entry(sets.find(cell)).or_insert(contact);
                 contacts.unite(first, contact);
             }
         }
-        for group in of_cluster.values_mut() {
+        for group in of_clump.values_mut() {
             *group = contacts.find(*group);
         }
         let mut conditions = vec![0; model.contacts.len()];
@@ -133,17 +133,17 @@ impl Groups {
             conditions[contacts.find(number as u32) as usize] += contact.conditions.len();
         }
         Self {
-            of_cluster,
+            of_clump,
             conditions,
         }
     }
 
-    fn of(&self, cluster: u32) -> u32 {
-        self.of_cluster[&cluster]
+    fn of(&self, clump: u32) -> u32 {
+        self.of_clump[&clump]
     }
 }
 
-/// The layers around the clusters of a group.
+/// The layers around the clumps of a group.
 #[derive(Default)]
 struct Layers {
     /// The cells of every layer.

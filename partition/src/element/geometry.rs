@@ -18,6 +18,22 @@ pub fn advance(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
+/// a × b.
+pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// A vector of the space that has these `components`; the others are zero.
+pub fn padded(components: &[f64]) -> [f64; 3] {
+    let mut vector = [0.0; 3];
+    vector[..components.len()].copy_from_slice(components);
+    vector
+}
+
 /// |a|.
 pub fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()

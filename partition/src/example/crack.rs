@@ -3,8 +3,8 @@
 //! The plate is turned so that the crack lies along x. Of the far load σ at the angle ψ to the crack
 //! the crack transmits the pressure σ sin²ψ and none of the shear σ sinψ cosψ.
 
-use super::blocks::Patch;
 use super::pattern::Pattern;
+use super::squares::Square;
 use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
@@ -12,7 +12,7 @@ pub(super) const EXAMPLE: Example = Example {
     about: "a closed inclined crack in a wide plate, exact answer known",
     subdomains: 6,
     scene: include_str!("crack.toml"),
-    shape: Shape::Squares(patches),
+    shape: Shape::Squares(squares),
 };
 
 /// Half the side of the plate (m); half the length of the crack is 1 m.
@@ -22,7 +22,7 @@ const HALF: f64 = 20.0;
 const COLUMNS: [usize; 3] = [12, 24, 12];
 const ROWS: usize = 16;
 
-fn patches() -> Vec<Patch> {
+fn squares() -> Vec<Square> {
     // Cells grow away from the tips and from the crack.
     let away = |t: f64, size: f64| size * (0.02 * t + 0.98 * t.powi(3));
     let x = move |column: usize, s: f64| match column {
@@ -31,7 +31,7 @@ fn patches() -> Vec<Patch> {
         1 => 1.0 - (2.0 - 2.0 * s).powi(2),
         _ => 1.0 + away(s, HALF - 1.0),
     };
-    let mut patches = Vec::new();
+    let mut squares = Vec::new();
     for (column, cells) in COLUMNS.into_iter().enumerate() {
         let outer = |at: usize, name: &'static str| (column == at).then_some(name);
         for is_above in [false, true] {
@@ -43,7 +43,7 @@ fn patches() -> Vec<Patch> {
                 false => (Some("bottom"), crack),
                 true => (crack, Some("top")),
             };
-            patches.push(Patch {
+            squares.push(Square {
                 body: "plate",
                 map: Box::new(move |[s, t]| match is_above {
                     false => [x(column, s), 0.0 - away(1.0 - t, HALF)],
@@ -55,5 +55,5 @@ fn patches() -> Vec<Patch> {
             });
         }
     }
-    patches
+    squares
 }

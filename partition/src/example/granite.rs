@@ -4,8 +4,8 @@
 //! from the left and 7-8 from the right, whose tips 6 and 7 both sides share. The horizontal line
 //! of the mesh at mid-height follows 5-6-7-8, and cells are half as large on both sides of it.
 
-use super::blocks::{Patch, quadrilateral};
 use super::pattern::Pattern;
+use super::squares::{Square, quadrilateral};
 use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
@@ -13,7 +13,7 @@ pub(super) const EXAMPLE: Example = Example {
     about: "a loaded granite block with two edge cracks, the paper's problem",
     subdomains: 8,
     scene: include_str!("granite.toml"),
-    shape: Shape::Squares(patches),
+    shape: Shape::Squares(squares),
 };
 
 /// Side of the block (m).
@@ -31,8 +31,8 @@ const ROWS: (usize, usize) = (15, 7);
 /// Where the coarse band ends and the fine one starts, as shares of the way to the line.
 const BANDS: (f64, f64) = (0.768, 0.818);
 
-fn patches() -> Vec<Patch> {
-    let mut patches = Vec::new();
+fn squares() -> Vec<Square> {
+    let mut squares = Vec::new();
     for (column, ends) in LINE.windows(2).enumerate() {
         let coarse = COLUMNS[column];
         for upper in [false, true] {
@@ -42,11 +42,11 @@ fn patches() -> Vec<Patch> {
                 (BANDS.1, 1.0, Pattern::Grid(2 * coarse, ROWS.1)),
             ];
             for (from, to, pattern) in bands {
-                patches.push(band(column, [ends[0], ends[1]], upper, [from, to], pattern));
+                squares.push(band(column, [ends[0], ends[1]], upper, [from, to], pattern));
             }
         }
     }
-    patches
+    squares
 }
 
 /// The part of a column between two shares of the way from the outside to the line.
@@ -56,7 +56,7 @@ fn band(
     upper: bool,
     shares: [f64; 2],
     pattern: Pattern,
-) -> Patch {
+) -> Square {
     let height = |[x, y]: [f64; 2], share: f64| match upper {
         false => [x, share * y],
         true => [x, SIDE - share * (SIDE - y)],
@@ -89,7 +89,7 @@ fn band(
         height(right, high),
         height(left, high),
     ];
-    Patch {
+    Square {
         body: "block",
         map: quadrilateral(corners),
         pattern: match (upper, pattern) {

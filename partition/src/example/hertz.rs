@@ -7,8 +7,8 @@
 
 use std::f64::consts::PI;
 
-use super::blocks::Patch;
 use super::pattern::Pattern;
+use super::squares::Square;
 use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
@@ -16,7 +16,7 @@ pub(super) const EXAMPLE: Example = Example {
     about: "line contact of two cylinders, graded mesh, exact answer known",
     subdomains: 4,
     scene: include_str!("hertz.toml"),
-    shape: Shape::Squares(patches),
+    shape: Shape::Squares(squares),
 };
 
 /// Side of the square (m).
@@ -29,20 +29,20 @@ const GRADING: f64 = 1.6;
 const COLUMNS: [usize; 2] = [10, 8];
 const ROWS: usize = 14;
 
-fn patches() -> Vec<Patch> {
+fn squares() -> Vec<Square> {
     // a² = 4 P R / (π E*) with P = 10, R = 8 and E* = 200 / (1 − 0.3²).
     let half_width = (1.456 / PI).sqrt();
     let down = |t: f64| 0.0 - SIDE * (1.0 - t).powf(GRADING);
     let beside = SIDE - half_width;
     vec![
-        Patch {
+        Square {
             body: "cylinder",
             map: Box::new(move |[s, t]| [half_width * (1.0 - (1.0 - s).powf(GRADING)), down(t)]),
             pattern: Pattern::Grid(COLUMNS[0], ROWS),
             is_curved: false,
             sides: [Some("bottom"), None, Some("top"), Some("axis")],
         },
-        Patch {
+        Square {
             body: "cylinder",
             map: Box::new(move |[s, t]| [half_width + beside * s.powf(GRADING), down(t)]),
             pattern: Pattern::Grid(COLUMNS[1], ROWS),

@@ -5,8 +5,8 @@
 //! Under 1 MPa from the right and from above the pressure is 1 MPa on every contact, and nothing
 //! jumps: u = −p (1+ν)(1−2ν)/E · (x+5, y+5).
 
-use super::blocks::{Patch, quadrilateral};
 use super::pattern::Pattern;
+use super::squares::{Square, quadrilateral};
 use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
@@ -14,7 +14,7 @@ pub(super) const EXAMPLE: Example = Example {
     about: "four blocks and three contacts that meet in one point, exact answer known",
     subdomains: 4,
     scene: include_str!("junction.toml"),
-    shape: Shape::Squares(patches),
+    shape: Shape::Squares(squares),
 };
 
 /// Half of the square's side (m).
@@ -28,9 +28,9 @@ const CELLS: usize = 10;
 
 const MIDDLE: [f64; 2] = [0.0, 0.0];
 
-fn patches() -> Vec<Patch> {
+fn squares() -> Vec<Square> {
     let grid = Pattern::Grid(CELLS, CELLS);
-    let block = |body, corners, sides| Patch {
+    let block = |body, corners, sides| Square {
         body,
         map: quadrilateral(corners),
         pattern: grid,
@@ -38,7 +38,7 @@ fn patches() -> Vec<Patch> {
         sides,
     };
     let (west, east) = ([-HALF, RISE], [HALF, -RISE]);
-    let mut patches = vec![
+    let mut squares = vec![
         block(
             "base",
             [[-HALF, -HALF], [0.0, -HALF], MIDDLE, west],
@@ -70,19 +70,19 @@ fn patches() -> Vec<Patch> {
             ],
         ),
     ];
-    patches.extend(wedge(east));
-    patches
+    squares.extend(wedge(east));
+    squares
 }
 
 /// The wedge, a triangle: three quadrilaterals that meet in its centre.
-fn wedge(east: [f64; 2]) -> [Patch; 3] {
+fn wedge(east: [f64; 2]) -> [Square; 3] {
     let corners = [MIDDLE, east, [HALF, 0.0]];
     let sides = ["oblique upper", "right", "horizontal lower"];
     let between = |p: [f64; 2], q: [f64; 2]| [0, 1].map(|i| 0.5 * (p[i] + q[i]));
     let centre = [0, 1].map(|i| corners.iter().map(|c| c[i]).sum::<f64>() / 3.0);
     [0, 1, 2].map(|k| {
         let (corner, next, last) = (corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
-        Patch {
+        Square {
             body: "wedge",
             map: quadrilateral([corner, between(corner, next), centre, between(last, corner)]),
             pattern: Pattern::Grid(CELLS / 2, CELLS / 2),

@@ -3,8 +3,8 @@
 //! Under the same pressure p from above and from the right the stress is −p I in the plane
 //! whatever the inclination, and u = −p (1+ν)(1−2ν)/E · (x, y).
 
-use super::blocks::{Patch, quadrilateral};
 use super::pattern::Pattern;
+use super::squares::{Square, quadrilateral};
 use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
@@ -12,14 +12,14 @@ pub(super) const EXAMPLE: Example = Example {
     about: "two blocks in uniform compression through an inclined contact, exact answer known",
     subdomains: 4,
     scene: include_str!("patch.toml"),
-    shape: Shape::Squares(patches),
+    shape: Shape::Squares(squares),
 };
 
-fn patches() -> Vec<Patch> {
+fn squares() -> Vec<Square> {
     let (left, right) = ([0.0, 0.8], [2.0, 1.2]);
     let pattern = Pattern::Grid(16, 8);
     vec![
-        Patch {
+        Square {
             body: "lower",
             map: quadrilateral([[0.0, 0.0], [2.0, 0.0], right, left]),
             pattern,
@@ -31,7 +31,7 @@ fn patches() -> Vec<Patch> {
                 Some("left"),
             ],
         },
-        Patch {
+        Square {
             body: "upper",
             map: quadrilateral([left, right, [2.0, 2.0], [0.0, 2.0]]),
             pattern,

@@ -4,8 +4,8 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use super::blocks::Patch;
 use super::pattern::Pattern;
+use super::squares::Square;
 use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
@@ -13,7 +13,7 @@ pub(super) const EXAMPLE: Example = Example {
     about: "a quarter of a plate with a hole under tension, without contact",
     subdomains: 4,
     scene: include_str!("plain.toml"),
-    shape: Shape::Squares(patches),
+    shape: Shape::Squares(squares),
 };
 
 /// Radius of the hole and half the side of the plate (m).
@@ -23,10 +23,10 @@ const HALF: f64 = 0.05;
 /// Size of the outermost cells over that of the innermost ones.
 const GRADING: f64 = 6.0;
 
-fn patches() -> Vec<Patch> {
+fn squares() -> Vec<Square> {
     let pattern = Pattern::Grid(24, 12);
     vec![
-        Patch {
+        Square {
             body: "plate",
             map: Box::new(eighth),
             pattern,
@@ -34,7 +34,7 @@ fn patches() -> Vec<Patch> {
             sides: [Some("horizontal axis"), Some("right"), None, Some("hole")],
         },
         // The mirror image, exact to the last bit, so that the axis lies where it should.
-        Patch {
+        Square {
             body: "plate",
             map: Box::new(|[s, t]| {
                 let [x, y] = eighth([s, 1.0 - t]);

@@ -6,8 +6,8 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use super::blocks::Patch;
 use super::pattern::Pattern;
+use super::squares::Square;
 use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
@@ -15,7 +15,7 @@ pub(super) const EXAMPLE: Example = Example {
     about: "three rollers between two plates, curved contact of meshes that don't match",
     subdomains: 8,
     scene: include_str!("rollers.toml"),
-    shape: Shape::Squares(patches),
+    shape: Shape::Squares(squares),
 };
 
 /// Radius of the rollers (m).
@@ -81,26 +81,26 @@ fn slow_start(s: f64) -> f64 {
     (4.2 * s).sinh() / 4.2_f64.sinh()
 }
 
-fn patches() -> Vec<Patch> {
+fn squares() -> Vec<Square> {
     let ends = [-APART - BEYOND, APART + BEYOND];
-    let mut patches = Vec::new();
+    let mut squares = Vec::new();
     for (i, roller) in ROLLERS.iter().enumerate() {
         let half = 0.5 * APART;
         let left = if i == 0 { ends[0] } else { roller.x - half };
         let right = if i == 2 { ends[1] } else { roller.x + half };
         for (edge, is_right) in [(left, false), (right, true)] {
-            patches.extend(plate(roller, edge, is_right));
+            squares.extend(plate(roller, edge, is_right));
         }
-        patches.extend(disc(roller));
+        squares.extend(disc(roller));
     }
-    patches
+    squares
 }
 
 /// Both plates from the axis of a roller to `edge`.
-fn plate(roller: &Roller, edge: f64, is_right: bool) -> [Patch; 2] {
+fn plate(roller: &Roller, edge: f64, is_right: bool) -> [Square; 2] {
     let axis = roller.x;
     let is_end = edge.abs() > APART;
-    let piece = |body, face: f64, outer: f64, sides| Patch {
+    let piece = |body, face: f64, outer: f64, sides| Square {
         body,
         map: Box::new(move |[s, t]: [f64; 2]| {
             // Exact at both ends, so that neighbours have the same nodes.
@@ -148,8 +148,8 @@ fn plate(roller: &Roller, edge: f64, is_right: bool) -> [Patch; 2] {
     ]
 }
 
-/// A roller: a core and four patches around it.
-fn disc(roller: &Roller) -> Vec<Patch> {
+/// A roller: a core and four squares around it.
+fn disc(roller: &Roller) -> Vec<Square> {
     let (axis, body) = (roller.x, roller.body);
     let core = 0.45 * RADIUS;
     // From −1 to 1, slowly in the middle.
@@ -158,7 +158,7 @@ fn disc(roller: &Roller) -> Vec<Patch> {
         w.signum() * slow_start(w.abs())
     };
     let [_, below, above, _] = roller.sides;
-    let mut patches: Vec<Patch> = [Some(below), None, Some(above), None]
+    let mut squares: Vec<Square> = [Some(below), None, Some(above), None]
         .into_iter()
         .enumerate()
         .map(|(quarter, outer)| {
@@ -169,7 +169,7 @@ fn disc(roller: &Roller) -> Vec<Patch> {
                 2 => [axis - x, RADIUS - y],
                 _ => [axis + y, RADIUS - x],
             };
-            Patch {
+            Square {
                 body,
                 map: Box::new(move |[s, t]: [f64; 2]| {
                     let w = along(s);
@@ -187,12 +187,12 @@ fn disc(roller: &Roller) -> Vec<Patch> {
             }
         })
         .collect();
-    patches.push(Patch {
+    squares.push(Square {
         body,
         map: Box::new(move |[s, t]: [f64; 2]| [axis + core * along(s), RADIUS + core * along(t)]),
         pattern: Pattern::Grid(QUARTER, QUARTER),
         is_curved: true,
         sides: [None; 4],
     });
-    patches
+    squares
 }

@@ -2,8 +2,8 @@
 //!
 //! All loads are vertical, so the two upper blocks are free to slide without load along it.
 
-use super::blocks::{Patch, quadrilateral};
 use super::pattern::Pattern;
+use super::squares::{Square, quadrilateral};
 use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
@@ -11,7 +11,7 @@ pub(super) const EXAMPLE: Example = Example {
     about: "three blocks held by contact alone under gravity and an eccentric pressure",
     subdomains: 6,
     scene: include_str!("stack.toml"),
-    shape: Shape::Squares(patches),
+    shape: Shape::Squares(squares),
 };
 
 /// Half of the blocks' widths, from below (m).
@@ -20,26 +20,26 @@ const HALF_WIDTHS: [f64; 3] = [2.0, 1.5, 1.0];
 /// Cells per metre.
 const CELLS: f64 = 8.0;
 
-fn patches() -> Vec<Patch> {
-    let mut patches = block("lower block", 0, "ground", "lower joint below");
-    patches.extend(block(
+fn squares() -> Vec<Square> {
+    let mut squares = block("lower block", 0, "ground", "lower joint below");
+    squares.extend(block(
         "middle block",
         1,
         "lower joint above",
         "upper joint below",
     ));
     let [.., width] = HALF_WIDTHS;
-    patches.push(rectangle(
+    squares.push(rectangle(
         "upper block",
         [-width, width],
         2,
         [Some("upper joint above"), None, Some("loaded"), None],
     ));
-    patches
+    squares
 }
 
 /// A block in three columns: the middle one is as wide as the block above.
-fn block(body: &'static str, level: usize, bottom: &'static str, top: &'static str) -> Vec<Patch> {
+fn block(body: &'static str, level: usize, bottom: &'static str, top: &'static str) -> Vec<Square> {
     let (outer, inner) = (HALF_WIDTHS[level], HALF_WIDTHS[level + 1]);
     let columns = [[-outer, -inner], [-inner, inner], [inner, outer]];
     columns
@@ -57,10 +57,10 @@ fn rectangle(
     [left, right]: [f64; 2],
     level: usize,
     sides: [Option<&'static str>; 4],
-) -> Patch {
+) -> Square {
     let (low, high) = (level as f64, level as f64 + 1.0);
     let columns = ((right - left) * CELLS).round() as usize;
-    Patch {
+    Square {
         body,
         map: quadrilateral([[left, low], [right, low], [right, high], [left, high]]),
         pattern: Pattern::Grid(columns, CELLS as usize),

@@ -2,8 +2,8 @@
 //!
 //! No two bricks share a node. A course of five bricks alternates with one of four between two halves.
 
-use super::blocks::{Patch, quadrilateral};
 use super::pattern::Pattern;
+use super::squares::{Square, quadrilateral};
 use super::{Example, Shape};
 
 pub(super) const EXAMPLE: Example = Example {
@@ -11,7 +11,7 @@ pub(super) const EXAMPLE: Example = Example {
     about: "a wall of 33 bricks on ground that sank, every joint a contact",
     subdomains: 33,
     scene: include_str!("wall.toml"),
-    shape: Shape::Squares(patches),
+    shape: Shape::Squares(squares),
 };
 
 /// Length and height of a brick (m).
@@ -92,8 +92,8 @@ const HEADS: [[&str; 2]; 6] = [
     ["head joints 6 left", "head joints 6 right"],
 ];
 
-fn patches() -> Vec<Patch> {
-    let mut patches = Vec::new();
+fn squares() -> Vec<Square> {
+    let mut squares = Vec::new();
     for (course, bricks) in COURSES.into_iter().enumerate() {
         let below = match course {
             0 => "foot",
@@ -114,7 +114,7 @@ fn patches() -> Vec<Patch> {
             };
             let [x_0, x_1] = [start, end].map(|halves| 0.5 * LENGTH * halves as f64);
             let [y_0, y_1] = [course, course + 1].map(|rows| HEIGHT * rows as f64);
-            patches.push(Patch {
+            squares.push(Square {
                 body,
                 map: quadrilateral([[x_0, y_0], [x_1, y_0], [x_1, y_1], [x_0, y_1]]),
                 pattern: Pattern::Grid(CELLS * (end - start), CELLS),
@@ -123,5 +123,5 @@ fn patches() -> Vec<Patch> {
             });
         }
     }
-    patches
+    squares
 }

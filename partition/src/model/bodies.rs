@@ -153,12 +153,20 @@ fn unnamed(mesh: &Mesh, kept: &[bool]) -> String {
     }
 }
 
-/// The groups of facets or points that conditions refer to.
+/// The groups of facets or points that conditions refer to, in any load step.
 fn used_groups(scene: &Scene) -> BTreeSet<&str> {
+    let steps = scene.step.iter();
+    let lists = steps.map(|step| (&step.displacement, &step.traction, &step.pressure));
+    let of_steps = lists.flat_map(|(displacement, traction, pressure)| {
+        (displacement.iter().flatten().map(|c| &c.on))
+            .chain(traction.iter().flatten().map(|c| &c.on))
+            .chain(pressure.iter().flatten().map(|c| &c.on))
+    });
     let on = (scene.displacement.iter().map(|c| &c.on))
         .chain(scene.bilateral.iter().map(|c| &c.on))
         .chain(scene.traction.iter().map(|c| &c.on))
-        .chain(scene.pressure.iter().map(|c| &c.on));
+        .chain(scene.pressure.iter().map(|c| &c.on))
+        .chain(of_steps);
     let sides = scene.contact.iter().flat_map(|contact| {
         let side_b = match &contact.partner {
             Partner::Side(names) => Some(names),

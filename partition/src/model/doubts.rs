@@ -7,6 +7,7 @@ mod strains;
 use super::bodies::Bodies;
 use super::steps::Loads;
 use super::{Contact, Material};
+use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 
@@ -32,13 +33,7 @@ impl Doubts<'_> {
 
     /// The largest extent of the bodies (m).
     fn extent(&self) -> f64 {
-        let points = &self.bodies.mesh.points;
-        let along = |axis: usize| {
-            let coordinates = points.iter().map(|point| point[axis]);
-            let low = coordinates.clone().fold(f64::INFINITY, f64::min);
-            coordinates.fold(f64::NEG_INFINITY, f64::max) - low
-        };
-        (0..3).map(along).fold(0.0, f64::max)
+        BoundingBox::around(&self.bodies.mesh.points).extent()
     }
 
     /// Contacts whose sides have to go farther than the bodies are large before they touch.

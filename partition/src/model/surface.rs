@@ -6,6 +6,7 @@ use crate::element::ElementKind;
 use crate::element::geometry::{advance, dot, length};
 use crate::error::InputError;
 use crate::mesh::Mesh;
+use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::Topology;
 
 /// Degree of exactness with which curved facets are measured.
@@ -262,15 +263,7 @@ impl Surface {
 
     /// The largest extent of its bounding box (m).
     pub fn extent(&self) -> f64 {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        for point in self.facets.iter().flat_map(|facet| &facet.at) {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(point[axis]);
-                high[axis] = high[axis].max(point[axis]);
-            }
-        }
-        (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max)
+        BoundingBox::around(self.facets.iter().flat_map(|facet| &facet.at)).extent()
     }
 }
 

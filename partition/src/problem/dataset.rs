@@ -7,6 +7,7 @@ use hdf5::plist::dataset_create::Layout;
 use hdf5::types::TypeDescriptor;
 
 use super::strings::read_strings;
+use crate::element::geometry::padded;
 use crate::error::InputError;
 use crate::{magnitude, name};
 
@@ -185,14 +186,7 @@ impl Dataset {
     /// Reads vectors of `width` finite components; the others are zero.
     pub fn vectors(&self, rows: Range<usize>, width: usize) -> Result<Vec<[f64; 3]>, InputError> {
         let values = self.floats(rows)?;
-        Ok(values
-            .chunks_exact(width)
-            .map(|row| {
-                let mut vector = [0.0; 3];
-                vector[..width].copy_from_slice(row);
-                vector
-            })
-            .collect())
+        Ok(values.chunks_exact(width).map(padded).collect())
     }
 
     /// Reads unit vectors of `width` components.

@@ -9,7 +9,7 @@ use super::read::ProblemFile;
 use super::summary::Summary;
 use super::{Problem, VERSION};
 use crate::error::InputError;
-use crate::model::{Material, PlaneState};
+use crate::model::Material;
 
 /// Most lines about things of one kind.
 const MOST: usize = 20;
@@ -158,10 +158,6 @@ impl Info {
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let catalog = &self.problem.catalog;
-        let plane = match catalog.plane {
-            PlaneState::Strain => "strain",
-            PlaneState::Stress => "stress",
-        };
         let entry =
             |f: &mut fmt::Formatter<'_>, name: &str, value: &str| writeln!(f, "{name:<13} {value}");
         entry(f, "title", &catalog.title)?;
@@ -171,7 +167,7 @@ impl fmt::Display for Info {
             self.bytes as f64 / 1e6
         );
         entry(f, "file", &size)?;
-        entry(f, "plane", plane)?;
+        entry(f, "plane", catalog.plane.name())?;
         writeln!(f, "{}", self.summary)?;
         entry(f, "sizes", &self.sizes())?;
         entry(f, "depth", &format!("{} merges at most", self.depth()))?;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::dataset::Dataset;
+use crate::element::geometry::padded;
 use crate::error::InputError;
 
 /// Consecutive rows of a dataset; rows are counted as in the dataset.
@@ -75,11 +76,6 @@ impl Slab<f64> {
 
     /// The vectors in some of the rows; components beyond the width are zero.
     pub fn vectors(&self, rows: Range<usize>) -> Vec<[f64; 3]> {
-        let padded = |row: &[f64]| {
-            let mut vector = [0.0; 3];
-            vector[..self.width].copy_from_slice(row);
-            vector
-        };
         self.rows(rows)
             .chunks_exact(self.width)
             .map(padded)

@@ -60,14 +60,11 @@ impl Problem {
         let count = catalog.subdomains.len();
         let cells: usize = catalog.subdomains.iter().map(|s| s.cells).sum();
         let largest = catalog.subdomains.iter().map(|s| s.cells).max();
-        let copies: usize = catalog.subdomains.iter().map(|s| s.nodes).sum();
-        let shared: usize = catalog.interface.iter().map(Vec::len).sum();
-        let nodes = copies - shared + catalog.interface_nodes;
         let work = catalog.hierarchy.work(catalog);
         let front_sizes = work.fronts.iter().map(|f| f.eliminated + f.kept);
         Summary {
-            nodes,
-            dofs: catalog.dim * nodes,
+            nodes: catalog.nodes(),
+            dofs: catalog.dofs(),
             cells,
             bodies: catalog.bodies.len(),
             subdomains: count,
@@ -83,7 +80,7 @@ impl Problem {
             largest_front: front_sizes.max().unwrap_or(0),
             uneven_halves: catalog.hierarchy.uneven_halves(&work),
             cut_facets: self.cut_facets(),
-            contact_conditions: catalog.groups.iter().sum(),
+            contact_conditions: catalog.conditions(),
             contacts: catalog.contacts.clone(),
             pairings: self.pairings(),
             groups: catalog

@@ -3,19 +3,11 @@
 use std::path::Path;
 
 use hdf5::H5Type;
-use hdf5::types::{FixedAscii, VarLenUnicode};
+use hdf5::types::VarLenUnicode;
 
-use super::{ContactRow, FORMAT, Problem, Subdomain, VERSION};
+use super::{ContactRow, FORMAT, Problem, Subdomain, VERSION, vtkhdf};
 use crate::destination::{Destination, quoted_words};
 use crate::error::OutputError;
-use crate::model::PlaneState;
-
-/// Version of VTKHDF's layout.
-const VTKHDF_VERSION: [i64; 2] = [2, 0];
-
-/// VTKHDF's type of dataset. ParaView compares all of the attribute's bytes, so it has exactly as
-/// many as the word.
-const VTKHDF_TYPE: &str = "UnstructuredGrid";
 
 impl Problem {
     /// Writes the problem under a temporary name and renames it when it is whole.
@@ -48,11 +40,7 @@ impl Problem {
         attribute(file, "version", VERSION)?;
         text(file, "title", &catalog.title)?;
         attribute(file, "dimension", catalog.dim as i64)?;
-        let plane = match catalog.plane {
-            PlaneState::Strain => "strain",
-            PlaneState::Stress => "stress",
-        };
-        text(file, "plane", plane)?;
+        text(file, "plane", catalog.plane.name())?;
 
         let materials = Section::new(file, "materials")?;
         let all = &catalog.materials;
@@ -119,17 +107,7 @@ impl Problem {
     fn write_mesh(&self, file: &hdf5::File) -> hdf5::Result<()> {
         let all = &self.subdomains;
         let grid = Section::new(file, "VTKHDF")?;
-        grid.group
-            .new_attr::<i64>()
-            .shape(2)
-            .create("Version")?
-            .write_raw(&VTKHDF_VERSION)?;
-        let kind = FixedAscii::<{ VTKHDF_TYPE.len() }>::from_ascii(VTKHDF_TYPE)
-            .map_err(|reason| hdf5::Error::Internal(reason.to_string()))?;
-        grid.group
-            .new_attr::<FixedAscii<{ VTKHDF_TYPE.len() }>>()
-            .create("Type")?
-            .write_scalar(&kind)?;
+        vtkhdf::mark(&grid.group)?;
         grid.column("NumberOfPoints", all.iter().map(|s| s.points.len() as i64))?;
         grid.column("NumberOfCells", all.iter().map(|s| s.cells.len() as i64))?;
         grid.column(

@@ -9,3 +9,16 @@ pub enum PlaneState {
     /// σ_zz = 0.
     Stress,
 }
+
+impl PlaneState {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Strain, Self::Stress];
+
+    /// Its name in scenes and problem files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Strain => "strain",
+            Self::Stress => "stress",
+        }
+    }
+}

@@ -180,9 +180,3 @@ impl Blocks {
         Model::new(&scene, self.mesh.clone()).map_err(|error| error.to_string())
     }
 }
-
-/// Fails unless both agree to within `slack`.
-#[track_caller]
-pub fn close(a: f64, b: f64, slack: f64) {
-    assert!((a - b).abs() <= slack, "{a} and {b}");
-}

@@ -1,6 +1,7 @@
 //! Bodies, materials, groups, partitions.
 
-use crate::blocks::{Blocks, STEEL, close};
+use crate::blocks::{Blocks, STEEL};
+use crate::close::close;
 use contact_dd_partition::mesh::Group;
 use contact_dd_partition::model::{Model, PlaneState};
 use contact_dd_partition::scene::Scene;

@@ -1,6 +1,7 @@
 //! Γ_c.
 
-use crate::blocks::{Blocks, close};
+use crate::blocks::Blocks;
+use crate::close::close;
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::ContactCondition;
 

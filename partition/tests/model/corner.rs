@@ -1,6 +1,7 @@
 //! Points where several bodies meet.
 
-use crate::blocks::{Blocks, close};
+use crate::blocks::Blocks;
+use crate::close::close;
 use crate::contact::conditions;
 
 /// A block of four cells a side on the left, one of eight on the right, above each one of its kind.

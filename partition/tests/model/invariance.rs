@@ -1,6 +1,7 @@
 //! The same scene, written differently.
 
-use crate::blocks::{Blocks, close};
+use crate::blocks::Blocks;
+use crate::close::close;
 use contact_dd_partition::model::Model;
 
 const SCENE: &str = "[[contact]]\nname = 'c'\nsides = ['lower top', 'upper bottom']\n\

@@ -1,6 +1,7 @@
 //! Γ_τ and body forces.
 
-use crate::blocks::{Blocks, close};
+use crate::blocks::Blocks;
+use crate::close::close;
 use contact_dd_partition::element::ElementKind::Line2;
 use contact_dd_partition::mesh::Group;
 use contact_dd_partition::model::Model;

@@ -7,6 +7,8 @@
 
 mod blocks;
 mod bodies;
+#[path = "../../../tests/support/close.rs"]
+mod close;
 mod contact;
 mod corner;
 mod doubts;

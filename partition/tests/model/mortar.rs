@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use crate::blocks::{Blocks, close};
+use crate::blocks::Blocks;
+use crate::close::close;
 use contact_dd_partition::model::ContactCondition;
 
 /// A contact of lower and upper block, `slave` being side a.

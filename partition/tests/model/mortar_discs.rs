@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use crate::blocks::{Blocks, close};
+use crate::blocks::Blocks;
+use crate::close::close;
 use contact_dd_partition::model::{ContactCondition, Model};
 
 /// A disc of `n` facets.

@@ -1,6 +1,6 @@
 //! Contact with rigid obstacles.
 
-use crate::blocks::close;
+use crate::close::close;
 use crate::contact::{conditions, stack};
 
 #[test]

@@ -1,6 +1,7 @@
 //! Quadratic cells: loads, supports and contact on edges that may be curved, and cells that can't be.
 
-use crate::blocks::{Blocks, close};
+use crate::blocks::Blocks;
+use crate::close::close;
 use crate::contact::{conditions, stack};
 use contact_dd_partition::element::ElementKind::{self, Quad4, Quad8, Quad9, Triangle6};
 use contact_dd_partition::element::Elements;

@@ -1,6 +1,7 @@
 //! Load steps on the mesh.
 
-use crate::blocks::{Blocks, close};
+use crate::blocks::Blocks;
+use crate::close::close;
 use contact_dd_partition::model::Model;
 
 /// A block that is held at its bottom and loaded in every way.
@@ -163,4 +164,41 @@ fn sides_that_only_a_later_step_pushes_into_each_other_are_refused() {
         refused.contains("close the gap of 0.5 m by 0.6 m; expected no penetration"),
         "{refused}"
     );
+}
+
+#[test]
+fn a_group_that_only_a_step_loads_must_not_lose_facets() {
+    let mut blocks = Blocks::new()
+        .block("b", [0.0, 2.0], [0.0, 1.0], [4, 3])
+        .block("spare", [2.0, 4.0], [0.0, 1.0], [4, 3]);
+    let spare = blocks.mesh.groups["spare top"].members.clone();
+    let top = blocks.mesh.groups.get_mut("b top").unwrap();
+    top.members.extend(spare);
+    let condition = |kind: &str| match kind {
+        "displacement" => "x = 0",
+        "traction" => "value = [1, 0]",
+        _ => "value = 1",
+    };
+    for kind in ["displacement", "traction", "pressure"] {
+        let text = format!(
+            "bodies.b = {{material = 'steel'}}
+            [[displacement]]
+            on = 'b top'
+            x = 0
+            [[step]]
+            [[step.{kind}]]
+            on = 'b top'
+            {}",
+            condition(kind)
+        );
+        let only_in_step = text.replacen("'b top'", "'b bottom'", 1);
+        for text in [text, only_in_step] {
+            let refused = blocks.model(&text).unwrap_err();
+            assert!(
+                refused.starts_with("group 'b top': the facet of nodes")
+                    && refused.contains("belongs to no body; the group 'spare' isn't among"),
+                "{refused}"
+            );
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! Γ_u and Γ_o.
 
-use crate::blocks::{Blocks, close};
+use crate::blocks::Blocks;
+use crate::close::close;
 use contact_dd_partition::model::{Model, Support};
 
 fn square() -> Blocks {

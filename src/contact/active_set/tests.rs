@@ -17,10 +17,10 @@ fn solve_with(
 ) -> (GapSolution, Vec<bool>) {
     let mut open = vec![false; bounds.len()];
     let c_scale: Vec<f64> = c.iter().map(|c| c.abs()).collect();
-    let stiffness: Vec<f64> = (0..c.len()).map(|j| 1.0 + h[(j, j)]).collect();
+    let diagonal: Vec<f64> = (0..c.len()).map(|j| 1.0 + h[(j, j)]).collect();
     let problem = GapProblem {
         h: h.as_ref(),
-        stiffness: &stiffness,
+        diagonal: &diagonal,
         c,
         c_scale: &c_scale,
         rows,

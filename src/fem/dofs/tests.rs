@@ -1,10 +1,10 @@
+use contact_dd_partition::element::geometry::dot;
 use contact_dd_partition::element::{ElementKind, Elements};
 use contact_dd_partition::model::{Material, Support};
 use contact_dd_partition::problem::{InterfaceNode, Subdomain};
 
 use super::super::block::Block;
 use super::super::condition::BlockCondition;
-use super::super::frame::dot;
 use super::*;
 
 fn material() -> Material {
@@ -89,7 +89,7 @@ fn every_displacement_obeys_the_supports() {
     let (block, conditions) = scene();
     let dofs = Dofs::new(&block, &conditions, &[material()]).unwrap();
     let u = dofs.displacement(&unknowns(&dofs));
-    assert!((dot(&vector(&u, 0), &[0.6, 0.8, 0.0]) - 0.25).abs() < 1e-15);
+    assert!((dot(vector(&u, 0), [0.6, 0.8, 0.0]) - 0.25).abs() < 1e-15);
     assert!((u[2] + 0.5).abs() < 1e-15);
     assert!((u[14] - 0.5).abs() < 1e-15 && (u[15] - 0.125).abs() < 1e-15);
 }

@@ -10,8 +10,6 @@ use super::column;
 #[derive(Debug)]
 pub(super) struct ContactTables {
     tables: Vec<Table>,
-    steps: usize,
-    step: usize,
 }
 
 #[derive(Debug)]
@@ -36,15 +34,11 @@ impl ContactTables {
             .iter()
             .map(|contact| Table::create(&parent, contact, steps))
             .collect::<Result<_>>()?;
-        Ok(Self {
-            tables,
-            steps: steps.max(1),
-            step: 0,
-        })
+        Ok(Self { tables })
     }
 
-    /// Writes `rows`, which may belong to several contacts.
-    pub(super) fn write(&mut self, rows: &[ContactResult]) -> Result<()> {
+    /// Writes `rows`, which may belong to several contacts, in a load step.
+    pub(super) fn write(&mut self, rows: &[ContactResult], step: usize) -> Result<()> {
         let mut rows = rows.to_vec();
         rows.sort_by_key(|row| (row.contact, row.place));
         let neighbours =
@@ -55,12 +49,12 @@ impl ContactTables {
                 let count = self.tables.len();
                 return Err(format!("contact {contact} of {count} has no place").into());
             };
-            table.write(run, self.step)?;
+            table.write(run, step)?;
         }
         Ok(())
     }
 
-    /// Checks that every row of the load step was written, and begins with the next one.
+    /// Checks that every row was written in a load step, and makes ready for the next one.
     pub(super) fn finish_step(&mut self) -> Result<()> {
         for Table { name, written, .. } in &mut self.tables {
             if let Some(place) = written.iter().position(|&written| !written) {
@@ -68,16 +62,7 @@ impl ContactTables {
             }
             written.fill(false);
         }
-        self.step += 1;
         Ok(())
-    }
-
-    /// Checks that all load steps were written.
-    pub(super) fn finish(self) -> Result<()> {
-        match self.step == self.steps {
-            true => Ok(()),
-            false => Err(format!("step {} is missing", self.step).into()),
-        }
     }
 }
 

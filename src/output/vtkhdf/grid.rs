@@ -3,7 +3,7 @@
 use std::iter::repeat_n;
 use std::ops::Range;
 
-use hdf5::types::FixedAscii;
+use contact_dd_partition::problem::vtkhdf;
 use hdf5::{Dataset, File, Group, Result};
 
 use super::super::result::{PartitionSize, SubdomainResults};
@@ -14,17 +14,11 @@ use super::{Layout, column, time_series};
 /// columns of numbers are past the 64 KiB up to which HDF5 reads from a file where it writes.
 const SLAB_POINTS: usize = 1 << 14;
 
-/// The length is that of the word: null-padded, with no room for the terminator over which VTK's
-/// reader trips.
-type GridType = FixedAscii<16>;
-
 /// The grid, and which subdomains have been written.
 #[derive(Debug)]
 pub(super) struct Grid {
     arrays: Arrays,
     total: PartitionSize,
-    steps: usize,
-    step: usize,
     sizes: Vec<PartitionSize>,
     starts: Vec<PartitionSize>,
     written: Vec<bool>,
@@ -60,15 +54,7 @@ impl Grid {
     pub(super) fn create(file: &File, layout: &Layout) -> Result<Self> {
         let (sizes, times) = (&layout.partitions, &layout.times);
         let group = file.create_group("VTKHDF")?;
-        group
-            .new_attr_builder()
-            .with_data(&[2_i64, 0])
-            .create("Version")?;
-        let kind = GridType::from_ascii("UnstructuredGrid").map_err(|e| e.to_string())?;
-        group
-            .new_attr::<GridType>()
-            .create("Type")?
-            .write_scalar(&kind)?;
+        vtkhdf::mark(&group)?;
 
         let counts =
             |of: fn(&PartitionSize) -> usize| sizes.iter().map(move |size| of(size) as i64);
@@ -96,8 +82,6 @@ impl Grid {
         Ok(Self {
             arrays,
             total: end,
-            steps,
-            step: 0,
             sizes: sizes.to_vec(),
             starts,
             written: vec![false; sizes.len()],
@@ -121,8 +105,8 @@ impl Grid {
         slabs
     }
 
-    /// Writes consecutive partitions.
-    pub(super) fn write(&mut self, results: &SubdomainResults) -> Result<()> {
+    /// Writes consecutive partitions in a load step.
+    pub(super) fn write(&mut self, results: &SubdomainResults, step: usize) -> Result<()> {
         let first = results.first;
         let end = first + results.sizes.len();
         let Some(sizes) = self.sizes.get(first..end) else {
@@ -131,12 +115,12 @@ impl Grid {
         };
         check_sizes(results, sizes, self.arrays.stress.is_some())?;
         if let Some(&start) = self.starts.get(first) {
-            if self.step == 0 {
+            if step == 0 {
                 self.arrays.fill_mesh(results, start)?;
             }
             let start = PartitionSize {
-                points: self.step * self.total.points + start.points,
-                cells: self.step * self.total.cells + start.cells,
+                points: step * self.total.points + start.points,
+                cells: step * self.total.cells + start.cells,
                 ..start
             };
             self.arrays.fill_fields(results, start)?;
@@ -145,22 +129,13 @@ impl Grid {
         Ok(())
     }
 
-    /// Checks that every partition was written, and begins with the next load step.
+    /// Checks that every partition was written in a load step, and makes ready for the next one.
     pub(super) fn finish_step(&mut self) -> Result<()> {
         if let Some(index) = self.written.iter().position(|&written| !written) {
             return Err(format!("subdomain {index} is missing").into());
         }
         self.written.fill(false);
-        self.step += 1;
         Ok(())
-    }
-
-    /// Checks that all load steps were written.
-    pub(super) fn finish(self) -> Result<()> {
-        match self.step == self.steps {
-            true => Ok(()),
-            false => Err(format!("step {} is missing", self.step).into()),
-        }
     }
 }
 

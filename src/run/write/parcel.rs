@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use contact_dd_partition::element::geometry::padded;
+
 use crate::comm::{Comm, Message};
 use crate::fem::block::Block;
 use crate::fem::elasticity::{principal_stresses, von_mises};
@@ -32,7 +34,8 @@ impl Parcel {
         };
         comm.broadcast(&mut ends);
         let ends = ends.integers.iter().map(|&end| end as usize);
-        cut(ends, |s| plan.blocks[plan.block_of[s]].owner)
+        let owners = plan.subdomain_owners();
+        cut(ends, |s| owners[s])
     }
 
     /// Appends what was found on its subdomains; called on their owner.
@@ -87,9 +90,7 @@ fn append_member(results: &mut SubdomainResults, block: &Block, m: usize, displa
     let member = &block.members[m];
     let displacement_at = |&node: &u32| {
         let start = node as usize * block.dim;
-        let mut u = [0.0; 3];
-        u[..block.dim].copy_from_slice(&displacement[start..start + block.dim]);
-        u
+        padded(&displacement[start..start + block.dim])
     };
     results.sizes.push(PartitionSize {
         points: member.points.len(),

@@ -22,10 +22,9 @@ fn child(approaches: usize, nodes: &[u32], seed: usize) -> Condensed {
     Condensed {
         approaches,
         traces: nodes.iter().map(|&node| trace(node)).collect(),
-        stiffness: (0..n).map(|i| s[(i, i)]).collect(),
+        diagonal: (0..n).map(|i| s[(i, i)]).collect(),
         s,
         smallest_pivot: 1.0,
-        eliminated: 0,
     }
 }
 

@@ -9,6 +9,7 @@ use crate::destination;
 use crate::element::ElementKind;
 use crate::error::OutputError;
 use crate::mesh::Mesh;
+use crate::mesh::bounding_box::BoundingBox;
 
 /// Writes a mesh as MSH 4.1, ASCII, with the tags that it has; facets and nodes of groups get the
 /// tags behind those of the cells.
@@ -124,7 +125,7 @@ impl<'a> Plan<'a> {
             count(3)
         )?;
         for entity in &self.entities {
-            let (low, high) = entity.bounds(mesh);
+            let BoundingBox { low, high } = entity.bounds(mesh);
             write!(out, "{} {}", entity.tag, row(&low))?;
             if entity.dim > 0 {
                 write!(out, " {}", row(&high))?;
@@ -180,16 +181,9 @@ impl<'a> Plan<'a> {
 }
 
 impl Entity {
-    fn bounds(&self, mesh: &Mesh) -> ([f64; 3], [f64; 3]) {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        for &node in self.elements.iter().flat_map(|(_, nodes)| nodes) {
-            for (i, x) in mesh.points[node as usize].into_iter().enumerate() {
-                low[i] = low[i].min(x);
-                high[i] = high[i].max(x);
-            }
-        }
-        (low, high)
+    fn bounds(&self, mesh: &Mesh) -> BoundingBox {
+        let nodes = self.elements.iter().flat_map(|(_, nodes)| nodes);
+        BoundingBox::around(nodes.map(|&node| &mesh.points[node as usize]))
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::element::geometry::{advance, difference, dot, length};
 use crate::error::InputError;
+use crate::mesh::bounding_box::BoundingBox;
 use crate::problem::{ContactRow, RowEntry, Subdomain};
 
 /// How far coefficients may be from what the normal says, relative to the largest of them.
@@ -24,17 +25,10 @@ pub(super) struct Members<'a> {
 
 impl<'a> Members<'a> {
     pub fn new(members: &[&'a Subdomain]) -> Self {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        for point in members.iter().flat_map(|member| &member.points) {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(point[axis]);
-                high[axis] = high[axis].max(point[axis]);
-            }
-        }
+        let points = members.iter().flat_map(|member| &member.points);
         Self {
             by_index: members.iter().map(|&m| (m.index as u32, m)).collect(),
-            extent: (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max),
+            extent: BoundingBox::around(points).extent(),
         }
     }
 

@@ -5,10 +5,8 @@ use crate::error::InputError;
 use crate::model::PlaneState;
 use crate::name;
 use crate::problem::strings::read_strings;
+use crate::problem::vtkhdf::GRID;
 use crate::problem::{FORMAT, VERSION};
-
-/// Attribute `Type` of `/VTKHDF`.
-const GRID: &str = "UnstructuredGrid";
 
 /// What the attributes of the file say.
 pub(super) struct Header {
@@ -25,17 +23,19 @@ impl Header {
         Ok(Self {
             dim: read_dimension(file)?,
             title: read_title(file)?,
-            plane: match text(file, "plane")?.as_str() {
-                "strain" => PlaneState::Strain,
-                "stress" => PlaneState::Stress,
-                other => {
-                    return Err(InputError::new(format!(
-                        "attribute plane is \"{other}\"; expected \"strain\" or \"stress\""
-                    )));
-                }
-            },
+            plane: read_plane(file)?,
         })
     }
+}
+
+fn read_plane(file: &hdf5::File) -> Result<PlaneState, InputError> {
+    let plane = text(file, "plane")?;
+    let mut known = PlaneState::ALL.into_iter();
+    known.find(|known| known.name() == plane).ok_or_else(|| {
+        InputError::new(format!(
+            "attribute plane is \"{plane}\"; expected \"strain\" or \"stress\""
+        ))
+    })
 }
 
 /// The title; empty where there is none.

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::ProblemFile;
 use super::slabs::Slabs;
+use crate::element::geometry::padded;
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::magnitude::SMALLEST_AREA;
@@ -65,16 +66,11 @@ impl ProblemFile {
             slabs.forces.as_ref().map(|f| &f.value),
             &self.offsets.forces,
         );
-        let force = |row: &[f64], k: usize| {
-            let mut force = [0.0; 3];
-            force[..dim].copy_from_slice(&row[k * dim..][..dim]);
-            force
-        };
         (0..steps)
             .map(|k| StepLoads {
                 supports: supports.chunks_exact(steps).map(|row| row[k]).collect(),
                 forces: (forces.chunks_exact(steps * dim))
-                    .map(|row| force(row, k))
+                    .map(|row| padded(&row[k * dim..][..dim]))
                     .collect(),
             })
             .collect()
@@ -283,12 +279,7 @@ impl ProblemFile {
                 "expected the nodes of a subdomain in strictly ascending order",
             ));
         }
-        let first_step = |row: &[f64]| {
-            let mut force = [0.0; 3];
-            let dim = self.catalog.dim;
-            force[..dim].copy_from_slice(&row[..dim]);
-            force
-        };
+        let first_step = |row: &[f64]| padded(&row[..self.catalog.dim]);
         let forces = slab.value.rows(rows).chunks_exact(slab.value.width());
         Ok(nodes_of.into_iter().zip(forces.map(first_step)).collect())
     }

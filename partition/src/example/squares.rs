@@ -14,7 +14,7 @@ const MOST_CELLS: usize = 100_000_000;
 const SAME: f64 = 1e-9;
 
 /// The image of the unit square, a piece of one body.
-pub(super) struct Patch {
+pub(super) struct Square {
     /// Group of its cells.
     pub(super) body: &'static str,
     /// Where a point of the unit square lies (m); keeps orientation.
@@ -40,19 +40,19 @@ pub(super) fn quadrilateral(corners: [[f64; 2]; 4]) -> Box<dyn Fn([f64; 2]) -> [
     })
 }
 
-/// A patch in its mesh.
+/// A square in its mesh.
 struct Placed {
-    square: UnitSquare,
+    unit: UnitSquare,
     points: Vec<[f64; 2]>,
     first: usize,
 }
 
-/// Meshes the patches with cells of `kind` cut into four `refine` times.
+/// Meshes the squares with cells of `kind` cut into four `refine` times.
 ///
 /// # Errors
 /// A refinement too large to be made.
-pub(super) fn mesh(patches: &[Patch], refine: u32, kind: ElementKind) -> Result<Mesh, InputError> {
-    let coarsest: usize = patches.iter().map(|p| p.pattern.triangles()).sum();
+pub(super) fn mesh(squares: &[Square], refine: u32, kind: ElementKind) -> Result<Mesh, InputError> {
+    let coarsest: usize = squares.iter().map(|p| p.pattern.triangles()).sum();
     let cells = 4_usize
         .checked_pow(refine)
         .and_then(|n| n.checked_mul(coarsest));
@@ -62,8 +62,8 @@ pub(super) fn mesh(patches: &[Patch], refine: u32, kind: ElementKind) -> Result<
              number"
         )));
     }
-    let placed = place(patches, refine, kind);
-    let node = glue(patches, &placed);
+    let placed = place(squares, refine, kind);
+    let node = glue(squares, &placed);
 
     let mut mesh = Mesh {
         dim: 2,
@@ -71,7 +71,7 @@ pub(super) fn mesh(patches: &[Patch], refine: u32, kind: ElementKind) -> Result<
     };
     let mut number = vec![u32::MAX; node.len()];
     let mut groups: BTreeMap<&str, Group> = BTreeMap::new();
-    for (patch, placed) in patches.iter().zip(&placed) {
+    for (square, placed) in squares.iter().zip(&placed) {
         for (local, point) in placed.points.iter().enumerate() {
             let glued = node[placed.first + local];
             if number[glued] == u32::MAX {
@@ -80,13 +80,13 @@ pub(super) fn mesh(patches: &[Patch], refine: u32, kind: ElementKind) -> Result<
             }
         }
         let number = |local: u32| number[node[placed.first + local as usize]];
-        for (kind, nodes) in placed.square.cells.iter() {
-            let members = &mut group(&mut groups, patch.body, 2).members;
+        for (kind, nodes) in placed.unit.cells.iter() {
+            let members = &mut group(&mut groups, square.body, 2).members;
             members.push(mesh.cells.len() as u32);
             let nodes: Vec<u32> = nodes.iter().map(|&node| number(node)).collect();
             mesh.cells.push(kind, &nodes);
         }
-        for (side, name) in placed.square.sides.iter().zip(patch.sides) {
+        for (side, name) in placed.unit.sides.iter().zip(square.sides) {
             let Some(name) = name else { continue };
             let (facet, segments) = match kind.is_linear() {
                 true => (ElementKind::Line2, 1),
@@ -122,24 +122,24 @@ fn group<'a>(
     })
 }
 
-fn place(patches: &[Patch], refine: u32, kind: ElementKind) -> Vec<Placed> {
+fn place(squares: &[Square], refine: u32, kind: ElementKind) -> Vec<Placed> {
     let mut first = 0;
-    let mut placed = Vec::with_capacity(patches.len());
-    for patch in patches {
-        let mut square = UnitSquare::new(patch.pattern, kind, &patch.map);
+    let mut placed = Vec::with_capacity(squares.len());
+    for square in squares {
+        let mut unit = UnitSquare::new(square.pattern, kind, &square.map);
         for _ in 0..refine {
-            square.refine();
+            unit.refine();
         }
         if !kind.is_linear() {
-            square.raise(kind);
+            unit.raise(kind);
         }
-        let mut points: Vec<[f64; 2]> = square.points.iter().map(|&p| (patch.map)(p)).collect();
-        if !patch.is_curved {
-            straighten(&square.cells, &mut points);
+        let mut points: Vec<[f64; 2]> = unit.points.iter().map(|&p| (square.map)(p)).collect();
+        if !square.is_curved {
+            straighten(&unit.cells, &mut points);
         }
         let count = points.len();
         placed.push(Placed {
-            square,
+            unit,
             points,
             first,
         });
@@ -165,8 +165,8 @@ fn straighten(cells: &Elements, points: &mut [[f64; 2]]) {
     }
 }
 
-/// For every node of every patch the first one that it is glued to.
-fn glue(patches: &[Patch], placed: &[Placed]) -> Vec<usize> {
+/// For every node of every square the first one that it is glued to.
+fn glue(squares: &[Square], placed: &[Placed]) -> Vec<usize> {
     let count = placed.iter().map(|p| p.points.len()).sum();
     let mut parent: Vec<usize> = (0..count).collect();
     let size = placed.iter().flat_map(|p| &p.points).flatten();
@@ -174,8 +174,8 @@ fn glue(patches: &[Patch], placed: &[Placed]) -> Vec<usize> {
     let same = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]) < SAME * size;
 
     let mut open: Vec<(Vec<usize>, [[f64; 2]; 2])> = Vec::new();
-    for (patch, placed) in patches.iter().zip(placed) {
-        for (side, name) in placed.square.sides.iter().zip(patch.sides) {
+    for (square, placed) in squares.iter().zip(placed) {
+        for (side, name) in placed.unit.sides.iter().zip(square.sides) {
             if name.is_some() {
                 continue;
             }

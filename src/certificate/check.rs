@@ -1,0 +1,289 @@
+//! The check of a block: what it says of its own part of the solution.
+
+use contact_dd_partition::element::geometry::{advance, cross, dot, padded};
+
+use crate::comm::Message;
+use crate::fem::balance::Balance;
+use crate::fem::block::Block;
+use crate::fem::condition::BlockCondition;
+use crate::fem::frame::Frame;
+use crate::fem::node_frames::supported_frames;
+use crate::schur::trace::TraceDof;
+use crate::vector::{larger, largest};
+
+/// What is largest in a block, or in several.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Most {
+    /// Residual along directions that are free (N/m).
+    pub residual: f64,
+    /// The terms of such a residual (N/m).
+    pub scale: f64,
+    /// Penetration (m).
+    pub penetration: f64,
+    /// Tension in a contact (N/m).
+    pub tension: f64,
+    /// Contact force (N/m).
+    pub contact_force: f64,
+    /// Load, contact force or support reaction at a node (N/m).
+    pub external: f64,
+    /// Load at a node (N/m).
+    pub load: f64,
+    /// Product of contact force and gap (N).
+    pub complementarity: f64,
+    /// Displacement (m).
+    pub displacement: f64,
+    /// Force that the bodies' way to rest would cause if it weren't rigid (N/m).
+    pub rest: f64,
+}
+
+impl Most {
+    fn all(&mut self) -> [&mut f64; 10] {
+        let Self {
+            residual,
+            scale,
+            penetration,
+            tension,
+            contact_force,
+            external,
+            load,
+            complementarity,
+            displacement,
+            rest,
+        } = self;
+        [
+            residual,
+            scale,
+            penetration,
+            tension,
+            contact_force,
+            external,
+            load,
+            complementarity,
+            displacement,
+            rest,
+        ]
+    }
+
+    /// Of everything the larger of two.
+    pub(super) fn include(&mut self, mut other: Self) {
+        for (mine, theirs) in self.all().into_iter().zip(other.all()) {
+            *mine = larger(*mine, *theirs);
+        }
+    }
+}
+
+/// Sums of loads, contact forces and support reactions.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct External {
+    pub force: [f64; 3],
+    /// Of absolute values.
+    pub force_scale: f64,
+    pub moment: [f64; 3],
+    /// Of the absolute values of its terms.
+    pub moment_scale: f64,
+}
+
+impl External {
+    fn all(&mut self) -> impl Iterator<Item = &mut f64> {
+        let Self {
+            force,
+            force_scale,
+            moment,
+            moment_scale,
+        } = self;
+        let scales = [force_scale, moment_scale];
+        force.iter_mut().chain(moment).chain(scales)
+    }
+
+    /// Adds a force that acts at a point; its own scale is counted by the components that it is made of.
+    fn add(&mut self, at: [f64; 3], force: [f64; 3]) {
+        self.force = advance(self.force, 1.0, force);
+        self.moment = advance(self.moment, 1.0, cross(at, force));
+        for k in 0..3 {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            self.moment_scale += (at[i] * force[j]).abs() + (at[j] * force[i]).abs();
+        }
+    }
+
+    /// Adds what acts on another block.
+    pub fn include(&mut self, mut other: Self) {
+        for (mine, theirs) in self.all().zip(other.all()) {
+            *mine += *theirs;
+        }
+    }
+}
+
+/// What a block says of its own part of the solution.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BlockCheck {
+    /// What is largest in it.
+    pub most: Most,
+    /// What acts on it from outside.
+    pub(super) external: External,
+    /// Its traces on Γ.
+    pub(super) trace_dofs: Vec<TraceDof>,
+    /// Residual on them, to be summed over the blocks that share them.
+    pub(super) traces: Vec<f64>,
+    pub(super) trace_scale: Vec<f64>,
+    /// Displacement on the nodes that it shares.
+    pub(super) shared_nodes: Vec<u32>,
+    pub(super) shared_displacement: Vec<f64>,
+}
+
+impl BlockCheck {
+    /// Checks displacements `u`, node by node, and contact `forces`, one a condition.
+    pub fn new(
+        block: &Block,
+        conditions: &[BlockCondition],
+        balance: &Balance,
+        u: &[f64],
+        forces: &[f64],
+    ) -> Self {
+        let mut check = Self::default();
+        check.most.displacement = largest(u);
+        check.most.load = balance.largest_load;
+        check.equilibrium(block, balance);
+        check.contact(block.dim, conditions, u, forces);
+        for &(node, id) in &block.interface {
+            check.shared_nodes.push(id);
+            let start = node as usize * block.dim;
+            check
+                .shared_displacement
+                .extend_from_slice(&u[start..start + block.dim]);
+        }
+        check
+    }
+
+    fn equilibrium(&mut self, block: &Block, balance: &Balance) {
+        let dim = block.dim;
+        let frames = supported_frames(block);
+        let mut frames = frames.iter().peekable();
+        let is_shared = block.is_on_interface();
+        // Residual and scale along the free axes of nodes on Γ, in the order of nodes.
+        let mut of_trace = Vec::new();
+        let mut first_trace = vec![
+            0..0;
+            if block.interface.is_empty() {
+                0
+            } else {
+                block.nodes()
+            }
+        ];
+        let vector = |values: &[f64], node: usize| padded(&values[node * dim..(node + 1) * dim]);
+        for node in 0..block.nodes() {
+            let frame = frames
+                .next_if(|(supported, _)| **supported as usize == node)
+                .map_or(&Frame::CARTESIAN, |(_, frame)| frame);
+            let residual = vector(&balance.residual, node);
+            let scale = vector(&balance.scale, node);
+            let mut force = vector(&balance.external, node);
+            self.external.force_scale += force.iter().map(|f| f.abs()).sum::<f64>();
+            self.most.external = larger(self.most.external, largest(&force));
+            let first = of_trace.len();
+            for axis in 0..dim {
+                let axes = &frame.axes[axis];
+                let along = dot(*axes, residual);
+                let along_scale: f64 = axes.iter().zip(&scale).map(|(a, s)| a.abs() * s).sum();
+                if frame.prescribed[axis].is_some() {
+                    for (f, a) in force.iter_mut().zip(axes) {
+                        *f -= along * a;
+                    }
+                    self.external.force_scale += along.abs();
+                    self.most.external = larger(self.most.external, along);
+                } else if is_shared[node] {
+                    of_trace.push((axis as u32, along, along_scale));
+                } else {
+                    self.most.residual = larger(self.most.residual, along);
+                    self.most.scale = larger(self.most.scale, along_scale);
+                }
+            }
+            if is_shared[node] {
+                first_trace[node] = first..of_trace.len();
+            }
+            self.external.add(block.points[node], force);
+        }
+        for &(node, id) in &block.interface {
+            for &(axis, residual, scale) in &of_trace[first_trace[node as usize].clone()] {
+                self.trace_dofs.push(TraceDof { node: id, axis });
+                self.traces.push(residual);
+                self.trace_scale.push(scale);
+            }
+        }
+    }
+
+    fn contact(&mut self, dim: usize, conditions: &[BlockCondition], u: &[f64], forces: &[f64]) {
+        for (condition, &force) in conditions.iter().zip(forces) {
+            let gap = condition.gap_left(dim, u);
+            let most = &mut self.most;
+            most.penetration = larger(most.penetration, gap.min(0.0));
+            most.tension = larger(most.tension, force.min(0.0));
+            most.contact_force = larger(most.contact_force, force);
+            most.complementarity = larger(most.complementarity, gap * force);
+        }
+    }
+
+    /// As a message.
+    pub fn pack(&self) -> Message {
+        let mut message = Message::default();
+        message.integers.push(self.traces.len() as i64);
+        message.integers.push(self.shared_nodes.len() as i64);
+        message.integers.push(self.shared_displacement.len() as i64);
+        message
+            .integers
+            .extend(self.shared_nodes.iter().map(|&id| i64::from(id)));
+        TraceDof::pack(&self.trace_dofs, &mut message);
+        let (mut most, mut external) = (self.most, self.external);
+        message.reals.extend(most.all().map(|value| *value));
+        message.reals.extend(external.all().map(|value| *value));
+        message.reals.extend(&self.traces);
+        message.reals.extend(&self.trace_scale);
+        message.reals.extend(&self.shared_displacement);
+        message
+    }
+
+    /// From a message.
+    pub fn unpack(message: Message) -> Self {
+        let mut reader = message.read();
+        let traces = reader.count();
+        let nodes = reader.count();
+        let components = reader.count();
+        let shared_nodes = reader.integers(nodes).iter().map(|&id| id as u32).collect();
+        let mut check = Self {
+            shared_nodes,
+            trace_dofs: TraceDof::unpack(&mut reader, traces),
+            ..Self::default()
+        };
+        for value in check.most.all() {
+            *value = reader.real();
+        }
+        for value in check.external.all() {
+            *value = reader.real();
+        }
+        check.traces = reader.reals(traces);
+        check.trace_scale = reader.reals(traces);
+        check.shared_displacement = reader.reals(components);
+        check
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_block_says_arrives_as_it_was_sent() {
+        let mut check = BlockCheck {
+            trace_dofs: vec![TraceDof { node: 7, axis: 1 }, TraceDof { node: 9, axis: 0 }],
+            traces: vec![0.1, 0.2],
+            trace_scale: vec![0.3, 0.4],
+            shared_nodes: vec![7, 8, 9],
+            shared_displacement: (0..6).map(f64::from).collect(),
+            ..BlockCheck::default()
+        };
+        let numbers = check.most.all().into_iter().chain(check.external.all());
+        for (k, number) in numbers.enumerate() {
+            *number = 1.5 + k as f64;
+        }
+        assert_eq!(BlockCheck::unpack(check.pack()), check);
+    }
+}

@@ -1,0 +1,193 @@
+//! Closed dependent conditions: equations D t = d that tie open approaches to the rest.
+
+use super::dependent::{DependentRows, Terms};
+
+/// What elimination leaves of a coefficient of order one that should be zero.
+const ROUND_OFF: f64 = 1e-10;
+
+/// The closed rows as equations, each solved for an open approach of its own.
+#[derive(Clone, Debug, Default)]
+pub struct Ties {
+    /// The equations; none has the pivot of another.
+    pub ties: Vec<Tie>,
+    /// Closed rows that say nothing beyond the others and the closed approaches.
+    pub idle: Vec<usize>,
+}
+
+/// t_pivot + Σ factor·t = Σ share·(d − D_C g_C), over open approaches and closed rows.
+#[derive(Clone, Debug)]
+pub struct Tie {
+    /// The approach that follows from others.
+    pub pivot: usize,
+    /// Those others.
+    pub others: Terms,
+    /// The closed rows that it is made of, and their shares.
+    shares: Terms,
+}
+
+impl Ties {
+    /// Solves the rows that aren't `open`; flags of approaches come first, then those of rows.
+    pub fn new(rows: &DependentRows, open: &[bool]) -> Self {
+        let mut ties = Self::default();
+        let m = open.len() - rows.len();
+        for (j, row) in rows.iter().enumerate().filter(|&(j, _)| !open[m + j]) {
+            let (mut terms, mut shares) = ties.remainder(row, open);
+            scale(&mut shares, -1.0);
+            add(&mut shares, j, 1.0);
+            let largest = (terms.iter().enumerate()).max_by(|(_, a), (_, b)| {
+                let (a, b) = (a.1.abs(), b.1.abs());
+                a.total_cmp(&b)
+            });
+            let Some((place, &(pivot, factor))) = largest else {
+                ties.idle.push(j);
+                continue;
+            };
+            terms.swap_remove(place);
+            scale(&mut terms, 1.0 / factor);
+            scale(&mut shares, 1.0 / factor);
+            for tie in &mut ties.ties {
+                if let Some(place) = tie.others.iter().position(|&(i, _)| i == pivot) {
+                    let (_, factor) = tie.others.swap_remove(place);
+                    add_multiple(&mut tie.others, &terms, -factor);
+                    add_multiple(&mut tie.shares, &shares, -factor);
+                }
+            }
+            ties.ties.push(Tie {
+                pivot,
+                others: terms,
+                shares,
+            });
+        }
+        ties
+    }
+
+    /// What is left of `normal` on the open approaches once the ties are taken off, and how much of
+    /// every closed row that took.
+    fn remainder(&self, normal: &[(usize, f64)], open: &[bool]) -> (Terms, Terms) {
+        let mut left: Terms = normal.iter().copied().filter(|&(i, _)| open[i]).collect();
+        let mut taken = Terms::new();
+        for tie in &self.ties {
+            if let Some(place) = left.iter().position(|&(i, _)| i == tie.pivot) {
+                let (_, factor) = left.swap_remove(place);
+                add_multiple(&mut left, &tie.others, -factor);
+                add_multiple(&mut taken, &tie.shares, factor);
+            }
+        }
+        left.retain(|(_, c)| c.abs() > ROUND_OFF);
+        (left, taken)
+    }
+
+    /// The multiples of closed rows that `normal` is on the open approaches, if it is.
+    pub fn express(&self, normal: &[(usize, f64)], open: &[bool]) -> Option<Terms> {
+        let (left, taken) = self.remainder(normal, open);
+        left.is_empty().then_some(taken)
+    }
+
+    /// Puts the pivots of `t` where the ties want them with the other approaches as they are; `bounds`
+    /// are those of approaches, then those of rows.
+    pub fn hold(&self, rows: &DependentRows, bounds: &[f64], t: &mut [f64]) {
+        let m = t.len();
+        for tie in &self.ties {
+            t[tie.pivot] = 0.0;
+        }
+        let t_free = t.to_vec();
+        let held = |tie: &Tie| -> f64 {
+            let of_row =
+                |&(j, share): &(usize, f64)| share * (bounds[m + j] - rows.value(j, &t_free));
+            tie.shares.iter().map(of_row).sum()
+        };
+        for tie in &self.ties {
+            t[tie.pivot] = held(tie);
+        }
+    }
+
+    /// The forces μ of `count` rows that hold what is `left` of the load on the pivots.
+    pub fn forces(&self, count: usize, left: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut forces = vec![0.0; count];
+        for tie in &self.ties {
+            let left = left(tie.pivot);
+            for &(j, share) in &tie.shares {
+                forces[j] += share * left;
+            }
+        }
+        forces
+    }
+
+    /// Scale of the terms that the force of row j is a sum of, for the `scale` of every approach.
+    pub fn force_scale(&self, j: usize, scale: impl Fn(usize) -> f64) -> f64 {
+        let of_tie = |tie: &Tie| -> f64 {
+            let share = tie.shares.iter().find(|&&(row, _)| row == j);
+            share.map_or(0.0, |(_, share)| share.abs() * scale(tie.pivot))
+        };
+        self.ties.iter().map(of_tie).sum()
+    }
+}
+
+fn scale(terms: &mut Terms, factor: f64) {
+    for (_, c) in terms {
+        *c *= factor;
+    }
+}
+
+fn add(terms: &mut Terms, number: usize, factor: f64) {
+    match terms.iter_mut().find(|(i, _)| *i == number) {
+        Some((_, c)) => *c += factor,
+        None => terms.push((number, factor)),
+    }
+}
+
+fn add_multiple(terms: &mut Terms, others: &[(usize, f64)], factor: f64) {
+    for &(i, c) in others {
+        add(terms, i, factor * c);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(rows: &[&[(usize, f64)]]) -> DependentRows {
+        let mut all = DependentRows::default();
+        rows.iter().for_each(|row| all.push(row.to_vec()));
+        all
+    }
+
+    #[test]
+    fn tied_approaches_meet_every_closed_row() {
+        let rows = rows(&[
+            &[(0, 0.5), (1, 0.7)],
+            &[(1, -0.4), (2, 1.0), (3, 0.2)],
+            &[(0, 1.0), (2, 0.3)],
+        ]);
+        let open = [true, true, true, false, false, false, false];
+        let bounds = [0.0, 0.0, 0.0, 0.6, 0.1, -0.2, 0.3];
+        let ties = Ties::new(&rows, &open);
+        assert!(ties.idle.is_empty());
+        let mut t = [0.0, 0.0, 0.0, 0.6];
+        ties.hold(&rows, &bounds, &mut t);
+        for j in 0..3 {
+            assert!((rows.value(j, &t) - bounds[4 + j]).abs() < 1e-15);
+        }
+        let forces = [2.0, 3.0, 5.0];
+        let mut left = [0.0; 4];
+        rows.subtract_transposed(&forces.map(|f| -f), &mut left);
+        for (found, force) in ties.forces(3, |i| left[i]).iter().zip(forces) {
+            assert!((found - force).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_row_that_follows_from_closed_ones_is_idle() {
+        let rows = rows(&[
+            &[(0, 1.0), (1, 1.0)],
+            &[(1, 1.0), (2, -1.0)],
+            &[(0, 2.0), (1, 1.0), (2, 1.0)],
+        ]);
+        let ties = Ties::new(&rows, &[true, true, true, false, false, false]);
+        assert_eq!(ties.idle, [2]);
+        let mut made_of = ties.express(rows.row(2), &[true; 3]).unwrap();
+        made_of.sort_by_key(|&(j, _)| j);
+        assert_eq!(made_of, [(0, 2.0), (1, -1.0)]);
+        assert!(ties.express(&[(0, 1.0)], &[true; 3]).is_none());
+    }
+}

@@ -1,0 +1,32 @@
+//! Products and norms of vectors.
+
+/// x·y over the components that both have.
+pub fn dot(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+/// ‖x‖∞; not a number where x has one.
+pub fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |most, &x| larger(most, x))
+}
+
+/// max(|a|, |b|); not a number if either isn't.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() {
+        f64::NAN
+    } else {
+        a.abs().max(b.abs())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_is_not_lost_among_numbers() {
+        assert_eq!(largest(&[1.0, -3.0, 2.0]), 3.0);
+        assert!(largest(&[1.0, f64::NAN, 2.0]).is_nan());
+        assert!(larger(f64::NAN, 1.0).is_nan() && larger(1.0, f64::NAN).is_nan());
+    }
+}
