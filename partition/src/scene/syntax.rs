@@ -14,9 +14,14 @@ pub(super) fn described(text: &str, start: usize, message: &str) -> String {
         return repeated(text, line);
     }
     if line.starts_with('[') {
-        return format!(
-            "found {found}; expected [table] or [[list of tables]], closed on the line"
-        );
+        return match line.contains(' ') && line.ends_with(']') {
+            true => {
+                format!("found {found}; expected names with spaces in quotes: [bodies.\"a name\"]")
+            }
+            false => {
+                format!("found {found}; expected [table] or [[list of tables]], closed on the line")
+            }
+        };
     }
     let Some((key, value)) = line.split_once('=') else {
         return format!("found {found}; expected key = value");
@@ -54,6 +59,14 @@ fn value_fault(key: &str, value: &str, message: &str) -> String {
         return format!("found {value}; expected {}", value.to_lowercase());
     }
     let (number, rest) = value.split_at(number_length(value));
+    if first == '(' {
+        let inside = shown(value.trim_matches(['(', ')']));
+        return format!("found {found}; expected {key} = [{inside}], or an expression in quotes");
+    }
+    if value.trim_start_matches(['+', '-']).starts_with('.') {
+        let whole = shown(&value.replacen('.', "0.", 1));
+        return format!("found {found}; expected a digit before the point: {whole}");
+    }
     if number.is_empty() {
         let plain = shown(value.trim_matches(|c: char| "“”„‟‘’".contains(c)));
         return format!("found {found}; expected it in quotes: {key} = \"{plain}\"");
@@ -72,6 +85,9 @@ fn value_fault(key: &str, value: &str, message: &str) -> String {
             format!("found {found}; expected a number without a unit: {key} = {number}")
         }
         (Some(_), _) => behind(rest),
+        (None, _) if number.ends_with('.') => {
+            format!("found {found}; expected a digit behind the point: {found}0")
+        }
         (None, _) => format!("found {found}; expected a number, as 5.2e9 or 0.3 ({message})"),
     }
 }
@@ -197,6 +213,23 @@ mod tests {
             ("x = 0.0 // held", "found // held behind the value"),
             ("on \"top\"", "found on \"top\"; expected key = value"),
             ("on: \"top\"", "found on: \"top\"; expected key = value"),
+            (
+                "poisson = .3",
+                "found .3; expected a digit before the point: 0.3",
+            ),
+            (
+                "y = -.5",
+                "found -.5; expected a digit before the point: -0.5",
+            ),
+            ("y = 0.", "found 0.; expected a digit behind the point: 0.0"),
+            (
+                "body_force = (0, -1)",
+                "found (0, -1); expected body_force = [0, -1], or",
+            ),
+            (
+                "[materials.my rock]",
+                "expected names with spaces in quotes",
+            ),
             ("x =", "'x' has no value"),
             ("no_stress = True", "found True; expected true"),
             ("mesh = \"C:\\meshes\\a.msh\"", "holds a backslash"),
