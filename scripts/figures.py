@@ -11,6 +11,7 @@ import sys
 import numpy as np
 
 from drawing.canvas import round_below
+from drawing.gaps import honest_scale
 from drawing.overview import overview
 from drawing.paper import contours, deformation, principal
 from drawing.result import Result
@@ -19,10 +20,10 @@ from drawing.result import Result
 VISIBLE = 0.06
 
 
-def automatic_scale(result):
-    """The round factor with which the largest displacement is about a twentieth of the size."""
+def automatic_scale(result, honest):
+    """The round factor with which the largest displacement is about a twentieth of the size, at most `honest`."""
     largest = np.linalg.norm(result.displacement, axis=1).max()
-    return round_below(VISIBLE * result.size / largest) if largest > 0 else 1.0
+    return round_below(min(VISIBLE * result.size / largest, honest)) if largest > 0 else 1.0
 
 
 def displacement(component, name):
@@ -52,24 +53,42 @@ PICTURES = {
 
 
 def factor(text):
-    return None if text == "auto" else float(text)
+    if text == "auto":
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0 < value < np.inf:
+        raise argparse.ArgumentTypeError(f"'{text}' is no enlargement; expected 'auto' or a number above 0")
+    return value
 
 
 def main():
     parser = argparse.ArgumentParser(prog="figures", description=__doc__.splitlines()[0])
     parser.add_argument("result", type=pathlib.Path, help="result file of contact-dd-mpi")
     parser.add_argument("outdir", type=pathlib.Path, nargs="?", help="folder (default: figures beside the result)")
-    parser.add_argument("--scale", type=factor, default="auto", help="enlargement of the deformation (default: auto, which shows it)")
+    parser.add_argument("--scale", type=factor, default="auto", help="enlargement of the deformation (default: auto, which shows it, unless closed contacts would seem to overlap)")
     parser.add_argument("--only", nargs="+", choices=PICTURES, default=list(PICTURES), metavar="PICTURE", help=f"which to draw (default: all of {', '.join(PICTURES)})")
     parser.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
+    parser.add_argument("--mm", action="store_true", help="the scene is in mm, N and MPa, not in m, N and Pa")
     arguments = parser.parse_args()
     try:
-        result = Result(arguments.result, arguments.step)
-    except (OSError, KeyError) as error:
-        sys.exit(f"figures: {arguments.result}: not a result file: {error}")
-    scale = arguments.scale or automatic_scale(result)
+        result = Result(arguments.result, arguments.step, arguments.mm)
+    except FileNotFoundError:
+        sys.exit(f"figures: {arguments.result}: there is no such file")
+    except (OSError, KeyError):
+        sys.exit(f"figures: {arguments.result}: isn't a result of contact-dd-mpi, a file .vtkhdf")
+    honest = honest_scale(result)
+    scale = arguments.scale or automatic_scale(result, honest)
+    if scale > honest:
+        print(f"figures: × {scale:g} enlarges gaps that close, too, so that bodies that touch are drawn one over the "
+              f"other or apart; × {round_below(honest):g} isn't too much", file=sys.stderr)
     outdir = arguments.outdir or arguments.result.parent / "figures"
-    outdir.mkdir(parents=True, exist_ok=True)
+    try:
+        outdir.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        sys.exit(f"figures: {outdir}: can't be made: {error.strerror}")
     for name in arguments.only:
         PICTURES[name](result, scale, outdir / f"{name}.png")
 

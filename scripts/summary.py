@@ -7,13 +7,14 @@ import json
 import pathlib
 import sys
 
-import h5py
 import matplotlib
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import EngFormatter, MaxNLocator
+
+from drawing.run import from_mm, read
 
 PHASES = ["read", "assemble", "factorize", "interface", "sweeps", "recover", "write"]
 COLORS = ["#9aa5b1", "#5b8ff9", "#1f5fa8", "#d62728", "#ff9d4d", "#3a9d5d", "#6b7785"]
@@ -62,6 +63,8 @@ def si(value, unit, digits=3):
         return "–"
     if value == 0:
         return f"0 {unit}"
+    # Rounded first: 999.9 k is 1 M.
+    value = float(f"{value:.{digits}g}")
     power = int(np.clip(np.floor(np.log10(abs(value)) / 3), -3, 3))
     prefix = {-3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}[power]
     return f"{value / 10.0 ** (3 * power):.{digits}g} {prefix}{unit}"
@@ -338,48 +341,36 @@ def rest(report):
     return section("How it was made", table(["", ""], rows))
 
 
-def last(column):
-    """A column of a contact in the last load step."""
-    return column[-1] if column.ndim > 1 else column[:]
-
-
-def read(path):
-    """The report, the rows of the sweeps and the tables of the contacts."""
-    try:
-        with h5py.File(path) as file:
-            report = json.loads(file.attrs["report"])
-            sweeps = {name: file["convergence"][name][:] for name in ("residual", "active")}
-            same = np.zeros(len(sweeps["residual"]), dtype=int)
-            sweeps["step"] = file["convergence"]["step"][:] if "step" in file["convergence"] else same
-            tables = {
-                name: {"position": table["position"][:], **{key: last(table[key]) for key in ("pressure", "status")}}
-                for name, table in file.get("contact", {}).items()
-                if len(table["position"]) > 0
-            }
-    except (OSError, KeyError, ValueError) as error:
-        print(f"summary: {path}: isn't a result of contact-dd-mpi: {error}", file=sys.stderr)
-        sys.exit(2)
-    return report, sweeps, tables
-
-
 def main():
     parser = argparse.ArgumentParser(prog="summary", description=__doc__.splitlines()[0])
     parser.add_argument("result", type=pathlib.Path, help="result file of contact-dd-mpi")
     parser.add_argument("page", type=pathlib.Path, nargs="?", help="default: the result's name with .html")
+    parser.add_argument("--mm", action="store_true", help="the scene is in mm, N and MPa, not in m, N and Pa")
     arguments = parser.parse_args()
     page = arguments.page or arguments.result.with_suffix(".html")
+    if page.suffix not in (".html", ".htm"):
+        # A second result is a likely slip, and would be overwritten.
+        print(f"summary: {page}: isn't the name of a page; expected one that ends in .html", file=sys.stderr)
+        sys.exit(2)
     plt.rcParams.update({"svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif",
                          "font.sans-serif": ["DejaVu Sans", "Arial", "Helvetica"]})
     report, sweeps, tables = read(arguments.result)
+    if arguments.mm:
+        from_mm(report, tables)
     parts = [
         head(report, arguments.result.name), warnings(report), steps(report), contacts(report, tables),
         convergence(report, sweeps), certificate(report), reactions(report), ranks(report), rest(report),
     ]
     title = escape(pathlib.Path(report["settings"]["problem"]).name)
-    page.write_text(
+    text = (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
         f"<style>{STYLE}</style></head>\n<body>\n" + "\n".join(parts) + "\n</body></html>\n"
     )
+    try:
+        page.write_text(text)
+    except OSError as error:
+        print(f"summary: {page}: can't be written: {error.strerror}", file=sys.stderr)
+        sys.exit(5)
     print(page)
 
 

@@ -5,6 +5,7 @@
 
 mod bodies;
 mod contact;
+mod doubts;
 mod groups;
 mod loads;
 mod mortar;
@@ -133,7 +134,17 @@ impl Model {
         let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads);
         let contacts = (scene.contact.iter())
             .map(|keys| sides.contact(keys, &mut warnings))
-            .collect::<Result<_, _>>()?;
+            .collect::<Result<Vec<_>, _>>()?;
+        let materials = bodies::materials(scene, plane);
+        let doubts = doubts::Doubts {
+            scene,
+            bodies: &bodies,
+            topology: &topology,
+            materials: &materials,
+            loads: &loads,
+            contacts: &contacts,
+        };
+        warnings.extend(doubts.warnings());
         let prescribed_subdomains = (scene.subdomains.as_ref())
             .map(|names| partition::prescribed(&bodies.mesh, names))
             .transpose()?;
@@ -141,7 +152,7 @@ impl Model {
             title: scene.title.clone(),
             solver: scene.solver,
             plane,
-            materials: bodies::materials(scene, plane),
+            materials,
             bodies: scene.bodies.keys().cloned().collect(),
             cell_material: bodies.cell_material,
             cell_body: bodies.cell_body,

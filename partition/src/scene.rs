@@ -7,8 +7,11 @@ pub mod material;
 pub mod number;
 pub mod place;
 pub mod plane;
+mod shape;
 pub mod step;
 pub mod suggest;
+mod syntax;
+mod wording;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -85,6 +88,9 @@ impl Scene {
     /// # Errors
     /// What is wrong with it, with line and key.
     pub fn parse(text: &str) -> Result<Self, InputError> {
+        if let Some((path, message)) = shape::fault(text) {
+            return Err(place::error_at(text, &path, &message));
+        }
         let scene: Self = toml::from_str(text).map_err(|error| place::located(text, &error))?;
         match scene.fault() {
             None => Ok(scene),

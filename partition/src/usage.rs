@@ -59,6 +59,28 @@ impl Answer {
     }
 }
 
+/// What the parsers of numbers say, and what they mean.
+const WORDS: [(&str, &str); 6] = [
+    ("invalid digit found in string", "expected a whole number"),
+    (
+        "cannot parse integer from empty string",
+        "expected a whole number",
+    ),
+    (
+        "number would be zero for non-zero type",
+        "expected 1 or more",
+    ),
+    (
+        "number too large to fit in target type",
+        "expected a smaller number",
+    ),
+    ("invalid float literal", "expected a number"),
+    (
+        "unexpected argument '-n' found",
+        "unexpected argument '-n' found; the launcher says how many ranks there are: mpirun -n N contact-dd-mpi",
+    ),
+];
+
 /// What clap says but for the word "error:", the usage and where to read of it.
 fn in_one_line(message: &str) -> String {
     let said = message.strip_prefix("error: ").unwrap_or(message);
@@ -66,6 +88,13 @@ fn in_one_line(message: &str) -> String {
         !line.starts_with("Usage:") && !line.starts_with("For more information")
     });
     let words: Vec<&str> = said.filter(|line| !line.is_empty()).collect();
-    let words = words.join(" ").replace(" tip: ", "; ");
+    let mut words = words.join(" ").replace(" tip: ", "; ");
+    // No option takes a value that begins with a hyphen.
+    if let Some(at) = words.find("; to pass '-") {
+        words.truncate(at);
+    }
+    for (said, meant) in WORDS {
+        words = words.replace(said, meant);
+    }
     format!("{words} (--help tells more)")
 }

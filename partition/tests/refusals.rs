@@ -146,7 +146,10 @@ fn settings_of_a_scene_are_checked_where_they_stand() {
             "tolerance = 0.0",
             ["solver.tolerance", "expected a positive number"],
         ),
-        ("tolerance = '1e-8'", ["solver.tolerance", "string"]),
+        (
+            "tolerance = '1e-8'",
+            ["solver.tolerance", "found text \"1e-8\"; expected a number"],
+        ),
         ("max_sweeps = -1", ["solver.max_sweeps", "-1"]),
         ("threads = 2", ["solver.threads", "unknown key"]),
     ] {
@@ -185,6 +188,11 @@ fn options_that_would_do_nothing_are_refused() {
         (&["--element", "quad4"], "--element"),
         (&["--write-scene", "there"], "--write-scene"),
         (&["-n", "-1"], "invalid value '-1'"),
+        (
+            &["-n", "two"],
+            "'two' for '--subdomains <N>': expected a whole number",
+        ),
+        (&["-np", "2"], "expected a whole number"),
         (&["-n", "0"], "expected 2"),
         (&["-n", "9999999"], "9999999 subdomains can't be"),
     ] {

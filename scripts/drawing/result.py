@@ -7,33 +7,42 @@ import numpy as np
 
 from drawing import shapes
 
+# What a result in mm, N and MPa is multiplied by: lengths, and stresses.
+MILLIMETRES = (1e-3, 1e6)
+
 # What of a contact table changes from step to step.
 STATES = ("gap", "force", "pressure", "status")
 
 
 class Result:
-    """What a result file holds, with the partitions joined; nodes keep their subdomain."""
+    """What a result file holds, in m and Pa, with the partitions joined; nodes keep their subdomain."""
 
-    def __init__(self, path, step=None):
+    def __init__(self, path, step=None, in_mm=False):
+        length, pressure = MILLIMETRES if in_mm else (1.0, 1.0)
         with h5py.File(path) as file:
             grid = file["VTKHDF"]
             self.steps = int(grid["Steps"].attrs["NSteps"]) if "Steps" in grid else 1
             self.step = self.steps if step is None else step
             if not 1 <= self.step <= self.steps:
                 sys.exit(f"figures: {path}: there is no step {step}; expected 1 to {self.steps}")
+            if "Displacement" not in grid["PointData"]:
+                sys.exit(f"figures: {path}: is a problem file; contact-dd-mpi {path} solves it")
             if "Stress" not in grid["PointData"]:
                 sys.exit(f"figures: {path}: there are no stresses; expected a run without --no-stress")
-            self.points = grid["Points"][:, :2]
+            self.points = length * grid["Points"][:, :2]
             self.tags = grid["PointData/GlobalNodeId"][:]
-            self.displacement = self.of_step(grid["PointData/Displacement"])[:, :2]
-            self.stress = self.of_step(grid["PointData/Stress"])
-            self.cell_stress = self.of_step(grid["CellData/Stress"])
+            self.displacement = length * self.of_step(grid["PointData/Displacement"])[:, :2]
+            self.stress = pressure * self.of_step(grid["PointData/Stress"])
+            self.cell_stress = pressure * self.of_step(grid["CellData/Stress"])
             subdomain = grid["CellData/Subdomain"][:]
             self.cells = list(cells_of(grid))
             self.contacts = {
                 name: {key: self.state(table[key]) for key in table}
                 for name, table in file.get("contact", {}).items()
             }
+            for table in self.contacts.values():
+                table["position"] = length * table["position"]
+                table["pressure"] = pressure * table["pressure"]
         if not self.cells:
             sys.exit(f"figures: {path}: there are no cells to draw")
         for kind, _, _ in self.cells:

@@ -69,7 +69,11 @@ fn bad_usage_is_one_line_with_a_hint() {
         ),
         (&["a.h5", "--tolerance", "0"], "expected a positive number"),
         (&["a.h5", "--tolerance"], "'--tolerance <X>'"),
-        (&["a.h5", "--threads", "0"], "'--threads <N>'"),
+        (
+            &["a.h5", "--threads", "0"],
+            "'--threads <N>': expected 1 or more",
+        ),
+        (&["a.h5", "-n", "2"], "mpirun -n N contact-dd-mpi (--help"),
         (&["a.h5", "b.h5"], "'b.h5'"),
         (&["a.h5", "--generate", "man"], "cannot be used with"),
         (&["--generate", "woman"], "[possible values: man, "),

@@ -9,6 +9,7 @@
 )]
 
 mod collecting;
+mod figures;
 mod page;
 mod schema;
 mod summary;

@@ -9,7 +9,7 @@ use super::support::scenes::built_in_model;
 use super::support::solver::{Case, LIMIT};
 
 /// Whether there is a Python that can draw: the script would install one.
-fn can_draw() -> bool {
+pub fn can_draw() -> bool {
     let draws = ["python3", "/usr/bin/python3"].iter().any(|python| {
         let mut imported = Command::new(python);
         imported.args(["-c", "import h5py, matplotlib"]);
@@ -75,4 +75,50 @@ fn what_is_no_result_gets_no_page() {
     let said = &refused.stderr;
     assert!(said.contains("other.vtkhdf: isn't a result"), "{said}");
     assert!(!file.with_extension("html").exists());
+}
+
+#[test]
+fn a_scene_in_millimetres_has_its_page_in_pascals() {
+    if !can_draw() {
+        return;
+    }
+    let case = Case::of(&built_in_model("hertz", 0), 4);
+    assert_eq!(case.run(&[]).code(), 0);
+    let pages = ["m.html", "mm.html"].map(|name| {
+        let page = case.folder().join(name);
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/summary");
+        let mut command = Command::new(script);
+        command.arg(case.result()).arg(&page);
+        if name == "mm.html" {
+            command.arg("--mm");
+        }
+        let drawn = Running::start(&mut command).wait(4 * LIMIT);
+        assert_eq!(drawn.code(), 0, "{}", drawn.stderr);
+        fs::read_to_string(page).unwrap()
+    });
+    let [in_m, in_mm] = pages;
+    assert!(in_m.contains("-5 N/m") && !in_m.contains("MPa"));
+    assert!(in_mm.contains("-5 kN/m") && in_mm.contains("MPa"));
+}
+
+#[test]
+fn a_second_result_is_not_taken_for_the_name_of_the_page() {
+    if !can_draw() {
+        return;
+    }
+    let case = Case::of(&built_in_model("patch", 0), 2);
+    assert_eq!(case.run(&[]).code(), 0);
+    let folder = tempfile::tempdir().unwrap();
+    let other = folder.path().join("other.vtkhdf");
+    fs::write(&other, "other").unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/summary");
+    let mut command = Command::new(script);
+    let refused = Running::start(command.arg(case.result()).arg(&other)).wait(4 * LIMIT);
+    assert_eq!(refused.code(), 2);
+    let said = &refused.stderr;
+    assert!(
+        said.contains("other.vtkhdf: isn't the name of a page"),
+        "{said}"
+    );
+    assert_eq!(fs::read_to_string(&other).unwrap(), "other");
 }

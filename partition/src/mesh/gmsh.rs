@@ -86,7 +86,7 @@ fn contents(bytes: &[u8]) -> Result<Content, InputError> {
             }
             (_, None) => {
                 return Err(InputError::new(format!(
-                    "this isn't a Gmsh mesh: expected $MeshFormat first, found ${section}"
+                    "this isn't a Gmsh mesh of version 4.1 or 2.2: expected $MeshFormat first, found ${section}"
                 )));
             }
             ("PhysicalNames", _) => content.names = names::read(&mut cursor)?,
@@ -119,8 +119,7 @@ fn contents(bytes: &[u8]) -> Result<Content, InputError> {
     ] {
         if empty {
             return Err(InputError::new(format!(
-                "the mesh has no ${}",
-                section.to_lowercase()
+                "the mesh is empty, it has no ${section}; expected one that gmsh -2 has made of a geometry"
             )));
         }
     }

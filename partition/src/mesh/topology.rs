@@ -12,7 +12,7 @@ const CORNERS: usize = 4;
 type Key = [u32; CORNERS];
 
 /// A facet of a cell: the cell and the facet's place in [`crate::element::reference::ReferenceElement::facets`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CellFacet {
     /// Cell.
     pub cell: u32,
@@ -166,6 +166,14 @@ impl Topology {
         let same = list[start..].partition_point(|(other, _)| *other == key);
         let found = list[start..start + same].iter();
         found.map(|&(_, facet)| facet).collect()
+    }
+
+    /// The facets of one cell only, in the order of their nodes.
+    pub fn boundary(&self) -> impl Iterator<Item = CellFacet> {
+        self.facets.places().filter_map(|same| match same {
+            [(_, one)] => Some(*one),
+            _ => None,
+        })
     }
 
     /// The cells that share a facet with `cell`, ascending.

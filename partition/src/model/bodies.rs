@@ -36,14 +36,16 @@ impl Bodies {
             }
         }
         let left_out = owner.iter().filter(|owner| owner.is_none()).count();
+        let kept: Vec<bool> = owner.iter().map(Option::is_some).collect();
+        let unnamed = unnamed(&mesh, &kept);
         if left_out > 0 {
             warnings.push(format!(
-                "{left_out} of {} cells of the mesh belong to no body and are left out",
+                "{left_out} of {} cells of the mesh belong to no body and are left out{unnamed}",
                 owner.len()
             ));
         }
-        let kept: Vec<bool> = owner.iter().map(Option::is_some).collect();
-        let mut mesh = restrict(mesh, &kept, &used_groups(scene))?;
+        let mut mesh = restrict(mesh, &kept, &used_groups(scene))
+            .map_err(|lost| InputError::new(format!("{lost} belongs to no body{unnamed}")))?;
         (mesh.orient_cells().and_then(|()| mesh.check_edges()))
             .map_err(|error| error.in_file(&scene.mesh))?;
         let cell_body: Vec<u32> = owner.into_iter().flatten().collect();
@@ -135,6 +137,22 @@ fn material(name: &str, elasticity: &Elasticity, plane: PlaneState) -> Material 
     }
 }
 
+/// Groups of cells that are no body, to end a message with; empty where there is none.
+fn unnamed(mesh: &Mesh, kept: &[bool]) -> String {
+    let is_left_out = |group: &Group| {
+        group.dim == mesh.dim && group.members.iter().any(|&cell| !kept[cell as usize])
+    };
+    let names: Vec<String> = (mesh.groups.iter())
+        .filter(|(_, group)| is_left_out(group))
+        .map(|(name, _)| format!("'{name}'"))
+        .collect();
+    match names.as_slice() {
+        [] => String::new(),
+        [one] => format!("; the group {one} isn't among [bodies]"),
+        several => format!("; the groups {} aren't among [bodies]", several.join(", ")),
+    }
+}
+
 /// The groups of facets or points that conditions refer to, in any load step.
 fn used_groups(scene: &Scene) -> BTreeSet<&str> {
     let steps = scene.step.iter();
@@ -161,7 +179,10 @@ fn used_groups(scene: &Scene) -> BTreeSet<&str> {
 
 /// The mesh of the cells that are `kept`, with the nodes and facets that they hold together. A
 /// member of a used group mustn't get lost.
-fn restrict(mesh: Mesh, kept: &[bool], used: &BTreeSet<&str>) -> Result<Mesh, InputError> {
+///
+/// # Errors
+/// The member that would.
+fn restrict(mesh: Mesh, kept: &[bool], used: &BTreeSet<&str>) -> Result<Mesh, String> {
     let mut held = vec![false; mesh.points.len()];
     for (_, nodes) in (mesh.cells.iter().zip(kept)).filter_map(|(cell, &kept)| kept.then_some(cell))
     {
@@ -198,9 +219,7 @@ fn restrict(mesh: Mesh, kept: &[bool], used: &BTreeSet<&str>) -> Result<Mesh, In
                 "facet" => mesh.tags_of(mesh.facets.nodes_of(lost as usize)),
                 _ => mesh.tags_of(&[lost]),
             };
-            return Err(InputError::new(format!(
-                "group '{name}': the {word} of nodes {tags} belongs to no body"
-            )));
+            return Err(format!("group '{name}': the {word} of nodes {tags}"));
         }
         groups.insert(
             name.clone(),

@@ -2,11 +2,12 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::doubts::short;
 use super::node_pairs::Unpaired;
 use super::sides::{Sides, side_nodes};
 use super::steps::Loads;
 use super::supports::PARALLEL;
-use super::surface::Surface;
+use super::surface::{CORNER, Surface};
 use super::{Contact, ContactCondition, groups, mortar, node_pairs, obstacle};
 use crate::element::geometry::{advance, dot, length};
 use crate::error::InputError;
@@ -16,6 +17,13 @@ use crate::scene::condition::{self, Names, Pairing, Partner};
 
 /// Gaps are exact to this fraction of the scene's coordinates.
 const ROUNDING: f64 = 1e-12;
+
+/// Negative gaps are worth a warning beyond this fraction of the scene's coordinates: less is how
+/// quadratic edges follow an arc.
+const SEEN: f64 = 1e-8;
+
+/// Part of an interference from which on it matters that straight facets stand off a curve.
+const FELT: f64 = 0.1;
 
 /// A direction in which a node is held, and how far in each load step (m).
 struct Held {
@@ -58,6 +66,7 @@ impl<'a> Contacts<'a> {
     ) -> Result<Contact, InputError> {
         let what = format!("contact '{}'", keys.name);
         let (facets, side_a) = self.side(&keys.side_a, &what)?;
+        let mut off = 0.0;
         let mut conditions = match &keys.partner {
             Partner::Obstacle(obstacle) => {
                 let nodes = side_nodes(self.mesh, &side_a, &what, &HashSet::new())?;
@@ -73,23 +82,50 @@ impl<'a> Contacts<'a> {
                         self.mesh.tags_of(self.mesh.facets.nodes_of(both as usize))
                     )));
                 }
-                self.pairs(&side_a, &side_b, keys.pairing, &what)?
+                let conditions = self.pairs(&side_a, &side_b, keys.pairing, &what)?;
+                warnings.extend(self.corner(&side_a, &conditions, &what));
+                off = side_a.stands_off().max(side_b.stands_off());
+                conditions
             }
         };
         if let Some(gap) = &keys.gap {
+            off = 0.0;
+            let mut furthest = (0.0, 0.0, 0.0);
             for condition in &mut conditions {
-                condition.gap = (gap.at(condition.position))
+                let given = (gap.at(condition.position))
                     .map_err(|reason| InputError::new(format!("{what}.gap: {reason}")))?;
+                let measured = std::mem::replace(&mut condition.gap, given);
+                furthest = match (given - measured).abs() {
+                    away if away > furthest.0 => (away, given, measured),
+                    _ => furthest,
+                };
+            }
+            let (away, given, measured) = furthest;
+            if away > side_a.extent() {
+                warnings.push(format!(
+                    "{what}.gap: it is {} m where the mesh has {} m, which is off by more than the side \
+                     measures; are place and units right?",
+                    short(given),
+                    short(measured)
+                ));
             }
         }
         let slack = ROUNDING * self.size;
         let deepest = conditions.iter().map(|c| c.gap).fold(0.0, f64::min);
-        if deepest < -slack {
-            let count = conditions.iter().filter(|c| c.gap < -slack).count();
+        let seen = SEEN * self.size;
+        if deepest < -seen {
+            let count = conditions.iter().filter(|c| c.gap < -seen).count();
+            let facets = match off > FELT * -deepest {
+                true => format!(
+                    "; straight facets stand off a curve by up to {} m of that: expected quadratic cells",
+                    short(off)
+                ),
+                false => String::new(),
+            };
             warnings.push(format!(
-                "{what}: {count} of {} gaps are negative, an interference fit of up to {} m",
+                "{what}: {count} of {} gaps are negative, an interference fit of up to {} m{facets}",
                 conditions.len(),
-                -deepest
+                short(-deepest)
             ));
         }
         let mut kept = Vec::with_capacity(conditions.len());
@@ -118,6 +154,26 @@ impl<'a> Contacts<'a> {
             name: keys.name.clone(),
             conditions: kept,
         })
+    }
+
+    /// The warning of a condition in a corner of side a, whose normal is that of neither facet.
+    fn corner(
+        &self,
+        side_a: &Surface,
+        conditions: &[ContactCondition],
+        what: &str,
+    ) -> Option<String> {
+        let tags: HashSet<i64> = conditions.iter().map(|condition| condition.tag_a).collect();
+        let tag = |node: u32| self.mesh.node_tags[node as usize];
+        let (node, angle, _) = (side_a.turns().into_iter())
+            .find(|&(node, angle, _)| angle > CORNER && tags.contains(&tag(node)))?;
+        let [x, y, _] = self.mesh.points[node as usize].map(short);
+        Some(format!(
+            "{what}: side a has a corner of {:.0}° at node {}, ({x}, {y}), where it presses along the mean of \
+             both normals; expected sides without corners, a contact for each",
+            angle.to_degrees(),
+            tag(node)
+        ))
     }
 
     fn side(&self, names: &Names, what: &str) -> Result<(Vec<u32>, Surface), InputError> {

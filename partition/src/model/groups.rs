@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::error::InputError;
 use crate::mesh::{Group, Mesh};
 use crate::scene::condition::Names;
-use crate::scene::suggest::nearest;
+use crate::scene::suggest::hint;
 
 /// What a group has to consist of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,9 +93,7 @@ fn find<'a>(
         ))),
         Some(group) => Ok(group),
         None => {
-            let hint = nearest(name, fitting.iter().copied())
-                .map(|near| format!("; did you mean '{near}'?"))
-                .unwrap_or_default();
+            let hint = hint(name, fitting.iter().copied());
             Err(InputError::new(format!(
                 "{what}: the mesh has no physical group '{name}'{hint} ({list})"
             )))

@@ -12,6 +12,9 @@ use crate::mesh::topology::Topology;
 /// Degree of exactness with which curved facets are measured.
 const CURVED_DEGREE: usize = 9;
 
+/// Angle between two facets from which on they are no curve but a corner (rad).
+pub(super) const CORNER: f64 = std::f64::consts::FRAC_PI_4;
+
 /// A facet of the boundary.
 #[derive(Clone, Debug)]
 pub(super) struct SurfaceFacet {
@@ -169,6 +172,39 @@ impl Surface {
             }
         }
         nodes
+    }
+
+    /// The nodes at which two facets meet at an angle (rad), with the larger size of the two (m).
+    pub fn turns(&self) -> Vec<(u32, f64, f64)> {
+        let around = self.around();
+        let turn = |node: u32| {
+            let [a, b] = around[&node][..] else {
+                return None;
+            };
+            let (a, b) = (&self.facets[a], &self.facets[b]);
+            let normal = |facet: &SurfaceFacet| {
+                let own = facet.nodes.iter().position(|&n| n == node)?;
+                Some(facet.normal_at(own))
+            };
+            let cosine = dot(normal(a)?, normal(b)?).clamp(-1.0, 1.0);
+            Some((node, cosine.acos(), a.size().max(b.size())))
+        };
+        self.in_order().into_iter().filter_map(turn).collect()
+    }
+
+    /// How far straight facets stand off a curve that they stand for, at most (m).
+    pub fn stands_off(&self) -> f64 {
+        if !self.facets.iter().all(|facet| facet.kind.is_linear()) {
+            return 0.0;
+        }
+        // Of an arc over the chord h that turns by α the height is h α/8.
+        let smooth = self
+            .turns()
+            .into_iter()
+            .filter(|(_, angle, _)| *angle < CORNER);
+        smooth
+            .map(|(_, angle, size)| size * angle / 8.0)
+            .fold(0.0, f64::max)
     }
 
     /// Its nodes in the middle of facets; the others are corners.

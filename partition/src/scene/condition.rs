@@ -197,8 +197,9 @@ impl TryFrom<ContactKeys> for Contact {
             }
             (Some(a), None, None, Some(obstacle)) => (a, Partner::Obstacle(obstacle)),
             (_, _, _, None) => {
+                let entries = if count == 1 { "entry" } else { "entries" };
                 return Err(format!(
-                    "'sides' has {count} entries; expected 2 (or 1 and an 'obstacle')"
+                    "'sides' has {count} {entries}; expected 2 (or 1 and an 'obstacle')"
                 ));
             }
             (_, _, _, Some(_)) => {

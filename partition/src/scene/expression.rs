@@ -1,6 +1,6 @@
 //! Expressions of x, y and z, with the precedence of mathematics: −x^2 is −(x²), 2^3^2 is 2^9.
 
-use super::suggest::nearest;
+use super::suggest::hint_and_known;
 
 /// Longest text and deepest nesting of an expression, so that no text can exhaust the stack.
 const LONGEST: usize = 4096;
@@ -307,8 +307,8 @@ impl Parser<'_> {
                 .chain(UNARY.map(|f| f.0))
                 .chain(BINARY.map(|f| f.0));
             return Err(format!(
-                "'{word}' isn't known; did you mean '{}'? The variables are x, y and z",
-                nearest(word, names).unwrap_or("x")
+                "'{word}' isn't known{}",
+                hint_and_known(word, names)
             ));
         }
         Ok(())

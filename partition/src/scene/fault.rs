@@ -44,9 +44,7 @@ impl Scene {
         let known = || self.materials.keys().map(String::as_str);
         for (name, body) in &self.bodies {
             if !self.materials.contains_key(&body.material) {
-                let hint = suggest::nearest(&body.material, known())
-                    .map(|near| format!("; did you mean '{near}'?"))
-                    .unwrap_or_default();
+                let hint = suggest::hint(&body.material, known());
                 return Some((
                     vec!["bodies".into(), name.as_str().into(), "material".into()],
                     format!("there is no material '{}'{hint}", body.material),
@@ -136,9 +134,9 @@ impl Scene {
             let known = || self.bodies.keys().map(String::as_str);
             for body in step.body_force.keys() {
                 if !self.bodies.contains_key(body) {
-                    let near = suggest::nearest(body, known()).unwrap_or_default();
+                    let hint = suggest::hint(body, known());
                     let path = [at(index, "body_force"), vec![body.as_str().into()]].concat();
-                    let message = format!("there is no body '{body}'; did you mean '{near}'?");
+                    let message = format!("there is no body '{body}'{hint}");
                     return Some((path, message));
                 }
             }

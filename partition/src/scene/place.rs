@@ -6,7 +6,7 @@ use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
-use super::suggest::nearest;
+use super::{syntax, wording};
 use crate::error::InputError;
 
 /// One step from a table or an array to what it holds.
@@ -40,12 +40,23 @@ pub(super) fn error_at(text: &str, path: &[Step], message: &str) -> InputError {
 /// What `toml` or `serde` found in `text`, with line and key.
 pub fn located(text: &str, error: &Error) -> InputError {
     let start = error.span().map(|span| span.start);
+    if let (Some(start), Err(_)) = (start, DeTable::parse(text)) {
+        return compose(
+            text,
+            Some(start),
+            &[],
+            &syntax::described(text, start, error.message()),
+        );
+    }
+    // A key that is missing has no place of its own, which the first of the others isn't, either.
+    let is_missing = error.message().starts_with("missing field");
     let path = start
         .and_then(|start| {
             entries(text)
                 .into_iter()
                 .filter_map(|entry| {
-                    let at_key = entry.key.as_ref().is_some_and(|key| key.contains(&start));
+                    let at_key =
+                        !is_missing && entry.key.as_ref().is_some_and(|key| key.contains(&start));
                     let depth = entry.path.len();
                     (at_key || entry.value.contains(&start)).then_some(((at_key, depth), entry))
                 })
@@ -53,7 +64,7 @@ pub fn located(text: &str, error: &Error) -> InputError {
         })
         .map(|(_, entry)| entry.path)
         .unwrap_or_default();
-    compose(text, start, &path, &reworded(error.message()))
+    compose(text, start, &path, &wording::of(error.message()))
 }
 
 /// Reads an array of tables so that what is wrong in one is located there: `toml` gives an error
@@ -113,30 +124,6 @@ fn shown(text: &str, path: &[Step]) -> String {
         }
     }
     shown
-}
-
-/// Serde's words for keys that aren't known, with the nearest that is.
-fn reworded(message: &str) -> String {
-    let word = if message.starts_with("unknown field") {
-        "key"
-    } else if message.starts_with("unknown variant") {
-        "value"
-    } else if let Some(key) = message.strip_prefix("missing field ") {
-        return format!("the key {} is missing", key.replace('`', "'"));
-    } else {
-        return message.replace('`', "'");
-    };
-    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let Some((found, known)) = quoted.split_first() else {
-        return message.to_owned();
-    };
-    match nearest(found, known.iter().copied()) {
-        Some(near) => format!(
-            "unknown {word} '{found}'; did you mean '{near}'? Known here: {}",
-            known.join(", ")
-        ),
-        None => format!("unknown {word} '{found}'"),
-    }
 }
 
 /// A value of the text: how to get there, its key and its own place.

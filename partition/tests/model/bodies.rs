@@ -21,7 +21,8 @@ fn every_cell_knows_its_body_and_material() {
     assert_eq!(model.cell_body, [0, 0, 0, 0, 1, 1, 1, 1]);
     assert_eq!(model.cell_material, [0, 0, 0, 0, 1, 1, 1, 1]);
     assert_eq!(model.materials[1].name, "wood");
-    assert!(model.warnings.is_empty());
+    let no_contact = |warning: &String| warning.contains("touch without a contact");
+    assert!(model.warnings.iter().all(no_contact));
 }
 
 #[test]
@@ -80,8 +81,10 @@ fn a_given_stiffness_is_used_as_it_stands() {
 fn nearly_incompressible_triangles_are_warned_of() {
     let text = "materials.rubber = {young = 1, poisson = 0.49}\nbodies.lower.material = 'rubber'\nbodies.upper.material = 'steel'";
     let model = two().model(text).unwrap();
-    assert_eq!(model.warnings.len(), 1);
-    assert!(model.warnings[0].contains("'rubber'"));
+    let locking = |warning: &&String| warning.contains("lock at");
+    let warnings: Vec<&String> = model.warnings.iter().filter(locking).collect();
+    assert_eq!(warnings.len(), 1);
+    assert!(warnings[0].contains("'rubber'"));
 }
 
 #[test]
@@ -99,7 +102,8 @@ fn cells_in_no_body_are_left_out_with_their_nodes_and_a_warning() {
         .map(|s| model.mesh.points[s.node as usize][1])
         .collect();
     assert_eq!(tops, [2.0; 3]);
-    assert!(model.warnings[0].contains("4 of 8 cells"));
+    let warning = &model.warnings[0];
+    assert!(warning.contains("4 of 8 cells") && warning.contains("the group 'lower' isn't among"));
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod bodies;
 mod close;
 mod contact;
 mod corner;
+mod doubts;
 mod invariance;
 mod loads;
 mod mortar;

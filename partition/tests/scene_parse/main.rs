@@ -1,5 +1,6 @@
 //! Reading scene.toml: every key of it, and what is said about wrong ones.
 
+mod page;
 mod refused;
 
 use contact_dd_partition::model::PlaneState;

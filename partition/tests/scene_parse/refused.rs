@@ -161,12 +161,12 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
         (
             "[\"axis\", \"side\"]",
             "7",
-            "line 24: bilateral[1].on: invalid type: integer '7', expected the name",
+            "line 24: bilateral[1].on: found the number 7; expected the name",
         ),
         (
             "0.6e7",
             "true",
-            "line 30: pressure[1].value: invalid type: boolean",
+            "line 30: pressure[1].value: found true; expected a number or an expression",
         ),
         (
             "name = \"left crack\"",
@@ -206,7 +206,7 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
         (
             "obstacle = { point = [0.0, 0.0], normal = [0.0, 2.0] }",
             "",
-            "contact[2] 'table': 'sides' has 1 entries; expected 2",
+            "contact[2] 'table': 'sides' has 1 entry; expected 2",
         ),
         (
             "\"more\"",
@@ -216,7 +216,7 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
         (
             "gap = 0.0",
             "pairing = 'by the way'",
-            "line 34: contact[1] 'left crack'.pairing: unknown value 'by the way'; did you mean 'mortar'? Known here: nodes, mortar",
+            "line 34: contact[1] 'left crack'.pairing: unknown value 'by the way'. Known here: nodes, mortar",
         ),
         (
             "gap = 0.0",
@@ -257,7 +257,7 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
         (
             "young = 5.2e9",
             "young = 5.2e9\nyoung = 1",
-            "line 8: duplicate key",
+            "line 8: 'young' stands here for the second time",
         ),
         ("[[traction]]", "[[traction]", "line 25: "),
     ] {
@@ -337,5 +337,60 @@ fn steps_that_cannot_be_are_refused_at_their_line_and_key() {
                 || (!expected.starts_with("line") && message.contains(expected)),
             "{message}\n{expected}"
         );
+    }
+}
+
+#[test]
+fn tables_and_lists_of_tables_are_told_apart_in_words_of_the_scene() {
+    for (from, to, expected) in [
+        (
+            "[[pressure]]",
+            "[pressure]",
+            "line 28: pressure: there may be several; expected [[pressure]] in double brackets",
+        ),
+        (
+            "[materials.granite]",
+            "[[materials.granite]]",
+            "line 6: materials.granite: there is one of a name; expected [materials.granite] in single",
+        ),
+        (
+            "[bodies.block]",
+            "[[bodies]]",
+            "bodies: there is one of a name; expected [bodies.NAME] in single brackets",
+        ),
+        (
+            "[[bilateral]]",
+            "[[step]]\n[step.pressure]\non = 'top'\nvalue = 1\n[[bilateral]]",
+            "step[1].pressure: there may be several; expected [[step.pressure]] in double",
+        ),
+    ] {
+        let message = said(from, to);
+        assert!(message.contains(expected), "{message}\n{expected}");
+    }
+}
+
+#[test]
+fn what_is_no_toml_is_said_in_plain_words() {
+    for (from, to, expected) in [
+        (
+            "5.2e9",
+            "5.2e9Pa",
+            "line 7: found 5.2e9Pa; expected a number without a unit: young = 5.2e9",
+        ),
+        (
+            "5.2e9",
+            "5,2e9",
+            "line 7: found 5,2e9; expected a point in the number: 5.2e9",
+        ),
+        (
+            "on = \"top\"",
+            "on = top",
+            "found top; expected it in quotes: on = \"top\"",
+        ),
+        ("mesh  = \"block.msh\"", "", "the key 'mesh' is missing"),
+    ] {
+        let message = said(from, to);
+        assert!(message.contains(expected), "{message}\n{expected}");
+        assert!(!message.contains("title: the key"), "{message}");
     }
 }

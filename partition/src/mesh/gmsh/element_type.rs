@@ -43,8 +43,16 @@ pub(super) fn code(kind: ElementKind) -> i64 {
 /// What to say of an element of a type that isn't supported.
 pub(super) fn unsupported(element: i64, code: i64, name: &str) -> String {
     let known: Vec<&str> = ElementKind::ALL.iter().map(|kind| kind.name()).collect();
+    let is_solid = ["tetrahedron", "hexahedron", "prism", "pyramid"];
+    let advice = match name {
+        _ if is_solid.iter().any(|solid| name.contains(solid)) => {
+            "; scenes lie in the plane: gmsh -2 makes a mesh that does"
+        }
+        _ if name.contains("third or higher") => "; gmsh -order 2 makes quadratic ones",
+        _ => "",
+    };
     format!(
-        "element {element} is of type {code} ({name}), which isn't supported; expected one of: {}",
+        "element {element} is of type {code} ({name}), which isn't supported{advice}; expected one of: {}",
         known.join(", ")
     )
 }
@@ -52,6 +60,19 @@ pub(super) fn unsupported(element: i64, code: i64, name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_solid_is_told_apart_from_a_plane_cell_of_high_order() {
+        for (code, words) in [
+            (4, "scenes lie in the plane"),
+            (11, "scenes lie in the plane"),
+            (21, "gmsh -order 2"),
+        ] {
+            let name = kind(code).unwrap_err();
+            let said = unsupported(7, code, name);
+            assert!(said.contains(words), "{said}");
+        }
+    }
 
     #[test]
     fn every_kind_has_the_number_it_is_read_by() {

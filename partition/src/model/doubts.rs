@@ -1,0 +1,69 @@
+//! What is allowed and all the same is most likely a mistake of the scene: warnings.
+
+mod passing;
+mod repeated;
+mod strains;
+
+use super::bodies::Bodies;
+use super::steps::Loads;
+use super::{Contact, Material};
+use crate::mesh::topology::Topology;
+use crate::scene::Scene;
+
+/// What a model is made of, all of it right by itself.
+pub(super) struct Doubts<'a> {
+    pub scene: &'a Scene,
+    pub bodies: &'a Bodies,
+    pub topology: &'a Topology,
+    pub materials: &'a [Material],
+    pub loads: &'a Loads,
+    pub contacts: &'a [Contact],
+}
+
+impl Doubts<'_> {
+    /// A warning for each.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = self.strains();
+        warnings.extend(self.far_apart());
+        warnings.extend(self.repeated_contacts());
+        warnings.extend(self.passing());
+        warnings
+    }
+
+    /// The largest extent of the bodies (m).
+    fn extent(&self) -> f64 {
+        let points = &self.bodies.mesh.points;
+        let along = |axis: usize| {
+            let coordinates = points.iter().map(|point| point[axis]);
+            let low = coordinates.clone().fold(f64::INFINITY, f64::min);
+            coordinates.fold(f64::NEG_INFINITY, f64::max) - low
+        };
+        (0..3).map(along).fold(0.0, f64::max)
+    }
+
+    /// Contacts whose sides have to go farther than the bodies are large before they touch.
+    fn far_apart(&self) -> Vec<String> {
+        let extent = self.extent();
+        let least = |contact: &Contact| {
+            let gaps = contact.conditions.iter().map(|condition| condition.gap);
+            gaps.reduce(f64::min)
+        };
+        let far = self.contacts.iter().filter_map(|contact| {
+            let gap = least(contact).filter(|&gap| gap > extent)?;
+            Some(format!(
+                "contact '{}': the smallest gap is {} m, and the bodies measure {} m; are place and units right?",
+                contact.name,
+                short(gap),
+                short(extent)
+            ))
+        });
+        far.collect()
+    }
+}
+
+/// A number in four digits.
+pub(super) fn short(number: f64) -> f64 {
+    let rounded = format!("{number:.3e}").parse();
+    // What was written as a number can be read as one.
+    rounded.unwrap_or(number)
+}
