@@ -84,7 +84,11 @@ impl BodyFrame {
             let omega = rotation[0] / self.size;
             let x = self.center[0] - translation[1] / omega;
             let y = self.center[1] + translation[0] / omega;
-            return format!("rotation about ({x:.4e}, {y:.4e})");
+            // Digits below a ten thousandth of the body are round-off.
+            let digits = (4.0 - self.size.log10().floor()).clamp(0.0, 30.0) as usize;
+            let step = 10.0_f64.powi(-(digits as i32));
+            let [x, y] = [x, y].map(|c| (c / step).round() * step + 0.0);
+            return format!("rotation about ({x:.digits$}, {y:.digits$})");
         }
         "rotation".into()
     }
@@ -120,9 +124,11 @@ mod tests {
         let u = frame.displacement(2, &[0.5, 0.25, 0.0], &z);
         assert!((u[0] - about(0.5, 0.25)[0]).abs() < 1e-14);
         assert!((u[1] - about(0.5, 0.25)[1]).abs() < 1e-14);
+        assert_eq!(frame.describe(2, &z), "rotation about (3.0000, -1.0000)");
+        let small = BodyFrame::new([-0.01, -0.01, 0.0], [0.01, 0.01, 0.0]);
         assert_eq!(
-            frame.describe(2, &z),
-            "rotation about (3.0000e0, -1.0000e0)"
+            small.describe(2, &[-1e-19, 2e-19, 1.0]),
+            "rotation about (0.000000, 0.000000)"
         );
         assert_eq!(
             frame.describe(2, &[0.0, -2.0, 0.0]),
