@@ -84,16 +84,12 @@ pub(super) fn conditions(sides: &Sides) -> Result<Vec<ContactCondition>, Unpaire
 }
 
 /// Which of the nodes `partners` in one place on side b node `a` of side a has conditions with, and
-/// its share of each.
+/// its share of each: of what lies opposite facets of side b, as side a may reach beyond it.
 ///
 /// Where corners of several bodies meet in a point, two that lie diagonally across share nothing but
 /// that point, and a condition between them would follow from those between neighbours.
 fn opposite(a: &SideNode, partners: Vec<u32>, sides: &Sides) -> Vec<(u32, f64)> {
-    if let [only] = partners[..] {
-        return vec![(only, a.share)];
-    }
     let mut shares: Vec<f64> = vec![0.0; partners.len()];
-    let mut alone = 0.0;
     for facet in sides.around_a[&a.node].iter().map(|&f| &sides.a.facets[f]) {
         let meets = |b: &u32| {
             let mut facets = sides.around_b[b].iter().map(|&f| &sides.b.facets[f]);
@@ -102,21 +98,14 @@ fn opposite(a: &SideNode, partners: Vec<u32>, sides: &Sides) -> Vec<(u32, f64)> 
         let met: Vec<bool> = partners.iter().map(meets).collect();
         let count = met.iter().filter(|&&met| met).count();
         let own = facet.nodes.iter().position(|&node| node == a.node);
-        let share = own.map_or(0.0, |i| facet.share(i));
-        match count {
-            0 => alone += share,
-            _ => (shares.iter_mut().zip(met).filter(|(_, met)| *met))
-                .for_each(|(sum, _)| *sum += share / count as f64),
-        }
+        let share = own.map_or(0.0, |i| facet.share(i)) / count.max(1) as f64;
+        (shares.iter_mut().zip(met).filter(|(_, met)| *met)).for_each(|(sum, _)| *sum += share);
     }
     if shares.iter().all(|&share| share == 0.0) {
         let share = a.share / partners.len() as f64;
         return partners.into_iter().map(|b| (b, share)).collect();
     }
-    let mut kept: Vec<(u32, f64)> = (partners.into_iter().zip(shares))
+    (partners.into_iter().zip(shares))
         .filter(|&(_, share)| share > 0.0)
-        .collect();
-    let alone = alone / kept.len() as f64;
-    kept.iter_mut().for_each(|(_, share)| *share += alone);
-    kept
+        .collect()
 }

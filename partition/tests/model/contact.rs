@@ -292,3 +292,21 @@ fn many_nodes_a_side_take_no_quadratic_time() {
     assert_eq!(conditions(&blocks, CONTACT).unwrap().len(), n + 1);
     assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
 }
+
+#[test]
+fn shares_end_where_the_other_side_does() {
+    let blocks = Blocks::new()
+        .block("lower", [0.0, 4.0], [0.0, 1.0], [8, 2])
+        .block("upper", [1.0, 3.0], [1.0, 2.0], [4, 2]);
+    for blocks in [blocks.clone(), blocks.quadratic()] {
+        let forth = conditions(&blocks, CONTACT).unwrap();
+        let turned = CONTACT.replace("'lower top', 'upper bottom'", "'upper bottom', 'lower top'");
+        let back = conditions(&blocks, &turned).unwrap();
+        assert_eq!(forth.len(), back.len());
+        for (a, b) in forth.iter().zip(back.iter().rev()) {
+            assert_eq!(a.position, b.position);
+            close(a.share, b.share, 1e-15);
+        }
+        close(forth.iter().map(|row| row.share).sum(), 2.0, 1e-14);
+    }
+}
