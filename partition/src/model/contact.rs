@@ -70,7 +70,7 @@ impl<'a> Contacts<'a> {
         let mut conditions = match &keys.partner {
             Partner::Obstacle(obstacle) => {
                 let nodes = side_nodes(self.mesh, &side_a, &what, &HashSet::new())?;
-                obstacle::conditions(self.mesh, obstacle, nodes)
+                obstacle::conditions(self.mesh, obstacle, &side_a, nodes)
                     .map_err(|reason| InputError::new(format!("{what}: {reason}")))?
             }
             Partner::Side(names) => {

@@ -3,6 +3,7 @@
 use super::ContactCondition;
 use super::sides::SideNode;
 use super::sight::FACING;
+use super::surface::Surface;
 use crate::element::geometry::{difference, dot, length};
 use crate::mesh::Mesh;
 use crate::scene::condition::Obstacle;
@@ -15,6 +16,7 @@ use crate::scene::condition::Obstacle;
 pub(super) fn conditions(
     mesh: &Mesh,
     obstacle: &Obstacle,
+    side: &Surface,
     nodes: Vec<SideNode>,
 ) -> Result<Vec<ContactCondition>, String> {
     if obstacle.dim() != mesh.dim {
@@ -24,6 +26,17 @@ pub(super) fn conditions(
             mesh.dim
         ));
     }
+    let around = side.around();
+    // Of an outline that turns a corner at the node the part that faces the obstacle.
+    let facing_share = |a: &SideNode, normal: [f64; 3]| {
+        let facets = around[&a.node].iter().map(|&f| &side.facets[f]);
+        let shares = facets.filter_map(|facet| {
+            let own = facet.nodes.iter().position(|&node| node == a.node)?;
+            (dot(facet.normal_at(own), normal) >= FACING).then(|| facet.share(own))
+        });
+        let share: f64 = shares.sum();
+        if share > 0.0 { share } else { a.share }
+    };
     let mut conditions = Vec::with_capacity(nodes.len());
     for a in nodes {
         let tag = mesh.node_tags[a.node as usize];
@@ -39,7 +52,7 @@ pub(super) fn conditions(
         conditions.push(ContactCondition {
             entries: vec![(a.node, normal)],
             gap: distance,
-            share: a.share,
+            share: facing_share(&a, normal),
             position: a.position,
             acts_at: a.position,
             normal,

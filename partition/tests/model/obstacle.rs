@@ -67,3 +67,14 @@ fn only_nodes_that_face_an_obstacle_meet_it() {
         "{error}"
     );
 }
+
+#[test]
+fn round_the_corner_of_an_outline_nothing_is_counted() {
+    let text = "[[contact]]\nname = 't'\nsides = [['lower bottom', 'lower left', 'lower right']]\nobstacle = {point = [0, 0], normal = [0, 1]}";
+    for blocks in [stack(0.0), stack(0.0).quadratic()] {
+        let rows = conditions(&blocks, text).unwrap();
+        let bottom: f64 = rows.iter().map(|row| row.share).sum();
+        close(bottom, 2.0, 1e-14);
+        assert!(rows.iter().all(|row| row.position[1] == 0.0));
+    }
+}
