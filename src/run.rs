@@ -239,7 +239,9 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
                 steps,
                 smallest_pivot: interface.smallest_pivot(),
                 ranks,
-                warnings: checkpoints.warnings.clone(),
+                warnings: (checkpoints.warnings.iter().cloned())
+                    .chain(settings.unused())
+                    .collect(),
             };
             let finished = narrator.finish(&totals, outputs);
             if finished.is_ok() && converged {

@@ -126,6 +126,17 @@ impl Settings {
         }
     }
 
+    /// What was asked for in this run and isn't used, in words.
+    pub fn unused(&self) -> Option<String> {
+        let is_asked_for = self.from.of("relaxation") == Origin::CommandLine;
+        (is_asked_for && self.method != Method::Picard).then(|| {
+            format!(
+                "--relaxation goes with --method picard; {} doesn't use it",
+                self.method.name()
+            )
+        })
+    }
+
     /// What becomes of contact when Schur complements are merged.
     pub fn merging(&self) -> Merging {
         merging(self.method)

@@ -7,6 +7,21 @@ use crate::support::solution::{Solution, datasets};
 use crate::{case, granite, report};
 
 #[test]
+fn a_relaxation_that_is_not_used_is_said_to_be_so() {
+    for (method, word) in [("newton", true), ("anderson", true), ("picard", false)] {
+        let case = granite("");
+        let report_file = case.folder().join("report.json");
+        let report_file = report_file.to_str().unwrap();
+        let args = ["--relaxation", "0.08", "--tolerance", "1e-3", "--report"];
+        let ended = case.run(&[&args[..], &[report_file, "--method", method]].concat());
+        assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+        let warnings = report(&case)["warnings"].to_string();
+        let said = warnings.contains("--relaxation goes with --method picard");
+        assert_eq!(said, word, "{method}: {warnings}");
+    }
+}
+
+#[test]
 fn the_first_to_say_something_settles_it() {
     let case = case("[solver]\nmethod = 'anderson'\ntolerance = 1e-7\nmax_sweeps = 50\n");
     let file = case.folder().join("settings.toml");
