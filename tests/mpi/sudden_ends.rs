@@ -8,6 +8,9 @@ const KINDS: [&str; 5] = ["failure", "panic", "abort", "memory", "kill"];
 /// Phases in which nothing returns an error, so that a rank can only end suddenly.
 const WITHOUT_FAILURES: [&str; 3] = ["starting", "sweeping", "recovering"];
 
+/// The phase in which only load steps after the first return errors.
+const OF_LATER_STEPS: &str = "condensing the load";
+
 /// Within this time a rank's end has to be that of all.
 const SOON: Duration = Duration::from_secs(10);
 
@@ -26,7 +29,11 @@ pub fn sudden_ends(trials: &mut Trials) {
             for ranks in RANKS.into_iter().filter(|&ranks| ranks > 1) {
                 let name = format!("sudden_end::{kind}_while_{phase}::on_{ranks}_ranks");
                 trials.once(&name.replace(' ', "_"), move || {
-                    let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 9);
+                    let model = match phase == OF_LATER_STEPS {
+                        true => steps::two_blocks_in_steps(),
+                        false => model(&two_block_scene(), two_blocks().mesh),
+                    };
+                    let case = Case::of(&model, 9);
                     fs::write(case.result(), "the result of yesterday").unwrap();
                     for rank in [0, ranks - 1] {
                         sudden_end(&case, [rank, ranks], kind, phase);
