@@ -163,10 +163,18 @@ impl<'a> Contacts<'a> {
         conditions: &[ContactCondition],
         what: &str,
     ) -> Option<String> {
-        let tags: HashSet<i64> = conditions.iter().map(|condition| condition.tag_a).collect();
+        let normals: HashMap<i64, [f64; 3]> = (conditions
+            .iter()
+            .map(|condition| (condition.tag_a, condition.normal)))
+        .collect();
         let tag = |node: u32| self.mesh.node_tags[node as usize];
+        let nodes = side_a.nodes();
+        let is_mean = |node: u32| {
+            let (used, mean) = (normals.get(&tag(node))?, nodes[&node].normal()?);
+            Some(dot(*used, mean) > 1.0 - 1e-9)
+        };
         let (node, angle, _) = (side_a.turns().into_iter())
-            .find(|&(node, angle, _)| angle > CORNER && tags.contains(&tag(node)))?;
+            .find(|&(node, angle, _)| angle > CORNER && is_mean(node) == Some(true))?;
         let [x, y, _] = self.mesh.points[node as usize].map(short);
         Some(format!(
             "{what}: side a has a corner of {:.0}° at node {}, ({x}, {y}), where it presses along the mean of \

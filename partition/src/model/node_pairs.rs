@@ -5,7 +5,8 @@ use std::collections::HashSet;
 use super::ContactCondition;
 use super::sides::{SideNode, Sides, apart};
 use super::sight::{Met, Target};
-use crate::element::geometry::{advance, dot};
+use super::surface::{CORNER, SurfaceFacet};
+use crate::element::geometry::{advance, dot, length};
 
 /// Why two sides have no pairs of nodes.
 pub(super) enum Unpaired {
@@ -39,15 +40,17 @@ pub(super) fn conditions(sides: &Sides) -> Result<Vec<ContactCondition>, Unpaire
                     unmatched.push((a.node, "b", &sides.b.facets[facet]));
                     continue;
                 }
-                for (b, share) in opposite(a, nodes, sides) {
+                let faced = faced(a, &nodes, sides);
+                let normal = pressed_along(a, &faced);
+                for (b, share) in opposite(a, nodes, &faced) {
                     let to_b = advance(mesh.points[b as usize], -1.0, a.position);
                     conditions.push(ContactCondition {
-                        entries: vec![(a.node, a.normal), (b, a.normal.map(|c| -c))],
-                        gap: dot(to_b, a.normal),
+                        entries: vec![(a.node, normal), (b, normal.map(|c| -c))],
+                        gap: dot(to_b, normal),
                         share,
                         position: a.position,
                         acts_at: a.position,
-                        normal: a.normal,
+                        normal,
                         tag_a: mesh.node_tags[a.node as usize],
                         tag_b: mesh.node_tags[b as usize],
                     });
@@ -83,23 +86,62 @@ pub(super) fn conditions(sides: &Sides) -> Result<Vec<ContactCondition>, Unpaire
     Ok(conditions)
 }
 
+/// A facet of side a around a node, and opposite which of the node's partners a facet of side b lies.
+struct Faced<'a> {
+    facet: &'a SurfaceFacet,
+    partners: Vec<bool>,
+}
+
+/// The facets around node `a`, whose `partners` on side b are in one place.
+fn faced<'a>(a: &SideNode, partners: &[u32], sides: &Sides<'a>) -> Vec<Faced<'a>> {
+    let around = sides.around_a[&a.node].iter().map(|&f| &sides.a.facets[f]);
+    let faced = around.map(|facet| {
+        let meets = |b: &u32| {
+            let mut facets = sides.around_b[b].iter().map(|&f| &sides.b.facets[f]);
+            facets.any(|other| facet.is_opposite(a.node, other, *b, a.normal))
+        };
+        Faced {
+            facet,
+            partners: partners.iter().map(meets).collect(),
+        }
+    });
+    faced.collect()
+}
+
+/// Along which node `a` is pressed: its normal, and in a corner of which one facet looks away from
+/// side b that of those which don't.
+fn pressed_along(a: &SideNode, faced: &[Faced]) -> [f64; 3] {
+    let (mut facing, mut averted) = ([0.0; 3], Vec::new());
+    for Faced { facet, partners } in faced {
+        let Some(own) = facet.nodes.iter().position(|&node| node == a.node) else {
+            continue;
+        };
+        match partners.contains(&true) {
+            true => facing = advance(facing, facet.measure, facet.normal_at(own)),
+            false => averted.push(facet.normal_at(own)),
+        }
+    }
+    let size = length(facing);
+    let is_corner = |&normal: &[f64; 3]| dot(normal, facing) < CORNER.cos() * size;
+    match size > 0.0 && averted.iter().any(is_corner) {
+        true => facing.map(|c| c / size),
+        false => a.normal,
+    }
+}
+
 /// Which of the nodes `partners` in one place on side b node `a` of side a has conditions with, and
 /// its share of each: of what lies opposite facets of side b, as side a may reach beyond it.
 ///
 /// Where corners of several bodies meet in a point, two that lie diagonally across share nothing but
 /// that point, and a condition between them would follow from those between neighbours.
-fn opposite(a: &SideNode, partners: Vec<u32>, sides: &Sides) -> Vec<(u32, f64)> {
+fn opposite(a: &SideNode, partners: Vec<u32>, faced: &[Faced]) -> Vec<(u32, f64)> {
     let mut shares: Vec<f64> = vec![0.0; partners.len()];
-    for facet in sides.around_a[&a.node].iter().map(|&f| &sides.a.facets[f]) {
-        let meets = |b: &u32| {
-            let mut facets = sides.around_b[b].iter().map(|&f| &sides.b.facets[f]);
-            facets.any(|other| facet.is_opposite(a.node, other, *b, a.normal))
-        };
-        let met: Vec<bool> = partners.iter().map(meets).collect();
-        let count = met.iter().filter(|&&met| met).count();
+    for Faced { facet, partners } in faced {
+        let count = partners.iter().filter(|&&met| met).count();
         let own = facet.nodes.iter().position(|&node| node == a.node);
         let share = own.map_or(0.0, |i| facet.share(i)) / count.max(1) as f64;
-        (shares.iter_mut().zip(met).filter(|(_, met)| *met)).for_each(|(sum, _)| *sum += share);
+        (shares.iter_mut().zip(partners).filter(|(_, met)| **met))
+            .for_each(|(sum, _)| *sum += share);
     }
     if shares.iter().all(|&share| share == 0.0) {
         let share = a.share / partners.len() as f64;

@@ -56,3 +56,32 @@ fn a_node_opposite_two_corners_shares_with_each_what_lies_opposite_it() {
     close(shares[0], 0.0625, 1e-15);
     close(shares[1], 0.125, 1e-15);
 }
+
+#[test]
+fn outlines_press_on_each_other_like_the_sides_that_face_each_other() {
+    let outline = |body: &str| {
+        let sides = ["bottom", "right", "top", "left"].map(|side| format!("'{body} {side}'"));
+        format!("[{}]", sides.join(", "))
+    };
+    let contact = |a: &str, b: &str| format!("[[contact]]\nname = 'c'\nsides = [{a}, {b}]");
+    let sides = contact("'lower top'", "'upper bottom'");
+    let outlines = contact(&outline("lower"), &outline("upper"));
+    // As wide as each other, and the lower one wider on both ends.
+    for (ends, n) in [([0.0, 4.0], 8), ([1.0, 3.0], 4)] {
+        let blocks = Blocks::new()
+            .block("lower", [0.0, 4.0], [0.0, 1.0], [8, 2])
+            .block("upper", ends, [1.0, 2.0], [n, 2]);
+        for blocks in [blocks.clone(), blocks.quadratic()] {
+            let expected = conditions(&blocks, &sides).unwrap();
+            let mut found = conditions(&blocks, &outlines).unwrap();
+            found.sort_by(|a, b| b.position[0].total_cmp(&a.position[0]));
+            assert_eq!(found.len(), expected.len());
+            for (found, expected) in found.iter().zip(&expected) {
+                assert_eq!(found.position, expected.position);
+                assert_eq!(found.entries, expected.entries);
+                assert_eq!(found.gap, expected.gap);
+                close(found.share, expected.share, 1e-15);
+            }
+        }
+    }
+}

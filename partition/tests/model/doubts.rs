@@ -83,7 +83,9 @@ fn contacts_between_the_same_facets_are_named() {
 #[test]
 fn a_corner_of_a_side_is_named() {
     let corner = CONTACT.replace("['lower top', 'up", "[['lower top', 'lower left'], 'up");
-    let said = warned(&stack(0.0), &format!("{HELD}{corner}"));
+    assert_eq!(warned(&stack(0.0), &format!("{HELD}{corner}")), "");
+    let mortar = format!("{HELD}{corner}pairing = 'mortar'\n");
+    let said = warned(&stack(0.0), &mortar);
     assert!(
         said.contains("contact 'c': side a has a corner of 90° at node") && said.contains("(0, 1)"),
         "{said}"
