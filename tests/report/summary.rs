@@ -23,10 +23,10 @@ pub fn can_draw() -> bool {
     draws
 }
 
-fn summary(result: &Path) -> Ended {
+fn summary(args: &[&Path]) -> Ended {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/summary");
     // Where there is much else to do, starting Python and its packages takes most of it.
-    Running::start(Command::new(script).arg(result)).wait(4 * LIMIT)
+    Running::start(Command::new(script).args(args)).wait(4 * LIMIT)
 }
 
 /// The page of a run of a built-in scene.
@@ -34,7 +34,7 @@ fn page(scene: &str, options: &[&str], code: i32) -> String {
     let case = Case::of(&built_in_model(scene, 0), 8);
     let ended = case.run(options);
     assert_eq!(ended.code(), code, "{}{}", ended.stdout, ended.stderr);
-    let drawn = summary(&case.result());
+    let drawn = summary(&[&case.result()]);
     assert_eq!(drawn.code(), 0, "{}", drawn.stderr);
     fs::read_to_string(case.result().with_extension("html")).unwrap()
 }
@@ -70,7 +70,7 @@ fn what_is_no_result_gets_no_page() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("other.vtkhdf");
     fs::write(&file, "other").unwrap();
-    let refused = summary(&file);
+    let refused = summary(&[&file]);
     assert_eq!(refused.code(), 2);
     let said = &refused.stderr;
     assert!(said.contains("other.vtkhdf: isn't a result"), "{said}");
@@ -86,13 +86,11 @@ fn a_scene_in_millimetres_has_its_page_in_pascals() {
     assert_eq!(case.run(&[]).code(), 0);
     let pages = ["m.html", "mm.html"].map(|name| {
         let page = case.folder().join(name);
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/summary");
-        let mut command = Command::new(script);
-        command.arg(case.result()).arg(&page);
-        if name == "mm.html" {
-            command.arg("--mm");
-        }
-        let drawn = Running::start(&mut command).wait(4 * LIMIT);
+        let result = case.result();
+        let drawn = match name {
+            "mm.html" => summary(&[&result, &page, Path::new("--mm")]),
+            _ => summary(&[&result, &page]),
+        };
         assert_eq!(drawn.code(), 0, "{}", drawn.stderr);
         fs::read_to_string(page).unwrap()
     });
@@ -111,9 +109,7 @@ fn a_second_result_is_not_taken_for_the_name_of_the_page() {
     let folder = tempfile::tempdir().unwrap();
     let other = folder.path().join("other.vtkhdf");
     fs::write(&other, "other").unwrap();
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/summary");
-    let mut command = Command::new(script);
-    let refused = Running::start(command.arg(case.result()).arg(&other)).wait(4 * LIMIT);
+    let refused = summary(&[&case.result(), &other]);
     assert_eq!(refused.code(), 2);
     let said = &refused.stderr;
     assert!(
