@@ -18,8 +18,8 @@ use crate::scene::condition::{self, Names, Pairing, Partner};
 /// Gaps are exact to this fraction of the scene's coordinates.
 const ROUNDING: f64 = 1e-12;
 
-/// Negative gaps are worth a warning beyond this fraction of the scene's coordinates: less is how
-/// quadratic edges follow an arc.
+/// Negative gaps are worth a warning beyond this fraction of the side's extent: less is how quadratic
+/// edges follow an arc.
 const SEEN: f64 = 1e-8;
 
 /// Part of an interference from which on it matters that straight facets stand off a curve.
@@ -112,7 +112,7 @@ impl<'a> Contacts<'a> {
         }
         let slack = ROUNDING * self.size;
         let deepest = conditions.iter().map(|c| c.gap).fold(0.0, f64::min);
-        let seen = SEEN * self.size;
+        let seen = slack.max(SEEN * side_a.extent());
         if deepest < -seen {
             let count = conditions.iter().filter(|c| c.gap < -seen).count();
             let facets = match off > FELT * -deepest {

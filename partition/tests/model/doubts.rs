@@ -144,3 +144,10 @@ fn places_far_away_are_named() {
         "{said}"
     );
 }
+
+#[test]
+fn an_interference_is_named_however_far_away_the_scene_lies() {
+    let far = stack(-1e-3).moved(|[x, y, z]| [x + 1e6, y - 1e6, z]);
+    let said = warned(&far, &format!("{HELD}{CONTACT}"));
+    assert!(said.contains("an interference fit of up to"), "{said}");
+}
