@@ -1,6 +1,6 @@
 //! Scenes with exact answers, refined step by step: errors and the orders with which they vanish.
 //!
-//! `tests/validation.rs` holds the first refinements against gates; `scripts/validate` runs more and
+//! `tests/scenes/validation.rs` holds the first refinements against gates; `scripts/validate` runs more and
 //! writes all into docs/validation.md.
 
 pub mod beam;

@@ -32,7 +32,7 @@ dual spaces for the Lagrange multiplier*, SIAM J. Numer. Anal. 38 (2000).
 
 Mesh: blocks of 2 × 1 m turned by 0.4, 3 cells of uneven widths along the joint below and 7 above, or twice
 as many and so on. Overlaps in part, three blocks in a pile, cracks whose tips are shared and cuts that
-meet the contact are in `tests/mortar`.
+meet the contact are in `tests/scenes/mortar`.
 ";
 
 const JUNCTION: &str = "\

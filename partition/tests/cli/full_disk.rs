@@ -1,0 +1,33 @@
+//! Problem files for which there is no space.
+
+use std::process::Command;
+
+use crate::mounted::Mounted;
+
+#[test]
+fn a_problem_file_without_space_leaves_the_older_one_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("output");
+    // The problem file has some 380 kB.
+    for (place, words) in [
+        (Mounted::OfSize(4 << 10), "no space is left"),
+        (Mounted::OfSize(20 << 10), "no space is left"),
+        (Mounted::OfSize(150 << 10), "no space is left"),
+        (Mounted::OfSize(340 << 10), "no space is left"),
+        (Mounted::ReadOnly, "read-only"),
+    ] {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_contact-dd-partition"));
+        program.args(["--example", "granite", "-n", "8", "-o"]);
+        program.arg(&output);
+        let Some(mut program) = place.around(folder.path(), &program) else {
+            eprintln!("skipped: nothing may be mounted here");
+            return;
+        };
+        let ended = program.output().unwrap();
+        let said = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!(ended.status.code(), Some(5), "{place:?}: {said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+        assert!(said.contains(&output.display().to_string()), "{said}");
+        assert!(said.contains(words), "{said}");
+    }
+}

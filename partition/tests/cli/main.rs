@@ -1,0 +1,10 @@
+//! The program as a user starts it.
+
+#![expect(clippy::unwrap_used, reason = "a test that can't go on has failed")]
+
+mod full_disk;
+mod info;
+#[path = "../../../tests/support/mounted.rs"]
+mod mounted;
+mod program;
+mod refusals;

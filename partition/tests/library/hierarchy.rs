@@ -1,0 +1,276 @@
+//! Laws of the tree along which subdomains are merged.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::LazyLock;
+
+use crate::problem_scenes::{cracked, shuffled, stacked};
+use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::flops::Front;
+use contact_dd_partition::model::Model;
+use contact_dd_partition::problem::hierarchy::Hierarchy;
+use contact_dd_partition::problem::read::ProblemFile;
+use contact_dd_partition::problem::{Catalog, Problem};
+use proptest::prelude::*;
+
+fn problem(model: &Model, count: usize) -> Problem {
+    let decomposition = Decomposition::new(model, Some(count)).unwrap();
+    Problem::new(model, &decomposition).unwrap()
+}
+
+fn problems() -> Vec<Problem> {
+    let crack = cracked(30, &[(0, 9), (21, 30)]);
+    let stack = shuffled(&stacked(3, 20, 12), 7);
+    let mut problems = vec![problem(&stacked(1, 2, 2), 1), problem(&stacked(2, 5, 3), 2)];
+    for count in [8, 13, 40] {
+        problems.push(problem(&crack, count));
+        problems.push(problem(&stack, count));
+        problems.push(problem(&stacked(1, 25, 25), count));
+    }
+    problems
+}
+
+/// The subdomains under every node of a tree.
+fn under(catalog: &Catalog, hierarchy: &Hierarchy) -> Vec<BTreeSet<usize>> {
+    let mut under: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); hierarchy.parent.len()];
+    for subdomain in 0..catalog.subdomains.len() {
+        let mut node = Some(subdomain as u32);
+        while let Some(at) = node {
+            under[at as usize].insert(subdomain);
+            node = hierarchy.parent[at as usize];
+        }
+    }
+    under
+}
+
+/// The children of a node; all members of a group are one.
+fn children(catalog: &Catalog, hierarchy: &Hierarchy, node: usize) -> Vec<BTreeSet<usize>> {
+    let under = under(catalog, hierarchy);
+    let group = |i: usize| catalog.subdomains.get(i).and_then(|s| s.group);
+    let mut children: Vec<(Option<usize>, BTreeSet<usize>)> = Vec::new();
+    for (child, set) in under.iter().enumerate() {
+        if hierarchy.parent[child] != Some(node as u32) {
+            continue;
+        }
+        let known = children
+            .iter_mut()
+            .find(|(of, _)| of.is_some() && *of == group(child));
+        match known {
+            Some((_, whole)) => whole.extend(set),
+            None => children.push((group(child), set.clone())),
+        }
+    }
+    children.into_iter().map(|(_, set)| set).collect()
+}
+
+/// The front of an inner node by its definition.
+fn front(catalog: &Catalog, hierarchy: &Hierarchy, node: usize) -> Front {
+    let children = children(catalog, hierarchy, node);
+    let here: BTreeSet<usize> = children.iter().flatten().copied().collect();
+    let (mut eliminated, mut kept) = (0, 0);
+    for number in 0..catalog.interface_nodes as u32 {
+        let owners: BTreeSet<usize> = (0..catalog.subdomains.len())
+            .filter(|&s| catalog.interface[s].contains(&number))
+            .collect();
+        let within_a_group = owners.iter().all(|&s| {
+            let group = catalog.subdomains[s].group;
+            group.is_some() && group == catalog.subdomains[*owners.first().unwrap()].group
+        });
+        if within_a_group || owners.is_disjoint(&here) {
+            continue;
+        }
+        if !owners.is_subset(&here) {
+            kept += catalog.dim;
+        } else if !children.iter().any(|child| owners.is_subset(child)) {
+            eliminated += catalog.dim;
+        }
+    }
+    let groups: BTreeSet<usize> = here
+        .iter()
+        .filter_map(|&s| catalog.subdomains[s].group)
+        .collect();
+    kept += groups.iter().map(|&g| catalog.groups[g]).sum::<usize>();
+    Front { eliminated, kept }
+}
+
+/// What docs/problem-file.md says of a tree.
+fn holds(catalog: &Catalog, parent: &[i64]) -> bool {
+    let (subdomains, nodes) = (catalog.subdomains.len(), parent.len());
+    let later = |(node, &p): (usize, &i64)| {
+        p == -1 || (p > node as i64 && p >= subdomains as i64 && p < nodes as i64)
+    };
+    if nodes < subdomains
+        || !parent.iter().enumerate().all(later)
+        || (subdomains..nodes).any(|inner| !parent.contains(&(inner as i64)))
+    {
+        return false;
+    }
+    let group = |s: usize| catalog.subdomains[s].group;
+    let root = |s: usize| {
+        let mut at = s;
+        while parent[at] != -1 {
+            at = parent[at] as usize;
+        }
+        at
+    };
+    (0..subdomains).all(|a| {
+        (0..a).all(|b| {
+            let of_one = group(a).is_some() && group(a) == group(b);
+            let shared = catalog.interface[a]
+                .iter()
+                .any(|n| catalog.interface[b].contains(n));
+            match of_one {
+                true => parent[a] == parent[b],
+                false => !shared || root(a) == root(b),
+            }
+        })
+    })
+}
+
+fn numbers(hierarchy: &Hierarchy) -> Vec<i64> {
+    let parents = hierarchy.parent.iter();
+    parents.map(|p| p.map_or(-1, i64::from)).collect()
+}
+
+/// Replaces the tree of a file; `None` takes it out.
+fn plant(path: &Path, parent: Option<&[i64]>) {
+    let file = hdf5::File::open_rw(path).unwrap();
+    if file.link_exists("hierarchy") {
+        file.unlink("hierarchy").unwrap();
+    }
+    if let Some(parent) = parent {
+        let group = file.create_group("hierarchy").unwrap();
+        let dataset = group.new_dataset::<i64>().shape(parent.len());
+        let dataset = dataset.create("parent").unwrap();
+        dataset.write_raw(parent).unwrap();
+    }
+    file.close().unwrap();
+}
+
+#[test]
+fn a_tree_is_binary_and_what_the_format_asks_for() {
+    for problem in problems() {
+        let catalog = &problem.catalog;
+        let hierarchy = &catalog.hierarchy;
+        assert!(holds(catalog, &numbers(hierarchy)), "{hierarchy:?}");
+        for inner in catalog.subdomains.len()..hierarchy.parent.len() {
+            assert_eq!(children(catalog, hierarchy, inner).len(), 2);
+        }
+    }
+}
+
+#[test]
+fn fronts_are_what_their_definition_says() {
+    for problem in problems() {
+        let catalog = &problem.catalog;
+        let fronts = catalog.hierarchy.work(catalog).fronts;
+        for (inner, &found) in (catalog.subdomains.len()..).zip(&fronts) {
+            assert_eq!(found, front(catalog, &catalog.hierarchy, inner));
+        }
+    }
+}
+
+#[test]
+fn halves_are_even() {
+    let crack = cracked(60, &[(0, 18), (42, 60)]);
+    for problem in [
+        problem(&stacked(1, 50, 50), 64),
+        problem(&crack, 90),
+        problem(&crack, 200),
+    ] {
+        let catalog = &problem.catalog;
+        let uneven = catalog
+            .hierarchy
+            .uneven_halves(&catalog.hierarchy.work(catalog));
+        assert!((1.0..1.06).contains(&uneven), "{uneven}");
+    }
+}
+
+#[test]
+fn in_its_order_what_is_under_a_node_is_one_slice() {
+    for problem in problems() {
+        let tags = |problem: &Problem| -> BTreeSet<Vec<i64>> {
+            let subdomains = problem.subdomains.iter();
+            subdomains.map(|s| s.node_tags.clone()).collect()
+        };
+        let ordered = problem.clone().in_order_of_hierarchy();
+        let catalog = &ordered.catalog;
+        for set in under(catalog, &catalog.hierarchy) {
+            let (first, last) = (*set.first().unwrap(), *set.last().unwrap());
+            assert_eq!(last + 1 - first, set.len(), "{:?}", catalog.hierarchy);
+        }
+        assert_eq!(tags(&ordered), tags(&problem));
+        let fronts = |catalog: &Catalog| catalog.hierarchy.work(catalog).fronts;
+        assert_eq!(fronts(catalog), fronts(&problem.catalog));
+        // The order is one already, and the whole is still a problem that can be read.
+        assert_eq!(ordered.clone().in_order_of_hierarchy(), ordered);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("problem.h5");
+        ordered.write(&path).unwrap();
+        let read = ProblemFile::open(&path).unwrap().problem().unwrap();
+        assert_eq!(read, ordered);
+    }
+}
+
+#[test]
+fn a_file_without_a_tree_gets_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("problem.h5");
+    let problem = problem(&cracked(20, &[(0, 6)]), 12);
+    problem.write(&path).unwrap();
+    plant(&path, None);
+    assert_eq!(
+        ProblemFile::open(&path).unwrap().catalog(),
+        &problem.catalog
+    );
+}
+
+#[test]
+fn trees_with_one_child_or_many_are_taken_as_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("problem.h5");
+    let problem = problem(&stacked(2, 12, 6), 9);
+    problem.write(&path).unwrap();
+    // All nine under one, and two more on top of it.
+    let parent = [&[9; 9][..], &[10, 11, -1]].concat();
+    plant(&path, Some(&parent));
+    let file = ProblemFile::open(&path).unwrap();
+    let catalog = file.catalog();
+    assert_eq!(numbers(&catalog.hierarchy), parent);
+    for (inner, front_of) in (9..).zip(catalog.hierarchy.work(catalog).fronts) {
+        assert_eq!(front_of, front(catalog, &catalog.hierarchy, inner));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn a_tree_is_refused_exactly_where_it_breaks_the_format(
+        changes in prop::collection::vec((0usize..20, -2i64..22), 0..3),
+        more in prop::collection::vec(-1i64..22, 0..3),
+        loose in any::<bool>(),
+    ) {
+        static PROBLEM: LazyLock<Problem> = LazyLock::new(|| problem(&stacked(2, 8, 4), 7));
+        let problem = &*PROBLEM;
+        // Either the tool's tree or one root above all, then damaged.
+        let mut parent = match loose {
+            true => [vec![7i64; 7], vec![-1]].concat(),
+            false => numbers(&problem.catalog.hierarchy),
+        };
+        for (at, value) in changes {
+            let rows = parent.len();
+            parent[at % rows] = value;
+        }
+        parent.extend(more);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("problem.h5");
+        problem.write(&path).unwrap();
+        plant(&path, Some(&parent));
+        let read = ProblemFile::open(&path);
+        prop_assert_eq!(read.is_ok(), holds(&problem.catalog, &parent), "{:?}: {:?}", parent, read);
+        if let Err(error) = read {
+            prop_assert!(error.to_string().contains("dataset /hierarchy/parent"));
+        }
+    }
+}

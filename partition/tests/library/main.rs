@@ -1,0 +1,16 @@
+//! What the library makes of scenes and meshes.
+
+#![expect(clippy::unwrap_used, reason = "a test that can't go on has failed")]
+
+mod blocks;
+#[path = "../../../tests/support/close.rs"]
+mod close;
+mod decompose;
+mod element;
+mod example;
+mod gmsh;
+mod hierarchy;
+mod model;
+mod problem;
+mod problem_scenes;
+mod scene;

@@ -1,0 +1,14 @@
+//! What a scene means on its mesh.
+
+mod bodies;
+mod contact;
+mod corner;
+mod doubts;
+mod invariance;
+mod loads;
+mod mortar;
+mod mortar_discs;
+mod obstacle;
+mod quadratic;
+mod steps;
+mod supports;

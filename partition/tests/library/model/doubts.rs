@@ -1,0 +1,153 @@
+//! What is allowed and all the same warned of.
+
+use super::contact::stack;
+use crate::blocks::Blocks;
+
+const HELD: &str = "[[displacement]]\non = 'lower bottom'\nx = 0\ny = 0\n";
+const CONTACT: &str = "[[contact]]\nname = 'c'\nsides = ['lower top', 'upper bottom']\n";
+const TABLE: &str = "[[contact]]\nname = 'table'\nsides = ['lower bottom']\n";
+
+/// All that is warned of, line by line.
+fn warned(blocks: &Blocks, text: &str) -> String {
+    blocks.model(text).unwrap().warnings.join("\n")
+}
+
+/// Two blocks that lie on each other, and whose nodes don't match.
+fn uneven() -> Blocks {
+    Blocks::new()
+        .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 2])
+        .block("upper", [0.5, 1.5], [1.0, 2.0], [3, 2])
+}
+
+#[test]
+fn bodies_that_touch_without_a_contact_are_named() {
+    for blocks in [
+        stack(0.0),
+        uneven(),
+        stack(0.0).quadratic(),
+        stack(0.0).disguised(),
+    ] {
+        let said = warned(&blocks, HELD);
+        assert!(
+            said.starts_with("bodies 'lower' and 'upper' touch without a contact, as at ("),
+            "{said}"
+        );
+        assert_eq!(said.lines().count(), 1);
+        assert_eq!(warned(&blocks, &format!("{HELD}{CONTACT}")), "");
+    }
+    assert_eq!(warned(&stack(1e-3), HELD), "");
+}
+
+#[test]
+fn a_crack_without_a_contact_is_named() {
+    // Glued at their right ends, the two blocks are one body with a crack.
+    let mut cracked = stack(0.0);
+    let below = cracked.node(2.0, 1.0);
+    let twin = (cracked.mesh.points.iter())
+        .rposition(|p| p[0] == 2.0 && p[1] == 1.0)
+        .unwrap() as u32;
+    for e in 0..cracked.mesh.cells.len() {
+        let nodes = cracked.mesh.cells.nodes_of_mut(e).iter_mut();
+        nodes
+            .filter(|node| **node == twin)
+            .for_each(|node| *node = below);
+    }
+    for e in 0..cracked.mesh.facets.len() {
+        let nodes = cracked.mesh.facets.nodes_of_mut(e).iter_mut();
+        nodes
+            .filter(|node| **node == twin)
+            .for_each(|node| *node = below);
+    }
+    assert!(warned(&cracked, HELD).contains("touch without a contact"));
+    assert_eq!(warned(&cracked, &format!("{HELD}{CONTACT}")), "");
+}
+
+#[test]
+fn contacts_between_the_same_facets_are_named() {
+    let again = "[[contact]]\nname = 'again'\nsides = ['upper bottom', 'lower top']\n";
+    let said = warned(&stack(0.0), &format!("{HELD}{CONTACT}{again}"));
+    assert!(
+        said.contains("contact 'again': there is contact 'c' between the same facets"),
+        "{said}"
+    );
+    let floor = |name: &str, y: f64| {
+        TABLE.replace("table", name)
+            + &format!("obstacle = {{point = [0, {y}], normal = [0, 1]}}\n")
+    };
+    let twice = floor("floor", 0.0) + &floor("again", 0.0);
+    assert!(warned(&stack(0.0), &format!("{CONTACT}{twice}")).contains("contact 'again'"));
+    let steps = floor("floor", 0.0) + &floor("lower floor", -0.5);
+    assert_eq!(warned(&stack(0.0), &format!("{CONTACT}{steps}")), "");
+}
+
+#[test]
+fn a_corner_of_a_side_is_named() {
+    let corner = CONTACT.replace("['lower top', 'up", "[['lower top', 'lower left'], 'up");
+    assert_eq!(warned(&stack(0.0), &format!("{HELD}{corner}")), "");
+    let mortar = format!("{HELD}{corner}pairing = 'mortar'\n");
+    let said = warned(&stack(0.0), &mortar);
+    assert!(
+        said.contains("contact 'c': side a has a corner of 90° at node") && said.contains("(0, 1)"),
+        "{said}"
+    );
+    let on_b = CONTACT.replace("'upper bottom'", "['upper bottom', 'upper left']");
+    assert_eq!(warned(&stack(0.0), &format!("{HELD}{on_b}")), "");
+}
+
+#[test]
+fn loads_beyond_the_stiffness_and_ways_beyond_the_size_are_named() {
+    let load =
+        |value: &str| format!("{HELD}{CONTACT}[[pressure]]\non = 'upper top'\nvalue = {value}\n");
+    assert_eq!(warned(&stack(0.0), &load("2")), "");
+    let said = warned(&stack(0.0), &load("'-1e3*x'"));
+    assert!(
+        said.contains(
+            "pressure[1] on 'upper top': up to 2000 Pa on 'steel' of a stiffness of 240 Pa"
+        ),
+        "{said}"
+    );
+    let traction = "[[traction]]\non = 'upper top'\nvalue = [0, 300]\n";
+    let scaled = format!("{HELD}{CONTACT}{traction}[[step]]\nscale = 0.01\n[[step]]\nscale = 1\n");
+    let said = warned(&stack(0.0), &scaled);
+    assert!(
+        said.starts_with("traction[1] on 'upper top': up to 300 Pa"),
+        "{said}"
+    );
+    assert_eq!(said.lines().count(), 1);
+    let pushed = format!("{HELD}{CONTACT}[[displacement]]\non = 'upper top'\ny = -5\n");
+    let said = warned(&stack(0.0), &pushed);
+    assert!(
+        said.contains(
+            "displacement[2] on 'upper top': a displacement of 5 m, and the bodies measure 2 m"
+        ),
+        "{said}"
+    );
+    assert_eq!(said.lines().count(), 1);
+}
+
+#[test]
+fn places_far_away_are_named() {
+    let far = format!("{CONTACT}{TABLE}obstacle = {{point = [0, -50], normal = [0, 1]}}\n");
+    let said = warned(&stack(0.0), &far);
+    assert!(
+        said.contains("contact 'table': the smallest gap is 50 m, and the bodies measure 2 m"),
+        "{said}"
+    );
+    let given = format!("{HELD}{CONTACT}gap = 0\n");
+    assert_eq!(warned(&stack(0.5), &given), "");
+    let high = Blocks::new()
+        .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 2])
+        .block("upper", [0.0, 2.0], [4.0, 5.0], [4, 2]);
+    let said = warned(&high, &given);
+    assert!(
+        said.contains("contact 'c'.gap: it is 0 m where the mesh has 3 m"),
+        "{said}"
+    );
+}
+
+#[test]
+fn an_interference_is_named_however_far_away_the_scene_lies() {
+    let far = stack(-1e-3).moved(|[x, y, z]| [x + 1e6, y - 1e6, z]);
+    let said = warned(&far, &format!("{HELD}{CONTACT}"));
+    assert!(said.contains("an interference fit of up to"), "{said}");
+}

@@ -1,0 +1,361 @@
+//! Every defect of a problem file is an error that names the file, the dataset and the row.
+
+mod contradictions;
+mod files;
+mod settings;
+
+use std::path::Path;
+
+use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::problem::Problem;
+use contact_dd_partition::problem::read::ProblemFile;
+use crate::problem_scenes::stacked;
+
+fn stack(blocks: usize) -> Problem {
+    let model = stacked(blocks, 4, 3);
+    let decomposition = Decomposition::new(&model, Some(4)).unwrap();
+    Problem::new(&model, &decomposition).unwrap()
+}
+
+fn problem() -> Problem {
+    stack(2)
+}
+
+fn write(path: &Path) {
+    problem().write(path).unwrap();
+}
+
+/// A file with two contacts.
+fn write_two_joints(path: &Path) {
+    stack(3).write(path).unwrap();
+}
+
+/// Overwrites entry `at` of a dataset (counted through all dimensions).
+fn set<T: hdf5::H5Type + Clone>(file: &hdf5::File, name: &str, at: usize, value: T) {
+    let dataset = file.dataset(name).unwrap();
+    let mut data = dataset.read_raw::<T>().unwrap();
+    data[at] = value;
+    dataset.write_raw(&data).unwrap();
+}
+
+/// Replaces a dataset by one of another shape or type.
+fn replace<T: hdf5::H5Type>(file: &hdf5::File, name: &str, shape: &[usize], data: &[T]) {
+    file.unlink(name).unwrap();
+    let dataset = file.new_dataset::<T>().shape(shape).create(name).unwrap();
+    dataset.write_raw(data).unwrap();
+}
+
+type Defect = (&'static str, fn(&hdf5::File), &'static [&'static str]);
+
+/// Fails unless a file that `write` makes is refused with all words once it is damaged.
+fn refuse(write: fn(&Path), what: &str, damage: &dyn Fn(&hdf5::File), words: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("problem.h5");
+    write(&path);
+    ProblemFile::open(&path).unwrap().problem().unwrap();
+    let file = hdf5::File::open_rw(&path).unwrap();
+    damage(&file);
+    file.close().unwrap();
+    let message = match ProblemFile::open(&path).and_then(|file| file.problem()) {
+        Ok(_) => panic!("{what}: accepted"),
+        Err(error) => error.to_string(),
+    };
+    assert!(message.starts_with(path.to_str().unwrap()), "{message}");
+    for word in words {
+        assert!(message.contains(word), "{what}: {message}");
+    }
+}
+
+fn refuses(write: fn(&Path), defects: &[Defect]) {
+    for (what, damage, words) in defects {
+        refuse(write, what, damage, words);
+    }
+}
+
+#[test]
+fn every_defect_is_named() {
+    let defects: &[Defect] = &[
+        (
+            "no format",
+            |f| f.delete_attr("format").unwrap(),
+            &["format"],
+        ),
+        (
+            "another version",
+            |f| f.attr("version").unwrap().write_scalar(&9i64).unwrap(),
+            &["version 9", "expected 1"],
+        ),
+        (
+            "three dimensions",
+            |f| f.attr("dimension").unwrap().write_scalar(&3i64).unwrap(),
+            &["dimension is 3", "expected 2"],
+        ),
+        (
+            "missing points",
+            |f| f.unlink("/VTKHDF/Points").unwrap(),
+            &["/VTKHDF/Points is missing"],
+        ),
+        (
+            "flat points",
+            |f| replace(f, "/VTKHDF/Points", &[2, 2], &[0.0; 4]),
+            &["/VTKHDF/Points", "[2, 2]", "[any, 3]"],
+        ),
+        (
+            "point that isn't finite",
+            |f| set(f, "/VTKHDF/Points", 3, f64::NAN),
+            &["/VTKHDF/Points, row 1", "finite"],
+        ),
+        (
+            "point beside the plane",
+            |f| set(f, "/VTKHDF/Points", 5, 1.0),
+            &["/VTKHDF/Points, row 1", "expected 0"],
+        ),
+        (
+            "sizes that don't add up",
+            |f| set(f, "/VTKHDF/NumberOfPoints", 3, 1i64),
+            &["/VTKHDF/NumberOfPoints", "/VTKHDF/Points"],
+        ),
+        (
+            "a size beyond all measure",
+            |f| set(f, "/VTKHDF/NumberOfCells", 0, i64::MAX),
+            &["/VTKHDF/NumberOfCells, row 0"],
+        ),
+        (
+            "cell type",
+            |f| set(f, "/VTKHDF/Types", 2, 10u8),
+            &[
+                "/VTKHDF/Types, row 2",
+                "type 10",
+                "expected 5 (triangle of 3 nodes), 22 (triangle of 6 nodes), 9 (",
+            ],
+        ),
+        (
+            "type of a line",
+            |f| set(f, "/VTKHDF/Types", 2, 21u8),
+            &["/VTKHDF/Types, row 2", "type 21", "expected 5"],
+        ),
+        (
+            "type of more nodes",
+            |f| set(f, "/VTKHDF/Types", 2, 9u8),
+            &["/VTKHDF/Offsets, row 2", "expected 6 to 10"],
+        ),
+        (
+            "node of a cell",
+            |f| set(f, "/VTKHDF/Connectivity", 4, 999i64),
+            &["/VTKHDF/Connectivity, row 4", "999"],
+        ),
+        (
+            "offset of a cell",
+            |f| set(f, "/VTKHDF/Offsets", 1, 4i64),
+            &["/VTKHDF/Offsets", "expected 0 to 3"],
+        ),
+        (
+            "cell turned over",
+            |f| {
+                let nodes: Vec<i64> = f
+                    .dataset("/VTKHDF/Connectivity")
+                    .unwrap()
+                    .read_raw()
+                    .unwrap();
+                set(f, "/VTKHDF/Connectivity", 0, nodes[1]);
+                set(f, "/VTKHDF/Connectivity", 1, nodes[0]);
+            },
+            &["/VTKHDF/Connectivity, row 0", "counter-clockwise"],
+        ),
+        (
+            "tag that occurs twice",
+            |f| {
+                let name = "/VTKHDF/PointData/GlobalNodeId";
+                let tags: Vec<i64> = f.dataset(name).unwrap().read_raw().unwrap();
+                set(f, name, 1, tags[0]);
+            },
+            &["GlobalNodeId, row 1"],
+        ),
+        (
+            "material of a cell",
+            |f| set(f, "/VTKHDF/CellData/Material", 0, 7i64),
+            &["/VTKHDF/CellData/Material, row 0", "expected 0 to 1"],
+        ),
+        (
+            "stiffness that isn't symmetric",
+            |f| set(f, "/materials/stiffness", 1, 99.0),
+            &["/materials/stiffness, row 0", "symmetric"],
+        ),
+        (
+            "stiffness that isn't positive",
+            |f| set(f, "/materials/stiffness", 9, -2.0),
+            &["/materials/stiffness, row 1", "positive"],
+        ),
+        (
+            "poisson",
+            |f| set(f, "/materials/poisson", 0, 0.7),
+            &["/materials/poisson, row 0", "0.7"],
+        ),
+        (
+            "half a row out of plane",
+            |f| set(f, "/materials/out_of_plane", 0, f64::NAN),
+            &["/materials/out_of_plane, row 0"],
+        ),
+        (
+            "body",
+            |f| set(f, "/subdomains/body", 0, 5i64),
+            &["/subdomains/body, row 0", "5 is no body"],
+        ),
+        (
+            "group",
+            |f| set(f, "/subdomains/group", 0, -2i64),
+            &["/subdomains/group, row 0", "-1"],
+        ),
+        (
+            "tree without a row for each subdomain",
+            |f| replace(f, "/hierarchy/parent", &[3], &[-1i64; 3]),
+            &["/hierarchy/parent", "3 rows", "4 subdomains"],
+        ),
+        (
+            "parent that is a subdomain",
+            |f| set(f, "/hierarchy/parent", 0, 1i64),
+            &["/hierarchy/parent, row 0", "1 is no parent", "4 to 5"],
+        ),
+        (
+            "parent before its child",
+            |f| set(f, "/hierarchy/parent", 4, 4i64),
+            &["/hierarchy/parent, row 4", "expected -1", "5 to 5"],
+        ),
+        (
+            "inner node without a child",
+            |f| replace(f, "/hierarchy/parent", &[5], &[-1i64; 5]),
+            &["/hierarchy/parent, row 4", "no child"],
+        ),
+        (
+            "group that is torn apart",
+            |f| {
+                let group: Vec<i64> = f.dataset("/subdomains/group").unwrap().read_raw().unwrap();
+                let last = group.iter().rposition(|&g| g == 0).unwrap();
+                set(f, "/hierarchy/parent", last, -1i64);
+            },
+            &["/hierarchy/parent", "of the same group"],
+        ),
+        (
+            "neighbours under two roots",
+            |f| replace(f, "/hierarchy/parent", &[4], &[-1i64; 4]),
+            &["/hierarchy/parent", "share the node", "roots"],
+        ),
+        (
+            "offsets that fall",
+            |f| set(f, "/interface/offset", 1, 1000i64),
+            &["/interface/offset, row 1", "1000"],
+        ),
+        (
+            "interface in disorder",
+            |f| set(f, "/interface/interface", 0, 4i64),
+            &["/interface/interface"],
+        ),
+        (
+            "interface node",
+            |f| set(f, "/interface/node", 0, -1i64),
+            &["/interface/node, row 0", "-1"],
+        ),
+        (
+            "direction that isn't a unit vector",
+            |f| set(f, "/support/direction", 0, 2.0),
+            &["/support/direction, row 0", "expected 1"],
+        ),
+        (
+            "directions that aren't orthogonal",
+            |f| {
+                set(f, "/support/direction", 2, 0.6);
+                set(f, "/support/direction", 3, 0.8);
+            },
+            &["/support/direction, row 1", "orthogonal"],
+        ),
+        (
+            "nodes that aren't integers",
+            |f| {
+                let rows = f.dataset("/support/node").unwrap().shape()[0];
+                replace(f, "/support/node", &[rows], &vec![0.5; rows]);
+            },
+            &["/support/node", "expected integers"],
+        ),
+        (
+            "force that isn't finite",
+            |f| set(f, "/force/value", 1, f64::INFINITY),
+            &["/force/value, row 0", "finite"],
+        ),
+        (
+            "contact",
+            |f| set(f, "/contact/contact", 2, 3i64),
+            &["/contact/contact, row 2"],
+        ),
+        (
+            "place that occurs twice",
+            |f| set(f, "/contact/place", 1, 0i64),
+            &["/contact/place, row 1", "once"],
+        ),
+        (
+            "normal",
+            |f| set(f, "/contact/normal", 0, 3.0),
+            &["/contact/normal, row 0"],
+        ),
+        (
+            "entry's subdomain",
+            |f| {
+                let group: Vec<i64> = f.dataset("/subdomains/group").unwrap().read_raw().unwrap();
+                let linear = group.iter().position(|&g| g == -1).unwrap();
+                set(f, "/contact/entry_subdomain", 3, linear as i64);
+            },
+            &["/contact/entry_subdomain, row 3", "isn't in group 0"],
+        ),
+        (
+            "entry's node",
+            |f| set(f, "/contact/entry_node", 0, 12345i64),
+            &["/contact/entry_node, row 0", "12345"],
+        ),
+        (
+            "zero row",
+            |f| {
+                set(f, "/contact/entry_coefficient", 1, 0.0);
+                set(f, "/contact/entry_coefficient", 3, 0.0);
+            },
+            &["/contact/entry_offset, row 0", "zero"],
+        ),
+        (
+            "contact node between a group and the rest",
+            |f| {
+                let subdomain: Vec<i64> = f
+                    .dataset("/contact/entry_subdomain")
+                    .unwrap()
+                    .read_raw()
+                    .unwrap();
+                let offset: Vec<i64> = f.dataset("/interface/offset").unwrap().read_raw().unwrap();
+                let node: Vec<i64> = f.dataset("/interface/node").unwrap().read_raw().unwrap();
+                let shared = node[offset[subdomain[0] as usize] as usize];
+                set(f, "/contact/entry_node", 0, shared);
+            },
+            &["/contact/entry_node, row 0", "outside group 0"],
+        ),
+        (
+            "copies of a node that differ",
+            |f| {
+                let node: Vec<i64> = f.dataset("/interface/node").unwrap().read_raw().unwrap();
+                set(
+                    f,
+                    "/VTKHDF/PointData/GlobalNodeId",
+                    node[0] as usize,
+                    999_999i64,
+                );
+            },
+            &["on Γ", "tag"],
+        ),
+        (
+            "more declared than stored",
+            |f| {
+                f.unlink("/VTKHDF/Types").unwrap();
+                let shape = 1usize << 50;
+                let builder = f.new_dataset::<u8>().chunk(1024).shape(shape);
+                builder.create("/VTKHDF/Types").unwrap();
+            },
+            &["/VTKHDF/Types", "holds only"],
+        ),
+    ];
+    refuses(write, defects);
+}

@@ -1,0 +1,71 @@
+//! Colours and bars are for terminals.
+
+use std::process::Command;
+
+use super::case;
+use crate::support::process::Running;
+use crate::support::solver::{LIMIT, built, program};
+
+/// What begins a colour.
+const COLOUR: &str = "\u{1b}[";
+
+fn is_control(c: char) -> bool {
+    c.is_control() && c != '\n'
+}
+
+#[test]
+fn what_is_no_terminal_gets_no_control_characters() {
+    let case = case("");
+    for ranks in [0, 1, 2] {
+        for args in [
+            &[][..],
+            &["--help"],
+            &["--max-sweeps", "0"],
+            &["--log", "json"],
+        ] {
+            let ended = case.run_on(ranks, args);
+            // Open MPI gives ranks a terminal of its own, which ends lines in its way.
+            let said = [ended.stdout, ended.stderr].concat().replace("\r\n", "\n");
+            assert!(
+                !said.contains(is_control),
+                "{ranks} ranks, {args:?}: {said:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_environment_may_insist_on_colours() {
+    let case = case("");
+    for ranks in [0, 1] {
+        let mut command = program(ranks);
+        command.env("CLICOLOR_FORCE", "1").arg(case.problem());
+        let ended = Running::start(&mut command).wait(LIMIT);
+        assert_eq!(ended.code(), 0, "{}", ended.stderr);
+        assert!(ended.stdout.contains(COLOUR), "{}", ended.stdout);
+    }
+}
+
+#[test]
+fn a_terminal_shows_colours_unless_the_environment_forbids_them() {
+    let case = case("");
+    let on_a_terminal = |no_color: bool| {
+        let line = format!("'{}' '{}'", built().display(), case.problem().display());
+        let mut command = Command::new("script");
+        command
+            .args(["-qec", &line, "/dev/null"])
+            .env("TERM", "xterm");
+        command.env_remove("NO_COLOR").env_remove("CLICOLOR_FORCE");
+        if no_color {
+            command.env("NO_COLOR", "1");
+        }
+        let ended = Running::start(&mut command).wait(LIMIT);
+        assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+        ended.stdout
+    };
+    let shown = on_a_terminal(false);
+    assert!(shown.contains("\u{1b}[32mconverged"), "{shown}");
+    // A bar without a phase would have these.
+    assert!(!shown.contains('░'), "{shown}");
+    assert!(!on_a_terminal(true).contains("\u{1b}[32m"));
+}

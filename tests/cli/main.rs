@@ -1,0 +1,12 @@
+//! The command line and the report, with the scripts that read reports.
+
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that can't go on has failed"
+)]
+
+mod command_line;
+mod report;
+#[path = "../support/mod.rs"]
+mod support;

@@ -1,0 +1,120 @@
+//! `scripts/summary`, which puts a run on one page.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::support::process::{Ended, Running};
+use crate::support::scenes::built_in_model;
+use crate::support::solver::{Case, LIMIT};
+
+/// Whether there is a Python that can draw: the script would install one.
+pub fn can_draw() -> bool {
+    let draws = ["python3", "/usr/bin/python3"].iter().any(|python| {
+        let mut imported = Command::new(python);
+        imported.args(["-c", "import h5py, matplotlib"]);
+        imported
+            .output()
+            .is_ok_and(|output| output.status.success())
+    });
+    if !draws {
+        eprintln!("skipped: there is no Python with h5py and matplotlib");
+    }
+    draws
+}
+
+fn summary(args: &[&Path]) -> Ended {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/summary");
+    // Where there is much else to do, starting Python and its packages takes most of it.
+    Running::start(Command::new(script).args(args)).wait(4 * LIMIT)
+}
+
+/// The page of a run of a built-in scene.
+fn page(scene: &str, options: &[&str], code: i32) -> String {
+    let case = Case::of(&built_in_model(scene, 0), 8);
+    let ended = case.run(options);
+    assert_eq!(ended.code(), code, "{}{}", ended.stdout, ended.stderr);
+    let drawn = summary(&[&case.result()]);
+    assert_eq!(drawn.code(), 0, "{}", drawn.stderr);
+    fs::read_to_string(case.result().with_extension("html")).unwrap()
+}
+
+#[test]
+fn a_page_says_how_the_run_ended_and_draws_its_contacts() {
+    if !can_draw() {
+        return;
+    }
+    let converged = page("granite", &[], 0);
+    let short = page("granite", &["--method", "picard", "--max-sweeps", "3"], 3);
+    let linear = page("plain", &[], 0);
+    for (page, badge, pictures) in [
+        (&converged, "\"badge good\">converged<", 3),
+        (&short, "\"badge bad\">not converged<", 3),
+        (&linear, "\"badge good\">converged<", 1),
+    ] {
+        assert!(page.contains(badge));
+        assert_eq!(page.matches("<svg").count(), pictures);
+        assert_eq!(page.matches("</svg>").count(), pictures);
+        assert!(!page.contains(">nan") && !page.contains("http-equiv"));
+    }
+    assert!(converged.contains("left crack") && converged.contains("31 of 48"));
+    assert!(short.contains("<h2>Warnings</h2>") && !converged.contains("<h2>Warnings</h2>"));
+    assert!(linear.contains("No contact"));
+}
+
+#[test]
+fn what_is_no_result_gets_no_page() {
+    if !can_draw() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("other.vtkhdf");
+    fs::write(&file, "other").unwrap();
+    let refused = summary(&[&file]);
+    assert_eq!(refused.code(), 2);
+    let said = &refused.stderr;
+    assert!(said.contains("other.vtkhdf: isn't a result"), "{said}");
+    assert!(!file.with_extension("html").exists());
+}
+
+#[test]
+fn a_scene_in_millimetres_has_its_page_in_pascals() {
+    if !can_draw() {
+        return;
+    }
+    let case = Case::of(&built_in_model("hertz", 0), 4);
+    assert_eq!(case.run(&[]).code(), 0);
+    let pages = ["m.html", "mm.html"].map(|name| {
+        let page = case.folder().join(name);
+        let result = case.result();
+        let drawn = match name {
+            "mm.html" => summary(&[&result, &page, Path::new("--mm")]),
+            _ => summary(&[&result, &page]),
+        };
+        assert_eq!(drawn.code(), 0, "{}", drawn.stderr);
+        fs::read_to_string(page).unwrap()
+    });
+    let [in_m, in_mm] = pages;
+    assert!(in_m.contains("-5 N/m") && !in_m.contains("MPa"));
+    assert!(in_mm.contains("-5 kN/m") && in_mm.contains("MPa"));
+}
+
+#[test]
+fn a_second_result_is_not_taken_for_the_name_of_the_page() {
+    if !can_draw() {
+        return;
+    }
+    let case = Case::of(&built_in_model("patch", 0), 2);
+    assert_eq!(case.run(&[]).code(), 0);
+    let folder = tempfile::tempdir().unwrap();
+    let other = folder.path().join("other.vtkhdf");
+    fs::write(&other, "other").unwrap();
+    let refused = summary(&[&case.result(), &other]);
+    assert_eq!(refused.code(), 2);
+    let said = &refused.stderr;
+    assert!(
+        said.contains("other.vtkhdf: isn't the name of a page"),
+        "{said}"
+    );
+    assert_eq!(fs::read_to_string(&other).unwrap(), "other");
+}

@@ -1,0 +1,89 @@
+//! The documents: every command on a page runs as printed, every link leads somewhere, and VTK reads
+//! what the pages say it reads.
+//!
+//! A page is run in a fresh folder, its blocks in order:
+//!
+//! - `sh` and `bash` are shell scripts that have to end with 0;
+//! - `console` holds commands behind `$ ` with what they print; a command that fails has to be followed by
+//!   `$ echo $?`;
+//! - `python` is run by the documents' Python;
+//! - any block after a paragraph that ends with a file's name in backticks and a colon is written to that
+//!   file;
+//! - `text` after a paragraph that ends with "prints:" is what the block before has to print.
+//!
+//! In what is printed `…` stands for anything; a line of nothing else stands for any number of lines. What
+//! can't be run here has a comment `<!-- not run: reason -->` before it, or, for all that follows,
+//! `<!-- none of this page is run: reason -->`; anything else that isn't run is an error.
+//!
+//! `DOCUMENTS_PYTHON` names the Python, which `scripts/setup --documents` makes; without it what needs it
+//! is ignored.
+//! `DOCUMENTS_KEEP` names a folder that keeps what the pages made.
+
+mod block;
+mod code;
+mod equations;
+mod links;
+mod page;
+mod printed;
+mod run;
+mod vtk;
+
+use std::sync::Arc;
+
+use libtest_mimic::Trial;
+
+use crate::trial;
+
+use page::Page;
+
+pub fn trials() -> Vec<Trial> {
+    let pages: Arc<Vec<Page>> = Arc::new(page::all());
+    let mut trials = Vec::new();
+    for index in 0..pages.len() {
+        let name = &pages[index].name;
+        let all = Arc::clone(&pages);
+        trials.push(trial(format!("{name}::links_lead_somewhere"), move || {
+            links::lead_somewhere(&all[index], &all);
+        }));
+        let all = Arc::clone(&pages);
+        trials.push(trial(format!("{name}::names_of_code_exist"), move || {
+            code::names_exist(&all[index]);
+        }));
+        let all = Arc::clone(&pages);
+        let runs = trial(format!("{name}::runs_as_printed"), move || {
+            run::as_printed(&all[index]);
+        });
+        trials.push(match pages[index].needs_python() {
+            true => needs_python(runs),
+            false => runs,
+        });
+    }
+    trials.push(trial("the_method_has_the_papers_equations", move || {
+        equations::are_the_papers(&pages);
+    }));
+    trials.push(trial("a_page_is_split_into_its_blocks", block::are_split));
+    trials.push(trial("unmarked_blocks_are_refused", block::refuse_unmarked));
+    trials.push(trial("dots_stand_for_anything", printed::dots));
+    trials.push(trial(
+        "failures_that_the_page_hides_fail",
+        run::show_failures,
+    ));
+    for (name, ranks, element, steps) in vtk::CASES {
+        let case = move || vtk::reads_the_same(ranks, element, steps);
+        trials.push(needs_python(trial(
+            format!("vtk_reads_what_h5py_reads::{name}"),
+            case,
+        )));
+    }
+    trials
+}
+
+/// Ignored, and the reason shown, where there is no Python for the documents.
+fn needs_python(trial: Trial) -> Trial {
+    match run::python() {
+        Some(_) => trial,
+        None => trial
+            .with_ignored_flag(true)
+            .with_kind("needs DOCUMENTS_PYTHON"),
+    }
+}

@@ -1,0 +1,75 @@
+//! The gallery: every built-in scene has a page, and a page's own commands give the numbers of its table.
+//!
+//! A page shows a part of its scene as `toml`, its commands in its first block of `sh`, and a table with the
+//! columns number, found, theory, off and where. *Found* holds to within one in its last digit; where
+//! *theory* has a number, what is found is off from it by *off* at most. *Where* is a path in the report,
+//! entries of lists by their names or numbers, or a dataset below VTKHDF of the result, of which it is the
+//! largest length or absolute value.
+
+mod expected;
+mod page;
+mod run;
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use contact_dd_partition::example::{self, EXAMPLES};
+use libtest_mimic::Trial;
+
+use crate::trial;
+
+use page::Page;
+
+pub fn trials() -> Vec<Trial> {
+    let mut trials = vec![
+        trial("every_scene_has_a_page", every_scene_has_a_page),
+        trial(
+            "numbers_are_found_to_their_last_digit",
+            expected::to_the_last_digit,
+        ),
+        trial("numbers_that_are_off_fail", expected::off),
+    ];
+    for page in page::all() {
+        let (page, name) = (Arc::new(page.0), page.1);
+        let same = Arc::clone(&page);
+        trials.push(trial(format!("{name}::its_scene_is_the_built_in_one"), {
+            let name = name.clone();
+            move || scene_is_built_in(&page, &name)
+        }));
+        trials.push(trial(
+            format!("{name}::its_commands_give_its_numbers"),
+            move || run::gives_numbers(&same),
+        ));
+    }
+    trials
+}
+
+fn every_scene_has_a_page() {
+    let pages: BTreeSet<String> = page::all().into_iter().map(|(_, name)| name).collect();
+    let scenes: BTreeSet<String> = EXAMPLES.iter().map(|e| e.name.to_owned()).collect();
+    assert_eq!(pages, scenes);
+    let index = std::fs::read_to_string(page::folder().join("README.md")).unwrap();
+    for name in scenes {
+        for link in [format!("]({name}.md)"), format!("]({name}.png)")] {
+            assert!(
+                index.contains(&link),
+                "docs/gallery/README.md has no {link}"
+            );
+        }
+    }
+}
+
+/// What a page shows of its scene stands in the built-in one, line by line.
+fn scene_is_built_in(page: &Page, name: &str) {
+    let scene = example::find(name).unwrap().scene;
+    assert!(
+        !page.scene.is_empty(),
+        "{name}.md shows nothing of its scene"
+    );
+    for part in &page.scene {
+        assert!(
+            scene.contains(part.as_str()),
+            "{name}.md: not in the scene that --write-scene writes:\n{part}"
+        );
+    }
+}

@@ -1,0 +1,13 @@
+//! The library's own interface, without runs of the program.
+
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that can't go on has failed"
+)]
+
+mod architecture;
+mod extending;
+mod result_file;
+#[path = "../support/mod.rs"]
+mod support;

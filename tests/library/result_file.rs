@@ -1,0 +1,349 @@
+//! The result file, read back by HDF5 itself.
+
+mod time_series;
+
+use std::fs;
+use std::path::Path;
+
+use contact_dd_mpi::output::result::{
+    ContactResult, ConvergenceRow, PartitionSize, SubdomainResults,
+};
+use contact_dd_mpi::output::vtkhdf::{Layout, ResultFile};
+use contact_dd_partition::problem::ContactSummary;
+use hdf5::File;
+
+/// Strips of triangles, the first of them subdomain `first`, with `cells` cells each; every number
+/// tells where it belongs.
+fn strips(first: usize, cells: &[usize]) -> SubdomainResults {
+    let mut results = SubdomainResults {
+        first,
+        ..SubdomainResults::default()
+    };
+    for (index, &cells) in (first..).zip(cells) {
+        let size = size(cells);
+        let value = |row: usize, component: usize| (1000 * index + 10 * row + component) as f64;
+        let three = |row: usize| std::array::from_fn(|c| value(row, c));
+        let six = |row: usize| std::array::from_fn(|c| value(row, c));
+        let tag = |node: usize| (100 * index + node) as i64;
+        results.sizes.push(size);
+        results.points.extend((0..size.points).map(three));
+        results.node_tags.extend((0..size.points).map(tag));
+        results.displacement.extend((0..size.points).map(three));
+        results.nodal_stress.extend((0..size.points).map(six));
+        let triangle = |cell: i64| [cell, cell + 1, cell + 2];
+        let triangles = (0..cells as i64).flat_map(triangle);
+        results.connectivity.extend(triangles);
+        let offsets = (0..=cells as i64).map(|cell| 3 * cell);
+        results.offsets.extend(offsets);
+        results.types.extend(vec![5; cells]);
+        results.materials.extend(vec![index as i32 % 2; cells]);
+        results.cell_stress.extend((0..cells).map(six));
+        results.principal.extend((0..cells).map(three));
+        results.von_mises.extend((0..cells).map(|c| value(c, 0)));
+        results.energy_error.extend((0..cells).map(|c| value(c, 1)));
+    }
+    results
+}
+
+fn size(cells: usize) -> PartitionSize {
+    PartitionSize {
+        points: if cells == 0 { 0 } else { cells + 2 },
+        cells,
+        connectivity: 3 * cells,
+    }
+}
+
+fn row(contact: usize, place: usize) -> ContactResult {
+    ContactResult {
+        contact,
+        place,
+        tag_a: (100 * contact + place) as i64,
+        tag_b: -1,
+        position: [contact as f64, place as f64, 0.0],
+        acts_at: [contact as f64, place as f64, 0.0],
+        normal: [0.0, 1.0, 0.0],
+        gap: place as f64,
+        force: 2.0,
+        pressure: 3.0,
+        closed: place % 2 == 1,
+    }
+}
+
+fn layout(cells: &[usize], conditions: &[usize]) -> Layout {
+    let contact = |(c, &conditions): (usize, &usize)| ContactSummary {
+        name: format!("crack {c}"),
+        conditions,
+    };
+    Layout {
+        partitions: cells.iter().map(|&cells| size(cells)).collect(),
+        contacts: conditions.iter().enumerate().map(contact).collect(),
+        times: Vec::new(),
+        stress: true,
+    }
+}
+
+/// Runs of subdomains (the first one, and how many) in the order of `runs`, contact rows back to
+/// front in two portions.
+fn write(path: &Path, cells: &[usize], runs: &[(usize, usize)], report: &str) {
+    let mut file = ResultFile::create(path, &layout(cells, &[5, 0, 2])).unwrap();
+    for &(first, count) in runs {
+        file.write_subdomains(&strips(first, &cells[first..first + count]))
+            .unwrap();
+    }
+    file.write_contacts(&[row(2, 1), row(0, 4), row(0, 1), row(0, 0)])
+        .unwrap();
+    file.write_contacts(&[row(0, 3), row(2, 0), row(0, 2)])
+        .unwrap();
+    file.finish_step().unwrap();
+    file.write_convergence(&[ConvergenceRow {
+        step: 0,
+        residual: 0.5,
+        active: 7,
+        seconds: 0.25,
+    }])
+    .unwrap();
+    file.finish(report).unwrap();
+}
+
+fn column<T: hdf5::H5Type>(file: &File, name: &str) -> Vec<T> {
+    file.dataset(name).unwrap().read_raw().unwrap()
+}
+
+/// Every single subdomain, in their order.
+fn one_by_one(cells: &[usize]) -> Vec<(usize, usize)> {
+    (0..cells.len()).map(|s| (s, 1)).collect()
+}
+
+#[test]
+fn neither_the_order_of_arrival_nor_the_cuts_leave_a_trace() {
+    let folder = tempfile::tempdir().unwrap();
+    let cells = [3, 0, 1, 2];
+    let first = folder.path().join("first");
+    write(&first, &cells, &one_by_one(&cells), "{}");
+    let first = File::open(first).unwrap();
+    for (name, runs) in [
+        ("backward", vec![(3, 1), (1, 1), (0, 1), (2, 1)]),
+        ("two runs", vec![(2, 2), (0, 2)]),
+        ("nothing in a run", vec![(1, 1), (4, 0), (2, 2), (0, 1)]),
+        ("at once", vec![(0, 4)]),
+    ] {
+        let other = folder.path().join(name);
+        write(&other, &cells, &runs, "{}");
+        let other = File::open(other).unwrap();
+        for array in [
+            "Points",
+            "PointData/Displacement",
+            "PointData/Stress",
+            "CellData/Stress",
+            "CellData/PrincipalStress",
+            "CellData/VonMises",
+        ] {
+            let array = format!("VTKHDF/{array}");
+            let (first, other) = (column::<f64>(&first, &array), column::<f64>(&other, &array));
+            assert_eq!(first, other, "{array} of '{name}'");
+        }
+        for array in [
+            "Connectivity",
+            "Offsets",
+            "Types",
+            "PointData/GlobalNodeId",
+            "CellData/Subdomain",
+            "CellData/Material",
+        ] {
+            let array = format!("VTKHDF/{array}");
+            let (first, other) = (column::<i64>(&first, &array), column::<i64>(&other, &array));
+            assert_eq!(first, other, "{array} of '{name}'");
+        }
+    }
+}
+
+#[test]
+fn slabs_hold_all_subdomains_in_order_and_none_holds_many_nodes_of_several() {
+    let folder = tempfile::tempdir().unwrap();
+    let cells = [0, 100, 20_000, 7, 0, 5_000, 5_000, 5_000, 5_000, 50, 50];
+    let path = folder.path().join("result.vtkhdf");
+    let file = ResultFile::create(&path, &layout(&cells, &[])).unwrap();
+    let slabs = file.slabs();
+    let held: Vec<usize> = slabs.iter().cloned().flatten().collect();
+    assert_eq!(held, (0..cells.len()).collect::<Vec<_>>());
+    assert!(slabs.contains(&(2..3)), "{slabs:?}");
+    assert_eq!(slabs.len(), 4, "{slabs:?}");
+}
+
+#[test]
+fn numbers_have_the_same_types_in_the_file_as_in_memory() {
+    use hdf5::types::{FloatSize, IntSize, TypeDescriptor};
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("result.vtkhdf");
+    write(&path, &[2], &[(0, 1)], "{}");
+    let grid = File::open(&path).unwrap().group("VTKHDF").unwrap();
+    for (array, kind) in [
+        ("Points", TypeDescriptor::Float(FloatSize::U8)),
+        ("Connectivity", TypeDescriptor::Integer(IntSize::U8)),
+        ("Offsets", TypeDescriptor::Integer(IntSize::U8)),
+        ("Types", TypeDescriptor::Unsigned(IntSize::U1)),
+        (
+            "PointData/GlobalNodeId",
+            TypeDescriptor::Integer(IntSize::U8),
+        ),
+        ("PointData/Stress", TypeDescriptor::Float(FloatSize::U8)),
+        ("CellData/Subdomain", TypeDescriptor::Integer(IntSize::U4)),
+        ("CellData/Material", TypeDescriptor::Integer(IntSize::U4)),
+        ("CellData/VonMises", TypeDescriptor::Float(FloatSize::U8)),
+    ] {
+        let stored = grid.dataset(array).unwrap().dtype().unwrap();
+        assert_eq!(stored.to_descriptor().unwrap(), kind, "{array}");
+    }
+}
+
+#[test]
+fn every_partition_is_a_slice_that_stands_for_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("result.vtkhdf");
+    let cells = [3, 0, 1, 2];
+    write(&path, &cells, &[(2, 1), (0, 2), (3, 1)], "{}");
+    let file = File::open(&path).unwrap();
+    let grid = |name: &str| column::<i64>(&file, &format!("VTKHDF/{name}"));
+    assert_eq!(grid("NumberOfPoints"), [5, 0, 3, 4]);
+    assert_eq!(grid("NumberOfCells"), [3, 0, 1, 2]);
+    assert_eq!(grid("NumberOfConnectivityIds"), [9, 0, 3, 6]);
+    assert_eq!(grid("Offsets"), [0, 3, 6, 9, 0, 0, 3, 0, 3, 6]);
+    assert_eq!(grid("Connectivity")[9..], [0, 1, 2, 0, 1, 2, 1, 2, 3]);
+    assert_eq!(grid("CellData/Subdomain"), [0, 0, 0, 2, 3, 3]);
+    assert_eq!(grid("CellData/Material"), [0, 0, 0, 0, 1, 1]);
+    assert_eq!(grid("PointData/GlobalNodeId")[5..8], [200, 201, 202]);
+    assert_eq!(column::<u8>(&file, "VTKHDF/Types"), [5; 6]);
+    let stress = file.dataset("VTKHDF/CellData/Stress").unwrap();
+    assert_eq!(stress.shape(), [6, 6]);
+    assert_eq!(
+        stress.read_2d::<f64>().unwrap().row(3).to_vec(),
+        [2000.0, 2001.0, 2002.0, 2003.0, 2004.0, 2005.0]
+    );
+}
+
+#[test]
+fn contact_rows_find_their_places() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("result.vtkhdf");
+    write(&path, &[1], &[(0, 1)], "{}");
+    let file = File::open(&path).unwrap();
+    assert_eq!(
+        column::<i64>(&file, "contact/crack 0/node_a"),
+        [0, 1, 2, 3, 4]
+    );
+    assert_eq!(column::<i64>(&file, "contact/crack 2/node_a"), [200, 201]);
+    assert_eq!(
+        column::<f64>(&file, "contact/crack 0/gap"),
+        [0.0, 1.0, 2.0, 3.0, 4.0]
+    );
+    assert_eq!(
+        column::<u8>(&file, "contact/crack 0/status"),
+        [0, 1, 0, 1, 0]
+    );
+    assert_eq!(
+        file.dataset("contact/crack 1/normal").unwrap().shape(),
+        [0, 3]
+    );
+    assert_eq!(column::<i64>(&file, "convergence/active"), [7]);
+}
+
+#[test]
+fn the_type_attribute_leaves_no_room_for_a_terminator() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("result.vtkhdf");
+    write(&path, &[1], &[(0, 1)], "{}");
+    let grid = File::open(&path).unwrap().group("VTKHDF").unwrap();
+    let kind = grid.attr("Type").unwrap();
+    assert_eq!(kind.dtype().unwrap().size(), "UnstructuredGrid".len());
+    let text: hdf5::types::FixedAscii<16> = kind.read_scalar().unwrap();
+    assert_eq!(text.as_str(), "UnstructuredGrid");
+    assert_eq!(
+        grid.attr("Version").unwrap().read_raw::<i64>().unwrap(),
+        [2, 0]
+    );
+}
+
+#[test]
+fn a_report_may_be_longer_than_an_attribute_of_fixed_length() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("result.vtkhdf");
+    let report = format!("{{\"warnings\": [\"{}\"]}}", "Γ".repeat(100_000));
+    write(&path, &[1], &[(0, 1)], &report);
+    let file = File::open(&path).unwrap();
+    let read: hdf5::types::VarLenUnicode = file.attr("report").unwrap().read_scalar().unwrap();
+    assert_eq!(read.as_str(), report);
+}
+
+#[test]
+fn what_is_not_whole_replaces_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("result.vtkhdf");
+    fs::write(&path, "the result of yesterday").unwrap();
+    let cells = [1, 2];
+
+    let mut file = ResultFile::create(&path, &layout(&cells, &[])).unwrap();
+    file.write_subdomains(&strips(1, &[2])).unwrap();
+    let error = file.finish_step().unwrap_err().to_string();
+    assert!(
+        error.contains("result.vtkhdf") && error.contains("subdomain 0 is missing"),
+        "{error}"
+    );
+    drop(file);
+
+    let mut file = ResultFile::create(&path, &layout(&[], &[2])).unwrap();
+    file.write_contacts(&[row(0, 1)]).unwrap();
+    let error = file.finish_step().unwrap_err().to_string();
+    assert!(
+        error.contains("'crack 0': condition 0 is missing"),
+        "{error}"
+    );
+    drop(file);
+
+    let mut layout_in_steps = layout(&cells, &[]);
+    layout_in_steps.times = vec![0.5, 0.75];
+    let mut file = ResultFile::create(&path, &layout_in_steps).unwrap();
+    file.write_subdomains(&strips(0, &cells)).unwrap();
+    file.finish_step().unwrap();
+    let error = file.finish("{}").unwrap_err().to_string();
+    assert!(error.contains("step 1 is missing"), "{error}");
+
+    drop(ResultFile::create(&path, &layout(&cells, &[])).unwrap());
+    assert_eq!(
+        fs::read_to_string(&path).unwrap(),
+        "the result of yesterday"
+    );
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn what_has_no_place_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("result.vtkhdf");
+    let mut file = ResultFile::create(&path, &layout(&[2, 3], &[2])).unwrap();
+    let mut refused = |results: SubdomainResults, words: &str| {
+        let error = file.write_subdomains(&results).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    };
+    refused(strips(2, &[2]), "subdomain 2 of 2 has no place");
+    refused(strips(1, &[3, 1]), "subdomain 2 of 2 has no place");
+    refused(strips(0, &[2, 2]), "subdomain 1 has 4 points; expected 5");
+    let mut short = strips(0, &[2]);
+    short.displacement.pop();
+    refused(short, "subdomain 0 has 3 displacements; expected 4");
+    let mut short = strips(0, &[2, 3]);
+    short.offsets.pop();
+    refused(short, "subdomains 0 to 1 have 6 offsets; expected 7");
+    assert!(file.write_contacts(&[row(1, 0)]).is_err());
+    assert!(file.write_contacts(&[row(0, 1), row(0, 2)]).is_err());
+}
+
+#[test]
+fn a_finished_file_replaces_the_one_before() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("result.vtkhdf");
+    write(&path, &[1], &[(0, 1)], "{}");
+    write(&path, &[4], &[(0, 1)], "{}");
+    let file = File::open(&path).unwrap();
+    assert_eq!(column::<i64>(&file, "VTKHDF/NumberOfCells"), [4]);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}

@@ -1,0 +1,275 @@
+//! Exact displacements, and orders of convergence of energy, stresses and contact pressures, in cells of
+//! all kinds.
+
+use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::model::Model;
+
+use crate::support::blocks::{Blocks, jittered, moved};
+use crate::support::close::close;
+use crate::support::scenes::model;
+use crate::support::solution::Solution;
+use crate::support::solver::solve;
+use crate::support::sorts::{SORTS, Sort, sort};
+
+/// A unit square of cells no two of which are alike, their edges inside curved where they can be.
+fn block(sort: Sort, n: usize) -> Mesh {
+    let blocks = Blocks::new().rectangle("block", [0.0, 1.0], [0.0, 1.0], [n, n]);
+    moved(sort.of(&blocks.mesh), |[s, t]| {
+        let bump = s * (1.0 - s) * t * (1.0 - t);
+        [s + 0.9 * bump, t - 0.6 * bump]
+    })
+}
+
+const STEEL: [f64; 2] = [200e9, 0.3];
+
+/// A scene of the unit square with the displacement prescribed at its bottom and left side, and
+/// what a displacement field asks for elsewhere: traction on the right, on top, and body force.
+fn clamped(u: [&str; 2], right: [&str; 2], top: [&str; 2], body: [&str; 2]) -> String {
+    let [young, poisson] = STEEL;
+    format!(
+        "plane = 'strain'
+        materials.steel = {{young = {young}, poisson = {poisson}}}
+        bodies.block = {{material = 'steel', body_force = ['{}', '{}']}}
+        [[displacement]]
+        on = ['block bottom', 'block left']
+        x = '{}'
+        y = '{}'
+        [[traction]]
+        on = 'block right'
+        value = ['{}', '{}']
+        [[traction]]
+        on = 'block top'
+        value = ['{}', '{}']
+        ",
+        body[0], body[1], u[0], u[1], right[0], right[1], top[0], top[1],
+    )
+}
+
+/// λ and μ of [`STEEL`].
+fn lame() -> [f64; 2] {
+    let [young, poisson] = STEEL;
+    [
+        young * poisson / (1.0 + poisson) / (1.0 - 2.0 * poisson),
+        young / 2.0 / (1.0 + poisson),
+    ]
+}
+
+/// u = 1e-3·(x² + 2xy − y², 3x² − xy + 2y²), with ε = 1e-3·(2x + 2y, −x + 4y, γ), γ = 8x − 3y.
+#[test]
+fn quadratic_displacements_are_exact_in_quadratic_cells_with_straight_edges() {
+    let [l, m] = lame().map(|c| 1e-3 * c);
+    let trace = "(x + 6*y)";
+    let xx = format!("{l}*{trace} + {}*(2*x + 2*y)", 2.0 * m);
+    let yy = format!("{l}*{trace} + {}*(4*y - x)", 2.0 * m);
+    let xy = format!("{m}*(8*x - 3*y)");
+    // −div σ.
+    let body = [
+        format!("{}", -(l + 4.0 * m - 3.0 * m)),
+        format!("{}", -(8.0 * m + 6.0 * l + 8.0 * m)),
+    ];
+    let text = clamped(
+        ["1e-3*(x^2 + 2*x*y - y^2)", "1e-3*(3*x^2 - x*y + 2*y^2)"],
+        [&xx, &xy],
+        [&xy, &yy],
+        [&body[0], &body[1]],
+    );
+    for name in ["triangle6", "quad8", "quad9", "triangle6, quad8 and quad9"] {
+        // Quadrilaterals of eight nodes have all quadratic fields on parallelograms alone.
+        let amount = if name.contains("quad8") { 0.0 } else { 0.03 };
+        let linear = Blocks::new().rectangle("block", [0.0, 1.0], [0.0, 1.0], [4, 4]);
+        let model = model(&text, sort(name).of(&jittered(linear.mesh, amount, 3)));
+        for count in [1, 3] {
+            let solution = solve(&model, count);
+            for (tag, &[x, y, _]) in model.mesh.node_tags.iter().zip(&model.mesh.points) {
+                let [u, v, _] = solution.displacement[tag];
+                close(u, 1e-3 * (x * x + 2.0 * x * y - y * y), 1e-14);
+                close(v, 1e-3 * (3.0 * x * x - x * y + 2.0 * y * y), 1e-14);
+            }
+            if name == "triangle6" {
+                for (tag, &[x, y, _]) in model.mesh.node_tags.iter().zip(&model.mesh.points) {
+                    let exact = l * (x + 6.0 * y) + 2.0 * m * (2.0 * x + 2.0 * y);
+                    close(solution.nodal_stress[tag][0], exact, 1e-9 * l);
+                }
+            }
+        }
+    }
+}
+
+/// The error of u = v = 1e-3·sin(x)·sin(y) in the norm of the energy, relative, the largest error of
+/// the stress at nodes, and the report's estimate over the true error. As nothing but zero is
+/// prescribed, ‖u − u_h‖² = ‖u‖² − ‖u_h‖², and ‖u_h‖² is the work of the loads.
+fn errors(sort: Sort, n: usize) -> [f64; 3] {
+    let [l, m] = lame().map(|c| 1e-3 * c);
+    let (ux, uy) = ("cos(x)*sin(y)", "sin(x)*cos(y)");
+    let xx = format!("{}*{ux} + {l}*{uy}", l + 2.0 * m);
+    let yy = format!("{}*{uy} + {l}*{ux}", l + 2.0 * m);
+    let xy = format!("{m}*({ux} + {uy})");
+    // σ_xx,x + σ_xy,y = −(λ + 2μ + μ) s + (λ + μ) c, s = sin·sin, c = cos·cos.
+    let body = format!("{}*sin(x)*sin(y) - {}*cos(x)*cos(y)", l + 3.0 * m, l + m);
+    let text = clamped(["0", "0"], [&xx, &xy], [&xy, &yy], [&body, &body]);
+    let model = model(&text, block(sort, n));
+    let solution = solve(&model, 2);
+    let work: f64 = (model.forces.iter())
+        .map(|(node, force)| {
+            let u = solution.displacement[&model.mesh.node_tags[*node as usize]];
+            force[0] * u[0] + force[1] * u[1]
+        })
+        .sum();
+    // ∫ (λ + 2μ)(ux² + uy²) + 2λ ux uy + μ (ux + uy)² over the unit square, ux and uy as above.
+    let (s, c) = (0.5 - 0.25 * 2.0_f64.sin(), 0.5 + 0.25 * 2.0_f64.sin());
+    let product = 0.25 * (1.0_f64.sin().powi(4));
+    let exact = 1e-3 * ((l + 3.0 * m) * 2.0 * s * c + 2.0 * (l + m) * product);
+    let of_stress = (model.mesh.node_tags.iter().zip(&model.mesh.points)).map(|(tag, at)| {
+        let [sin, cos] = [[at[0].sin(), at[1].sin()], [at[0].cos(), at[1].cos()]];
+        let (ux, uy) = (cos[0] * sin[1], sin[0] * cos[1]);
+        let axial = l + 2.0 * m;
+        let exact = [axial * ux + l * uy, axial * uy + l * ux, m * (ux + uy)];
+        let found = solution.nodal_stress[tag];
+        let error = [0, 1, 3]
+            .into_iter()
+            .zip(exact)
+            .map(|(k, e)| (found[k] - e).abs());
+        error.fold(0.0, f64::max)
+    });
+    let error = (exact - work).abs().sqrt();
+    let estimate = &solution.report["error_estimate"];
+    let number = |key: &str| estimate[key].as_f64().unwrap();
+    close(number("energy_norm"), work.sqrt(), 1e-9 * work.sqrt());
+    let relative = number("error") / work.sqrt();
+    close(number("relative"), relative, 0.01 * relative);
+    [
+        error / exact.sqrt(),
+        of_stress.fold(0.0, f64::max) / l,
+        number("error") / error,
+    ]
+}
+
+#[test]
+fn energy_and_nodal_stresses_converge_with_the_order_of_the_cells() {
+    for sort in SORTS {
+        let [coarse, fine] = [4, 8].map(|n| errors(sort, n));
+        let [energy, stress] = [0, 1].map(|k| (coarse[k] / fine[k]).log2());
+        let order = if sort.is_quadratic { 2.0 } else { 1.0 };
+        let at = format!("{}: {coarse:?}, {fine:?}", sort.name);
+        assert!((energy - order).abs() < 0.15, "{at}, order {energy}");
+        assert!(stress > order - 0.15, "{at}, order {stress}");
+        for effectivity in [coarse[2], fine[2]] {
+            assert!((0.9..1.15).contains(&effectivity), "{at}");
+        }
+    }
+}
+
+/// A ring shrunk on another: in contact along a circle of radius b, its inner one loaded from
+/// inside by nothing, the interference δ small. With equal materials the pressure in plane strain is
+///
+/// ```text
+/// p = E' δ / (2 b³) · (b² − a²)(c² − b²) / (c² − a²),   E' = E / (1 − ν²)
+/// ```
+fn shrink_fit(sort: Sort, n: usize) -> f64 {
+    let (a, b, c, interference): (f64, f64, f64, f64) = (1.0, 1.5, 2.5, 1e-3);
+    let [young, poisson] = STEEL;
+    let quarter = |r: [f64; 2]| {
+        move |[s, t]: [f64; 2]| {
+            let (radius, angle) = (
+                r[0] + (r[1] - r[0]) * t,
+                (1.0 - s) * std::f64::consts::FRAC_PI_2,
+            );
+            [radius * angle.cos(), radius * angle.sin()]
+        }
+    };
+    let blocks = Blocks::new()
+        .mapped("inner", [2 * n, n], quarter([a, b]))
+        .mapped("outer", [2 * n, n], quarter([b, c]));
+    let mut mesh = sort.of(&blocks.mesh);
+    on_circles(&mut mesh, &[a, b, c]);
+    let text = format!(
+        "plane = 'strain'
+        materials.steel = {{young = {young}, poisson = {poisson}}}
+        bodies.inner.material = 'steel'
+        bodies.outer.material = 'steel'
+        [[bilateral]]
+        on = ['inner left', 'inner right', 'outer left', 'outer right']
+        [[contact]]
+        name = 'fit'
+        sides = ['inner top', 'outer bottom']
+        gap = {}",
+        -interference
+    );
+    let solution = solve(&model(&text, mesh), 3);
+    let stiffness = young / (1.0 - poisson * poisson);
+    let exact = stiffness * interference / (2.0 * b.powi(3)) * (b * b - a * a) * (c * c - b * b)
+        / (c * c - a * a);
+    let points = &solution.contacts["fit"];
+    assert_eq!(
+        points.len(),
+        if sort.is_quadratic {
+            4 * n + 1
+        } else {
+            2 * n + 1
+        }
+    );
+    for point in points {
+        let [x, y, _] = point.position;
+        let along = (point.normal[0] * x + point.normal[1] * y) / b;
+        // The last corners are on a straight support, where the side has one facet alone.
+        let is_end = x.min(y) < 1e-9;
+        if !is_end {
+            close(along, 1.0, if sort.is_quadratic { 1e-6 } else { 1e-12 });
+        }
+    }
+    let errors = points.iter().map(|p| (p.pressure / exact - 1.0).abs());
+    errors.fold(0.0, f64::max)
+}
+
+/// Puts the nodes in the middle of edges whose ends lie on one of the circles on it.
+fn on_circles(mesh: &mut Mesh, radii: &[f64]) {
+    for facet in 0..mesh.facets.len() {
+        let nodes = mesh.facets.nodes_of(facet);
+        let [x, y, _] = mesh.points[nodes[0] as usize];
+        let [x1, y1, _] = mesh.points[nodes[1] as usize];
+        let radius = x.hypot(y);
+        let on_one = (radius - x1.hypot(y1)).abs() < 1e-9;
+        if let (Some(&middle), true) = (nodes.get(2), on_one)
+            && let Some(radius) = radii.iter().find(|r| (*r - radius).abs() < 1e-9)
+        {
+            let [x, y, _] = mesh.points[middle as usize];
+            let far = x.hypot(y);
+            mesh.points[middle as usize] = [x * radius / far, y * radius / far, 0.0];
+        }
+    }
+}
+
+#[test]
+fn the_pressure_of_a_shrink_fit_converges_on_curved_edges() {
+    for name in ["triangle6", "quad8", "quad9"] {
+        let errors = [4, 8].map(|n| shrink_fit(sort(name), n));
+        assert!(
+            errors[1] < 0.35 * errors[0] && errors[1] < 1.5e-3,
+            "{name}: {errors:?}"
+        );
+    }
+}
+
+#[test]
+fn a_block_free_of_load_stays_as_it_was_moved() {
+    // A rigid motion prescribed at the bottom moves everything along, at no stress.
+    let text = "plane = 'strain'
+        materials.steel = {young = 200e9, poisson = 0.3}
+        bodies.block.material = 'steel'
+        [[displacement]]
+        on = 'block bottom'
+        x = '1e-3 - 2e-3*y'
+        y = '-2e-3 + 2e-3*x'";
+    for sort in SORTS {
+        let model: Model = model(text, block(sort, 4));
+        let solution: Solution = solve(&model, 3);
+        for (tag, &[x, y, _]) in model.mesh.node_tags.iter().zip(&model.mesh.points) {
+            let [u, v, _] = solution.displacement[tag];
+            close(u, 1e-3 - 2e-3 * y, 1e-15);
+            close(v, -2e-3 + 2e-3 * x, 1e-15);
+        }
+        for stress in solution.nodal_stress.values().flatten() {
+            close(*stress, 0.0, 1e-3);
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! The program on whole scenes.
+
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that can't go on has failed"
+)]
+
+mod conditioning;
+mod convergence;
+mod elements;
+mod exact;
+mod floating;
+mod groups;
+mod laws;
+mod loose;
+mod monolithic;
+mod mortar;
+mod obstacles;
+mod redundant;
+mod resultants;
+mod stability;
+mod steps;
+#[path = "../support/mod.rs"]
+mod support;
+mod validation;

@@ -1,0 +1,7 @@
+//! Contact of sides whose nodes don't match.
+
+mod invariance;
+mod patch;
+mod round;
+mod sorts;
+mod system;

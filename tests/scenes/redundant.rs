@@ -1,0 +1,98 @@
+//! Conditions that say what others or supports say already.
+
+use std::collections::BTreeMap;
+
+use contact_dd_partition::model::Model;
+use contact_dd_partition::scene::Scene;
+
+use crate::support::close::close;
+use crate::support::scenes::{BODIES, JOINT, LOAD, SUPPORTS, model, two_block_scene, two_blocks};
+use crate::support::solution::Solution;
+use crate::support::solver::solve;
+
+/// Forces by the tags of a condition's nodes, whichever comes first.
+fn forces(solution: &Solution) -> BTreeMap<[i64; 2], f64> {
+    let mut sums = BTreeMap::new();
+    for point in solution.points() {
+        let mut tags = point.tags;
+        tags.sort_unstable();
+        *sums.entry(tags).or_default() += point.force;
+    }
+    sums
+}
+
+#[test]
+fn a_contact_given_twice_carries_the_same_force_once() {
+    let first = solve(&model(&two_block_scene(), two_blocks().mesh), 5);
+    let again = JOINT.replace("'joint'", "'again'");
+    let reversed = again.replace(
+        "['upper bottom', 'lower top']",
+        "['lower top', 'upper bottom']",
+    );
+    assert_ne!(again, reversed);
+    for second in [again, reversed] {
+        let text = format!("{}{second}", two_block_scene());
+        let solution = solve(&model(&text, two_blocks().mesh), 5);
+        for (tag, u) in &first.displacement {
+            for (a, b) in u.iter().zip(solution.displacement[tag]) {
+                close(*a, b, 1e-11 * first.largest_displacement());
+            }
+        }
+        let sums = forces(&solution);
+        for (tags, force) in forces(&first) {
+            close(sums[&tags], force, 1e-10 * first.largest_force());
+        }
+        for (a, b) in first.points().zip(&solution.contacts["joint"]) {
+            close(a.gap, b.gap, 1e-11 * first.largest_displacement());
+        }
+    }
+}
+
+#[test]
+fn the_tighter_of_two_gaps_counts() {
+    let text = |gaps: [f64; 2]| {
+        let [a, b] = gaps;
+        let again = JOINT.replace("'joint'", "'again'");
+        format!("{BODIES}{SUPPORTS}{LOAD}{JOINT}gap = {a}\n{again}gap = {b}\n")
+    };
+    let tight = format!("{BODIES}{SUPPORTS}{LOAD}{JOINT}gap = -1e-5\n");
+    let expected = solve(&model(&tight, two_blocks().mesh), 5);
+    for gaps in [[-1e-5, 2e-5], [2e-5, -1e-5]] {
+        let found = solve(&model(&text(gaps), two_blocks().mesh), 5);
+        let sums = forces(&found);
+        for (tags, force) in forces(&expected) {
+            close(sums[&tags], force, 1e-10 * expected.largest_force());
+        }
+    }
+}
+
+#[test]
+fn a_joint_whose_sides_are_prescribed_has_no_condition_unless_they_penetrate() {
+    let held = |y: f64| {
+        format!(
+            "{BODIES}
+            [[displacement]]
+            on = ['lower bottom', 'lower top']
+            x = 0.0
+            y = 0.0
+            [[displacement]]
+            on = 'upper bottom'
+            x = 0.0
+            y = {y}
+            {JOINT}"
+        )
+    };
+    let model = model(&held(1e-5), two_blocks().mesh);
+    assert!(
+        model
+            .warnings
+            .iter()
+            .any(|w| w.contains("all its nodes are prescribed"))
+    );
+    let solution = solve(&model, 2);
+    assert_eq!(solution.points().count(), 0);
+    let scene = format!("mesh = 'here.msh'\n{}", held(-1e-5));
+    let scene = Scene::parse(&scene).unwrap();
+    let refused = Model::new(&scene, two_blocks().mesh).unwrap_err();
+    assert!(refused.to_string().contains("no penetration"), "{refused}");
+}

@@ -1,0 +1,144 @@
+//! Small random scenes of every family, each with a verdict; `scripts/stress` runs the large suite.
+
+use std::time::Duration;
+
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+use crate::support::assembled::Assembled;
+use crate::support::scenes::{BODIES, JOINT, LOAD, SUPPORTS, model, two_block_scene, two_blocks};
+use crate::support::solution::Solution;
+use crate::support::solver::{built, solve};
+use crate::support::stress::judge::Findings;
+use crate::support::stress::trial::{Trial, Verdict};
+use crate::support::stress::{Balance, Drawn, draw, draw_uneven};
+
+/// What the judge finds in the solution of two blocks after `tamper`.
+fn faults(tamper: impl Fn(&mut Solution)) -> Vec<String> {
+    let model = model(&two_block_scene(), two_blocks().mesh);
+    let mut solution = solve(&model, 5);
+    tamper(&mut solution);
+    Findings::new(&model, &Assembled::new(&model), &solution, true).faults()
+}
+
+#[test]
+fn the_judge_finds_every_kind_of_fault() {
+    let untouched = faults(|_| {});
+    assert!(untouched.is_empty(), "{untouched:?}");
+    let found = |name: &str, tamper: &dyn Fn(&mut Solution)| {
+        let faults = faults(tamper);
+        assert!(
+            faults.iter().any(|fault| fault.starts_with(name)),
+            "{faults:?}"
+        );
+    };
+    found("backward error", &|solution| {
+        for point in solution.contacts.get_mut("joint").unwrap() {
+            point.force *= 1.0 + 1e-6;
+        }
+    });
+    found("balance", &|solution| {
+        for point in solution.contacts.get_mut("joint").unwrap() {
+            point.force *= 1.0 + 1e-6;
+        }
+    });
+    found("tension", &|solution| {
+        let points = solution.contacts.get_mut("joint").unwrap();
+        points[0].force = -1.0;
+    });
+    found("complementarity", &|solution| {
+        let points = solution.contacts.get_mut("joint").unwrap();
+        let open = points.iter_mut().find(|point| !point.closed).unwrap();
+        open.force = 1e3;
+    });
+    found("difference", &|solution| {
+        let points = solution.contacts.get_mut("joint").unwrap();
+        let closed = points.iter_mut().find(|point| point.closed).unwrap();
+        closed.closed = false;
+    });
+    // All of one body alike: the other is met, or left.
+    for (name, by) in [("penetration", -1e-6), ("complementarity", 1e-6)] {
+        found(name, &|solution| {
+            for u in solution.displacement.values_mut().skip(17 * 9) {
+                u[1] += by;
+            }
+        });
+    }
+    found("supports", &|solution| {
+        solution.displacement.values_mut().next().unwrap()[0] += 1e-9;
+    });
+}
+
+/// The same blocks under other loads and supports, as somebody with a pencil would judge them.
+#[test]
+fn the_linear_program_knows_what_stands_and_what_falls() {
+    let held = SUPPORTS;
+    let (free, _) = SUPPORTS
+        .split_once("[[displacement]]\non = 'upper left'")
+        .unwrap();
+    let traction =
+        |x: f64, y: f64| format!("[[traction]]\non = 'upper top'\nvalue = [{x:?}, {y:?}]\n");
+    let pressure = |value: &str| format!("[[pressure]]\non = 'upper top'\nvalue = '{value}'\n");
+    let cases = [
+        (held, LOAD.to_owned(), Balance::Holds),
+        (held, traction(0.0, 1e6), Balance::Fails),
+        (held, traction(3e6, -1.0), Balance::Holds),
+        (free, traction(0.0, -1e6), Balance::Holds),
+        (free, traction(1.0, -1e6), Balance::Fails),
+        // At a slope of 6 the resultant of this pressure is above the right edge.
+        (free, pressure("1e6*(1+5.9*(x-1))"), Balance::Holds),
+        (free, pressure("1e6*(1+6.1*(x-1))"), Balance::Fails),
+    ];
+    for (supports, load, expected) in cases {
+        let model = model(
+            &format!("{BODIES}{supports}{load}{JOINT}"),
+            two_blocks().mesh,
+        );
+        let found = Balance::new(&model, &Assembled::new(&model));
+        assert_eq!(found, expected, "{supports}{load}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 60,
+        rng_seed: RngSeed::Fixed(1),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    /// One that has no equilibrium is answered by the message that says so.
+    #[test]
+    fn a_random_scene_is_answered_rightly(seed in 0_u64..1_000_000) {
+        let (verdict, why) = judged(draw(seed, 4));
+        prop_assert_eq!(verdict, Verdict::Right, "{}", why);
+    }
+
+    #[test]
+    fn a_random_scene_of_meshes_that_dont_match_is_answered_rightly(seed in 0_u64..1_000_000) {
+        let (verdict, why) = judged(draw_uneven(seed, 4));
+        prop_assert_eq!(verdict, Verdict::Right, "{}", why);
+    }
+}
+
+/// Its stiff bodies' round-off is more than the tolerance of the sweeps.
+#[test]
+fn newton_gives_up_where_it_gets_no_further() {
+    for seed in [193, 475] {
+        let mut drawn = draw(seed, 6);
+        drawn.ranks = 0;
+        let trial = Trial::of(&drawn, built(), Duration::from_secs(60), None);
+        assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);
+        let sweeps = trial.reported(&["sweeps"]).unwrap();
+        assert!(sweeps <= 12.0, "{sweeps} sweeps");
+    }
+}
+
+/// The verdict on a scene, and what to say of it.
+fn judged(mut drawn: Drawn) -> (Verdict, String) {
+    // Tests of several ranks stand elsewhere.
+    drawn.ranks = 0;
+    let trial = Trial::of(&drawn, built(), Duration::from_secs(60), None);
+    let why = format!("{}\n{}", trial.reason, drawn.described());
+    (trial.verdict, why)
+}

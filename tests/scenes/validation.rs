@@ -1,0 +1,97 @@
+//! Scenes with exact answers: errors and observed orders, the short form of docs/validation.md.
+
+use crate::support::solution::Solution;
+use crate::support::solver::{Case, problem};
+use crate::support::sorts::sort;
+use crate::support::validation::{beam, crack, hertz, hole, punch, roller, signorini, uniform};
+
+#[test]
+fn uniform_compression_passes_through_matching_nodes() {
+    uniform::patch().check();
+}
+
+#[test]
+fn a_uniform_pressure_passes_between_cells_of_all_kinds_that_do_not_match() {
+    uniform::uneven().check();
+}
+
+#[test]
+fn uniform_compression_passes_through_three_contacts_that_meet() {
+    uniform::junction().check();
+}
+
+#[test]
+fn a_cylinder_on_a_plane_converges_to_hertz() {
+    hertz::on_an_obstacle().check();
+}
+
+#[test]
+fn a_cylinder_on_a_cylinder_converges_to_hertz() {
+    hertz::body_on_body().check();
+}
+
+#[test]
+fn a_cylinder_on_a_cylinder_whose_nodes_do_not_match_converges_to_hertz() {
+    hertz::uneven_bodies().check();
+}
+
+#[test]
+fn the_nafems_roller_presses_as_it_should() {
+    roller::case().check();
+}
+
+#[test]
+fn a_closed_crack_slips_as_much_as_it_should() {
+    crack::case().check();
+}
+
+#[test]
+fn a_flat_punch_presses_most_at_its_corners() {
+    punch::case().check();
+}
+
+#[test]
+fn a_chosen_solution_with_contact_and_gap_is_found() {
+    signorini::case().check();
+}
+
+#[test]
+fn a_cantilever_bends_as_beams_do() {
+    beam::case().check();
+}
+
+#[test]
+fn stress_beside_a_hole_is_three_times_the_tension() {
+    hole::case().check();
+}
+
+#[test]
+fn the_default_tolerance_leaves_the_error_to_the_mesh() {
+    let quad9 = sort("quad9");
+    for posed in [
+        hertz::posed_on_an_obstacle(quad9, 4, hertz::GRADING),
+        signorini::posed("triangle6", 24),
+    ] {
+        let case = Case::new(&problem(&posed.model, Some(8)));
+        let error = |solution: &Solution| posed.exact.energy_error(&posed.model, solution);
+        let of_mesh = error(&case.solve(&["--tolerance", "1e-14"]));
+        let slow = ["--method", "anderson"];
+        for method in [&[][..], &slow] {
+            let usual = error(&case.solve(method));
+            assert!(
+                (usual / of_mesh - 1.0).abs() < 1e-2,
+                "{usual:e}, {of_mesh:e}"
+            );
+        }
+        // Where these sweeps ended, without the refinement that follows.
+        let sweeps = Solution::read(&case.result()).sweeps().to_string();
+        let limits = ["--max-sweeps", &sweeps, "--tolerance", "1e-300"];
+        assert_eq!(case.run(&[&slow[..], &limits].concat()).code(), 3);
+        let stopped = error(&Solution::read(&case.result()));
+        assert_ne!(stopped, of_mesh);
+        assert!(
+            (stopped / of_mesh - 1.0).abs() < 1e-2,
+            "{stopped:e}, {of_mesh:e}"
+        );
+    }
+}
