@@ -211,11 +211,9 @@ impl Conclusions {
     fn tolerance(&self) -> String {
         let [enough, share] = self.enough;
         format!(
-            "- **Tolerance**: sweeps that end at a residual of {} change the error of no mesh here, down \
-             to {}, by more than {} % of it; on every mesh {} of the error is enough. For errors down to \
-             {SMALLEST:.0e} that makes {}, as a power of ten {:.0e}; the default is {:.0e}. Whatever the \
-             tolerance, the refinement after the sweeps left a change of {} at most: it decides how many \
-             sweeps are made, and how good the answer is only where there is no refinement.\n\n",
+            "- **Tolerance**: a residual of {} changes no error here, down to {}, by more than {} %; {} of the \
+             error is always enough. For errors down to {SMALLEST:.0e} that makes {}, as a power of ten {:.0e}; \
+             the default is {:.0e}. After the refinement the tolerance changes the error by {} at most.\n\n",
             shown(enough),
             shown(self.finest),
             100.0 * MOVED,

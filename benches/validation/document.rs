@@ -8,50 +8,65 @@ use crate::support::validation::{Case, Gate, Measured};
 pub const HEAD: &str = "\
 # Validation
 
-`scripts/validate` solves scenes with exact answers on finer and finer meshes and writes this page. The
-first meshes of most tables are among the tests, with the same gates.
+`scripts/validate` solves scenes with exact answers on successively refined meshes and writes this page.
+Shown is the finest mesh of each kind; a short form with the same gates is among the tests.
 
-*Energy* is ‖σ_h − σ‖ over ‖σ‖ in the norm of C⁻¹, σ_h from the displacements of the result file by
-shape functions and quadrature that are none of the solver's. *Backward error* is the certificate's
-equilibrium, promised to be at most 1e-14. The other figures are explained where they appear; all are
-relative but for numbers of cells and nodes. *Order* is log₂ of the error on the mesh before, whose cells
-are twice as large, over this one. Contact pressures are those of the result file: the force of a node
-over the integral of its weight.
+*Energy* is ‖σ_h − σ‖ over ‖σ‖ in the norm of C⁻¹, with σ_h evaluated independently of the solver from the
+displacements of the result file. *Backward error* is the certificate's equilibrium (at most 1e-14). All
+figures are relative but for numbers of cells and nodes. *Order* is log₂ of the ratio of the errors on the
+last two meshes. Contact pressure is the force of a node over its tributary area.
 
 ";
 
 /// A case with its table, its gates and what doesn't keep them.
 pub fn chapter(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String {
     let mut text = format!("## {}\n\n{}\n", case.title, case.text);
-    let figures = &ran[0][0].figures;
+    let finest: Vec<&Measured> = ran.iter().filter_map(|meshes| meshes.last()).collect();
+    let figures = &finest[0].figures;
+    // A figure that is round-off everywhere has no column of orders.
+    let has_order: Vec<bool> = (0..figures.len())
+        .map(|i| {
+            let is_large = |mesh: &&Measured| mesh.figures[i].value > ROUND_OFF;
+            figures[i].has_order && finest.iter().any(is_large)
+        })
+        .collect();
     text += "| cells | dofs |";
-    for figure in figures {
+    for (figure, has_order) in figures.iter().zip(&has_order) {
         let _ = write!(text, " {} |", figure.name);
-        if figure.has_order {
-            text += " order |";
-        }
+        text += if *has_order { " order |" } else { "" };
     }
     text += "\n|---|--:|";
-    for figure in figures {
-        text += if figure.has_order { "--:|--:|" } else { "--:|" };
+    for has_order in &has_order {
+        text += if *has_order { "--:|--:|" } else { "--:|" };
     }
     text.push('\n');
-    for (family, all) in case.families.iter().zip(ran) {
-        for (level, measured) in all.iter().enumerate() {
-            let _ = write!(text, "| {} | {} |", family.name, measured.dofs);
-            for (i, figure) in measured.figures.iter().enumerate() {
-                let _ = write!(text, " {} |", shown(figure.value));
-                if figure.has_order {
-                    let before = level.checked_sub(1).map(|before| &all[before].figures[i]);
-                    let order = before.map(|before| (before.value / figure.value).log2());
-                    let _ = match order.filter(|_| figure.value > ROUND_OFF) {
-                        Some(order) => write!(text, " {order:.2} |"),
-                        None => write!(text, " |"),
-                    };
-                }
+    let (mixed, alone): (Vec<_>, Vec<_>) =
+        (case.families.iter().zip(ran)).partition(|(family, _)| family.name.contains(" on "));
+    for (family, meshes) in alone {
+        let Some((mesh, before)) = meshes.split_last() else {
+            continue;
+        };
+        let _ = write!(text, "| {} | {} |", family.name, mesh.dofs);
+        for (i, figure) in mesh.figures.iter().enumerate() {
+            let _ = write!(text, " {} |", shown(figure.value));
+            if has_order[i] {
+                let order = (before.last())
+                    .filter(|_| figure.value > ROUND_OFF)
+                    .map(|before| (before.figures[i].value / figure.value).log2());
+                text += &order.map_or(" |".to_owned(), |order| format!(" {order:.2} |"));
             }
-            text.push('\n');
         }
+        text.push('\n');
+    }
+    if !mixed.is_empty() {
+        let _ = write!(text, "| {} mixed pairs, largest | |", mixed.len());
+        for i in 0..figures.len() {
+            let values = mixed.iter().flat_map(|(_, meshes)| meshes.last());
+            let largest = values.map(|mesh| mesh.figures[i].value).fold(0.0, f64::max);
+            let _ = write!(text, " {} |", shown(largest));
+            text += if has_order[i] { " |" } else { "" };
+        }
+        text.push('\n');
     }
     text.push('\n');
     text += &gates(case);
@@ -94,11 +109,11 @@ fn gates(case: &Case) -> String {
         }
     }
     let is_one = groups.len() == 1;
-    let mut text = "Gates on the finest mesh:\n\n".to_owned();
+    let mut text = String::new();
     for (words, names) in groups {
         let _ = match is_one {
-            true => writeln!(text, "- {words}"),
-            false => writeln!(text, "- {}: {words}", names.join("; ")),
+            true => writeln!(text, "Gates: {words}"),
+            false => writeln!(text, "- Gates of {}: {words}", names.join("; ")),
         };
     }
     text.push('\n');

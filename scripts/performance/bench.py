@@ -192,8 +192,8 @@ def show(measured, markdown):
     ]
     print(table(heads, rows, markdown))
 
-    for name, size in sizes.items():
-        show_size(name, size, heading, markdown)
+    # Phase by phase, the largest problem.
+    show_size(*list(sizes.items())[-1], heading, markdown)
 
 
 def memory(size, name):
@@ -207,8 +207,8 @@ def show_size(name, size, heading, markdown):
     heading(name)
     print(
         f"{run['dofs']} dofs, {run['subdomains']} subdomains, {run['interface_dofs']} dofs on Γ, "
-        f"{run['active_contacts']} of {run['contact_conditions']} conditions closed, {run['sweeps']} sweeps "
-        f"with {run['inner_steps']} inner steps; the active set on PARDISO takes "
+        f"{run['active_contacts']} of {run['contact_conditions']} conditions closed, {run['sweeps']} sweep{'s' * (run['sweeps'] != 1)}; "
+        f"the active set on PARDISO takes "
         f"{size['repetitions'][0][ACTIVE_SET]['steps']} steps. PARDISO's choices: {size['choices'][PARDISO_ONE]} with 1 "
         f"thread, {size['choices'][PARDISO]} with 2, {size['choices'][ACTIVE_SET]} for the active set. Checked: {checked(size['checks'])}.\n"
     )

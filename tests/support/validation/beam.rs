@@ -11,11 +11,11 @@ A cantilever of length L = 8 and height D = 2, E = 200, ν = 0.3, plane stress, 
 end: σ_xx = −P (L − x) y/I, σ_xy = P/(2I) (D²/4 − y²), I = D³/12, deflection of the end
 P/(6EI) ((4 + 5ν) D² L/4 + 2 L³).
 
-Source: S. P. Timoshenko and J. N. Goodier, *Theory of Elasticity*; what has to act at both ends:
+Source: S. P. Timoshenko and J. N. Goodier, *Theory of Elasticity*; tractions at both ends:
 C. E. Augarde and A. J. Deeks, *The use of Timoshenko's exact solution for a cantilever beam in adaptive
 analysis*, Finite Elem. Anal. Des. 44 (2008).
 
-Mesh: rectangles, in halves for triangles; the exact displacement at x = 0, the exact traction at x = L.
+Mesh: rectangles, halved for triangles; exact displacement at x = 0, exact traction at x = L.
 ";
 
 const LENGTH: f64 = 8.0;

@@ -10,8 +10,7 @@ use super::exact::Exact;
 use super::{Case, Family, Figure, Gate, Measured, falling, gather, measured, plain};
 
 const TEXT: &str = "\
-A crack of half-length b = 1 m at ψ = 20° to a pressure of σ = 100 MPa, E = 25 GPa, ν = 0.25, plane
-strain, no friction: t_N = −σ sin²ψ = −11.698 MPa, slip 4 (1 − ν²)/E σ sinψ cosψ √(b² − x²), at most
+A crack of half-length b = 1 m at ψ = 20° to a pressure of σ = 100 MPa, E = 25 GPa, ν = 0.25, plane strain: t_N = −σ sin²ψ = −11.698 MPa, slip 4 (1 − ν²)/E σ sinψ cosψ √(b² − x²), at most
 4.8209e-3 m. With Z = −σ sinψ cosψ z/√(z² − b²) the shear that the crack doesn't carry adds
 σ_xx = 2 Im Z + y Re Z', σ_yy = −y Re Z', σ_xy = Re Z − y Im Z'.
 
@@ -19,9 +18,8 @@ Source: A.-V. Phan, J. A. L. Napier, L. J. Gray, T. Kaplan, *Symmetric-Galerkin 
 with frictional contact*, Int. J. Numer. Meth. Engng 57 (2003); stresses by Westergaard's function of
 the second mode, H. Tada, P. C. Paris, G. R. Irwin, *The Stress Analysis of Cracks Handbook*.
 
-Mesh: the square [−3, 3]² with the exact tractions, lines graded towards both tips and towards the
-crack with the 3rd power. At the tips stresses are infinite: on such meshes orders come near to 1 for
-linear and to 1.5 for quadratic cells.
+Mesh: the square [−3, 3]² with the exact tractions, graded (3rd power) towards both tips and the crack.
+The tips are singular: expected orders are 1 for linear and 1.5 for quadratic cells.
 ";
 
 const HALF: f64 = 3.0;

@@ -20,34 +20,31 @@ const SIDE: f64 = 2.0;
 pub const GRADING: f64 = 1.6;
 
 const ON_AN_OBSTACLE: &str = "\
-Two equal cylinders, R = 8, E = 200, ν = 0.3, P = 10 per unit of length, plane strain; one of them on
-their plane of symmetry: a² = 4 P R/(π E*) with E* = E/(1 − ν²), so that a = 0.68078; pressure
+Two equal cylinders, R = 8, E = 200, ν = 0.3, P = 10 per unit of length, plane strain; one of them on the
+plane of symmetry: a² = 4 P R/(π E*) with E* = E/(1 − ν²), so that a = 0.68078; pressure
 p₀ √(1 − x²/a²), p₀ = 2 P/(π a) = 9.35135. Stresses of the half plane y ≤ 0, with z = x + i y and
 Z = −p₀/a (√(a² − z²) − i z): σ_xx = Re Z − y Im Z', σ_yy = Re Z + y Im Z', σ_xy = −y Re Z'.
 
 Source: K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985, chapter 4.
 
-Mesh: the square [0, 2] × [−2, 0] of the built-in scene `hertz`, the tractions of the half plane on its
-right and its lower side, gap x²/16 to a rigid plane. *Graded* meshes have lines at distances from x = a
-and from y = 0 that grow with the 1.6th power of their number. Nothing but contact holds the body
-vertically.
+Mesh: the square [0, 2] × [−2, 0] of the built-in scene `hertz`, tractions of the half plane on its right
+and lower side, gap x²/16 to a rigid plane; *graded* towards x = a and y = 0 with the 1.6th power. Only
+contact supports the body vertically.
 
-*p₀*: the pressure of the node at x = 0. In uniform linear triangles, whose diagonals alternate, four
-triangles meet at one node of the side and eight at the next one, and pressures are too large and too
-small by turns. *Half-width*: how many cells lie between x = a and the last closed node. *Resultant*: the
-sum of the contact forces.
+*p₀*: pressure at x = 0; in uniform linear triangles it oscillates from node to node, as four and eight
+triangles meet there by turns. *Half-width*: number of cells between x = a and the last closed node.
+*Resultant*: sum of the contact forces.
 ";
 
 const BODY_ON_BODY: &str = "\
-The same cylinders, both of them: two squares with matching nodes and the gap x²/8 between them.
-Neither is held in the vertical direction.
+Both cylinders: two squares with matching nodes and the gap x²/8. Neither is supported vertically.
 
 Source and mesh: as above, mirrored.
 ";
 
 const UNEVEN: &str = "\
-The same two bodies, the upper one with 3 lines where the lower one has 2: no nodes match but those at
-x = 0, a and 2, and sides are paired by `mortar`. The lower side is side a.
+The same bodies, 3 cells above for 2 below: only nodes at x = 0, a and 2 match; paired by `mortar`, the
+lower side being side a.
 
 Source and mesh: as above.
 ";

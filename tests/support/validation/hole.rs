@@ -8,15 +8,14 @@ use super::exact::Exact;
 use super::{Case, Family, Gate, KINDS, Measured, falling, measured};
 
 const TEXT: &str = "\
-A plate without end with a hole of radius a under the tension T = 100 MPa along x, plane stress: with
+An infinite plate with a hole of radius a under the tension T = 100 MPa along x, plane stress: with
 c2 = cos 2θ, c4 = cos 4θ, s2, s4 likewise and q = a²/r², σ_xx = T (1 − q (3/2 c2 + c4) + 3/2 q² c4),
 σ_yy = T (−q (1/2 c2 − c4) − 3/2 q² c4), σ_xy = T (−q (1/2 s2 + s4) + 3/2 q² s4); 3 T beside the hole.
 *Peak*: the recovered stress there.
 
 Source: G. Kirsch, 1898; S. P. Timoshenko and J. N. Goodier, *Theory of Elasticity*.
 
-Mesh: the built-in scene `plain` with the exact tractions on the outer sides; edges of quadratic cells
-follow the hole.
+Mesh: the built-in scene `plain` with the exact tractions on the outer sides; quadratic edges are curved.
 ";
 
 const RADIUS: f64 = 0.01;

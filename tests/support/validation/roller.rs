@@ -13,23 +13,20 @@ use super::{Case, Family, Figure, Gate, Measured, falling, figured, gather, plai
 
 const TEXT: &str = "\
 A cylinder of steel, R = 50 mm, E = 210 GPa, is pressed by P = 35 kN/mm on a block of aluminium,
-200 mm × 200 mm, E = 70 GPa; ν = 0.3, plane strain, no friction. By Hertz, for half planes,
+200 mm × 200 mm, E = 70 GPa; ν = 0.3, plane strain. By Hertz, for half planes,
 a = √(4 P R/(π E*)) = 6.21 mm and p₀ = 2 P/(π a) = 3585 MPa with 1/E* = Σ (1 − ν²)/E.
 
 Source: A. Konter, *Advanced Finite Element Contact Benchmarks*, NAFEMS R0094, 2006 (FENET D3613), the
 first benchmark.
 
-Mesh: half of both by symmetry, the block held at its bottom. Of the cylinder the lower half, pressed
-evenly on its flat side: under a point load stresses would be infinite. Lines are graded towards the contact
-by hyperbolic sines; along it the block has 3 cells where the cylinder has 2. Sides are paired by `mortar`,
-gaps are those of the meshes, edges of quadratic cells follow the circle. Displacements are small: gaps
-and normals are those of the undeformed bodies.
+Mesh: half of both by symmetry, the block fixed at its bottom, the lower half of the cylinder under a uniform
+pressure on its flat side. Graded towards the contact, 3 cells of the block for 2 of the cylinder, paired by
+`mortar`; quadratic edges are curved.
 
-*p₀* and *half-width*: (3π/8) Σ F p/Σ F and 2 √(Σ F x²/Σ F) over the contact forces F, which are p₀ and a of
-an ellipse, against the same of 1 257 604 dofs: 3590.30 MPa and 6.21309 mm in `quad9`, from which
-`triangle6` and `quad8` of that fineness differ by 4e-6. *From Hertz*: against 3585.37 MPa and 6.2146 mm.
-The bodies are no half planes: of this 1.4e-3 and 2.5e-4 stay, however fine the mesh. *Resultant*: the
-vertical force against P/2.
+*p₀* and *half-width*: (3π/8) Σ F p/Σ F and 2 √(Σ F x²/Σ F) over the contact forces F (p₀ and a of an
+ellipse), against those of 1 257 604 dofs in `quad9`, 3590.30 MPa and 6.21309 mm. *From Hertz*: against
+3585.37 MPa and 6.2146 mm; as the bodies are no half planes, 1.4e-3 and 2.5e-4 of this remain on any mesh.
+*Resultant*: the vertical force against P/2.
 ";
 
 const RADIUS: f64 = 50.0;

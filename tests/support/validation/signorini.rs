@@ -9,16 +9,13 @@ use super::{Case, Family, Figure, Gate, Posed, falling, plain};
 
 const TEXT: &str = "\
 u_x = −y A'(x), u_y = A(x) + y B(x) with A = 1e-3 cos 2x and B = −1e-2 max(½ − x, 0)³, E = 200, ν = 0.3,
-plane strain. On the upper side y = 0 there is no shear, and σ_yy = (λ + 2μ) B is a pressure where
-x < ½ and nothing beyond. With the gap A + 1e-3 max(x − ½, 0)² to a rigid plane the left half is in
-contact and the right half isn't. Body force and tractions are those of u. *Pressure*: largest error over
-the largest pressure; *wrong*: nodes more than a cell from x = ½ that are open or closed against that.
-
-Source: made for this.
+plane strain. On y = 0 the shear is 0, and σ_yy = (λ + 2μ) B is a pressure for x < ½ and 0 beyond. With the
+gap A + 1e-3 max(x − ½, 0)² to a rigid plane the left half is closed, the right half open. Body force and
+tractions follow from u. *Pressure*: largest error over the largest pressure; *wrong*: nodes more than a
+cell from x = ½ whose status is wrong.
 
 Mesh: the square [0, 1] × [−1, 0] in irregular cells, u prescribed on the left and below, tractions on
-the right. Quadrilaterals of eight nodes are squares: in other cells than parallelograms they lose their
-order (D. N. Arnold, D. Boffi, R. S. Falk, *Approximation by quadrilateral finite elements*, Math. Comp.
+the right. `quad8` are squares: in cells other than parallelograms they lose their order (D. N. Arnold, D. Boffi, R. S. Falk, *Approximation by quadrilateral finite elements*, Math. Comp.
 71 (2002)).
 ";
 

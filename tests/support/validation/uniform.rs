@@ -12,8 +12,8 @@ use super::exact::Exact;
 use super::{Case, Family, Figure, Gate, KINDS, measured, plain};
 
 const PATCH: &str = "\
-Two blocks that meet in an inclined line, the same pressure p = 1 MPa from above and from the right:
-σ = −p I in the plane whatever the inclination, contact pressure p. Every mesh has this field.
+Two blocks with an inclined joint, pressure p = 1 MPa from above and from the right: σ = −p I in the plane,
+contact pressure p, exact on every mesh.
 
 Source: after R. L. Taylor and P. Papadopoulos, *On a patch test for contact problems in two
 dimensions*, in P. Wriggers and W. Wagner (eds.), *Nonlinear Computational Mechanics*, Springer 1991.
@@ -22,22 +22,20 @@ Mesh: the blocks of the built-in scene `patch` in irregular cells.
 ";
 
 const UNEVEN: &str = "\
-Two blocks, E = 210 and 20 GPa, ν = 0.3 and 0.22, lie on each other with nodes that don't match, p = 1 MPa
-presses on the upper one: σ = −p n nᵀ with n the normal of their joint, contact pressure p. Every mesh has
-this field; that contact passes it on is the test of the pairing. A row `triangle3 on quad8` has triangles
-in the upper block, whose side is side a.
+Two blocks, E = 210 and 20 GPa, ν = 0.3 and 0.22, non-matching nodes, p = 1 MPa on the upper one:
+σ = −p n nᵀ with n the normal of the joint, contact pressure p, exact on every mesh. The upper
+side is side a.
 
 Source: as above; dual multipliers on segments: B. I. Wohlmuth, *A mortar finite element method using
 dual spaces for the Lagrange multiplier*, SIAM J. Numer. Anal. 38 (2000).
 
-Mesh: blocks of 2 × 1 m turned by 0.4, 3 cells of uneven widths along the joint below and 7 above, or twice
-as many and so on. Overlaps in part, three blocks in a pile, cracks whose tips are shared and cuts that
-meet the contact are in `tests/scenes/mortar`.
+Mesh: blocks of 2 × 1 m turned by 0.4, 3 cells of unequal widths along the joint below and 7 above, refined
+by halving.
 ";
 
 const JUNCTION: &str = "\
-Four blocks and three contacts that meet in a point, rollers on the left and below, 1 MPa from the
-right and from above: σ = −p I, pressure p on every contact.
+Four blocks, three contacts that meet in a point, rollers on the left and below, 1 MPa from the right and
+from above: σ = −p I, pressure p on every contact.
 
 Source: equilibrium.
 
