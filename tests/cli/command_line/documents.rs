@@ -1,4 +1,4 @@
-//! Man pages, completions and the README's tables are made of the parsers' own options.
+//! Man pages and completions are made of the parsers' own options.
 
 use std::fs;
 use std::process::{Command, Output};
@@ -24,24 +24,12 @@ fn run(command: &mut Command) -> Option<Output> {
 }
 
 #[test]
-fn the_readme_shows_the_options_that_the_parsers_know() {
-    let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
-    for (command, manual) in programs() {
-        let name = command.get_name().to_owned();
-        let table = manual.write(Document::Markdown, command);
-        assert!(
-            readme.contains(&table),
-            "the README lacks what `{name} --generate markdown` prints:\n{table}"
-        );
-    }
-}
-
-#[test]
-fn the_readme_shows_the_exit_codes_of_the_manual() {
-    let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+fn the_documents_show_the_exit_codes_of_the_manual() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/command-line.md");
+    let page = fs::read_to_string(page).unwrap();
     for (code, meaning) in solver::MANUAL.exit_codes {
         let row = |line: &str| line.starts_with(&format!("| {code} |"));
-        let rows: Vec<&str> = readme.lines().filter(|line| row(line)).collect();
+        let rows: Vec<&str> = page.lines().filter(|line| row(line)).collect();
         assert_eq!(rows.len(), 1, "{code}");
         assert_eq!(rows[0].replace('`', ""), format!("| {code} | {meaning} |"));
     }
