@@ -213,8 +213,7 @@ fn interface_nodes(catalog: &Catalog, block: &BlockPlan) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use contact_dd_partition::model::PlaneState;
-    use contact_dd_partition::problem::hierarchy::Hierarchy;
-    use contact_dd_partition::problem::{Body, SubdomainSummary};
+    use contact_dd_partition::problem::{Body, Hierarchy, SubdomainSummary};
     use contact_dd_partition::solver::SolverSettings;
 
     use super::*;

@@ -1,13 +1,16 @@
 //! Contact-aware partition: METIS on a graph in which Γ can't meet Γ_c.
 
 mod atoms;
-pub(crate) mod disjoint_sets;
+mod build;
 mod graph;
 mod growth;
-pub(crate) mod multilevel;
+pub mod hierarchy;
+mod multilevel;
+mod order;
 mod prescribed;
 mod regions;
 mod share;
+pub mod summary;
 mod unit;
 mod units;
 

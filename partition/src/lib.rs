@@ -26,20 +26,28 @@
 //! > Γ = ∪ ∂Ω^i ∩ ∂Ω^j,   Γ ∩ Γ_c = ∅ but for the tips of cracks,
 //!
 //! by METIS on a graph whose vertices are what must not be divided. Subdomains in contact are the pairs ϑ,
-//! the others T.
+//! the others T. It also makes the [`hierarchy`](decompose::hierarchy) up which Schur complements are
+//! merged, judged by estimated [`flops`]. Only this part, behind the feature `metis`, needs METIS.
 //!
 //! **The problem file** ([`problem`]) is defined once, for its writer here and for its reader in
-//! `contact-dd-mpi`, and holds the [`hierarchy`](problem::hierarchy) up which Schur complements are merged,
-//! judged by estimated [`flops`]. It gets its name when it is whole ([`destination`]).
+//! `contact-dd-mpi`. It gets its name when it is whole ([`destination`]).
 
 pub mod command_line;
+#[cfg(feature = "metis")]
 pub mod decompose;
 pub mod destination;
+mod disjoint_sets;
 pub mod element;
 pub mod error;
 pub mod example;
 pub mod file_kind;
 pub mod flops;
+#[cfg(feature = "metis")]
+pub mod info;
+#[cfg_attr(
+    not(feature = "metis"),
+    allow(dead_code, reason = "the partitioner uses more of it than a reader")
+)]
 mod lists;
 pub mod magnitude;
 pub mod manual;

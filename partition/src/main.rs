@@ -9,11 +9,11 @@ use contact_dd_partition::command_line::{CommandLine, MANUAL};
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::error::{InputError, OutputError};
 use contact_dd_partition::example::{self, EXAMPLES};
+use contact_dd_partition::info::Info;
 use contact_dd_partition::mesh::{Mesh, gmsh};
 use contact_dd_partition::message::{self, WARNING};
 use contact_dd_partition::model::Model;
 use contact_dd_partition::problem::Problem;
-use contact_dd_partition::problem::info::Info;
 use contact_dd_partition::scene::Scene;
 use contact_dd_partition::usage::Answer;
 

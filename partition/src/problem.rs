@@ -3,26 +3,20 @@
 //! The writer and the reader of `problem.h5` share these types; docs/problem-file.md says the
 //! same for somebody who writes one with h5py.
 
-pub mod build;
 pub mod copies;
 mod dataset;
-pub mod hierarchy;
-pub mod info;
-mod order;
 pub mod read;
 mod slab;
 mod strings;
-pub mod summary;
 pub mod vtkhdf;
 pub mod write;
 
-use self::hierarchy::Hierarchy;
 use crate::element::Elements;
 use crate::model::{Material, PlaneState, Support};
 use crate::solver::SolverSettings;
 
 /// Version of the format, attribute `version` of the file.
-pub const VERSION: i64 = 1;
+pub const VERSION: i64 = 2;
 
 /// Attribute `format` of the file.
 pub const FORMAT: &str = "contact-dd-mpi problem";
@@ -163,6 +157,18 @@ pub struct LoadStep {
 pub struct Body {
     /// Name of the scene's body, numbered where that one has several pieces.
     pub name: String,
+}
+
+/// A tree over the subdomains, up which their Schur complements are merged.
+///
+/// Nodes 0 to N − 1 are the N subdomains, those from N on are inner nodes. The members of a group
+/// in contact have the same parent and are one child of it: the leaves are *blocks*, linear
+/// subdomains or whole groups. Blocks that share a node of Γ are under one root, so that there is
+/// a lowest inner node above all blocks of a node, whose front eliminates it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Hierarchy {
+    /// The parent of every node, greater than its own number; `None` for a root.
+    pub parent: Vec<Option<u32>>,
 }
 
 /// What every rank knows of the whole problem.

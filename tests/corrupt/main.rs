@@ -209,7 +209,6 @@ fn what_is_dropped_is_missed_unless_the_format_says_that_it_may_be() {
             "/VTKHDF/@Version",
             "/VTKHDF/CellData/Subdomain",
             "/contact/acts_at",
-            "/hierarchy/parent",
             "/materials/out_of_plane",
             "/materials/poisson",
             "/settings/@max_sweeps",

@@ -1,8 +1,8 @@
 //! Atoms: what a partition can't divide.
 
-use super::disjoint_sets::DisjointSets;
 use super::graph::Graph;
 use super::growth::grow;
+use crate::disjoint_sets::DisjointSets;
 use crate::mesh::topology::Topology;
 use crate::model::Model;
 

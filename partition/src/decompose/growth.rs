@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::atoms::Around;
-use super::disjoint_sets::DisjointSets;
+use crate::disjoint_sets::DisjointSets;
 use crate::flops::{Front, condensation};
 use crate::mesh::topology::Topology;
 use crate::model::Model;

@@ -1,8 +1,8 @@
 //! Units: what gets subdomains of its own.
 
-use super::disjoint_sets::DisjointSets;
 use super::graph::Graph;
 use super::regions::Regions;
+use crate::disjoint_sets::DisjointSets;
 
 /// The atoms of a mesh in connected sets, those of one material apart.
 pub(super) struct Units<'g> {

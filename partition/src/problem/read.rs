@@ -69,6 +69,7 @@ impl ProblemFile {
                     "isn't a whole HDF5 file ({reason}); expected one written by contact-dd-partition"
                 ))
             })?;
+        header::check_format(&file)?;
         known::check(&file)?;
         let (catalog, offsets) = catalog::read(&file)?;
         let mut sharing = vec![0; catalog.interface_nodes];

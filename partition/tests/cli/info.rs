@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use contact_dd_partition::problem::info::Info;
+use contact_dd_partition::info::Info;
 use contact_dd_partition::problem::read::ProblemFile;
 
 fn program(args: &[&str], dir: &Path) -> Output {

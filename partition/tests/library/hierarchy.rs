@@ -8,9 +8,8 @@ use crate::problem_scenes::{cracked, shuffled, stacked};
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::flops::Front;
 use contact_dd_partition::model::Model;
-use contact_dd_partition::problem::hierarchy::Hierarchy;
 use contact_dd_partition::problem::read::ProblemFile;
-use contact_dd_partition::problem::{Catalog, Problem};
+use contact_dd_partition::problem::{Catalog, Hierarchy, Problem};
 use proptest::prelude::*;
 
 fn problem(model: &Model, count: usize) -> Problem {
@@ -132,18 +131,13 @@ fn numbers(hierarchy: &Hierarchy) -> Vec<i64> {
     parents.map(|p| p.map_or(-1, i64::from)).collect()
 }
 
-/// Replaces the tree of a file; `None` takes it out.
-fn plant(path: &Path, parent: Option<&[i64]>) {
+/// Replaces the tree of a file.
+fn plant(path: &Path, parent: &[i64]) {
     let file = hdf5::File::open_rw(path).unwrap();
-    if file.link_exists("hierarchy") {
-        file.unlink("hierarchy").unwrap();
-    }
-    if let Some(parent) = parent {
-        let group = file.create_group("hierarchy").unwrap();
-        let dataset = group.new_dataset::<i64>().shape(parent.len());
-        let dataset = dataset.create("parent").unwrap();
-        dataset.write_raw(parent).unwrap();
-    }
+    file.unlink("hierarchy/parent").unwrap();
+    let dataset = file.new_dataset::<i64>().shape(parent.len());
+    let dataset = dataset.create("hierarchy/parent").unwrap();
+    dataset.write_raw(parent).unwrap();
     file.close().unwrap();
 }
 
@@ -213,19 +207,6 @@ fn in_its_order_what_is_under_a_node_is_one_slice() {
 }
 
 #[test]
-fn a_file_without_a_tree_gets_one() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("problem.h5");
-    let problem = problem(&cracked(20, &[(0, 6)]), 12);
-    problem.write(&path).unwrap();
-    plant(&path, None);
-    assert_eq!(
-        ProblemFile::open(&path).unwrap().catalog(),
-        &problem.catalog
-    );
-}
-
-#[test]
 fn trees_with_one_child_or_many_are_taken_as_they_are() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("problem.h5");
@@ -233,7 +214,7 @@ fn trees_with_one_child_or_many_are_taken_as_they_are() {
     problem.write(&path).unwrap();
     // All nine under one, and two more on top of it.
     let parent = [&[9; 9][..], &[10, 11, -1]].concat();
-    plant(&path, Some(&parent));
+    plant(&path, &parent);
     let file = ProblemFile::open(&path).unwrap();
     let catalog = file.catalog();
     assert_eq!(numbers(&catalog.hierarchy), parent);
@@ -266,7 +247,7 @@ proptest! {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("problem.h5");
         problem.write(&path).unwrap();
-        plant(&path, Some(&parent));
+        plant(&path, &parent);
         let read = ProblemFile::open(&path);
         prop_assert_eq!(read.is_ok(), holds(&problem.catalog, &parent), "{:?}: {:?}", parent, read);
         if let Err(error) = read {

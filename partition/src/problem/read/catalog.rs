@@ -5,11 +5,10 @@ use std::collections::HashMap;
 use super::header::Header;
 use super::sizes::Sizes;
 use super::{Offsets, hierarchy, materials, settings};
-use crate::decompose::disjoint_sets::DisjointSets;
+use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::problem::dataset::Dataset;
-use crate::problem::hierarchy::Hierarchy;
-use crate::problem::{Body, Catalog, ContactSummary, LoadStep, SubdomainSummary};
+use crate::problem::{Body, Catalog, ContactSummary, Hierarchy, LoadStep, SubdomainSummary};
 
 /// Reads and checks the catalog, and where the slices lie.
 pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> {
@@ -19,6 +18,11 @@ pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> 
     let materials = materials::read(file)?;
     let bodies = Dataset::column(file, "/bodies/name", None)?.names()?;
     let (interface_offsets, interface) = read_interface(file, count)?;
+    if !file.link_exists("support") {
+        return Err(InputError::new(
+            "group /support is missing; expected one, empty where nothing is supported",
+        ));
+    }
     let supports = section(
         file,
         "support",
@@ -301,6 +305,6 @@ fn section(
 }
 
 /// Whether the file has a group with something in it.
-pub(super) fn is_filled(file: &hdf5::File, group: &str) -> bool {
+fn is_filled(file: &hdf5::File, group: &str) -> bool {
     file.link_exists(group) && !file.group(group).is_ok_and(|group| group.is_empty())
 }

@@ -16,9 +16,8 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// Reads the attributes; a title may be absent.
+    /// Reads the other attributes; a title may be absent.
     pub fn read(file: &hdf5::File) -> Result<Self, InputError> {
-        read_format(file)?;
         check_grid(file)?;
         Ok(Self {
             dim: read_dimension(file)?,
@@ -78,19 +77,26 @@ fn check_grid(file: &hdf5::File) -> Result<(), InputError> {
     Ok(())
 }
 
-fn read_format(file: &hdf5::File) -> Result<(), InputError> {
+/// Checks that a file is a problem file of the version that is read here.
+pub(super) fn check_format(file: &hdf5::File) -> Result<(), InputError> {
     let format = text(file, "format").map_err(|_| {
         InputError::new(format!(
-            "isn't a problem file: expected the attribute format = \"{FORMAT}\""
+            "is an HDF5 file, but no problem file: it has no attribute format = \"{FORMAT}\". \
+             contact-dd-partition makes a problem file of a scene and a mesh"
         ))
     })?;
     if format != FORMAT {
         return Err(InputError::new(format!(
-            "attribute format is \"{format}\"; expected \"{FORMAT}\""
+            "isn't a problem file: attribute format is \"{}\"; expected \"{FORMAT}\"",
+            name::shown(&format)
         )));
     }
     match Attribute::open(file, "version")?.integer()? {
         VERSION => Ok(()),
+        older if (1..VERSION).contains(&older) => Err(InputError::new(format!(
+            "has version {older} of the format; expected {VERSION}. Make it again with \
+             contact-dd-partition"
+        ))),
         other => Err(InputError::new(format!(
             "has version {other} of the format; expected {VERSION}"
         ))),

@@ -1,16 +1,11 @@
 //! The tree over the subdomains.
 
-use super::catalog::is_filled;
 use crate::error::InputError;
-use crate::problem::Catalog;
 use crate::problem::dataset::Dataset;
-use crate::problem::hierarchy::Hierarchy;
+use crate::problem::{Catalog, Hierarchy};
 
-/// Reads and checks the tree, or dissects what else the catalog holds where the file has none.
+/// Reads and checks the tree.
 pub(super) fn read(file: &hdf5::File, catalog: &Catalog) -> Result<Hierarchy, InputError> {
-    if !is_filled(file, "hierarchy") {
-        return Ok(Hierarchy::new(catalog));
-    }
     let dataset = Dataset::column(file, "/hierarchy/parent", None)?;
     let hierarchy = Hierarchy {
         parent: read_parents(&dataset, catalog.subdomains.len())?,

@@ -78,12 +78,36 @@ fn every_defect_is_named() {
         (
             "no format",
             |f| f.delete_attr("format").unwrap(),
-            &["format"],
+            &["no problem file", "attribute format"],
+        ),
+        (
+            "another format",
+            |f| {
+                f.delete_attr("format").unwrap();
+                f.new_attr::<i64>().create("format").unwrap();
+                f.create_group("ENS_MAA").unwrap();
+            },
+            &["no problem file", "attribute format"],
         ),
         (
             "another version",
             |f| f.attr("version").unwrap().write_scalar(&9i64).unwrap(),
-            &["version 9", "expected 1"],
+            &["version 9", "expected 2"],
+        ),
+        (
+            "the version before",
+            |f| f.attr("version").unwrap().write_scalar(&1i64).unwrap(),
+            &["version 1", "expected 2", "again with contact-dd-partition"],
+        ),
+        (
+            "no supports",
+            |f| f.unlink("/support").unwrap(),
+            &["group /support is missing", "empty where nothing"],
+        ),
+        (
+            "no tree",
+            |f| f.unlink("/hierarchy").unwrap(),
+            &["/hierarchy/parent is missing"],
         ),
         (
             "three dimensions",

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::fmt;
 
-use super::{ContactSummary, Problem};
+use crate::problem::{ContactSummary, Problem};
 
 /// A group of subdomains in contact.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::decompose::disjoint_sets::DisjointSets;
+use crate::disjoint_sets::DisjointSets;
 use crate::model::Model;
 
 /// The bodies of a mesh, in the order of their first cell.

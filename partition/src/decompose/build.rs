@@ -6,16 +6,15 @@ mod scattered;
 
 use self::bodies::Bodies;
 use self::groups::Groups;
-use super::hierarchy::Hierarchy;
-use super::{
-    Body, Catalog, ContactRow, ContactSummary, InterfaceNode, LoadStep, Problem, RowEntry,
-    StepLoads, Subdomain, SubdomainSummary,
-};
-use crate::decompose::Decomposition;
+use super::Decomposition;
 use crate::element::Elements;
 use crate::error::InputError;
 use crate::lists::Lists;
 use crate::model::Model;
+use crate::problem::{
+    Body, Catalog, ContactRow, ContactSummary, Hierarchy, InterfaceNode, LoadStep, Problem,
+    RowEntry, StepLoads, Subdomain, SubdomainSummary,
+};
 
 impl Problem {
     /// Gives every subdomain its slice of `model`.

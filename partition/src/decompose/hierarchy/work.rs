@@ -1,9 +1,8 @@
 //! What a tree costs.
 
-use super::Hierarchy;
 use super::blocks::Blocks;
 use crate::flops::Front;
-use crate::problem::Catalog;
+use crate::problem::{Catalog, Hierarchy};
 
 /// What the nodes of a tree cost.
 #[derive(Clone, Debug, PartialEq)]

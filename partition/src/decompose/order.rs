@@ -1,6 +1,6 @@
 //! The numbers of the subdomains.
 
-use super::Problem;
+use crate::problem::Problem;
 
 impl Problem {
     /// Numbers the subdomains in the depth-first order of the hierarchy, so that what is under a

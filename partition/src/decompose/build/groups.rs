@@ -1,7 +1,7 @@
 //! Groups: the subdomains that contact links.
 
 use super::Owners;
-use crate::decompose::disjoint_sets::DisjointSets;
+use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::model::Model;
 

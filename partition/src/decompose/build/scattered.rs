@@ -1,7 +1,7 @@
 //! Subdomains that don't hang together.
 
 use crate::decompose::Decomposition;
-use crate::decompose::disjoint_sets::DisjointSets;
+use crate::disjoint_sets::DisjointSets;
 use crate::mesh::topology::Topology;
 use crate::model::Model;
 

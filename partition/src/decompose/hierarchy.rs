@@ -1,4 +1,4 @@
-//! The tree along which the Schur complements of the subdomains are merged.
+//! Dissects the graph of the subdomains into the tree along which their Schur complements are merged.
 
 mod blocks;
 mod cut;
@@ -7,24 +7,12 @@ mod work;
 
 use self::blocks::Blocks;
 use self::dissect::Dissection;
-use super::Catalog;
+use crate::problem::{Catalog, Hierarchy};
 
 pub use self::work::Work;
 
-/// A tree over the subdomains, dissected so that the fronts of its inner nodes are cheap.
-///
-/// Nodes 0 to N − 1 are the N subdomains, those from N on are inner nodes. The members of a group
-/// in contact have the same parent and are one child of it: the leaves are *blocks*, linear
-/// subdomains or whole groups. Blocks that share a node of Γ are under one root, so that there is
-/// a lowest inner node above all blocks of a node, whose front eliminates it.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Hierarchy {
-    /// The parent of every node, greater than its own number; `None` for a root.
-    pub parent: Vec<Option<u32>>,
-}
-
 impl Hierarchy {
-    /// Dissects the graph of blocks that share nodes of Γ; every connected part of it gets a root.
+    /// Dissects so that the fronts of inner nodes are cheap, and halves even; the graph of blocks that share nodes of Γ; every connected part of it gets a root.
     /// Inner nodes have two children. Equal catalogs give equal trees; the one that the catalog
     /// holds doesn't count.
     pub fn new(catalog: &Catalog) -> Self {

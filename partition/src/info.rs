@@ -5,11 +5,11 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 
-use super::read::ProblemFile;
-use super::summary::Summary;
-use super::{Problem, VERSION};
+use crate::decompose::summary::Summary;
 use crate::error::InputError;
 use crate::model::Material;
+use crate::problem::read::ProblemFile;
+use crate::problem::{Problem, VERSION};
 
 /// Most lines about things of one kind.
 const MOST: usize = 20;

@@ -2,8 +2,8 @@
 
 use super::blocks::Blocks;
 use super::cut::{Cut, Judge, Set};
-use crate::decompose::disjoint_sets::DisjointSets;
 use crate::decompose::multilevel::Request;
+use crate::disjoint_sets::DisjointSets;
 use crate::lists::Lists;
 
 /// Sets of up to as many blocks are cut in all ways, and the best is taken.
