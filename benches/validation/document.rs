@@ -60,11 +60,11 @@ pub fn chapter(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String 
     }
     if !mixed.is_empty() {
         let _ = write!(text, "| {} mixed pairs, largest | |", mixed.len());
-        for i in 0..figures.len() {
+        for (i, &has_order) in has_order.iter().enumerate() {
             let values = mixed.iter().flat_map(|(_, meshes)| meshes.last());
             let largest = values.map(|mesh| mesh.figures[i].value).fold(0.0, f64::max);
             let _ = write!(text, " {} |", shown(largest));
-            text += if has_order[i] { " |" } else { "" };
+            text += if has_order { " |" } else { "" };
         }
         text.push('\n');
     }
