@@ -6,7 +6,6 @@ pub mod assembly;
 pub mod balance;
 pub mod block;
 mod bounds;
-pub mod condition;
 pub mod dofs;
 pub mod elasticity;
 mod elimination;

@@ -33,17 +33,18 @@ fn subdomain(c: &mut Criterion) {
     for (refine, count, size) in [(2, 40, "2k"), (3, 16, "20k")] {
         let scene = Scene::granite(refine, count);
         let b = scene.largest_linear();
-        let (block, conditions) = &scene.blocks[b];
+        let owned = &scene.blocks[b];
+        let (block, points) = (&owned.block, &owned.points);
         let materials = scene.materials();
         let (dofs, stiffness) = scene.assembled(b);
         let (_, schur, _, load) = scene.condensed(b);
         let x_b = vec![1e-3; load.boundary().len()];
         let u = dofs.displacement(&schur.recover(&load, &x_b));
-        let balance = Balance::new(block, conditions, materials, &u, &[]);
+        let balance = Balance::new(block, points, materials, &u, &[]);
 
         let mut group = c.benchmark_group(format!("subdomain {size}"));
         group.bench_function("number unknowns", |bench| {
-            bench.iter(|| Dofs::new(block, conditions, materials).unwrap());
+            bench.iter(|| Dofs::new(block, points, &owned.gaps, materials).unwrap());
         });
         group.bench_function("assemble", |bench| {
             bench.iter(|| assemble(block, &dofs, materials, &[]).unwrap());
@@ -55,10 +56,10 @@ fn subdomain(c: &mut Criterion) {
             bench.iter(|| dofs.displacement(&schur.recover(&load, black_box(&x_b))));
         });
         group.bench_function("certificate", |bench| {
-            bench.iter(|| Balance::new(block, conditions, materials, black_box(&u), &[]));
+            bench.iter(|| Balance::new(block, points, materials, black_box(&u), &[]));
         });
         group.bench_function("certificate, check", |bench| {
-            bench.iter(|| BlockCheck::new(block, conditions, &balance, black_box(&u), &[]));
+            bench.iter(|| BlockCheck::new(owned, &balance, black_box(&u), &[]));
         });
         let mut patches = Vec::new();
         group.bench_function("stresses", |bench| {
@@ -76,7 +77,7 @@ fn pair(c: &mut Criterion) {
     let scene = Scene::granite(1, 20);
     let b = scene.plan.groups[0];
     let (dofs, ..) = scene.condensed(b);
-    let gaps: Vec<f64> = scene.blocks[b].1.iter().map(|c| c.gap).collect();
+    let gaps = &scene.blocks[b].gaps;
     let limits = Limits::new(dofs.approaches, &dofs.approach_of, &gaps, 0.0);
     let mut condensed = scene.of_block(b);
     condensed.fill_upper_triangle();

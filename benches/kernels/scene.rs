@@ -2,9 +2,9 @@
 
 use contact_dd_mpi::fem::assembly::assemble;
 use contact_dd_mpi::fem::block::Block;
-use contact_dd_mpi::fem::condition::BlockCondition;
 use contact_dd_mpi::fem::dofs::Dofs;
 use contact_dd_mpi::fem::load::load;
+use contact_dd_mpi::fem::owned::OwnedBlock;
 use contact_dd_mpi::plan::Plan;
 use contact_dd_mpi::plan::cluster::Merging;
 use contact_dd_mpi::schur::condensed::Condensed;
@@ -20,7 +20,7 @@ use faer::{Mat, Par};
 pub struct Scene {
     pub catalog: Catalog,
     pub plan: Plan,
-    pub blocks: Vec<(Block, Vec<BlockCondition>)>,
+    pub blocks: Vec<OwnedBlock>,
 }
 
 impl Scene {
@@ -37,10 +37,8 @@ impl Scene {
                 let members = members.map(|&s| problem.subdomains[s].clone()).collect();
                 let shared = |node: u32| plan.sharing[node as usize] > 1;
                 let block = Block::new(members, problem.catalog.dim, shared);
-                let rows = of_plan.group.map_or(&[][..], |g| &problem.rows[g]);
-                let conditions = rows.iter().map(|row| BlockCondition::new(&block, row));
-                let conditions = conditions.collect();
-                (block, conditions)
+                let points = of_plan.group.map_or(&[][..], |g| &problem.points[g]);
+                OwnedBlock::new(block, points)
             })
             .collect();
         Self {
@@ -57,13 +55,19 @@ impl Scene {
     /// The largest linear subdomain.
     pub fn largest_linear(&self) -> usize {
         let linear = (0..self.blocks.len()).filter(|&b| self.plan.blocks[b].group.is_none());
-        linear.max_by_key(|&b| self.blocks[b].0.nodes()).unwrap()
+        linear
+            .max_by_key(|&b| self.blocks[b].block.nodes())
+            .unwrap()
     }
 
     /// A block's unknowns and stiffness.
     pub fn assembled(&self, b: usize) -> (Dofs, SparseSymmetric) {
-        let (block, conditions) = &self.blocks[b];
-        let dofs = Dofs::new(block, conditions, self.materials()).unwrap();
+        let OwnedBlock {
+            block,
+            points,
+            gaps,
+        } = &self.blocks[b];
+        let dofs = Dofs::new(block, points, gaps, self.materials()).unwrap();
         let (stiffness, _) = assemble(block, &dofs, self.materials(), &[]).unwrap();
         (dofs, stiffness)
     }
@@ -72,7 +76,7 @@ impl Scene {
     pub fn condensed(&self, b: usize) -> (Dofs, LocalSchur, Mat<f64>, CondensedLoad) {
         let (dofs, stiffness) = self.assembled(b);
         let (schur, s) = LocalSchur::new(&stiffness, dofs.interior, Par::Seq).unwrap();
-        let load = schur.condense(load(&self.blocks[b].0, &dofs, self.materials(), &[]));
+        let load = schur.condense(load(&self.blocks[b].block, &dofs, self.materials(), &[]));
         (dofs, schur, s, load)
     }
 

@@ -135,10 +135,10 @@ impl Info {
     fn gaps(&self) -> Vec<String> {
         let contacts = self.problem.catalog.contacts.iter().enumerate();
         let gaps = contacts.filter_map(|(index, contact)| {
-            let rows = self.problem.rows.iter().flatten();
-            let gaps = rows
-                .filter(|row| row.contact as usize == index)
-                .map(|row| row.gap);
+            let points = self.problem.points.iter().flatten();
+            let gaps = points
+                .filter(|point| point.contact as usize == index)
+                .map(|point| point.gap);
             let least = gaps.clone().reduce(f64::min)?;
             let most = gaps.reduce(f64::max)?;
             Some(match least == most {

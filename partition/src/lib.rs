@@ -33,6 +33,7 @@
 //! `contact-dd-mpi`. It gets its name when it is whole ([`destination`]).
 
 pub mod command_line;
+pub mod contact_point;
 #[cfg(feature = "metis")]
 pub mod decompose;
 pub mod destination;

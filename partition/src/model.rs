@@ -19,6 +19,7 @@ mod supports;
 mod surface;
 
 pub use self::steps::ModelStep;
+use crate::contact_point::ContactPoint;
 use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
@@ -53,34 +54,13 @@ pub struct Support {
     pub condition: u32,
 }
 
-/// One contact condition, a row of `B u ≤ g`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ContactCondition {
-    /// The nodes of its row and their coefficients: Σ coefficient·u(node) ≤ gap.
-    pub entries: Vec<(u32, [f64; 3])>,
-    /// g (m); negative for an interference fit.
-    pub gap: f64,
-    /// Share of side a that belongs to it: the integral of its weight (m).
-    pub share: f64,
-    /// Undeformed position on side a (m).
-    pub position: [f64; 3],
-    /// Where its force on side a acts, Σ coefficient·position over the nodes of side a (m).
-    pub acts_at: [f64; 3],
-    /// Unit normal, outward of side a.
-    pub normal: [f64; 3],
-    /// Tag of its node on side a.
-    pub tag_a: i64,
-    /// Tag of its node on side b; −1 for an obstacle and where there are several (mortar).
-    pub tag_b: i64,
-}
-
-/// A contact of the scene with its conditions.
+/// A contact of the scene with its points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
     /// Name in the scene.
     pub name: String,
-    /// Its conditions, along side a.
-    pub conditions: Vec<ContactCondition>,
+    /// Its points, along side a, over the nodes of the mesh.
+    pub points: Vec<ContactPoint<u32>>,
 }
 
 /// A scene on its mesh.
@@ -132,8 +112,9 @@ impl Model {
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
         let loads = steps::Loads::new(scene, &bodies, &topology)?;
         let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads);
-        let contacts = (scene.contact.iter())
-            .map(|keys| sides.contact(keys, &mut warnings))
+        let contacts = (0..)
+            .zip(&scene.contact)
+            .map(|(number, keys)| sides.contact(number, keys, &mut warnings))
             .collect::<Result<Vec<_>, _>>()?;
         let materials = bodies::materials(scene, plane);
         let doubts = doubts::Doubts {

@@ -11,6 +11,7 @@ mod strings;
 pub mod vtkhdf;
 pub mod write;
 
+use crate::contact_point::ContactPoint;
 use crate::element::Elements;
 use crate::model::{Material, PlaneState, Support};
 use crate::solver::SolverSettings;
@@ -85,40 +86,13 @@ impl Subdomain {
     }
 }
 
-/// One entry of a contact row.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RowEntry {
+/// A node of a subdomain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SubdomainNode {
     /// Subdomain.
     pub subdomain: u32,
     /// Node of that subdomain.
     pub node: u32,
-    /// Coefficient of its displacement.
-    pub coefficient: [f64; 3],
-}
-
-/// One contact condition: Σ coefficient·u ≤ gap.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ContactRow {
-    /// Index of its contact among [`Catalog::contacts`].
-    pub contact: u32,
-    /// Its place within that contact.
-    pub place: u32,
-    /// The row of B.
-    pub entries: Vec<RowEntry>,
-    /// g (m).
-    pub gap: f64,
-    /// Share of side a (m).
-    pub share: f64,
-    /// Undeformed position on side a (m).
-    pub position: [f64; 3],
-    /// Where its force on side a acts (m).
-    pub acts_at: [f64; 3],
-    /// Unit normal, outward of side a.
-    pub normal: [f64; 3],
-    /// Tag of its node on side a, −1 where there is none.
-    pub tag_a: i64,
-    /// Tag of its node on side b, −1 where there is none.
-    pub tag_b: i64,
 }
 
 /// What the catalog says of one subdomain.
@@ -232,6 +206,6 @@ pub struct Problem {
     pub catalog: Catalog,
     /// Subdomains.
     pub subdomains: Vec<Subdomain>,
-    /// Contact rows of every group.
-    pub rows: Vec<Vec<ContactRow>>,
+    /// Contact points of every group.
+    pub points: Vec<Vec<ContactPoint<SubdomainNode>>>,
 }

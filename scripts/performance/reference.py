@@ -103,8 +103,8 @@ class System:
         table = file["contact"]
         offset = table["entry_offset"][:]
         at = node_of(table["entry_subdomain"][:], table["entry_node"][:])
-        coefficient = table["entry_coefficient"][:]
         row = np.repeat(np.arange(len(offset) - 1), np.diff(offset))
+        coefficient = table["entry_weight"][:, None] * table["normal"][:][row]
         dofs = 2 * at[:, None] + np.arange(2)
         B = sp.csr_matrix(
             (coefficient.ravel(), (np.repeat(row, 2), dofs.ravel())),

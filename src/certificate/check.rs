@@ -5,9 +5,9 @@ use contact_dd_partition::element::geometry::{advance, cross, dot, padded};
 use crate::comm::Message;
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
-use crate::fem::condition::BlockCondition;
 use crate::fem::frame::Frame;
 use crate::fem::node_frames::supported_frames;
+use crate::fem::owned::OwnedBlock;
 use crate::schur::trace::TraceDof;
 use crate::vector::{larger, largest};
 
@@ -131,19 +131,13 @@ pub struct BlockCheck {
 }
 
 impl BlockCheck {
-    /// Checks displacements `u`, node by node, and contact `forces`, one a condition.
-    pub fn new(
-        block: &Block,
-        conditions: &[BlockCondition],
-        balance: &Balance,
-        u: &[f64],
-        forces: &[f64],
-    ) -> Self {
-        let mut check = Self::default();
+    /// Checks displacements `u`, node by node, and contact `forces`, one a point.
+    pub fn new(owned: &OwnedBlock, balance: &Balance, u: &[f64], forces: &[f64]) -> Self {
+        let (block, mut check) = (&owned.block, Self::default());
         check.most.displacement = largest(u);
         check.most.load = balance.largest_load;
         check.equilibrium(block, balance);
-        check.contact(block.dim, conditions, u, forces);
+        check.contact(owned, u, forces);
         for &(node, id) in &block.interface {
             check.shared_nodes.push(id);
             let start = node as usize * block.dim;
@@ -211,9 +205,8 @@ impl BlockCheck {
         }
     }
 
-    fn contact(&mut self, dim: usize, conditions: &[BlockCondition], u: &[f64], forces: &[f64]) {
-        for (condition, &force) in conditions.iter().zip(forces) {
-            let gap = condition.gap_left(dim, u);
+    fn contact(&mut self, owned: &OwnedBlock, u: &[f64], forces: &[f64]) {
+        for (gap, &force) in owned.gaps_left(u).into_iter().zip(forces) {
             let most = &mut self.most;
             most.penetration = larger(most.penetration, gap.min(0.0));
             most.tension = larger(most.tension, force.min(0.0));

@@ -1,9 +1,9 @@
 //! Balance: f − K u − Bᵀ λ of a block, node by node, summed element by element without any factor.
 
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::model::Material;
 
 use super::block::Block;
-use super::condition::BlockCondition;
 use super::elasticity::{ElementMatrix, MAX_NODES};
 use super::load::nodal_forces;
 
@@ -21,10 +21,10 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// The balance for displacements `u` and contact forces `forces`, one a condition.
+    /// The balance for displacements `u` and contact forces `forces`, one a point.
     pub fn new(
         block: &Block,
-        conditions: &[BlockCondition],
+        points: &[ContactPoint<u32>],
         materials: &[Material],
         u: &[f64],
         forces: &[f64],
@@ -33,12 +33,12 @@ impl Balance {
         let mut external = nodal_forces(block);
         let mut scale: Vec<f64> = external.iter().map(|f| f.abs()).collect();
         let largest_load = scale.iter().fold(0.0, |m: f64, f| m.max(*f));
-        for (condition, &force) in conditions.iter().zip(forces) {
-            for (node, coefficient) in &condition.entries {
+        for (point, &force) in points.iter().zip(forces) {
+            for (node, row) in point.row() {
                 for component in 0..dim {
-                    let push = coefficient[component] * force;
-                    external[*node as usize * dim + component] -= push;
-                    scale[*node as usize * dim + component] += push.abs();
+                    let push = row[component] * force;
+                    external[node as usize * dim + component] -= push;
+                    scale[node as usize * dim + component] += push.abs();
                 }
             }
         }

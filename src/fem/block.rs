@@ -17,6 +17,8 @@ pub struct Block {
     pub points: Vec<[f64; 3]>,
     /// The mesh file's tag of each node.
     pub tags: Vec<i64>,
+    /// Index of the body of each node.
+    pub bodies: Vec<u32>,
     /// Its nodes on Γ that it shares with other blocks: node and number on Γ, ascending.
     pub interface: Vec<(u32, u32)>,
     /// Number of dofs of a node.
@@ -31,6 +33,7 @@ impl Block {
             node_of: Vec::with_capacity(members.len()),
             points: Vec::new(),
             tags: Vec::new(),
+            bodies: Vec::new(),
             interface: Vec::new(),
             members: Vec::new(),
             dim,
@@ -49,6 +52,7 @@ impl Block {
                     if node == next {
                         block.points.push(member.points[local]);
                         block.tags.push(member.node_tags[local]);
+                        block.bodies.push(member.body as u32);
                     }
                     node
                 })
@@ -82,6 +86,11 @@ impl Block {
     /// The place of member subdomain `index` among the members.
     pub fn member(&self, index: usize) -> Option<usize> {
         self.members.iter().position(|m| m.index == index)
+    }
+
+    /// The block's node for a node of subdomain `index`, if that is a member.
+    pub fn node(&self, index: usize, node: u32) -> Option<u32> {
+        Some(self.node_of[self.member(index)?][node as usize])
     }
 
     /// Its cells, member by member: kind, nodes of the block, material.

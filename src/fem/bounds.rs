@@ -1,35 +1,35 @@
-//! The contact conditions of a block, b·u ≤ g, as bounds on approaches, t ≤ g.
+//! The contact points of a block, n·⟦u⟧ ≤ g, as bounds on approaches, t ≤ g.
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{dot, length};
 use contact_dd_partition::model::Material;
 
 use super::block::Block;
-use super::condition::BlockCondition;
 use super::frame::Frame;
 use super::node_frames::NodeFrames;
 use crate::contact::approach::{ApproachRow, Approaches, OnInterface, SolvingOrder};
 
-/// The approaches of `conditions`, found in an `order` that is known or in one that suits them.
+/// The approaches of contact `points` with these `gaps`, found in an `order` that is known or in one that suits them.
 ///
 /// # Errors
 /// A condition that lies on Γ.
 pub(super) fn approaches(
     block: &Block,
-    conditions: &[BlockCondition],
+    points: &[ContactPoint<u32>],
+    gaps: &[f64],
     materials: &[Material],
     frames: &NodeFrames,
     order: Option<&SolvingOrder>,
 ) -> Result<Approaches, OnInterface> {
-    if conditions.is_empty() {
+    if points.is_empty() {
         return Ok(Approaches::default());
     }
     let dim = block.dim;
     let frame = |node: u32| frames.of(node).unwrap_or(&Frame::CARTESIAN);
-    let rows: Vec<_> = conditions
-        .iter()
-        .map(|c| in_frames(c, frame, dim))
+    let rows: Vec<_> = (points.iter().zip(gaps))
+        .map(|(point, &gap)| in_frames(point, gap, frame, dim))
         .collect();
     let on_interface = block.is_on_interface();
     let may_go = |v: u32| !on_interface[v as usize / dim];
@@ -54,36 +54,34 @@ fn node_stiffness(block: &Block, materials: &[Material]) -> Vec<f64> {
     stiffness
 }
 
-/// A condition in terms of components along the axes of its nodes' frames.
+/// The normal jump at a point in terms of components along the axes of its nodes' frames.
 fn in_frames<'a>(
-    condition: &BlockCondition,
+    point: &ContactPoint<u32>,
+    gap: f64,
     frame: impl Fn(u32) -> &'a Frame,
     dim: usize,
 ) -> ApproachRow {
     let mut constant = 0.0;
     let mut row: BTreeMap<u32, f64> = BTreeMap::new();
-    for (node, coefficient) in &condition.entries {
-        let frame = frame(*node);
+    for (node, push) in point.row() {
+        let frame = frame(node);
         for axis in 0..dim {
-            let along = dot(*coefficient, frame.axes[axis]);
+            let along = dot(push, frame.axes[axis]);
             match frame.prescribed[axis] {
                 Some(value) => constant += along * value,
                 None => *row.entry(node * dim as u32 + axis as u32).or_default() += along,
             }
         }
     }
-    // A frame along the condition's own normal leaves round-off on its other axes.
-    let scale = condition
-        .entries
-        .iter()
-        .map(|&(_, c)| length(c))
-        .fold(0.0, f64::max);
+    // A frame along the point's own normal leaves round-off on its other axes.
+    let sizes = point.row().map(|(_, push)| length(push));
+    let scale = sizes.fold(0.0, f64::max);
     ApproachRow {
         constant,
         terms: row
             .into_iter()
             .filter(|(_, c)| c.abs() > 1e-14 * scale)
             .collect(),
-        gap: condition.gap,
+        gap,
     }
 }

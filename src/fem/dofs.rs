@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::model::Material;
 
 use super::block::Block;
 use super::bounds::approaches;
-use super::condition::BlockCondition;
 use super::elimination::elimination_order;
 use super::frame::Frame;
 use super::node_frames::NodeFrames;
@@ -48,21 +48,22 @@ const NOT_DIRECT: u32 = u32::MAX;
 
 impl Dofs {
     /// Numbers the unknowns of `block`: its interior in a fill-reducing order, then the
-    /// approach of each of `conditions`, then the traces on Γ.
+    /// approach of each of the contact `points` with these `gaps`, then the traces on Γ.
     ///
     /// # Errors
     /// A condition that lies on Γ, or too many unknowns.
     pub fn new(
         block: &Block,
-        conditions: &[BlockCondition],
+        points: &[ContactPoint<u32>],
+        gaps: &[f64],
         materials: &[Material],
     ) -> Result<Self, DofError> {
         let dim = block.dim;
         if block.nodes() * dim >= u32::MAX as usize {
             return Err(DofError::Size);
         }
-        let frames = NodeFrames::new(block, conditions);
-        let approaches = approaches(block, conditions, materials, &frames, None)
+        let frames = NodeFrames::new(block, points);
+        let approaches = approaches(block, points, gaps, materials, &frames, None)
             .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
         let on_interface = block.is_on_interface();
         let mut is_free = vec![true; block.nodes() * dim];
@@ -141,7 +142,7 @@ impl Dofs {
         Ok(dofs)
     }
 
-    /// Gives c and the constants of approaches the values that supports and `conditions` have now; T stays
+    /// Gives c and the constants of approaches the values that supports and `gaps` have now; T stays
     /// as it is.
     ///
     /// # Errors
@@ -149,11 +150,12 @@ impl Dofs {
     pub fn prescribe(
         &mut self,
         block: &Block,
-        conditions: &[BlockCondition],
+        points: &[ContactPoint<u32>],
+        gaps: &[f64],
         materials: &[Material],
     ) -> Result<(), DofError> {
-        let frames = NodeFrames::new(block, conditions);
-        let approaches = approaches(block, conditions, materials, &frames, Some(&self.order))
+        let frames = NodeFrames::new(block, points);
+        let approaches = approaches(block, points, gaps, materials, &frames, Some(&self.order))
             .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
         self.set_constants(&frames, &approaches);
         self.approach_of = approaches.of;

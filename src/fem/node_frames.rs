@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::length;
 use contact_dd_partition::model::Support;
 
 use super::block::Block;
-use super::condition::BlockCondition;
 use super::frame::{Frame, support_frames};
 
 /// The frames of those nodes that have one of their own.
@@ -18,18 +18,18 @@ pub struct NodeFrames {
 }
 
 impl NodeFrames {
-    /// Frames of supported nodes, and of nodes with a condition along the first one's normal.
-    pub fn new(block: &Block, conditions: &[BlockCondition]) -> Self {
+    /// Frames of supported nodes, and of nodes of contact `points` along the first one's normal.
+    pub fn new(block: &Block, points: &[ContactPoint<u32>]) -> Self {
         let mut frames = supported_frames(block);
-        let shared: BTreeSet<u32> = match conditions {
+        let shared: BTreeSet<u32> = match points {
             [] => Default::default(),
             _ => block.interface.iter().map(|&(node, _)| node).collect(),
         };
-        for condition in conditions {
-            for &(node, coefficient) in &condition.entries {
-                let norm = length(coefficient);
+        for point in points {
+            for (node, push) in point.row() {
+                let norm = length(push);
                 if norm > 0.0 && !shared.contains(&node) {
-                    let direction = coefficient.map(|c| c / norm);
+                    let direction = push.map(|c| c / norm);
                     frames
                         .entry(node)
                         .or_insert_with(|| Frame::along(&[direction], block.dim));

@@ -1,5 +1,7 @@
 //! What the ranks hand over to be written.
 
+use contact_dd_partition::contact_point::ContactPoint;
+
 /// How much room a subdomain takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PartitionSize {
@@ -87,32 +89,19 @@ impl SubdomainResults {
     }
 }
 
-/// The solution at one contact condition.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactResult {
-    /// Index of its contact among those of the catalog.
-    pub contact: usize,
-    /// Its place within that contact.
-    pub place: usize,
-    /// Tag of its node on side a, −1 where there is none.
-    pub tag_a: i64,
-    /// Tag of its node on side b, −1 where there is none.
-    pub tag_b: i64,
-    /// Undeformed position on side a (m).
-    pub position: [f64; 3],
-    /// Where the force on side a acts (m); the file doesn't hold it.
-    pub acts_at: [f64; 3],
-    /// Unit normal of the undeformed side a, outward.
-    pub normal: [f64; 3],
-    /// The gap that is left, g − B u ≥ 0 (m).
+/// The solution at a contact point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactState {
+    /// The gap that is left, g − n·⟦u⟧ ≥ 0 (m).
     pub gap: f64,
-    /// Contact force ≥ 0 (N, per metre of thickness in the plane).
+    /// Normal force ≥ 0 (N, per metre of thickness in the plane).
     pub force: f64,
-    /// Force over the condition's share of side a, ≥ 0 (Pa).
-    pub pressure: f64,
     /// Whether the contact is closed.
     pub closed: bool,
 }
+
+/// A contact point and the solution there.
+pub type ContactRow = (ContactPoint<u32>, ContactState);
 
 /// One sweep; the first row of a run is its bilateral start.
 #[derive(Clone, Copy, Debug, PartialEq)]

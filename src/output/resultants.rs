@@ -1,11 +1,12 @@
 //! Forces and moments that contacts and supports carry.
 
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{advance, cross};
 use contact_dd_partition::problem::Catalog;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::result::ContactResult;
+use super::result::ContactState;
 
 /// A force and its moment about the origin (N and N m, per metre of thickness in the plane).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
@@ -41,11 +42,12 @@ pub struct ContactResultant {
 }
 
 impl ContactResultant {
-    /// Adds what a condition carries.
-    pub fn add(&mut self, row: &ContactResult) {
-        self.closed += usize::from(row.closed);
-        (self.resultant).add(row.acts_at, row.normal.map(|n| -row.force * n));
-        self.largest_pressure = self.largest_pressure.max(row.pressure);
+    /// Adds what a point carries.
+    pub fn add(&mut self, point: &ContactPoint<u32>, state: &ContactState) {
+        self.closed += usize::from(state.closed);
+        let force = point.normal().map(|n| -state.force * n);
+        self.resultant.add(point.force_point, force);
+        self.largest_pressure = self.largest_pressure.max(state.force / point.area);
     }
 }
 

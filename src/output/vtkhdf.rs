@@ -19,7 +19,7 @@ use hdf5::types::VarLenUnicode;
 
 use self::contact_table::ContactTables;
 use self::grid::Grid;
-use super::result::{ContactResult, ConvergenceRow, PartitionSize, SubdomainResults};
+use super::result::{ContactRow, ConvergenceRow, PartitionSize, SubdomainResults};
 
 /// How much room everything takes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -124,7 +124,7 @@ impl ResultFile {
     ///
     /// # Errors
     /// The file can't be written, or a row has no place in the layout.
-    pub fn write_contacts(&mut self, rows: &[ContactResult]) -> Result<(), OutputError> {
+    pub fn write_contacts(&mut self, rows: &[ContactRow]) -> Result<(), OutputError> {
         self.contacts
             .write(rows, self.step)
             .map_err(|error| failure(&self.destination, &error))

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::problem::{Catalog, ContactRow};
+use contact_dd_partition::contact_point::ContactPoint;
+use contact_dd_partition::problem::Catalog;
 
 use super::analysis::RigidRow;
 use super::motion::BodyFrame;
@@ -27,8 +28,9 @@ pub(super) fn rigid_rows(
         |g| {
             let mut message = Message::default();
             if let Some(owned) = blocks.get(&plan.groups[g]) {
-                for row in &owned.rows {
-                    pack_row(owned, row, catalog, frames, &mut message);
+                for (point, &gap) in owned.points.iter().zip(&owned.gaps) {
+                    pack_row(owned, point, catalog, frames, &mut message);
+                    message.reals.push(gap);
                 }
             }
             message
@@ -55,24 +57,18 @@ pub(super) fn rigid_rows(
 
 fn pack_row(
     owned: &OwnedBlock,
-    row: &ContactRow,
+    point: &ContactPoint<u32>,
     catalog: &Catalog,
     frames: &[BodyFrame],
     message: &mut Message,
 ) {
-    let entries: Vec<_> = row
-        .entries
-        .iter()
-        .filter_map(|entry| Some((entry, owned.block.member(entry.subdomain as usize)?)))
-        .collect();
-    message.integers.push(entries.len() as i64);
-    for (entry, m) in entries {
-        let member = &owned.block.members[m];
-        let x = &member.points[entry.node as usize];
-        message.integers.push(member.body as i64);
+    let block = &owned.block;
+    message.integers.push(point.entries.len() as i64);
+    for (node, row) in point.row() {
+        let (x, body) = (&block.points[node as usize], block.bodies[node as usize]);
+        message.integers.push(i64::from(body));
         message
             .reals
-            .extend(frames[member.body].action(catalog.dim, x, &entry.coefficient));
+            .extend(frames[body as usize].action(catalog.dim, x, &row));
     }
-    message.reals.push(row.gap);
 }

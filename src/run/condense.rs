@@ -45,9 +45,11 @@ impl Condensation<'_> {
             catalog, plan, par, ..
         } = self;
         let OwnedBlock {
-            block, conditions, ..
+            block,
+            points,
+            gaps,
         } = owned;
-        let dofs = Dofs::new(block, conditions, &catalog.materials)
+        let dofs = Dofs::new(block, points, gaps, &catalog.materials)
             .map_err(|error| dof_failure(error, owned, catalog))?;
         let pins = pins_of(block, self.pins);
         let (stiffness, springs) =
@@ -100,12 +102,12 @@ pub(super) fn dof_failure(error: DofError, owned: &OwnedBlock, catalog: &Catalog
     let DofError::OnInterface(j) = error else {
         return Failure::internal("a subdomain has more than 2^32 unknowns");
     };
-    let row = &owned.rows[j];
-    let contact = &catalog.contacts[row.contact as usize].name;
+    let point = &owned.points[j];
+    let contact = &catalog.contacts[point.contact as usize].name;
     Failure::input(format!(
         "contact '{contact}': the condition between nodes {} and {} lies where subdomains are bonded; \
          expected a partition whose interface doesn't meet contact",
-        row.tag_a, row.tag_b
+        point.tag_a, point.tag_b
     ))
 }
 

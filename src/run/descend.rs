@@ -19,18 +19,16 @@ pub fn take_out_descent(blocks: &mut BTreeMap<usize, OwnedBlock>, survey: &Surve
     }
     for owned in blocks.values_mut() {
         let block = &mut owned.block;
-        for (row, condition) in owned.rows.iter().zip(&mut owned.conditions) {
-            for entry in &row.entries {
-                if let Some(m) = block.member(entry.subdomain as usize) {
-                    let member = &block.members[m];
-                    let moved = moved(
-                        survey,
-                        dim,
-                        member.body,
-                        &member.points[entry.node as usize],
-                    );
-                    reduce(&mut condition.gap, &entry.coefficient, &moved);
-                }
+        for (point, gap) in owned.points.iter().zip(&mut owned.gaps) {
+            for (node, row) in point.row() {
+                let node = node as usize;
+                let moved = moved(
+                    survey,
+                    dim,
+                    block.bodies[node] as usize,
+                    &block.points[node],
+                );
+                reduce(gap, &row, &moved);
             }
         }
         for member in &mut block.members {
@@ -70,15 +68,10 @@ pub fn with_descent(
         if stays {
             return Some((b, u));
         }
-        let mut done = vec![false; block.nodes()];
-        for (member, node_of) in block.members.iter().zip(&block.node_of) {
-            for (x, &node) in member.points.iter().zip(node_of) {
-                if !std::mem::replace(&mut done[node as usize], true) {
-                    let moved = moved(survey, dim, member.body, x);
-                    let u = &mut u[node as usize * dim..][..dim];
-                    u.iter_mut().zip(moved).for_each(|(u, m)| *u += m);
-                }
-            }
+        let nodes = block.points.iter().zip(&block.bodies);
+        for ((x, &body), u) in nodes.zip(u.chunks_exact_mut(dim)) {
+            let moved = moved(survey, dim, body as usize, x);
+            u.iter_mut().zip(moved).for_each(|(u, m)| *u += m);
         }
         Some((b, u))
     };

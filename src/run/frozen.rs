@@ -94,7 +94,7 @@ impl<'a> Frozen<'a> {
         let owned = self.blocks.get(&b)?;
         Some(Balance::new(
             &owned.block,
-            &owned.conditions,
+            &owned.points,
             &self.catalog.materials,
             &solution.u,
             &solution.forces,

@@ -60,26 +60,25 @@ pub(super) fn limits_of_clusters(
 fn of_block(owned: &OwnedBlock, dofs: &Dofs, catalog: &Catalog) -> Result<Limits, Failure> {
     let scale = prescribed_scale(owned);
     for (j, of) in dofs.approach_of.iter().enumerate() {
-        let gap = owned.conditions[j].gap;
+        let gap = owned.gaps[j];
         if let &ApproachOf::Prescribed(approach) = of
             && approach > gap + 1e-12 * scale
         {
-            let row = &owned.rows[j];
-            let contact = &catalog.contacts[row.contact as usize].name;
+            let point = &owned.points[j];
+            let contact = &catalog.contacts[point.contact as usize].name;
             return Err(Failure::input(format!(
                 "contact '{contact}': nodes {} and {} are prescribed to penetrate by {:.3e}; \
                  expected displacements that leave a gap",
-                row.tag_a,
-                row.tag_b,
+                point.tag_a,
+                point.tag_b,
                 approach - gap
             )));
         }
     }
-    let gaps: Vec<f64> = owned.conditions.iter().map(|c| c.gap).collect();
     Ok(Limits::new(
         dofs.approaches,
         &dofs.approach_of,
-        &gaps,
+        &owned.gaps,
         scale,
     ))
 }
@@ -91,6 +90,6 @@ fn prescribed_scale(owned: &OwnedBlock) -> f64 {
         .members
         .iter()
         .flat_map(|m| m.supports.iter().map(|s| s.value.abs()));
-    let gaps = owned.conditions.iter().map(|c| c.gap.abs());
+    let gaps = owned.gaps.iter().map(|gap| gap.abs());
     prescribed.chain(gaps).fold(0.0, f64::max)
 }

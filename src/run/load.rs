@@ -54,7 +54,7 @@ impl Loading<'_> {
             let Some(owned) = blocks.get(b) else {
                 return Ok(());
             };
-            dofs.prescribe(&owned.block, &owned.conditions, materials)
+            dofs.prescribe(&owned.block, &owned.points, &owned.gaps, materials)
                 .map_err(|error| dof_failure(error, owned, catalog))
         });
         comm.agree(prescribed)?;

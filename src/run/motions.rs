@@ -167,14 +167,8 @@ fn of_body(
 /// Calls `at` with every node of a block, its body and its place.
 fn visit(owned: &OwnedBlock, mut at: impl FnMut(usize, usize, &[f64; 3])) {
     let block = &owned.block;
-    let mut seen = vec![false; block.nodes()];
-    for (member, node_of) in block.members.iter().zip(&block.node_of) {
-        for (local, &node) in node_of.iter().enumerate() {
-            let node = node as usize;
-            if !std::mem::replace(&mut seen[node], true) {
-                at(node, member.body, &member.points[local]);
-            }
-        }
+    for (node, (x, &body)) in block.points.iter().zip(&block.bodies).enumerate() {
+        at(node, body as usize, x);
     }
 }
 

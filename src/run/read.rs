@@ -8,7 +8,6 @@ use contact_dd_partition::problem::read::ProblemFile;
 
 use crate::error::Failure;
 use crate::fem::block::Block;
-use crate::fem::condition::BlockCondition;
 use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
 
@@ -35,22 +34,13 @@ pub fn read_blocks(
         let members: Vec<Subdomain> = members
             .filter_map(|index| subdomains.remove(index))
             .collect();
-        let rows = of_plan
+        let points = of_plan
             .group
-            .map(|group| file.rows(group, &members.iter().collect::<Vec<_>>()))
+            .map(|group| file.points(group, &members.iter().collect::<Vec<_>>()))
             .transpose()?
             .unwrap_or_default();
         let block = Block::new(members, dim, |node| plan.sharing[node as usize] > 1);
-        let conditions = rows
-            .iter()
-            .map(|row| BlockCondition::new(&block, row))
-            .collect();
-        let owned = OwnedBlock {
-            block,
-            rows,
-            conditions,
-        };
-        blocks.insert(number, owned);
+        blocks.insert(number, OwnedBlock::new(block, &points));
     }
     Ok(blocks)
 }

@@ -72,8 +72,7 @@ fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Cer
     let of_block = |b: usize| {
         let (owned, solution) = (frozen.blocks.get(&b)?, solutions.get(&b)?);
         let mut check = BlockCheck::new(
-            &owned.block,
-            &owned.conditions,
+            owned,
             &frozen.balance(b, solution)?,
             &solution.u,
             &solution.forces,
@@ -109,9 +108,7 @@ fn correct(frozen: &Frozen<'_>, solutions: &mut BTreeMap<usize, BlockSolution>) 
         let owned = frozen.blocks.get(&b)?;
         let mut load = vec![0.0; dofs.len()];
         dofs.add_load(residuals.get(&b)?, &mut load);
-        let missing = (owned.conditions.iter())
-            .map(|condition| condition.gap_left(owned.block.dim, &solution.u))
-            .collect();
+        let missing = owned.gaps_left(&solution.u);
         let closed = solution.closed.clone();
         Some((
             b,

@@ -139,8 +139,7 @@ fn open(frozen: &Frozen<'_>, b: usize, solution: &mut BlockSolution) -> usize {
     };
     let largest = solution.u.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
     let mut opened = 0;
-    for (j, condition) in owned.conditions.iter().enumerate() {
-        let gap = condition.gap_left(owned.block.dim, &solution.u);
+    for (j, gap) in owned.gaps_left(&solution.u).into_iter().enumerate() {
         if solution.closed[j] && gap > OPENED * largest {
             solution.closed[j] = false;
             solution.forces[j] = 0.0;
@@ -182,14 +181,14 @@ fn conditions(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option
     let dim = owned.block.dim;
     let scale = frozen.balance(b, solution)?.scale;
     let mut message = Message::default();
-    for (condition, &force) in owned.conditions.iter().zip(&solution.forces) {
-        let nodes = condition.entries.iter();
+    for (point, &force) in owned.points.iter().zip(&solution.forces) {
+        let nodes = point.entries.iter();
         let around = nodes.flat_map(|&(node, _)| &scale[node as usize * dim..][..dim]);
         let largest = around.fold(0.0, |m: f64, s| m.max(*s));
         message
             .integers
             .push(i64::from(force > ROUND_OFF * largest));
-        message.reals.push(condition.gap_left(dim, &solution.u));
     }
+    message.reals = owned.gaps_left(&solution.u);
     Some(message)
 }

@@ -24,9 +24,9 @@ type HalfSpace = ([f64; 3], f64);
 /// The first node that can't, with its contacts.
 pub fn check(owned: &OwnedBlock, catalog: &Catalog) -> Result<(), Failure> {
     let mut at_node: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for (row, condition) in owned.conditions.iter().enumerate() {
-        if let [(node, _)] = condition.entries[..] {
-            at_node.entry(node).or_default().push(row);
+    for (j, point) in owned.points.iter().enumerate() {
+        if let [(node, _)] = point.entries[..] {
+            at_node.entry(node).or_default().push(j);
         }
     }
     let block = &owned.block;
@@ -41,15 +41,14 @@ pub fn check(owned: &OwnedBlock, catalog: &Catalog) -> Result<(), Failure> {
             }
         }
     }
-    for (node, rows) in at_node {
-        let of_rows = rows.iter().map(|&row| {
-            let condition = &owned.conditions[row];
-            (condition.entries[0].1, condition.gap)
-        });
+    for (node, at) in at_node {
+        let of_points = at
+            .iter()
+            .map(|&j| (owned.points[j].normal(), owned.gaps[j]));
         let held = supports.remove(&node).unwrap_or_default();
-        let all: Vec<HalfSpace> = of_rows.chain(held).collect();
-        if rows.len() > 1 && !leave_a_place(&all) {
-            let names = rows.iter().map(|&row| owned.rows[row].contact as usize);
+        let all: Vec<HalfSpace> = of_points.chain(held).collect();
+        if at.len() > 1 && !leave_a_place(&all) {
+            let names = at.iter().map(|&j| owned.points[j].contact as usize);
             let names: Vec<String> = names
                 .map(|contact| format!("'{}'", catalog.contacts[contact].name))
                 .collect();

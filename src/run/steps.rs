@@ -48,9 +48,7 @@ fn set_loads(blocks: &mut BTreeMap<usize, OwnedBlock>, k: usize) {
         for member in &mut owned.block.members {
             member.take_step(k);
         }
-        for (row, condition) in owned.rows.iter().zip(&mut owned.conditions) {
-            condition.gap = row.gap;
-        }
+        owned.gaps = owned.points.iter().map(|point| point.gap).collect();
     }
 }
 

@@ -4,6 +4,7 @@ mod parcel;
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::error::OutputError;
 
 use self::parcel::{Parcel, pack, unpack};
@@ -12,7 +13,7 @@ use super::solution::Solution;
 use crate::comm::{Comm, Message, ROOT};
 use crate::error::Failure;
 use crate::fem::owned::OwnedBlock;
-use crate::output::result::{ContactResult, SubdomainResults};
+use crate::output::result::{ContactRow, ContactState, SubdomainResults};
 use crate::output::resultants::ContactResultant;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
@@ -78,8 +79,8 @@ pub fn write_solution(
         },
         |_, message| {
             let rows = unpack_contacts(message);
-            for row in &rows {
-                contacts[row.contact].add(row);
+            for (point, state) in &rows {
+                contacts[point.contact as usize].add(point, state);
             }
             write(&mut |file| file.write_contacts(&rows));
         },
@@ -90,46 +91,46 @@ pub fn write_solution(
 
 fn pack_contacts(owned: &OwnedBlock, solution: &BlockSolution) -> Message {
     let mut message = Message::default();
-    for (j, (row, condition)) in owned.rows.iter().zip(&owned.conditions).enumerate() {
-        let gap = if solution.closed[j] {
-            0.0
-        } else {
-            condition.gap_left(owned.block.dim, &solution.u).max(0.0)
-        };
+    let gaps = owned.gaps_left(&solution.u);
+    for (j, point) in owned.points.iter().enumerate() {
+        let closed = solution.closed[j];
+        let gap = if closed { 0.0 } else { gaps[j].max(0.0) };
         message.integers.extend([
-            i64::from(row.contact),
-            i64::from(row.place),
-            row.tag_a,
-            row.tag_b,
-            i64::from(solution.closed[j]),
+            i64::from(point.contact),
+            i64::from(point.place),
+            point.tag_a,
+            point.tag_b,
+            i64::from(closed),
         ]);
-        message.reals.extend(row.position);
-        message.reals.extend(row.acts_at);
-        message.reals.extend(row.normal);
-        message
-            .reals
-            .extend([gap, solution.forces[j], solution.forces[j] / row.share]);
+        message.reals.extend(point.position);
+        message.reals.extend(point.force_point);
+        message.reals.extend(point.normal());
+        message.reals.extend([point.area, gap, solution.forces[j]]);
     }
     message
 }
 
-fn unpack_contacts(message: Message) -> Vec<ContactResult> {
+fn unpack_contacts(message: Message) -> Vec<ContactRow> {
     let integers = message.integers.chunks(5);
     let reals = message.reals.chunks(12);
     integers
         .zip(reals)
-        .map(|(i, r)| ContactResult {
-            contact: i[0] as usize,
-            place: i[1] as usize,
-            tag_a: i[2],
-            tag_b: i[3],
-            position: [r[0], r[1], r[2]],
-            acts_at: [r[3], r[4], r[5]],
-            normal: [r[6], r[7], r[8]],
-            gap: r[9],
-            force: r[10],
-            pressure: r[11],
-            closed: i[4] != 0,
+        .map(|(i, r)| {
+            let vector = |k: usize| [r[k], r[k + 1], r[k + 2]];
+            let point = ContactPoint {
+                contact: i[0] as u32,
+                place: i[1] as u32,
+                tag_b: i[3],
+                force_point: vector(3),
+                area: r[9],
+                ..ContactPoint::new(Vec::new(), vector(6), vector(0), i[2])
+            };
+            let state = ContactState {
+                gap: r[10],
+                force: r[11],
+                closed: i[4] != 0,
+            };
+            (point, state)
         })
         .collect()
 }

@@ -59,10 +59,10 @@ const FREE: [&str; 32] = [
     "/force/value",
     "/contact/name",
     "/contact/gap",
-    "/contact/share",
+    "/contact/area",
     "/contact/node_a",
     "/contact/node_b",
-    "/contact/acts_at",
+    "/contact/force_point",
 ];
 
 /// Of so many files that say something else, or are refused, one is tried on 3 ranks.
@@ -208,7 +208,6 @@ fn what_is_dropped_is_missed_unless_the_format_says_that_it_may_be() {
             "/VTKHDF/@Type",
             "/VTKHDF/@Version",
             "/VTKHDF/CellData/Subdomain",
-            "/contact/acts_at",
             "/materials/out_of_plane",
             "/materials/poisson",
             "/settings/@max_sweeps",

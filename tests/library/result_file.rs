@@ -6,9 +6,10 @@ use std::fs;
 use std::path::Path;
 
 use contact_dd_mpi::output::result::{
-    ContactResult, ConvergenceRow, PartitionSize, SubdomainResults,
+    ContactRow, ContactState, ConvergenceRow, PartitionSize, SubdomainResults,
 };
 use contact_dd_mpi::output::vtkhdf::{Layout, ResultFile};
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::problem::ContactSummary;
 use hdf5::File;
 
@@ -53,20 +54,21 @@ fn size(cells: usize) -> PartitionSize {
     }
 }
 
-fn row(contact: usize, place: usize) -> ContactResult {
-    ContactResult {
-        contact,
-        place,
-        tag_a: (100 * contact + place) as i64,
-        tag_b: -1,
-        position: [contact as f64, place as f64, 0.0],
-        acts_at: [contact as f64, place as f64, 0.0],
-        normal: [0.0, 1.0, 0.0],
+fn row(contact: usize, place: usize) -> ContactRow {
+    let position = [contact as f64, place as f64, 0.0];
+    let tag_a = (100 * contact + place) as i64;
+    let point = ContactPoint {
+        contact: contact as u32,
+        place: place as u32,
+        area: 2.0 / 3.0,
+        ..ContactPoint::new(Vec::new(), [0.0, 1.0, 0.0], position, tag_a)
+    };
+    let state = ContactState {
         gap: place as f64,
         force: 2.0,
-        pressure: 3.0,
         closed: place % 2 == 1,
-    }
+    };
+    (point, state)
 }
 
 fn layout(cells: &[usize], conditions: &[usize]) -> Layout {

@@ -309,7 +309,7 @@ fn a_schur_complement_is_positive_and_rigid_motions_cost_nothing() {
         }
         let is_held = !subdomain.supports.is_empty();
         let block = Block::new(vec![subdomain.clone()], 2, |_| true);
-        let dofs = Dofs::new(&block, &[], &model.materials).unwrap();
+        let dofs = Dofs::new(&block, &[], &[], &model.materials).unwrap();
         let (stiffness, _) = assemble(&block, &dofs, &model.materials, &[]).unwrap();
         let (_, lower) = LocalSchur::new(&stiffness, dofs.interior, Par::Seq).unwrap();
         let s = Mat::from_fn(lower.nrows(), lower.nrows(), |i, j| {

@@ -216,7 +216,7 @@ fn solves(model: &Model, solution: &Solution) {
     let mut closed = model.clone();
     for contact in &mut closed.contacts {
         let mut points = solution.contacts[&contact.name].iter();
-        (contact.conditions).retain(|_| points.next().unwrap().closed);
+        (contact.points).retain(|_| points.next().unwrap().closed);
     }
     let reference = Monolithic::new(&closed);
     let difference = reference.energy_difference(&solution.dofs(model));

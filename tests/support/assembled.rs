@@ -62,7 +62,7 @@ impl Assembled {
                 load[*node as usize * dim + axis] += force[axis];
             }
         }
-        let conditions = model.contacts.iter().flat_map(|c| &c.conditions);
+        let conditions = model.contacts.iter().flat_map(|c| &c.points);
         Self {
             dofs: load.len(),
             scale: stiffness.iter().fold(0.0, |m, t| t.val.abs().max(m)),
@@ -72,7 +72,9 @@ impl Assembled {
             supports: (model.supports.iter())
                 .map(|s| (row(&[(s.node, s.direction)]), s.value))
                 .collect(),
-            conditions: conditions.map(|c| (row(&c.entries), c.gap)).collect(),
+            conditions: conditions
+                .map(|c| (row(&c.row().collect::<Vec<_>>()), c.gap))
+                .collect(),
         }
     }
 

@@ -15,18 +15,18 @@ pub fn compare(model: &Model, reference: &Monolithic, solution: &Solution) {
     let mut row = 0;
     for contact in &model.contacts {
         let points = &solution.contacts[&contact.name];
-        assert_eq!(points.len(), contact.conditions.len(), "{}", contact.name);
-        for (point, condition) in points.iter().zip(&contact.conditions) {
+        assert_eq!(points.len(), contact.points.len(), "{}", contact.name);
+        for (point, condition) in points.iter().zip(&contact.points) {
             let (gap_ref, force_ref) = (reference.gaps[row], reference.forces[row]);
             let at = format!("{} at {:?}", contact.name, point.position);
             assert_eq!(point.tags, [condition.tag_a, condition.tag_b], "{at}");
             close(point.gap, gap_ref, 1e-11 * size, &at);
             close(point.force, force_ref, 1e-10 * force, &at);
-            let pressure = force_ref / condition.share;
+            let pressure = force_ref / condition.area;
             close(
                 point.pressure,
                 pressure,
-                1e-10 * force / condition.share,
+                1e-10 * force / condition.area,
                 &at,
             );
             // What carries neither gap nor force may be either.

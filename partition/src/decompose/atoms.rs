@@ -94,7 +94,7 @@ impl Around {
     fn new(model: &Model) -> Self {
         let mut contacts: Vec<Vec<u32>> = vec![Vec::new(); model.mesh.points.len()];
         for (number, contact) in model.contacts.iter().enumerate() {
-            for &(node, _) in contact.conditions.iter().flat_map(|c| &c.entries) {
+            for &(node, _) in contact.points.iter().flat_map(|point| &point.entries) {
                 let list = &mut contacts[node as usize];
                 if list.last() != Some(&(number as u32)) {
                     list.push(number as u32);

@@ -7,13 +7,14 @@ mod scattered;
 use self::bodies::Bodies;
 use self::groups::Groups;
 use super::Decomposition;
+use crate::contact_point::ContactPoint;
 use crate::element::Elements;
 use crate::error::InputError;
 use crate::lists::Lists;
 use crate::model::Model;
 use crate::problem::{
-    Body, Catalog, ContactRow, ContactSummary, Hierarchy, InterfaceNode, LoadStep, Problem,
-    RowEntry, StepLoads, Subdomain, SubdomainSummary,
+    Body, Catalog, ContactSummary, Hierarchy, InterfaceNode, LoadStep, Problem, StepLoads,
+    Subdomain, SubdomainNode, SubdomainSummary,
 };
 
 impl Problem {
@@ -30,7 +31,7 @@ impl Problem {
         let bodies = Bodies::new(model);
         let groups = Groups::new(model, &owners)?;
         let subdomains = cut(model, decomposition, &owners, &bodies)?;
-        let rows = gather_rows(model, &owners, &groups);
+        let points = gather_points(model, &owners, &groups);
         let mut warnings = model.warnings.clone();
         warnings.extend(groups.warning.clone());
         warnings.extend(scattered::warning(model, decomposition));
@@ -47,7 +48,7 @@ impl Problem {
                 .iter()
                 .map(|contact| ContactSummary {
                     name: contact.name.clone(),
-                    conditions: contact.conditions.len(),
+                    conditions: contact.points.len(),
                 })
                 .collect(),
             steps: (model.steps.iter())
@@ -70,7 +71,7 @@ impl Problem {
                 .map(|s| s.interface.iter().map(|on| on.interface).collect())
                 .collect(),
             interface_nodes: owners.interface_nodes,
-            groups: rows.iter().map(Vec::len).collect(),
+            groups: points.iter().map(Vec::len).collect(),
             hierarchy: Hierarchy::default(),
             warnings,
         };
@@ -78,7 +79,7 @@ impl Problem {
         Ok(Self {
             catalog,
             subdomains,
-            rows,
+            points,
         })
     }
 }
@@ -221,40 +222,22 @@ fn cut(
     Ok(subdomains)
 }
 
-/// The rows of every group, in the order of the scene's contacts.
-fn gather_rows(model: &Model, owners: &Owners, groups: &Groups) -> Vec<Vec<ContactRow>> {
-    let mut rows = vec![Vec::new(); groups.count];
-    for (contact, all) in model.contacts.iter().enumerate() {
-        for (place, condition) in all.conditions.iter().enumerate() {
-            let entries: Vec<RowEntry> = condition
-                .entries
-                .iter()
-                .filter_map(|&(node, coefficient)| {
-                    let &(subdomain, node) = owners.of.of(node as usize).first()?;
-                    Some(RowEntry {
-                        subdomain,
-                        node,
-                        coefficient,
-                    })
-                })
-                .collect();
-            let group = entries
-                .first()
-                .and_then(|entry| groups.of[entry.subdomain as usize]);
-            let Some(group) = group else { continue };
-            rows[group].push(ContactRow {
-                contact: contact as u32,
-                place: place as u32,
-                entries,
-                gap: condition.gap,
-                share: condition.share,
-                position: condition.position,
-                acts_at: condition.acts_at,
-                normal: condition.normal,
-                tag_a: condition.tag_a,
-                tag_b: condition.tag_b,
-            });
+/// The contact points of every group, in the order of the scene's contacts.
+fn gather_points(
+    model: &Model,
+    owners: &Owners,
+    groups: &Groups,
+) -> Vec<Vec<ContactPoint<SubdomainNode>>> {
+    let mut of_groups = vec![Vec::new(); groups.count];
+    for point in model.contacts.iter().flat_map(|contact| &contact.points) {
+        let point = point.rename(|node| {
+            let &(subdomain, node) = owners.of.of(node as usize).first()?;
+            Some(SubdomainNode { subdomain, node })
+        });
+        let first = point.entries.first();
+        if let Some(group) = first.and_then(|(node, _)| groups.of[node.subdomain as usize]) {
+            of_groups[group].push(point);
         }
     }
-    rows
+    of_groups
 }

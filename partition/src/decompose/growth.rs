@@ -130,7 +130,7 @@ impl Groups {
         }
         let mut conditions = vec![0; model.contacts.len()];
         for (number, contact) in model.contacts.iter().enumerate() {
-            conditions[contacts.find(number as u32) as usize] += contact.conditions.len();
+            conditions[contacts.find(number as u32) as usize] += contact.points.len();
         }
         Self {
             of_clump,

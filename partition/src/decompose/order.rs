@@ -25,14 +25,15 @@ impl Problem {
             }
         }
         catalog.groups = taken(&catalog.groups, &group_order);
-        self.rows = taken(&self.rows, &group_order);
+        self.points = taken(&self.points, &group_order);
 
         let mut number = vec![0; order.len()];
         for (new, &old) in (0..).zip(&order) {
             number[old as usize] = new;
         }
-        for entry in self.rows.iter_mut().flatten().flat_map(|r| &mut r.entries) {
-            entry.subdomain = number[entry.subdomain as usize];
+        let points = self.points.iter_mut().flatten();
+        for (node, _) in points.flat_map(|point| &mut point.entries) {
+            node.subdomain = number[node.subdomain as usize];
         }
         for subdomain in &mut self.subdomains {
             subdomain.index = number[subdomain.index] as usize;

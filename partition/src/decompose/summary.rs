@@ -97,11 +97,11 @@ impl Problem {
         }
     }
 
-    /// How the sides of each contact are paired, as its rows show.
+    /// How the sides of each contact are paired, as its points show.
     fn pairings(&self) -> Vec<&'static str> {
         let mut pairings = vec![""; self.catalog.contacts.len()];
-        for row in self.rows.iter().flatten() {
-            pairings[row.contact as usize] = match (row.entries.len(), row.tag_b) {
+        for point in self.points.iter().flatten() {
+            pairings[point.contact as usize] = match (point.entries.len(), point.tag_b) {
                 (1, _) => ", obstacle",
                 (_, -1) => ", mortar",
                 _ => ", node by node",

@@ -8,7 +8,8 @@ use super::sides::{Sides, side_nodes};
 use super::steps::Loads;
 use super::supports::PARALLEL;
 use super::surface::{CORNER, Surface};
-use super::{Contact, ContactCondition, groups, mortar, node_pairs, obstacle};
+use super::{Contact, groups, mortar, node_pairs, obstacle};
+use crate::contact_point::ContactPoint;
 use crate::element::geometry::{advance, dot, length};
 use crate::error::InputError;
 use crate::mesh::Mesh;
@@ -58,19 +59,20 @@ impl<'a> Contacts<'a> {
         }
     }
 
-    /// The conditions of one contact of the scene, along side a.
+    /// The points of contact `number` of the scene, along side a.
     pub fn contact(
         &self,
+        number: u32,
         keys: &condition::Contact,
         warnings: &mut Vec<String>,
     ) -> Result<Contact, InputError> {
         let what = format!("contact '{}'", keys.name);
         let (facets, side_a) = self.side(&keys.side_a, &what)?;
         let mut off = 0.0;
-        let mut conditions = match &keys.partner {
+        let mut points = match &keys.partner {
             Partner::Obstacle(obstacle) => {
                 let nodes = side_nodes(self.mesh, &side_a, &what, &HashSet::new())?;
-                obstacle::conditions(self.mesh, obstacle, &side_a, nodes)
+                obstacle::points(self.mesh, obstacle, &side_a, nodes)
                     .map_err(|reason| InputError::new(format!("{what}: {reason}")))?
             }
             Partner::Side(names) => {
@@ -82,19 +84,19 @@ impl<'a> Contacts<'a> {
                         self.mesh.tags_of(self.mesh.facets.nodes_of(both as usize))
                     )));
                 }
-                let conditions = self.pairs(&side_a, &side_b, keys.pairing, &what)?;
-                warnings.extend(self.corner(&side_a, &conditions, &what));
+                let points = self.pairs(&side_a, &side_b, keys.pairing, &what)?;
+                warnings.extend(self.corner(&side_a, &points, &what));
                 off = side_a.stands_off().max(side_b.stands_off());
-                conditions
+                points
             }
         };
         if let Some(gap) = &keys.gap {
             off = 0.0;
             let mut furthest = (0.0, 0.0, 0.0);
-            for condition in &mut conditions {
-                let given = (gap.at(condition.position))
+            for point in &mut points {
+                let given = (gap.at(point.position))
                     .map_err(|reason| InputError::new(format!("{what}.gap: {reason}")))?;
-                let measured = std::mem::replace(&mut condition.gap, given);
+                let measured = std::mem::replace(&mut point.gap, given);
                 furthest = match (given - measured).abs() {
                     away if away > furthest.0 => (away, given, measured),
                     _ => furthest,
@@ -111,10 +113,10 @@ impl<'a> Contacts<'a> {
             }
         }
         let slack = ROUNDING * self.size;
-        let deepest = conditions.iter().map(|c| c.gap).fold(0.0, f64::min);
+        let deepest = points.iter().map(|p| p.gap).fold(0.0, f64::min);
         let seen = slack.max(SEEN * side_a.extent());
         if deepest < -seen {
-            let count = conditions.iter().filter(|c| c.gap < -seen).count();
+            let count = points.iter().filter(|p| p.gap < -seen).count();
             let facets = match off > FELT * -deepest {
                 true => format!(
                     "; straight facets stand off a curve by up to {} m of that: expected quadratic cells",
@@ -124,23 +126,27 @@ impl<'a> Contacts<'a> {
             };
             warnings.push(format!(
                 "{what}: {count} of {} gaps are negative, an interference fit of up to {} m{facets}",
-                conditions.len(),
+                points.len(),
                 short(-deepest)
             ));
         }
-        let mut kept = Vec::with_capacity(conditions.len());
-        for condition in conditions {
-            match self.prescribed_approach(&condition) {
-                None => kept.push(condition),
-                Some(approaches) => {
-                    let closest = approaches.into_iter().fold(f64::NEG_INFINITY, f64::max);
-                    if closest <= condition.gap + slack {
+        let mut kept = Vec::with_capacity(points.len());
+        for point in points {
+            match self.prescribed_jump(&point) {
+                None => kept.push(ContactPoint {
+                    contact: number,
+                    place: kept.len() as u32,
+                    ..point
+                }),
+                Some(jumps) => {
+                    let closest = jumps.into_iter().fold(f64::NEG_INFINITY, f64::max);
+                    if closest <= point.gap + slack {
                         continue;
                     }
                     return Err(InputError::new(format!(
                         "{what}: at node {} displacements are prescribed on both sides that close \
                          the gap of {} m by {closest} m; expected no penetration",
-                        condition.tag_a, condition.gap
+                        point.tag_a, point.gap
                     )));
                 }
             }
@@ -152,21 +158,14 @@ impl<'a> Contacts<'a> {
         }
         Ok(Contact {
             name: keys.name.clone(),
-            conditions: kept,
+            points: kept,
         })
     }
 
-    /// The warning of a condition in a corner of side a, whose normal is that of neither facet.
-    fn corner(
-        &self,
-        side_a: &Surface,
-        conditions: &[ContactCondition],
-        what: &str,
-    ) -> Option<String> {
-        let normals: HashMap<i64, [f64; 3]> = (conditions
-            .iter()
-            .map(|condition| (condition.tag_a, condition.normal)))
-        .collect();
+    /// The warning of a point in a corner of side a, whose normal is that of neither facet.
+    fn corner(&self, side_a: &Surface, points: &[ContactPoint<u32>], what: &str) -> Option<String> {
+        let normals: HashMap<i64, [f64; 3]> =
+            (points.iter().map(|point| (point.tag_a, point.normal()))).collect();
         let tag = |node: u32| self.mesh.node_tags[node as usize];
         let nodes = side_a.nodes();
         let is_mean = |node: u32| {
@@ -191,45 +190,45 @@ impl<'a> Contacts<'a> {
         Ok((facets, surface))
     }
 
-    /// The conditions of two sides, paired as the scene asks or as their nodes allow.
+    /// The points of two sides, paired as the scene asks or as their nodes allow.
     fn pairs(
         &self,
         side_a: &Surface,
         side_b: &Surface,
         pairing: Option<Pairing>,
         what: &str,
-    ) -> Result<Vec<ContactCondition>, InputError> {
+    ) -> Result<Vec<ContactPoint<u32>>, InputError> {
         let refused = |reason: String| InputError::new(format!("{what}: {reason}"));
         let sides = Sides::new(self.mesh, side_a, side_b, what)?;
         let matched = match pairing {
-            Some(Pairing::Mortar) => return mortar::conditions(&sides).map_err(refused),
-            Some(Pairing::Nodes) | None => node_pairs::conditions(&sides),
+            Some(Pairing::Mortar) => return mortar::points(&sides).map_err(refused),
+            Some(Pairing::Nodes) | None => node_pairs::points(&sides),
         };
         match (matched, pairing) {
-            (Ok(conditions), _) => Ok(conditions),
-            (Err(Unpaired::Unmatched(_)), None) => mortar::conditions(&sides).map_err(refused),
+            (Ok(points), _) => Ok(points),
+            (Err(Unpaired::Unmatched(_)), None) => mortar::points(&sides).map_err(refused),
             (Err(Unpaired::Unmatched(reason) | Unpaired::Apart(reason)), _) => Err(refused(reason)),
         }
     }
 
-    /// Σ coefficient·u in every load step of a condition all of whose entries are prescribed. `None` if one
-    /// is free.
-    fn prescribed_approach(&self, condition: &ContactCondition) -> Option<Vec<f64>> {
-        let mut approaches = Vec::new();
-        for &(node, row) in &condition.entries {
+    /// The normal jump in every load step of a point all of whose nodes are prescribed along the normal. `None`
+    /// if one is free.
+    fn prescribed_jump(&self, point: &ContactPoint<u32>) -> Option<Vec<f64>> {
+        let mut jumps = Vec::new();
+        for (node, row) in point.row() {
             let mut free = row;
             for held in self.supports.get(&node)? {
                 let along = dot(row, held.direction);
                 free = advance(free, -along, held.direction);
-                approaches.resize(held.values.len(), 0.0);
-                for (approach, value) in approaches.iter_mut().zip(&held.values) {
-                    *approach += along * value;
+                jumps.resize(held.values.len(), 0.0);
+                for (jump, value) in jumps.iter_mut().zip(&held.values) {
+                    *jump += along * value;
                 }
             }
             if length(free) > PARALLEL {
                 return None;
             }
         }
-        Some(approaches)
+        Some(jumps)
     }
 }

@@ -40,7 +40,7 @@ impl Doubts<'_> {
     fn far_apart(&self) -> Vec<String> {
         let extent = self.extent();
         let least = |contact: &Contact| {
-            let gaps = contact.conditions.iter().map(|condition| condition.gap);
+            let gaps = contact.points.iter().map(|point| point.gap);
             gaps.reduce(f64::min)
         };
         let far = self.contacts.iter().filter_map(|contact| {

@@ -26,9 +26,9 @@ use self::cover::{Cover, Opposite};
 use self::field::Field;
 use self::rows::Row;
 use self::weights::Weights;
-use super::ContactCondition;
 use super::sides::{Sides, apart};
 use super::surface::SurfaceFacet;
+use crate::contact_point::ContactPoint;
 
 /// A facet of side a and what of side b covers it.
 struct Covered<'a> {
@@ -36,11 +36,11 @@ struct Covered<'a> {
     cover: Cover,
 }
 
-/// A condition for every node of side a that carries a multiplier, along the side.
+/// A contact point for every node of side a that carries a multiplier, along the side.
 ///
 /// # Errors
 /// Sides that don't face each other.
-pub(super) fn conditions(sides: &Sides) -> Result<Vec<ContactCondition>, String> {
+pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, String> {
     let normals: HashMap<u32, [f64; 3]> = (sides.a.nodes().into_iter())
         .filter_map(|(node, at)| Some((node, at.normal()?)))
         .collect();
@@ -65,13 +65,13 @@ pub(super) fn conditions(sides: &Sides) -> Result<Vec<ContactCondition>, String>
             rows.entry(node).or_default().add(on, sides.b, &weight);
         }
     }
-    let conditions: Vec<ContactCondition> = (sides.nodes_a.iter())
-        .filter_map(|a| Some(rows.remove(&a.node)?.condition(a, sides.mesh)))
+    let points: Vec<ContactPoint<u32>> = (sides.nodes_a.iter())
+        .filter_map(|a| Some(rows.remove(&a.node)?.point(a, sides.mesh)))
         .collect();
-    if conditions.is_empty() {
+    if points.is_empty() {
         return Err(apart(any_averted));
     }
-    Ok(conditions)
+    Ok(points)
 }
 
 /// The facets along side a.

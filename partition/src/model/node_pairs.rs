@@ -1,11 +1,11 @@
-//! Conditions between nodes that lie opposite each other.
+//! Contact points of nodes that lie opposite each other.
 
 use std::collections::HashSet;
 
-use super::ContactCondition;
 use super::sides::{SideNode, Sides, apart};
 use super::sight::{Met, Target};
 use super::surface::{CORNER, SurfaceFacet};
+use crate::contact_point::ContactPoint;
 use crate::element::geometry::{advance, dot, length};
 
 /// Why two sides have no pairs of nodes.
@@ -16,16 +16,16 @@ pub(super) enum Unpaired {
     Apart(String),
 }
 
-/// A condition for every node of side a and its partner on side b.
+/// A contact point for every node of side a and its partner on side b.
 ///
 /// # Errors
 /// Sides that don't face each other, or not node by node.
-pub(super) fn conditions(sides: &Sides) -> Result<Vec<ContactCondition>, Unpaired> {
+pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> {
     let mesh = sides.mesh;
     let skip = |node: u32| sides.shared.contains(&node);
     let (mid_a, mid_b) = (sides.a.mid_nodes(), sides.b.mid_nodes());
     let target = Target::new(sides.b);
-    let mut conditions = Vec::new();
+    let mut points = Vec::new();
     let mut partners = HashSet::new();
     let mut unmatched = Vec::new();
     let mut any_averted = false;
@@ -42,17 +42,15 @@ pub(super) fn conditions(sides: &Sides) -> Result<Vec<ContactCondition>, Unpaire
                 }
                 let faced = faced(a, &nodes, sides);
                 let normal = pressed_along(a, &faced);
-                for (b, share) in opposite(a, nodes, &faced) {
+                for (b, area) in opposite(a, nodes, &faced) {
                     let to_b = advance(mesh.points[b as usize], -1.0, a.position);
-                    conditions.push(ContactCondition {
-                        entries: vec![(a.node, normal), (b, normal.map(|c| -c))],
+                    let entries = vec![(a.node, 1.0), (b, -1.0)];
+                    let tag_a = mesh.node_tags[a.node as usize];
+                    points.push(ContactPoint {
                         gap: dot(to_b, normal),
-                        share,
-                        position: a.position,
-                        acts_at: a.position,
-                        normal,
-                        tag_a: mesh.node_tags[a.node as usize],
+                        area,
                         tag_b: mesh.node_tags[b as usize],
+                        ..ContactPoint::new(entries, normal, a.position, tag_a)
                     });
                 }
             }
@@ -80,10 +78,10 @@ pub(super) fn conditions(sides: &Sides) -> Result<Vec<ContactCondition>, Unpaire
             mesh.tags_of(&facet.nodes)
         )));
     }
-    if conditions.is_empty() {
+    if points.is_empty() {
         return Err(Unpaired::Apart(apart(any_averted)));
     }
-    Ok(conditions)
+    Ok(points)
 }
 
 /// A facet of side a around a node, and opposite which of the node's partners a facet of side b lies.

@@ -1,24 +1,24 @@
-//! Contact with a rigid obstacle, n·u ≤ g: rows of one node.
+//! Contact with a rigid obstacle, n·u ≤ g: points of one node.
 
-use super::ContactCondition;
 use super::sides::SideNode;
 use super::sight::FACING;
 use super::surface::Surface;
+use crate::contact_point::ContactPoint;
 use crate::element::geometry::{difference, dot, length};
 use crate::mesh::Mesh;
 use crate::scene::condition::Obstacle;
 
-/// A condition for every node of a side that faces the obstacle: its signed distance, linearized
+/// A contact point for every node of a side that faces the obstacle: its signed distance, linearized
 /// at the nearest point of the obstacle, stays ≥ 0.
 ///
 /// From the other nodes the body itself lies between them and the obstacle. Without them a whole
 /// outline may be given as a side, and a node meets one of two opposite walls only.
-pub(super) fn conditions(
+pub(super) fn points(
     mesh: &Mesh,
     obstacle: &Obstacle,
     side: &Surface,
     nodes: Vec<SideNode>,
-) -> Result<Vec<ContactCondition>, String> {
+) -> Result<Vec<ContactPoint<u32>>, String> {
     if obstacle.dim() != mesh.dim {
         return Err(format!(
             "the obstacle's vectors have {} components; the mesh has {} dimensions",
@@ -28,16 +28,16 @@ pub(super) fn conditions(
     }
     let around = side.around();
     // Of an outline that turns a corner at the node the part that faces the obstacle.
-    let facing_share = |a: &SideNode, normal: [f64; 3]| {
+    let facing_area = |a: &SideNode, normal: [f64; 3]| {
         let facets = around[&a.node].iter().map(|&f| &side.facets[f]);
         let shares = facets.filter_map(|facet| {
             let own = facet.nodes.iter().position(|&node| node == a.node)?;
             (dot(facet.normal_at(own), normal) >= FACING).then(|| facet.share(own))
         });
-        let share: f64 = shares.sum();
-        if share > 0.0 { share } else { a.share }
+        let area: f64 = shares.sum();
+        if area > 0.0 { area } else { a.share }
     };
-    let mut conditions = Vec::with_capacity(nodes.len());
+    let mut points = Vec::with_capacity(nodes.len());
     for a in nodes {
         let tag = mesh.node_tags[a.node as usize];
         let Some((distance, out)) = distance(obstacle, a.position) else {
@@ -49,25 +49,20 @@ pub(super) fn conditions(
         if dot(a.normal, normal) < FACING {
             continue;
         }
-        conditions.push(ContactCondition {
-            entries: vec![(a.node, normal)],
+        points.push(ContactPoint {
             gap: distance,
-            share: facing_share(&a, normal),
-            position: a.position,
-            acts_at: a.position,
-            normal,
-            tag_a: tag,
-            tag_b: -1,
+            area: facing_area(&a, normal),
+            ..ContactPoint::new(vec![(a.node, 1.0)], normal, a.position, tag)
         });
     }
-    if conditions.is_empty() {
+    if points.is_empty() {
         return Err(
             "no node of the side faces the obstacle; expected an outward normal towards it \
              (an obstacle's normal points out of its material)"
                 .to_owned(),
         );
     }
-    Ok(conditions)
+    Ok(points)
 }
 
 /// Signed distance of a point to an obstacle, positive outside of its material, and the

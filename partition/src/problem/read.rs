@@ -7,7 +7,7 @@ mod header;
 mod hierarchy;
 mod known;
 mod materials;
-mod rows;
+mod points;
 mod settings;
 mod sizes;
 mod slabs;
@@ -18,7 +18,8 @@ use std::path::{Path, PathBuf};
 
 use super::copies::NodeCopies;
 use super::dataset::Dataset;
-use super::{Catalog, ContactRow, Problem, Subdomain};
+use super::{Catalog, Problem, Subdomain, SubdomainNode};
+use crate::contact_point::ContactPoint;
 use crate::error::InputError;
 use crate::file_kind::FileKind;
 use crate::source;
@@ -115,17 +116,17 @@ impl ProblemFile {
             .map_err(|error| error.in_file(&self.path))
     }
 
-    /// Reads and checks the contact rows of one group, whose subdomains are `members`.
+    /// Reads and checks the contact points of one group, whose subdomains are `members`.
     ///
     /// # Errors
     /// The dataset and the row that isn't what it should be, or that says something else than the
     /// mesh of the members does.
-    pub fn rows(
+    pub fn points(
         &self,
         group: usize,
         members: &[&Subdomain],
-    ) -> Result<Vec<ContactRow>, InputError> {
-        self.read_rows(group, members)
+    ) -> Result<Vec<ContactPoint<SubdomainNode>>, InputError> {
+        self.read_points(group, members)
             .map_err(|error| error.in_file(&self.path))
     }
 
@@ -141,14 +142,14 @@ impl ProblemFile {
             copies.add(subdomain.index, subdomain.own_nodes());
         }
         (copies.check()).map_err(|error| error.in_file(&self.path))?;
-        let rows = (0..self.catalog.groups.len()).map(|group| {
+        let points = (0..self.catalog.groups.len()).map(|group| {
             let of_group = |s: &&Subdomain| self.catalog.subdomains[s.index].group == Some(group);
             let members: Vec<&Subdomain> = subdomains.iter().filter(of_group).collect();
-            self.rows(group, &members)
+            self.points(group, &members)
         });
         Ok(Problem {
             catalog: self.catalog.clone(),
-            rows: rows.collect::<Result<_, _>>()?,
+            points: points.collect::<Result<_, _>>()?,
             subdomains,
         })
     }

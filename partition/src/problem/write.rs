@@ -5,7 +5,7 @@ use std::path::Path;
 use hdf5::H5Type;
 use hdf5::types::VarLenUnicode;
 
-use super::{ContactRow, FORMAT, Problem, Subdomain, VERSION, vtkhdf};
+use super::{FORMAT, Problem, Subdomain, VERSION, vtkhdf};
 use crate::destination::{Destination, quoted_words};
 use crate::error::OutputError;
 
@@ -190,22 +190,23 @@ impl Problem {
             "name",
             self.catalog.contacts.iter().map(|c| c.name.as_str()),
         )?;
-        contact.offsets("group_offset", self.rows.iter().map(Vec::len))?;
-        let rows = || self.rows.iter().flatten();
-        contact.column("contact", rows().map(|r| i64::from(r.contact)))?;
-        contact.column("place", rows().map(|r| i64::from(r.place)))?;
-        contact.column("gap", rows().map(|r| r.gap))?;
-        contact.column("share", rows().map(|r| r.share))?;
-        contact.vectors("position", dim, rows().map(|r| &r.position))?;
-        contact.vectors("acts_at", dim, rows().map(|r| &r.acts_at))?;
-        contact.vectors("normal", dim, rows().map(|r| &r.normal))?;
-        contact.column("node_a", rows().map(|r| r.tag_a))?;
-        contact.column("node_b", rows().map(|r| r.tag_b))?;
-        contact.offsets("entry_offset", rows().map(|r| r.entries.len()))?;
-        let entries = || rows().flat_map(|r: &ContactRow| &r.entries);
-        contact.column("entry_subdomain", entries().map(|e| i64::from(e.subdomain)))?;
-        contact.column("entry_node", entries().map(|e| i64::from(e.node)))?;
-        contact.vectors("entry_coefficient", dim, entries().map(|e| &e.coefficient))
+        contact.offsets("group_offset", self.points.iter().map(Vec::len))?;
+        let points = || self.points.iter().flatten();
+        contact.column("contact", points().map(|p| i64::from(p.contact)))?;
+        contact.column("place", points().map(|p| i64::from(p.place)))?;
+        contact.column("gap", points().map(|p| p.gap))?;
+        contact.column("area", points().map(|p| p.area))?;
+        contact.vectors("position", dim, points().map(|p| &p.position))?;
+        contact.vectors("force_point", dim, points().map(|p| &p.force_point))?;
+        contact.vectors("normal", dim, points().map(|p| &p.frame.normal))?;
+        contact.column("node_a", points().map(|p| p.tag_a))?;
+        contact.column("node_b", points().map(|p| p.tag_b))?;
+        contact.offsets("entry_offset", points().map(|p| p.entries.len()))?;
+        let nodes = || points().flat_map(|p| p.entries.iter().map(|(node, _)| node));
+        contact.column("entry_subdomain", nodes().map(|n| i64::from(n.subdomain)))?;
+        contact.column("entry_node", nodes().map(|n| i64::from(n.node)))?;
+        let weights = points().flat_map(|p| p.entries.iter().map(|&(_, weight)| weight));
+        contact.column("entry_weight", weights)
     }
 }
 

@@ -94,7 +94,7 @@ fn no_node_with_a_contact_condition_lies_on_the_interface() {
         for count in counts(scene, range(model)) {
             let decomposition = Decomposition::new(model, Some(count)).unwrap();
             let sets = subdomains_of_node(model, &decomposition);
-            for condition in model.contacts.iter().flat_map(|c| &c.conditions) {
+            for condition in model.contacts.iter().flat_map(|c| &c.points) {
                 for &(node, _) in &condition.entries {
                     assert_eq!(sets[node as usize].len(), 1, "{count} subdomains");
                 }
@@ -172,7 +172,7 @@ fn bonded_materials_have_subdomains_of_their_own_wherever_the_count_allows() {
 fn only_cells_around_a_contact_surface_mix_materials() {
     // Both sides of the crack end at the bond between the materials.
     let model = with_materials(cracked(16, &[(0, 9)]), |x, _| u32::from(x > 8.0));
-    let conditions = || model.contacts.iter().flat_map(|c| &c.conditions);
+    let conditions = || model.contacts.iter().flat_map(|c| &c.points);
     let in_contact: BTreeSet<u32> = conditions()
         .flat_map(|c| &c.entries)
         .map(|&(node, _)| node)
@@ -306,7 +306,7 @@ fn a_prescribed_subdomain_in_two_parts_is_a_warning() {
 #[test]
 fn pieces_that_share_a_node_alone_are_one_body_of_two_subdomains() {
     let mut model = stacked(2, 4, 3);
-    let first = model.contacts[0].conditions.remove(0);
+    let first = model.contacts[0].points.remove(0);
     let (hinge, gone) = (first.entries[0].0, first.entries[1].0);
     for cell in 0..model.mesh.cells.len() {
         for node in model.mesh.cells.nodes_of_mut(cell) {
@@ -327,7 +327,7 @@ fn a_node_with_a_condition_at_which_the_mesh_is_pinched_keeps_its_group_together
     // Two blocks that share one node, which has a condition of its own.
     let mut model = stacked(2, 4, 3);
     let (hinge, gone) = {
-        let entries = &mut model.contacts[0].conditions[0].entries;
+        let entries = &mut model.contacts[0].points[0].entries;
         let gone = entries.pop().unwrap().0;
         (entries[0].0, gone)
     };

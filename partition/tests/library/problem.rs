@@ -183,7 +183,7 @@ fn nodes_in_the_middle_of_cut_edges_are_on_the_interface_and_never_in_contact() 
         let problem = Problem::new(&model, &decomposition).unwrap();
         on_interface_is_what_is_shared(&model, &decomposition, &problem);
         let shared = shared(&model, &decomposition);
-        let conditions = model.contacts.iter().flat_map(|c| &c.conditions);
+        let conditions = model.contacts.iter().flat_map(|c| &c.points);
         for condition in conditions {
             assert!(!shared.contains(&condition.tag_a) && !shared.contains(&condition.tag_b));
         }
@@ -221,16 +221,16 @@ fn on_interface_is_what_is_shared(model: &Model, decomposition: &Decomposition, 
 }
 
 #[test]
-fn rows_name_the_nodes_of_the_scene() {
+fn points_name_the_nodes_of_the_scene() {
     let model = shuffled(&stacked(3, 6, 3), 3);
     let problem = Problem::new(&model, &halves(&model, 3.0)).unwrap();
-    for row in problem.rows.iter().flatten() {
-        let condition = &model.contacts[row.contact as usize].conditions[row.place as usize];
-        for (entry, &(node, coefficient)) in row.entries.iter().zip(&condition.entries) {
-            let subdomain = &problem.subdomains[entry.subdomain as usize];
-            let tag = subdomain.node_tags[entry.node as usize];
+    for point in problem.points.iter().flatten() {
+        let of_model = &model.contacts[point.contact as usize].points[point.place as usize];
+        for ((at, weight), &(node, expected)) in point.entries.iter().zip(&of_model.entries) {
+            let subdomain = &problem.subdomains[at.subdomain as usize];
+            let tag = subdomain.node_tags[at.node as usize];
             assert_eq!(tag, model.mesh.node_tags[node as usize]);
-            assert_eq!(entry.coefficient, coefficient);
+            assert_eq!(*weight, expected);
         }
     }
 }

@@ -7,11 +7,10 @@
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::{ElementKind, Elements};
 use contact_dd_partition::mesh::Mesh;
-use contact_dd_partition::model::{
-    Contact, ContactCondition, Material, Model, PlaneState, Support,
-};
+use contact_dd_partition::model::{Contact, Material, Model, PlaneState, Support};
 use contact_dd_partition::solver::SolverSettings;
 
 /// A model under construction on the lattice of whole numbers; nodes are told apart by their
@@ -50,25 +49,27 @@ impl Builder {
 
     /// Adds a contact along `y` between the layers below and above.
     fn contact(&mut self, name: &str, xs: Range<usize>, y: usize, below: usize, above: usize) {
-        let conditions = xs
-            .map(|x| {
+        let number = self.contacts.len() as u32;
+        let points = xs
+            .enumerate()
+            .map(|(place, x)| {
                 let (a, b) = (self.nodes[&(x, y, below)], self.nodes[&(x, y, above)]);
                 assert_ne!(a, b);
-                ContactCondition {
-                    entries: vec![(a, [0.0, 1.0, 0.0]), (b, [0.0, -1.0, 0.0])],
+                let entries = vec![(a, 1.0), (b, -1.0)];
+                let position = self.points[a as usize];
+                ContactPoint {
+                    contact: number,
+                    place: place as u32,
                     gap: 1e-3 * x as f64,
-                    share: 1.0,
-                    position: self.points[a as usize],
-                    acts_at: self.points[a as usize],
-                    normal: [0.0, 1.0, 0.0],
-                    tag_a: tag(a),
+                    area: 1.0,
                     tag_b: tag(b),
+                    ..ContactPoint::new(entries, [0.0, 1.0, 0.0], position, tag(a))
                 }
             })
             .collect();
         self.contacts.push(Contact {
             name: name.into(),
-            conditions,
+            points,
         });
     }
 
@@ -225,10 +226,10 @@ pub fn shuffled(model: &Model, seed: u64) -> Model {
         force.0 = place[force.0 as usize];
     }
     out.forces.sort_by_key(|f| f.0);
-    for condition in out.contacts.iter_mut().flat_map(|c| &mut c.conditions) {
-        condition.position = moved(condition.position);
-        condition.acts_at = moved(condition.acts_at);
-        for entry in &mut condition.entries {
+    for point in out.contacts.iter_mut().flat_map(|c| &mut c.points) {
+        point.position = moved(point.position);
+        point.force_point = moved(point.force_point);
+        for entry in &mut point.entries {
             entry.0 = place[entry.0 as usize];
         }
     }

@@ -4,7 +4,7 @@ use contact_dd_partition::model::{Material, Support};
 use contact_dd_partition::problem::{InterfaceNode, Subdomain};
 
 use super::super::block::Block;
-use super::super::condition::BlockCondition;
+use super::super::owned::OwnedBlock;
 use super::*;
 
 fn material() -> Material {
@@ -50,7 +50,7 @@ fn support(node: u32, direction: [f64; 3], value: f64) -> Support {
 
 /// Two squares, one on the other, in contact along an inclined normal; the lower one is held at an
 /// inclined support and shares two nodes with the rest of the world.
-fn scene() -> (Block, Vec<BlockCondition>) {
+fn scene() -> OwnedBlock {
     let mut lower = square(0, [0.0, 0.0]);
     let inclined = [0.6, 0.8, 0.0];
     lower.supports = vec![
@@ -68,11 +68,16 @@ fn scene() -> (Block, Vec<BlockCondition>) {
     }];
     let block = Block::new(vec![lower, upper], 2, |_| true);
     let normal = [-0.28, 0.96, 0.0];
-    let condition = |a: u32, b: u32, gap: f64| BlockCondition {
-        entries: vec![(a, normal), (b, normal.map(|n| -n))],
-        gap,
-    };
-    (block, vec![condition(3, 4, 0.5), condition(2, 5, -0.25)])
+    let point = |a: u32, b: u32| ContactPoint::new(vec![(a, 1.0), (b, -1.0)], normal, [0.0; 3], 0);
+    OwnedBlock {
+        block,
+        points: vec![point(3, 4), point(2, 5)],
+        gaps: vec![0.5, -0.25],
+    }
+}
+
+fn dofs_of(owned: &OwnedBlock) -> Dofs {
+    Dofs::new(&owned.block, &owned.points, &owned.gaps, &[material()]).unwrap()
 }
 
 fn vector(u: &[f64], node: usize) -> [f64; 3] {
@@ -86,8 +91,7 @@ fn unknowns(dofs: &Dofs) -> Vec<f64> {
 
 #[test]
 fn every_displacement_obeys_the_supports() {
-    let (block, conditions) = scene();
-    let dofs = Dofs::new(&block, &conditions, &[material()]).unwrap();
+    let dofs = dofs_of(&scene());
     let u = dofs.displacement(&unknowns(&dofs));
     assert!((dot(vector(&u, 0), [0.6, 0.8, 0.0]) - 0.25).abs() < 1e-15);
     assert!((u[2] + 0.5).abs() < 1e-15);
@@ -95,21 +99,19 @@ fn every_displacement_obeys_the_supports() {
 }
 
 #[test]
-fn the_approach_of_a_condition_is_its_unknown() {
-    let (block, conditions) = scene();
-    let dofs = Dofs::new(&block, &conditions, &[material()]).unwrap();
+fn the_approach_of_a_point_is_its_unknown() {
+    let owned = scene();
+    let dofs = dofs_of(&owned);
     let x = unknowns(&dofs);
     let u = dofs.displacement(&x);
-    for (j, condition) in conditions.iter().enumerate() {
-        let approach = condition.gap - condition.gap_left(2, &u);
-        assert!((approach - x[dofs.interior + j]).abs() < 1e-15);
+    for (j, point) in owned.points.iter().enumerate() {
+        assert!((point.normal_jump(2, &u) - x[dofs.interior + j]).abs() < 1e-15);
     }
 }
 
 #[test]
 fn traces_come_last_and_are_the_displacement_of_shared_nodes() {
-    let (block, conditions) = scene();
-    let dofs = Dofs::new(&block, &conditions, &[material()]).unwrap();
+    let dofs = dofs_of(&scene());
     let x = unknowns(&dofs);
     let u = dofs.displacement(&x);
     assert_eq!(
@@ -123,8 +125,7 @@ fn traces_come_last_and_are_the_displacement_of_shared_nodes() {
 
 #[test]
 fn loads_work_on_unknowns_what_they_work_on_displacements() {
-    let (block, conditions) = scene();
-    let dofs = Dofs::new(&block, &conditions, &[material()]).unwrap();
+    let dofs = dofs_of(&scene());
     let f: Vec<f64> = (0..16).map(|i| (0.7 * i as f64).cos()).collect();
     let x = unknowns(&dofs);
     let mut change = vec![0.0; 16];

@@ -1,9 +1,9 @@
-//! `/contact/<name>/`: one row for each contact condition.
+//! `/contact/<name>/`: one row for each contact point.
 
 use contact_dd_partition::problem::ContactSummary;
 use hdf5::{Dataset, File, Group, Result};
 
-use super::super::result::ContactResult;
+use super::super::result::ContactRow;
 use super::column;
 
 /// The table of every contact, and which of its rows have been written in a load step.
@@ -38,13 +38,14 @@ impl ContactTables {
     }
 
     /// Writes `rows`, which may belong to several contacts, in a load step.
-    pub(super) fn write(&mut self, rows: &[ContactResult], step: usize) -> Result<()> {
+    pub(super) fn write(&mut self, rows: &[ContactRow], step: usize) -> Result<()> {
         let mut rows = rows.to_vec();
-        rows.sort_by_key(|row| (row.contact, row.place));
-        let neighbours =
-            |a: &ContactResult, b: &ContactResult| (a.contact, a.place + 1) == (b.contact, b.place);
+        rows.sort_by_key(|(point, _)| (point.contact, point.place));
+        let neighbours = |(a, _): &ContactRow, (b, _): &ContactRow| {
+            (a.contact, a.place + 1) == (b.contact, b.place)
+        };
         for run in rows.chunk_by(neighbours) {
-            let contact = run[0].contact;
+            let contact = run[0].0.contact as usize;
             let Some(table) = self.tables.get_mut(contact) else {
                 let count = self.tables.len();
                 return Err(format!("contact {contact} of {count} has no place").into());
@@ -90,32 +91,32 @@ impl Table {
     }
 
     /// Writes rows whose places follow each other.
-    fn write(&mut self, run: &[ContactResult], step: usize) -> Result<()> {
-        let start = run[0].place;
+    fn write(&mut self, run: &[ContactRow], step: usize) -> Result<()> {
+        let start = run[0].0.place as usize;
         let Some(written) = self.written.get_mut(start..start + run.len()) else {
-            let (name, last) = (&self.name, run[run.len() - 1].place);
+            let (name, last) = (&self.name, run[run.len() - 1].0.place);
             let rows = self.written.len();
             return Err(format!("contact '{name}' has {rows} conditions, none at {last}").into());
         };
-        let tags = |column, of: fn(&ContactResult) -> i64| {
+        let tags = |column, of: fn(&ContactRow) -> i64| {
             column::fill(column, start, &run.iter().map(of).collect::<Vec<_>>())
         };
-        let vectors = |table, of: fn(&ContactResult) -> [f64; 3]| {
+        let vectors = |table, of: fn(&ContactRow) -> [f64; 3]| {
             column::fill_table(table, start, &run.iter().map(of).collect::<Vec<_>>())
         };
-        let reals = |column, of: fn(&ContactResult) -> f64| {
+        let reals = |column, of: fn(&ContactRow) -> f64| {
             column::fill_by_step(column, step, start, &run.iter().map(of).collect::<Vec<_>>())
         };
         if step == 0 {
-            tags(&self.node_a, |row| row.tag_a)?;
-            tags(&self.node_b, |row| row.tag_b)?;
-            vectors(&self.position, |row| row.position)?;
-            vectors(&self.normal, |row| row.normal)?;
+            tags(&self.node_a, |(point, _)| point.tag_a)?;
+            tags(&self.node_b, |(point, _)| point.tag_b)?;
+            vectors(&self.position, |(point, _)| point.position)?;
+            vectors(&self.normal, |(point, _)| point.normal())?;
         }
-        reals(&self.gap, |row| row.gap)?;
-        reals(&self.force, |row| row.force)?;
-        reals(&self.pressure, |row| row.pressure)?;
-        let status: Vec<u8> = run.iter().map(|row| u8::from(row.closed)).collect();
+        reals(&self.gap, |(_, state)| state.gap)?;
+        reals(&self.force, |(_, state)| state.force)?;
+        reals(&self.pressure, |(point, state)| state.force / point.area)?;
+        let status: Vec<u8> = run.iter().map(|row| u8::from(row.1.closed)).collect();
         column::fill_by_step(&self.status, step, start, &status)?;
         written.fill(true);
         Ok(())

@@ -22,7 +22,7 @@ fn load_steps_follow_one_another_on_one_mesh() {
         results.von_mises.iter_mut().for_each(|s| *s *= factor);
         file.write_subdomains(&results).unwrap();
         let mut rows = [row(0, 0), row(0, 1)];
-        rows.iter_mut().for_each(|row| row.force *= factor);
+        rows.iter_mut().for_each(|(_, state)| state.force *= factor);
         file.write_contacts(&rows).unwrap();
         file.finish_step().unwrap();
     }

@@ -54,7 +54,7 @@ impl Findings {
         let u = solution.dofs(model);
         let points = model.contacts.iter().flat_map(|contact| {
             let points = &solution.contacts[&contact.name];
-            assert_eq!(points.len(), contact.conditions.len(), "{}", contact.name);
+            assert_eq!(points.len(), contact.points.len(), "{}", contact.name);
             points
         });
         let (forces, closed): (Vec<f64>, Vec<bool>) =

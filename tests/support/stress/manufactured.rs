@@ -25,7 +25,7 @@ pub fn manufacture(model: &mut Model, random: &mut Random) {
     let largest = force.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
     let share_closed = random.pick(&[0.1, 0.5, 0.9]);
     let small = random.pick(&[0.0, -3.0, -6.0]);
-    let conditions = model.contacts.iter_mut().flat_map(|c| &mut c.conditions);
+    let conditions = model.contacts.iter_mut().flat_map(|c| &mut c.points);
     for (condition, (row, _)) in conditions.zip(&assembled.conditions) {
         let approach: f64 = row.iter().map(|&(dof, c)| c * u[dof]).sum();
         let (mut left, mut pressed) = (0.0, 0.0);

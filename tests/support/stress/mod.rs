@@ -185,7 +185,7 @@ pub fn scale(model: &mut Model, factor: f64) {
     for support in &mut model.supports {
         support.value *= factor;
     }
-    for condition in model.contacts.iter_mut().flat_map(|c| &mut c.conditions) {
+    for condition in model.contacts.iter_mut().flat_map(|c| &mut c.points) {
         condition.gap *= factor;
     }
 }

@@ -90,7 +90,7 @@ impl Trial {
             reason: String::new(),
             equilibrium: drawn.equilibrium,
             dofs: model.mesh.dim * model.mesh.points.len(),
-            conditions: model.contacts.iter().map(|c| c.conditions.len()).sum(),
+            conditions: model.contacts.iter().map(|c| c.points.len()).sum(),
             subdomains: 0,
             findings: None,
             report: None,

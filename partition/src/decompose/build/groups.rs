@@ -29,8 +29,8 @@ impl Groups {
         let mut in_contact = vec![false; owners.count];
         let mut meeting = Vec::new();
         for contact in &model.contacts {
-            for (place, condition) in contact.conditions.iter().enumerate() {
-                let nodes = condition.entries.iter().map(|&(node, _)| node);
+            for (place, point) in contact.points.iter().enumerate() {
+                let nodes = point.entries.iter().map(|&(node, _)| node);
                 let linked: Vec<u32> = nodes
                     .clone()
                     .flat_map(|node| owners.of.of(node as usize))
@@ -38,7 +38,7 @@ impl Groups {
                     .collect();
                 let Some(&first) = linked.first() else {
                     return Err(InputError::new(format!(
-                        "contact \"{}\", condition {place}: the row has no nodes",
+                        "contact \"{}\", point {place}: it has no nodes",
                         contact.name
                     )));
                 };

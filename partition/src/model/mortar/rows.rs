@@ -1,21 +1,21 @@
-//! The row of a condition, gathered facet by facet.
+//! What a multiplier's weight covers, gathered facet by facet, and the contact point that comes of it.
 
-use super::super::ContactCondition;
 use super::super::sides::SideNode;
 use super::super::surface::Surface;
 use super::Covered;
 use super::field::cross;
+use crate::contact_point::ContactPoint;
 use crate::element::geometry::{advance, difference};
 use crate::mesh::Mesh;
 
-/// Coefficient below which a node of side b has no part in a condition: round-off of shape
+/// Weight below which a node of side b has no part in a point: round-off of shape
 /// functions that are orthogonal.
 const ROUND_OFF: f64 = 1e-13;
 
 /// What a multiplier's weight ψ covers.
 pub(super) struct Row {
     /// ∫ ψ (m).
-    share: f64,
+    area: f64,
     /// ∫ ψ N of the nodes of side a, in the order along it (m).
     side_a: Vec<(u32, f64)>,
     /// The same of side b.
@@ -29,7 +29,7 @@ pub(super) struct Row {
 impl Default for Row {
     fn default() -> Self {
         Self {
-            share: 0.0,
+            area: 0.0,
             side_a: Vec::new(),
             side_b: Vec::new(),
             gap: 0.0,
@@ -52,7 +52,7 @@ impl Row {
         self.least_gap = self.least_gap.min(cover.least_gap);
         for (sample, weight) in cover.samples.iter().zip(weight) {
             let weight = weight * sample.weight;
-            self.share += weight;
+            self.area += weight;
             self.gap += weight * sample.gap;
             for (&node, n) in facet.nodes.iter().zip(&sample.shape) {
                 add(&mut self.side_a, node, weight * n);
@@ -65,7 +65,7 @@ impl Row {
     }
 
     /// Shifts what side b has of the row so that both sides turn together without changing the gap,
-    /// and the condition's force has no moment: Σ s_a D_a = Σ s_b M_b with the places s along side a.
+    /// and the point's force has no moment: Σ s_a D_a = Σ s_b M_b with the places s along side a.
     ///
     /// It is so already where the sides are straight. Without it, the ragged facets of round bodies
     /// would keep them from turning against each other.
@@ -73,7 +73,7 @@ impl Row {
         // In shares of side a, so that no square of a length overflows.
         let place = |node: u32| {
             let way = difference(mesh.points[node as usize], a.position);
-            cross(a.normal, way) / self.share
+            cross(a.normal, way) / self.area
         };
         let moment = |terms: &[(u32, f64)]| terms.iter().map(|&(n, c)| c * place(n)).sum::<f64>();
         let defect = moment(&self.side_a) - moment(&self.side_b);
@@ -90,42 +90,38 @@ impl Row {
     }
 
     /// Where the force on side a acts: beside node `a` where others hand over to it.
-    fn acts_at(&self, a: &SideNode, mesh: &Mesh) -> [f64; 3] {
+    fn force_point(&self, a: &SideNode, mesh: &Mesh) -> [f64; 3] {
         (self.side_a.iter()).fold(a.position, |at, &(node, value)| {
             let way = difference(mesh.points[node as usize], a.position);
-            advance(at, value / self.share, way)
+            advance(at, value / self.area, way)
         })
     }
 
-    /// The condition of node `a`, scaled so that the coefficients of side a sum to its normal: the
-    /// multiplier is the force along it.
+    /// The contact point of node `a`, scaled so that the weights of side a sum to 1: the multiplier is the force
+    /// along its normal.
     ///
-    /// The weight changes its sign, so that the weighted gap of uneven surfaces may be less than any
-    /// of their gaps. No condition starts out violated more than they are: bodies that only touch
-    /// carry no force without a load.
-    pub fn condition(mut self, a: &SideNode, mesh: &Mesh) -> ContactCondition {
+    /// ψ changes its sign, so that the weighted gap of uneven surfaces may be less than any of their gaps. No
+    /// point starts out violated more than they are: bodies that only touch carry no force without a load.
+    pub fn point(mut self, a: &SideNode, mesh: &Mesh) -> ContactPoint<u32> {
         self.balance(a, mesh);
-        let acts_at = self.acts_at(a, mesh);
+        let force_point = self.force_point(a, mesh);
         let mut terms = self.side_a;
         for (node, value) in self.side_b {
             add(&mut terms, node, -value);
         }
         let entries = terms.into_iter().filter_map(|(node, value)| {
-            let coefficient = value / self.share;
-            (coefficient.abs() > ROUND_OFF).then(|| (node, a.normal.map(|c| c * coefficient)))
+            let weight = value / self.area;
+            (weight.abs() > ROUND_OFF).then_some((node, weight))
         });
         let mut entries: Vec<_> = entries.collect();
         // Its own node comes first.
         entries.sort_by_key(|&(node, _)| node != a.node);
-        ContactCondition {
-            entries,
-            gap: (self.gap / self.share).max(self.least_gap.min(0.0)),
-            share: self.share,
-            position: a.position,
-            acts_at,
-            normal: a.normal,
-            tag_a: mesh.node_tags[a.node as usize],
-            tag_b: -1,
+        let tag_a = mesh.node_tags[a.node as usize];
+        ContactPoint {
+            gap: (self.gap / self.area).max(self.least_gap.min(0.0)),
+            area: self.area,
+            force_point,
+            ..ContactPoint::new(entries, a.normal, a.position, tag_a)
         }
     }
 }

@@ -1,20 +1,23 @@
-//! Whether what a contact row says twice is the same, and fits the mesh of its group.
+//! Whether what a contact point says twice is the same, and fits the mesh of its group.
 
 use std::collections::BTreeMap;
 
-use crate::element::geometry::{advance, difference, dot, length};
+use crate::contact_point::ContactPoint;
+use crate::element::geometry::{advance, difference, length};
 use crate::error::InputError;
 use crate::mesh::bounding_box::BoundingBox;
-use crate::problem::{ContactRow, RowEntry, Subdomain};
+use crate::problem::{Subdomain, SubdomainNode};
 
-/// How far coefficients may be from what the normal says, relative to the largest of them.
-const COEFFICIENT: f64 = 1e-8;
+/// How far the sum of weights may be from what it should be, relative to the largest of them.
+const WEIGHT: f64 = 1e-8;
 
 /// How far positions may be from the node that they belong to, relative to the group's extent.
 const PLACE: f64 = 1e-8;
 
-/// Largest share relative to the group's extent: no curved side around a node is longer.
-const LARGEST_SHARE: f64 = 10.0;
+/// Largest area relative to the group's extent: no curved side around a node is longer.
+const LARGEST_AREA: f64 = 10.0;
+
+type Point = ContactPoint<SubdomainNode>;
 
 /// The subdomains of a group in contact.
 pub(super) struct Members<'a> {
@@ -32,111 +35,99 @@ impl<'a> Members<'a> {
         }
     }
 
-    /// Checks one row, which stands in row `at` of the datasets.
-    pub fn check(&self, row: &ContactRow, at: usize) -> Result<(), InputError> {
-        self.fault(row).map_or(Ok(()), |(dataset, what)| {
+    /// Checks one point, which stands in row `at` of the datasets.
+    pub fn check(&self, point: &Point, at: usize) -> Result<(), InputError> {
+        self.fault(point).map_or(Ok(()), |(dataset, what)| {
             Err(InputError::new(format!(
                 "dataset /contact/{dataset}, row {at}: {what}"
             )))
         })
     }
 
-    /// What is wrong with a row, and in which dataset.
-    fn fault(&self, row: &ContactRow) -> Option<(&'static str, String)> {
+    /// What is wrong with a point, and in which dataset.
+    fn fault(&self, point: &Point) -> Option<(&'static str, String)> {
         let extent = self.extent;
-        if row.share > LARGEST_SHARE * extent {
+        if point.area > LARGEST_AREA * extent {
             let what = format!(
-                "{:e}; expected a share of a side of the group, whose extent is {extent:e}",
-                row.share
+                "{:e}; expected a part of a side of the group, whose extent is {extent:e}",
+                point.area
             );
-            return Some(("share", what));
+            return Some(("area", what));
         }
-        let along = |c: [f64; 3]| dot(c, row.normal);
-        let scale = (row.entries.iter()).fold(0.0, |m, e| f64::max(m, length(e.coefficient)));
-        let is_along =
-            |c: [f64; 3]| length(advance(c, -along(c), row.normal)) <= COEFFICIENT * scale;
-        if !row.entries.iter().all(|e| is_along(e.coefficient)) {
-            let what =
-                "the coefficients of the row aren't along its normal; expected multiples of it";
-            return Some(("normal", what.into()));
+        let weights = point.entries.iter().map(|&(_, weight)| weight);
+        let scale = weights.clone().fold(0.0, |m: f64, w| m.max(w.abs()));
+        let sum: f64 = weights.sum();
+        let (expected, why) = match point.entries.len() {
+            1 => (1.0, "1, that of a node against an obstacle"),
+            _ => (0.0, "0: those of side a to 1, those of side b to -1"),
+        };
+        if (sum - expected).abs() > WEIGHT * scale {
+            let what = format!("the weights of the point sum to {sum}; expected {why}");
+            return Some(("entry_weight", what));
         }
-        let sum: f64 = row.entries.iter().map(|e| along(e.coefficient)).sum();
-        let expected = f64::from(u8::from(row.entries.len() == 1));
-        if (sum - expected).abs() > COEFFICIENT * scale {
-            let what = format!(
-                "the coefficients of the row sum to {sum} times its normal; expected {}",
-                match row.entries.len() {
-                    1 => "1, that of a node against an obstacle",
-                    _ => "0: those of side a to the normal, those of side b to its opposite",
-                }
-            );
-            return Some(("entry_coefficient", what));
-        }
-        self.fault_of_names(row)
+        self.fault_of_names(point)
     }
 
-    /// The same of the nodes that a row names.
-    fn fault_of_names(&self, row: &ContactRow) -> Option<(&'static str, String)> {
+    /// The same of the nodes that a point names.
+    fn fault_of_names(&self, point: &Point) -> Option<(&'static str, String)> {
         for (dataset, tag, sign, side) in [
-            ("node_a", row.tag_a, 1.0, "towards side b"),
-            ("node_b", row.tag_b, -1.0, "towards side a"),
+            ("node_a", point.tag_a, 1.0, "positive"),
+            ("node_b", point.tag_b, -1.0, "negative"),
         ] {
             if tag == -1 {
                 continue;
             }
-            let found = row.entries.iter().find(|e| {
-                let own = self.by_index.get(&e.subdomain);
-                own.is_some_and(|member| member.node_tags[e.node as usize] == tag)
+            let found = point.entries.iter().find(|(node, _)| {
+                let own = self.by_index.get(&node.subdomain);
+                own.is_some_and(|member| member.node_tags[node.node as usize] == tag)
             });
-            let Some(entry) = found.filter(|e| sign * dot(e.coefficient, row.normal) > 0.0) else {
+            let Some(&(node, _)) = found.filter(|(_, weight)| sign * weight > 0.0) else {
                 let what = format!(
-                    "{tag}; expected -1 or the tag (GlobalNodeId) of a node of the row whose \
-                     coefficient points {side}"
+                    "{tag}; expected -1 or the tag (GlobalNodeId) of a node of the point whose \
+                     weight is {side}"
                 );
                 return Some((dataset, what));
             };
             if sign > 0.0 {
-                let point = self.by_index[&entry.subdomain].points[entry.node as usize];
+                let at = self.by_index[&node.subdomain].points[node.node as usize];
                 let is_there =
-                    |place: [f64; 3]| length(difference(place, point)) <= PLACE * self.extent;
-                if !is_there(row.position) {
-                    return Some(("position", displaced(row.position, point, tag)));
+                    |place: [f64; 3]| length(difference(place, at)) <= PLACE * self.extent;
+                if !is_there(point.position) {
+                    return Some(("position", displaced(point.position, at, tag)));
                 }
-                if !self.acts_there(row, entry) {
-                    let [x, y, _] = row.acts_at;
+                if !self.acts_there(point, node) {
+                    let [x, y, _] = point.force_point;
                     let what = format!(
-                        "({x}, {y}); expected the sum of (normal · coefficient) position over the \
-                         nodes of side a"
+                        "({x}, {y}); expected the sum of weight · position over the nodes of side a"
                     );
-                    return Some(("acts_at", what));
+                    return Some(("force_point", what));
                 }
             }
         }
         None
     }
 
-    /// Whether the force of a row acts where its coefficients of side a, among them `own`, say.
-    fn acts_there(&self, row: &ContactRow, own: &RowEntry) -> bool {
-        let body = |e: &RowEntry| self.by_index.get(&e.subdomain).map(|member| member.body);
-        let is_pair = row.entries.len() == 1 || row.tag_b != -1;
+    /// Whether the force of a point acts where its weights of side a, among them that of node `own`, say.
+    fn acts_there(&self, point: &Point, own: SubdomainNode) -> bool {
+        let body = |node: SubdomainNode| self.by_index.get(&node.subdomain).map(|m| m.body);
+        let is_pair = point.entries.len() == 1 || point.tag_b != -1;
         // Where both sides belong to one body the nodes don't tell on which they are.
-        if !is_pair && row.entries.iter().all(|e| body(e) == body(own)) {
+        if !is_pair && (point.entries.iter()).all(|&(node, _)| body(node) == body(own)) {
             return true;
         }
-        let on_a = |e: &&RowEntry| match is_pair {
-            true => *e == own,
-            false => body(e) == body(own),
+        let on_a = |&&(node, _): &&(SubdomainNode, f64)| match is_pair {
+            true => node == own,
+            false => body(node) == body(own),
         };
         let (mut place, mut scale) = ([0.0; 3], 0.0);
-        for entry in row.entries.iter().filter(on_a) {
-            let weight = dot(entry.coefficient, row.normal);
-            let member = self.by_index[&entry.subdomain];
-            let way = difference(member.points[entry.node as usize], row.position);
+        for &(node, weight) in point.entries.iter().filter(on_a) {
+            let member = self.by_index[&node.subdomain];
+            let way = difference(member.points[node.node as usize], point.position);
             place = advance(place, weight, way);
             scale += weight.abs();
         }
-        let acts_at = difference(row.acts_at, row.position);
-        length(difference(acts_at, place)) <= PLACE * self.extent * scale.max(1.0)
+        let force_point = difference(point.force_point, point.position);
+        length(difference(force_point, place)) <= PLACE * self.extent * scale.max(1.0)
     }
 }
 

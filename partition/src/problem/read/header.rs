@@ -98,7 +98,8 @@ pub(super) fn check_format(file: &hdf5::File) -> Result<(), InputError> {
              contact-dd-partition"
         ))),
         other => Err(InputError::new(format!(
-            "has version {other} of the format; expected {VERSION}"
+            "has version {other} of the format; expected {VERSION}: make it again with \
+             contact-dd-partition"
         ))),
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::blocks::Blocks;
 use crate::close::close;
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::mesh::Mesh;
-use contact_dd_partition::model::ContactCondition;
 
 const CONTACT: &str = "[[contact]]\nname = 'c'\nsides = ['lower top', 'upper bottom']\n";
 
@@ -15,9 +15,9 @@ pub fn stack(gap: f64) -> Blocks {
 }
 
 /// The conditions of a scene's first contact.
-pub fn conditions(blocks: &Blocks, text: &str) -> Result<Vec<ContactCondition>, String> {
+pub fn conditions(blocks: &Blocks, text: &str) -> Result<Vec<ContactPoint<u32>>, String> {
     let mut model = blocks.model(text)?;
-    Ok(model.contacts.remove(0).conditions)
+    Ok(model.contacts.remove(0).points)
 }
 
 #[test]
@@ -28,15 +28,15 @@ fn a_row_is_the_jump_along_the_outward_normal_of_side_a() {
         let [(a, plus), (b, minus)] = row.entries[..] else {
             panic!("two entries");
         };
-        assert_eq!((plus, minus), ([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]));
-        assert_eq!(row.normal, plus);
+        assert_eq!((plus, minus), (1.0, -1.0));
+        assert_eq!(row.frame.normal, [0.0, 1.0, 0.0]);
         let points = stack(0.25).mesh.points;
         assert_eq!(points[a as usize], row.position);
         assert_eq!(points[b as usize][0], row.position[0]);
         assert_eq!(row.tag_a, stack(0.25).mesh.node_tags[a as usize]);
         assert_eq!(row.tag_b, stack(0.25).mesh.node_tags[b as usize]);
         close(row.gap, 0.25, 1e-15);
-        close(row.share, if i == 0 || i == 4 { 0.25 } else { 0.5 }, 1e-15);
+        close(row.area, if i == 0 || i == 4 { 0.25 } else { 0.5 }, 1e-15);
     }
     let steps: Vec<f64> = rows.iter().map(|row| row.position[0]).collect();
     assert_eq!(steps, [2.0, 1.5, 1.0, 0.5, 0.0]);
@@ -56,7 +56,7 @@ fn a_given_gap_replaces_the_geometric_one() {
 fn interference_is_allowed_with_a_note() {
     let model = stack(-0.01).model(CONTACT).unwrap();
     assert!(model.warnings[0].contains("contact 'c': 5 of 5 gaps are negative"));
-    close(model.contacts[0].conditions[2].gap, -0.01, 1e-15);
+    close(model.contacts[0].points[2].gap, -0.01, 1e-15);
     let model = stack(0.0)
         .model(&format!("{CONTACT}gap = '-1e-3'"))
         .unwrap();
@@ -73,7 +73,7 @@ fn nodes_beyond_the_end_of_the_overlap_carry_no_condition() {
     let turned = "[[contact]]\nname = 'c'\nsides = ['upper bottom', 'lower top']";
     let rows = conditions(&blocks, turned).unwrap();
     assert_eq!(rows.len(), 5);
-    assert!(rows.iter().all(|row| row.normal == [0.0, -1.0, 0.0]));
+    assert!(rows.iter().all(|row| row.frame.normal == [0.0, -1.0, 0.0]));
 }
 
 #[test]
@@ -220,12 +220,12 @@ fn several_contacts_may_meet_in_one_node() {
     let apart = blocks
         .model("[[contact]]\nname = '1'\nsides = ['lower top', 'left bottom']\n[[contact]]\nname = '2'\nsides = ['lower top', 'right bottom']\n[[contact]]\nname = '3'\nsides = ['left right', 'right left']")
         .unwrap();
-    let counts: Vec<usize> = apart.contacts.iter().map(|c| c.conditions.len()).collect();
+    let counts: Vec<usize> = apart.contacts.iter().map(|c| c.points.len()).collect();
     assert_eq!(counts, [3, 3, 3]);
     let as_one = "[[contact]]\nname = 'c'\nsides = ['lower top', ['left bottom', 'right bottom']]";
     let rows = conditions(&blocks, as_one).unwrap();
     assert_eq!(rows.len(), 6);
-    close(rows.iter().map(|row| row.share).sum(), 2.0, 1e-15);
+    close(rows.iter().map(|row| row.area).sum(), 2.0, 1e-15);
     assert_eq!(rows[2].tag_a, rows[3].tag_a);
     assert_ne!(rows[2].tag_b, rows[3].tag_b);
 }
@@ -276,8 +276,8 @@ fn a_nodes_normal_is_the_average_weighted_by_length() {
         let (before, after) = (top(x - 0.5), top(x + 0.5));
         let chord = [after[0] - before[0], after[1] - before[1]];
         let size = chord[0].hypot(chord[1]);
-        close(row.normal[0], -chord[1] / size, 1e-15);
-        close(row.normal[1], chord[0] / size, 1e-15);
+        close(row.frame.normal[0], -chord[1] / size, 1e-15);
+        close(row.frame.normal[1], chord[0] / size, 1e-15);
     }
 }
 
@@ -305,8 +305,8 @@ fn shares_end_where_the_other_side_does() {
         assert_eq!(forth.len(), back.len());
         for (a, b) in forth.iter().zip(back.iter().rev()) {
             assert_eq!(a.position, b.position);
-            close(a.share, b.share, 1e-15);
+            close(a.area, b.area, 1e-15);
         }
-        close(forth.iter().map(|row| row.share).sum(), 2.0, 1e-14);
+        close(forth.iter().map(|row| row.area).sum(), 2.0, 1e-14);
     }
 }

@@ -33,9 +33,9 @@ fn blocks_that_lie_diagonally_across_a_corner_share_no_condition() {
         });
         assert_eq!(below.replace("lower", "upper"), above);
         let left = below == "lower left";
-        close(row.share, if left { 0.125 } else { 0.0625 }, 1e-15);
+        close(row.area, if left { 0.125 } else { 0.0625 }, 1e-15);
     }
-    close(rows.iter().map(|row| row.share).sum(), 2.0, 1e-14);
+    close(rows.iter().map(|row| row.area).sum(), 2.0, 1e-14);
 }
 
 #[test]
@@ -51,7 +51,7 @@ fn a_node_opposite_two_corners_shares_with_each_what_lies_opposite_it() {
     let rows = conditions(&blocks, text).unwrap();
     assert_eq!(rows.len(), 10);
     let at_joint = rows.iter().filter(|row| row.position[0] == 1.0);
-    let mut shares: Vec<f64> = at_joint.map(|row| row.share).collect();
+    let mut shares: Vec<f64> = at_joint.map(|row| row.area).collect();
     shares.sort_by(f64::total_cmp);
     close(shares[0], 0.0625, 1e-15);
     close(shares[1], 0.125, 1e-15);
@@ -80,7 +80,7 @@ fn outlines_press_on_each_other_like_the_sides_that_face_each_other() {
                 assert_eq!(found.position, expected.position);
                 assert_eq!(found.entries, expected.entries);
                 assert_eq!(found.gap, expected.gap);
-                close(found.share, expected.share, 1e-15);
+                close(found.area, expected.area, 1e-15);
             }
         }
     }

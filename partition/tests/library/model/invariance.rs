@@ -27,14 +27,14 @@ fn numbering_and_orientation_in_the_mesh_file_dont_matter() {
         blocks().model(SCENE).unwrap(),
         blocks().disguised().model(SCENE).unwrap(),
     );
-    let (a, b) = (&one.contacts[0].conditions, &other.contacts[0].conditions);
+    let (a, b) = (&one.contacts[0].points, &other.contacts[0].points);
     assert_eq!(a.len(), 5);
     assert_eq!(a.len(), b.len());
     for (a, b) in a.iter().zip(b) {
         assert_eq!((a.tag_a, a.tag_b), (b.tag_a, b.tag_b));
         close(a.gap, b.gap, 1e-15);
-        close(a.share, b.share, 1e-15);
-        (0..3).for_each(|i| close(a.normal[i], b.normal[i], 1e-15));
+        close(a.area, b.area, 1e-15);
+        (0..3).for_each(|i| close(a.frame.normal[i], b.frame.normal[i], 1e-15));
     }
     let forces = |model: &Model| {
         let mut list: Vec<_> = model
@@ -89,13 +89,21 @@ fn a_scene_turned_and_shifted_has_turned_rows_and_the_same_gaps() {
     let (c, s) = (0.28, 0.96);
     let turned = blocks().moved(|[x, y, z]| [c * x - s * y + 100.0, s * x + c * y - 50.0, z]);
     let other = turned.model(text).unwrap();
-    let pairs = one.contacts[0].conditions.iter();
-    for (a, b) in pairs.zip(&other.contacts[0].conditions) {
+    let pairs = one.contacts[0].points.iter();
+    for (a, b) in pairs.zip(&other.contacts[0].points) {
         assert_eq!((a.tag_a, a.tag_b), (b.tag_a, b.tag_b));
         close(a.gap, b.gap, 1e-13);
-        close(a.share, b.share, 1e-13);
-        close(b.normal[0], c * a.normal[0] - s * a.normal[1], 1e-12);
-        close(b.normal[1], s * a.normal[0] + c * a.normal[1], 1e-12);
+        close(a.area, b.area, 1e-13);
+        close(
+            b.frame.normal[0],
+            c * a.frame.normal[0] - s * a.frame.normal[1],
+            1e-12,
+        );
+        close(
+            b.frame.normal[1],
+            s * a.frame.normal[0] + c * a.frame.normal[1],
+            1e-12,
+        );
     }
 }
 
@@ -104,12 +112,12 @@ fn a_mirrored_scene_has_mirrored_rows() {
     let text = SCENE.split("[[displacement]]").next().unwrap();
     let one = blocks().model(text).unwrap();
     let other = blocks().moved(|[x, y, z]| [-x, y, z]).model(text).unwrap();
-    let mirrored = other.contacts[0].conditions.iter().rev();
-    for (a, b) in one.contacts[0].conditions.iter().zip(mirrored) {
+    let mirrored = other.contacts[0].points.iter().rev();
+    for (a, b) in one.contacts[0].points.iter().zip(mirrored) {
         assert_eq!((a.tag_a, a.tag_b), (b.tag_a, b.tag_b));
         close(a.gap, b.gap, 1e-15);
-        close(a.normal[0], -b.normal[0], 1e-15);
-        close(a.normal[1], b.normal[1], 1e-15);
+        close(a.frame.normal[0], -b.frame.normal[0], 1e-15);
+        close(a.frame.normal[1], b.frame.normal[1], 1e-15);
     }
 }
 
@@ -120,12 +128,12 @@ fn millimetres_in_place_of_metres_change_lengths_alone() {
     for factor in [1e3, 1e-6] {
         let scaled = blocks().moved(|p| p.map(|c| c * factor));
         let other = scaled.model(text).unwrap();
-        assert_eq!(other.contacts[0].conditions.len(), 5);
-        let pairs = one.contacts[0].conditions.iter();
-        for (a, b) in pairs.zip(&other.contacts[0].conditions) {
+        assert_eq!(other.contacts[0].points.len(), 5);
+        let pairs = one.contacts[0].points.iter();
+        for (a, b) in pairs.zip(&other.contacts[0].points) {
             assert_eq!((a.tag_a, a.tag_b), (b.tag_a, b.tag_b));
             close(a.gap * factor, b.gap, 1e-13 * factor);
-            close(a.share * factor, b.share, 1e-13 * factor);
+            close(a.area * factor, b.area, 1e-13 * factor);
         }
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::blocks::Blocks;
 use crate::close::close;
-use contact_dd_partition::model::ContactCondition;
+use contact_dd_partition::contact_point::ContactPoint;
 
 /// A contact of lower and upper block, `slave` being side a.
 fn contact(slave: &str) -> String {
@@ -15,9 +15,9 @@ fn contact(slave: &str) -> String {
     format!("[[contact]]\nname = 'c'\nsides = {sides}\n")
 }
 
-fn conditions(blocks: &Blocks, text: &str) -> Vec<ContactCondition> {
+fn conditions(blocks: &Blocks, text: &str) -> Vec<ContactPoint<u32>> {
     let mut model = blocks.model(text).unwrap();
-    model.contacts.remove(0).conditions
+    model.contacts.remove(0).points
 }
 
 /// Blocks whose common side goes from `lower` and `upper`, with so many cells along it, a gap between
@@ -82,15 +82,15 @@ fn consistent(blocks: &Blocks, side: &str, range: [f64; 2]) -> Vec<(u32, f64)> {
     sums
 }
 
-/// Σ over rows of force·coefficient at a node.
+/// Σ over points of force·weight·normal at a node.
 fn force_at(
-    rows: &[ContactCondition],
+    rows: &[ContactPoint<u32>],
     node: u32,
-    force: impl Fn(&ContactCondition) -> f64,
+    force: impl Fn(&ContactPoint<u32>) -> f64,
 ) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for row in rows {
-        for (_, c) in row.entries.iter().filter(|(n, _)| *n == node) {
+        for (_, c) in row.row().filter(|(n, _)| *n == node) {
             (0..3).for_each(|i| sum[i] += force(row) * c[i]);
         }
     }
@@ -104,10 +104,10 @@ fn a_uniform_pressure_loads_both_sides_as_if_it_were_applied_to_them() {
         let range = [lower[0].max(upper[0]), lower[1].min(upper[1])];
         for slave in ["lower", "upper"] {
             let rows = conditions(&blocks, &contact(slave));
-            assert!(rows.iter().all(|row| row.share > 0.0 && row.tag_b == -1));
+            assert!(rows.iter().all(|row| row.area > 0.0 && row.tag_b == -1));
             for (side, sign) in [("lower top", 1.0), ("upper bottom", -1.0)] {
                 for (node, expected) in consistent(&blocks, side, range) {
-                    let [x, y, _] = force_at(&rows, node, |row| row.share);
+                    let [x, y, _] = force_at(&rows, node, |row| row.area);
                     close(x, 0.0, 1e-13);
                     close(y, sign * expected, 1e-13);
                 }
@@ -124,7 +124,7 @@ fn forces_and_moments_of_any_pressure_balance_across_a_straight_gap() {
         for slave in ["lower", "upper"] {
             for row in conditions(&blocks, &contact(slave)) {
                 let (mut force, mut moment, mut size) = ([0.0; 3], 0.0, 1.0_f64);
-                for &(node, c) in &row.entries {
+                for (node, c) in row.row() {
                     let x = blocks.mesh.points[node as usize];
                     (0..3).for_each(|i| force[i] += c[i]);
                     moment += x[0] * c[1] - x[1] * c[0];
@@ -158,19 +158,16 @@ fn the_same_nodes_carry_however_a_side_lies() {
 }
 
 #[test]
-fn no_coefficient_is_large_however_little_of_a_facet_is_covered() {
+fn no_weight_is_large_however_little_of_a_facet_is_covered() {
     for (lower, upper, n) in overlaps() {
         let blocks = uneven(lower, upper, n, 0.0);
         for slave in ["lower", "upper"] {
             for row in conditions(&blocks, &contact(slave)) {
                 let own = row.entries[0].1;
-                assert!(
-                    own[0] * row.normal[0] + own[1] * row.normal[1] > 0.7,
-                    "{row:?}"
-                );
+                assert!(own > 0.7, "{row:?}");
                 // Both ends of a facet carry what a narrow block presses on its middle.
                 if n != [4, 1] && n != [1, 3] {
-                    assert!(row.entries.iter().all(|(_, c)| c[1].abs() < 8.0), "{row:?}");
+                    assert!(row.row().all(|(_, c)| c[1].abs() < 8.0), "{row:?}");
                 }
             }
         }
@@ -188,8 +185,9 @@ fn a_row_takes_linear_displacements_to_the_jump_at_its_node() {
             let rows = conditions(&blocks, &contact(slave));
             let lower_nodes = 2 * (n[0] as u32 + 1);
             for row in &rows {
-                let jump: f64 = (row.entries.iter())
-                    .map(|&(node, c)| {
+                let jump: f64 = row
+                    .row()
+                    .map(|(node, c)| {
                         let x = blocks.mesh.points[node as usize];
                         let [s, t] = if node < lower_nodes { u(x) } else { v(x) };
                         c[0] * s + c[1] * t
@@ -254,9 +252,9 @@ fn nodes_decide_unless_the_scene_does() {
         assert_eq!(other.entries.len(), 2);
         for ((p, c), (q, d)) in one.entries.iter().zip(&other.entries) {
             assert_eq!(p, q);
-            (0..3).for_each(|i| close(c[i], d[i], 1e-14));
+            close(*c, *d, 1e-14);
         }
-        close(one.share, other.share, 1e-15);
+        close(one.area, other.area, 1e-15);
         close(one.gap, other.gap, 1e-15);
     }
 }
@@ -284,7 +282,7 @@ fn interference_is_allowed_with_a_note() {
     let model = blocks.model(&contact("lower")).unwrap();
     assert!(model.warnings[0].contains("5 of 5 gaps are negative, an interference fit of up to"));
     model.contacts[0]
-        .conditions
+        .points
         .iter()
         .for_each(|row| close(row.gap, -0.01, 1e-15));
 }
@@ -331,11 +329,11 @@ fn crack_tips_carry_no_condition_and_pressure_loads_all_other_nodes_as_it_should
             let rows = conditions(&blocks, &text);
             let is_tip = |x: f64| x == 1.0 || x == 3.0;
             assert!(rows.iter().all(|row| !is_tip(row.position[0])));
-            let total: f64 = rows.iter().map(|row| row.share).sum();
+            let total: f64 = rows.iter().map(|row| row.area).sum();
             close(total, 2.0, 1e-14);
             for (side, sign) in [("lower top", 1.0), ("upper bottom", -1.0)] {
                 for (node, expected) in consistent(&blocks, side, [1.0, 3.0]) {
-                    let force = force_at(&rows, node, |row| row.share)[1];
+                    let force = force_at(&rows, node, |row| row.area)[1];
                     let at_tip = is_tip(blocks.mesh.points[node as usize][0]);
                     // A tip is pressed from both sides.
                     let half = 1.0 / n[0] as f64 - 1.0 / n[1] as f64;
@@ -357,11 +355,11 @@ fn other_units_change_lengths_alone() {
         assert_eq!(rows.len(), scaled.len());
         for (one, other) in rows.iter().zip(&scaled) {
             close(other.gap / unit, one.gap, 1e-14);
-            close(other.share / unit, one.share, 1e-14);
+            close(other.area / unit, one.area, 1e-14);
             assert_eq!(one.entries.len(), other.entries.len());
             for ((p, c), (q, d)) in one.entries.iter().zip(&other.entries) {
                 assert_eq!(p, q);
-                (0..3).for_each(|i| close(c[i], d[i], 1e-12));
+                close(*c, *d, 1e-12);
             }
         }
     }

@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 
 use crate::blocks::Blocks;
 use crate::close::close;
-use contact_dd_partition::model::{ContactCondition, Model};
+use contact_dd_partition::contact_point::ContactPoint;
+use contact_dd_partition::model::Model;
 
 /// A disc of `n` facets.
 fn disc(blocks: Blocks, name: &str, centre: [f64; 2], radius: f64, n: usize, turn: f64) -> Blocks {
@@ -56,7 +57,7 @@ fn discs_that_touch_leave_the_gap_between_their_circles() {
         let blocks = discs([50 * refine, 33 * refine]);
         let model = blocks.model(text).unwrap();
         assert!(model.warnings.is_empty(), "{:?}", model.warnings);
-        let rows = &model.contacts[0].conditions;
+        let rows = &model.contacts[0].points;
         assert!(
             rows.iter()
                 .all(|row| row.gap >= 0.0 && row.position[1] < 1.0)
@@ -67,7 +68,7 @@ fn discs_that_touch_leave_the_gap_between_their_circles() {
             .filter(|row| row.position[0].abs() < 0.5 && row.position[1] < 0.5)
         {
             let [x, y, _] = row.position;
-            let [n_x, n_y, _] = row.normal;
+            let [n_x, n_y, _] = row.frame.normal;
             // Where the line from the node along its normal meets the lower circle.
             let way = [x, y + 2.0];
             let half = way[0] * n_x + way[1] * n_y;
@@ -88,10 +89,10 @@ fn discs_that_turn_together_or_on_their_own_keep_their_gaps() {
     let text = "[[contact]]\nname = 'c'\nsides = ['upper top', 'lower top']\n";
     let blocks = discs([50, 33]);
     let model = blocks.model(text).unwrap();
-    for row in &model.contacts[0].conditions {
+    for row in &model.contacts[0].points {
         // About the origin, and the upper one about its centre.
         let (mut together, mut alone) = (0.0, 0.0);
-        for &(node, c) in &row.entries {
+        for (node, c) in row.row() {
             let [x, y, _] = model.mesh.points[node as usize];
             together += x * c[1] - y * c[0];
             if y > 0.0 {
@@ -111,20 +112,20 @@ fn numbering_in_the_mesh_file_doesnt_matter() {
         blocks.model(text).unwrap(),
         blocks.disguised().model(text).unwrap(),
     );
-    let entries = |model: &Model, row: &ContactCondition| {
-        let tagged = |&(node, c): &(u32, [f64; 3])| (model.mesh.node_tags[node as usize], c);
+    let entries = |model: &Model, row: &ContactPoint<u32>| {
+        let tagged = |&(node, c): &(u32, f64)| (model.mesh.node_tags[node as usize], c);
         row.entries.iter().map(tagged).collect::<BTreeMap<_, _>>()
     };
-    let (a, b) = (&one.contacts[0].conditions, &other.contacts[0].conditions);
+    let (a, b) = (&one.contacts[0].points, &other.contacts[0].points);
     assert_eq!(a.len(), b.len());
     for (a, b) in a.iter().zip(b) {
         assert_eq!((a.tag_a, a.tag_b), (b.tag_a, b.tag_b));
         close(a.gap, b.gap, 1e-15);
-        close(a.share, b.share, 1e-15);
+        close(a.area, b.area, 1e-15);
         let (a, b) = (entries(&one, a), entries(&other, b));
         assert!(a.keys().eq(b.keys()));
         for (c, d) in a.values().zip(b.values()) {
-            (0..3).for_each(|i| close(c[i], d[i], 1e-13));
+            close(*c, *d, 1e-13);
         }
     }
 }

@@ -11,12 +11,12 @@ fn a_straight_obstacle_leaves_the_signed_distance_along_its_normal() {
     assert_eq!(rows.len(), 5);
     for row in &rows {
         assert_eq!((row.tag_b, row.entries.len()), (-1, 1));
-        assert_eq!(row.entries[0].1, [0.0, -1.0, 0.0]);
-        assert_eq!(row.normal, [0.0, -1.0, 0.0]);
+        assert_eq!(row.entries[0].1, 1.0);
+        assert_eq!(row.frame.normal, [0.0, -1.0, 0.0]);
         close(row.gap, row.position[1] + 1.0, 1e-15);
     }
     close(
-        rows.iter().map(|row| row.share).sum(),
+        rows.iter().map(|row| row.area).sum(),
         2.0 * 1.04_f64.sqrt(),
         1e-15,
     );
@@ -36,9 +36,9 @@ fn a_circle_keeps_bodies_out_or_in() {
             let arm = [row.position[0] - 1.0, row.position[1] + 3.0];
             let far = arm[0].hypot(arm[1]);
             close(row.gap, sign * (far - 2.0), 1e-15);
-            close(row.normal[0], -sign * arm[0] / far, 1e-15);
-            close(row.normal[1], -sign * arm[1] / far, 1e-15);
-            assert_eq!(row.entries[0].1, row.normal);
+            close(row.frame.normal[0], -sign * arm[0] / far, 1e-15);
+            close(row.frame.normal[1], -sign * arm[1] / far, 1e-15);
+            assert_eq!(row.entries[0].1, 1.0);
         }
     }
     let text = text("bottom", false).replace("[1, -3]", "[1, 0]");
@@ -73,7 +73,7 @@ fn round_the_corner_of_an_outline_nothing_is_counted() {
     let text = "[[contact]]\nname = 't'\nsides = [['lower bottom', 'lower left', 'lower right']]\nobstacle = {point = [0, 0], normal = [0, 1]}";
     for blocks in [stack(0.0), stack(0.0).quadratic()] {
         let rows = conditions(&blocks, text).unwrap();
-        let bottom: f64 = rows.iter().map(|row| row.share).sum();
+        let bottom: f64 = rows.iter().map(|row| row.area).sum();
         close(bottom, 2.0, 1e-14);
         assert!(rows.iter().all(|row| row.position[1] == 0.0));
     }

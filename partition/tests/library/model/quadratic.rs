@@ -93,10 +93,10 @@ fn nodes_in_the_middle_of_edges_bear_four_sixths_of_them() {
     assert_eq!(rows.len(), 9);
     let shares = [1.0, 4.0, 2.0, 4.0, 2.0, 4.0, 2.0, 4.0, 1.0];
     for (k, (row, share)) in rows.iter().zip(shares).enumerate() {
-        close(row.share, 0.5 * share / 6.0, 1e-15);
+        close(row.area, 0.5 * share / 6.0, 1e-15);
         close(row.position[0], 2.0 - 0.25 * k as f64, 1e-15);
         close(row.gap, 0.25, 1e-15);
-        let ends: Vec<_> = row.entries.iter().map(|(_, n)| *n).collect();
+        let ends: Vec<_> = row.row().map(|(_, n)| n).collect();
         assert_eq!(ends, [[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]]);
     }
 }
@@ -105,9 +105,9 @@ fn nodes_in_the_middle_of_edges_bear_four_sixths_of_them() {
 fn the_normal_at_a_node_is_that_of_the_curved_edges_there() {
     let text = "[[contact]]\nname = 'c'\nsides = ['b bottom']\nobstacle = {center = [0, 0], radius = 0.9}\n[[bilateral]]\non = 'b top'";
     let model = ring().model(text).unwrap();
-    let contact = &model.contacts[0].conditions;
+    let contact = &model.contacts[0].points;
     assert_eq!(contact.len(), 13);
-    let share: f64 = contact.iter().map(|row| row.share).sum();
+    let share: f64 = contact.iter().map(|row| row.area).sum();
     close(share, std::f64::consts::FRAC_PI_2, 1e-5);
     assert_eq!(model.supports.len(), 13);
     for support in &model.supports {
@@ -137,7 +137,7 @@ fn curved_sides_meet_node_by_node() {
             close(row.gap, 0.01, 1e-6);
             let [x, y, _] = row.position;
             let is_end = x.min(y) < 1e-9;
-            let along = (x * row.normal[0] + y * row.normal[1]) / 2.0;
+            let along = (x * row.frame.normal[0] + y * row.frame.normal[1]) / 2.0;
             close(along, 1.0, if is_end { 1e-4 } else { 1e-14 });
         }
         let angles: Vec<f64> = rows

@@ -158,7 +158,7 @@ fn sides_that_only_a_later_step_pushes_into_each_other_are_refused() {
         );
         blocks.model(&text)
     };
-    assert_eq!(scene(0.5).unwrap().contacts[0].conditions.len(), 0);
+    assert_eq!(scene(0.5).unwrap().contacts[0].points.len(), 0);
     let refused = scene(0.6).unwrap_err();
     assert!(
         refused.contains("close the gap of 0.5 m by 0.6 m; expected no penetration"),

@@ -337,8 +337,8 @@ fn every_defect_is_named() {
         (
             "zero row",
             |f| {
-                set(f, "/contact/entry_coefficient", 1, 0.0);
-                set(f, "/contact/entry_coefficient", 3, 0.0);
+                set(f, "/contact/entry_weight", 0, 0.0);
+                set(f, "/contact/entry_weight", 1, 0.0);
             },
             &["/contact/entry_offset, row 0", "zero"],
         ),

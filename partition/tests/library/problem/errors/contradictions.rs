@@ -77,13 +77,13 @@ fn every_contradiction_is_named() {
         ),
         (
             "no share",
-            |f| set(f, "/contact/share", 0, 0.0),
-            &["/contact/share, row 0", "positive"],
+            |f| set(f, "/contact/area", 0, 0.0),
+            &["/contact/area, row 0", "positive"],
         ),
         (
             "share of more than there is",
-            |f| set(f, "/contact/share", 0, 1e6),
-            &["/contact/share, row 0: 1e6", "extent"],
+            |f| set(f, "/contact/area", 0, 1e6),
+            &["/contact/area, row 0: 1e6", "extent"],
         ),
         (
             "place beside the node",
@@ -92,21 +92,13 @@ fn every_contradiction_is_named() {
         ),
         (
             "force beside the node",
-            |f| set(f, "/contact/acts_at", 0, 77.0),
-            &["/contact/acts_at, row 0: (77, 3)", "side a"],
-        ),
-        (
-            "normal against the coefficients",
-            |f| {
-                set(f, "/contact/normal", 0, 1.0);
-                set(f, "/contact/normal", 1, 0.0);
-            },
-            &["/contact/normal, row 0", "aren't along"],
+            |f| set(f, "/contact/force_point", 0, 77.0),
+            &["/contact/force_point, row 0: (77, 3)", "side a"],
         ),
         (
             "side b that doesn't take what side a gives",
-            |f| set(f, "/contact/entry_coefficient", 3, -0.5),
-            &["/contact/entry_coefficient, row 0", "sum to 0.5"],
+            |f| set(f, "/contact/entry_weight", 1, -0.5),
+            &["/contact/entry_weight, row 0", "sum to 0.5"],
         ),
         (
             "name of a node that isn't there",

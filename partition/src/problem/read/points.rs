@@ -1,19 +1,20 @@
-//! The contact rows of one group.
+//! The contact points of one group.
 
 use std::collections::{HashMap, HashSet};
 
 use super::ProblemFile;
 use super::consistency::Members;
 use super::subdomain::slice;
+use crate::contact_point::ContactPoint;
 use crate::error::InputError;
-use crate::problem::{ContactRow, RowEntry, Subdomain};
+use crate::problem::{Subdomain, SubdomainNode};
 
 impl ProblemFile {
-    pub(super) fn read_rows(
+    pub(super) fn read_points(
         &self,
         group: usize,
         members: &[&Subdomain],
-    ) -> Result<Vec<ContactRow>, InputError> {
+    ) -> Result<Vec<ContactPoint<SubdomainNode>>, InputError> {
         if group >= self.catalog.groups.len() {
             return Err(InputError::new(format!("there is no group {group}")));
         }
@@ -25,55 +26,45 @@ impl ProblemFile {
         let contact = column("/contact/contact")?.integers(rows.clone())?;
         let place = column("/contact/place")?.integers(rows.clone())?;
         let gap = column("/contact/gap")?.floats(rows.clone())?;
-        let shares = column("/contact/share")?;
-        let share = shares.floats(rows.clone())?;
-        if let Some(at) = share.iter().position(|&s| s <= 0.0) {
-            return Err(shares.row_error(
+        let areas = column("/contact/area")?;
+        let area = areas.floats(rows.clone())?;
+        if let Some(at) = area.iter().position(|&a| a <= 0.0) {
+            return Err(areas.row_error(
                 rows.start + at,
-                &format!("{}; expected a positive share", share[at]),
+                &format!("{}; expected a positive area", area[at]),
             ));
         }
         let position = table("/contact/position")?.vectors(rows.clone(), dim)?;
-        let acts_at = match self.file.link_exists("contact/acts_at") {
-            true => table("/contact/acts_at")?.vectors(rows.clone(), dim)?,
-            false => position.clone(),
-        };
+        let force_point = table("/contact/force_point")?.vectors(rows.clone(), dim)?;
         let normal = table("/contact/normal")?.unit_vectors(rows.clone(), dim)?;
         let tag_a = column("/contact/node_a")?.integers(rows.clone())?;
         let tag_b = column("/contact/node_b")?.integers(rows.clone())?;
         let entries = self.read_entries(group, members)?;
         let first = rows.start;
-        let list: Vec<ContactRow> = entries
-            .into_iter()
-            .enumerate()
-            .map(|(i, entries)| ContactRow {
-                // Checked when the file was opened: an index of a contact, and one of its places.
-                contact: contact[i] as u32,
-                place: place[i] as u32,
-                entries,
-                gap: gap[i],
-                share: share[i],
-                position: position[i],
-                acts_at: acts_at[i],
-                normal: normal[i],
-                tag_a: tag_a[i],
-                tag_b: tag_b[i],
-            })
-            .collect();
+        let point = |(i, entries): (usize, _)| ContactPoint {
+            // Checked when the file was opened: an index of a contact, and one of its places.
+            contact: contact[i] as u32,
+            place: place[i] as u32,
+            gap: gap[i],
+            area: area[i],
+            force_point: force_point[i],
+            tag_b: tag_b[i],
+            ..ContactPoint::new(entries, normal[i], position[i], tag_a[i])
+        };
+        let list: Vec<_> = entries.into_iter().enumerate().map(point).collect();
         let members = Members::new(members);
-        for (i, row) in list.iter().enumerate() {
-            members.check(row, first + i)?;
+        for (i, point) in list.iter().enumerate() {
+            members.check(point, first + i)?;
         }
         Ok(list)
     }
 
-    /// The entries of each row of a group.
+    /// The nodes and weights of each point of a group.
     fn read_entries(
         &self,
         group: usize,
         members: &[&Subdomain],
-    ) -> Result<Vec<Vec<RowEntry>>, InputError> {
-        let dim = self.catalog.dim;
+    ) -> Result<Vec<Vec<(SubdomainNode, f64)>>, InputError> {
         let rows = slice(&self.offsets.groups, group);
         let subdomain = self.column("/contact/entry_subdomain")?;
         let total = subdomain.rows();
@@ -84,14 +75,14 @@ impl ProblemFile {
         let node = self
             .column("/contact/entry_node")?
             .shaped(Some(total), &[])?;
-        let coefficient = self
-            .table("/contact/entry_coefficient", dim)?
-            .shaped(Some(total), &[dim])?;
+        let weight = self
+            .column("/contact/entry_weight")?
+            .shaped(Some(total), &[])?;
         let span = offsets[rows.start]..offsets[rows.end];
         let subdomains =
             subdomain.indices(span.clone(), self.catalog.subdomains.len(), "subdomain")?;
         let nodes = node.integers(span.clone())?;
-        let coefficients = coefficient.vectors(span.clone(), dim)?;
+        let weights = weight.floats(span.clone())?;
         let foreign = self.foreign_nodes(members);
         let mut entries = Vec::with_capacity(rows.len());
         let mut named = HashSet::new();
@@ -130,16 +121,16 @@ impl ProblemFile {
                     ));
                 }
                 if !named.insert((subdomains[i], number)) {
-                    return Err(node.row_error(at, "the row named the node before"));
+                    return Err(node.row_error(at, "the point named the node before"));
                 }
-                list.push(RowEntry {
+                let node = SubdomainNode {
                     subdomain: subdomains[i],
                     node: number,
-                    coefficient: coefficients[i],
-                });
+                };
+                list.push((node, weights[i]));
             }
-            if list.iter().all(|e: &RowEntry| e.coefficient == [0.0; 3]) {
-                return Err(offset.row_error(row, "expected a row that isn't zero"));
+            if list.iter().all(|&(_, weight)| weight == 0.0) {
+                return Err(offset.row_error(row, "expected weights that aren't all zero"));
             }
             entries.push(list);
         }

@@ -1,0 +1,170 @@
+//! Contact points: what every contact is made of, from the model through the problem file to the results.
+//!
+//! Node pairs, mortar and rigid obstacles are three ways to make them; nothing behind the model knows which
+//! of them did.
+
+use serde::{Deserialize, Serialize};
+
+use crate::element::geometry::{cross, dot, length};
+
+/// A point of a contact: a node of side a with the nodes that lie opposite, a local frame, a gap and a law.
+///
+/// The jump of the displacements at the point is ⟦u⟧ = Σ weight·u(node), its part along the normal
+/// t = n·⟦u⟧, and the bodies don't penetrate as long as t ≤ gap: a row of B u ≤ g. `N` tells a node: that of
+/// the mesh, of a subdomain, or of a block.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactPoint<N> {
+    /// Index of its contact among those of the scene.
+    pub contact: u32,
+    /// Its place within that contact, along side a.
+    pub place: u32,
+    /// Nodes and their weights. Those of side a sum to 1, those of side b to −1; an obstacle has none.
+    pub entries: Vec<(N, f64)>,
+    /// The directions in which jumps and forces are told apart.
+    pub frame: LocalFrame,
+    /// The gap g of the undeformed bodies (m); negative for an interference.
+    pub gap: f64,
+    /// Tributary area on side a, the integral of its shape function (m, in space m²): pressure is force over
+    /// area.
+    pub area: f64,
+    /// Undeformed position on side a (m).
+    pub position: [f64; 3],
+    /// Where its force on side a acts, Σ weight·position over the nodes of side a (m).
+    pub force_point: [f64; 3],
+    /// Tag of its node on side a; −1 where there is none.
+    pub tag_a: i64,
+    /// Tag of its node on side b; −1 for an obstacle and where there are several (mortar).
+    pub tag_b: i64,
+    /// What bounds its force.
+    pub law: Law,
+}
+
+/// What bounds the contact force at a point beside λ ≥ 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Law {
+    /// No tangential force.
+    #[default]
+    Frictionless,
+}
+
+/// A right-handed orthonormal frame (n, t₁, t₂).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LocalFrame {
+    /// n, outward of side a.
+    pub normal: [f64; 3],
+    /// t₁ and t₂; in the plane t₁ is n turned by 90° counter-clockwise, and t₂ points out of the plane.
+    pub tangents: [[f64; 3]; 2],
+}
+
+impl LocalFrame {
+    /// The frame of a unit `normal`.
+    pub fn new(normal: [f64; 3]) -> Self {
+        // Of the axes that lie along the normal the least, z first: the plane is z = 0.
+        let z = [0.0, 0.0, 1.0];
+        let axis = match normal[2].abs() {
+            along if along < 0.9 => z,
+            _ => [1.0, 0.0, 0.0],
+        };
+        let along = dot(axis, normal);
+        let second: [f64; 3] = std::array::from_fn(|k| axis[k] - along * normal[k]);
+        let size = length(second);
+        let second = second.map(|c| c / size);
+        Self {
+            normal,
+            tangents: [cross(second, normal), second],
+        }
+    }
+}
+
+impl<N: Copy> ContactPoint<N> {
+    /// A frictionless point at `position` on side a whose force acts there, in front of an obstacle or of
+    /// nothing yet: the contact that it belongs to numbers it.
+    pub fn new(entries: Vec<(N, f64)>, normal: [f64; 3], position: [f64; 3], tag_a: i64) -> Self {
+        Self {
+            contact: 0,
+            place: 0,
+            entries,
+            frame: LocalFrame::new(normal),
+            gap: 0.0,
+            area: 0.0,
+            position,
+            force_point: position,
+            tag_a,
+            tag_b: -1,
+            law: Law::Frictionless,
+        }
+    }
+
+    /// n.
+    pub fn normal(&self) -> [f64; 3] {
+        self.frame.normal
+    }
+
+    /// Its row of B: every node with weight·n.
+    pub fn row(&self) -> impl Iterator<Item = (N, [f64; 3])> + Clone {
+        let normal = self.frame.normal;
+        let entries = self.entries.iter();
+        entries.map(move |&(node, weight)| (node, normal.map(|n| n * weight)))
+    }
+
+    /// The same point with its nodes named otherwise; those that have no other name drop out.
+    pub fn rename<M>(&self, mut name: impl FnMut(N) -> Option<M>) -> ContactPoint<M> {
+        let entries = self.entries.iter();
+        ContactPoint {
+            entries: entries
+                .filter_map(|&(node, weight)| Some((name(node)?, weight)))
+                .collect(),
+            contact: self.contact,
+            place: self.place,
+            frame: self.frame,
+            gap: self.gap,
+            area: self.area,
+            position: self.position,
+            force_point: self.force_point,
+            tag_a: self.tag_a,
+            tag_b: self.tag_b,
+            law: self.law,
+        }
+    }
+}
+
+impl ContactPoint<u32> {
+    /// The normal jump t = n·⟦u⟧ of displacements `u`, node by node (m).
+    pub fn normal_jump(&self, dim: usize, u: &[f64]) -> f64 {
+        self.row()
+            .flat_map(|(node, n)| (0..dim).map(move |k| n[k] * u[node as usize * dim + k]))
+            .sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_local_frame_is_orthonormal_and_right_handed() {
+        let tilted = [0.36, 0.48, 0.8];
+        for normal in [[1.0, 0.0, 0.0], [0.6, -0.8, 0.0], [0.0, 0.0, -1.0], tilted] {
+            let LocalFrame { tangents, .. } = LocalFrame::new(normal);
+            let [t1, t2] = tangents;
+            for (a, b) in [(normal, t1), (normal, t2), (t1, t2)] {
+                assert!(dot(a, b).abs() < 1e-15, "{normal:?}: {tangents:?}");
+            }
+            let third = cross(normal, t1);
+            assert!((0..3).all(|k| (third[k] - t2[k]).abs() < 1e-15));
+        }
+    }
+
+    #[test]
+    fn in_the_plane_the_tangent_is_the_normal_turned_counter_clockwise() {
+        let frame = LocalFrame::new([0.6, -0.8, 0.0]);
+        assert_eq!(frame.tangents, [[0.8, 0.6, 0.0], [0.0, 0.0, 1.0]]);
+    }
+
+    #[test]
+    fn the_jump_of_a_pair_is_what_its_sides_approach() {
+        let normal = [0.0, 1.0, 0.0];
+        let point = ContactPoint::new(vec![(0, 1.0), (1, -1.0)], normal, [0.0; 3], 7);
+        assert_eq!(point.normal_jump(2, &[5.0, 0.3, 5.0, 0.1]), 0.3 - 0.1);
+    }
+}
