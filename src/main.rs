@@ -8,7 +8,7 @@ use contact_dd_mpi::output::message;
 use contact_dd_mpi::run::{Ending, run};
 use contact_dd_mpi::settings::command_line::{CommandLine, LogFormat};
 use contact_dd_mpi::settings::given::Given;
-use contact_dd_partition::usage::{Answer, BAD_USAGE};
+use contact_dd_partition::manual::{Answer, BAD_USAGE};
 
 fn main() -> ExitCode {
     if comm::watch_if_asked().is_some() {

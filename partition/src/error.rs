@@ -29,19 +29,23 @@ impl InputError {
 
 impl std::fmt::Display for InputError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let text = match &self.place {
-            Some(path) => format!("{}: {}", path.display(), self.message),
-            None => self.message.clone(),
-        };
-        // It stays one line whatever stands in a file or is the name of one.
-        for c in text.chars() {
-            match c.is_control() {
-                true => write!(f, "{}", c.escape_debug())?,
-                false => write!(f, "{c}")?,
-            }
+        if let Some(path) = &self.place {
+            escape(f, &path.display().to_string(), "")?;
+            f.write_str(": ")?;
         }
-        Ok(())
+        escape(f, &self.message, "\n")
     }
+}
+
+/// Writes text of a file, or the name of one, without control characters but for those `kept`.
+fn escape(f: &mut std::fmt::Formatter<'_>, text: &str, kept: &str) -> std::fmt::Result {
+    for c in text.chars() {
+        match c.is_control() && !kept.contains(c) {
+            true => write!(f, "{}", c.escape_debug())?,
+            false => write!(f, "{c}")?,
+        }
+    }
+    Ok(())
 }
 
 /// The program's result file can't be written. Exit code 5.

@@ -41,7 +41,6 @@ mod disjoint_sets;
 pub mod element;
 pub mod error;
 pub mod example;
-pub mod file_kind;
 pub mod flops;
 #[cfg(feature = "metis")]
 pub mod info;
@@ -60,4 +59,3 @@ pub mod problem;
 pub mod scene;
 pub mod solver;
 pub mod source;
-pub mod usage;

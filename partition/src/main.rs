@@ -10,12 +10,12 @@ use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::error::{InputError, OutputError};
 use contact_dd_partition::example::{self, EXAMPLES};
 use contact_dd_partition::info::Info;
+use contact_dd_partition::manual::Answer;
 use contact_dd_partition::mesh::{Mesh, gmsh};
 use contact_dd_partition::message::{self, WARNING};
 use contact_dd_partition::model::Model;
 use contact_dd_partition::problem::Problem;
 use contact_dd_partition::scene::Scene;
-use contact_dd_partition::usage::Answer;
 
 /// Why no problem file was written.
 #[derive(Debug, thiserror::Error)]
@@ -55,7 +55,7 @@ fn main() -> ExitCode {
 
 fn run(args: &CommandLine) -> Result<(), Failure> {
     if let Some(document) = args.generate {
-        Answer::document(document, CommandLine::command(), &MANUAL).print();
+        Answer::Text(MANUAL.write(document, CommandLine::command())).print();
         return Ok(());
     }
     if args.list_examples {

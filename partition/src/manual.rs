@@ -1,10 +1,18 @@
-//! What a program says of itself beyond its options: in `--help`, in its man page, in the README.
+//! What a program says of itself: its help, its man page, completions for shells, and the answer to a
+//! command line that asks for no work.
 
 mod page;
-mod table;
 
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
 use clap::{Command, ValueEnum};
 use clap_complete::{Shell, generate};
+
+use crate::message;
+
+/// Exit code of bad usage.
+pub const BAD_USAGE: u8 = 2;
 
 /// What stands in a program's manual beside its options, which the parser knows.
 #[derive(Clone, Copy, Debug)]
@@ -32,8 +40,53 @@ pub enum Document {
     CompleteZsh,
     /// Completions for fish
     CompleteFish,
-    /// The table of options that the README shows
-    Markdown,
+}
+
+/// What a program answers to a command line that asks for no work.
+#[derive(Clone, Debug)]
+pub enum Answer {
+    /// Text for stdout, with the codes of colours.
+    Text(String),
+    /// What is wrong with the command line.
+    Refusal(String),
+}
+
+impl Answer {
+    /// The answer that stands for what the parser found: help, the version, or an error.
+    pub fn of(error: &clap::Error) -> Self {
+        let said = error.render();
+        match error.kind() {
+            ErrorKind::DisplayHelp
+            | ErrorKind::DisplayVersion
+            | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+                Self::Text(said.ansi().to_string())
+            }
+            _ => {
+                let said = said.to_string();
+                let said = said.strip_prefix("error: ").unwrap_or(&said);
+                Self::Refusal(said.trim_end().to_owned())
+            }
+        }
+    }
+
+    /// What the program ends with.
+    pub fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Text(_) => ExitCode::SUCCESS,
+            Self::Refusal(_) => ExitCode::from(BAD_USAGE),
+        }
+    }
+
+    /// Prints the answer. A closed pipe is nobody's error.
+    pub fn print(&self) {
+        use std::io::Write as _;
+        match self {
+            Self::Text(text) => {
+                let _ = write!(anstream::stdout(), "{text}");
+            }
+            Self::Refusal(why) => message::error(why),
+        }
+    }
 }
 
 impl Manual {
@@ -79,7 +132,6 @@ impl Manual {
         };
         match document {
             Document::Man => page::of(self, command),
-            Document::Markdown => table::of_options(command),
             Document::CompleteBash => complete(Shell::Bash),
             Document::CompleteZsh => complete(Shell::Zsh),
             Document::CompleteFish => complete(Shell::Fish),

@@ -2,6 +2,7 @@
 
 pub mod bounding_box;
 mod conform;
+mod foreign;
 pub mod gmsh;
 mod measure;
 pub mod topology;

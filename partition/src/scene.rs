@@ -7,11 +7,9 @@ pub mod material;
 pub mod number;
 pub mod place;
 pub mod plane;
-mod shape;
 pub mod step;
 pub mod suggest;
 mod syntax;
-mod wording;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -19,7 +17,6 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::error::InputError;
-use crate::file_kind::FileKind;
 use crate::solver::SolverSettings;
 use crate::source;
 use condition::{Bilateral, Body, Contact, Displacement, Names, Pressure, Traction};
@@ -75,8 +72,7 @@ impl Scene {
     /// What is wrong with it, with line and key.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let parsed = source::text(path, "a scene in TOML").and_then(|text| Self::parse(&text));
-        let mut scene = parsed
-            .map_err(|error| FileKind::explain(FileKind::Scene, path, error).in_file(path))?;
+        let mut scene = parsed.map_err(|error| error.in_file(path))?;
         if let Some(folder) = path.parent() {
             scene.mesh = folder.join(&scene.mesh);
         }
@@ -88,9 +84,6 @@ impl Scene {
     /// # Errors
     /// What is wrong with it, with line and key.
     pub fn parse(text: &str) -> Result<Self, InputError> {
-        if let Some((path, message)) = shape::fault(text) {
-            return Err(place::error_at(text, &path, &message));
-        }
         let scene: Self = toml::from_str(text).map_err(|error| place::located(text, &error))?;
         match scene.fault() {
             None => Ok(scene),

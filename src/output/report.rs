@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use contact_dd_partition::destination::{Destination, failure, plain_words};
+use contact_dd_partition::destination::{Destination, failure};
 use contact_dd_partition::error::OutputError;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -169,12 +169,10 @@ impl ReportFile {
         match self {
             Self::File(destination) => {
                 fs::write(destination.temporary(), text)
-                    .map_err(|error| destination.failure(plain_words(&error)))?;
+                    .map_err(|error| destination.failure(error))?;
                 destination.commit()
             }
-            Self::Stream(path) => {
-                fs::write(&path, text).map_err(|error| failure(&path, plain_words(&error)))
-            }
+            Self::Stream(path) => fs::write(&path, text).map_err(|error| failure(&path, error)),
         }
     }
 }

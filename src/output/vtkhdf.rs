@@ -11,7 +11,7 @@ mod time_series;
 use std::ops::Range;
 use std::path::Path;
 
-use contact_dd_partition::destination::{Destination, quoted_words};
+use contact_dd_partition::destination::Destination;
 use contact_dd_partition::error::OutputError;
 use contact_dd_partition::problem::{Catalog, ContactSummary, SubdomainSummary};
 use hdf5::File;
@@ -196,5 +196,5 @@ impl ResultFile {
 }
 
 fn failure(destination: &Destination, error: &hdf5::Error) -> OutputError {
-    destination.failure(quoted_words(&error.to_string()))
+    destination.failure(error)
 }

@@ -4,9 +4,8 @@ use std::num::{NonZeroU16, NonZeroUsize};
 use std::path::PathBuf;
 
 use clap::{Args, CommandFactory, Parser, ValueEnum, ValueHint};
-use contact_dd_partition::manual::{Document, Manual};
+use contact_dd_partition::manual::{Answer, Document, Manual};
 use contact_dd_partition::solver::{SolverSettings, truth};
-use contact_dd_partition::usage::Answer;
 use serde::{Deserialize, Serialize};
 
 /// What the manual says beside the options.
@@ -191,7 +190,7 @@ impl CommandLine {
     pub fn of_this_program() -> Result<Self, Answer> {
         let command_line = Self::try_parse().map_err(|error| Answer::of(&error))?;
         match command_line.generate {
-            Some(document) => Err(Answer::document(document, Self::command(), &MANUAL)),
+            Some(document) => Err(Answer::Text(MANUAL.write(document, Self::command()))),
             None => Ok(command_line),
         }
     }

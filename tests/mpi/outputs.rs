@@ -23,19 +23,24 @@ pub fn unwritable_output(trials: &mut Trials) {
 
 /// A file system without space, whenever that comes out, and one that is read-only.
 pub fn full_disk(trials: &mut Trials) {
-    let full = "no space is left";
+    let full = "No space left on device";
     // The result has some 150 kB, the report some 4 kB, and yesterday's file has a page of 4.
     let places: [(&str, Mounted, &str, &str); 6] = [
         ("from_the_start", Mounted::OfSize(4 << 10), "-o", full),
         ("soon", Mounted::OfSize(20 << 10), "-o", full),
         ("half_way", Mounted::OfSize(70 << 10), "-o", full),
         ("for_the_report", Mounted::OfSize(4 << 10), "--report", full),
-        ("read_only", Mounted::ReadOnly, "-o", "read-only"),
+        (
+            "read_only",
+            Mounted::ReadOnly,
+            "-o",
+            "Read-only file system",
+        ),
         (
             "read_only_for_the_report",
             Mounted::ReadOnly,
             "--report",
-            "read-only",
+            "Read-only file system",
         ),
     ];
     for (name, place, option, words) in places {
@@ -76,7 +81,7 @@ pub fn vanished_folder(trials: &mut Trials) {
             assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
             fs::remove_dir_all(&folder).unwrap();
             kill_process(Pid::from_raw(id as i32).unwrap(), Signal::CONT).unwrap();
-            let words = [&*output.display().to_string(), "its folder is gone"];
+            let words = [&*output.display().to_string(), "No such file or directory"];
             failed_once(&running.wait(LIMIT), 5, &words);
         });
     }

@@ -23,9 +23,8 @@ use std::path::Path;
 
 use self::content::Content;
 use self::cursor::{Cursor, Encoding};
-use super::Mesh;
+use super::{Mesh, foreign};
 use crate::error::InputError;
-use crate::file_kind::FileKind;
 use crate::source;
 
 pub use self::write::write;
@@ -39,7 +38,7 @@ const HEAD: u64 = 1 << 20;
 /// What is wrong with the file and where: the line of an ASCII file, section and byte of a binary
 /// one, tags of nodes and elements.
 pub fn read(path: &Path) -> Result<Mesh, InputError> {
-    read_unnamed(path).map_err(|e| FileKind::explain(FileKind::Mesh, path, e).in_file(path))
+    read_unnamed(path).map_err(|error| error.in_file(path))
 }
 
 fn read_unnamed(path: &Path) -> Result<Mesh, InputError> {
@@ -52,9 +51,10 @@ fn read_unnamed(path: &Path) -> Result<Mesh, InputError> {
         .read_to_end(&mut bytes)
         .map_err(unreadable)?;
     let first = b"$MeshFormat";
-    if bytes.windows(first.len()).any(|w| w == first) {
-        file.read_to_end(&mut bytes).map_err(unreadable)?;
+    if !bytes.windows(first.len()).any(|w| w == first) {
+        return Err(foreign::refusal(path, &bytes));
     }
+    file.read_to_end(&mut bytes).map_err(unreadable)?;
     parse(&bytes)
 }
 

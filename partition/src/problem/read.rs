@@ -21,7 +21,6 @@ use super::dataset::Dataset;
 use super::{Catalog, Problem, Subdomain, SubdomainNode};
 use crate::contact_point::ContactPoint;
 use crate::error::InputError;
-use crate::file_kind::FileKind;
 use crate::source;
 
 /// An open problem file whose catalog was read and checked.
@@ -53,8 +52,7 @@ impl ProblemFile {
     /// # Errors
     /// The dataset that is missing or not what it should be.
     pub fn open(path: &Path) -> Result<Self, InputError> {
-        Self::open_unnamed(path)
-            .map_err(|error| FileKind::explain(FileKind::Problem, path, error).in_file(path))
+        Self::open_unnamed(path).map_err(|error| error.in_file(path))
     }
 
     fn open_unnamed(path: &Path) -> Result<Self, InputError> {

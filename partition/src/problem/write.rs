@@ -6,7 +6,7 @@ use hdf5::H5Type;
 use hdf5::types::VarLenUnicode;
 
 use super::{FORMAT, Problem, Subdomain, VERSION, vtkhdf};
-use crate::destination::{Destination, quoted_words};
+use crate::destination::Destination;
 use crate::error::OutputError;
 
 impl Problem {
@@ -18,7 +18,7 @@ impl Problem {
         hdf5::silence_errors(true);
         let destination = Destination::new(path)?;
         self.write_all(destination.temporary())
-            .map_err(|error| destination.failure(quoted_words(&error.to_string())))?;
+            .map_err(|error| destination.failure(error))?;
         destination.commit()
     }
 

@@ -142,6 +142,9 @@ impl Parser<'_> {
         self.sum()?;
         match self.peek() {
             None => Ok(()),
+            Some(found) if found.is_alphabetic() => Err(format!(
+                "expected an operator, found '{found}'; a number has no unit, a product a '*'"
+            )),
             Some(found) => Err(format!("expected an operator, found '{found}'")),
         }
     }

@@ -6,7 +6,8 @@ use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
-use super::{syntax, wording};
+use super::suggest::hint_and_known;
+use super::syntax;
 use crate::error::InputError;
 
 /// One step from a table or an array to what it holds.
@@ -41,12 +42,8 @@ pub(super) fn error_at(text: &str, path: &[Step], message: &str) -> InputError {
 pub fn located(text: &str, error: &Error) -> InputError {
     let start = error.span().map(|span| span.start);
     if let (Some(start), Err(_)) = (start, DeTable::parse(text)) {
-        return compose(
-            text,
-            Some(start),
-            &[],
-            &syntax::described(text, start, error.message()),
-        );
+        let message = syntax::described(text, start, error);
+        return compose(text, Some(start), &[], &message);
     }
     // A key that is missing has no place of its own, which the first of the others isn't, either.
     let is_missing = error.message().starts_with("missing field");
@@ -64,7 +61,28 @@ pub fn located(text: &str, error: &Error) -> InputError {
         })
         .map(|(_, entry)| entry.path)
         .unwrap_or_default();
-    compose(text, start, &path, &wording::of(error.message()))
+    compose(text, start, &path, &with_advice(error.message(), &path))
+}
+
+/// What `serde` said of the value at `path`, with the nearest known word for one that isn't known, and
+/// brackets for a table that should be a list.
+fn with_advice(message: &str, path: &[Step]) -> String {
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let unknown = ["field", "variant"].map(|what| message.starts_with(&format!("unknown {what}")));
+    if let ([found, known @ ..], true) = (&quoted[..], unknown.contains(&true)) {
+        let word = if unknown[0] { "key" } else { "value" };
+        let hint = hint_and_known(found, known.iter().copied());
+        return format!("unknown {word} '{found}'{hint}");
+    }
+    let keys = path.iter().filter_map(|step| match step {
+        Step::Key(key) => Some(key.as_str()),
+        Step::Index(_) => None,
+    });
+    let table = keys.collect::<Vec<_>>().join(".");
+    match syntax::double_brackets(&table) {
+        Some(advice) if message.starts_with("invalid type: map") => format!("{message}; {advice}"),
+        _ => message.to_owned(),
+    }
 }
 
 /// Reads an array of tables so that what is wrong in one is located there: `toml` gives an error

@@ -10,11 +10,11 @@ fn a_problem_file_without_space_leaves_the_older_one_and_says_so() {
     let output = folder.path().join("output");
     // The problem file has some 380 kB.
     for (place, words) in [
-        (Mounted::OfSize(4 << 10), "no space is left"),
-        (Mounted::OfSize(20 << 10), "no space is left"),
-        (Mounted::OfSize(150 << 10), "no space is left"),
-        (Mounted::OfSize(340 << 10), "no space is left"),
-        (Mounted::ReadOnly, "read-only"),
+        (Mounted::OfSize(4 << 10), "No space left on device"),
+        (Mounted::OfSize(20 << 10), "No space left on device"),
+        (Mounted::OfSize(150 << 10), "No space left on device"),
+        (Mounted::OfSize(340 << 10), "No space left on device"),
+        (Mounted::ReadOnly, "Read-only file system"),
     ] {
         let mut program = Command::new(env!("CARGO_BIN_EXE_contact-dd-partition"));
         program.args(["--example", "granite", "-n", "8", "-o"]);

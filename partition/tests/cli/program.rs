@@ -76,7 +76,7 @@ fn the_program_lists_every_example() {
     }
 }
 
-/// Fails unless the program ends with `code` and one line that holds `expected`.
+/// Fails unless the program ends with `code` and an error that holds `expected`.
 #[track_caller]
 fn refused(args: &[&str], dir: &Path, code: i32, expected: &str) {
     let output = program(args, dir);
@@ -86,11 +86,10 @@ fn refused(args: &[&str], dir: &Path, code: i32, expected: &str) {
         said.starts_with("error: ") && said.contains(expected),
         "{said}"
     );
-    assert_eq!(said.lines().count(), 1, "{said}");
 }
 
 #[test]
-fn bad_usage_ends_with_2_and_unwritable_output_with_5_and_one_line() {
+fn bad_usage_ends_with_2_and_unwritable_output_with_5() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("file"), "").unwrap();
     std::fs::create_dir(dir.path().join("dir")).unwrap();
@@ -101,7 +100,7 @@ fn bad_usage_ends_with_2_and_unwritable_output_with_5_and_one_line() {
         (&["--refine", "40"][..], 2, "refined 40 times"),
         (&["--write-scene", "file/x"], 5, "file/x"),
         (&["-o", "file/x"], 5, "file/x"),
-        (&["-o", "dir"], 5, "dir: can't be written: it is a folder"),
+        (&["-o", "dir"], 5, "dir: can't be written: it isn't a file"),
         (&["-n", "0"], 2, "0 subdomains can't be; expected 2 "),
         (
             &["--element", "quad5"],
@@ -112,7 +111,7 @@ fn bad_usage_ends_with_2_and_unwritable_output_with_5_and_one_line() {
         (&["-n", "-1"], 2, "'-1'"),
         (&["-n"], 2, "'--subdomains <N>'"),
         (&["--frobnicate"], 2, "'--frobnicate'"),
-        (&["--refin", "1"], 2, "; a similar argument exists"),
+        (&["--refin", "1"], 2, "a similar argument exists"),
         (&["scene.toml"], 2, "cannot be used with"),
     ] {
         refused(&[&patch[..], more].concat(), dir.path(), code, expected);

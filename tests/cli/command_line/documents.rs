@@ -115,7 +115,6 @@ fn documents_need_no_mpi_and_no_problem() {
         ("complete-bash", "complete -F"),
         ("complete-zsh", "#compdef contact-dd-mpi"),
         ("complete-fish", "complete -c contact-dd-mpi"),
-        ("markdown", "| option | meaning | default |"),
     ] {
         let mut command = program(0);
         // No MPI starts with this.
