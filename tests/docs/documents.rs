@@ -32,7 +32,7 @@ use std::sync::Arc;
 
 use libtest_mimic::Trial;
 
-use crate::trial;
+use crate::{gallery, trial};
 
 use page::Page;
 
@@ -51,7 +51,8 @@ pub fn trials() -> Vec<Trial> {
         }));
         let all = Arc::clone(&pages);
         let runs = trial(format!("{name}::runs_as_printed"), move || {
-            run::as_printed(&all[index]);
+            let folder = run::as_printed(&all[index]);
+            gallery::numbers_hold(&all[index].name, folder.path());
         });
         trials.push(match pages[index].needs_python() {
             true => needs_python(runs),

@@ -1,4 +1,4 @@
-//! The documents: pages, the gallery.
+//! The documents: their pages, and the gallery of the built-in scenes.
 
 #![expect(
     clippy::unwrap_used,

@@ -33,7 +33,8 @@ pub fn python() -> Option<PathBuf> {
 }
 
 /// The folder with both programs. Cargo builds that of the other package along with its own tests only, so
-/// that it is asked to; there is nothing to do where all tests are run.
+/// that it is asked to build some, with what all tests are built with; there is nothing to do where all
+/// tests are run.
 fn programs() -> &'static Path {
     static BUILT: Once = Once::new();
     let folder = Path::new(env!("CARGO_BIN_EXE_contact-dd-mpi"))
@@ -45,7 +46,8 @@ fn programs() -> &'static Path {
             Some(profile) => profile,
         };
         let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-        cargo.args(["build", "--workspace", "--bins", "--profile", profile]);
+        cargo.args(["test", "--workspace", "--no-run", "--test", "library"]);
+        cargo.args(["--profile", profile]);
         let ended = Running::start(cargo.current_dir(root())).wait(BUILD_LIMIT);
         assert_eq!(ended.code(), 0, "{}", ended.stderr);
         let partition = folder.join("contact-dd-partition");
@@ -54,8 +56,8 @@ fn programs() -> &'static Path {
     folder
 }
 
-/// A test: every block of the page does what the page says.
-pub fn as_printed(page: &Page) {
+/// A test: every block of the page does what the page says. The folder holds what they left.
+pub fn as_printed(page: &Page) -> Folder {
     let folder = Folder::new();
     let mut printed = String::new();
     for block in &page.blocks {
@@ -83,6 +85,7 @@ pub fn as_printed(page: &Page) {
         }
     }
     folder.keep(page);
+    folder
 }
 
 /// The folder in which a page is run, with what its commands find there and on the path.

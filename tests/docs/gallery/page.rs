@@ -11,8 +11,6 @@ use super::expected::Expected;
 pub struct Page {
     /// What it shows of its scene.
     pub scene: Vec<String>,
-    /// The lines of its first block of commands.
-    pub commands: Vec<String>,
     /// The rows of its table.
     pub expected: Vec<Expected>,
 }
@@ -41,7 +39,6 @@ impl Page {
     pub fn parse(text: &str) -> Self {
         let mut page = Self {
             scene: Vec::new(),
-            commands: Vec::new(),
             expected: Vec::new(),
         };
         let (mut words, mut language) = (String::new(), None);
@@ -52,13 +49,9 @@ impl Page {
                     language = Some(of.into_string());
                     words.clear();
                 }
-                Event::End(TagEnd::CodeBlock) => match language.take().as_deref() {
-                    Some("toml") => page.scene.push(std::mem::take(&mut words)),
-                    Some("sh") if page.commands.is_empty() => {
-                        page.commands = words.lines().map(str::to_owned).collect();
-                    }
-                    _ => {}
-                },
+                Event::End(TagEnd::CodeBlock) if language.take().as_deref() == Some("toml") => {
+                    page.scene.push(std::mem::take(&mut words));
+                }
                 Event::Start(Tag::TableCell) => words.clear(),
                 Event::End(TagEnd::TableCell) => row.push(std::mem::take(&mut words)),
                 Event::End(TagEnd::TableHead) => row.clear(),

@@ -1,51 +1,20 @@
-//! Runs the commands of a page and looks for its numbers.
+//! The numbers of a run: what the report and the result have of them.
 
-use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::time::Duration;
 
 use hdf5::File;
 use serde_json::Value;
 
-use super::page::Page;
-use crate::process::Running;
+use super::expected::Expected;
 
-/// Longer than any page takes on a machine that is busy with other tests.
-const LIMIT: Duration = Duration::from_secs(300);
-
-/// Fails unless the page's commands give all of its numbers; pictures are left out.
-pub fn gives_numbers(page: &Page) {
-    assert!(!page.expected.is_empty(), "a page without numbers");
-    let folder = tempfile::tempdir().unwrap();
-    let programs = Path::new(env!("CARGO_BIN_EXE_contact-dd-mpi")).parent();
-    let mut path = vec![programs.unwrap().to_path_buf()];
-    path.extend(env::split_paths(&env::var_os("PATH").unwrap_or_default()));
-    let is_ours = |line: &&String| line.contains("contact-dd-");
-    let commands: Vec<&str> = (page.commands.iter().filter(is_ours))
-        .map(String::as_str)
-        .collect();
-    // Pages say mpirun; where another launcher is named, that is what they mean.
-    let script = format!(
-        "mpirun() {{ command ${{MPIEXEC:-mpirun}} \"$@\"; }}\n{}",
-        commands.join("\n")
-    );
-    let mut shell = Command::new("bash");
-    shell
-        .args(["-euo", "pipefail", "-c", &script])
-        .current_dir(folder.path())
-        .env("PATH", env::join_paths(path).unwrap())
-        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
-        .env("OMPI_MCA_rmaps_base_oversubscribe", "1");
-    let ended = Running::start(&mut shell).wait(LIMIT);
-    assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
-
-    let report = fs::read_to_string(the_one(folder.path(), "json")).unwrap();
+/// Fails unless report and result in a folder have all of the numbers.
+pub fn has_numbers(folder: &Path, expected: &[Expected]) {
+    assert!(!expected.is_empty(), "a page without numbers");
+    let report = fs::read_to_string(the_one(folder, "json")).unwrap();
     let report: Value = serde_json::from_str(&report).unwrap();
-    let result = File::open(the_one(folder.path(), "vtkhdf")).unwrap();
-    let wrong: Vec<String> = (page.expected.iter())
+    let result = File::open(the_one(folder, "vtkhdf")).unwrap();
+    let wrong: Vec<String> = (expected.iter())
         .filter_map(|expected| {
             let number = match expected.place.contains("Data/") {
                 true => largest(&result, &expected.place),
