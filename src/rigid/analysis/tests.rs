@@ -119,18 +119,25 @@ fn tower(count: usize, slope: f64, unit: f64, push: f64) -> Scene {
 
 #[test]
 fn rough_joints_hold_a_tower_however_high_and_in_any_unit() {
-    for count in [1, 2, 5, 12, 50] {
+    let stands = |count, slope, unit| {
+        let motions = tower(count, slope, unit, 0.3).analyse();
+        assert_eq!(motions, Ok(RigidMotions::default()), "{count} {slope}");
+        // A push that is a load, and more than the joints can hold.
+        if slope >= 1e-6 {
+            let pushed = tower(count, slope, unit, 30.0).analyse();
+            assert!(pushed.is_err(), "{count} {slope}");
+        }
+    };
+    for count in [1, 2, 5, 12] {
         for slope in [1e-2, 1e-4, 1e-5, 1e-6, 1e-7] {
             for unit in [1e-3, 1.0, 1e3] {
-                let motions = tower(count, slope, unit, 0.3).analyse();
-                assert_eq!(motions, Ok(RigidMotions::default()), "{count} {slope}");
-                // A push that is a load, and more than the joints can hold.
-                if slope >= 1e-6 {
-                    let pushed = tower(count, slope, unit, 30.0).analyse();
-                    assert!(pushed.is_err(), "{count} {slope}");
-                }
+                stands(count, slope, unit);
             }
         }
+    }
+    // A high one takes seconds.
+    for (slope, unit) in [(1e-2, 1e3), (1e-5, 1.0), (1e-7, 1e-3)] {
+        stands(50, slope, unit);
     }
 }
 
