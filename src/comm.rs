@@ -3,14 +3,11 @@
 //! Ranks agree on errors at the end of every phase: nobody leaves between matching calls, so no
 //! rank waits for one that is gone.
 
-mod board;
 mod environment;
-mod host;
 mod message;
 #[cfg(debug_assertions)]
 mod on_purpose;
 mod signal;
-mod watcher;
 
 use std::cell::Cell;
 
@@ -22,7 +19,6 @@ use environment::current_phase;
 pub use environment::{World, is_launched, library, phase, start};
 pub use message::{Message, MessageReader};
 pub use signal::is_asked_to_stop;
-pub use watcher::watch_if_asked;
 
 use crate::error::{Failure, FailureKind};
 

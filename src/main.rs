@@ -11,9 +11,6 @@ use contact_dd_mpi::settings::given::Given;
 use contact_dd_partition::manual::{Answer, BAD_USAGE};
 
 fn main() -> ExitCode {
-    if comm::watch_if_asked().is_some() {
-        return ExitCode::SUCCESS;
-    }
     let command_line = CommandLine::of_this_program();
     if comm::is_launched() {
         // Launchers show ranks a terminal whatever their output goes to.

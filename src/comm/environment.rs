@@ -1,7 +1,7 @@
 //! Starting MPI, and what happens when a rank fails without a word to the others.
 
 use std::cell::Cell;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use contact_dd_partition::message;
 use mpi::collective::SystemOperation;
@@ -10,22 +10,15 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
 
 use super::Comm;
-use super::host::Host;
 #[cfg(debug_assertions)]
 use super::on_purpose;
 use crate::error::Failure;
 
 static PHASE: Mutex<&str> = Mutex::new("starting");
 
-/// The ranks of this host, where somebody watches them.
-static HOST: OnceLock<Host> = OnceLock::new();
-
-/// Names what this rank is doing, for the message of its end should it be a sudden one.
+/// Names what this rank is doing, for the messages of failures and panics.
 pub fn phase(name: &'static str) {
     *PHASE.lock().unwrap_or_else(PoisonError::into_inner) = name;
-    if let Some(host) = HOST.get() {
-        host.note(name);
-    }
     #[cfg(debug_assertions)]
     on_purpose::end(name);
 }
@@ -52,15 +45,9 @@ impl World {
     }
 }
 
-impl Drop for World {
-    fn drop(&mut self) {
-        if let Some(host) = HOST.get() {
-            host.leave();
-        }
-    }
-}
-
-/// Starts MPI, and makes the sudden end of any rank the end of all. Collective.
+/// Starts MPI, and makes the panic of any rank the end of all. Collective.
+///
+/// A rank that is killed is the launcher's affair, which ends the others.
 ///
 /// # Errors
 /// MPI was started already, or the launcher belongs to another MPI than the program: then it
@@ -72,13 +59,10 @@ pub fn start() -> Result<World, Failure> {
     let (rank, size) = (world.rank(), world.size());
     let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        // Ranks that panic for one reason say so once.
-        if HOST.get().is_none_or(Host::claim_message) {
-            let phase = current_phase();
-            message::error(&format!("rank {rank} of {size} panicked while {phase}"));
-            report(panic);
-        }
-        abort_all();
+        let phase = current_phase();
+        message::error(&format!("rank {rank} of {size} panicked while {phase}"));
+        report(panic);
+        SimpleCommunicator::world().abort(1);
     }));
     check_launcher(size)?;
     super::signal::listen()
@@ -92,11 +76,6 @@ pub fn start() -> Result<World, Failure> {
         &mut hosts,
         SystemOperation::sum(),
     );
-    if size > 1
-        && let Some(host) = Host::watched(&host, rank, size)
-    {
-        HOST.get_or_init(|| host);
-    }
     phase("starting");
     Ok(World {
         universe,
@@ -112,10 +91,6 @@ pub fn library() -> String {
     // Open MPI counts the end of its string to it.
     let name = name.trim_end_matches('\0');
     name.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-fn abort_all() {
-    SimpleCommunicator::world().abort(1);
 }
 
 /// Where launchers tell a rank of how many it is.

@@ -1,14 +1,13 @@
 //! Ranks that end or stop on purpose, in a phase of the tests' choice.
 //!
-//! `CONTACT_DD_END="RANK KIND PHASE"` makes a rank end when it comes to a phase, or stop until it is
-//! continued. Only a build with debug assertions, which is what tests run, looks at it: there is no way
-//! to come across it in the program that users run, and no feature that one could forget to switch
-//! off.
+//! `CONTACT_DD_END="RANK KIND PHASE"` makes a rank fail, panic, be killed, or stop until it is continued,
+//! when it comes to a phase. Only a build with debug assertions, which is what tests run, looks at it.
 
 use std::sync::OnceLock;
-use std::{env, hint, process, thread};
+use std::{env, thread};
 
-use rustix::process::{Signal, getpid, kill_process};
+use signal_hook::consts::{SIGKILL, SIGSTOP};
+use signal_hook::low_level::raise;
 
 use super::environment::current_phase;
 use crate::error::Failure;
@@ -20,21 +19,17 @@ pub fn set_rank(rank: i32) {
     RANK.get_or_init(|| rank);
 }
 
-/// Ends or stops this rank if that is to happen suddenly in `phase`.
+/// Ends or stops this rank if that is to happen in `phase`.
 #[expect(clippy::panic, reason = "that's the purpose")]
 pub fn end(phase: &str) {
     match wish(phase).as_deref() {
         Some("panic") => panic!("on purpose"),
-        Some("abort") => process::abort(),
-        Some("memory") => {
-            hint::black_box(Vec::<u8>::with_capacity(isize::MAX as usize));
-        }
         Some("kill") => {
-            let _ = kill_process(getpid(), Signal::KILL);
+            let _ = raise(SIGKILL);
             thread::park();
         }
         Some("stop") => {
-            let _ = kill_process(getpid(), Signal::STOP);
+            let _ = raise(SIGSTOP);
         }
         _ => {}
     }

@@ -12,7 +12,6 @@
 mod bad_input;
 mod endings;
 mod outputs;
-mod random_kills;
 mod restarting;
 mod resting;
 mod steps;
@@ -66,7 +65,6 @@ fn main() -> ExitCode {
     outputs::unwritable_output(&mut trials);
     outputs::full_disk(&mut trials);
     outputs::vanished_folder(&mut trials);
-    random_kills::random_kills(&mut trials);
     sudden_ends::sudden_ends(&mut trials);
     restarting::stopped_and_restarted(&mut trials);
     restarting::stopped_while_factorizing(&mut trials);
