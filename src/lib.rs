@@ -52,11 +52,10 @@
 //!
 //! **The answer.** Back-substitution, the [`certificate`] of the full discrete problem, and the [`output`].
 //!
-//! [`run`] is all of it on one page. Only [`comm`] knows MPI; a run that a signal stops leaves a
-//! [`checkpoint`]. [`contact_dd_partition`] makes the problem file.
+//! [`run`] is all of it on one page. Only [`comm`] knows MPI; [`contact_dd_partition`] makes the
+//! problem file.
 
 pub mod certificate;
-pub mod checkpoint;
 pub mod comm;
 pub mod contact;
 pub mod error;

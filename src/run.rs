@@ -17,7 +17,6 @@ pub mod load;
 pub mod merge;
 pub mod motions;
 mod narrator;
-mod pausing;
 mod reactions;
 pub mod read;
 pub mod recover;
@@ -49,7 +48,6 @@ use self::load::Loading;
 use self::merge::condense_clusters;
 use self::motions::Motions;
 use self::narrator::Narrator;
-use self::pausing::Checkpoints;
 use self::read::read_blocks;
 use self::report::Outputs;
 use self::solution::Solution;
@@ -107,12 +105,6 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
     let mut blocks = comm.agree(read_blocks(comm.rank(), &file, &plan))?;
     check_copies(comm, &file, &plan, &blocks)?;
     narrator.problem(catalog, &plan);
-    let mut checkpoints = Checkpoints::new(settings);
-    let looked = match comm.is_root() {
-        true => checkpoints.look(),
-        false => Ok(()),
-    };
-    comm.agree(looked)?;
 
     // Rigid motions that neither supports nor contact hold, and those by which bodies come to rest.
     narrator.phase("looking for free rigid motions", None);
@@ -183,7 +175,7 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
         let problem = interface.as_ref().map(|(_, interface)| interface);
         let pairs = &mut condensed.pairs;
         let before = steps.last().map(|step| &step.outcome);
-        let mut outcome = sweeping.sweep(k, problem, pairs, before, &mut checkpoints)?;
+        let mut outcome = sweeping.sweep(problem, pairs, before)?;
         seconds.sweeps += lap.elapsed().as_secs_f64();
 
         // Back-substitution, and the check of the full discrete problem.
@@ -239,15 +231,9 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
                 steps,
                 smallest_pivot: interface.smallest_pivot(),
                 ranks,
-                warnings: (checkpoints.warnings.iter().cloned())
-                    .chain(settings.unused())
-                    .collect(),
+                warnings: settings.unused().into_iter().collect(),
             };
-            let finished = narrator.finish(&totals, outputs);
-            if finished.is_ok() && converged {
-                checkpoints.remove();
-            }
-            finished
+            narrator.finish(&totals, outputs)
         }
         _ => Ok(()),
     };

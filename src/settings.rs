@@ -9,7 +9,6 @@ pub mod given;
 pub mod origin;
 pub mod result_path;
 
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
@@ -50,10 +49,6 @@ pub struct Settings {
     pub relaxation: Option<f64>,
     /// Threads of each rank.
     pub threads: u16,
-    /// After how many sweeps there is a checkpoint, and not only where a signal stops them.
-    pub checkpoint_every: Option<NonZeroUsize>,
-    /// Whether to go on from the last checkpoint of the same run, if there is one.
-    pub restart: bool,
     /// Whether stresses are left out: neither recovered nor written.
     pub no_stress: bool,
     /// Whether to validate the problem file and solve nothing.
@@ -160,14 +155,6 @@ impl Settings {
         }
         if let Some(theta) = self.relaxation {
             list.push(("relaxation", settled("relaxation", theta.to_string())));
-        }
-        if let Some(n) = self.checkpoint_every {
-            let every = format!("every {n} sweeps");
-            list.push(("checkpoint", settled("checkpoint_every", every)));
-        }
-        if self.restart {
-            let from = settled("restart", "from the last checkpoint".to_string());
-            list.push(("restart", from));
         }
         if self.no_stress {
             list.push(("stress", settled("no_stress", "left out".to_string())));

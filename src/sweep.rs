@@ -1,6 +1,8 @@
 //! Sweeps: how S_0 U + S_CON(U) = F, (14), is solved for U, from the bilateral start (16)-(17) or from the
 //! solution of the load step before.
 //!
+//! A signal that asks the run to stop is heard between two sweeps.
+//!
 //! All methods share the residual r(U) = F − S_0 U − S_CON(U) and differ in what is inverted:
 //! M δ = r with M = S_0 ([`picard`], the paper's (18)), S_0 + S_CON' of the bilateral problem
 //! ([`anderson`]), or S_0 + S_CON(U + ·) as it is, the contact conditions included ([`newton`]).
@@ -18,6 +20,8 @@ use self::method::Memory;
 pub use self::method::{Method, merging};
 pub use self::outcome::{SweepOutcome, SweepRecord, SweepStatus};
 use self::progress::Progress;
+use crate::comm::is_asked_to_stop;
+use crate::error::Failure;
 use crate::interface::operator::Interface;
 use crate::interface::s_con::{ConState, ConTotals, SCon};
 use crate::schur::factor::BoundaryLastCholesky;
@@ -52,8 +56,6 @@ pub struct Sweeps<'a, 'c> {
     /// The factor of S_0, where the method inverts it.
     s_0: Option<BoundaryLastCholesky>,
     began: Instant,
-    /// What earlier runs took (s).
-    earlier: f64,
     observer: &'a mut dyn FnMut(&SweepRecord),
 }
 
@@ -83,35 +85,28 @@ pub enum Start {
     Bilateral,
     /// At the solution under other loads: U, and which conditions of every pair were open.
     Before(Vec<f64>, Vec<Vec<bool>>),
-    /// Where the sweeps of an earlier run stopped.
-    Earlier(Box<Progress>, ConState),
-}
-
-/// What sweeps are asked for between two of them.
-pub trait Pause {
-    /// Sees what has been found so far; tells whether the sweeps stop here and are to go on in
-    /// another run. On the root; `s_con` reaches the other ranks.
-    fn pause(&mut self, progress: &Progress, state: &ConState, s_con: &mut SCon<'_>) -> bool;
 }
 
 impl<'a, 'c> Sweeps<'a, 'c> {
     /// Solves S_0 U + S_CON(U) = F, (14), from the `start`. On the root, while the other ranks serve
-    /// S_CON; `observer` sees every sweep. `None` where `pause` stops them.
+    /// S_CON; `observer` sees every sweep.
+    ///
+    /// # Errors
+    /// A signal has asked the run to stop.
     pub fn solve(
         interface: &'a Interface,
         s_con: &'a mut SCon<'c>,
         settings: SweepSettings,
         start: Start,
-        pause: &mut dyn Pause,
         observer: &'a mut dyn FnMut(&SweepRecord),
-    ) -> Option<SweepOutcome> {
+    ) -> Result<SweepOutcome, Failure> {
         let (mut sweeps, residual) = Self::begin(interface, s_con, settings, start, observer);
-        let status = sweeps.sweep(residual, pause)?;
-        Some(sweeps.end(status))
+        let status = sweeps.sweep(residual)?;
+        Ok(sweeps.end(status))
     }
 
-    /// Before the first sweep, and the residual there: of the bilateral start (16)-(17), of the
-    /// load step before, or of where a run before had come.
+    /// Before the first sweep, and the residual there: of the bilateral start (16)-(17), or of the load step
+    /// before.
     pub fn begin(
         interface: &'a Interface,
         s_con: &'a mut SCon<'c>,
@@ -119,32 +114,21 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         start: Start,
         observer: &'a mut dyn FnMut(&SweepRecord),
     ) -> (Self, Residual) {
-        let fresh = |u| (Progress::new(u, settings.method), ConState::default());
-        let goes_on = matches!(start, Start::Earlier(..));
-        let mut expected = None;
-        let (progress, state) = match start {
-            Start::Bilateral => fresh(interface.bilateral_start()),
-            Start::Before(u, open) => {
-                expected = Some(open);
-                fresh(u)
-            }
-            Start::Earlier(progress, state) => (*progress, state),
+        let (u, expected) = match start {
+            Start::Bilateral => (interface.bilateral_start(), None),
+            Start::Before(u, open) => (u, Some(open)),
         };
         let mut sweeps = Self {
             interface,
             s_con,
-            state,
+            state: ConState::default(),
             settings,
             s_0: None,
             began: Instant::now(),
-            earlier: progress.records.last().map_or(0.0, |last| last.seconds),
-            progress,
+            progress: Progress::new(u, settings.method),
             observer,
         };
-        let residual = match goes_on {
-            true => sweeps.unbalanced(sweeps.progress.totals),
-            false => sweeps.evaluate(expected.as_deref()),
-        };
+        let residual = sweeps.evaluate(expected.as_deref());
         (sweeps, residual)
     }
 
@@ -172,11 +156,14 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         self.progress.outcome(status, last.relative, open)
     }
 
-    /// Sweeps until that ends; `None` where `pause` stops it.
-    fn sweep(&mut self, mut residual: Residual, pause: &mut dyn Pause) -> Option<SweepStatus> {
+    /// Sweeps until that ends.
+    fn sweep(&mut self, mut residual: Residual) -> Result<SweepStatus, Failure> {
         while !self.is_converged(&residual) {
-            if pause.pause(&self.progress, &self.state, self.s_con) {
-                return None;
+            if is_asked_to_stop() {
+                let done = self.sweeps_done();
+                let message =
+                    format!("interrupted after {done} sweeps, before a result was written");
+                return Err(Failure::interrupted(message));
             }
             let memory = std::mem::take(&mut self.progress.memory);
             match memory.sweep(self, residual) {
@@ -184,10 +171,10 @@ impl<'a, 'c> Sweeps<'a, 'c> {
                     self.progress.memory = memory;
                     residual = after;
                 }
-                Next::End(status) => return Some(status),
+                Next::End(status) => return Ok(status),
             }
         }
-        Some(SweepStatus::Converged)
+        Ok(SweepStatus::Converged)
     }
 
     /// r(U), where the pairs' approaches are `expected` to be open; else as they were last.
@@ -195,11 +182,6 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         let u = &self.progress.u;
         let totals = (self.s_con).evaluate(self.interface, u, expected, &mut self.state);
         self.progress.count(&totals, self.s_con.len());
-        self.unbalanced(totals)
-    }
-
-    /// r(U) with the answers that the pairs have given.
-    fn unbalanced(&self, totals: ConTotals) -> Residual {
         let (mut r, mut scale) = self.interface.linear_residual(&self.progress.u);
         self.state.subtract(self.interface, &mut r, &mut scale);
         let (r_max, scale_max) = (largest(&r), largest(&scale));
@@ -216,7 +198,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             residual: residual.relative,
             active: residual.totals.active,
             changed: residual.totals.changed,
-            seconds: self.earlier + self.began.elapsed().as_secs_f64(),
+            seconds: self.began.elapsed().as_secs_f64(),
         };
         self.progress.records.push(record);
         (self.observer)(&record);

@@ -49,15 +49,6 @@ pub struct PairResponse {
     pub converged: bool,
 }
 
-/// What a pair remembers of its last evaluation.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct PairMemory {
-    /// t (m).
-    pub approaches: Vec<f64>,
-    /// λ, then μ (N/m).
-    pub forces: Vec<f64>,
-}
-
 impl ContactPair {
     /// A pair whose approaches lie within `limits`, bilateral at first; both triangles of S are filled.
     pub fn new(condensed: Condensed, limits: Limits) -> Self {
@@ -89,21 +80,6 @@ impl ContactPair {
     /// Approaches of the last evaluation (m).
     pub fn approaches(&self) -> &[f64] {
         &self.contact.approaches
-    }
-
-    /// What the next evaluation begins with beside the open conditions: approaches and forces.
-    pub fn memory(&self) -> PairMemory {
-        PairMemory {
-            approaches: self.contact.approaches.clone(),
-            forces: self.contact.forces.clone(),
-        }
-    }
-
-    /// Goes back to what was remembered, with the `open` conditions of then.
-    pub fn restore(&mut self, memory: PairMemory, open: Vec<bool>) {
-        self.contact.approaches = memory.approaches;
-        self.contact.forces = memory.forces;
-        self.open = open;
     }
 
     /// Force of every condition in the last evaluation, and whether it was closed.

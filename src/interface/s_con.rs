@@ -4,11 +4,9 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
-
 use super::operator::Interface;
-use crate::comm::{Comm, Message, MessageReader};
-use crate::contact::pair::{ContactPair, PairMemory, PairResponse};
+use crate::comm::{Comm, Message};
+use crate::contact::pair::{ContactPair, PairResponse};
 
 /// S_CON = Σ R_kᵀ S_kl R_k, (15), as the root drives it and the other ranks serve it.
 pub struct SCon<'a> {
@@ -18,7 +16,7 @@ pub struct SCon<'a> {
 }
 
 /// What the root knows of all pairs after an evaluation.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConState {
     traces: Vec<Option<Vec<f64>>>,
     /// The answer of every pair.
@@ -26,7 +24,7 @@ pub struct ConState {
 }
 
 /// Totals of one evaluation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ConTotals {
     /// Closed approaches and dependent conditions.
     pub active: usize,
@@ -45,9 +43,6 @@ pub struct ConTotals {
 const STOP: i64 = 0;
 const EVALUATE: i64 = 1;
 const DIFFERENTIATE: i64 = 2;
-const REMEMBER: i64 = 3;
-const RESTORE: i64 = 4;
-const LISTEN: i64 = 5;
 
 impl<'a> SCon<'a> {
     /// S_CON over `pairs` of this rank; `owners` has the owner of every pair.
@@ -129,40 +124,6 @@ impl<'a> SCon<'a> {
         });
     }
 
-    /// What all pairs remember of the last evaluation. On the root; the other ranks
-    /// [`serve`](Self::serve).
-    pub fn memories(&mut self) -> Vec<PairMemory> {
-        let all: Vec<usize> = (0..self.len()).collect();
-        let mut memories = vec![PairMemory::default(); all.len()];
-        let question = |_| Message::default();
-        self.ask(REMEMBER, &all, question, |p, message| {
-            memories[p] = PairMemory::unpack(&mut message.read());
-        });
-        memories
-    }
-
-    /// Brings all pairs to where they were when `state` and `memories` were taken. On the root; the
-    /// other ranks [`serve`](Self::serve).
-    pub fn restore(&mut self, state: &ConState, memories: &[PairMemory]) {
-        let all: Vec<usize> = (0..self.len()).collect();
-        let question = |p: usize| {
-            let open = state.responses[p].open.iter();
-            let mut message = memories[p].pack();
-            message.integers.extend(open.map(|&open| i64::from(open)));
-            message
-        };
-        self.ask(RESTORE, &all, question, |_, _| {});
-    }
-
-    /// Whether any rank was asked to stop. On the root; the other ranks [`serve`](Self::serve).
-    pub fn is_any_rank_asked_to_stop(&self) -> bool {
-        self.comm.broadcast(&mut Message {
-            integers: vec![LISTEN],
-            reals: Vec::new(),
-        });
-        self.comm.is_any_asked_to_stop()
-    }
-
     /// Answers for this rank's pairs whatever the root asks, until it stops. On all ranks but the
     /// root.
     pub fn serve(&mut self) {
@@ -172,13 +133,8 @@ impl<'a> SCon<'a> {
             let Some((&kind, called)) = command.integers.split_first() else {
                 return;
             };
-            match kind {
-                STOP => return,
-                LISTEN => {
-                    self.comm.is_any_asked_to_stop();
-                    continue;
-                }
-                _ => {}
+            if kind == STOP {
+                return;
             }
             let called: Vec<usize> = called.iter().map(|&p| p as usize).collect();
             self.exchange(kind, &called, |_| Message::default(), |_, _| {});
@@ -265,38 +221,10 @@ fn answer(kind: i64, pair: &mut ContactPair, question: Message) -> Message {
             integers: Vec::new(),
             reals: pair.derivative(&question.reals),
         },
-        REMEMBER => pair.memory().pack(),
-        RESTORE => {
-            let mut reader = question.read();
-            let memory = PairMemory::unpack(&mut reader);
-            let conditions = memory.forces.len();
-            let open = reader.integers(conditions);
-            pair.restore(memory, open.iter().map(|&open| open != 0).collect());
-            Message::default()
-        }
         _ => {
             let expected: Vec<bool> = question.integers.iter().map(|&open| open != 0).collect();
             let expected = (!expected.is_empty()).then_some(expected);
             pack(&pair.evaluate(&question.reals, expected))
-        }
-    }
-}
-
-impl PairMemory {
-    fn pack(&self) -> Message {
-        Message {
-            integers: [self.approaches.len(), self.forces.len()]
-                .map(|n| n as i64)
-                .to_vec(),
-            reals: [&self.approaches[..], &self.forces].concat(),
-        }
-    }
-
-    fn unpack(reader: &mut MessageReader) -> Self {
-        let (approaches, forces) = (reader.count(), reader.count());
-        Self {
-            approaches: reader.reals(approaches),
-            forces: reader.reals(forces),
         }
     }
 }

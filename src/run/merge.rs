@@ -49,7 +49,7 @@ pub fn condense_clusters(
     let mut merged = alone.into_iter().try_for_each(|v| {
         if is_asked_to_stop() {
             return Err(Failure::interrupted(
-                "interrupted while factorizing, before the sweeps: no checkpoint was written",
+                "interrupted while factorizing, before a result was written",
             ));
         }
         merging.own_node(v)?;

@@ -8,7 +8,6 @@ use contact_dd_partition::problem::Catalog;
 
 use super::report::{Outputs, failures, reason, report};
 use super::totals::Totals;
-use crate::checkpoint::Checkpoint;
 use crate::comm::{self, Comm};
 use crate::error::Failure;
 use crate::interface::operator::Interface;
@@ -136,14 +135,10 @@ impl<'a> Narrator<'a> {
         });
     }
 
-    /// The head of the table of sweeps, if there are going to be any, and those of an `earlier` run.
-    pub fn sweeps(&self, interface: &Interface, earlier: Option<&Checkpoint>) {
+    /// The head of the table of sweeps, if there are going to be any.
+    pub fn sweeps(&self, interface: &Interface) {
         if !interface.pair_traces.is_empty() {
             self.say(|out| terminal::sweep_header(out));
-        }
-        let earlier = earlier.map(|checkpoint| &checkpoint.progress.records[..]);
-        for record in earlier.unwrap_or_default() {
-            self.sweep(interface, record);
         }
     }
 

@@ -61,7 +61,7 @@ pub fn stop_if_asked(comm: &Comm, catalog: &Catalog, k: usize) -> Result<(), Fai
     match comm.is_any_asked_to_stop() {
         false => Ok(()),
         true => Err(Failure::interrupted(format!(
-            "interrupted after {k} of {} load steps, between two of them: no checkpoint was written",
+            "interrupted after {k} of {} load steps, before a result was written",
             catalog.steps.len()
         ))),
     }

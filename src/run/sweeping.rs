@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use super::narrator::Narrator;
-use super::pausing::Checkpoints;
 use crate::comm::Comm;
 use crate::contact::pair::ContactPair;
 use crate::error::Failure;
@@ -26,59 +25,45 @@ pub struct Sweeping<'a> {
 }
 
 impl Sweeping<'_> {
-    /// Solves S_0 U + S_CON(U) = F, (14), for load step k, from the solution of the step `before`, from a
-    /// checkpoint of this step, or from the bilateral start. Collective; the outcome is the root's.
+    /// Solves S_0 U + S_CON(U) = F, (14), from the solution of the step `before` or from the bilateral
+    /// start. Collective; the outcome is the root's.
     ///
     /// # Errors
-    /// A signal stopped the sweeps, or the checkpoint is that of another problem.
+    /// A signal stopped the sweeps.
     pub fn sweep(
         &self,
-        k: usize,
         interface: Option<&Interface>,
         pairs: &mut BTreeMap<usize, ContactPair>,
         before: Option<&SweepOutcome>,
-        checkpoints: &mut Checkpoints<'_>,
     ) -> Result<Option<SweepOutcome>, Failure> {
         let mut s_con = SCon::new(self.comm, self.contact_owners, pairs);
         let Some(interface) = interface else {
             s_con.serve();
             return self.comm.agree(Ok(None));
         };
-        let solved = self.solve(k, interface, &mut s_con, before, checkpoints);
+        let solved = self.solve(interface, &mut s_con, before);
         s_con.stop();
         self.comm.agree(solved.map(Some))
     }
 
     fn solve(
         &self,
-        k: usize,
         interface: &Interface,
         s_con: &mut SCon<'_>,
         before: Option<&SweepOutcome>,
-        checkpoints: &mut Checkpoints<'_>,
     ) -> Result<SweepOutcome, Failure> {
-        let earlier = checkpoints.begin(k);
-        self.narrator.sweeps(interface, earlier.as_ref());
+        self.narrator.sweeps(interface);
         // Picard's relaxation is that of the contacts that the bilateral solution leaves closed, and a step
         // that went nowhere is no place to start from.
         let before = before.filter(|before| {
             self.settings.method != Method::Picard && before.status == SweepStatus::Converged
         });
-        let start = match (checkpoints.restore(earlier, interface, s_con)?, before) {
-            (Some((progress, state)), _) => Start::Earlier(Box::new(progress), state),
-            (None, Some(before)) => Start::Before(before.u.clone(), before.open.clone()),
-            (None, None) => Start::Bilateral,
+        let start = match before {
+            Some(before) => Start::Before(before.u.clone(), before.open.clone()),
+            None => Start::Bilateral,
         };
         let mut observer = |record: &SweepRecord| self.narrator.sweep(interface, record);
         let settings = self.settings.sweeps();
-        Sweeps::solve(
-            interface,
-            s_con,
-            settings,
-            start,
-            checkpoints,
-            &mut observer,
-        )
-        .ok_or_else(|| checkpoints.stopped())
+        Sweeps::solve(interface, s_con, settings, start, &mut observer)
     }
 }

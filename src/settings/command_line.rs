@@ -1,6 +1,6 @@
 //! The command line.
 
-use std::num::{NonZeroU16, NonZeroUsize};
+use std::num::NonZeroU16;
 use std::path::PathBuf;
 
 use clap::{Args, CommandFactory, Parser, ValueEnum, ValueHint};
@@ -28,8 +28,8 @@ pub const MANUAL: Manual = Manual {
             "takes options from a file, but for the tolerance",
         ),
         (
-            "srun contact-dd-mpi problem.h5 --restart --log json",
-            "goes on from a checkpoint in a batch job whose log a program reads",
+            "srun contact-dd-mpi problem.h5 --log json",
+            "solves in a batch job whose log a program reads",
         ),
     ],
     exit_codes: &[
@@ -44,10 +44,7 @@ pub const MANUAL: Manual = Manual {
             "ill-posed: a body is free to move under its load; the message names body and motion",
         ),
         ("5", "the output can't be written"),
-        (
-            "6",
-            "stopped by SIGTERM, SIGINT or SIGUSR1; --restart goes on",
-        ),
+        ("6", "stopped by SIGTERM, SIGINT or SIGUSR1"),
         ("1", "anything else"),
     ],
     files: &[
@@ -58,10 +55,6 @@ pub const MANUAL: Manual = Manual {
         (
             "problem.vtkhdf",
             "the result, for ParaView and h5py; it gets its name when it is whole",
-        ),
-        (
-            "problem.vtkhdf.checkpoint",
-            "how far a run that was stopped had come",
         ),
     ],
     environment: &[
@@ -136,28 +129,11 @@ pub struct RunSettings {
     /// Threads of each rank [default: 1]
     #[arg(long, value_name = "N", help_heading = "Running")]
     pub threads: Option<NonZeroU16>,
-
-    /// Write a checkpoint after every N sweeps [default: where a signal stops the run]
-    #[arg(long, value_name = "N", help_heading = "Running")]
-    pub checkpoint_every: Option<NonZeroUsize>,
-
-    /// Go on from the last good checkpoint of the same run, if there is one
-    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true,
-          default_missing_value = "true", value_parser = truth, help_heading = "Running")]
-    pub restart: Option<bool>,
 }
 
 impl RunSettings {
     /// The names of all of them, in files.
-    pub const NAMES: [&str; 7] = [
-        "output",
-        "report",
-        "log",
-        "quiet",
-        "threads",
-        "checkpoint_every",
-        "restart",
-    ];
+    pub const NAMES: [&str; 5] = ["output", "report", "log", "quiet", "threads"];
 }
 
 /// What a run prints.

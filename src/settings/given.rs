@@ -61,8 +61,6 @@ impl Given {
         let log = [&run.log, &run_file.log, &None];
         let quiet = [&run.quiet, &run_file.quiet, &None];
         let threads = [&run.threads, &run_file.threads, &None];
-        let every = [&run.checkpoint_every, &run_file.checkpoint_every, &None];
-        let restart = [&run.restart, &run_file.restart, &None];
         Settings {
             method: from.choose("method", method).unwrap_or(Method::Newton),
             tolerance: from
@@ -78,8 +76,6 @@ impl Given {
             log: from.choose("log", log).unwrap_or_default(),
             quiet: from.choose("quiet", quiet).unwrap_or(false),
             threads: from.choose("threads", threads).map_or(1, u16::from),
-            checkpoint_every: from.choose("checkpoint_every", every),
-            restart: from.choose("restart", restart).unwrap_or(false),
             check: self.command_line.check,
             settings: self.command_line.settings.clone(),
             problem: self.problem(),

@@ -2,11 +2,9 @@
 
 use std::collections::VecDeque;
 
-use nalgebra::{DMatrix, DVector};
-use serde::{Deserialize, Serialize};
-
 use super::method::Memory;
 use super::{Next, Residual, Sweeps, axpy};
+use nalgebra::{DMatrix, DVector};
 
 /// Steps that are remembered.
 const DEPTH: usize = 5;
@@ -14,7 +12,7 @@ const DEPTH: usize = 5;
 const MAX_SWEEPS: usize = 500;
 
 /// The steps that are remembered.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chords {
     /// U and the chord's step there, last time.
     last: Option<(Vec<f64>, Vec<f64>)>,

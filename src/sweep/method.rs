@@ -1,16 +1,14 @@
 //! The methods, M δ = r(U) with an M each: name, memory, and what a sweep of it does.
 
-pub use contact_dd_partition::solver::Method;
-use serde::{Deserialize, Serialize};
-
 use super::anderson::Chords;
 use super::newton::Stalls;
 use super::picard::Relaxation;
 use super::{Next, Residual, Sweeps};
 use crate::plan::cluster::Merging;
+pub use contact_dd_partition::solver::Method;
 
 /// What the method that has its turn remembers from one sweep to the next.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Memory {
     Newton(Stalls),
     Anderson(Chords),

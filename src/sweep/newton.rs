@@ -5,8 +5,6 @@
 //! whose sets may peel off one condition a sweep; keeping the law as it stands, λ ≥ 0, t ≤ g, gives
 //! a [`CoupledContact`] whose solution is U: one sweep gets there, the next ones take off round-off.
 
-use serde::{Deserialize, Serialize};
-
 use super::anderson::Chords;
 use super::method::Memory;
 use super::{Next, ROUND_OFF, Residual, SweepStatus, Sweeps, axpy};
@@ -19,7 +17,7 @@ const MAX_SWEEPS: usize = 20;
 const PATIENCE: usize = 3;
 
 /// Sweeps in a row that got no further.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stalls(usize);
 
 impl Sweeps<'_, '_> {

@@ -1,7 +1,5 @@
 //! What sweeps leave: U, why they ended, and how they got there.
 
-use serde::{Deserialize, Serialize};
-
 use crate::certificate::Certificate;
 use crate::interface::s_con::ConTotals;
 
@@ -15,7 +13,7 @@ const LOADED: f64 = 1e-2;
 const NOT_BALANCED_OF_LOAD: f64 = 1e-2;
 
 /// One line of the convergence history; line 0 is the bilateral start.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepRecord {
     /// Number of the sweep.
     pub sweep: usize,

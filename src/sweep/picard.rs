@@ -4,8 +4,6 @@
 //! stiffness on both sides of Γ doesn't give; relaxed, U ← U + θ S_0⁻¹ r converges for
 //! θ < 2 / (1 + λ), λ the largest eigenvalue of S_0⁻¹ S_CON', wherever S_0 is regular.
 
-use serde::{Deserialize, Serialize};
-
 use super::method::Memory;
 use super::{Next, Residual, SweepStatus, Sweeps, axpy};
 use crate::schur::factor::BoundaryLastCholesky;
@@ -19,7 +17,7 @@ const POWER_STEPS: usize = 60;
 const DIVERGED: f64 = 1e8;
 
 /// θ and where it began.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relaxation {
     theta: f64,
     /// ρ(S_0⁻¹ S_CON').

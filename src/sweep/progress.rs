@@ -1,13 +1,11 @@
 //! What sweeps remember from one to the next.
 
-use serde::{Deserialize, Serialize};
-
 use super::method::{Memory, Method};
 use super::outcome::{SweepOutcome, SweepRecord, SweepStatus};
 use crate::interface::s_con::ConTotals;
 
 /// How far sweeps have come: all that the next one depends on beside the pairs' answers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
     /// U.
     pub u: Vec<f64>,

@@ -12,9 +12,9 @@
 mod bad_input;
 mod endings;
 mod outputs;
-mod restarting;
 mod resting;
 mod steps;
+mod stopping;
 mod sudden_ends;
 #[path = "../support/mod.rs"]
 mod support;
@@ -66,15 +66,12 @@ fn main() -> ExitCode {
     outputs::full_disk(&mut trials);
     outputs::vanished_folder(&mut trials);
     sudden_ends::sudden_ends(&mut trials);
-    restarting::stopped_and_restarted(&mut trials);
-    restarting::stopped_while_factorizing(&mut trials);
-    restarting::every_sweep(&mut trials);
-    restarting::other_checkpoints(&mut trials);
-    restarting::unwritable(&mut trials);
+    stopping::stopped_while_factorizing(&mut trials);
+    stopping::stopped_while_sweeping(&mut trials);
+    stopping::stopped_between_steps(&mut trials);
     steps::no_equilibrium(&mut trials);
     steps::squeezed(&mut trials);
     steps::not_converged(&mut trials);
-    steps::restarted(&mut trials);
     libtest_mimic::run(&arguments, trials.0).exit_code()
 }
 

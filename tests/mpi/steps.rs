@@ -97,35 +97,3 @@ pub fn not_converged(trials: &mut Trials) {
         assert!(named > 1, "{error}");
     });
 }
-
-/// A run that a step's checkpoint stops goes on there with the same bits.
-pub fn restarted(trials: &mut Trials) {
-    let picard = ["--method", "picard", "--tolerance", "1e-4"];
-    trials.on_all_ranks("steps::restarted", move |ranks| {
-        let (text, mesh) = built_in("granite", 0);
-        let steps =
-            "[[step]]\nscale = 0.9\n[[step]]\n[[step.pressure]]\non = 'top'\nvalue = '3e6+1e5*x'";
-        let case = Case::of(&model(&format!("{text}\n{steps}"), mesh), 8);
-        let whole = case.run_on(ranks, &picard);
-        assert_eq!(whole.code(), 0, "{}{}", whole.stdout, whole.stderr);
-        let expected = datasets(&case.result());
-        let steps = Solution::steps(&case.result());
-        let most = steps.iter().map(Solution::sweeps).max().unwrap();
-        // Only the step with most sweeps gets so far.
-        let stop = [
-            "--max-sweeps",
-            &(most - 1).to_string(),
-            "--checkpoint-every",
-        ]
-        .map(String::from);
-        let stop: Vec<&str> = stop.iter().map(String::as_str).collect();
-        let every = (most - 2).to_string();
-        let stopped = case.run_on(ranks, &[&picard[..], &stop, &[&every]].concat());
-        assert_eq!(stopped.code(), 3, "{}{}", stopped.stdout, stopped.stderr);
-        let on = case.run_on(1 + ranks % 4, &[&picard[..], &["--restart"]].concat());
-        assert_eq!(on.code(), 0, "{}{}", on.stdout, on.stderr);
-        assert!(!on.stdout.contains("no good checkpoint"));
-        assert!(datasets(&case.result()) == expected);
-        assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
-    });
-}

@@ -97,29 +97,6 @@ fn the_command_line_takes_back_what_a_file_says() {
 }
 
 #[test]
-fn a_checkpoint_is_that_of_the_settings_that_were_resolved() {
-    let case = granite("[solver]\nmethod = 'picard'\ntolerance = 1e-4\n");
-    let whole = case.run(&[]);
-    assert_eq!(whole.code(), 0, "{}", whole.stderr);
-    let expected = datasets(&case.result());
-    let stopped = case.run(&["--max-sweeps", "3", "--checkpoint-every", "2"]);
-    assert_eq!(stopped.code(), 3, "{}", stopped.stderr);
-    let other = case.run(&["--restart", "--method", "newton"]);
-    assert_eq!(other.code(), 2);
-    assert!(
-        other.stderr.contains("it is of --method picard"),
-        "{}",
-        other.stderr
-    );
-    let on = case.run(&["--restart"]);
-    assert_eq!(on.code(), 0, "{}", on.stderr);
-    assert!(!on.stdout.contains("begins at the start"), "{}", on.stdout);
-    assert!(datasets(&case.result()) == expected);
-    let solution = Solution::read(&case.result());
-    assert_eq!(solution.report["settings_from"]["method"], "problem file");
-}
-
-#[test]
 fn results_never_take_the_place_of_the_settings() {
     let case = case("");
     let file = case.folder().join("settings.toml");

@@ -6,11 +6,8 @@ use clap::ValueEnum;
 use contact_dd_mpi::comm::{Comm, start};
 use contact_dd_mpi::contact::pair::ContactPair;
 use contact_dd_mpi::interface::operator::Interface;
-use contact_dd_mpi::interface::s_con::{ConState, SCon};
-use contact_dd_mpi::sweep::progress::Progress;
-use contact_dd_mpi::sweep::{
-    Method, Pause, Start, SweepOutcome, SweepSettings, SweepStatus, Sweeps,
-};
+use contact_dd_mpi::interface::s_con::SCon;
+use contact_dd_mpi::sweep::{Method, Start, SweepOutcome, SweepSettings, SweepStatus, Sweeps};
 
 use super::small::{APPROACHES, Small};
 use crate::support::close::close;
@@ -61,15 +58,6 @@ impl Aitken {
     }
 }
 
-/// Nothing asks these sweeps to stop.
-struct Never;
-
-impl Pause for Never {
-    fn pause(&mut self, _: &Progress, _: &ConState, _: &mut SCon<'_>) -> bool {
-        false
-    }
-}
-
 /// What finds U.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
@@ -105,7 +93,6 @@ fn solve(comm: &Comm, small: &Small, way: Way) -> (SweepOutcome, Vec<u32>) {
                 &mut s_con,
                 settings,
                 Start::Bilateral,
-                &mut Never,
                 &mut observer,
             );
             found.unwrap()

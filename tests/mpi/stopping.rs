@@ -1,0 +1,81 @@
+//! Runs that a signal stops.
+
+use rustix::process::Signal;
+
+use super::*;
+
+/// A signal stops a run between two sweeps, with exit code 6, a message and the older result untouched.
+pub fn stopped_while_sweeping(trials: &mut Trials) {
+    // A program that is optimized doesn't wait on purpose.
+    if cfg!(not(debug_assertions)) {
+        return;
+    }
+    let signals: [(&str, &[Signal]); 4] = [
+        ("term", &[Signal::TERM]),
+        ("int", &[Signal::INT]),
+        ("usr1", &[Signal::USR1]),
+        // A batch system asks, and asks again otherwise; only the same one twice ends at once.
+        ("usr1_and_term", &[Signal::USR1, Signal::TERM]),
+    ];
+    for (name, signals) in signals {
+        trials.on_all_ranks(&format!("stopped::by_{name}"), move |ranks| {
+            let case = Case::of(&built_in_model("granite", 0), 8);
+            fs::write(case.result(), "an older result").unwrap();
+            let ended = stop(&case, ranks, "sweeping", |running, first| {
+                // Both signals are there before it goes on.
+                assert!(!running.descendants("contact-dd-mpi").is_empty());
+                signals.iter().for_each(|&signal| send(first, signal));
+            });
+            failed_once(&ended, 6, &["interrupted after 0 sweeps"]);
+            let result = fs::read_to_string(case.result()).unwrap();
+            assert_eq!(result, "an older result");
+            assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
+        });
+    }
+}
+
+/// Between two load steps it is enough that one rank hears of it.
+pub fn stopped_between_steps(trials: &mut Trials) {
+    if cfg!(not(debug_assertions)) {
+        return;
+    }
+    trials.on_all_ranks("stopped::between_steps", |ranks| {
+        let case = Case::of(&steps::two_blocks_in_steps(), 6);
+        let ended = stop(&case, ranks, "recovering", |running, _| {
+            let all = running.descendants("contact-dd-mpi");
+            send(*all.last().unwrap(), Signal::USR1);
+        });
+        failed_once(&ended, 6, &["interrupted after 1 of 3 load steps"]);
+        assert_eq!(case.files(), ["problem.h5"]);
+    });
+}
+
+/// A run whose first rank stops in `phase` until something was `sent`.
+fn stop(case: &Case, ranks: usize, phase: &str, sent: impl FnOnce(&Running, u32)) -> Ended {
+    let mut command = program(ranks);
+    command.arg(case.problem());
+    command.env("CONTACT_DD_END", format!("0 stop {phase}"));
+    let running = Running::start(&mut command);
+    let first = running.stopped(LIMIT);
+    sent(&running, first);
+    send(first, Signal::CONT);
+    running.wait(LIMIT)
+}
+
+/// Blocks that are being factorized are finished, then the run ends.
+pub fn stopped_while_factorizing(trials: &mut Trials) {
+    trials.on_all_ranks("stopped::while_factorizing", |ranks| {
+        let case = Case::of(&built_in_model("granite", 2), 40);
+        let mut running = Running::start(program(ranks).arg(case.problem()));
+        let deadline = Instant::now() + LIMIT;
+        // The result file is made when everything is read.
+        while case.files().len() < 2 && Instant::now() < deadline {
+            thread::sleep(Duration::from_millis(2));
+        }
+        let all = running.descendants("contact-dd-mpi");
+        assert!(running.is_running(), "the problem is too small");
+        send(all[0], Signal::USR1);
+        failed_once(&running.wait(LIMIT), 6, &["while factorizing"]);
+        assert_eq!(case.files(), ["problem.h5"]);
+    });
+}
