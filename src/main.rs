@@ -7,7 +7,6 @@ use contact_dd_mpi::error::Failure;
 use contact_dd_mpi::output::message;
 use contact_dd_mpi::run::{Ending, run};
 use contact_dd_mpi::settings::command_line::{CommandLine, LogFormat};
-use contact_dd_mpi::settings::given::Given;
 use contact_dd_partition::manual::{Answer, BAD_USAGE};
 
 fn main() -> ExitCode {
@@ -24,24 +23,18 @@ fn main() -> ExitCode {
     };
     let comm = world.comm();
     match command_line {
-        Ok(command_line) => solve(&comm, command_line),
+        Ok(command_line) => solve(&comm, &command_line),
         Err(answer) if comm.is_root() => tell(&answer),
         Err(answer) => answer.exit_code(),
     }
 }
 
 /// Runs on all ranks. Collective.
-fn solve(comm: &Comm, command_line: CommandLine) -> ExitCode {
-    let mut log = LogFormat::of_this_program();
-    let given = comm.agree(Given::read(command_line).map_err(Failure::from));
-    let ending = given.and_then(|given| {
-        log = given.log();
-        run(comm, &given)
-    });
-    match ending {
+fn solve(comm: &Comm, command_line: &CommandLine) -> ExitCode {
+    match run(comm, command_line) {
         Ok(Ending::Converged) => ExitCode::SUCCESS,
         Ok(Ending::NotConverged) => ExitCode::from(3),
-        Err(failure) if comm.is_root() => fail(log, &failure),
+        Err(failure) if comm.is_root() => fail(command_line.run.log.unwrap_or_default(), &failure),
         Err(failure) => failure.exit_code(),
     }
 }

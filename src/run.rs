@@ -64,7 +64,7 @@ use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
 use crate::settings::Settings;
-use crate::settings::given::Given;
+use crate::settings::command_line::CommandLine;
 use crate::sweep::SweepStatus;
 
 /// How a run ended that didn't fail.
@@ -76,18 +76,18 @@ pub enum Ending {
     NotConverged,
 }
 
-/// Solves the problem file that was `given` and writes the results. Collective.
+/// Solves the problem that the command line names and writes the results. Collective.
 ///
 /// # Errors
 /// Bad input, a scene without equilibrium, or an output that can't be written; the same on all
 /// ranks.
-pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
+pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     let began = Instant::now();
     let mut seconds = PhaseSeconds::default();
     // What a problem file asks for counts where nobody says otherwise.
     phase("reading");
-    let file = comm.agree(ProblemFile::open(&given.problem()).map_err(Failure::from))?;
-    let settings = &given.resolve(&file.catalog().solver);
+    let file = comm.agree(ProblemFile::open(&command_line.problem()).map_err(Failure::from))?;
+    let settings = &Settings::new(command_line, &file.catalog().solver);
     comm.agree(settings.check_paths())?;
     let par = match settings.threads {
         1 => Par::Seq,
@@ -219,7 +219,7 @@ pub fn run(comm: &Comm, given: &Given) -> Result<Ending, Failure> {
     }
     seconds.total = began.elapsed().as_secs_f64();
 
-    let ranks = report::collect(comm, &seconds, &plan, condensed.repeats.found);
+    let ranks = report::collect(comm, &seconds, &plan);
     let converged = steps
         .iter()
         .all(|step| step.outcome.status == SweepStatus::Converged);

@@ -17,6 +17,5 @@ pub mod ordering;
 mod panel;
 mod partial;
 pub mod pattern;
-pub mod repeats;
 mod supernodes;
 pub mod trace;

@@ -1,20 +1,18 @@
 //! The settings of a run, resolved.
 //!
-//! [`command_line`] parses options, [`mod@file`] reads those of `--settings`, the problem file may hold
-//! some, and [`given`] lets the first that says something win; [`origin`] remembers which it was.
+//! [`command_line`] parses options, the problem file may hold some, and the former take precedence; [`origin`]
+//! remembers which it was.
 
 pub mod command_line;
-pub mod file;
-pub mod given;
 pub mod origin;
-pub mod result_path;
 
 use std::path::{Path, PathBuf};
 
+use contact_dd_partition::solver::{Positive, SolverSettings};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
-use self::command_line::LogFormat;
+use self::command_line::{CommandLine, LogFormat};
 use self::origin::{Origin, Origins};
 use crate::error::Failure;
 use crate::plan::cluster::Merging;
@@ -57,38 +55,62 @@ pub struct Settings {
     pub quiet: bool,
     /// What is printed.
     pub log: LogFormat,
-    /// The settings file.
-    #[serde(serialize_with = "as_optional_text")]
-    #[schemars(with = "Option<String>")]
-    pub settings: Option<PathBuf>,
     /// Where each of these came from.
     #[serde(skip)]
     pub from: Origins,
 }
 
 impl Settings {
+    /// What the command line says, else what the problem file says, else the defaults.
+    pub fn new(command_line: &CommandLine, problem: &SolverSettings) -> Self {
+        let mut from = Origins::default();
+        let CommandLine { solver, run, .. } = command_line;
+        let tolerance = from.choose("tolerance", &solver.tolerance, &problem.tolerance);
+        let relaxation = from.choose("relaxation", &solver.relaxation, &problem.relaxation);
+        let path = command_line.problem();
+        Self {
+            method: from
+                .choose("method", &solver.method, &problem.method)
+                .unwrap_or(Method::Newton),
+            tolerance: tolerance.map_or(DEFAULT_TOLERANCE, Positive::value),
+            max_sweeps: from.choose("max_sweeps", &solver.max_sweeps, &problem.max_sweeps),
+            relaxation: relaxation.map(Positive::value),
+            no_stress: from
+                .choose("no_stress", &solver.no_stress, &problem.no_stress)
+                .unwrap_or(false),
+            output: from
+                .choose("output", &run.output, &None)
+                .unwrap_or_else(|| default_result_path(&path)),
+            report: from.choose("report", &run.report, &None),
+            log: from.choose("log", &run.log, &None).unwrap_or_default(),
+            quiet: from
+                .choose("quiet", &run.quiet.then_some(true), &None)
+                .unwrap_or(false),
+            threads: from
+                .choose("threads", &run.threads, &None)
+                .map_or(1, u16::from),
+            check: command_line.check,
+            problem: path,
+            from,
+        }
+    }
+
     /// What a command line of these words settles alone.
     #[cfg(test)]
     pub fn of_options(words: &[&str]) -> Self {
         use clap::Parser;
         let words = ["contact-dd-mpi"].iter().chain(words);
-        let command_line = command_line::CommandLine::parse_from(words);
-        let given = given::Given::read(command_line).unwrap();
-        given.resolve(&Default::default())
+        Self::new(&CommandLine::parse_from(words), &SolverSettings::default())
     }
 
     /// Checks that the results replace nothing that they are made from.
     ///
     /// # Errors
-    /// One of the outputs is the problem file, the settings file or the other output.
+    /// One of the outputs is the problem file or the other output.
     pub fn check_paths(&self) -> Result<(), Failure> {
         let outputs = [
             ("--output", Some(&self.output)),
             ("--report", self.report.as_ref()),
-        ];
-        let inputs = [
-            ("problem", Some(&self.problem)),
-            ("settings", self.settings.as_ref()),
         ];
         let refuse = |option: &str, path: &Path, what: &str| {
             let path = path.display();
@@ -97,12 +119,8 @@ impl Settings {
             Err(Failure::input(message))
         };
         for (option, output) in outputs {
-            for (what, input) in inputs {
-                if let (Some(output), Some(input)) = (output, input)
-                    && same_file(output, input)
-                {
-                    return refuse(option, input, what);
-                }
+            if output.is_some_and(|output| same_file(output, &self.problem)) {
+                return refuse(option, &self.problem, "problem");
             }
         }
         match &self.report {
@@ -159,15 +177,23 @@ impl Settings {
         if self.no_stress {
             list.push(("stress", settled("no_stress", "left out".to_string())));
         }
-        if let Some(file) = &self.settings {
-            list.push(("settings", file.display().to_string()));
-        }
         let path = |name: &str, path: &Path| settled(name, path.display().to_string());
         if let Some(report) = &self.report {
             list.push(("report", path("report", report)));
         }
         list.push(("result", path("output", &self.output)));
         list
+    }
+}
+
+/// The result file that belongs to `problem`: the same stem with the extension `vtkhdf`.
+///
+/// A problem that has this extension itself gets a result beside it, never on top of it.
+fn default_result_path(problem: &Path) -> PathBuf {
+    let result = problem.with_extension("vtkhdf");
+    match result == problem {
+        true => problem.with_extension("result.vtkhdf"),
+        false => result,
     }
 }
 
@@ -187,4 +213,21 @@ fn as_optional_text<S: Serializer>(
 ) -> Result<S::Ok, S::Error> {
     let text = path.as_ref().map(|path| path.display().to_string());
     text.serialize(serializer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_result_lies_beside_its_problem() {
+        for (problem, result) in [
+            ("demo/problem.h5", "demo/problem.vtkhdf"),
+            ("problem", "problem.vtkhdf"),
+            ("granite.8.h5", "granite.8.vtkhdf"),
+            ("granite.vtkhdf", "granite.result.vtkhdf"),
+        ] {
+            assert_eq!(default_result_path(Path::new(problem)), Path::new(result));
+        }
+    }
 }

@@ -78,7 +78,7 @@ fn pair(c: &mut Criterion) {
     let b = scene.plan.groups[0];
     let (dofs, ..) = scene.condensed(b);
     let gaps = &scene.blocks[b].gaps;
-    let limits = Limits::new(dofs.approaches, &dofs.approach_of, &gaps, 0.0);
+    let limits = Limits::new(dofs.approaches, &dofs.approach_of, gaps, 0.0);
     let mut condensed = scene.of_block(b);
     condensed.fill_upper_triangle();
     let u = vec![0.0; condensed.traces.len()];

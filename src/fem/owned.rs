@@ -1,12 +1,9 @@
 //! A block as its owner has it: subdomains and contact points from the problem file.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
-
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::problem::SubdomainNode;
 
 use super::block::Block;
-use crate::schur::repeats::BlockShape;
 
 /// A block as it was read.
 #[derive(Clone, Debug)]
@@ -36,22 +33,5 @@ impl OwnedBlock {
         let gaps = self.points.iter().zip(&self.gaps);
         gaps.map(|(point, gap)| gap - point.normal_jump(self.block.dim, u))
             .collect()
-    }
-
-    /// What it has in common with blocks that are equal to it.
-    pub fn shape(&self) -> BlockShape {
-        let mut mesh = DefaultHasher::new();
-        let points = &self.block.points;
-        for (point, first) in points.iter().flat_map(|p| p.iter().zip(&points[0])) {
-            mesh.write_u64((point - first).to_bits());
-        }
-        for member in &self.block.members {
-            member.cells.connectivity().hash(&mut mesh);
-        }
-        BlockShape {
-            interface: self.block.interface.len(),
-            conditions: self.points.len(),
-            mesh: mesh.finish(),
-        }
     }
 }

@@ -66,8 +66,6 @@ pub struct RankReport {
     pub bytes_sent: u64,
     /// Number of subdomains that it owns.
     pub subdomains: usize,
-    /// Blocks that needed no factorization, equal to others of this rank.
-    pub repeated: usize,
 }
 
 #[cfg(test)]

@@ -244,7 +244,7 @@ mod tests {
         ];
         assert_eq!(keys(&value["seconds"]), phases);
         let mut of_rank = phases.to_vec();
-        of_rank.extend(["bytes_sent", "peak_memory_bytes", "repeated", "subdomains"]);
+        of_rank.extend(["bytes_sent", "peak_memory_bytes", "subdomains"]);
         of_rank.sort_unstable();
         assert_eq!(keys(&value["per_rank"][0]), of_rank);
         assert_eq!(

@@ -15,6 +15,7 @@ use crate::plan::Plan;
 use crate::rigid::analysis::Pin;
 use crate::schur::condensed::Condensed;
 use crate::schur::factor::FactorError;
+use crate::schur::local::LocalSchur;
 
 /// What is needed to condense any block.
 #[derive(Clone, Copy)]
@@ -55,10 +56,8 @@ impl Condensation<'_> {
         let (stiffness, springs) =
             assemble(block, &dofs, &catalog.materials, &pins).ok_or_else(|| size(plan, number))?;
         let assembled = Instant::now();
-        let (schur, s) = condensed
-            .repeats
-            .factorize(owned.shape(), &stiffness, dofs.interior, par)
-            .map_err(|error| match error {
+        let (schur, s) =
+            LocalSchur::new(&stiffness, dofs.interior, par).map_err(|error| match error {
                 FactorError::Size => size(plan, number),
                 FactorError::Pivot(unknown) => moves(owned, &dofs, unknown, catalog),
             })?;

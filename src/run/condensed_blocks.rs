@@ -1,7 +1,6 @@
 //! The condensed blocks and clusters of a rank.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use crate::contact::pair::ContactPair;
 use crate::fem::assembly::Spring;
@@ -9,7 +8,6 @@ use crate::fem::dofs::Dofs;
 use crate::schur::condensed::Condensed;
 use crate::schur::local::LocalSchur;
 use crate::schur::merge::Merge;
-use crate::schur::repeats::Repeats;
 
 /// What this rank has of the condensed blocks and of what they were merged into.
 #[derive(Debug, Default)]
@@ -21,9 +19,7 @@ pub struct CondensedBlocks {
     /// The springs in it.
     pub springs: BTreeMap<usize, Vec<Spring>>,
     /// The factor of every block.
-    pub factors: BTreeMap<usize, Arc<LocalSchur>>,
-    /// What equal blocks share.
-    pub repeats: Repeats,
+    pub factors: BTreeMap<usize, LocalSchur>,
     /// The merge at every inner node of the hierarchy.
     pub merges: BTreeMap<usize, Merge>,
     /// T: the clusters without contact, by their place among all.

@@ -16,7 +16,6 @@ use crate::output::bar::Bar;
 use crate::rigid::survey::Survey;
 use crate::schur::condensed::Condensed;
 use crate::schur::merge::{LooseTrace, Merge, Spare};
-use crate::schur::repeats::Repeats;
 use crate::schur::trace::TraceDof;
 
 /// Condenses the `blocks` of this rank and merges them, and what other ranks send, up to the
@@ -37,10 +36,7 @@ pub fn condense_clusters(
         comm,
         condensation,
         blocks,
-        condensed: CondensedBlocks {
-            repeats: Repeats::new(blocks.values().map(OwnedBlock::shape)),
-            ..CondensedBlocks::default()
-        },
+        condensed: CondensedBlocks::default(),
         waiting: BTreeMap::new(),
         spare: Spare::default(),
     };

@@ -62,12 +62,7 @@ impl Outputs {
 }
 
 /// Brings every rank's times and memory to the root. Collective.
-pub fn collect(
-    comm: &Comm,
-    seconds: &PhaseSeconds,
-    plan: &Plan,
-    repeated: usize,
-) -> Vec<RankReport> {
+pub fn collect(comm: &Comm, seconds: &PhaseSeconds, plan: &Plan) -> Vec<RankReport> {
     let owned = plan
         .blocks
         .iter()
@@ -75,12 +70,7 @@ pub fn collect(
         .map(|b| b.subdomains.len() as i64)
         .sum();
     let mut message = Message {
-        integers: vec![
-            peak_memory_bytes() as i64,
-            comm.bytes_sent() as i64,
-            owned,
-            repeated as i64,
-        ],
+        integers: vec![peak_memory_bytes() as i64, comm.bytes_sent() as i64, owned],
         reals: vec![seconds.total],
     };
     message
@@ -94,7 +84,6 @@ pub fn collect(
                 peak_memory_bytes: reader.integer() as u64,
                 bytes_sent: reader.integer() as u64,
                 subdomains: reader.count(),
-                repeated: reader.count(),
                 seconds: PhaseSeconds {
                     total: reader.real(),
                     read: reader.real(),
@@ -212,13 +201,6 @@ fn skipped(totals: &Totals<'_>) -> Vec<String> {
         skipped.push(format!(
             "ranks without work: {idle} of {}, there are more ranks than blocks",
             totals.ranks.len()
-        ));
-    }
-    let repeated: usize = totals.ranks.iter().map(|r| r.repeated).sum();
-    if repeated > 0 {
-        skipped.push(format!(
-            "factorizations: {repeated} of {}, equal to others of the same rank",
-            totals.plan.blocks.len()
         ));
     }
     let evaluations = totals.steps.iter().map(|step| step.outcome.evaluations);

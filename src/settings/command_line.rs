@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use clap::{Args, CommandFactory, Parser, ValueEnum, ValueHint};
 use contact_dd_partition::manual::{Answer, Document, Manual};
-use contact_dd_partition::solver::{SolverSettings, truth};
-use serde::{Deserialize, Serialize};
+use contact_dd_partition::solver::SolverSettings;
+use serde::Serialize;
 
 /// What the manual says beside the options.
 pub const MANUAL: Manual = Manual {
@@ -22,10 +22,6 @@ pub const MANUAL: Manual = Manual {
         (
             "mpirun -n 4 contact-dd-mpi problem.h5 -o out.vtkhdf --report report.json",
             "names the result and writes a report in JSON, too",
-        ),
-        (
-            "contact-dd-mpi problem.h5 --settings careful.toml --tolerance 1e-8",
-            "takes options from a file, but for the tolerance",
         ),
         (
             "srun contact-dd-mpi problem.h5 --log json",
@@ -75,20 +71,13 @@ pub struct CommandLine {
           required_unless_present = "generate")]
     problem: Option<PathBuf>,
 
-    /// The settings that are said here.
+    /// The settings of the solution.
     #[command(flatten)]
     pub solver: SolverSettings,
 
-    /// The settings that are said here.
+    /// The settings of the run.
     #[command(flatten)]
     pub run: RunSettings,
-
-    /// Take what isn't said here from a file in TOML
-    ///
-    /// It names options as in `tolerance = 1e-8`, with underscores for hyphens.
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath,
-          help_heading = "Running")]
-    pub settings: Option<PathBuf>,
 
     /// Validate the problem file, tell what it holds and what solving it would take, solve nothing
     #[arg(long, help_heading = "Running")]
@@ -104,9 +93,8 @@ pub struct CommandLine {
     generate: Option<Document>,
 }
 
-/// What a user may settle of a run, on the command line or in a file; what isn't said is `None`.
-#[derive(Clone, Debug, Default, PartialEq, Args, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+/// What a user may settle of a run; what isn't said is `None`.
+#[derive(Clone, Debug, Default, PartialEq, Args)]
 pub struct RunSettings {
     /// Result file [default: the problem's stem + .vtkhdf]
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath,
@@ -122,32 +110,17 @@ pub struct RunSettings {
     pub log: Option<LogFormat>,
 
     /// Print warnings and errors only
-    #[arg(short, long, value_name = "BOOL", num_args = 0..=1, require_equals = true,
-          default_missing_value = "true", value_parser = truth, help_heading = "Output")]
-    pub quiet: Option<bool>,
+    #[arg(short, long, help_heading = "Output")]
+    pub quiet: bool,
 
     /// Threads of each rank [default: 1]
     #[arg(long, value_name = "N", help_heading = "Running")]
     pub threads: Option<NonZeroU16>,
 }
 
-impl RunSettings {
-    /// The names of all of them, in files.
-    pub const NAMES: [&str; 5] = ["output", "report", "log", "quiet", "threads"];
-}
-
 /// What a run prints.
 #[derive(
-    Clone,
-    Copy,
-    Debug,
-    Default,
-    PartialEq,
-    Eq,
-    ValueEnum,
-    Serialize,
-    Deserialize,
-    schemars::JsonSchema,
+    Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, schemars::JsonSchema,
 )]
 #[serde(rename_all = "lowercase")]
 pub enum LogFormat {

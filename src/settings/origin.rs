@@ -11,13 +11,10 @@ pub enum Origin {
     /// The command line.
     #[serde(rename = "command line")]
     CommandLine,
-    /// The file of `--settings`.
-    #[serde(rename = "settings file")]
-    SettingsFile,
     /// `/settings` of the problem file.
     #[serde(rename = "problem file")]
     ProblemFile,
-    /// Nobody.
+    /// Neither.
     #[serde(rename = "default")]
     Default,
 }
@@ -26,7 +23,6 @@ impl fmt::Display for Origin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::CommandLine => "command line",
-            Self::SettingsFile => "settings file",
             Self::ProblemFile => "problem file",
             Self::Default => "default",
         })
@@ -39,25 +35,20 @@ impl fmt::Display for Origin {
 pub struct Origins(BTreeMap<&'static str, Origin>);
 
 impl Origins {
-    /// Takes the first that says something of a setting: the command line, the settings file, the
-    /// problem file.
+    /// What the command line says of a setting, else what the problem file does.
     pub(super) fn choose<T: Clone>(
         &mut self,
         name: &'static str,
-        said: [&Option<T>; 3],
+        command_line: &Option<T>,
+        problem_file: &Option<T>,
     ) -> Option<T> {
-        let origins = [
-            Origin::CommandLine,
-            Origin::SettingsFile,
-            Origin::ProblemFile,
-        ];
-        let mut said = said.into_iter().zip(origins);
-        let found = said.find_map(|(value, origin)| Some((value.clone()?, origin)));
-        let origin = found
-            .as_ref()
-            .map_or(Origin::Default, |(_, origin)| *origin);
+        let origin = match (command_line, problem_file) {
+            (Some(_), _) => Origin::CommandLine,
+            (None, Some(_)) => Origin::ProblemFile,
+            (None, None) => Origin::Default,
+        };
         self.0.insert(name, origin);
-        found.map(|(value, _)| value)
+        command_line.clone().or_else(|| problem_file.clone())
     }
 
     /// Where the setting called `name` came from.

@@ -21,7 +21,6 @@
 
 mod block;
 mod code;
-mod equations;
 mod links;
 mod page;
 mod printed;
@@ -59,9 +58,6 @@ pub fn trials() -> Vec<Trial> {
             false => runs,
         });
     }
-    trials.push(trial("the_method_has_the_papers_equations", move || {
-        equations::are_the_papers(&pages);
-    }));
     trials.push(trial("a_page_is_split_into_its_blocks", block::are_split));
     trials.push(trial("unmarked_blocks_are_refused", block::refuse_unmarked));
     trials.push(trial("dots_stand_for_anything", printed::dots));

@@ -89,25 +89,8 @@ pub fn bad_input(trials: &mut Trials) {
     }
 }
 
-/// Settings that can't be, in a file or in the problem.
+/// Settings that can't be, in the problem.
 pub fn bad_settings(trials: &mut Trials) {
-    trials.on_all_ranks("bad_settings::in_a_file", |ranks| {
-        let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 2);
-        let file = case.folder().join("settings.toml");
-        let path = file.to_str().unwrap();
-        for (text, word) in [
-            ("threads = 2\ntolerence = 1e-8\n", "line 2: unknown key"),
-            ("\ntolerance = '1e-8'\n", "line 2: tolerance"),
-            ("max_sweeps = -3\n", "line 1: max_sweeps"),
-        ] {
-            fs::write(&file, text).unwrap();
-            let ended = case.run_on(ranks, &["--settings", path]);
-            failed_once(&ended, 2, &["settings.toml", word]);
-        }
-        fs::remove_file(&file).unwrap();
-        failed_once(&case.run_on(ranks, &["--settings", path]), 2, &[path]);
-        assert_eq!(case.files(), ["problem.h5"]);
-    });
     trials.on_all_ranks("bad_settings::in_the_problem", |ranks| {
         let scene = format!("{}\n[solver]\ntolerance = 1e-8\n", two_block_scene());
         let case = Case::of(&model(&scene, two_blocks().mesh), 2);

@@ -30,13 +30,13 @@ use std::time::{Duration, Instant};
 use libtest_mimic::{Arguments, Trial};
 
 use contact_dd_partition::model::Model;
-use support::blocks::{Blocks, jittered};
-use support::process::{Ended, Running, kill, send};
+use support::blocks::jittered;
+use support::process::{Ended, Running, send};
 use support::scenes::{
-    BODIES, JOINT, SUPPORTS, built_in, built_in_model, model, two_block_scene, two_blocks,
+    BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks,
 };
 use support::solution::{Solution, datasets};
-use support::solver::{Case, LIMIT, names_in, program};
+use support::solver::{Case, LIMIT, program};
 use support::sorts::sort;
 
 /// Numbers of ranks; there are few cores, so that more would only wait for each other.
@@ -53,7 +53,6 @@ fn main() -> ExitCode {
     let mut trials = Trials::default();
     same_results(&mut trials);
     without_stresses(&mut trials);
-    trials.once("equal_subdomains_are_factorized_once", one_factorization);
     trials.once("memory_is_about_what_was_estimated", memory);
     bad_input::bad_input(&mut trials);
     bad_input::bad_settings(&mut trials);
@@ -118,7 +117,7 @@ type Solved = OnceLock<(Case, BTreeMap<String, Vec<u64>>)>;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 17] = [
+    let cases: [(&str, MakeCase); 16] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
@@ -148,7 +147,6 @@ fn same_results(trials: &mut Trials) {
         }),
         ("row", || Case::of(&resting::row([-1e6, 0.0], true), 6)),
         ("fallen", || Case::of(&resting::fallen(), 5)),
-        ("equal_subdomains", || Case::of(&equal_squares(), 16)),
         ("mortar", || Case::of(&resting::uneven(), 7)),
         ("in_steps", || Case::of(&steps::two_blocks_in_steps(), 6)),
         ("on_circles", || Case::of(&resting::on_circles(), 6)),
@@ -200,39 +198,6 @@ fn without_stresses(trials: &mut Trials) {
         assert!(datasets(&case.result()) == expected);
         assert!(ended.stdout.contains("skipped: stresses"));
     });
-}
-
-/// A square of 4 × 4 equal subdomains, held at its lower edge.
-fn equal_squares() -> Model {
-    let mut squares = Blocks::new();
-    let mut names = Vec::new();
-    let mut scene = String::from("materials.rock = {young = 1e9, poisson = 0.25}\n");
-    for (i, j) in (0..16).map(|s| (s % 4, s / 4)) {
-        let name = format!("s{i}{j}");
-        let [x, y] = [i, j].map(|k| [f64::from(k), f64::from(k + 1)]);
-        squares = squares.rectangle(&name, x, y, [8, 8]);
-        scene += &format!("bodies.{name}.material = 'rock'\n");
-        names.push(format!("'{name}'"));
-    }
-    let names = names.join(", ");
-    scene.insert_str(0, &format!("plane = 'strain'\nsubdomains = [{names}]\n"));
-    scene += "[[displacement]]\non = ['s00 bottom', 's10 bottom', 's20 bottom', 's30 bottom']\nx = 0.0\ny = 0.0\n";
-    scene += "[[pressure]]\non = ['s03 top', 's30 right']\nvalue = 1e6\n";
-    model(&scene, squares.glued(|_, _| true).mesh)
-}
-
-fn one_factorization() {
-    let case = Case::of(&equal_squares(), 16);
-    assert_eq!(case.run(&[]).code(), 0);
-    let report = Solution::read(&case.result()).report;
-    // There are nine kinds: four corners, two at each of four edges, four within.
-    assert_eq!(report["per_rank"][0]["repeated"], 7);
-    let skipped = report["skipped"].as_array().unwrap();
-    assert!(
-        skipped
-            .iter()
-            .any(|s| s.as_str().unwrap().starts_with("factorizations: 7 of 16"))
-    );
 }
 
 /// What `--check` says of memory is what a run of the same problem needs, by a third.

@@ -176,13 +176,10 @@ impl Running {
         // The launcher first: it would take the end of a rank for news.
         self.child.kill().unwrap();
         self.child.wait().unwrap();
-        doomed.into_iter().for_each(kill);
+        for process in doomed {
+            send(process, Signal::KILL);
+        }
     }
-}
-
-/// Sends SIGKILL.
-pub fn kill(id: u32) {
-    send(id, Signal::KILL);
 }
 
 /// Sends a signal; a process that is gone already is fine.

@@ -48,9 +48,14 @@ impl Case {
         self.folder.path().join("problem.vtkhdf")
     }
 
-    /// The names of all files in the folder.
+    /// The names of all files in the folder, sorted.
     pub fn files(&self) -> Vec<String> {
-        names_in(self.folder.path())
+        let mut names: Vec<String> = std::fs::read_dir(self.folder())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
     }
 
     /// Runs without a launcher, with the problem and `args`.
@@ -72,16 +77,6 @@ impl Case {
         solution.check_certificate();
         solution
     }
-}
-
-/// The names of all files in a folder, sorted.
-pub fn names_in(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 /// A model cut into `count` subdomains.

@@ -85,7 +85,6 @@ mod tests {
             peak_memory_bytes: 3 << 20,
             bytes_sent: 0,
             subdomains: 1,
-            repeated: 0,
         };
         let table = printed(&[rank(1.0), rank(2.0), rank(6.0)]);
         let row = |name| {

@@ -103,15 +103,9 @@ fn load_steps_are_events_before_their_sweeps() {
 #[test]
 fn errors_are_events_on_stderr_with_the_exit_code() {
     let good = case("");
-    let nothing = good.folder().join("nothing.toml");
     let args = ["--log=json", "--method", "picard", "--relaxation", "1"];
     for (args, code, word) in [
         (&["--log", "json", "--metod", "x"][..], 2, "'--metod'"),
-        (
-            &["--log", "json", "--settings", nothing.to_str().unwrap()],
-            2,
-            "nothing.toml",
-        ),
         (
             &["--log=json", "-o", "/nowhere/at/all"],
             5,

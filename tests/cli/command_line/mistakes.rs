@@ -31,8 +31,6 @@ fn a_wrong_file_is_refused_with_what_was_expected() {
         let words = [file, "isn't a whole HDF5 file", "contact-dd-partition"];
         refused(&[file], folder, &words);
     }
-    let words = ["scene.toml: line 3", "unknown key 'title'"];
-    refused(&["problem.h5", "--settings", "scene.toml"], folder, &words);
     refused(&["nothing.h5"], folder, &["nothing.h5", "No such file"]);
 }
 

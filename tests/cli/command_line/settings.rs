@@ -1,10 +1,7 @@
-//! The command line goes before the settings file, that before the problem file, and all before the
-//! defaults.
-
-use std::fs;
+//! The command line goes before the problem file, and both before the defaults.
 
 use super::{case, granite, report};
-use crate::support::solution::{Solution, datasets};
+use crate::support::solution::datasets;
 
 #[test]
 fn a_relaxation_that_is_not_used_is_said_to_be_so() {
@@ -22,25 +19,19 @@ fn a_relaxation_that_is_not_used_is_said_to_be_so() {
 }
 
 #[test]
-fn the_first_to_say_something_settles_it() {
+fn the_command_line_goes_before_the_problem_file() {
     let case = case("[solver]\nmethod = 'anderson'\ntolerance = 1e-7\nmax_sweeps = 50\n");
-    let file = case.folder().join("settings.toml");
     let report_file = case.folder().join("report.json");
-    let text = format!(
-        "tolerance = 1e-8\nmax_sweeps = 60\nthreads = 2\nreport = '{}'\n",
-        report_file.display()
-    );
-    fs::write(&file, text).unwrap();
-    let args = ["--settings", file.to_str().unwrap(), "--max-sweeps", "70"];
-    let ended = case.run(&args);
+    let report_file = report_file.to_str().unwrap();
+    let ended = case.run(&["--max-sweeps", "70", "--report", report_file]);
     assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
     let report = report(&case);
     let (settings, from) = (&report["settings"], &report["settings_from"]);
     for (name, value, origin) in [
         ("method", "\"anderson\"", "problem file"),
-        ("tolerance", "1e-8", "settings file"),
+        ("tolerance", "1e-7", "problem file"),
         ("max_sweeps", "70", "command line"),
-        ("threads", "2", "settings file"),
+        ("threads", "1", "default"),
         ("relaxation", "null", "default"),
         ("no_stress", "false", "default"),
     ] {
@@ -50,7 +41,7 @@ fn the_first_to_say_something_settles_it() {
     assert_eq!(report["method"], "anderson");
     for line in [
         "method       anderson (problem file)",
-        "tolerance    1e-8 (settings file)",
+        "tolerance    1e-7 (problem file)",
         "sweeps       at most 70 (command line)",
     ] {
         assert!(ended.stdout.contains(line), "{}", ended.stdout);
@@ -67,15 +58,10 @@ fn options_mean_the_same_wherever_they_stand() {
     let ended = asking.run(&[]);
     assert_eq!(ended.code(), 0, "{}", ended.stderr);
     assert!(datasets(&asking.result()) == expected);
-    let file = plain.folder().join("settings.toml");
-    fs::write(&file, "method = 'picard'\ntolerance = 1e-4\n").unwrap();
-    let ended = plain.run(&["--settings", file.to_str().unwrap()]);
-    assert_eq!(ended.code(), 0, "{}", ended.stderr);
-    assert!(datasets(&plain.result()) == expected);
 }
 
 #[test]
-fn the_command_line_takes_back_what_a_file_says() {
+fn the_command_line_takes_back_what_the_problem_says() {
     let case = case("[solver]\nno_stress = true\n");
     let has_stress = |args: &[&str]| {
         let ended = case.run(args);
@@ -86,30 +72,5 @@ fn the_command_line_takes_back_what_a_file_says() {
     };
     assert!(!has_stress(&[]));
     assert!(has_stress(&["--no-stress=false"]));
-    let file = case.folder().join("settings.toml");
-    fs::write(&file, "quiet = true\nno_stress = false\n").unwrap();
-    let settings = ["--settings", file.to_str().unwrap()];
-    assert!(has_stress(&settings));
-    assert!(!has_stress(&[&settings[..], &["--no-stress"]].concat()));
-    assert_eq!(case.run(&settings).stdout, "");
-    let loud = case.run(&[&settings[..], &["--quiet=false"]].concat());
-    assert!(loud.stdout.contains("certificate"));
-}
-
-#[test]
-fn results_never_take_the_place_of_the_settings() {
-    let case = case("");
-    let file = case.folder().join("settings.toml");
-    fs::write(&file, "threads = 1\n").unwrap();
-    let file = file.to_str().unwrap();
-    for option in ["--output", "--report"] {
-        let ended = case.run(&["--settings", file, option, file]);
-        assert_eq!(ended.code(), 2);
-        assert!(
-            ended.stderr.contains("that is the settings file"),
-            "{}",
-            ended.stderr
-        );
-    }
-    assert_eq!(fs::read_to_string(file).unwrap(), "threads = 1\n");
+    assert_eq!(case.run(&["--quiet"]).stdout, "");
 }

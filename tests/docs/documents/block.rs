@@ -128,7 +128,7 @@ pub fn are_split() {
     assert_eq!(page.blocks[0].text, "a = 1\n");
     let lines: Vec<_> = page.blocks.iter().map(|block| block.line).collect();
     assert_eq!(lines, [5, 9, 15, 21, 27, 31, 35]);
-    assert_eq!(page.headings[0].text, "Title");
+    assert_eq!(page.headings[0], "Title");
 
     let text = "```sh\nls\n```\n\n<!-- none of this page is run: needs Slurm -->\n\nWords.\n\n```sh\nsrun\n```\n\nA `file`:\n\n```c\n```\n";
     let page = Page::parse("page.md", text);

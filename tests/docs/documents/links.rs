@@ -20,7 +20,7 @@ pub fn lead_somewhere(page: &Page, pages: &[Page]) {
             let is_there = target
                 .headings
                 .iter()
-                .any(|heading| anchor_of(&heading.text) == *anchor);
+                .any(|heading| anchor_of(heading) == *anchor);
             (!is_there).then(|| format!("{place}: {} has no heading #{anchor}", target.name))
         })
         .collect();

@@ -19,17 +19,12 @@ pub struct Link {
     pub anchor: Option<String>,
 }
 
-pub struct Heading {
-    pub line: usize,
-    pub text: String,
-}
-
 pub struct Page {
     /// Its path from the repository's root.
     pub name: String,
     pub blocks: Vec<Block>,
     pub links: Vec<Link>,
-    pub headings: Vec<Heading>,
+    pub headings: Vec<String>,
 }
 
 pub fn root() -> &'static Path {
@@ -119,7 +114,7 @@ impl Page {
                 }
                 Event::End(TagEnd::Heading(_)) => {
                     let text = inline.drain(..).map(Inline::into_text).collect();
-                    page.headings.push(Heading { line, text });
+                    page.headings.push(text);
                     preface = Preface::None;
                 }
                 Event::End(TagEnd::Item | TagEnd::TableCell) => {
