@@ -28,14 +28,14 @@ def automatic_scale(result, honest):
 
 def displacement(component, name):
     def draw(result, _scale, path):
-        contours(result, result.displacement[:, component], f"Displacement $u_{name}$", "m", path)
+        contours(result, result.displacement[:, component], f"Displacement $u_{name}$", result.units.length, path)
 
     return draw
 
 
 def stress(component, name):
     def draw(result, _scale, path):
-        contours(result, result.stress[:, component], f"Stress $\\tau_{{{name}}}$", "Pa", path)
+        contours(result, result.stress[:, component], f"Stress $\\tau_{{{name}}}$", result.units.stress, path)
 
     return draw
 
@@ -71,10 +71,9 @@ def main():
     parser.add_argument("--scale", type=factor, default="auto", help="enlargement of the deformation (default: auto, which shows it, unless closed contacts would seem to overlap)")
     parser.add_argument("--only", nargs="+", choices=PICTURES, default=list(PICTURES), metavar="PICTURE", help=f"which to draw (default: all of {', '.join(PICTURES)})")
     parser.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
-    parser.add_argument("--mm", action="store_true", help="the scene is in mm, N and MPa, not in m, N and Pa")
     arguments = parser.parse_args()
     try:
-        result = Result(arguments.result, arguments.step, arguments.mm)
+        result = Result(arguments.result, arguments.step)
     except FileNotFoundError:
         sys.exit(f"figures: {arguments.result}: there is no such file")
     except (OSError, KeyError):

@@ -14,7 +14,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import EngFormatter, MaxNLocator
 
-from drawing.run import from_mm, read
+from drawing.run import read
+from drawing.sides import DIRECTION
+from drawing.units import formatter, si
 
 PHASES = ["read", "assemble", "factorize", "interface", "sweeps", "recover", "write"]
 COLORS = ["#9aa5b1", "#5b8ff9", "#1f5fa8", "#d62728", "#ff9d4d", "#3a9d5d", "#6b7785"]
@@ -57,23 +59,10 @@ def escape(value):
     return html.escape(str(value))
 
 
-def si(value, unit, digits=3):
-    """A number with a prefix of its unit: 8.32 MPa."""
-    if value is None:
-        return "–"
-    if value == 0:
-        return f"0 {unit}"
-    # Rounded first: 999.9 k is 1 M.
-    value = float(f"{value:.{digits}g}")
-    power = int(np.clip(np.floor(np.log10(abs(value)) / 3), -3, 3))
-    prefix = {-3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}[power]
-    return f"{value / 10.0 ** (3 * power):.{digits}g} {prefix}{unit}"
-
-
-def forces(found):
+def forces(found, unit):
     """Forces with their units; what is round-off of the largest is nothing."""
     largest = max((abs(f) for one in found for f in one["force"] if f is not None), default=0)
-    return [[si(f if f is None or abs(f) > 1e-9 * largest else 0, "N/m") for f in one["force"][:2]] for one in found]
+    return [[si(f if f is None or abs(f) > 1e-9 * largest else 0, unit) for f in one["force"][:2]] for one in found]
 
 
 def more(found, words):
@@ -189,7 +178,7 @@ def convergence(report, rows):
     return section("Convergence", svg(figure))
 
 
-def steps(report):
+def steps(report, units):
     found = report.get("steps")
     if not found:
         return ""
@@ -198,7 +187,7 @@ def steps(report):
     figure, (left, right) = axes_of(9.2, 2.4, ncols=2)
     left.plot(times, pressures, "o-", color="#1f5fa8", ms=4, lw=1.4)
     left.set_ylim(0, 1.1 * max(pressures) or 1)
-    left.yaxis.set_major_formatter(EngFormatter("Pa"))
+    left.yaxis.set_major_formatter(formatter(units.stress))
     left.set_ylabel("largest pressure")
     right.plot(times, [step["active_contacts"] for step in found], "o-", color="#3a9d5d", ms=4, lw=1.4)
     right.set_ylim(0, None)
@@ -207,7 +196,7 @@ def steps(report):
         axes.set_xlabel("time")
     rows = [
         [escape(step["name"]), f"{step['time']:g}", escape(step["status"].replace("_", " ")), step["sweeps"],
-         step["active_contacts"], si(pressure, "Pa"), short(step["certificate"]["equilibrium"])]
+         step["active_contacts"], si(pressure, units.stress), short(step["certificate"]["equilibrium"])]
         for step, pressure in zip(found[:MOST_ROWS], pressures)
     ]
     head = ["step", "time", "", "sweeps", "closed", "largest pressure", "equilibrium"]
@@ -247,48 +236,27 @@ def ranks(report):
                    table(["phase", "least", "mean", "largest of a rank", "share"], rows, numbers=(1, 2, 3, 4)))
 
 
-def along(points):
-    """An order in which neighbours follow each other, and the way to each; a jump leaves the line open."""
-    left = np.ones(len(points), dtype=bool)
-    at = int(np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1)))
-    order, steps = [at], [0.0]
-    left[at] = False
-    while left.any():
-        others = np.flatnonzero(left)
-        distance = np.linalg.norm(points[others] - points[at], axis=1)
-        nearest = int(np.argmin(distance))
-        at = others[nearest]
-        order.append(at)
-        steps.append(float(distance[nearest]))
-        left[at] = False
-    steps = np.array(steps)
-    jumps = steps > 6 * np.median(steps[1:]) if len(steps) > 2 else np.zeros(len(steps), dtype=bool)
-    return np.array(order), np.cumsum(steps), jumps
-
-
-def curve(axes, name, contact):
-    order, way, jumps = along(contact["position"])
-    pressure = contact["pressure"][order]
-    closed = contact["status"][order] == 1
-    starts = [0, *np.flatnonzero(jumps), len(way)]
-    for first, last in zip(starts, starts[1:]):
-        axes.fill_between(way[first:last], pressure[first:last], color="#5b8ff9", alpha=0.25, lw=0)
-        axes.plot(way[first:last], pressure[first:last], color="#1f5fa8", lw=1.3)
-    if len(way) <= 60:
-        # On the axis they would be half of a circle.
-        style = {"ls": "", "marker": "o", "ms": 2.6, "clip_on": False, "zorder": 3}
-        axes.plot(way[closed], pressure[closed], color="#1f5fa8", **style)
-        axes.plot(way[~closed], pressure[~closed], mfc="white", mec="#8795a3", mew=0.8, **style)
+def curve(axes, name, contact, units):
+    pressure, closed = contact["pressure"], contact["status"] == 1
+    for rows, way in contact["pieces"]:
+        axes.fill_between(way, pressure[rows], color="#5b8ff9", alpha=0.25, lw=0)
+        axes.plot(way, pressure[rows], color="#1f5fa8", lw=1.3)
+        if len(pressure) <= 60:
+            # On the axis they would be half of a circle.
+            style = {"ls": "", "marker": "o", "ms": 2.6, "clip_on": False, "zorder": 3}
+            is_closed = closed[rows]
+            axes.plot(way[is_closed], pressure[rows][is_closed], color="#1f5fa8", **style)
+            axes.plot(way[~is_closed], pressure[rows][~is_closed], mfc="white", mec="#8795a3", mew=0.8, **style)
     axes.set_title(name if len(name) < 32 else name[:30] + "…", fontsize=9, loc="left")
     axes.set_ylim(0, 1.1 * pressure.max() if pressure.max() > 0 else 1)
-    axes.xaxis.set_major_formatter(EngFormatter("m", sep=" "))
-    axes.yaxis.set_major_formatter(EngFormatter("Pa", sep=" "))
+    axes.xaxis.set_major_formatter(formatter(units.length))
+    axes.yaxis.set_major_formatter(formatter(units.stress))
     axes.xaxis.set_major_locator(MaxNLocator(4))
     axes.yaxis.set_major_locator(MaxNLocator(4))
     axes.tick_params(labelsize=7.5)
 
 
-def contacts(report, tables):
+def contacts(report, tables, units):
     found = sorted(report["contacts"], key=lambda contact: -(contact["largest_pressure"] or 0))
     if not found:
         return ""
@@ -300,14 +268,14 @@ def contacts(report, tables):
     # By hand: constrained_layout takes the room of a long name from the curves.
     figure.subplots_adjust(left=0.07, right=0.99, bottom=0.3 / height, top=1 - 0.25 / height, wspace=0.27, hspace=0.42)
     for name, axes in zip(shown, panels.flat):
-        curve(axes, name, tables[name])
+        curve(axes, name, tables[name], units)
     for axes in panels.flat[len(shown) :]:
         axes.set_visible(False)
     rows = [
-        [escape(c["name"]), f"{c['closed']} of {c['conditions']}", si(c["largest_pressure"], "Pa"), *force]
-        for c, force in zip(found[:MOST_ROWS], forces(found))
+        [escape(c["name"]), f"{c['closed']} of {c['conditions']}", si(c["largest_pressure"], units.stress), *force]
+        for c, force in zip(found[:MOST_ROWS], forces(found, units.force))
     ]
-    text = "Pressure along side a of each contact, undeformed; hollow where it is open. "
+    text = f"Pressure over the arc length of side a, undeformed, {DIRECTION}; hollow where it is open. "
     if len(found) > len(shown):
         text += f"The {len(shown)} of {len(found)} contacts with the largest pressures. "
     return section(
@@ -317,11 +285,11 @@ def contacts(report, tables):
     )
 
 
-def reactions(report):
+def reactions(report, units):
     if not report["reactions"]:
         return ""
     found = report["reactions"]
-    rows = [[escape(r["support"]), *force] for r, force in zip(found[:MOST_ROWS], forces(found))]
+    rows = [[escape(r["support"]), *force] for r, force in zip(found[:MOST_ROWS], forces(found, units.force))]
     return section("Reactions of supports", table(["support", "x", "y"], rows, numbers=(1, 2)), more(found, ""))
 
 
@@ -345,7 +313,6 @@ def main():
     parser = argparse.ArgumentParser(prog="summary", description=__doc__.splitlines()[0])
     parser.add_argument("result", type=pathlib.Path, help="result file of contact-dd-mpi")
     parser.add_argument("page", type=pathlib.Path, nargs="?", help="default: the result's name with .html")
-    parser.add_argument("--mm", action="store_true", help="the scene is in mm, N and MPa, not in m, N and Pa")
     arguments = parser.parse_args()
     page = arguments.page or arguments.result.with_suffix(".html")
     if page.suffix not in (".html", ".htm"):
@@ -354,12 +321,10 @@ def main():
         sys.exit(2)
     plt.rcParams.update({"svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif",
                          "font.sans-serif": ["DejaVu Sans", "Arial", "Helvetica"]})
-    report, sweeps, tables = read(arguments.result)
-    if arguments.mm:
-        from_mm(report, tables)
+    units, report, sweeps, tables = read(arguments.result)
     parts = [
-        head(report, arguments.result.name), warnings(report), steps(report), contacts(report, tables),
-        convergence(report, sweeps), certificate(report), reactions(report), ranks(report), rest(report),
+        head(report, arguments.result.name), warnings(report), steps(report, units), contacts(report, tables, units),
+        convergence(report, sweeps), certificate(report), reactions(report, units), ranks(report), rest(report),
     ]
     title = escape(pathlib.Path(report["settings"]["problem"]).name)
     text = (

@@ -12,6 +12,7 @@ from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 from PIL import Image
 
 from drawing.result import curves
+from drawing.units import in_units
 
 LARGEST_PNG = 300_000
 
@@ -23,12 +24,12 @@ NEARLY_WHITE = 247
 OVERSAMPLED = 2
 
 
-def canvas(title):
+def canvas(title, units):
     figure, axes = plt.subplots(figsize=(6.8, 5.8), layout="constrained")
     axes.set_aspect("equal")
     axes.set_title(title)
-    axes.set_xlabel("x [m]")
-    axes.set_ylabel("y [m]")
+    axes.set_xlabel(f"x [{units.length}]")
+    axes.set_ylabel(f"y [{units.length}]")
     axes.spines[["top", "right"]].set_visible(False)
     return figure, axes
 
@@ -41,10 +42,10 @@ def legend(axes, columns):
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncol=columns, frameon=False)
 
 
-def scale_bar(axes, width):
+def scale_bar(axes, width, units):
     """A bar of a round length, about a fifth of `width`, below the axes on the left."""
     length = round_below(0.25 * width)
-    (shown,), unit = in_units(np.array([length]), "m")
+    (shown,), unit = in_units(np.array([length]), units.length)
     bar = AnchoredSizeBar(
         axes.transData, length, f"{shown:g} {unit}", loc="upper left", pad=0.2, sep=4,
         frameon=False, size_vertical=0.006 * width, bbox_to_anchor=(0, 0),
@@ -92,14 +93,3 @@ def with_palette(image):
     indexed = Image.fromarray(nearest[pixels].reshape(red.shape).astype(np.uint8))
     indexed.putpalette(entries.ravel().tolist())
     return indexed
-
-
-def in_units(values, unit):
-    """Values and unit with the prefix that suits them."""
-    largest = np.abs(values).max(initial=0.0)
-    for factor, prefix in ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m")):
-        if unit == "m" and factor > 1.0:
-            continue
-        if largest * (1 + 1e-6) >= factor:
-            return values / factor, prefix + unit
-    return (values / 1e-6, "µ" + unit) if largest > 0 else (values, unit)

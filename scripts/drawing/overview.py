@@ -9,9 +9,10 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.tri import Triangulation
 
-from drawing.canvas import in_units, lines, save, scale_bar
+from drawing.canvas import lines, save, scale_bar
 from drawing.contact import pressed_sides
 from drawing.result import von_mises
+from drawing.units import in_units
 
 RED = "#d6202c"
 DASHES = (0, (5, 3))
@@ -42,7 +43,7 @@ def overview(result, scale, path):
     mesh = Triangulation(*result.at_points(moved).T, result.triangles)
     values = von_mises(result.at_points(result.stress))
     highest = bound(mesh, values, panels[-1])
-    (shown,), unit = in_units(np.array([highest]), "Pa")
+    (shown,), unit = in_units(np.array([highest]), result.units.stress)
     values = values * (shown / highest)
 
     figure, all_axes, of_colours = layout(panels)
@@ -54,21 +55,21 @@ def overview(result, scale, path):
         lines(axes, moved, result.outline, colors="k", linewidths=0.9)
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
-        scale_bar(axes, high[0] - low[0])
+        scale_bar(axes, high[0] - low[0], result.units)
     if part:
         frame = Rectangle(part[0], *(part[1] - part[0]), fill=False, ec="k", lw=1.0)
         all_axes[0].add_patch(frame)
     largest = max((side.pressure.max() for side in sides), default=0.0)
     if largest > 0:
         pressures(all_axes[-1], sides, longest / largest)
-        labels(all_axes[-1], sides, longest / largest)
+        labels(all_axes[-1], sides, longest / largest, result.units.stress)
     exceeded = "max" if values.max() > 1.001 * shown else "neither"
     figure.colorbar(colours, cax=of_colours, extend=exceeded, label=f"von Mises stress [{unit}]")
     what = "Von Mises stress and contact pressure" if sides else "Von Mises stress"
     step = f", step {result.step} of {result.steps}" if result.steps > 1 else ""
     title = f"{what}, deformation × {scale:g}{step}"
     figure.suptitle(title, y=1 - 0.12 / figure.get_figheight(), va="top", fontsize=12)
-    key(figure, sides, largest, has_moved)
+    key(figure, sides, largest, has_moved, result.units.stress)
     save(figure, path)
 
 
@@ -157,16 +158,16 @@ def strokes(axes, ends, **style):
     axes.add_collection(LineCollection(np.stack(ends, axis=1), capstyle="round", **style))
 
 
-def labels(axes, sides, length):
+def labels(axes, sides, length, unit):
     """The largest pressure of each contact, or of all where there are many."""
     labelled = [side for side in sides if side.pressure.max() > 0]
     if len(labelled) > MOST_LABELS:
         labelled = [max(labelled, key=lambda side: side.pressure.max())]
     for side in labelled:
         k = middle_of_largest(side)
-        (shown,), unit = in_units(side.pressure[k : k + 1], "Pa")
+        (shown,), prefixed = in_units(side.pressure[k : k + 1], unit)
         axes.annotate(
-            f"{shown:.3g} {unit}", side.tips(length)[k], xytext=8 * side.normal[k],
+            f"{shown:.3g} {prefixed}", side.tips(length)[k], xytext=8 * side.normal[k],
             textcoords="offset points", ha="center", va="center", fontsize=8, color=RED,
             path_effects=[withStroke(linewidth=2.2, foreground="w")],
         )
@@ -190,12 +191,12 @@ def band(*corners):
     return Path(closed.reshape(-1, 2), np.tile(codes, len(quads)))
 
 
-def key(figure, sides, largest, has_moved):
+def key(figure, sides, largest, has_moved, unit):
     entries = []
     if has_moved:
         entries.append(Line2D([], [], color="0.45", lw=0.8, ls=DASHES, label="undeformed"))
     if largest > 0:
-        (shown,), unit = in_units(np.array([largest]), "Pa")
+        (shown,), unit = in_units(np.array([largest]), unit)
         entries.append(Patch(fc=RED, alpha=0.6, label=f"contact pressure, at most {shown:.3g} {unit}"))
     if any((side.pressure <= 0).any() for side in sides):
         halo = [withStroke(linewidth=2.6, foreground="k")]

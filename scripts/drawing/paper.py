@@ -5,7 +5,8 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 
-from drawing.canvas import canvas, in_units, legend, lines, save
+from drawing.canvas import canvas, legend, lines, save
+from drawing.units import in_units
 
 
 def levels(values):
@@ -21,7 +22,7 @@ def contours(result, values, name, unit, path):
     values, unit = in_units(values, unit)
     steps = levels(values)
     signed = steps[0] < 0 < steps[-1] and min(-steps[0], steps[-1]) > 0.1 * max(-steps[0], steps[-1])
-    figure, axes = canvas(f"{name} [{unit}]")
+    figure, axes = canvas(f"{name} [{unit}]", result.units)
     style = {"cmap": "viridis"}
     if signed:
         bound, step = max(-steps[0], steps[-1]), steps[1] - steps[0]
@@ -39,7 +40,7 @@ def contours(result, values, name, unit, path):
 
 
 def deformation(result, scale, path):
-    figure, axes = canvas(f"Deformation, enlarged {scale:g} times")
+    figure, axes = canvas(f"Deformation, enlarged {scale:g} times", result.units)
     moved = result.deformed(scale)
     fine = len(result.facets) > 60_000
     facets = result.borders if fine else result.facets
@@ -72,7 +73,7 @@ def principal(result, path):
     angle = 0.5 * np.arctan2(2 * xy, xx - yy)
     largest = max(np.percentile(np.abs(mean) + radius, 98), 1e-300)
 
-    figure, axes = canvas("Principal stresses")
+    figure, axes = canvas("Principal stresses", result.units)
     lines(axes, result.points, result.outline, colors="k", linewidths=1.0)
     axes.autoscale()
     for value, turn in ((mean + radius, angle), (mean - radius, angle + np.pi / 2)):
@@ -88,7 +89,7 @@ def principal(result, path):
                     pivot=pivot, angles="xy", scale_units="xy", scale=1, units="xy",
                     width=0.035 * step, headwidth=3.6, headlength=4, headaxislength=3.6, minlength=0.1,
                 )
-    shown, unit = in_units(np.array([largest]), "Pa")
+    shown, unit = in_units(np.array([largest]), result.units.stress)
     axes.plot([], [], color="tab:red", label="tension ←→")
     axes.plot([], [], color="tab:blue", label="compression →←")
     axes.plot([], [], " ", label=f"longest arm: {shown[0]:.3g} {unit}")

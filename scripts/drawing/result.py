@@ -6,20 +6,19 @@ import h5py
 import numpy as np
 
 from drawing import shapes
-
-# What a result in mm, N and MPa is multiplied by: lengths, and stresses.
-MILLIMETRES = (1e-3, 1e6)
+from drawing.cells import cells_of
+from drawing.units import units_of
 
 # What of a contact table changes from step to step.
 STATES = ("gap", "force", "pressure", "status")
 
 
 class Result:
-    """What a result file holds, in m and Pa, with the partitions joined; nodes keep their subdomain."""
+    """What a result file holds, in its units, with the partitions joined; nodes keep their subdomain."""
 
-    def __init__(self, path, step=None, in_mm=False):
-        length, pressure = MILLIMETRES if in_mm else (1.0, 1.0)
+    def __init__(self, path, step=None):
         with h5py.File(path) as file:
+            self.units = units_of(file)
             grid = file["VTKHDF"]
             self.steps = int(grid["Steps"].attrs["NSteps"]) if "Steps" in grid else 1
             self.step = self.steps if step is None else step
@@ -29,20 +28,17 @@ class Result:
                 sys.exit(f"figures: {path}: is a problem file; contact-dd-mpi {path} solves it")
             if "Stress" not in grid["PointData"]:
                 sys.exit(f"figures: {path}: there are no stresses; expected a run without --no-stress")
-            self.points = length * grid["Points"][:, :2]
+            self.points = grid["Points"][:, :2]
             self.tags = grid["PointData/GlobalNodeId"][:]
-            self.displacement = length * self.of_step(grid["PointData/Displacement"])[:, :2]
-            self.stress = pressure * self.of_step(grid["PointData/Stress"])
-            self.cell_stress = pressure * self.of_step(grid["CellData/Stress"])
+            self.displacement = self.of_step(grid["PointData/Displacement"])[:, :2]
+            self.stress = self.of_step(grid["PointData/Stress"])
+            self.cell_stress = self.of_step(grid["CellData/Stress"])
             subdomain = grid["CellData/Subdomain"][:]
             self.cells = list(cells_of(grid))
             self.contacts = {
                 name: {key: self.state(table[key]) for key in table}
                 for name, table in file.get("contact", {}).items()
             }
-            for table in self.contacts.values():
-                table["position"] = length * table["position"]
-                table["pressure"] = pressure * table["pressure"]
         if not self.cells:
             sys.exit(f"figures: {path}: there are no cells to draw")
         for kind, _, _ in self.cells:
@@ -137,27 +133,6 @@ def curves(points, facets):
     a, m, b = (points[bent[:, k], None] for k in range(3))
     lines.extend((1 - s) * (1 - 2 * s) * a + 4 * s * (1 - s) * m + s * (2 * s - 1) * b)
     return lines
-
-
-def cells_of(grid):
-    """Cells of every kind: VTK's number, indices of the cells, their nodes among all nodes."""
-    types = grid["Types"][:]
-    offsets, connectivity = grid["Offsets"][:], grid["Connectivity"][:]
-    starts, ends, nodes = [], [], []
-    at = {"point": 0, "cell": 0, "id": 0}
-    sizes = (grid[f"NumberOf{name}"][:] for name in ("Points", "Cells", "ConnectivityIds"))
-    for partition, (points, cells, ids) in enumerate(zip(*sizes)):
-        # Each partition has an offset more than cells.
-        own = offsets[at["cell"] + partition :][: cells + 1] + at["id"]
-        starts.append(own[:-1])
-        ends.append(own[1:])
-        nodes.append(connectivity[at["id"] :][:ids] + at["point"])
-        at = {"point": at["point"] + points, "cell": at["cell"] + cells, "id": at["id"] + ids}
-    starts, ends, nodes = (np.concatenate(part) for part in (starts, ends, nodes))
-    for kind in np.unique(types):
-        members = np.flatnonzero(types == kind)
-        width = ends[members[0]] - starts[members[0]]
-        yield int(kind), members, nodes[starts[members, None] + np.arange(width)]
 
 
 def von_mises(stress):

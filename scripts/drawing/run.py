@@ -1,10 +1,13 @@
-"""What a result file says of its run: the report, the sweeps, the tables of the contacts."""
+"""What a result file says of its run: units, report, sweeps, contacts along their sides."""
 
 import json
 import sys
 
 import h5py
 import numpy as np
+
+from drawing.sides import boundary_edges, curves_along
+from drawing.units import units_of
 
 
 def last(column):
@@ -13,17 +16,23 @@ def last(column):
 
 
 def read(path):
-    """The report, the rows of the sweeps and the tables of the contacts."""
+    """The units, the report, the rows of the sweeps, and of each contact pressure and status along its side."""
     try:
         with h5py.File(path) as file:
+            units = units_of(file)
             report = json.loads(file.attrs["report"])
             sweeps = {name: file["convergence"][name][:] for name in ("residual", "active")}
             same = np.zeros(len(sweeps["residual"]), dtype=int)
             sweeps["step"] = file["convergence"]["step"][:] if "step" in file["convergence"] else same
+            tables = {name: table for name, table in file.get("contact", {}).items() if len(table["position"]) > 0}
+            tags = [table["node_a"][:] for table in tables.values()]
+            edges = boundary_edges(file["VTKHDF"], np.concatenate(tags)) if tags else []
             tables = {
-                name: {"position": table["position"][:], **{key: last(table[key]) for key in ("pressure", "status")}}
-                for name, table in file.get("contact", {}).items()
-                if len(table["position"]) > 0
+                name: {
+                    "pieces": curves_along(table["position"][:, :2], table["node_a"][:], edges),
+                    **{key: last(table[key]) for key in ("pressure", "status")},
+                }
+                for name, table in tables.items()
             }
     except FileNotFoundError:
         print(f"summary: {path}: there is no such file", file=sys.stderr)
@@ -31,17 +40,4 @@ def read(path):
     except (OSError, KeyError, ValueError):
         print(f"summary: {path}: isn't a result of contact-dd-mpi, a file .vtkhdf", file=sys.stderr)
         sys.exit(2)
-    return report, sweeps, tables
-
-
-def from_mm(report, tables):
-    """Turns what is in mm, N and MPa into m, N and Pa, as far as the page shows it."""
-    for part in [report, *(report.get("steps") or [])]:
-        for contact in part["contacts"]:
-            contact["largest_pressure"] = contact["largest_pressure"] and 1e6 * contact["largest_pressure"]
-        for one in [*part["contacts"], *part["reactions"]]:
-            # Forces are per length.
-            one["force"] = [force and 1e3 * force for force in one["force"]]
-    for table in tables.values():
-        table["position"] = 1e-3 * table["position"]
-        table["pressure"] = 1e6 * table["pressure"]
+    return units, report, sweeps, tables

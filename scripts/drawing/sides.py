@@ -1,0 +1,78 @@
+"""Sides a of contacts as curves: contact conditions in their order along the mesh, and the arc length."""
+
+import numpy as np
+
+from drawing import shapes
+from drawing.cells import cells_of
+
+DIRECTION = (
+    "from left to right, steep sides upwards, closed ones counter-clockwise from the right"
+)
+
+
+def boundary_edges(grid, tags):
+    """Pairs of node tags: edges of one cell only, between nodes that are among `tags`."""
+    known = grid["PointData/GlobalNodeId"][:]
+    edges = []
+    for kind, _, nodes in cells_of(grid):
+        for facet in shapes.CELLS[kind].facets:
+            # With a node in the middle a facet is two edges.
+            edges += [known[nodes[:, pair]] for pair in zip(facet, facet[1:])]
+    edges = np.sort(np.concatenate(edges), axis=1)
+    edges = edges[np.isin(edges, tags).all(axis=1)]
+    edges, count = np.unique(edges, axis=0, return_counts=True)
+    return edges[count == 1]
+
+
+def curves_along(points, tags, edges):
+    """The pieces of a side: rows in their order, and the arc length of each; a closed piece ends with its first row.
+
+    Lengths go on from piece to piece by their distance."""
+    pieces = [directed(points, piece) for piece in chains(tags, edges)]
+    axis = np.ptp(points, axis=0).argmax()
+    pieces.sort(key=lambda piece: points[piece[0], axis])
+    found, end, length = [], None, 0.0
+    for piece in pieces:
+        steps = np.linalg.norm(np.diff(points[piece], axis=0), axis=1)
+        if end is not None:
+            length += np.linalg.norm(points[piece[0]] - points[end])
+        way = length + np.concatenate([[0.0], np.cumsum(steps)])
+        found.append((piece, way))
+        end, length = piece[-1], way[-1]
+    return found
+
+
+def chains(tags, edges):
+    """Rows of conditions whose nodes follow each other along the mesh; closed ones end where they begin."""
+    row = {int(tag): k for k, tag in enumerate(tags)}
+    near = {k: [] for k in row.values()}
+    for a, b in edges:
+        if a in row and b in row:
+            near[row[a]].append(row[b])
+            near[row[b]].append(row[a])
+    left = set(near)
+    # Ends of open pieces first; what is left then is closed.
+    for start in sorted(near, key=lambda k: (len(near[k]) > 1, k)):
+        if start not in left:
+            continue
+        piece = [start]
+        left.remove(start)
+        while following := [k for k in near[piece[-1]] if k in left]:
+            piece.append(following[0])
+            left.remove(following[0])
+        if len(piece) > 2 and start in near[piece[-1]]:
+            piece.append(start)
+        yield np.array(piece)
+
+
+def directed(points, piece):
+    """A piece in the DIRECTION of all."""
+    at = points[piece]
+    if len(piece) > 2 and piece[0] == piece[-1]:
+        first = at[:-1, 0].argmax()
+        area = np.sum(at[:-1, 0] * at[1:, 1] - at[1:, 0] * at[:-1, 1])
+        turned = np.roll(piece[:-1], -first)
+        closed = np.append(turned, turned[0])
+        return closed if area > 0 else closed[::-1]
+    chord = at[-1] - at[0]
+    return piece if chord[np.abs(chord).argmax()] >= 0 else piece[::-1]

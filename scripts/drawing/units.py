@@ -1,0 +1,63 @@
+"""Units of a result, and numbers with them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.ticker import EngFormatter, FuncFormatter
+
+
+@dataclass(frozen=True)
+class Units:
+    """Their symbols. Units that have a prefix themselves are shown without another."""
+
+    length: str = "m"
+    stress: str = "Pa"
+    force: str = "N/m"
+
+
+KNOWN = {"m": Units(), "mm": Units("mm", "MPa", "N/mm")}
+
+
+def units_of(file):
+    """The units of an open result file, by its attribute `units`."""
+    name = file.attrs.get("units", "m")
+    return KNOWN[name.decode() if isinstance(name, bytes) else name]
+
+
+def has_prefix(unit):
+    return unit in ("mm", "MPa", "N/mm")
+
+
+def in_units(values, unit):
+    """Values and unit with the prefix that suits them."""
+    if has_prefix(unit):
+        return values, unit
+    largest = np.abs(values).max(initial=0.0)
+    for factor, prefix in ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m")):
+        if unit == "m" and factor > 1.0:
+            continue
+        if largest * (1 + 1e-6) >= factor:
+            return values / factor, prefix + unit
+    return (values / 1e-6, "µ" + unit) if largest > 0 else (values, unit)
+
+
+def si(value, unit, digits=3):
+    """A number with its unit: 8.32 MPa."""
+    if value is None:
+        return "–"
+    if value == 0:
+        return f"0 {unit}"
+    # Rounded first: 999.9 k is 1 M.
+    value = float(f"{value:.{digits}g}")
+    if has_prefix(unit):
+        return f"{value:g} {unit}"
+    power = int(np.clip(np.floor(np.log10(abs(value)) / 3), -3, 3))
+    prefix = {-3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}[power]
+    return f"{value / 10.0 ** (3 * power):.{digits}g} {prefix}{unit}"
+
+
+def formatter(unit):
+    """Of the ticks of an axis."""
+    if has_prefix(unit):
+        return FuncFormatter(lambda value, _: f"{value:g} {unit}")
+    return EngFormatter(unit, sep=" ")
