@@ -214,6 +214,7 @@ fn interface_nodes(catalog: &Catalog, block: &BlockPlan) -> Vec<u32> {
 mod tests {
     use contact_dd_partition::model::PlaneState;
     use contact_dd_partition::problem::{Body, Hierarchy, SubdomainSummary};
+    use contact_dd_partition::scene::units::Units;
     use contact_dd_partition::solver::SolverSettings;
 
     use super::*;
@@ -224,6 +225,7 @@ mod tests {
         Catalog {
             title: String::new(),
             dim: 2,
+            units: Units::Metre,
             plane: PlaneState::Strain,
             materials: Vec::new(),
             bodies: vec![Body { name: "b".into() }],

@@ -115,9 +115,10 @@ impl Info {
         let resultant = |step: usize| {
             let ([x, y, _], moment) = self.load(step);
             format!(
-                "{}, {} N/m in sum, moment {} N about the origin",
+                "{}, {} {} in sum, moment {} N about the origin",
                 rounded(x),
                 rounded(y),
+                self.problem.catalog.units.force(),
                 rounded(moment)
             )
         };
@@ -133,6 +134,7 @@ impl Info {
 
     /// The least and the largest gap of every contact (m).
     fn gaps(&self) -> Vec<String> {
+        let unit = self.problem.catalog.units.length();
         let contacts = self.problem.catalog.contacts.iter().enumerate();
         let gaps = contacts.filter_map(|(index, contact)| {
             let points = self.problem.points.iter().flatten();
@@ -142,9 +144,9 @@ impl Info {
             let least = gaps.clone().reduce(f64::min)?;
             let most = gaps.reduce(f64::max)?;
             Some(match least == most {
-                true => format!("{} m on {}", rounded(least), contact.name),
+                true => format!("{} {unit} on {}", rounded(least), contact.name),
                 false => format!(
-                    "{} to {} m on {}",
+                    "{} to {} {unit} on {}",
                     rounded(least),
                     rounded(most),
                     contact.name
@@ -175,10 +177,12 @@ impl fmt::Display for Info {
         let supports = supports
             .iter()
             .map(|(name, nodes)| format!("{name}: {nodes} nodes"));
+        let unit = catalog.units.stress();
+        let materials = catalog.materials.iter().map(|m| elastic(m, unit));
         let lists = [
             ("gap", self.gaps()),
             ("body", self.bodies()),
-            ("material", catalog.materials.iter().map(elastic).collect()),
+            ("material", materials.collect()),
             ("support", supports.collect()),
         ];
         for (name, lines) in lists {
@@ -216,7 +220,7 @@ impl fmt::Display for Info {
 }
 
 /// A material in words: by modulus and ratio where it is isotropic, else by its stiffness.
-fn elastic(material: &Material) -> String {
+fn elastic(material: &Material, unit: &str) -> String {
     let Material {
         name,
         stiffness: [xx, yy, xy],
@@ -227,10 +231,10 @@ fn elastic(material: &Material) -> String {
         // G = E / (2 (1 + ν)) in both plane states.
         Some(ratio) => {
             let young = rounded(2.0 * (1.0 + ratio) * xy[2]);
-            format!("{name}: E {young} Pa, ν {ratio}")
+            format!("{name}: E {young} {unit}, ν {ratio}")
         }
         None => format!(
-            "{name}: C11 {}, C22 {}, C12 {}, C33 {} Pa",
+            "{name}: C11 {}, C22 {}, C12 {}, C33 {} {unit}",
             rounded(xx[0]),
             rounded(yy[1]),
             rounded(xx[1]),

@@ -1,8 +1,11 @@
 //! `contact-dd-partition`: makes a problem file from a scene and its mesh, or from a built-in scene.
 
-use std::io::Write as _;
+use std::ffi::{c_int, c_void};
+use std::fs::File;
+use std::io::{Write as _, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::ptr::null_mut;
 
 use clap::{CommandFactory, Parser};
 use contact_dd_partition::command_line::{CommandLine, MANUAL};
@@ -16,6 +19,7 @@ use contact_dd_partition::message::{self, WARNING};
 use contact_dd_partition::model::Model;
 use contact_dd_partition::problem::Problem;
 use contact_dd_partition::scene::Scene;
+use rustix::stdio::dup2_stdout;
 
 /// Why no problem file was written.
 #[derive(Debug, thiserror::Error)]
@@ -76,15 +80,40 @@ fn run(args: &CommandLine) -> Result<(), Failure> {
         None => error,
     };
     let model = Model::new(&source.scene, source.mesh).map_err(in_scene)?;
-    let decomposition = Decomposition::new(&model, source.subdomains).map_err(in_scene)?;
-    let mut problem = Problem::new(&model, &decomposition).map_err(in_scene)?;
-    // The user's own partition keeps its numbers.
-    if model.prescribed_subdomains.is_none() {
-        problem = problem.in_order_of_hierarchy();
-    }
+    let problem = without_stdout(|| split(&model, source.subdomains)).map_err(in_scene)?;
     problem.write(&source.output)?;
     report(&problem, &source.output);
     Ok(())
+}
+
+/// Splits a model into subdomains.
+fn split(model: &Model, subdomains: Option<usize>) -> Result<Problem, InputError> {
+    let decomposition = Decomposition::new(model, subdomains)?;
+    let problem = Problem::new(model, &decomposition)?;
+    // The user's own partition keeps its numbers.
+    Ok(match model.prescribed_subdomains {
+        Some(_) => problem,
+        None => problem.in_order_of_hierarchy(),
+    })
+}
+
+/// Does `work` while what C libraries print goes nowhere: METIS writes its remarks to stdout.
+fn without_stdout<T>(work: impl FnOnce() -> T) -> T {
+    unsafe extern "C" {
+        fn fflush(stream: *mut c_void) -> c_int;
+    }
+    let kept = rustix::io::dup(stdout());
+    let nowhere = File::options().write(true).open("/dev/null");
+    let (Ok(kept), Ok(nowhere)) = (kept, nowhere) else {
+        return work();
+    };
+    // Where stdout can't be exchanged, remarks are the lesser evil.
+    let _ = dup2_stdout(nowhere);
+    let done = work();
+    // SAFETY: with a null pointer fflush writes out what every stream of the C library has buffered.
+    unsafe { fflush(null_mut()) };
+    let _ = dup2_stdout(kept);
+    done
 }
 
 /// What the problem file is made from, and where it goes.

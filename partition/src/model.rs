@@ -25,6 +25,7 @@ use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 pub use crate::scene::plane::PlaneState;
+use crate::scene::units::Units;
 use crate::solver::SolverSettings;
 
 /// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane).
@@ -70,6 +71,8 @@ pub struct Model {
     pub title: String,
     /// How the scene wants to be solved.
     pub solver: SolverSettings,
+    /// The units that messages and pictures name.
+    pub units: Units,
     /// Plane state.
     pub plane: PlaneState,
     /// Mesh.
@@ -111,7 +114,7 @@ impl Model {
         let topology = Topology::new(&bodies.mesh);
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
         let loads = steps::Loads::new(scene, &bodies, &topology)?;
-        let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads);
+        let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads, scene.units);
         let contacts = (0..)
             .zip(&scene.contact)
             .map(|(number, keys)| sides.contact(number, keys, &mut warnings))
@@ -132,6 +135,7 @@ impl Model {
         Ok(Self {
             title: scene.title.clone(),
             solver: scene.solver,
+            units: scene.units,
             plane,
             materials,
             bodies: scene.bodies.keys().cloned().collect(),

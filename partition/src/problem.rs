@@ -14,6 +14,7 @@ pub mod write;
 use crate::contact_point::ContactPoint;
 use crate::element::Elements;
 use crate::model::{Material, PlaneState, Support};
+use crate::scene::units::Units;
 use crate::solver::SolverSettings;
 
 /// Version of the format, attribute `version` of the file.
@@ -152,6 +153,8 @@ pub struct Catalog {
     pub title: String,
     /// Dimension of space, and the number of dofs of a node.
     pub dim: usize,
+    /// The units that messages and pictures name.
+    pub units: Units,
     /// Plane state.
     pub plane: PlaneState,
     /// Materials.

@@ -10,6 +10,7 @@ pub mod plane;
 pub mod step;
 pub mod suggest;
 mod syntax;
+pub mod units;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -23,6 +24,7 @@ use condition::{Bilateral, Body, Contact, Displacement, Names, Pressure, Tractio
 use material::Elasticity;
 use plane::PlaneState;
 use step::LoadStep;
+use units::Units;
 
 /// A scene as it was written, with every value checked that can be without the mesh.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -34,6 +36,9 @@ pub struct Scene {
     /// The mesh file: as written after [`Scene::parse`], beside the scene's file after
     /// [`Scene::read`].
     pub mesh: PathBuf,
+    /// The units that messages and pictures name.
+    #[serde(default)]
+    pub units: Units,
     /// Plane state; `None` for three dimensions.
     pub plane: Option<PlaneState>,
     /// Materials by name.

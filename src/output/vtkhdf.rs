@@ -14,6 +14,7 @@ use std::path::Path;
 use contact_dd_partition::destination::Destination;
 use contact_dd_partition::error::OutputError;
 use contact_dd_partition::problem::{Catalog, ContactSummary, SubdomainSummary};
+use contact_dd_partition::scene::units::Units;
 use hdf5::File;
 use hdf5::types::VarLenUnicode;
 
@@ -32,6 +33,8 @@ pub struct Layout {
     pub times: Vec<f64>,
     /// Whether there are stresses.
     pub stress: bool,
+    /// The units that its numbers are meant in.
+    pub units: Units,
 }
 
 impl Layout {
@@ -53,6 +56,7 @@ impl Layout {
             contacts: catalog.contacts.clone(),
             times: catalog.steps.iter().map(|step| step.time).collect(),
             stress,
+            units: catalog.units,
         }
     }
 }
@@ -87,6 +91,7 @@ impl ResultFile {
                 // A temporary file has no other reader, and not every file system can lock.
                 .with_fapl(|access| access.file_locking(false))
                 .create(destination.temporary())?;
+            attribute(&file, "units", layout.units.length())?;
             let grid = Grid::create(&file, layout)?;
             let contacts = ContactTables::create(&file, &layout.contacts, layout.times.len())?;
             Ok((file, grid, contacts))
@@ -180,19 +185,22 @@ impl ResultFile {
             }
             // What is open keeps a file from being closed.
             drop((grid, contacts));
-            // Of variable length: an attribute of fixed length ends at 64 KiB.
-            let report: VarLenUnicode = report_json
-                .parse()
-                .map_err(|error| hdf5::Error::from(format!("report: {error}")))?;
-            file.new_attr::<VarLenUnicode>()
-                .create("report")?
-                .write_scalar(&report)?;
+            attribute(&file, "report", report_json)?;
             file.flush()?;
             file.close()
         };
         write().map_err(|error| failure(&destination, &error))?;
         destination.commit()
     }
+}
+
+/// Writes text of any length: an attribute of fixed length ends at 64 KiB.
+fn attribute(file: &File, name: &str, text: &str) -> hdf5::Result<()> {
+    let text: VarLenUnicode = text
+        .parse()
+        .map_err(|error| hdf5::Error::from(format!("{name}: {error}")))?;
+    let attribute = file.new_attr::<VarLenUnicode>().create(name)?;
+    attribute.write_scalar(&text)
 }
 
 fn failure(destination: &Destination, error: &hdf5::Error) -> OutputError {

@@ -11,6 +11,7 @@ use contact_dd_mpi::output::result::{
 use contact_dd_mpi::output::vtkhdf::{Layout, ResultFile};
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::problem::ContactSummary;
+use contact_dd_partition::scene::units::Units;
 use hdf5::File;
 
 /// Strips of triangles, the first of them subdomain `first`, with `cells` cells each; every number
@@ -81,6 +82,7 @@ fn layout(cells: &[usize], conditions: &[usize]) -> Layout {
         contacts: conditions.iter().enumerate().map(contact).collect(),
         times: Vec::new(),
         stress: true,
+        units: Units::Millimetre,
     }
 }
 

@@ -40,6 +40,7 @@ impl Problem {
             title: model.title.clone(),
             solver: model.solver,
             dim: model.mesh.dim,
+            units: model.units,
             plane: model.plane,
             materials: model.materials.clone(),
             bodies: bodies.names.into_iter().map(|name| Body { name }).collect(),

@@ -52,7 +52,7 @@ impl Mesh {
         };
         let [x, y, _] = fold.position;
         Err(InputError::new(format!(
-            "element {} ({}) is folded: its Jacobian is {:e} m² at ({x}, {y}), near node {}; \
+            "element {} ({}) is folded: its Jacobian is {:e} at ({x}, {y}), near node {}; \
              expected a positive one everywhere (corners below 180°, nodes on edges near their \
              middle)",
             self.cell_tags[cell],

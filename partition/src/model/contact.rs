@@ -15,6 +15,7 @@ use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::condition::{self, Names, Pairing, Partner};
+use crate::scene::units::Units;
 
 /// Gaps are exact to this fraction of the scene's coordinates.
 const ROUNDING: f64 = 1e-12;
@@ -25,6 +26,9 @@ const SEEN: f64 = 1e-8;
 
 /// Part of an interference from which on it matters that straight facets stand off a curve.
 const FELT: f64 = 0.1;
+
+/// Facets of side a that are shorter than this fraction of those of side b are finer.
+const FINER: f64 = 0.6;
 
 /// A direction in which a node is held, and how far in each load step (m).
 struct Held {
@@ -39,10 +43,11 @@ pub(super) struct Contacts<'a> {
     supports: HashMap<u32, Vec<Held>>,
     /// The largest coordinate (m).
     size: f64,
+    units: Units,
 }
 
 impl<'a> Contacts<'a> {
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, loads: &Loads) -> Self {
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, loads: &Loads, units: Units) -> Self {
         let mut by_node: HashMap<u32, Vec<Held>> = HashMap::new();
         for (i, support) in loads.supports.iter().enumerate() {
             by_node.entry(support.node).or_default().push(Held {
@@ -56,6 +61,7 @@ impl<'a> Contacts<'a> {
             topology,
             supports: by_node,
             size: coordinates.map(|c| c.abs()).fold(0.0, f64::max),
+            units,
         }
     }
 
@@ -67,6 +73,7 @@ impl<'a> Contacts<'a> {
         warnings: &mut Vec<String>,
     ) -> Result<Contact, InputError> {
         let what = format!("contact '{}'", keys.name);
+        let unit = self.units.length();
         let (facets, side_a) = self.side(&keys.side_a, &what)?;
         let mut off = 0.0;
         let mut points = match &keys.partner {
@@ -87,6 +94,10 @@ impl<'a> Contacts<'a> {
                 let points = self.pairs(&side_a, &side_b, keys.pairing, &what)?;
                 warnings.extend(self.corner(&side_a, &points, &what));
                 off = side_a.stands_off().max(side_b.stands_off());
+                let is_curved = off > SEEN * side_a.extent();
+                if is_curved && points.iter().any(|point| point.tag_b < 0) {
+                    warnings.extend(finer_first(&side_a, &side_b, &what));
+                }
                 points
             }
         };
@@ -105,7 +116,7 @@ impl<'a> Contacts<'a> {
             let (away, given, measured) = furthest;
             if away > side_a.extent() {
                 warnings.push(format!(
-                    "{what}.gap: it is {} m where the mesh has {} m, which is off by more than the side \
+                    "{what}.gap: it is {} {unit} where the mesh has {} {unit}, which is off by more than the side \
                      measures; are place and units right?",
                     short(given),
                     short(measured)
@@ -115,17 +126,17 @@ impl<'a> Contacts<'a> {
         let slack = ROUNDING * self.size;
         let deepest = points.iter().map(|p| p.gap).fold(0.0, f64::min);
         let seen = slack.max(SEEN * side_a.extent());
-        if deepest < -seen {
+        if deepest < -seen && !keys.interference {
             let count = points.iter().filter(|p| p.gap < -seen).count();
             let facets = match off > FELT * -deepest {
                 true => format!(
-                    "; straight facets stand off a curve by up to {} m of that: expected quadratic cells",
+                    "; straight facets stand off a curve by up to {} {unit} of that: expected quadratic cells",
                     short(off)
                 ),
                 false => String::new(),
             };
             warnings.push(format!(
-                "{what}: {count} of {} gaps are negative, an interference fit of up to {} m{facets}",
+                "{what}: {count} of {} gaps are negative, an interference fit of up to {} {unit}{facets}",
                 points.len(),
                 short(-deepest)
             ));
@@ -145,7 +156,7 @@ impl<'a> Contacts<'a> {
                     }
                     return Err(InputError::new(format!(
                         "{what}: at node {} displacements are prescribed on both sides that close \
-                         the gap of {} m by {closest} m; expected no penetration",
+                         the gap of {} {unit} by {closest} {unit}; expected no penetration",
                         point.tag_a, point.gap
                     )));
                 }
@@ -231,4 +242,17 @@ impl<'a> Contacts<'a> {
         }
         Some(jumps)
     }
+}
+
+/// The warning of a curved contact whose side a is the finer one: its nodes carry the conditions, and
+/// several of them face one straight facet of side b.
+fn finer_first(side_a: &Surface, side_b: &Surface, what: &str) -> Option<String> {
+    let ratio = side_a.facet_size() / side_b.facet_size();
+    (ratio < FINER).then(|| {
+        format!(
+            "{what}: the facets of side a measure {} of those of side b, whose corners its nodes feel; \
+             expected the coarser one of curved sides first",
+            short(ratio)
+        )
+    })
 }

@@ -38,7 +38,7 @@ impl Doubts<'_> {
 
     /// Contacts whose sides have to go farther than the bodies are large before they touch.
     fn far_apart(&self) -> Vec<String> {
-        let extent = self.extent();
+        let (extent, unit) = (self.extent(), self.scene.units.length());
         let least = |contact: &Contact| {
             let gaps = contact.points.iter().map(|point| point.gap);
             gaps.reduce(f64::min)
@@ -46,7 +46,7 @@ impl Doubts<'_> {
         let far = self.contacts.iter().filter_map(|contact| {
             let gap = least(contact).filter(|&gap| gap > extent)?;
             Some(format!(
-                "contact '{}': the smallest gap is {} m, and the bodies measure {} m; are place and units right?",
+                "contact '{}': the smallest gap is {} {unit}, and the bodies measure {} {unit}; are place and units right?",
                 contact.name,
                 short(gap),
                 short(extent)

@@ -59,7 +59,7 @@ pub(super) fn forces(
         for &component in force {
             magnitude::check(component).map_err(|expected| {
                 InputError::new(format!(
-                    "the load on node {tag} is {component:e} N; expected {expected}"
+                    "the load on node {tag} is {component:e}; expected {expected}"
                 ))
             })?;
         }

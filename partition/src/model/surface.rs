@@ -261,6 +261,12 @@ impl Surface {
         order
     }
 
+    /// The mean diameter of its facets (m).
+    pub fn facet_size(&self) -> f64 {
+        let sizes = self.facets.iter().map(SurfaceFacet::size);
+        sizes.sum::<f64>() / self.facets.len() as f64
+    }
+
     /// The largest extent of its bounding box (m).
     pub fn extent(&self) -> f64 {
         BoundingBox::around(self.facets.iter().flat_map(|facet| &facet.at)).extent()

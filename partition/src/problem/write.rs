@@ -41,6 +41,7 @@ impl Problem {
         text(file, "title", &catalog.title)?;
         attribute(file, "dimension", catalog.dim as i64)?;
         text(file, "plane", catalog.plane.name())?;
+        text(file, "units", catalog.units.length())?;
 
         let materials = Section::new(file, "materials")?;
         let all = &catalog.materials;

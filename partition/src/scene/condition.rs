@@ -144,6 +144,8 @@ pub struct Contact {
     pub pairing: Option<Pairing>,
     /// The gap in place of the geometric one (m).
     pub gap: Option<Number>,
+    /// Whether negative gaps are intended.
+    pub interference: bool,
 }
 
 /// What the side a of a contact may touch.
@@ -169,13 +171,15 @@ pub enum Pairing {
 #[derive(Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "a table of name, sides, pairing, gap and obstacle"
+    expecting = "a table of name, sides, pairing, gap, interference and obstacle"
 )]
 struct ContactKeys {
     name: ContactName,
     sides: Vec<Names>,
     pairing: Option<Pairing>,
     gap: Option<Number>,
+    #[serde(default)]
+    interference: bool,
     obstacle: Option<Obstacle>,
 }
 
@@ -214,6 +218,7 @@ impl TryFrom<ContactKeys> for Contact {
             partner,
             pairing: keys.pairing,
             gap: keys.gap,
+            interference: keys.interference,
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Expressions of x, y and z, with the precedence of mathematics: −x^2 is −(x²), 2^3^2 is 2^9.
+//! Expressions of x and y, with the precedence of mathematics: −x^2 is −(x²), 2^3^2 is 2^9.
 
 use super::suggest::hint_and_known;
 
@@ -6,7 +6,7 @@ use super::suggest::hint_and_known;
 const LONGEST: usize = 4096;
 const DEEPEST: usize = 64;
 
-const VARIABLES: [&str; 3] = ["x", "y", "z"];
+const VARIABLES: [&str; 2] = ["x", "y"];
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("PI", std::f64::consts::PI)];
 type Unary = fn(f64) -> f64;
 type Binary = fn(f64, f64) -> f64;
@@ -50,12 +50,12 @@ enum Step {
     Binary(Binary),
 }
 
-/// An expression of x, y and z.
+/// An expression of x and y.
 #[derive(Clone, Debug)]
 pub struct Expression {
     text: String,
     steps: Vec<Step>,
-    variables: [bool; 3],
+    is_constant: bool,
 }
 
 impl PartialEq for Expression {
@@ -65,7 +65,7 @@ impl PartialEq for Expression {
 }
 
 impl Expression {
-    /// Parses `text`: numbers, `x`, `y`, `z`, `pi`, `+ - * / ^` (or `**`), parentheses, and the
+    /// Parses `text`: numbers, `x`, `y`, `pi`, `+ - * / ^` (or `**`), parentheses, and the
     /// functions sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, ln, log10, sqrt, cbrt,
     /// abs, sign, min, max, atan2, hypot.
     ///
@@ -79,7 +79,7 @@ impl Expression {
             expression: Self {
                 text: text.to_owned(),
                 steps: Vec::new(),
-                variables: [false; 3],
+                is_constant: true,
             },
         };
         parser.whole().map_err(|reason| {
@@ -120,9 +120,9 @@ impl Expression {
         &self.text
     }
 
-    /// Whether it depends on the coordinate `axis`.
-    pub fn depends_on(&self, axis: usize) -> bool {
-        self.variables[axis]
+    /// Whether it is the same everywhere.
+    pub fn is_constant(&self) -> bool {
+        self.is_constant
     }
 }
 
@@ -245,8 +245,8 @@ impl Parser<'_> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() || c == '_' => self.word(),
-            Some(found) => Err(format!("expected a number, x, y or z, found '{found}'")),
-            None => Err("expected a number, x, y or z, found the end".into()),
+            Some(found) => Err(format!("expected a number, x or y, found '{found}'")),
+            None => Err("expected a number, x or y, found the end".into()),
         }
     }
 
@@ -286,7 +286,7 @@ impl Parser<'_> {
         let (word, start) = (&rest[..end], self.at);
         self.at += end;
         if let Some(axis) = VARIABLES.iter().position(|&name| name == word) {
-            self.expression.variables[axis] = true;
+            self.expression.is_constant = false;
             self.push(Step::Variable(axis));
         } else if let Some(&(_, value)) = CONSTANTS.iter().find(|c| c.0 == word) {
             self.push(Step::Number(value));
@@ -336,7 +336,7 @@ mod tests {
             ("8-3-2", 3.0),
             ("10/2/5", 1.0),
             ("1+2*y", 11.0),
-            ("-(1 - z)*x", 18.0),
+            ("-(1 - y)*x", 12.0),
             ("--x", 3.0),
             ("-sin(pi/2)^2", -1.0),
         ] {
@@ -369,6 +369,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named_with_its_character() {
         for (text, expected) in [
+            ("1 + z", "character 5: 'z' isn't known"),
             ("1 + r", "character 5: 'r' isn't known"),
             ("sine(x)", "did you mean 'sin'"),
             ("2x", "character 2: expected an operator"),

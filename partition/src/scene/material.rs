@@ -135,7 +135,7 @@ impl TryFrom<[[Constant; 3]; 3]> for Stiffness {
             Ok(Self(symmetric.into()))
         } else {
             Err(format!(
-                "the stiffness isn't positive definite: its eigenvalues reach from {least:.3e} to {largest:.3e} Pa"
+                "the stiffness isn't positive definite: its eigenvalues reach from {least:.3e} to {largest:.3e}"
             ))
         }
     }

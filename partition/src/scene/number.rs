@@ -6,7 +6,7 @@ use serde::de::{Deserializer, Error, Visitor};
 use super::expression::Expression;
 use crate::magnitude;
 
-/// A finite number, or an expression of x, y and z.
+/// A finite number, or an expression of x and y.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Number {
     /// The same everywhere.
@@ -26,11 +26,9 @@ impl Number {
             Self::Varying(expression) => {
                 let value = expression.value(point);
                 magnitude::check(value).map_err(|expected| {
-                    let [x, y, z] = point;
+                    let [x, y, _] = point;
                     let text = expression.text();
-                    format!(
-                        "'{text}' is {value:e} at x = {x}, y = {y}, z = {z}; expected {expected}"
-                    )
+                    format!("'{text}' is {value:e} at x = {x}, y = {y}; expected {expected}")
                 })
             }
         }
@@ -44,7 +42,7 @@ impl<'de> Deserialize<'de> for Number {
             type Value = Number;
 
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                f.write_str("a number or an expression of x, y and z in quotes")
+                f.write_str("a number or an expression of x and y in quotes")
             }
 
             fn visit_i64<E: Error>(self, value: i64) -> Result<Number, E> {
@@ -64,7 +62,7 @@ impl<'de> Deserialize<'de> for Number {
 
             fn visit_str<E: Error>(self, text: &str) -> Result<Number, E> {
                 let expression = Expression::parse(text).map_err(E::custom)?;
-                if (0..3).any(|axis| expression.depends_on(axis)) {
+                if !expression.is_constant() {
                     return Ok(Number::Varying(expression));
                 }
                 let number = Number::Varying(expression);
@@ -75,7 +73,7 @@ impl<'de> Deserialize<'de> for Number {
     }
 }
 
-/// A finite number that is the same everywhere; an expression without x, y and z will do.
+/// A finite number that is the same everywhere; an expression without x and y will do.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "Number")]
 pub struct Constant(pub f64);

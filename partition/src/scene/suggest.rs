@@ -1,7 +1,7 @@
 //! The known word that an unknown one was probably meant to be.
 
 /// What other programs call what a scene has another word for, or doesn't have.
-const ELSEWHERE: [(&[&str], &str); 9] = [
+const ELSEWHERE: [(&[&str], &str); 8] = [
     (&["e", "modulus", "youngs"], "Young's modulus is 'young'"),
     (&["nu", "ν"], "Poisson's ratio is 'poisson'"),
     (
@@ -27,11 +27,7 @@ const ELSEWHERE: [(&[&str], &str); 9] = [
     (&["friction", "mu", "μ"], "contacts are without friction"),
     (
         &["thickness"],
-        "forces are those of a thickness of 1 m, and all is in proportion to it",
-    ),
-    (
-        &["units", "unit"],
-        "there are no units: any that go together will do, m with N and Pa, or mm with N and MPa",
+        "forces are those of a thickness of 1, and all is in proportion to it",
     ),
     (&["log"], "logarithms are 'ln' and 'log10'"),
 ];

@@ -11,6 +11,7 @@ use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::{ElementKind, Elements};
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::{Contact, Material, Model, PlaneState, Support};
+use contact_dd_partition::scene::units::Units;
 use contact_dd_partition::solver::SolverSettings;
 
 /// A model under construction on the lattice of whole numbers; nodes are told apart by their
@@ -80,6 +81,7 @@ impl Builder {
             .collect();
         let top = self.points.iter().map(|p| p[1]).fold(0.0, f64::max);
         Model {
+            units: Units::default(),
             solver: SolverSettings::default(),
             title: "Löwe & Söhne".into(),
             plane: PlaneState::Strain,

@@ -26,13 +26,13 @@ impl Doubts<'_> {
                 warnings.extend(self.strain(&label, &pressure.on, size));
             }
         }
-        let extent = self.extent();
+        let (extent, unit) = (self.extent(), self.scene.units.length());
         for (i, support) in self.loads.supports.iter().enumerate() {
             let values = self.loads.values(i).into_iter();
             let largest = values.map(f64::abs).fold(0.0, f64::max);
             if largest > extent {
                 warnings.push(format!(
-                    "{}: a displacement of {} m, and the bodies measure {} m; are their units the same?",
+                    "{}: a displacement of {} {unit}, and the bodies measure {} {unit}; are their units the same?",
                     self.loads.names[support.condition as usize],
                     short(largest),
                     short(extent)
@@ -68,10 +68,11 @@ impl Doubts<'_> {
             let diagonal = (0..3).map(|i| material.stiffness[i][i]);
             Some((load, diagonal.fold(0.0, f64::max), material.name.as_str()))
         });
+        let unit = self.scene.units.stress();
         let (load, stiffness, name) = loaded.max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
         (load > LARGE * stiffness).then(|| {
             format!(
-                "{label}: up to {} Pa on '{name}' of a stiffness of {} Pa make strains of about {}, where \
+                "{label}: up to {} {unit} on '{name}' of a stiffness of {} {unit} make strains of about {}, where \
                  small ones are meant; are their units the same?",
                 short(load),
                 short(stiffness),

@@ -42,6 +42,7 @@ pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> 
     let mut catalog = Catalog {
         title: header.title,
         dim: header.dim,
+        units: header.units,
         plane: header.plane,
         materials,
         bodies: bodies.into_iter().map(|name| Body { name }).collect(),

@@ -7,21 +7,24 @@ use crate::name;
 use crate::problem::strings::read_strings;
 use crate::problem::vtkhdf::GRID;
 use crate::problem::{FORMAT, VERSION};
+use crate::scene::units::Units;
 
 /// What the attributes of the file say.
 pub(super) struct Header {
     pub title: String,
     pub dim: usize,
+    pub units: Units,
     pub plane: PlaneState,
 }
 
 impl Header {
-    /// Reads the other attributes; a title may be absent.
+    /// Reads the other attributes; a title and units may be absent.
     pub fn read(file: &hdf5::File) -> Result<Self, InputError> {
         check_grid(file)?;
         Ok(Self {
             dim: read_dimension(file)?,
             title: read_title(file)?,
+            units: read_units(file)?,
             plane: read_plane(file)?,
         })
     }
@@ -35,6 +38,16 @@ fn read_plane(file: &hdf5::File) -> Result<PlaneState, InputError> {
             "attribute plane is \"{plane}\"; expected \"strain\" or \"stress\""
         ))
     })
+}
+
+/// The units that results are meant in; m, N and Pa where the file doesn't say.
+fn read_units(file: &hdf5::File) -> Result<Units, InputError> {
+    let Some(attribute) = Attribute::find(file, "units")? else {
+        return Ok(Units::default());
+    };
+    let name = attribute.text()?;
+    let known = Units::ALL.into_iter().find(|known| known.length() == name);
+    known.ok_or_else(|| attribute.error(&format!("is \"{name}\"; expected \"m\" or \"mm\"")))
 }
 
 /// The title; empty where there is none.

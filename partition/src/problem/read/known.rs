@@ -83,7 +83,10 @@ const KNOWN: [(&str, &[&str]); 12] = [
 
 /// Attributes of the groups that have any.
 const ATTRIBUTES: [(&str, &[&str]); 2] = [
-    ("/", &["format", "version", "title", "dimension", "plane"]),
+    (
+        "/",
+        &["format", "version", "title", "dimension", "plane", "units"],
+    ),
     ("/settings", &SolverSettings::NAMES),
 ];
 

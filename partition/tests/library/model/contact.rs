@@ -62,6 +62,8 @@ fn interference_is_allowed_with_a_note() {
         .unwrap();
     assert!(model.warnings[0].contains("interference fit of up to 0.001 m"));
     assert!(stack(0.0).model(CONTACT).unwrap().warnings.is_empty());
+    let intended = format!("{CONTACT}interference = true");
+    assert!(stack(-0.01).model(&intended).unwrap().warnings.is_empty());
 }
 
 #[test]

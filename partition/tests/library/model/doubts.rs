@@ -135,6 +135,8 @@ fn places_far_away_are_named() {
     );
     let given = format!("{HELD}{CONTACT}gap = 0\n");
     assert_eq!(warned(&stack(0.5), &given), "");
+    let millimetres = warned(&stack(0.0), &format!("units = 'mm'\n{far}"));
+    assert!(millimetres.contains("is 50 mm, and the bodies measure 2 mm"));
     let high = Blocks::new()
         .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 2])
         .block("upper", [0.0, 2.0], [4.0, 5.0], [4, 2]);

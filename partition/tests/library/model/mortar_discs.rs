@@ -85,6 +85,16 @@ fn discs_that_touch_leave_the_gap_between_their_circles() {
 }
 
 #[test]
+fn the_finer_of_two_curved_sides_is_not_the_first() {
+    let text = "[[contact]]\nname = 'c'\nsides = ['upper top', 'lower top']\n";
+    for (facets, is_warned) in [([50, 33], false), ([50, 90], true)] {
+        let warnings = discs(facets).model(text).unwrap().warnings.join("\n");
+        let said = warnings.contains("expected the coarser one of curved sides first");
+        assert_eq!(said, is_warned, "{warnings}");
+    }
+}
+
+#[test]
 fn discs_that_turn_together_or_on_their_own_keep_their_gaps() {
     let text = "[[contact]]\nname = 'c'\nsides = ['upper top', 'lower top']\n";
     let blocks = discs([50, 33]);

@@ -142,6 +142,16 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
             "1e-3*r",
             "line 22: displacement[1].y: expression '1e-3*r', character 6: 'r' isn't known",
         ),
+        (
+            "1e-3*x",
+            "1e-3*z",
+            "line 22: displacement[1].y: expression '1e-3*z', character 6: 'z' isn't known",
+        ),
+        (
+            "plane = \"strain\"",
+            "plane = \"strain\"\nunits = 'cm'",
+            "line 4: units: unknown value 'cm'",
+        ),
         ("1e-3*x", "1/0", "line 22: displacement[1].y: '1/0' is inf"),
         ("on = \"bottom\"", "", "displacement[1]: missing field `on`"),
         (

@@ -1,0 +1,42 @@
+//! The units in which the numbers of a scene are meant, for those who read them.
+
+/// The unit of length. Nothing is converted: what is printed with a number follows from it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+pub enum Units {
+    /// m, N and Pa.
+    #[default]
+    #[serde(rename = "m")]
+    Metre,
+    /// mm, N and MPa.
+    #[serde(rename = "mm")]
+    Millimetre,
+}
+
+impl Units {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Metre, Self::Millimetre];
+
+    /// That of lengths, its name in scenes and files.
+    pub fn length(self) -> &'static str {
+        match self {
+            Self::Metre => "m",
+            Self::Millimetre => "mm",
+        }
+    }
+
+    /// That of forces per thickness, of which moments per thickness are in N.
+    pub fn force(self) -> &'static str {
+        match self {
+            Self::Metre => "N/m",
+            Self::Millimetre => "N/mm",
+        }
+    }
+
+    /// That of stresses.
+    pub fn stress(self) -> &'static str {
+        match self {
+            Self::Metre => "Pa",
+            Self::Millimetre => "MPa",
+        }
+    }
+}
