@@ -6,6 +6,7 @@ seven pictures of the paper: deformation, u_x, u_y, tau_x, tau_y, tau_xy, princi
 
 import argparse
 import pathlib
+import signal
 import sys
 
 import numpy as np
@@ -65,6 +66,8 @@ def factor(text):
 
 
 def main():
+    # Where nobody reads on, as behind `| head`, there is nothing more to do.
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     parser = argparse.ArgumentParser(prog="figures", description=__doc__.splitlines()[0])
     parser.add_argument("result", type=pathlib.Path, help="result file of contact-dd-mpi")
     parser.add_argument("outdir", type=pathlib.Path, nargs="?", help="folder (default: figures beside the result)")

@@ -5,6 +5,7 @@ import html
 import io
 import json
 import pathlib
+import signal
 import sys
 
 import matplotlib
@@ -310,6 +311,8 @@ def rest(report):
 
 
 def main():
+    # Where nobody reads on, as behind `| head`, there is nothing more to do.
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     parser = argparse.ArgumentParser(prog="summary", description=__doc__.splitlines()[0])
     parser.add_argument("result", type=pathlib.Path, help="result file of contact-dd-mpi")
     parser.add_argument("page", type=pathlib.Path, nargs="?", help="default: the result's name with .html")

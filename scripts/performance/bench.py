@@ -9,6 +9,7 @@ import json
 import math
 import os
 import pathlib
+import signal
 import statistics
 import sys
 import time
@@ -242,6 +243,8 @@ def mkl_version():
 
 
 def main():
+    # Where nobody reads on, as behind `| head`, there is nothing more to do.
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     parser = argparse.ArgumentParser(prog="bench", description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", default="5k,80k,500k,2M", help="dofs, by commas (default: %(default)s)")
     parser.add_argument("--repeat", type=int, default=5, help="repetitions (default: %(default)s)")

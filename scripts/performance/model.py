@@ -9,6 +9,7 @@ import dataclasses
 import heapq
 import json
 import pathlib
+import signal
 import sys
 import time
 
@@ -349,6 +350,8 @@ def belongs(report, problem, arguments):
 
 
 def main():
+    # Where nobody reads on, as behind `| head`, there is nothing more to do.
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     parser = argparse.ArgumentParser(prog="scaling predict", description=__doc__.splitlines()[0])
     parser.add_argument("problem", type=pathlib.Path, help="problem file")
     parser.add_argument("report", type=pathlib.Path, help="report of its run on one rank")

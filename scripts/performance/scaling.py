@@ -9,6 +9,7 @@ import csv
 import json
 import os
 import pathlib
+import signal
 import statistics
 import sys
 
@@ -131,6 +132,8 @@ def draw(rows, path):
 
 
 def main():
+    # Where nobody reads on, as behind `| head`, there is nothing more to do.
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     parser = argparse.ArgumentParser(prog="scaling", description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path, help="for reports/, scaling.csv and scaling.svg")
     parser.add_argument("--ranks", help="numbers of ranks, by commas (default: 1, 2, 4, ... all cores)")

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use super::summary::can_draw;
+use super::summary::{can_draw, set_millimetres};
 use crate::support::blocks::Blocks;
 use crate::support::process::{Ended, Running};
 use crate::support::scenes::{model, two_block_scene, two_blocks};
@@ -56,17 +56,19 @@ fn gaps_that_close_are_not_enlarged_into_overlaps() {
 }
 
 #[test]
-fn a_scene_in_millimetres_is_drawn_with_its_own_units() {
+fn a_picture_has_the_units_of_the_scene() {
     if !can_draw() {
         return;
     }
     let case = solved(0.0);
-    let pictures = [&[][..], &["--mm"]].map(|options| {
-        let drawn = figures(&case, options);
+    let picture = || {
+        let drawn = figures(&case, &[]);
         assert_eq!((drawn.code(), &*drawn.stderr), (0, ""));
         fs::read(case.folder().join("pictures/overview.png")).unwrap()
-    });
-    assert!(pictures[0] != pictures[1]);
+    };
+    let in_m = picture();
+    set_millimetres(&case.result());
+    assert!(picture() != in_m);
 }
 
 #[test]
