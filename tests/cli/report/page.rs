@@ -1,21 +1,60 @@
 //! The part of docs/report.md that the types make.
 
 use std::fmt::Write as _;
+use std::iter;
 
 use serde_json::Value;
 
 /// What is behind it is made.
 pub const MARK: &str = "<!-- From here on: WRITE_DOCS=1 cargo test --test cli report -->\n";
 
+/// So many fields of another part aren't told again.
+const MANY: usize = 6;
+
 /// The page: what stands `above` the mark, and a table for every part of the report.
 pub fn below(above: &str, schema: &Value) -> String {
     let mut page = format!("{above}{MARK}\n## The report\n\n{}", table(schema));
-    for name in parts(schema) {
-        let part = &schema["$defs"][&name];
+    let names = parts(schema);
+    for (k, name) in names.iter().enumerate() {
+        let mut part = schema["$defs"][name].clone();
         let text = part["description"].as_str().unwrap_or_default();
-        let _ = write!(page, "\n## {}\n\n{text}\n\n{}", heading(&name), table(part));
+        let _ = write!(page, "\n## {}\n\n{text}\n\n", heading(name));
+        // What has most fields of the report or of an earlier part says so.
+        let report = ("report", "the-report", schema);
+        let earlier = (names[..k].iter()).map(|name| (&**name, "", &schema["$defs"][name]));
+        for (earlier, link, other) in iter::once(report).chain(earlier) {
+            let shared = leave_out(&mut part, other);
+            if !shared.is_empty() {
+                let (heading, own) = (heading(earlier).to_lowercase(), anchor(earlier));
+                let link = if link.is_empty() { &own } else { link };
+                let _ = write!(
+                    page,
+                    "As in [{heading}](#{link}): `{}`; and\n\n",
+                    shared.join("`, `")
+                );
+            }
+        }
+        if fields(&part).next().is_some() || !part["oneOf"].is_null() {
+            page += &table(&part);
+        }
     }
     page
+}
+
+/// Leaves out the fields that another part has, too, and names them, where they are many.
+fn leave_out(part: &mut Value, other: &Value) -> Vec<String> {
+    let names = |part: &Value| fields(part).map(|(name, _)| name.to_owned()).collect();
+    let (own, others): (Vec<String>, Vec<String>) = (names(part), names(other));
+    let shared: Vec<String> = (own.into_iter())
+        .filter(|name| others.contains(name))
+        .collect();
+    if shared.len() < MANY {
+        return Vec::new();
+    }
+    if let Some(names) = part["required"].as_array_mut() {
+        names.retain(|name| !shared.iter().any(|shared| name == shared));
+    }
+    shared
 }
 
 /// `PhaseSeconds` as a heading.
