@@ -41,7 +41,7 @@ pub fn trials() -> Vec<Trial> {
 /// other pages than those of scenes have none.
 pub fn numbers_hold(name: &str, folder: &Path) {
     let of_scenes = page::all();
-    let is_meant = |scene: &str| name == format!("docs/gallery/{scene}.md");
+    let is_meant = |scene: &str| name == format!("partition/src/example/{scene}/README.md");
     if let Some((page, _)) = of_scenes.iter().find(|(_, scene)| is_meant(scene)) {
         numbers::has_numbers(folder, &page.expected);
     }
@@ -51,12 +51,19 @@ fn every_scene_has_a_page() {
     let pages: BTreeSet<String> = page::all().into_iter().map(|(_, name)| name).collect();
     let scenes: BTreeSet<String> = EXAMPLES.iter().map(|e| e.name.to_owned()).collect();
     assert_eq!(pages, scenes);
-    let index = std::fs::read_to_string(page::folder().join("README.md")).unwrap();
+    let index = page::folder().join("../../../docs/gallery/README.md");
+    let index = std::fs::read_to_string(index).unwrap();
     for name in scenes {
-        for link in [format!("]({name}.md)"), format!("]({name}.png)")] {
+        let picture = page::folder().join(format!("{name}/{name}.png"));
+        let bytes = std::fs::metadata(picture).unwrap().len();
+        assert!(bytes < 300_000, "{name}.png has {bytes} bytes");
+        for link in [
+            format!("/{name}/README.md)"),
+            format!("/{name}/{name}.png)"),
+        ] {
             assert!(
                 index.contains(&link),
-                "docs/gallery/README.md has no {link}"
+                "docs/gallery/README.md has no {link}; scripts/gallery makes its table"
             );
         }
     }

@@ -31,11 +31,13 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The pages at the root and all under `docs`, by name.
+/// The pages at the root, all under `docs`, and those of the built-in scenes, by name.
 pub fn all() -> Vec<Page> {
     let mut paths = Vec::new();
     pages_in(root(), false, &mut paths);
-    pages_in(&root().join("docs"), true, &mut paths);
+    for folder in ["docs", "partition/src/example"] {
+        pages_in(&root().join(folder), true, &mut paths);
+    }
     paths.sort();
     let page = |path: &PathBuf| {
         let name = path.strip_prefix(root()).unwrap();

@@ -15,18 +15,19 @@ pub struct Page {
     pub expected: Vec<Expected>,
 }
 
+/// The folder of the scenes' folders.
 pub fn folder() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("docs/gallery")
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("partition/src/example")
 }
 
-/// All pages but the index, with the names of their scenes.
+/// All pages, with the names of their scenes.
 pub fn all() -> Vec<(Page, String)> {
     let mut pages: Vec<(Page, String)> = Vec::new();
     for entry in fs::read_dir(folder()).unwrap() {
         let path = entry.unwrap().path();
-        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
-        if path.extension().is_some_and(|ending| ending == "md") && name != "README" {
-            pages.push((Page::parse(&fs::read_to_string(&path).unwrap()), name));
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        if let Ok(text) = fs::read_to_string(path.join("README.md")) {
+            pages.push((Page::parse(&text), name));
         }
     }
     pages.sort_by(|(_, one), (_, other)| one.cmp(other));

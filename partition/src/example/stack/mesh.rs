@@ -10,7 +10,7 @@ pub(super) const EXAMPLE: Example = Example {
     name: "stack",
     about: "three blocks held by contact alone under gravity and an eccentric pressure",
     subdomains: 6,
-    scene: include_str!("stack.toml"),
+    scene: include_str!("scene.toml"),
     shape: Shape::Squares(squares),
 };
 

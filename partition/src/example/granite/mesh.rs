@@ -12,7 +12,7 @@ pub(super) const EXAMPLE: Example = Example {
     name: "granite",
     about: "a loaded granite block with two edge cracks, the paper's problem",
     subdomains: 8,
-    scene: include_str!("granite.toml"),
+    scene: include_str!("scene.toml"),
     shape: Shape::Squares(squares),
 };
 

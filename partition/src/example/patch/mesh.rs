@@ -11,7 +11,7 @@ pub(super) const EXAMPLE: Example = Example {
     name: "patch",
     about: "two blocks in uniform compression through an inclined contact, exact answer known",
     subdomains: 4,
-    scene: include_str!("patch.toml"),
+    scene: include_str!("scene.toml"),
     shape: Shape::Squares(squares),
 };
 

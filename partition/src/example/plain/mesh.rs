@@ -12,7 +12,7 @@ pub(super) const EXAMPLE: Example = Example {
     name: "plain",
     about: "a quarter of a plate with a hole under tension, without contact",
     subdomains: 4,
-    scene: include_str!("plain.toml"),
+    scene: include_str!("scene.toml"),
     shape: Shape::Squares(squares),
 };
 

@@ -15,7 +15,7 @@ pub(super) const EXAMPLE: Example = Example {
     name: "hertz",
     about: "line contact of two cylinders, graded mesh, exact answer known",
     subdomains: 4,
-    scene: include_str!("hertz.toml"),
+    scene: include_str!("scene.toml"),
     shape: Shape::Squares(squares),
 };
 

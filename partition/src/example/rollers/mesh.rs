@@ -14,7 +14,7 @@ pub(super) const EXAMPLE: Example = Example {
     name: "rollers",
     about: "three rollers between two plates, curved contact of meshes that don't match",
     subdomains: 8,
-    scene: include_str!("rollers.toml"),
+    scene: include_str!("scene.toml"),
     shape: Shape::Squares(squares),
 };
 

@@ -11,7 +11,7 @@ pub(super) const EXAMPLE: Example = Example {
     name: "crack",
     about: "a closed inclined crack in a wide plate, exact answer known",
     subdomains: 6,
-    scene: include_str!("crack.toml"),
+    scene: include_str!("scene.toml"),
     shape: Shape::Squares(squares),
 };
 

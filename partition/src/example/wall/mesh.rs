@@ -10,7 +10,7 @@ pub(super) const EXAMPLE: Example = Example {
     name: "wall",
     about: "a wall of 33 bricks on ground that sank, every joint a contact",
     subdomains: 33,
-    scene: include_str!("wall.toml"),
+    scene: include_str!("scene.toml"),
     shape: Shape::Squares(squares),
 };
 

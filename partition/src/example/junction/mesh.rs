@@ -13,7 +13,7 @@ pub(super) const EXAMPLE: Example = Example {
     name: "junction",
     about: "four blocks and three contacts that meet in one point, exact answer known",
     subdomains: 4,
-    scene: include_str!("junction.toml"),
+    scene: include_str!("scene.toml"),
     shape: Shape::Squares(squares),
 };
 

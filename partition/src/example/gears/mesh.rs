@@ -9,7 +9,7 @@ pub(super) const EXAMPLE: Example = Example {
     name: "gears",
     about: "two spur gears meshed by Gmsh, involute flanks of curved quadratic cells",
     subdomains: 8,
-    scene: include_str!("gears.toml"),
+    scene: include_str!("scene.toml"),
     shape: Shape::Gmsh {
         geometry: include_str!("gears.geo"),
         mesh: include_bytes!("gears.msh"),
