@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use contact_dd_partition::model::Model;
 
-use crate::random::{Ran, Runs};
+use super::random::{Ran, Runs};
 use crate::support::blocks::{Blocks, moved};
 use crate::support::scenes::{built_in_model, model};
 use crate::support::sorts::sort;

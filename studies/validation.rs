@@ -2,40 +2,25 @@
 //!
 //! `scripts/validate` runs it and writes docs/validation.md.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a suite that can't go on has failed"
-)]
-
 mod document;
-#[path = "../../tests/support/mod.rs"]
-mod support;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::Parser;
-
-use support::validation::{Measured, cases};
+use crate::support::validation::{Measured, cases};
 
 /// Compares solutions with exact answers on finer and finer meshes.
-#[derive(Parser)]
-struct Arguments {
+#[derive(clap::Args)]
+pub struct Arguments {
     /// Runs the cases alone whose titles contain this.
     #[arg(long, value_name = "TEXT", conflicts_with = "markdown")]
     only: Option<String>,
     /// Writes the results as markdown.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
-    /// Cargo adds it.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
-fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+pub fn run(arguments: &Arguments) -> ExitCode {
     let mut text = document::HEAD.to_owned();
     let mut kept = true;
     for case in cases() {

@@ -2,26 +2,16 @@
 //!
 //! `scripts/accuracy` runs it and writes docs/accuracy.md.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a suite that can't go on has failed"
-)]
-
 mod conclusions;
 mod document;
 mod reached;
 mod series;
-#[path = "../../tests/support/mod.rs"]
-mod support;
 mod timed;
 mod tolerance;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::Parser;
 use serde::{Deserialize, Serialize};
 
 use conclusions::{Conclusions, default_tolerance};
@@ -30,8 +20,8 @@ use timed::Timed;
 use tolerance::Tried;
 
 /// Measures run time against error on finer and finer meshes.
-#[derive(Parser)]
-struct Arguments {
+#[derive(clap::Args)]
+pub struct Arguments {
     /// Runs of each mesh and number of ranks; times are their medians [default: 5, or 1 if quick].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     repeat: Option<u16>,
@@ -47,9 +37,6 @@ struct Arguments {
     /// Writes the results as markdown.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
-    /// Cargo adds it.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
 /// All that was measured.
@@ -79,8 +66,7 @@ impl Measurements {
     }
 }
 
-fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+pub fn run(arguments: &Arguments) -> ExitCode {
     let (dofs, usual) = match arguments.quick {
         true => (700, 1),
         false => (9_000, 5),

@@ -2,30 +2,19 @@
 //!
 //! `scripts/stress` runs it and writes docs/stability.md.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a suite that can't go on has failed"
-)]
-
 mod axes;
 mod document;
 mod random;
-#[path = "../../tests/support/mod.rs"]
-mod support;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use clap::Parser;
-
-use support::stress::trial::Verdict;
+use crate::support::stress::trial::Verdict;
 
 /// Runs scenes that are hard on the solver and says what became of each.
-#[derive(Parser)]
-struct Arguments {
+#[derive(clap::Args)]
+pub struct Arguments {
     /// Number of random scenes.
     #[arg(short = 'n', long, default_value_t = 1008)]
     scenes: u64,
@@ -53,15 +42,11 @@ struct Arguments {
     /// Writes the results as markdown.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
-    /// Cargo adds it.
-    #[arg(long, hide = true)]
-    bench: bool,
 }
 
-fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+pub fn run(arguments: &Arguments) -> ExitCode {
     let binary = arguments.binary.clone();
-    let binary = binary.unwrap_or_else(|| support::solver::built().to_owned());
+    let binary = binary.unwrap_or_else(|| crate::support::solver::built().to_owned());
     let runs = random::Runs {
         binary,
         cells: arguments.cells,

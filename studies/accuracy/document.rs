@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use crate::Measurements;
-use crate::conclusions::{Conclusions, MOVED, RATIO};
-use crate::reached::GOAL;
-use crate::series::SCENES;
-use crate::tolerance::{Asked, METHODS};
+use super::Measurements;
+use super::conclusions::{Conclusions, MOVED, RATIO};
+use super::reached::GOAL;
+use super::series::SCENES;
+use super::tolerance::{Asked, METHODS};
 
 const HEAD: &str = "\
 # Run time against error

@@ -1,6 +1,6 @@
 //! The time at which a series reaches an error.
 
-use crate::timed::Timed;
+use super::timed::Timed;
 
 /// The error in the norm of the energy that elements are compared at.
 pub const GOAL: f64 = 1e-2;

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::axes::Row;
-use crate::random::Ran;
+use super::axes::Row;
+use super::random::Ran;
 use crate::support::stress::FAMILIES;
 use crate::support::stress::trial::Verdict;
 

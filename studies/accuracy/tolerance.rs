@@ -5,7 +5,7 @@ use contact_dd_partition::problem::Problem;
 use hdf5::File;
 use serde::{Deserialize, Serialize};
 
-use crate::series::Series;
+use super::series::Series;
 use crate::support::solution::Solution;
 use crate::support::solver::Case;
 use crate::support::validation::Posed;

@@ -2,12 +2,12 @@
 
 use contact_dd_mpi::settings::DEFAULT_TOLERANCE;
 
-use crate::Measurements;
-use crate::document::shown;
-use crate::reached::{GOAL, Reached, reached};
-use crate::series::{SCENES, Series};
-use crate::timed::Timed;
-use crate::tolerance::Tried;
+use super::Measurements;
+use super::document::shown;
+use super::reached::{GOAL, Reached, reached};
+use super::series::{SCENES, Series};
+use super::timed::Timed;
+use super::tolerance::Tried;
 
 /// The largest ratio of quadratic cells' solve phases to linear cells' at the goal.
 pub const RATIO: f64 = 0.1;

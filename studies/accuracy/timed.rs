@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::series::Series;
+use super::series::Series;
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, problem};
 

@@ -1,0 +1,46 @@
+//! Studies of the program, each of which writes a page of docs/: `scripts/stress`, `scripts/validate` and
+//! `scripts/accuracy` run them.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a study that can't go on has failed"
+)]
+
+mod accuracy;
+mod stability;
+#[path = "../tests/support/mod.rs"]
+mod support;
+mod validation;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+#[derive(Parser)]
+struct Arguments {
+    #[command(subcommand)]
+    study: Study,
+    /// Cargo adds it.
+    #[arg(long, hide = true, global = true)]
+    bench: bool,
+}
+
+#[derive(clap::Subcommand)]
+enum Study {
+    /// Runs scenes that are hard on the solver and says what became of each.
+    Stability(stability::Arguments),
+    /// Compares solutions with exact answers on finer and finer meshes.
+    Validation(validation::Arguments),
+    /// Measures run time against error on finer and finer meshes.
+    Accuracy(accuracy::Arguments),
+}
+
+fn main() -> ExitCode {
+    match Arguments::parse().study {
+        Study::Stability(arguments) => stability::run(&arguments),
+        Study::Validation(arguments) => validation::run(&arguments),
+        Study::Accuracy(arguments) => accuracy::run(&arguments),
+    }
+}
