@@ -15,6 +15,7 @@ pub mod load;
 pub mod node_frames;
 pub mod owned;
 pub mod patch;
+pub mod prescribed;
 pub mod recovery;
 mod sites;
 pub mod stress;

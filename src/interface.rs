@@ -3,4 +3,6 @@
 pub mod coupled;
 pub mod numbering;
 pub mod operator;
+pub mod problem;
 pub mod s_con;
+pub mod solver;

@@ -41,7 +41,7 @@
 //!
 //! > n·(u_k − u_l) = 0 on Γ_c,   (S_0 + Σ_ϑ R̄_klᵀ S_ΓΓ R̄_kl) U^0 = F + Σ_ϑ R̄_klᵀ f_Γ,   (16)-(17)
 //!
-//! whose factor serves all that follows ([`bilateral_start`](interface::operator::Interface::bilateral_start)).
+//! whose factor serves all that follows ([`bilateral_start`](interface::problem::InterfaceProblem::bilateral_start)).
 //!
 //! **The sweeps.** The paper's successive approximations,
 //!

@@ -8,6 +8,7 @@ pub mod condense;
 pub mod condensed_blocks;
 pub mod conditioning;
 mod conditions;
+pub mod context;
 mod copies;
 mod descend;
 pub mod frozen;
@@ -32,32 +33,30 @@ mod sweeping;
 mod totals;
 pub mod write;
 
-use std::collections::BTreeMap;
 use std::time::Instant;
 
-use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::read::ProblemFile;
 use faer::Par;
 
 use self::affording::afford;
 use self::condense::Condensation;
+use self::context::Context;
 use self::copies::check_copies;
-use self::frozen::{Frozen, FrozenRoot};
+use self::descend::without_descent;
+use self::frozen::Frozen;
 use self::interface::assemble_interface;
 use self::load::Loading;
 use self::merge::condense_clusters;
-use self::motions::Motions;
 use self::narrator::Narrator;
 use self::read::read_blocks;
 use self::report::Outputs;
 use self::solution::Solution;
-use self::steps::{in_step, stop_if_asked, survey_steps, take_step};
-use self::sweeping::Sweeping;
+use self::steps::{StepState, in_step, loads_of_step, stop_if_asked, survey_steps};
+use self::sweeping::sweep;
 use self::totals::{StepTotals, Totals};
 use self::write::write_solution;
 use crate::comm::{Comm, Message, phase};
 use crate::error::Failure;
-use crate::fem::owned::OwnedBlock;
 use crate::output::ranks::PhaseSeconds;
 use crate::output::report::ReportFile;
 use crate::output::resultants::Resultants;
@@ -102,105 +101,87 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     let plan = Plan::new(catalog, comm.size(), settings.merging());
     let demands = plan.demands(catalog, comm.size());
     let available = afford(comm, &demands)?;
-    let mut blocks = comm.agree(read_blocks(comm.rank(), &file, &plan))?;
+    let blocks = comm.agree(read_blocks(comm.rank(), &file, &plan))?;
     check_copies(comm, &file, &plan, &blocks)?;
     narrator.problem(catalog, &plan);
 
+    let context = Context {
+        comm,
+        catalog,
+        plan: &plan,
+        blocks: &blocks,
+        par,
+    };
+
     // Rigid motions that neither supports nor contact hold, and those by which bodies come to rest.
     narrator.phase("looking for free rigid motions", None);
-    let surveys = survey_steps(comm, &mut blocks, catalog, &plan)?;
+    let surveys = survey_steps(&context)?;
     if settings.check {
         narrator.check(&surveys, &demands, available);
         return Ok(Ending::Converged);
     }
     narrator.phase("creating the outputs", None);
-    let mut outputs = create_outputs(comm, settings, catalog, &plan, &blocks)?;
-    take_step(&mut blocks, 0, &surveys[0], catalog.dim);
+    let mut outputs = create_outputs(&context, settings)?;
+    let loads = |k: usize| without_descent(&context, loads_of_step(&context, k), &surveys[k]);
     seconds.read = began.elapsed().as_secs_f64();
 
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy.
     narrator.phase("factorizing", Some(blocks.len()));
     let condensation = Condensation {
-        catalog,
-        plan: &plan,
+        context,
+        loads: &loads(0),
         pins: &surveys[0].motions.pins,
-        par,
     };
-    let mut condensed =
-        condense_clusters(comm, &condensation, &blocks, &surveys[0], &narrator.bar)?;
+    let condensed = condense_clusters(&condensation, &surveys[0], &narrator.bar)?;
     [seconds.assemble, seconds.factorize] = condensed.seconds;
 
     // The root assembles S_0, (15), and the bilateral operator.
     narrator.phase("assembling the interface problem", None);
     let lap = Instant::now();
-    let mut interface = assemble_interface(comm, &condensed, catalog, &plan, par)?;
+    let interface = assemble_interface(&context, &condensed)?;
     seconds.interface = lap.elapsed().as_secs_f64();
 
-    // All that depends on loads, load step by load step.
-    let contact_owners = plan.contact_owners();
-    let sweeping = Sweeping {
-        comm,
-        settings,
-        narrator: &narrator,
-        contact_owners: &contact_owners,
-    };
+    // Load step by load step: each starts from the state that the one before it left.
+    let mut state = StepState::default();
     let mut steps: Vec<StepTotals> = Vec::new();
     for (k, survey) in surveys.iter().enumerate() {
+        stop_if_asked(comm, catalog, k)?;
+
         // F, condensed like the blocks, and the bounds on approaches.
         narrator.phase("condensing the load", None);
         let lap = Instant::now();
-        if k > 0 {
-            stop_if_asked(comm, catalog, k)?;
-            take_step(&mut blocks, k, survey, catalog.dim);
-        }
+        let start = state.start();
         let loading = Loading {
-            comm,
-            catalog,
-            plan: &plan,
-            blocks: &blocks,
+            context,
+            factors: &condensed,
+            interface: interface.as_ref(),
             survey,
         };
-        if k > 0 {
-            let prescribed = loading.prescribe(&mut condensed);
-            prescribed.map_err(|failure| in_step(failure, catalog, k))?;
-        }
-        let loads = loading.condense(&mut condensed);
-        loading.assemble(&condensed, &loads, interface.as_mut());
+        let problem = loading.problem(loads(k), state);
+        let mut problem = problem.map_err(|failure| in_step(failure, catalog, k))?;
         seconds.interface += lap.elapsed().as_secs_f64();
 
         // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the step before.
         narrator.phase("sweeping", None);
         let lap = Instant::now();
         narrator.step(catalog, k);
-        let problem = interface.as_ref().map(|(_, interface)| interface);
-        let pairs = &mut condensed.pairs;
-        let before = steps.last().map(|step| &step.outcome);
-        let mut outcome = sweeping.sweep(problem, pairs, before)?;
+        let (on_gamma, pairs) = (problem.interface.as_ref(), &mut problem.pairs);
+        let mut outcome = sweep(&context, settings, &narrator, on_gamma, pairs, start)?;
         seconds.sweeps += lap.elapsed().as_secs_f64();
 
         // Back-substitution, and the check of the full discrete problem.
         narrator.phase("recovering", None);
         let lap = Instant::now();
-        let root = outcome.as_ref().zip(interface.as_ref());
-        let frozen = Frozen {
-            comm,
-            blocks: &blocks,
-            condensed: &condensed,
-            catalog,
-            plan: &plan,
-            descent: survey.longest_descent(),
-            free: Motions {
-                list: &survey.motions.free,
-                frames: &survey.frames,
-            },
-            root: root.map(|(outcome, (numbering, interface))| FrozenRoot {
-                numbering,
-                interface,
-                converged: outcome.status == SweepStatus::Converged,
-            }),
-        };
+        let frozen = Frozen::new(
+            context,
+            &condensed,
+            &problem,
+            survey,
+            interface.as_ref(),
+            outcome.as_ref(),
+        );
         let u = outcome.as_ref().map(|outcome| &outcome.u[..]);
-        let solution = Solution::new(&frozen, survey, &loads, u, !settings.no_stress);
+        let solution = Solution::new(&frozen, survey, u, !settings.no_stress);
         if let Some(outcome) = &mut outcome {
             outcome.accept(&solution.certificate);
         }
@@ -212,8 +193,9 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         let mut resultants = Resultants::new(catalog, solution.reactions.clone());
         let result = outputs.as_mut().map(|outputs| &mut outputs.result);
         let contacts = &mut resultants.contacts;
-        write_solution(comm, &blocks, &solution, &plan, result, contacts)?;
+        write_solution(&context, &problem, &solution, result, contacts)?;
         seconds.write += lap.elapsed().as_secs_f64();
+        state = StepState::after(problem.pairs, outcome.as_ref(), settings.method);
         let totals = outcome.map(|o| StepTotals::new(o, &solution, resultants, survey));
         steps.extend(totals);
     }
@@ -249,13 +231,14 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
 ///
 /// # Errors
 /// A file can't be made.
-fn create_outputs(
-    comm: &Comm,
-    settings: &Settings,
-    catalog: &Catalog,
-    plan: &Plan,
-    blocks: &BTreeMap<usize, OwnedBlock>,
-) -> Result<Option<Outputs>, Failure> {
+fn create_outputs(context: &Context<'_>, settings: &Settings) -> Result<Option<Outputs>, Failure> {
+    let &Context {
+        comm,
+        catalog,
+        plan,
+        blocks,
+        ..
+    } = context;
     let mut connectivity = Vec::new();
     comm.gather(
         &plan.subdomain_owners(),

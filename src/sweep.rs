@@ -22,7 +22,7 @@ pub use self::outcome::{SweepOutcome, SweepRecord, SweepStatus};
 use self::progress::Progress;
 use crate::comm::is_asked_to_stop;
 use crate::error::Failure;
-use crate::interface::operator::Interface;
+use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::{ConState, ConTotals, SCon};
 use crate::schur::factor::BoundaryLastCholesky;
 use crate::vector::largest;
@@ -48,7 +48,7 @@ pub struct SweepSettings {
 
 /// The sweeps on the root.
 pub struct Sweeps<'a, 'c> {
-    interface: &'a Interface,
+    problem: &'a InterfaceProblem<'a>,
     s_con: &'a mut SCon<'c>,
     state: ConState,
     settings: SweepSettings,
@@ -94,13 +94,13 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     /// # Errors
     /// A signal has asked the run to stop.
     pub fn solve(
-        interface: &'a Interface,
+        problem: &'a InterfaceProblem<'a>,
         s_con: &'a mut SCon<'c>,
         settings: SweepSettings,
         start: Start,
         observer: &'a mut dyn FnMut(&SweepRecord),
     ) -> Result<SweepOutcome, Failure> {
-        let (mut sweeps, residual) = Self::begin(interface, s_con, settings, start, observer);
+        let (mut sweeps, residual) = Self::begin(problem, s_con, settings, start, observer);
         let status = sweeps.sweep(residual)?;
         Ok(sweeps.end(status))
     }
@@ -108,18 +108,18 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     /// Before the first sweep, and the residual there: of the bilateral start (16)-(17), or of the load step
     /// before.
     pub fn begin(
-        interface: &'a Interface,
+        problem: &'a InterfaceProblem<'a>,
         s_con: &'a mut SCon<'c>,
         settings: SweepSettings,
         start: Start,
         observer: &'a mut dyn FnMut(&SweepRecord),
     ) -> (Self, Residual) {
         let (u, expected) = match start {
-            Start::Bilateral => (interface.bilateral_start(), None),
+            Start::Bilateral => (problem.bilateral_start(), None),
             Start::Before(u, open) => (u, Some(open)),
         };
         let mut sweeps = Self {
-            interface,
+            problem,
             s_con,
             state: ConState::default(),
             settings,
@@ -180,10 +180,11 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     /// r(U), where the pairs' approaches are `expected` to be open; else as they were last.
     fn residual(&mut self, expected: Option<&[Vec<bool>]>) -> Residual {
         let u = &self.progress.u;
-        let totals = (self.s_con).evaluate(self.interface, u, expected, &mut self.state);
+        let totals = (self.s_con).evaluate(self.problem.interface, u, expected, &mut self.state);
         self.progress.count(&totals, self.s_con.len());
-        let (mut r, mut scale) = self.interface.linear_residual(&self.progress.u);
-        self.state.subtract(self.interface, &mut r, &mut scale);
+        let (mut r, mut scale) = self.problem.linear_residual(&self.progress.u);
+        self.state
+            .subtract(self.problem.interface, &mut r, &mut scale);
         let (r_max, scale_max) = (largest(&r), largest(&scale));
         Residual {
             r,

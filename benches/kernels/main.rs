@@ -9,6 +9,7 @@
 mod scene;
 
 use std::hint::black_box;
+use std::rc::Rc;
 use std::time::Duration;
 
 use contact_dd_mpi::certificate::check::BlockCheck;
@@ -34,17 +35,18 @@ fn subdomain(c: &mut Criterion) {
         let scene = Scene::granite(refine, count);
         let b = scene.largest_linear();
         let owned = &scene.blocks[b];
-        let (block, points) = (&owned.block, &owned.points);
+        let (block, loads) = (&owned.block, scene.loads(b));
         let materials = scene.materials();
         let (dofs, stiffness) = scene.assembled(b);
         let (_, schur, _, load) = scene.condensed(b);
         let x_b = vec![1e-3; load.boundary().len()];
-        let u = dofs.displacement(&schur.recover(&load, &x_b));
-        let balance = Balance::new(block, points, materials, &u, &[]);
+        let prescribed = scene.prescribed(b, &dofs);
+        let u = prescribed.displacement(&dofs, &schur.recover(&load, &x_b));
+        let balance = Balance::new(owned, &loads, materials, &u, &[]);
 
         let mut group = c.benchmark_group(format!("subdomain {size}"));
         group.bench_function("number unknowns", |bench| {
-            bench.iter(|| Dofs::new(block, points, &owned.gaps, materials).unwrap());
+            bench.iter(|| Dofs::new(owned, &loads, materials).unwrap());
         });
         group.bench_function("assemble", |bench| {
             bench.iter(|| assemble(block, &dofs, materials, &[]).unwrap());
@@ -53,13 +55,13 @@ fn subdomain(c: &mut Criterion) {
             bench.iter(|| LocalSchur::new(&stiffness, dofs.interior, Par::Seq).unwrap());
         });
         group.bench_function("recover", |bench| {
-            bench.iter(|| dofs.displacement(&schur.recover(&load, black_box(&x_b))));
+            bench.iter(|| prescribed.displacement(&dofs, &schur.recover(&load, black_box(&x_b))));
         });
         group.bench_function("certificate", |bench| {
-            bench.iter(|| Balance::new(block, points, materials, black_box(&u), &[]));
+            bench.iter(|| Balance::new(owned, &loads, materials, black_box(&u), &[]));
         });
         group.bench_function("certificate, check", |bench| {
-            bench.iter(|| BlockCheck::new(owned, &balance, black_box(&u), &[]));
+            bench.iter(|| BlockCheck::new(owned, &loads, &balance, black_box(&u), &[]));
         });
         let mut patches = Vec::new();
         group.bench_function("stresses", |bench| {
@@ -77,12 +79,13 @@ fn pair(c: &mut Criterion) {
     let scene = Scene::granite(1, 20);
     let b = scene.plan.groups[0];
     let (dofs, ..) = scene.condensed(b);
-    let gaps = &scene.blocks[b].gaps;
-    let limits = Limits::new(dofs.approaches, &dofs.approach_of, gaps, 0.0);
+    let (prescribed, gaps) = (scene.prescribed(b, &dofs), scene.loads(b).gaps);
+    let limits = Limits::new(dofs.approaches, &prescribed.approach_of, &gaps, 0.0);
     let mut condensed = scene.of_block(b);
     condensed.fill_upper_triangle();
     let u = vec![0.0; condensed.traces.len()];
-    let mut pair = ContactPair::new(condensed, limits);
+    let load = vec![0.0; condensed.s.nrows()];
+    let mut pair = ContactPair::new(Rc::new(condensed), limits, load, None);
     c.bench_function("S_CON of a pair", |bench| {
         bench.iter(|| pair.evaluate(black_box(&u), None));
     });

@@ -3,8 +3,9 @@
 use contact_dd_mpi::fem::assembly::assemble;
 use contact_dd_mpi::fem::block::Block;
 use contact_dd_mpi::fem::dofs::Dofs;
-use contact_dd_mpi::fem::load::load;
+use contact_dd_mpi::fem::load::{BlockLoads, load};
 use contact_dd_mpi::fem::owned::OwnedBlock;
+use contact_dd_mpi::fem::prescribed::Prescribed;
 use contact_dd_mpi::plan::Plan;
 use contact_dd_mpi::plan::cluster::Merging;
 use contact_dd_mpi::schur::condensed::Condensed;
@@ -60,15 +61,21 @@ impl Scene {
             .unwrap()
     }
 
+    /// What acts on a block.
+    pub fn loads(&self, b: usize) -> BlockLoads {
+        BlockLoads::new(&self.blocks[b], 0)
+    }
+
+    /// What supports prescribe in it.
+    pub fn prescribed(&self, b: usize, dofs: &Dofs) -> Prescribed {
+        Prescribed::new(&self.blocks[b], &self.loads(b), dofs, self.materials()).unwrap()
+    }
+
     /// A block's unknowns and stiffness.
     pub fn assembled(&self, b: usize) -> (Dofs, SparseSymmetric) {
-        let OwnedBlock {
-            block,
-            points,
-            gaps,
-        } = &self.blocks[b];
-        let dofs = Dofs::new(block, points, gaps, self.materials()).unwrap();
-        let (stiffness, _) = assemble(block, &dofs, self.materials(), &[]).unwrap();
+        let owned = &self.blocks[b];
+        let dofs = Dofs::new(owned, &self.loads(b), self.materials()).unwrap();
+        let (stiffness, _) = assemble(&owned.block, &dofs, self.materials(), &[]).unwrap();
         (dofs, stiffness)
     }
 
@@ -76,7 +83,10 @@ impl Scene {
     pub fn condensed(&self, b: usize) -> (Dofs, LocalSchur, Mat<f64>, CondensedLoad) {
         let (dofs, stiffness) = self.assembled(b);
         let (schur, s) = LocalSchur::new(&stiffness, dofs.interior, Par::Seq).unwrap();
-        let load = schur.condense(load(&self.blocks[b].block, &dofs, self.materials(), &[]));
+        let (block, loads) = (&self.blocks[b].block, self.loads(b));
+        let prescribed = self.prescribed(b, &dofs);
+        let load = load(block, &loads, &dofs, &prescribed, self.materials(), &[]);
+        let load = schur.condense(load);
         (dofs, schur, s, load)
     }
 

@@ -73,17 +73,21 @@ pub struct StepLoads {
 }
 
 impl Subdomain {
-    /// Gives supports and forces their values in a load step.
-    pub fn take_step(&mut self, step: usize) {
-        let Some(loads) = self.steps.get(step) else {
-            return;
-        };
-        for (support, &value) in self.supports.iter_mut().zip(&loads.supports) {
-            support.value = value;
-        }
-        for ((_, force), &value) in self.forces.iter_mut().zip(&loads.forces) {
-            *force = value;
-        }
+    /// Its supports with the values that they have in a load step.
+    pub fn supports_in(&self, step: usize) -> impl Iterator<Item = Support> + '_ {
+        let loads = self.steps.get(step);
+        let supports = self.supports.iter().enumerate();
+        supports.map(move |(i, support)| Support {
+            value: loads.map_or(support.value, |loads| loads.supports[i]),
+            ..*support
+        })
+    }
+
+    /// Its loaded nodes and the forces on them in a load step.
+    pub fn forces_in(&self, step: usize) -> impl Iterator<Item = (u32, [f64; 3])> + '_ {
+        let loads = self.steps.get(step);
+        let forces = self.forces.iter().enumerate();
+        forces.map(move |(i, &(node, force))| (node, loads.map_or(force, |loads| loads.forces[i])))
     }
 }
 

@@ -5,8 +5,8 @@ use contact_dd_partition::element::geometry::{advance, cross, dot, padded};
 use crate::comm::Message;
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
-use crate::fem::frame::Frame;
-use crate::fem::node_frames::supported_frames;
+use crate::fem::frame::{Frame, support_frames};
+use crate::fem::load::BlockLoads;
 use crate::fem::owned::OwnedBlock;
 use crate::schur::trace::TraceDof;
 use crate::vector::{larger, largest};
@@ -132,12 +132,18 @@ pub struct BlockCheck {
 
 impl BlockCheck {
     /// Checks displacements `u`, node by node, and contact `forces`, one a point.
-    pub fn new(owned: &OwnedBlock, balance: &Balance, u: &[f64], forces: &[f64]) -> Self {
+    pub fn new(
+        owned: &OwnedBlock,
+        loads: &BlockLoads,
+        balance: &Balance,
+        u: &[f64],
+        forces: &[f64],
+    ) -> Self {
         let (block, mut check) = (&owned.block, Self::default());
         check.most.displacement = largest(u);
         check.most.load = balance.largest_load;
-        check.equilibrium(block, balance);
-        check.contact(owned, u, forces);
+        check.equilibrium(block, loads, balance);
+        check.contact(&loads.gaps_left(owned, u), forces);
         for &(node, id) in &block.interface {
             check.shared_nodes.push(id);
             let start = node as usize * block.dim;
@@ -148,9 +154,9 @@ impl BlockCheck {
         check
     }
 
-    fn equilibrium(&mut self, block: &Block, balance: &Balance) {
+    fn equilibrium(&mut self, block: &Block, loads: &BlockLoads, balance: &Balance) {
         let dim = block.dim;
-        let frames = supported_frames(block);
+        let frames = support_frames(&loads.supports, block.dim);
         let mut frames = frames.iter().peekable();
         let is_shared = block.is_on_interface();
         // Residual and scale along the free axes of nodes on Γ, in the order of nodes.
@@ -205,8 +211,8 @@ impl BlockCheck {
         }
     }
 
-    fn contact(&mut self, owned: &OwnedBlock, u: &[f64], forces: &[f64]) {
-        for (gap, &force) in owned.gaps_left(u).into_iter().zip(forces) {
+    fn contact(&mut self, gaps: &[f64], forces: &[f64]) {
+        for (&gap, &force) in gaps.iter().zip(forces) {
             let most = &mut self.most;
             most.penetration = larger(most.penetration, gap.min(0.0));
             most.tension = larger(most.tension, force.min(0.0));

@@ -3,8 +3,9 @@
 use faer::Mat;
 
 use super::dependent::DependentRows;
-use super::pair::ContactPair;
+use super::limits::Limits;
 use crate::comm::{Message, MessageReader};
+use crate::schur::condensed::Condensed;
 
 /// λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0, and D t ≤ d where there is such: the part of S_kl
 /// that the root needs to solve for all pairs at once.
@@ -18,8 +19,6 @@ pub struct PairLaw {
     pub diagonal: Vec<f64>,
     /// D.
     pub rows: DependentRows,
-    /// The largest displacement prescribed in the pair by the loads that there are now (m).
-    pub scale: f64,
     /// The condition that each approach is the unknown of.
     pub defining: Vec<usize>,
 }
@@ -35,16 +34,16 @@ impl PairLaw {
         self.diagonal.is_empty()
     }
 
-    /// Appends the law of `pair` to a message.
-    pub fn pack(pair: &ContactPair, message: &mut Message) {
-        let diagonal = pair.diagonal();
+    /// Appends the law of a cluster in contact to a message.
+    pub fn pack(condensed: &Condensed, limits: &Limits, message: &mut Message) {
+        let diagonal = &condensed.diagonal[..condensed.approaches];
         message.integers.push(diagonal.len() as i64);
-        let defining = &pair.limits().defining;
-        message.integers.extend(defining.iter().map(|&j| j as i64));
-        message.push_lower(pair.s_tt());
-        message.push_matrix(pair.s_t_gamma());
+        let defining = limits.defining.iter();
+        message.integers.extend(defining.map(|&j| j as i64));
+        message.push_lower(condensed.s_tt());
+        message.push_matrix(condensed.s_t_gamma());
         message.reals.extend(diagonal);
-        pair.limits().rows.pack(message);
+        limits.rows.pack(message);
     }
 
     /// The law of a pair with `traces` traces.
@@ -56,7 +55,6 @@ impl PairLaw {
             s_t_gamma: reader.matrix(m, traces),
             diagonal: reader.reals(m),
             rows: DependentRows::unpack(reader),
-            scale: 0.0,
         }
     }
 }

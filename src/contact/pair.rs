@@ -2,7 +2,8 @@
 //!
 //! > S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ
 
-use faer::MatRef;
+use std::rc::Rc;
+
 use serde::{Deserialize, Serialize};
 
 use super::active_set::{GapProblem, GapSolution};
@@ -16,10 +17,17 @@ use crate::schur::local::multiply_add;
 #[derive(Debug)]
 pub struct ContactPair {
     /// S on [t | U], both triangles.
-    condensed: Condensed,
+    condensed: Rc<Condensed>,
     /// The condensed load on [t | Γ] (N/m).
     load: Vec<f64>,
     limits: Limits,
+    state: PairState,
+}
+
+/// Where the last evaluation of a pair left it, and where the next one begins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PairState {
+    /// Which approaches are open, then which dependent conditions.
     open: Vec<bool>,
     contact: GapSolution,
 }
@@ -50,26 +58,29 @@ pub struct PairResponse {
 }
 
 impl ContactPair {
-    /// A pair whose approaches lie within `limits`, bilateral at first; both triangles of S are filled.
-    pub fn new(condensed: Condensed, limits: Limits) -> Self {
+    /// A pair under a condensed `load`, on approaches and traces, whose approaches lie within `limits`. It begins
+    /// where the load step `before` left it, else bilaterally; both triangles of S are filled.
+    pub fn new(
+        condensed: Rc<Condensed>,
+        limits: Limits,
+        load: Vec<f64>,
+        before: Option<PairState>,
+    ) -> Self {
+        let bounds = limits.bounds.len();
         Self {
-            load: vec![0.0; condensed.s.nrows()],
+            state: before.unwrap_or_else(|| PairState {
+                open: vec![false; bounds],
+                contact: GapSolution::bilateral(condensed.approaches, bounds),
+            }),
             condensed,
-            open: vec![false; limits.bounds.len()],
-            contact: GapSolution::bilateral(limits.approaches(), limits.bounds.len()),
             limits,
+            load,
         }
     }
 
-    /// Gives it a condensed `load`, on approaches and traces.
-    pub fn set_load(&mut self, load: Vec<f64>) {
-        self.load = load;
-    }
-
-    /// Gives its limits other values. What is open and how far sides have come stays: the next evaluation
-    /// begins there.
-    pub fn set_limits(&mut self, limits: Limits) {
-        self.limits = limits;
+    /// Where it is after the last evaluation.
+    pub fn into_state(self) -> PairState {
+        self.state
     }
 
     /// Its Schur complement.
@@ -79,47 +90,25 @@ impl ContactPair {
 
     /// Approaches of the last evaluation (m).
     pub fn approaches(&self) -> &[f64] {
-        &self.contact.approaches
+        &self.state.contact.approaches
     }
 
     /// Force of every condition in the last evaluation, and whether it was closed.
     pub fn conditions(&self) -> (Vec<f64>, Vec<bool>) {
         (
-            self.limits.forces(&self.contact.forces),
-            self.limits.closed(&self.open),
+            self.limits.forces(&self.state.contact.forces),
+            self.limits.closed(&self.state.open),
         )
-    }
-
-    fn traces(&self) -> usize {
-        self.condensed.s.nrows() - self.limits.approaches()
-    }
-
-    /// H, on the approaches.
-    pub fn s_tt(&self) -> MatRef<'_, f64> {
-        let m = self.limits.approaches();
-        self.condensed.s.as_ref().submatrix(0, 0, m, m)
-    }
-
-    /// Approaches against traces.
-    pub fn s_t_gamma(&self) -> MatRef<'_, f64> {
-        let m = self.limits.approaches();
-        self.condensed.s.as_ref().submatrix(0, m, m, self.traces())
-    }
-
-    /// S_ΓΓ, the derivative with every contact closed (16).
-    pub fn bilateral(&self) -> MatRef<'_, f64> {
-        let (m, n) = (self.limits.approaches(), self.traces());
-        self.condensed.s.as_ref().submatrix(m, m, n, n)
     }
 
     /// Load on the traces with every approach zero.
     pub fn bilateral_load(&self) -> &[f64] {
-        &self.load[self.limits.approaches()..]
+        &self.load[self.condensed.approaches..]
     }
 
     /// The diagonal of the matrix that H is condensed from.
     pub fn diagonal(&self) -> &[f64] {
-        &self.condensed.diagonal[..self.limits.approaches()]
+        &self.condensed.diagonal[..self.condensed.approaches]
     }
 
     /// The bounds t ≤ g and D t ≤ d.
@@ -130,8 +119,8 @@ impl ContactPair {
     /// Evaluates S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ, where t(U) within the limits minimizes the pair's energy.
     /// The search begins at the conditions `expected` to be open, else at those of last time.
     pub fn evaluate(&mut self, u: &[f64], expected: Option<Vec<bool>>) -> PairResponse {
-        let m = self.limits.approaches();
-        let before = expected.unwrap_or_else(|| self.open.clone());
+        let m = self.condensed.approaches;
+        let before = expected.unwrap_or_else(|| self.state.open.clone());
         let mut c = self.load[..m].to_vec();
         let mut c_scale: Vec<f64> = c.iter().map(|f| f.abs()).collect();
         for (j, &u_j) in u.iter().enumerate() {
@@ -144,18 +133,18 @@ impl ContactPair {
         }
         let mut open = before.clone();
         let contact = GapProblem {
-            h: self.s_tt(),
+            h: self.condensed.s_tt(),
             diagonal: self.diagonal(),
             c: &c,
             c_scale: &c_scale,
             rows: &self.limits.rows,
             bounds: &self.limits.bounds,
-            center: &self.contact.approaches,
+            center: &self.state.contact.approaches,
             scale: u.iter().fold(self.limits.scale, |m, u| m.max(u.abs())),
         }
         .solve(&mut open);
         let (mut drives, mut drive_scale) = (c, c_scale);
-        for (column, &t) in self.s_tt().col_iter().zip(&contact.approaches) {
+        for (column, &t) in self.condensed.s_tt().col_iter().zip(&contact.approaches) {
             for (i, h) in column.iter().enumerate() {
                 drives[i] -= h * t;
                 drive_scale[i] += (h * t).abs();
@@ -171,8 +160,8 @@ impl ContactPair {
             converged: contact.converged,
             ..PairResponse::default()
         };
-        self.contact = contact;
-        self.open.clone_from(&open);
+        self.state.contact = contact;
+        self.state.open.clone_from(&open);
         response.open = open;
         (response.reaction, response.scale) = self.reaction(u);
         response
@@ -182,8 +171,8 @@ impl ContactPair {
     fn reaction(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut reaction: Vec<f64> = self.bilateral_load().iter().map(|f| -f).collect();
         let mut scale: Vec<f64> = reaction.iter().map(|f| f.abs()).collect();
-        let m = self.limits.approaches();
-        let unknowns = self.contact.approaches.iter().chain(u);
+        let m = self.condensed.approaches;
+        let unknowns = self.state.contact.approaches.iter().chain(u);
         for (j, &x) in unknowns.enumerate() {
             let column = &self.condensed.s.col_as_slice(j)[m..];
             for ((reaction, scale), s) in reaction.iter_mut().zip(&mut scale).zip(column) {
@@ -198,17 +187,22 @@ impl ContactPair {
     /// S_kl'(U) x = S_ΓΓ x − S_ΓN H_NN⁻¹ S_NΓ x with the open approaches N of the last evaluation.
     pub fn derivative(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
-        multiply_add(self.bilateral(), x, &mut y);
-        let factor = OpenFactor::new(self.s_tt(), self.diagonal(), &self.limits.rows, &self.open);
-        let mut driven = vec![0.0; self.limits.approaches()];
-        multiply_add(self.s_t_gamma(), x, &mut driven);
+        multiply_add(self.condensed.bilateral(), x, &mut y);
+        let factor = OpenFactor::new(
+            self.condensed.s_tt(),
+            self.diagonal(),
+            &self.limits.rows,
+            &self.state.open,
+        );
+        let mut driven = vec![0.0; self.condensed.approaches];
+        multiply_add(self.condensed.s_t_gamma(), x, &mut driven);
         let mut opened: Vec<f64> = factor.open.iter().map(|&j| -driven[j]).collect();
         factor.solve(&mut opened);
-        let mut t = vec![0.0; self.limits.approaches()];
+        let mut t = vec![0.0; self.condensed.approaches];
         for (&j, opened) in factor.open.iter().zip(opened) {
             t[j] = opened;
         }
-        multiply_add(self.s_t_gamma().transpose(), &t, &mut y);
+        multiply_add(self.condensed.s_t_gamma().transpose(), &t, &mut y);
         y
     }
 }

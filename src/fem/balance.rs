@@ -1,11 +1,10 @@
 //! Balance: f − K u − Bᵀ λ of a block, node by node, summed element by element without any factor.
 
-use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::model::Material;
 
-use super::block::Block;
 use super::elasticity::{ElementMatrix, MAX_NODES};
-use super::load::nodal_forces;
+use super::load::BlockLoads;
+use super::owned::OwnedBlock;
 
 /// f − K u − Bᵀλ of a block and the scale of its terms, node by node (N/m).
 #[derive(Clone, Debug)]
@@ -23,14 +22,15 @@ pub struct Balance {
 impl Balance {
     /// The balance for displacements `u` and contact forces `forces`, one a point.
     pub fn new(
-        block: &Block,
-        points: &[ContactPoint<u32>],
+        owned: &OwnedBlock,
+        loads: &BlockLoads,
         materials: &[Material],
         u: &[f64],
         forces: &[f64],
     ) -> Self {
+        let OwnedBlock { block, points } = owned;
         let dim = block.dim;
-        let mut external = nodal_forces(block);
+        let mut external = loads.nodal_forces(block);
         let mut scale: Vec<f64> = external.iter().map(|f| f.abs()).collect();
         let largest_load = scale.iter().fold(0.0, |m: f64, f| m.max(*f));
         for (point, &force) in points.iter().zip(forces) {

@@ -8,27 +8,29 @@ use contact_dd_partition::model::Material;
 
 use super::block::Block;
 use super::frame::Frame;
+use super::load::BlockLoads;
 use super::node_frames::NodeFrames;
+use super::owned::OwnedBlock;
 use crate::contact::approach::{ApproachRow, Approaches, OnInterface, SolvingOrder};
 
-/// The approaches of contact `points` with these `gaps`, found in an `order` that is known or in one that suits them.
+/// The approaches of a block's contact points, found in an `order` that is known or in one that suits them.
 ///
 /// # Errors
 /// A condition that lies on Γ.
 pub(super) fn approaches(
-    block: &Block,
-    points: &[ContactPoint<u32>],
-    gaps: &[f64],
+    owned: &OwnedBlock,
+    loads: &BlockLoads,
     materials: &[Material],
     frames: &NodeFrames,
     order: Option<&SolvingOrder>,
 ) -> Result<Approaches, OnInterface> {
+    let OwnedBlock { block, points } = owned;
     if points.is_empty() {
         return Ok(Approaches::default());
     }
     let dim = block.dim;
     let frame = |node: u32| frames.of(node).unwrap_or(&Frame::CARTESIAN);
-    let rows: Vec<_> = (points.iter().zip(gaps))
+    let rows: Vec<_> = (points.iter().zip(&loads.gaps))
         .map(|(point, &gap)| in_frames(point, gap, frame, dim))
         .collect();
     let on_interface = block.is_on_interface();

@@ -2,16 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::model::Material;
 
 use super::block::Block;
 use super::bounds::approaches;
 use super::elimination::elimination_order;
 use super::frame::Frame;
+use super::load::BlockLoads;
 use super::node_frames::NodeFrames;
+use super::owned::OwnedBlock;
 use super::sites::Sites;
-use crate::contact::approach::{ApproachOf, Approaches, OnInterface, SolvingOrder, Variable};
+use crate::contact::approach::{Approaches, OnInterface, SolvingOrder, Variable};
 use crate::schur::pattern::Cliques;
 use crate::schur::trace::TraceDof;
 
@@ -24,13 +25,13 @@ pub enum DofError {
     Size,
 }
 
-/// The unknowns x of a block and the displacement u = T x + c that they stand for.
+/// The unknowns x of a block and T of the displacement u = T x + c that they stand for; c is
+/// [`Prescribed`](super::prescribed::Prescribed) in each load step.
 #[derive(Clone, Debug)]
 pub struct Dofs {
     dim: usize,
     offsets: Vec<u32>,
     terms: Vec<(u32, f64)>,
-    constants: Vec<f64>,
     first: Vec<u32>,
     sites: Sites,
     order: SolvingOrder,
@@ -38,8 +39,6 @@ pub struct Dofs {
     pub interior: usize,
     /// Number of approaches; approach j is unknown `interior + j`.
     pub approaches: usize,
-    /// Where the approach of each condition is found.
-    pub approach_of: Vec<ApproachOf>,
     /// Its unknowns on Γ; they come last, in this order.
     pub traces: Vec<TraceDof>,
 }
@@ -48,22 +47,23 @@ const NOT_DIRECT: u32 = u32::MAX;
 
 impl Dofs {
     /// Numbers the unknowns of `block`: its interior in a fill-reducing order, then the
-    /// approach of each of the contact `points` with these `gaps`, then the traces on Γ.
+    /// approach of each of its contact points, then the traces on Γ. `loads` tell which of several
+    /// approaches that depend on each other are unknowns.
     ///
     /// # Errors
     /// A condition that lies on Γ, or too many unknowns.
     pub fn new(
-        block: &Block,
-        points: &[ContactPoint<u32>],
-        gaps: &[f64],
+        owned: &OwnedBlock,
+        loads: &BlockLoads,
         materials: &[Material],
     ) -> Result<Self, DofError> {
+        let block = &owned.block;
         let dim = block.dim;
         if block.nodes() * dim >= u32::MAX as usize {
             return Err(DofError::Size);
         }
-        let frames = NodeFrames::new(block, points);
-        let approaches = approaches(block, points, gaps, materials, &frames, None)
+        let frames = NodeFrames::new(owned, loads);
+        let approaches = approaches(owned, loads, materials, &frames, None)
             .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
         let on_interface = block.is_on_interface();
         let mut is_free = vec![true; block.nodes() * dim];
@@ -115,12 +115,10 @@ impl Dofs {
             dim,
             offsets: Vec::with_capacity(number.len() + 1),
             terms: Vec::with_capacity(number.len()),
-            constants: vec![0.0; number.len()],
             first: Vec::with_capacity(block.nodes()),
             sites,
             interior,
             approaches: approaches.len,
-            approach_of: approaches.of.clone(),
             order: approaches.order.clone(),
             traces,
         };
@@ -138,58 +136,12 @@ impl Dofs {
                 }
             }
         }
-        dofs.set_constants(&frames, &approaches);
         Ok(dofs)
     }
 
-    /// Gives c and the constants of approaches the values that supports and `gaps` have now; T stays
-    /// as it is.
-    ///
-    /// # Errors
-    /// A condition that lies on Γ.
-    pub fn prescribe(
-        &mut self,
-        block: &Block,
-        points: &[ContactPoint<u32>],
-        gaps: &[f64],
-        materials: &[Material],
-    ) -> Result<(), DofError> {
-        let frames = NodeFrames::new(block, points);
-        let approaches = approaches(block, points, gaps, materials, &frames, Some(&self.order))
-            .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
-        self.set_constants(&frames, &approaches);
-        self.approach_of = approaches.of;
-        Ok(())
-    }
-
-    fn set_constants(&mut self, frames: &NodeFrames, approaches: &Approaches) {
-        let dim = self.dim;
-        self.constants.fill(0.0);
-        let axis_of =
-            |node: u32, axis: usize| frames.of(node).unwrap_or(&Frame::CARTESIAN).axes[axis];
-        for (node, frame) in frames.special() {
-            for (axis, value) in frame.prescribed[..dim].iter().enumerate() {
-                if let &Some(value) = value {
-                    self.add_constant(node, axis_of(node, axis), value);
-                }
-            }
-        }
-        // In the order of the unknowns: a hash map has none.
-        let replaced: BTreeMap<u32, f64> = (approaches.replaced.iter())
-            .map(|(&raw, value)| (raw, value.constant))
-            .collect();
-        for (raw, value) in replaced {
-            let (node, axis) = (raw / dim as u32, raw as usize % dim);
-            self.add_constant(node, axis_of(node, axis), value);
-        }
-    }
-
-    fn add_constant(&mut self, node: u32, along: [f64; 3], value: f64) {
-        let start = node as usize * self.dim;
-        let constants = &mut self.constants[start..start + self.dim];
-        for (constant, along) in constants.iter_mut().zip(along) {
-            *constant += along * value;
-        }
+    /// In which order approaches are solved for an unknown each.
+    pub(super) fn order(&self) -> &SolvingOrder {
+        &self.order
     }
 
     /// Appends the rows of T for a node whose components are unknowns.
@@ -264,27 +216,10 @@ impl Dofs {
         &self.terms[self.offsets[row] as usize..self.offsets[row + 1] as usize]
     }
 
-    /// The constant part of a component of a node's displacement (m).
-    pub fn constant(&self, node: u32, component: usize) -> f64 {
-        self.constants[node as usize * self.dim + component]
-    }
-
-    /// Whether c isn't zero.
-    pub fn has_constants(&self) -> bool {
-        self.constants.iter().any(|&c| c != 0.0)
-    }
-
     /// The first of the consecutive unknowns that simply are the node's components, if so.
     pub fn direct(&self, node: u32) -> Option<u32> {
         let first = self.first[node as usize];
         (first != NOT_DIRECT).then_some(first)
-    }
-
-    /// u = T x + c, node by node.
-    pub fn displacement(&self, x: &[f64]) -> Vec<f64> {
-        let mut u = self.constants.clone();
-        self.add_change(x, &mut u);
-        u
     }
 
     /// u ← u + T x: what a change of the unknowns adds to the displacement.

@@ -1,35 +1,102 @@
-//! The load of a block over its unknowns, Tᵀ (f − K c) for u = T x + c.
+//! What acts on a block in a load step, and the load that it makes over the block's unknowns.
 
-use contact_dd_partition::model::Material;
+use std::collections::BTreeMap;
+
+use contact_dd_partition::model::{Material, Support};
 
 use super::assembly::Spring;
 use super::block::Block;
 use super::dofs::Dofs;
 use super::elasticity::{ElementMatrix, MAX_NODES};
+use super::owned::OwnedBlock;
+use super::prescribed::Prescribed;
 
-/// Nodal forces of a block, node by node (N per metre of thickness).
-pub fn nodal_forces(block: &Block) -> Vec<f64> {
-    let mut f = vec![0.0; block.nodes() * block.dim];
-    for (member, node_of) in block.members.iter().zip(&block.node_of) {
-        for &(node, force) in &member.forces {
-            let node = node_of[node as usize] as usize;
-            for component in 0..block.dim {
-                f[node * block.dim + component] += force[component];
-            }
+/// What acts on a block in a load step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BlockLoads {
+    /// Prescribed displacements, in ascending order of the block's nodes, each once.
+    pub supports: Vec<Support>,
+    /// Forces on the block's nodes, of which a node may have several (N per metre of thickness).
+    pub forces: Vec<(u32, [f64; 3])>,
+    /// The gap at every contact point (m).
+    pub gaps: Vec<f64>,
+}
+
+impl BlockLoads {
+    /// What acts on a block in load step `step`.
+    pub fn new(owned: &OwnedBlock, step: usize) -> Self {
+        let members = || owned.block.members.iter().zip(&owned.block.node_of);
+        let supports = members().flat_map(|(member, node_of)| {
+            member.supports_in(step).map(|support| Support {
+                node: node_of[support.node as usize],
+                ..support
+            })
+        });
+        let forces = members().flat_map(|(member, node_of)| {
+            let forces = member.forces_in(step);
+            forces.map(|(node, force)| (node_of[node as usize], force))
+        });
+        Self {
+            supports: once_each(supports),
+            forces: forces.collect(),
+            gaps: owned.points.iter().map(|point| point.gap).collect(),
         }
     }
-    f
+
+    /// The largest displacement that is prescribed, gaps among them (m).
+    pub fn largest_prescribed(&self) -> f64 {
+        let prescribed = self.supports.iter().map(|support| support.value.abs());
+        let gaps = self.gaps.iter().map(|gap| gap.abs());
+        prescribed.chain(gaps).fold(0.0, f64::max)
+    }
+
+    /// The gaps that displacements `u`, node by node, leave at the points of a block: g − n·⟦u⟧ (m).
+    pub fn gaps_left(&self, owned: &OwnedBlock, u: &[f64]) -> Vec<f64> {
+        let gaps = owned.points.iter().zip(&self.gaps);
+        gaps.map(|(point, gap)| gap - point.normal_jump(owned.block.dim, u))
+            .collect()
+    }
+
+    /// The forces, node by node.
+    pub fn nodal_forces(&self, block: &Block) -> Vec<f64> {
+        let mut f = vec![0.0; block.nodes() * block.dim];
+        for (node, force) in &self.forces {
+            for component in 0..block.dim {
+                f[*node as usize * block.dim + component] += force[component];
+            }
+        }
+        f
+    }
+}
+
+/// Supports in ascending order of nodes, those that several members of a block have once.
+fn once_each(supports: impl Iterator<Item = Support>) -> Vec<Support> {
+    let mut kept: BTreeMap<u32, Vec<Support>> = BTreeMap::new();
+    for support in supports {
+        let of_node = kept.entry(support.node).or_default();
+        if !of_node.contains(&support) {
+            of_node.push(support);
+        }
+    }
+    kept.into_values().flatten().collect()
 }
 
 /// Tᵀ (f − K c), with c what supports prescribe and approaches begin with, and `springs` in K.
-pub fn load(block: &Block, dofs: &Dofs, materials: &[Material], springs: &[Spring]) -> Vec<f64> {
-    let mut f = nodal_forces(block);
-    if dofs.has_constants() {
-        subtract_held(block, dofs, materials, &mut f);
+pub fn load(
+    block: &Block,
+    loads: &BlockLoads,
+    dofs: &Dofs,
+    prescribed: &Prescribed,
+    materials: &[Material],
+    springs: &[Spring],
+) -> Vec<f64> {
+    let mut f = loads.nodal_forces(block);
+    if !prescribed.is_zero() {
+        subtract_held(block, prescribed, materials, &mut f);
     }
     for spring in springs {
         let row = spring.node as usize * block.dim + spring.component;
-        f[row] -= spring.stiffness * dofs.constant(spring.node, spring.component);
+        f[row] -= spring.stiffness * prescribed.of_node(spring.node)[spring.component];
     }
     let mut load = vec![0.0; dofs.len()];
     dofs.add_load(&f, &mut load);
@@ -37,15 +104,15 @@ pub fn load(block: &Block, dofs: &Dofs, materials: &[Material], springs: &[Sprin
 }
 
 /// f ← f − K c, element by element.
-fn subtract_held(block: &Block, dofs: &Dofs, materials: &[Material], f: &mut [f64]) {
+fn subtract_held(block: &Block, prescribed: &Prescribed, materials: &[Material], f: &mut [f64]) {
     let dim = block.dim;
     let mut points = Vec::with_capacity(MAX_NODES);
-    let mut c = Vec::with_capacity(dim * MAX_NODES);
+    let mut c: Vec<f64> = Vec::with_capacity(dim * MAX_NODES);
     let mut k = ElementMatrix::default();
     for cell in block.cells() {
         c.clear();
         for node in cell.nodes() {
-            c.extend((0..dim).map(|component| dofs.constant(node, component)));
+            c.extend(prescribed.of_node(node));
         }
         if c.iter().all(|&c| c == 0.0) {
             continue;

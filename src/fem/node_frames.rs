@@ -1,13 +1,12 @@
 //! The nodes of a block that have a frame of their own.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::length;
-use contact_dd_partition::model::Support;
 
-use super::block::Block;
 use super::frame::{Frame, support_frames};
+use super::load::BlockLoads;
+use super::owned::OwnedBlock;
 
 /// The frames of those nodes that have one of their own.
 #[derive(Clone, Debug)]
@@ -18,10 +17,11 @@ pub struct NodeFrames {
 }
 
 impl NodeFrames {
-    /// Frames of supported nodes, and of nodes of contact `points` along the first one's normal.
-    pub fn new(block: &Block, points: &[ContactPoint<u32>]) -> Self {
-        let mut frames = supported_frames(block);
-        let shared: BTreeSet<u32> = match points {
+    /// Frames of supported nodes, and of nodes of contact points along the first one's normal.
+    pub fn new(owned: &OwnedBlock, loads: &BlockLoads) -> Self {
+        let OwnedBlock { block, points } = owned;
+        let mut frames = support_frames(&loads.supports, block.dim);
+        let shared: BTreeSet<u32> = match points[..] {
             [] => Default::default(),
             _ => block.interface.iter().map(|&(node, _)| node).collect(),
         };
@@ -56,33 +56,4 @@ impl NodeFrames {
     pub fn of(&self, node: u32) -> Option<&Frame> {
         self.frames.get(self.place[node as usize] as usize)
     }
-}
-
-/// The frames of a block's supported nodes.
-pub fn supported_frames(block: &Block) -> BTreeMap<u32, Frame> {
-    support_frames(&supports(block), block.dim)
-}
-
-/// The supports of a block, by its nodes.
-pub fn supports(block: &Block) -> Vec<Support> {
-    let of_members = block.members.iter().zip(&block.node_of);
-    let all = of_members.flat_map(|(member, node_of)| {
-        member.supports.iter().map(|s| Support {
-            node: node_of[s.node as usize],
-            ..*s
-        })
-    });
-    without_repetition(all.collect())
-}
-
-/// Supports of nodes that several members share, once.
-fn without_repetition(supports: Vec<Support>) -> Vec<Support> {
-    let mut kept: BTreeMap<u32, Vec<Support>> = BTreeMap::new();
-    for support in supports {
-        let rows = kept.entry(support.node).or_default();
-        if !rows.contains(&support) {
-            rows.push(support);
-        }
-    }
-    kept.into_values().flatten().collect()
 }

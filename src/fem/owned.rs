@@ -12,26 +12,13 @@ pub struct OwnedBlock {
     pub block: Block,
     /// Its contact points, over the nodes of the block.
     pub points: Vec<ContactPoint<u32>>,
-    /// The gap at every point that bounds its normal jump now (m).
-    pub gaps: Vec<f64>,
 }
 
 impl OwnedBlock {
     /// A block and the contact `points` of its group.
     pub fn new(block: Block, points: &[ContactPoint<SubdomainNode>]) -> Self {
         let of_block = |at: SubdomainNode| block.node(at.subdomain as usize, at.node);
-        let points: Vec<_> = points.iter().map(|point| point.rename(of_block)).collect();
-        Self {
-            gaps: points.iter().map(|point| point.gap).collect(),
-            block,
-            points,
-        }
-    }
-
-    /// The gaps that displacements `u`, node by node, leave at its points: g − n·⟦u⟧ (m).
-    pub fn gaps_left(&self, u: &[f64]) -> Vec<f64> {
-        let gaps = self.points.iter().zip(&self.gaps);
-        gaps.map(|(point, gap)| gap - point.normal_jump(self.block.dim, u))
-            .collect()
+        let points = points.iter().map(|point| point.rename(of_block)).collect();
+        Self { block, points }
     }
 }

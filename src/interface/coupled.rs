@@ -11,15 +11,16 @@
 //! H − Cᵀ A⁻¹ C in the approaches of all pairs and nothing else. Dependent conditions of a pair,
 //! D τ ≤ d − D t, stay what they are.
 
-use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::{Accum, Mat, MatRef, Par};
+use faer::{Mat, MatRef};
 
 use super::operator::{Interface, diagonal_of};
+use super::problem::InterfaceProblem;
 use crate::contact::active_set::GapProblem;
 use crate::contact::dependent::DependentRows;
 use crate::contact::law::PairLaw;
 use crate::contact::pair::PairResponse;
 use crate::interface::s_con::ConState;
+use crate::rigid::energy::RigidBasis;
 use crate::schur::local::multiply_add;
 
 /// Most approaches of all pairs together for which their problem is solved at once: its matrix is
@@ -30,6 +31,7 @@ pub const MAX_APPROACHES: usize = 6_000;
 #[derive(Clone, Debug)]
 pub struct CoupledContact<'a> {
     interface: &'a Interface,
+    motions: &'a RigidBasis,
     /// H − Cᵀ A⁻¹ C.
     h: MatRef<'a, f64>,
     diagonal: Vec<f64>,
@@ -70,7 +72,7 @@ struct Condensed {
 }
 
 /// H − Cᵀ A⁻¹ C for the laws of all pairs.
-pub fn condense_laws(interface: &Interface, par: Par) -> Mat<f64> {
+pub fn condense_laws(interface: &Interface, motions: &RigidBasis) -> Mat<f64> {
     let laws = &interface.laws;
     let m = laws.iter().map(PairLaw::len).sum();
     let mut h = Mat::zeros(m, m);
@@ -87,38 +89,29 @@ pub fn condense_laws(interface: &Interface, par: Par) -> Mat<f64> {
         }
         first += law.len();
     }
-    interface.half_solve_pairs(w.as_mut());
-    triangular::matmul(
-        h.as_mut(),
-        BlockStructure::TriangularLower,
-        Accum::Add,
-        w.transpose(),
-        BlockStructure::Rectangular,
-        w.as_ref(),
-        BlockStructure::Rectangular,
-        -1.0,
-        par,
-    );
+    interface.solver.condense(w, h.as_mut());
     for j in 0..m {
         for i in j + 1..m {
             h[(j, i)] = h[(i, j)];
         }
     }
-    interface.motions.remove_energy(&mut h);
+    motions.remove_energy(&mut h);
     h
 }
 
 impl<'a> CoupledContact<'a> {
-    /// The contact problem of all pairs of `interface`; `None` where they have too many approaches.
-    pub fn new(interface: &'a Interface) -> Option<Self> {
+    /// The contact problem of all pairs; `None` where they have too many approaches.
+    pub fn new(problem: &'a InterfaceProblem<'_>) -> Option<Self> {
+        let (interface, motions) = (problem.interface, &problem.motions);
         let laws = &interface.laws;
         (laws.len() == interface.pair_traces.len()).then(|| Self {
             interface,
-            h: interface.condensed_laws(),
+            motions,
+            h: interface.condensed_laws(motions),
             diagonal: diagonal_of(laws),
             rows: all_rows(laws),
             center: vec![0.0; laws.iter().map(PairLaw::len).sum()],
-            scale: laws.iter().fold(0.0, |m, law| m.max(law.scale)),
+            scale: problem.scale,
         })
     }
 
@@ -128,7 +121,7 @@ impl<'a> CoupledContact<'a> {
             state.responses.iter().flat_map(of).copied().collect()
         };
         let mut condensed = self.condense(r, all(|p| &p.drives), all(|p| &p.drive_scale));
-        self.interface.motions.set_load(&mut condensed.c);
+        self.motions.set_load(&mut condensed.c);
         let mut open = self.side_by_side(state.responses.iter().map(|p| &p.open[..]));
         let gaps = self.side_by_side(state.responses.iter().map(|p| &p.gaps[..]));
         let solution = self.problem(&condensed, &gaps, u).solve(&mut open);
@@ -159,7 +152,7 @@ impl<'a> CoupledContact<'a> {
 
     fn condense(&self, r: &[f64], mut c: Vec<f64>, mut c_scale: Vec<f64>) -> Condensed {
         let mut z = r.to_vec();
-        self.interface.solve_bilateral(&mut z);
+        self.interface.solver.solve(&mut z);
         let mut first = 0;
         for (p, law) in self.interface.laws.iter().enumerate() {
             let z_p = self.interface.restrict(p, &z);
@@ -214,7 +207,7 @@ impl<'a> CoupledContact<'a> {
                 self.interface.extend(p, &held, &mut u);
                 first += law.len();
             }
-            self.interface.solve_bilateral(&mut u);
+            self.interface.solver.solve(&mut u);
         }
         CoupledStep {
             u,

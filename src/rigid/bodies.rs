@@ -52,13 +52,14 @@ pub(super) fn body_frames(
         .collect()
 }
 
-/// Every body as the analysis sees it, on the root. Collective.
+/// Every body as the analysis sees it in a load step, on the root. Collective.
 pub(super) fn body_states(
     comm: &Comm,
     subdomains: &BTreeMap<usize, &Subdomain>,
     catalog: &Catalog,
     owners: &[usize],
     frames: &[BodyFrame],
+    step: usize,
 ) -> Vec<BodyState> {
     let dim = catalog.dim;
     let modes = BodyFrame::count(dim);
@@ -74,7 +75,10 @@ pub(super) fn body_states(
         .collect();
     comm.gather(
         owners,
-        |s| pack_subdomain(subdomains[&s], dim, &frames[catalog.subdomains[s].body]),
+        |s| {
+            let frame = &frames[catalog.subdomains[s].body];
+            pack_subdomain(subdomains[&s], dim, frame, step)
+        },
         |s, message| {
             let state = &mut states[catalog.subdomains[s].body];
             let mut reader = message.read();
@@ -97,12 +101,11 @@ pub(super) fn body_states(
     states
 }
 
-fn pack_subdomain(subdomain: &Subdomain, dim: usize, frame: &BodyFrame) -> Message {
+fn pack_subdomain(subdomain: &Subdomain, dim: usize, frame: &BodyFrame, step: usize) -> Message {
     let modes = BodyFrame::count(dim);
     let points = &subdomain.points;
     let rows: Vec<Vec<f64>> = subdomain
-        .supports
-        .iter()
+        .supports_in(step)
         .map(|s| {
             let mut row = frame.action(dim, &points[s.node as usize], &s.direction);
             row.push(s.value);
@@ -112,8 +115,8 @@ fn pack_subdomain(subdomain: &Subdomain, dim: usize, frame: &BodyFrame) -> Messa
     let rows = compressed(rows, modes + 1);
     let mut load = vec![0.0; modes];
     let mut load_scale = 0.0;
-    for (node, force) in &subdomain.forces {
-        let action = frame.action(dim, &points[*node as usize], force);
+    for (node, force) in subdomain.forces_in(step) {
+        let action = frame.action(dim, &points[node as usize], &force);
         for (sum, part) in load.iter_mut().zip(action) {
             *sum += part;
         }

@@ -28,9 +28,9 @@ pub(super) fn rigid_rows(
         |g| {
             let mut message = Message::default();
             if let Some(owned) = blocks.get(&plan.groups[g]) {
-                for (point, &gap) in owned.points.iter().zip(&owned.gaps) {
+                for point in &owned.points {
                     pack_row(owned, point, catalog, frames, &mut message);
-                    message.reals.push(gap);
+                    message.reals.push(point.gap);
                 }
             }
             message

@@ -43,7 +43,7 @@ impl Survey {
     }
 }
 
-/// Finds the free rigid motions of the scene, and those by which its bodies come to rest.
+/// Finds the free rigid motions of the scene in load step `step`, and those by which its bodies come to rest.
 /// Collective.
 ///
 /// # Errors
@@ -53,6 +53,7 @@ pub fn survey(
     blocks: &BTreeMap<usize, OwnedBlock>,
     catalog: &Catalog,
     plan: &Plan,
+    step: usize,
 ) -> Result<Survey, Failure> {
     let subdomains: BTreeMap<usize, &Subdomain> = blocks
         .values()
@@ -63,7 +64,7 @@ pub fn survey(
     let (rows, conditions) = rigid_rows(comm, blocks, catalog, plan, &frames);
     let scene = Scene {
         dim: catalog.dim,
-        bodies: body_states(comm, &subdomains, catalog, &owners, &frames),
+        bodies: body_states(comm, &subdomains, catalog, &owners, &frames, step),
         names: catalog.bodies.iter().map(|b| b.name.clone()).collect(),
         rows,
         conditions,

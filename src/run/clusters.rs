@@ -1,12 +1,12 @@
 //! Clusters: what blocks were merged into, with the contacts of all that lies in them.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use faer::Mat;
 
-use super::condensed_blocks::CondensedBlocks;
+use super::condensed_blocks::{CondensedBlocks, ContactCluster};
 use crate::contact::limits::Limits;
-use crate::contact::pair::ContactPair;
 use crate::plan::Plan;
 use crate::rigid::energy::{RigidBasis, RigidDrive};
 use crate::rigid::survey::Survey;
@@ -33,8 +33,11 @@ pub(super) fn take_clusters(
         if let Some(drive) = survey.inner_motions.get(&p) {
             settle_stiffness(&mut of_cluster, &limits.defining, drive);
         }
-        let pair = ContactPair::new(of_cluster, limits);
-        condensed.pairs.insert(p, pair);
+        let cluster = ContactCluster {
+            condensed: Rc::new(of_cluster),
+            limits,
+        };
+        condensed.contact.insert(p, cluster);
     }
 }
 

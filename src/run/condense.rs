@@ -3,9 +3,10 @@
 use std::time::Instant;
 
 use contact_dd_partition::problem::Catalog;
-use faer::Par;
 
-use super::condensed_blocks::CondensedBlocks;
+use super::condensed_blocks::{CondensedBlock, CondensedBlocks};
+use super::context::Context;
+use super::steps::Loads;
 use crate::error::Failure;
 use crate::fem::assembly::assemble;
 use crate::fem::block::Block;
@@ -20,21 +21,19 @@ use crate::schur::local::LocalSchur;
 /// What is needed to condense any block.
 #[derive(Clone, Copy)]
 pub struct Condensation<'a> {
-    /// The problem.
-    pub catalog: &'a Catalog,
-    /// Who owns what.
-    pub plan: &'a Plan,
+    /// What the run works on.
+    pub context: Context<'a>,
+    /// What acts on the blocks of this rank in the first load step.
+    pub loads: &'a Loads,
     /// Springs that hold what nothing else does.
     pub pins: &'a [Pin],
-    /// Threads.
-    pub par: Par,
 }
 
 impl Condensation<'_> {
     /// Assembles, factorizes and condenses block `number`; what stays behind goes into `condensed`.
     ///
     /// # Errors
-    /// A block that can move although its boundary is held, or a condition on Γ.
+    /// A block that can move although its boundary is held, or a contact point on Γ.
     pub fn condense(
         &self,
         number: usize,
@@ -42,21 +41,17 @@ impl Condensation<'_> {
         condensed: &mut CondensedBlocks,
     ) -> Result<Condensed, Failure> {
         let began = Instant::now();
-        let &Self {
+        let Context {
             catalog, plan, par, ..
-        } = self;
-        let OwnedBlock {
-            block,
-            points,
-            gaps,
-        } = owned;
-        let dofs = Dofs::new(block, points, gaps, &catalog.materials)
+        } = self.context;
+        let block = &owned.block;
+        let dofs = Dofs::new(owned, &self.loads[&number], &catalog.materials)
             .map_err(|error| dof_failure(error, owned, catalog))?;
         let pins = pins_of(block, self.pins);
         let (stiffness, springs) =
             assemble(block, &dofs, &catalog.materials, &pins).ok_or_else(|| size(plan, number))?;
         let assembled = Instant::now();
-        let (schur, s) =
+        let (factor, s) =
             LocalSchur::new(&stiffness, dofs.interior, par).map_err(|error| match error {
                 FactorError::Size => size(plan, number),
                 FactorError::Pivot(unknown) => moves(owned, &dofs, unknown, catalog),
@@ -65,13 +60,16 @@ impl Condensation<'_> {
             approaches: dofs.approaches,
             traces: dofs.traces.clone(),
             s,
-            diagonal: schur.diagonal.clone(),
-            smallest_pivot: schur.smallest_pivot(),
+            diagonal: factor.diagonal.clone(),
+            smallest_pivot: factor.smallest_pivot(),
         };
-        (condensed.diagonals).insert(number, stiffness.diagonal().to_vec());
-        condensed.springs.insert(number, springs);
-        condensed.dofs.insert(number, dofs);
-        condensed.factors.insert(number, schur);
+        let stays = CondensedBlock {
+            dofs,
+            diagonal: stiffness.diagonal().to_vec(),
+            springs,
+            factor,
+        };
+        condensed.blocks.insert(number, stays);
         condensed.seconds[0] += (assembled - began).as_secs_f64();
         condensed.seconds[1] += assembled.elapsed().as_secs_f64();
         Ok(of_block)

@@ -19,7 +19,7 @@ pub fn condition_number(
     solutions: &BTreeMap<usize, BlockSolution>,
 ) -> Option<f64> {
     let able = frozen.root.is_some_and(|root| root.can_solve());
-    if !frozen.comm.decide(able) {
+    if !frozen.context.comm.decide(able) {
         return None;
     }
     let start = |&b: &usize| {
@@ -27,14 +27,14 @@ pub fn condition_number(
         let load = diagonal.map(|(i, d)| d.max(0.0).sqrt() * sign(b, i));
         (b, load.collect())
     };
-    let loads = frozen.condensed.dofs.keys().map(start).collect();
+    let loads = frozen.condensed.blocks.keys().map(start).collect();
     let answer = solve(frozen, solutions, loads);
 
     // xᵀ D x, summed block by block so that ranks make no difference.
     let mut largest = 0;
     let mut sum = 0.0;
-    frozen.comm.gather(
-        &frozen.plan.owners(),
+    frozen.context.comm.gather(
+        &frozen.context.plan.owners(),
         |b| {
             let answer = answer.get(&b).into_iter().flatten();
             let terms = answer.zip(diagonal(frozen, b)).map(|(x, d)| d * x * x);
@@ -74,16 +74,13 @@ fn solve(
 }
 
 fn diagonal<'a>(frozen: &Frozen<'a>, b: usize) -> &'a [f64] {
-    frozen
-        .condensed
-        .diagonals
-        .get(&b)
-        .map_or(&[], Vec::as_slice)
+    let block = frozen.condensed.blocks.get(&b);
+    block.map_or(&[], |block| &block.diagonal)
 }
 
 /// The most unknowns that a cell of block b has.
 fn largest_cell(frozen: &Frozen<'_>, b: usize) -> usize {
-    frozen.blocks.get(&b).map_or(0, |owned| {
+    frozen.context.blocks.get(&b).map_or(0, |owned| {
         let nodes = owned.block.cells().map(|cell| cell.kind.nodes()).max();
         nodes.unwrap_or(0) * owned.block.dim
     })

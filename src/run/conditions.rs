@@ -12,10 +12,10 @@ impl Factors<'_> {
         &self,
         mut of_blocks: BTreeMap<usize, Message>,
     ) -> BTreeMap<usize, Vec<Message>> {
-        let plan = self.plan;
+        let plan = self.context.plan;
         let places = self.places();
         let mut of_clusters: BTreeMap<usize, Vec<Message>> = BTreeMap::new();
-        self.comm.route(
+        self.context.comm.route(
             plan.ways_to_clusters(),
             |i| of_blocks.remove(&places[i].1).unwrap_or_default(),
             |i, message| of_clusters.entry(places[i].0).or_default().push(message),
@@ -29,13 +29,13 @@ impl Factors<'_> {
         &self,
         of_clusters: BTreeMap<usize, Message>,
     ) -> BTreeMap<usize, Message> {
-        let plan = self.plan;
+        let plan = self.context.plan;
         let places = self.places();
         let mut left: BTreeMap<usize, _> = (of_clusters.into_iter())
             .map(|(p, message)| (p, message.read()))
             .collect();
         let mut of_blocks = BTreeMap::new();
-        self.comm.route(
+        self.context.comm.route(
             plan.ways_to_clusters()
                 .map(|(block, cluster)| (cluster, block)),
             |i| {
@@ -56,7 +56,7 @@ impl Factors<'_> {
 
     /// Cluster, by its place among those in contact, and block of every group, cluster by cluster.
     fn places(&self) -> Vec<(usize, usize)> {
-        let plan = self.plan;
+        let plan = self.context.plan;
         let contact = plan.contact.iter().enumerate();
         contact
             .flat_map(|(p, &c)| {

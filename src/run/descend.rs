@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::element::geometry::{dot, length};
 
+use super::context::Context;
 use super::recover::BlockSolution;
+use super::steps::Loads;
 use crate::fem::owned::OwnedBlock;
 use crate::rigid::survey::Survey;
 
@@ -12,37 +14,35 @@ use crate::rigid::survey::Survey;
 /// enough to make forces of it.
 const ROUND_OFF: f64 = 1e-14;
 
-/// Takes the bodies' descent out of gaps and supports.
-pub fn take_out_descent(blocks: &mut BTreeMap<usize, OwnedBlock>, survey: &Survey, dim: usize) {
+/// What acts on the blocks once the bodies' descent is taken out of gaps and supports.
+pub fn without_descent(context: &Context<'_>, mut loads: Loads, survey: &Survey) -> Loads {
     if survey.longest_descent() == 0.0 {
-        return;
+        return loads;
     }
-    for owned in blocks.values_mut() {
-        let block = &mut owned.block;
-        for (point, gap) in owned.points.iter().zip(&mut owned.gaps) {
+    let dim = context.catalog.dim;
+    for (b, loads) in &mut loads {
+        let Some(OwnedBlock { block, points }) = context.blocks.get(b) else {
+            continue;
+        };
+        let moved = |node: u32| {
+            let node = node as usize;
+            moved(
+                survey,
+                dim,
+                block.bodies[node] as usize,
+                &block.points[node],
+            )
+        };
+        for (point, gap) in points.iter().zip(&mut loads.gaps) {
             for (node, row) in point.row() {
-                let node = node as usize;
-                let moved = moved(
-                    survey,
-                    dim,
-                    block.bodies[node] as usize,
-                    &block.points[node],
-                );
-                reduce(gap, &row, &moved);
+                reduce(gap, &row, &moved(node));
             }
         }
-        for member in &mut block.members {
-            for support in &mut member.supports {
-                let moved = moved(
-                    survey,
-                    dim,
-                    member.body,
-                    &member.points[support.node as usize],
-                );
-                reduce(&mut support.value, &support.direction, &moved);
-            }
+        for support in &mut loads.supports {
+            reduce(&mut support.value, &support.direction, &moved(support.node));
         }
     }
+    loads
 }
 
 /// Takes the part of a motion along `row` out of a length.

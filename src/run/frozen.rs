@@ -2,34 +2,32 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::problem::Catalog;
-
 use super::condensed_blocks::CondensedBlocks;
+use super::context::Context;
+use super::load::StepProblem;
 use super::motions::Motions;
 use super::recover::BlockSolution;
 use super::substitute::Factors;
-use crate::comm::{Comm, Message};
+use crate::comm::Message;
 use crate::fem::balance::Balance;
-use crate::fem::owned::OwnedBlock;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
+use crate::interface::problem::InterfaceProblem;
 use crate::plan::Plan;
+use crate::rigid::survey::Survey;
 use crate::schur::local::CondensedLoad;
+use crate::sweep::{SweepOutcome, SweepStatus};
 
 /// What a rank holds of the frozen problem.
 #[derive(Clone, Copy)]
 pub struct Frozen<'a> {
-    /// All ranks.
-    pub comm: &'a Comm,
-    /// Blocks of this rank.
-    pub blocks: &'a BTreeMap<usize, OwnedBlock>,
-    /// Their factors.
+    /// What the run works on.
+    pub context: Context<'a>,
+    /// The factors of this rank.
     pub condensed: &'a CondensedBlocks,
-    /// The problem.
-    pub catalog: &'a Catalog,
-    /// Who owns what.
-    pub plan: &'a Plan,
+    /// The problem of the load step.
+    pub step: &'a StepProblem<'a>,
     /// The longest way of a body to rest (m).
     pub descent: f64,
     /// Motions that are free whatever the contacts do; springs at pins hold them.
@@ -44,7 +42,7 @@ pub struct FrozenRoot<'a> {
     /// Numbering of Γ.
     pub numbering: &'a Numbering,
     /// The interface problem.
-    pub interface: &'a Interface,
+    pub problem: &'a InterfaceProblem<'a>,
     /// Whether the active sets are right.
     pub converged: bool,
 }
@@ -55,7 +53,7 @@ type FrozenLimits = (Vec<bool>, Vec<f64>);
 impl FrozenRoot<'_> {
     /// Whether the pairs' approaches can be solved for at once.
     pub fn can_solve(&self) -> bool {
-        CoupledContact::new(self.interface).is_some()
+        CoupledContact::new(self.problem).is_some()
     }
 }
 
@@ -80,22 +78,48 @@ pub struct BlockChange {
 }
 
 impl<'a> Frozen<'a> {
+    /// The problem of a load step, solved with this `outcome`; `interface` and `outcome` are the root's.
+    pub fn new(
+        context: Context<'a>,
+        condensed: &'a CondensedBlocks,
+        step: &'a StepProblem<'a>,
+        survey: &'a Survey,
+        interface: Option<&'a (Numbering, Interface)>,
+        outcome: Option<&SweepOutcome>,
+    ) -> Self {
+        let on_root = interface.zip(step.interface.as_ref()).zip(outcome);
+        Self {
+            context,
+            condensed,
+            step,
+            descent: survey.longest_descent(),
+            free: Motions {
+                list: &survey.motions.free,
+                frames: &survey.frames,
+            },
+            root: on_root.map(|(((numbering, _), problem), outcome)| FrozenRoot {
+                numbering,
+                problem,
+                converged: outcome.status == SweepStatus::Converged,
+            }),
+        }
+    }
+
     /// The factors.
     pub fn factors(&self) -> Factors<'a> {
         Factors {
-            comm: self.comm,
-            plan: self.plan,
+            context: self.context,
             condensed: self.condensed,
         }
     }
 
     /// What balances at the nodes of block b of this rank; `None` for another rank's.
     pub fn balance(&self, b: usize, solution: &BlockSolution) -> Option<Balance> {
-        let owned = self.blocks.get(&b)?;
+        let owned = self.context.blocks.get(&b)?;
         Some(Balance::new(
-            &owned.block,
-            &owned.points,
-            &self.catalog.materials,
+            owned,
+            self.step.loads.get(&b)?,
+            &self.context.catalog.materials,
             &solution.u,
             &solution.forces,
         ))
@@ -139,7 +163,7 @@ impl<'a> Frozen<'a> {
             let closed = messages.iter().flat_map(|m| &m.integers);
             let closed: Vec<bool> = closed.map(|&closed| closed != 0).collect();
             let missing: Vec<f64> = messages.iter().flat_map(|m| m.reals.clone()).collect();
-            if let Some(pair) = self.condensed.pairs.get(&p) {
+            if let Some(pair) = self.step.pairs.get(&p) {
                 limits.insert(p, pair.limits().frozen(&closed, &missing));
             }
         }
@@ -153,7 +177,7 @@ impl<'a> Frozen<'a> {
         limits: &BTreeMap<usize, FrozenLimits>,
         condensed: &BTreeMap<usize, CondensedLoad>,
     ) -> (BTreeMap<usize, Message>, BTreeMap<usize, Vec<f64>>) {
-        let plan = self.plan;
+        let plan = self.context.plan;
         let owners = plan.cluster_owners();
         let of_cluster = |c: usize| {
             plan.contact_place(c)
@@ -164,7 +188,7 @@ impl<'a> Frozen<'a> {
             load.map_or(&[][..], CondensedLoad::boundary)
         };
         let mut gathered: Vec<Message> = Vec::new();
-        self.comm.gather(
+        self.context.comm.gather(
             &owners,
             |c| {
                 let mut message = Message::default();
@@ -186,13 +210,13 @@ impl<'a> Frozen<'a> {
             .map_or_else(Vec::new, |root| root.solve(plan, gathered));
         let mut forces = BTreeMap::new();
         let mut boundaries = BTreeMap::new();
-        self.comm.scatter(
+        self.context.comm.scatter(
             &owners,
             |c| std::mem::take(&mut answers[c]),
             |c, message| {
                 let mut reader = message.read();
                 if let Some((p, (_, missing))) = of_cluster(c)
-                    && let Some(pair) = self.condensed.pairs.get(&p)
+                    && let Some(pair) = self.step.pairs.get(&p)
                 {
                     let of_limits = reader.reals(missing.len());
                     let reals = pair.limits().forces(&of_limits);
@@ -210,7 +234,7 @@ impl<'a> Frozen<'a> {
 impl FrozenRoot<'_> {
     /// What each cluster is answered: forces of its limits, approaches, traces.
     fn solve(&self, plan: &Plan, gathered: Vec<Message>) -> Vec<Message> {
-        let mut r = vec![0.0; self.interface.len];
+        let mut r = vec![0.0; self.problem.interface.len];
         let mut loads = Vec::new();
         let mut missing = Vec::new();
         let mut open: Vec<Vec<bool>> = Vec::new();
@@ -227,7 +251,7 @@ impl FrozenRoot<'_> {
                 r[i as usize] += part;
             }
         }
-        let Some(coupled) = CoupledContact::new(self.interface) else {
+        let Some(coupled) = CoupledContact::new(self.problem) else {
             return vec![Message::default(); self.numbering.traces.len()];
         };
         let step = coupled.solve_frozen(&r, &loads, &missing, &open);

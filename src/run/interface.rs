@@ -1,10 +1,10 @@
 //! Bringing the clusters together at the root: Γ, S_0 and the bilateral operator.
 
-use contact_dd_partition::problem::Catalog;
 use faer::Par;
 
 use super::condensed_blocks::CondensedBlocks;
-use crate::comm::{Comm, Message};
+use super::context::Context;
+use crate::comm::Message;
 use crate::contact::law::PairLaw;
 use crate::error::Failure;
 use crate::interface::coupled::MAX_APPROACHES;
@@ -20,12 +20,16 @@ use crate::schur::trace::TraceDof;
 /// # Errors
 /// Supports that differ between subdomains, or a singular bilateral problem.
 pub fn assemble_interface(
-    comm: &Comm,
+    context: &Context<'_>,
     blocks: &CondensedBlocks,
-    catalog: &Catalog,
-    plan: &Plan,
-    par: Par,
 ) -> Result<Option<(Numbering, Interface)>, Failure> {
+    let &Context {
+        comm,
+        catalog,
+        plan,
+        par,
+        ..
+    } = context;
     // Few enough conditions for the root to solve for all of them at once.
     let with_laws = catalog.conditions() <= MAX_APPROACHES;
     let mut traces: Vec<Vec<TraceDof>> = Vec::new();
@@ -66,11 +70,12 @@ fn pack(blocks: &CondensedBlocks, plan: &Plan, c: usize, with_laws: bool) -> Mes
     if let Some(linear) = blocks.linear.get(&c) {
         pack_head(linear, false, &mut message);
         message.push_lower(linear.s.as_ref());
-    } else if let Some(pair) = plan.contact_place(c).and_then(|p| blocks.pairs.get(&p)) {
-        pack_head(pair.condensed(), with_laws, &mut message);
-        message.push_lower(pair.bilateral());
+    } else if let Some(cluster) = plan.contact_place(c).and_then(|p| blocks.contact.get(&p)) {
+        let condensed = &cluster.condensed;
+        pack_head(condensed, with_laws, &mut message);
+        message.push_lower(condensed.bilateral());
         if with_laws {
-            PairLaw::pack(pair, &mut message);
+            PairLaw::pack(condensed, &cluster.limits, &mut message);
         }
     }
     message

@@ -4,30 +4,60 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 
+use super::condense::dof_failure;
 use super::condensed_blocks::CondensedBlocks;
-use crate::comm::{Comm, Message};
+use super::context::Context;
+use super::steps::Loads;
+use crate::comm::Message;
 use crate::contact::approach::ApproachOf;
 use crate::contact::limits::Limits;
 use crate::error::Failure;
-use crate::fem::dofs::Dofs;
+use crate::fem::load::BlockLoads;
 use crate::fem::owned::OwnedBlock;
-use crate::plan::Plan;
+use crate::fem::prescribed::Prescribed;
 
-/// The bounds on the approaches of every cluster in contact of this rank, by its place among those, as
-/// gaps and supports of the blocks are now. Collective.
+/// What supports prescribe in the blocks of this rank in a load step. Collective.
+///
+/// # Errors
+/// A contact point that lies on Γ.
+pub(super) fn prescribe(
+    context: &Context<'_>,
+    condensed: &CondensedBlocks,
+    loads: &Loads,
+) -> Result<BTreeMap<usize, Prescribed>, Failure> {
+    let Context { comm, catalog, .. } = context;
+    let made = condensed.blocks.iter().filter_map(|(&b, of_block)| {
+        let owned = context.blocks.get(&b)?;
+        let made = Prescribed::new(owned, loads.get(&b)?, &of_block.dofs, &catalog.materials)
+            .map_err(|error| dof_failure(error, owned, catalog));
+        Some(made.map(|prescribed| (b, prescribed)))
+    });
+    comm.agree(made.collect())
+}
+
+/// The bounds on the approaches of every cluster in contact of this rank in a load step, by its place among
+/// those. Collective.
 ///
 /// # Errors
 /// Supports that make two sides penetrate.
 pub(super) fn limits_of_clusters(
-    comm: &Comm,
-    plan: &Plan,
-    catalog: &Catalog,
-    blocks: &BTreeMap<usize, OwnedBlock>,
+    context: &Context<'_>,
+    loads: &Loads,
+    prescribed: &BTreeMap<usize, Prescribed>,
     condensed: &CondensedBlocks,
 ) -> Result<BTreeMap<usize, Limits>, Failure> {
+    let Context {
+        comm,
+        catalog,
+        plan,
+        blocks,
+        ..
+    } = context;
     let made = plan.groups.iter().enumerate().filter_map(|(g, b)| {
-        let (owned, dofs) = (blocks.get(b)?, condensed.dofs.get(b)?);
-        Some(of_block(owned, dofs, catalog).map(|limits| (g, limits)))
+        let approaches = condensed.blocks.get(b)?.dofs.approaches;
+        let (owned, loads) = (blocks.get(b)?, loads.get(b)?);
+        let limits = of_block(owned, loads, prescribed.get(b)?, approaches, catalog);
+        Some(limits.map(|limits| (g, limits)))
     });
     let made: BTreeMap<usize, Limits> = comm.agree(made.collect())?;
     let groups = plan.groups_by_cluster();
@@ -56,15 +86,20 @@ pub(super) fn limits_of_clusters(
         .collect())
 }
 
-/// The bounds on a block's approaches.
-fn of_block(owned: &OwnedBlock, dofs: &Dofs, catalog: &Catalog) -> Result<Limits, Failure> {
-    let scale = prescribed_scale(owned);
-    for (j, of) in dofs.approach_of.iter().enumerate() {
-        let gap = owned.gaps[j];
+/// The bounds on a block's `approaches`.
+fn of_block(
+    owned: &OwnedBlock,
+    loads: &BlockLoads,
+    prescribed: &Prescribed,
+    approaches: usize,
+    catalog: &Catalog,
+) -> Result<Limits, Failure> {
+    let scale = loads.largest_prescribed();
+    let points = owned.points.iter().zip(&loads.gaps);
+    for ((point, gap), of) in points.zip(&prescribed.approach_of) {
         if let &ApproachOf::Prescribed(approach) = of
             && approach > gap + 1e-12 * scale
         {
-            let point = &owned.points[j];
             let contact = &catalog.contacts[point.contact as usize].name;
             return Err(Failure::input(format!(
                 "contact '{contact}': nodes {} and {} are prescribed to penetrate by {:.3e}; \
@@ -75,21 +110,6 @@ fn of_block(owned: &OwnedBlock, dofs: &Dofs, catalog: &Catalog) -> Result<Limits
             )));
         }
     }
-    Ok(Limits::new(
-        dofs.approaches,
-        &dofs.approach_of,
-        &owned.gaps,
-        scale,
-    ))
-}
-
-/// The largest displacement that is prescribed in a block, initial gaps among them (m).
-fn prescribed_scale(owned: &OwnedBlock) -> f64 {
-    let prescribed = owned
-        .block
-        .members
-        .iter()
-        .flat_map(|m| m.supports.iter().map(|s| s.value.abs()));
-    let gaps = owned.gaps.iter().map(|gap| gap.abs());
-    prescribed.chain(gaps).fold(0.0, f64::max)
+    let of = &prescribed.approach_of;
+    Ok(Limits::new(approaches, of, &loads.gaps, scale))
 }

@@ -1,122 +1,140 @@
-//! The right-hand side of a load step: f condensed onto Γ, and the bounds on approaches.
+//! A load step: everything in it that depends on loads, condensed onto Γ.
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::problem::Catalog;
-
 use super::clusters::settle_load;
-use super::condense::dof_failure;
-use super::condensed_blocks::CondensedBlocks;
-use super::limits::limits_of_clusters;
+use super::condensed_blocks::{CondensedBlocks, ContactCluster};
+use super::context::Context;
+use super::limits::{limits_of_clusters, prescribe};
+use super::steps::{Loads, StepState};
 use super::substitute::Factors;
-use crate::comm::{Comm, Message};
+use crate::comm::Message;
+use crate::contact::limits::Limits;
+use crate::contact::pair::ContactPair;
 use crate::error::Failure;
 use crate::fem::load::load;
-use crate::fem::owned::OwnedBlock;
+use crate::fem::prescribed::Prescribed;
 use crate::interface::numbering::Numbering;
-use crate::interface::operator::{ClusterLoad, Interface};
-use crate::plan::Plan;
+use crate::interface::operator::Interface;
+use crate::interface::problem::{ClusterLoad, InterfaceProblem};
 use crate::rigid::energy::RigidDrive;
 use crate::rigid::survey::Survey;
 use crate::schur::local::CondensedLoad;
 
-/// What loads follow from beside the factors.
+/// The problem of a load step, as this rank holds it.
+#[derive(Debug)]
+pub struct StepProblem<'a> {
+    /// What acts on its blocks.
+    pub loads: Loads,
+    /// What supports prescribe in them.
+    pub prescribed: BTreeMap<usize, Prescribed>,
+    /// The condensed load of every node of the hierarchy.
+    pub condensed: BTreeMap<usize, CondensedLoad>,
+    /// ϑ: the clusters in contact, by their place among those.
+    pub pairs: BTreeMap<usize, ContactPair>,
+    /// S_0 U + S_CON(U) = F; on the root.
+    pub interface: Option<InterfaceProblem<'a>>,
+}
+
+/// What a load step's problem is made of beside its loads.
 #[derive(Clone, Copy)]
 pub struct Loading<'a> {
-    /// All ranks.
-    pub comm: &'a Comm,
-    /// The problem.
-    pub catalog: &'a Catalog,
-    /// Who owns what.
-    pub plan: &'a Plan,
-    /// The blocks of this rank, with the supports, forces and gaps of the step.
-    pub blocks: &'a BTreeMap<usize, OwnedBlock>,
+    /// What the run works on.
+    pub context: Context<'a>,
+    /// The factors of this rank.
+    pub factors: &'a CondensedBlocks,
+    /// Γ and the operators on it; on the root.
+    pub interface: Option<&'a (Numbering, Interface)>,
     /// The rigid motions in the step.
     pub survey: &'a Survey,
 }
 
-impl Loading<'_> {
-    /// Gives unknowns their constants and clusters in contact the bounds on their approaches, both of which
-    /// were made for another step. Collective.
+impl<'a> Loading<'a> {
+    /// The problem under `loads`, which starts from the state that the step `before` left. Collective.
     ///
     /// # Errors
     /// Supports that make two sides penetrate.
-    pub fn prescribe(&self, condensed: &mut CondensedBlocks) -> Result<(), Failure> {
-        let &Self {
-            comm,
-            catalog,
-            plan,
-            blocks,
-            ..
-        } = self;
-        let materials = &catalog.materials;
-        let prescribed = condensed.dofs.iter_mut().try_for_each(|(b, dofs)| {
-            let Some(owned) = blocks.get(b) else {
-                return Ok(());
-            };
-            dofs.prescribe(&owned.block, &owned.points, &owned.gaps, materials)
-                .map_err(|error| dof_failure(error, owned, catalog))
-        });
-        comm.agree(prescribed)?;
-        for (p, limits) in limits_of_clusters(comm, plan, catalog, blocks, condensed)? {
-            if let Some(pair) = condensed.pairs.get_mut(&p) {
-                pair.set_limits(limits);
-            }
-        }
-        Ok(())
-    }
-
-    /// Condenses the loads of all blocks up the hierarchy, f_Γ − K_ΓI K_II⁻¹ f_I, and gives clusters in
-    /// contact theirs; returns the load of every node of this rank. Collective.
-    pub fn condense(&self, condensed: &mut CondensedBlocks) -> BTreeMap<usize, CondensedLoad> {
-        let &Self {
-            comm,
-            catalog,
-            plan,
-            blocks,
-            survey,
-        } = self;
-        let of_block = |(&b, owned): (&usize, &OwnedBlock)| {
-            let dofs = condensed.dofs.get(&b)?;
-            let springs = condensed.springs.get(&b)?;
-            Some((b, load(&owned.block, dofs, &catalog.materials, springs)))
-        };
-        let loads = blocks.iter().filter_map(of_block).collect();
-        let factors = Factors {
-            comm,
-            plan,
+    pub fn problem(&self, loads: Loads, before: StepState) -> Result<StepProblem<'a>, Failure> {
+        let context = &self.context;
+        let prescribed = prescribe(context, self.factors, &loads)?;
+        let limits = limits_of_clusters(context, &loads, &prescribed, self.factors)?;
+        let condensed = self.condense(&loads, &prescribed);
+        let pairs = self.pairs(limits, &condensed, before);
+        let interface = self.assemble(&pairs, &condensed);
+        Ok(StepProblem {
+            loads,
+            prescribed,
             condensed,
-        };
-        let loads = factors.condense(loads);
-        for (p, pair) in &mut condensed.pairs {
-            let Some(load) = loads.get(&plan.clusters[plan.contact[*p]].node) else {
-                continue;
-            };
-            let mut load = load.boundary().to_vec();
-            if let Some(drive) = survey.inner_motions.get(p) {
-                let limits = pair.limits();
-                let on_approaches = &mut load[..limits.approaches()];
-                settle_load(on_approaches, &limits.defining, drive, pair.diagonal());
-            }
-            pair.set_load(load);
-        }
-        loads
+            pairs,
+            interface,
+        })
     }
 
-    /// Assembles F of the clusters' `loads` on the root, which holds the `interface` problem. Collective.
-    pub fn assemble(
+    /// Condenses the loads of all blocks up the hierarchy, f_Γ − K_ΓI K_II⁻¹ f_I; returns the load of every
+    /// node of this rank. Collective.
+    fn condense(
         &self,
-        condensed: &CondensedBlocks,
+        loads: &Loads,
+        prescribed: &BTreeMap<usize, Prescribed>,
+    ) -> BTreeMap<usize, CondensedLoad> {
+        let Context {
+            catalog, blocks, ..
+        } = self.context;
+        let of_block = |(&b, loads)| {
+            let (owned, factors) = (blocks.get(&b)?, self.factors.blocks.get(&b)?);
+            let (dofs, springs) = (&factors.dofs, &factors.springs);
+            let prescribed = prescribed.get(&b)?;
+            let materials = &catalog.materials;
+            Some((
+                b,
+                load(&owned.block, loads, dofs, prescribed, materials, springs),
+            ))
+        };
+        let factors = Factors {
+            context: self.context,
+            condensed: self.factors,
+        };
+        factors.condense(loads.iter().filter_map(of_block).collect())
+    }
+
+    /// The clusters in contact of this rank under their loads.
+    fn pairs(
+        &self,
+        mut limits: BTreeMap<usize, Limits>,
         loads: &BTreeMap<usize, CondensedLoad>,
-        interface: Option<&mut (Numbering, Interface)>,
-    ) {
-        let plan = self.plan;
+        mut before: StepState,
+    ) -> BTreeMap<usize, ContactPair> {
+        let plan = self.context.plan;
+        let pair = |(&p, cluster): (&usize, &ContactCluster)| {
+            let condensed = &cluster.condensed;
+            let limits = limits.remove(&p)?;
+            let mut load = loads
+                .get(&plan.clusters[plan.contact[p]].node)?
+                .boundary()
+                .to_vec();
+            if let Some(drive) = self.survey.inner_motions.get(&p) {
+                let (on_approaches, _) = load.split_at_mut(condensed.approaches);
+                settle_load(on_approaches, &limits.defining, drive, &condensed.diagonal);
+            }
+            let before = before.pairs.remove(&p);
+            Some((p, ContactPair::new(condensed.clone(), limits, load, before)))
+        };
+        self.factors.contact.iter().filter_map(pair).collect()
+    }
+
+    /// Assembles F on the root. Collective.
+    fn assemble(
+        &self,
+        pairs: &BTreeMap<usize, ContactPair>,
+        loads: &BTreeMap<usize, CondensedLoad>,
+    ) -> Option<InterfaceProblem<'a>> {
+        let Context { comm, plan, .. } = self.context;
         let mut of_clusters = Vec::new();
-        self.comm.gather(
+        comm.gather(
             &plan.cluster_owners(),
             |c| {
                 let mut message = Message::default();
-                let pair = plan.contact_place(c).and_then(|p| condensed.pairs.get(&p));
+                let pair = plan.contact_place(c).and_then(|p| pairs.get(&p));
                 if let Some(pair) = pair {
                     message.reals.push(pair.limits().scale);
                     message.reals.extend(pair.bilateral_load());
@@ -135,10 +153,14 @@ impl Loading<'_> {
                 });
             },
         );
-        if let Some((numbering, interface)) = interface {
-            let drive = self.drive_of_approaches(interface);
-            interface.prescribe(numbering, &of_clusters, &drive);
-        }
+        let (numbering, interface) = self.interface?;
+        let drive = self.drive_of_approaches(interface);
+        Some(InterfaceProblem::new(
+            interface,
+            numbering,
+            &of_clusters,
+            &drive,
+        ))
     }
 
     /// The approaches of all pairs against the motions that supports leave to the bodies.
@@ -147,7 +169,7 @@ impl Loading<'_> {
         let Some(scene) = scene.filter(|_| self.survey.movable) else {
             return RigidDrive::default();
         };
-        let plan = self.plan;
+        let plan = self.context.plan;
         let defining: Vec<usize> = (interface.laws.iter().zip(&plan.contact))
             .flat_map(|(law, &c)| {
                 let conditions = scene.conditions_of(&plan.clusters[c].groups);

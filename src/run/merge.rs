@@ -6,11 +6,11 @@ use std::time::Instant;
 use super::clusters::take_clusters;
 use super::condense::Condensation;
 use super::condensed_blocks::CondensedBlocks;
-use super::limits::limits_of_clusters;
+use super::context::Context;
+use super::limits::{limits_of_clusters, prescribe};
 use super::steps::in_step;
-use crate::comm::{Comm, Message, is_asked_to_stop};
+use crate::comm::{Message, is_asked_to_stop};
 use crate::error::Failure;
-use crate::fem::owned::OwnedBlock;
 use crate::interface::numbering::check_agreement;
 use crate::output::bar::Bar;
 use crate::rigid::survey::Survey;
@@ -22,20 +22,16 @@ use crate::schur::trace::TraceDof;
 /// clusters. Collective.
 ///
 /// # Errors
-/// A part that can move although its boundary is held, a condition on Γ, or supports that differ
+/// A part that can move although its boundary is held, a contact point on Γ, or supports that differ
 /// between subdomains.
 pub fn condense_clusters(
-    comm: &Comm,
     condensation: &Condensation<'_>,
-    blocks: &BTreeMap<usize, OwnedBlock>,
     survey: &Survey,
     bar: &Bar,
 ) -> Result<CondensedBlocks, Failure> {
-    let plan = condensation.plan;
+    let Context { comm, plan, .. } = condensation.context;
     let mut merging = Merging {
-        comm,
         condensation,
-        blocks,
         condensed: CondensedBlocks::default(),
         waiting: BTreeMap::new(),
         spare: Spare::default(),
@@ -65,18 +61,17 @@ pub fn condense_clusters(
         waiting,
         ..
     } = merging;
-    let catalog = condensation.catalog;
-    let limits = limits_of_clusters(comm, plan, catalog, blocks, &condensed)
-        .map_err(|failure| in_step(failure, catalog, 0))?;
+    let (context, loads) = (&condensation.context, condensation.loads);
+    let limits = prescribe(context, &condensed, loads)
+        .and_then(|prescribed| limits_of_clusters(context, loads, &prescribed, &condensed))
+        .map_err(|failure| in_step(failure, context.catalog, 0))?;
     take_clusters(plan, survey, limits, waiting, &mut condensed);
     Ok(condensed)
 }
 
 /// The merges of this rank.
 struct Merging<'a> {
-    comm: &'a Comm,
     condensation: &'a Condensation<'a>,
-    blocks: &'a BTreeMap<usize, OwnedBlock>,
     condensed: CondensedBlocks,
     /// Nodes that are condensed and not merged yet.
     waiting: BTreeMap<usize, Condensed>,
@@ -88,7 +83,7 @@ impl Merging<'_> {
     /// The nodes of clusters under which everything is this rank's, depth first, and, on all ranks
     /// the same, those with parts of several ranks.
     fn nodes(&self) -> (Vec<usize>, Vec<usize>) {
-        let plan = self.condensation.plan;
+        let plan = self.condensation.context.plan;
         let (mut alone, mut across) = (Vec::new(), Vec::new());
         let mut is_whole = vec![true; plan.tree.nodes.len()];
         for cluster in &plan.clusters {
@@ -98,7 +93,7 @@ impl Merging<'_> {
                 is_whole[v] = (children.iter())
                     .all(|&child| is_whole[child] && plan.node_owners[child] == owner);
                 match is_whole[v] {
-                    true if owner == self.comm.rank() => alone.push(v),
+                    true if owner == self.condensation.context.comm.rank() => alone.push(v),
                     true => {}
                     false => across.push(v),
                 }
@@ -109,12 +104,12 @@ impl Merging<'_> {
 
     /// Condenses a block or merges the children of an inner node, all of them this rank's.
     fn own_node(&mut self, v: usize) -> Result<(), Failure> {
-        if let Some(owned) = self.blocks.get(&v) {
+        if let Some(owned) = self.condensation.context.blocks.get(&v) {
             let of_block = self.condensation.condense(v, owned, &mut self.condensed)?;
             self.waiting.insert(v, of_block);
             return Ok(());
         }
-        let children = &self.condensation.plan.tree.nodes[v].children;
+        let children = &self.condensation.context.plan.tree.nodes[v].children;
         let waiting = children
             .iter()
             .filter_map(|child| self.waiting.remove(child));
@@ -124,17 +119,21 @@ impl Merging<'_> {
 
     /// Merges the children of an inner node, which come from several ranks. Collective.
     fn node_across_ranks(&mut self, v: usize) -> Result<(), Failure> {
-        let plan = self.condensation.plan;
-        let (me, owner) = (self.comm.rank(), plan.node_owners[v]);
+        let plan = self.condensation.context.plan;
+        let (me, owner) = (self.condensation.context.comm.rank(), plan.node_owners[v]);
         let children = &plan.tree.nodes[v].children;
         let mut arrived = Vec::new();
         for child in children {
             match (plan.node_owners[*child], owner == me) {
                 (of_child, true) if of_child == me => arrived.extend(self.waiting.remove(child)),
-                (of_child, true) => arrived.extend(unpack(self.comm.receive(of_child))),
+                (of_child, true) => {
+                    arrived.extend(unpack(self.condensation.context.comm.receive(of_child)))
+                }
                 (of_child, false) if of_child == me => {
                     let waiting = self.waiting.remove(child);
-                    self.comm
+                    self.condensation
+                        .context
+                        .comm
                         .send(owner, &waiting.map_or_else(Message::default, pack));
                 }
                 _ => {}
@@ -149,7 +148,7 @@ impl Merging<'_> {
 
     fn merge(&mut self, v: usize, children: Vec<Condensed>) -> Result<(), Failure> {
         let began = Instant::now();
-        let plan = self.condensation.plan;
+        let plan = self.condensation.context.plan;
         let node = &plan.tree.nodes[v];
         let traces: Vec<&[TraceDof]> = children.iter().map(|c| &c.traces[..]).collect();
         let kept = node
@@ -161,7 +160,7 @@ impl Merging<'_> {
             children,
             &node.eliminated,
             &mut self.spare,
-            self.condensation.par,
+            self.condensation.context.par,
         )
         .map_err(|LooseTrace(dof)| self.moves(v, dof))?;
         self.condensed.merges.insert(v, merge);
@@ -171,7 +170,7 @@ impl Merging<'_> {
     }
 
     fn moves(&self, v: usize, dof: TraceDof) -> Failure {
-        let plan = self.condensation.plan;
+        let plan = self.condensation.context.plan;
         let blocks = plan
             .tree
             .subtree(v)
@@ -181,12 +180,12 @@ impl Merging<'_> {
             .flat_map(|b| plan.blocks[b].subdomains.clone())
             .collect();
         let first = subdomains.iter().min().copied().unwrap_or_default();
-        let body = self.condensation.catalog.subdomains[first].body;
+        let body = self.condensation.context.catalog.subdomains[first].body;
         Failure::ill_posed(format!(
             "body '{}': its {} subdomains around subdomain {first} can move although their boundary \
              is held (found at node {} of /interface/interface); expected supports or contact that \
              hold them",
-            self.condensation.catalog.bodies[body].name,
+            self.condensation.context.catalog.bodies[body].name,
             subdomains.len(),
             dof.node
         ))

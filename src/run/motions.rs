@@ -47,7 +47,7 @@ impl<'a> Motions<'a> {
         if frozen.root.is_some() {
             coefficients.reals = products.coefficients();
         }
-        frozen.comm.broadcast(&mut coefficients);
+        frozen.context.comm.broadcast(&mut coefficients);
         self.take_out(frozen, kind, &coefficients.reals, fields);
     }
 
@@ -58,15 +58,16 @@ impl<'a> Motions<'a> {
         kind: Field,
         fields: &BTreeMap<usize, &mut Vec<f64>>,
     ) -> MotionProducts {
-        let dim = frozen.catalog.dim;
+        let dim = frozen.context.catalog.dim;
         let modes = BodyFrame::count(dim);
-        let first_of = first_blocks(frozen.catalog, frozen.plan);
+        let first_of = first_blocks(frozen.context.catalog, frozen.context.plan);
         let mut of_bodies: BTreeMap<usize, MotionProducts> = BTreeMap::new();
-        frozen.comm.gather(
-            &frozen.plan.owners(),
+        frozen.context.comm.gather(
+            &frozen.context.plan.owners(),
             |b| {
                 let mut of_block: BTreeMap<usize, MotionProducts> = BTreeMap::new();
-                if let (Some(owned), Some(field)) = (frozen.blocks.get(&b), fields.get(&b)) {
+                if let (Some(owned), Some(field)) = (frozen.context.blocks.get(&b), fields.get(&b))
+                {
                     let is_first = first_in(owned, b, &first_of);
                     visit(owned, |node, body, x| {
                         let products = of_body(&mut of_block, body, modes);
@@ -114,8 +115,8 @@ impl<'a> Motions<'a> {
         coefficients: &[f64],
         fields: BTreeMap<usize, &mut Vec<f64>>,
     ) {
-        let dim = frozen.catalog.dim;
-        let first_of = first_blocks(frozen.catalog, frozen.plan);
+        let dim = frozen.context.catalog.dim;
+        let first_of = first_blocks(frozen.context.catalog, frozen.context.plan);
         let taken: Vec<Vec<f64>> = (0..self.frames.len())
             .map(|body| {
                 let mut sum = vec![0.0; BodyFrame::count(dim)];
@@ -128,7 +129,7 @@ impl<'a> Motions<'a> {
             })
             .collect();
         for (b, field) in fields {
-            let Some(owned) = frozen.blocks.get(&b) else {
+            let Some(owned) = frozen.context.blocks.get(&b) else {
                 continue;
             };
             let is_first = first_in(owned, b, &first_of);

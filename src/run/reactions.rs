@@ -5,21 +5,20 @@ use std::collections::BTreeMap;
 use super::frozen::Frozen;
 use super::recover::BlockSolution;
 use crate::comm::Message;
-use crate::fem::node_frames::supports;
 use crate::output::resultants::{Reaction, Resultant};
 
 /// What every condition that prescribes displacements exerts on the bodies; on the root it is that
 /// of the whole solution. Collective.
 pub fn reactions(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Vec<Reaction> {
-    let names = frozen.catalog.supports.iter();
+    let names = frozen.context.catalog.supports.iter();
     let mut reactions: Vec<Reaction> = names
         .map(|support| Reaction {
             support: support.clone(),
             resultant: Resultant::default(),
         })
         .collect();
-    frozen.comm.gather(
-        &frozen.plan.owners(),
+    frozen.context.comm.gather(
+        &frozen.context.plan.owners(),
         |b| match solutions.get(&b) {
             Some(solution) => of_block(frozen, b, solution),
             None => Message::default(),
@@ -37,10 +36,14 @@ pub fn reactions(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>
 /// For every support its condition, its position and the reaction.
 fn of_block(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Message {
     let mut message = Message::default();
-    let Some(owned) = frozen.blocks.get(&b) else {
+    let Some(owned) = frozen.context.blocks.get(&b) else {
         return message;
     };
-    let held = supports(&owned.block);
+    let held = frozen
+        .step
+        .loads
+        .get(&b)
+        .map_or(&[][..], |loads| &loads.supports);
     if held.is_empty() {
         return message;
     }

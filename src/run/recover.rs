@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use super::context::Context;
+use super::load::StepProblem;
 use super::substitute::Factors;
 use crate::comm::Message;
-use crate::schur::local::CondensedLoad;
+use crate::contact::pair::ContactPair;
 
 /// The solution on a block.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,17 +20,13 @@ pub struct BlockSolution {
 }
 
 /// Sends every cluster its part of U and recovers its interior. Collective; `root` holds U and the
-/// numbers of every cluster's traces, `loads` are the condensed ones.
+/// numbers of every cluster's traces.
 pub fn recover(
     factors: Factors<'_>,
-    loads: &BTreeMap<usize, CondensedLoad>,
+    step: &StepProblem<'_>,
     root: Option<(&[f64], &[Vec<u32>])>,
 ) -> BTreeMap<usize, BlockSolution> {
-    let Factors {
-        comm,
-        plan,
-        condensed,
-    } = factors;
+    let Context { comm, plan, .. } = factors.context;
     let mut boundaries: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     comm.scatter(
         &plan.cluster_owners(),
@@ -39,20 +37,21 @@ pub fn recover(
             }),
         },
         |c, message| {
-            let pair = plan.contact_place(c).and_then(|p| condensed.pairs.get(&p));
+            let pair = plan.contact_place(c).and_then(|p| step.pairs.get(&p));
             let mut x = pair.map_or_else(Vec::new, |pair| pair.approaches().to_vec());
             x.extend(message.reals);
             boundaries.insert(plan.clusters[c].node, x);
         },
     );
-    let mut conditions = conditions(factors);
+    let mut conditions = conditions(factors, &step.pairs);
     factors
-        .recover(loads, boundaries)
+        .recover(&step.condensed, boundaries)
         .into_iter()
         .filter_map(|(b, x)| {
             let (forces, closed) = conditions.remove(&b).unwrap_or_default();
+            let dofs = &factors.condensed.blocks.get(&b)?.dofs;
             let solution = BlockSolution {
-                u: condensed.dofs.get(&b)?.displacement(&x),
+                u: step.prescribed.get(&b)?.displacement(dofs, &x),
                 forces,
                 closed,
             };
@@ -63,9 +62,11 @@ pub fn recover(
 
 /// Forces of the conditions of every block, and which are closed, from the clusters that know.
 /// Collective.
-fn conditions(factors: Factors<'_>) -> BTreeMap<usize, (Vec<f64>, Vec<bool>)> {
-    let pairs = factors.condensed.pairs.iter();
-    let of_clusters = pairs.map(|(&p, pair)| {
+fn conditions(
+    factors: Factors<'_>,
+    pairs: &BTreeMap<usize, ContactPair>,
+) -> BTreeMap<usize, (Vec<f64>, Vec<bool>)> {
+    let of_clusters = pairs.iter().map(|(&p, pair)| {
         let (forces, closed) = pair.conditions();
         let message = Message {
             integers: closed.iter().map(|&closed| i64::from(closed)).collect(),

@@ -64,31 +64,36 @@ fn decide(frozen: &Frozen<'_>, decision: bool) -> bool {
     let able = frozen
         .root
         .is_some_and(|root| root.converged && root.can_solve());
-    frozen.comm.decide(able && decision)
+    frozen.context.comm.decide(able && decision)
 }
 
 /// The certificate, on the root. Collective.
 fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Certificate {
     let of_block = |b: usize| {
-        let (owned, solution) = (frozen.blocks.get(&b)?, solutions.get(&b)?);
+        let (owned, solution) = (frozen.context.blocks.get(&b)?, solutions.get(&b)?);
         let mut check = BlockCheck::new(
             owned,
+            frozen.step.loads.get(&b)?,
             &frozen.balance(b, solution)?,
             &solution.u,
             &solution.forces,
         );
-        let stiffness = frozen.condensed.diagonals.get(&b)?.iter().copied();
+        let stiffness = frozen.condensed.blocks.get(&b)?.diagonal.iter().copied();
         check.most.rest = frozen.descent * stiffness.fold(0.0, f64::max);
         Some(check)
     };
     let mut checks = Vec::new();
-    frozen.comm.gather(
-        &frozen.plan.owners(),
+    frozen.context.comm.gather(
+        &frozen.context.plan.owners(),
         |b| of_block(b).map_or_else(Message::default, |check| check.pack()),
         |_, message| checks.push(BlockCheck::unpack(message)),
     );
     match frozen.root {
-        Some(_) => certificate(&checks, frozen.catalog.interface_nodes, frozen.catalog.dim),
+        Some(_) => certificate(
+            &checks,
+            frozen.context.catalog.interface_nodes,
+            frozen.context.catalog.dim,
+        ),
         None => Certificate::default(),
     }
 }
@@ -104,11 +109,11 @@ fn correct(frozen: &Frozen<'_>, solutions: &mut BTreeMap<usize, BlockSolution>) 
     let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
     frozen.free.project(frozen, Field::Summed, fields);
     let unbalanced = |(&b, solution): (&usize, &BlockSolution)| {
-        let dofs = frozen.condensed.dofs.get(&b)?;
-        let owned = frozen.blocks.get(&b)?;
+        let dofs = &frozen.condensed.blocks.get(&b)?.dofs;
+        let owned = frozen.context.blocks.get(&b)?;
         let mut load = vec![0.0; dofs.len()];
         dofs.add_load(residuals.get(&b)?, &mut load);
-        let missing = owned.gaps_left(&solution.u);
+        let missing = frozen.step.loads.get(&b)?.gaps_left(owned, &solution.u);
         let closed = solution.closed.clone();
         Some((
             b,
@@ -121,11 +126,11 @@ fn correct(frozen: &Frozen<'_>, solutions: &mut BTreeMap<usize, BlockSolution>) 
     };
     let loads = solutions.iter().filter_map(unbalanced).collect();
     for (b, change) in frozen.solve(loads) {
-        let (Some(solution), Some(dofs)) = (solutions.get_mut(&b), frozen.condensed.dofs.get(&b))
-        else {
+        let block = frozen.condensed.blocks.get(&b);
+        let (Some(solution), Some(block)) = (solutions.get_mut(&b), block) else {
             continue;
         };
-        dofs.add_change(&change.x, &mut solution.u);
+        block.dofs.add_change(&change.x, &mut solution.u);
         for (force, change) in solution.forces.iter_mut().zip(change.forces) {
             *force = (*force + change).max(0.0);
         }

@@ -85,14 +85,22 @@ fn move_nearer(
     survey: &Survey,
     solutions: &mut BTreeMap<usize, BlockSolution>,
 ) -> Settled {
-    let mut displacement = with_descent(frozen.blocks, solutions, survey, frozen.catalog.dim);
+    let mut displacement = with_descent(
+        frozen.context.blocks,
+        solutions,
+        survey,
+        frozen.context.catalog.dim,
+    );
     let loose = loose_motions(frozen, survey, solutions);
     let mut message = Message::default();
     if let Some(loose) = &loose {
         FreeMotion::pack(&loose.motions, &mut message);
     }
-    frozen.comm.broadcast(&mut message);
-    let list = FreeMotion::unpack(&mut message.read(), BodyFrame::count(frozen.catalog.dim));
+    frozen.context.comm.broadcast(&mut message);
+    let list = FreeMotion::unpack(
+        &mut message.read(),
+        BodyFrame::count(frozen.context.catalog.dim),
+    );
     if list.is_empty() {
         return Settled::default();
     }
@@ -109,17 +117,17 @@ fn move_nearer(
     if let Some(loose) = &loose {
         coefficients.reals = loose.coefficients(&products);
     }
-    frozen.comm.broadcast(&mut coefficients);
+    frozen.context.comm.broadcast(&mut coefficients);
     let all = solutions.iter_mut().map(|(&b, s)| (b, &mut s.u)).collect();
     motions.take_out(frozen, Field::Shared, &coefficients.reals, all);
     let mut settled = Settled {
         is_loose: list.len() > frozen.free.list.len(),
         ..Settled::default()
     };
-    frozen.comm.gather(
-        &frozen.plan.group_owners(),
+    frozen.context.comm.gather(
+        &frozen.context.plan.group_owners(),
         |g| {
-            let b = frozen.plan.groups[g];
+            let b = frozen.context.plan.groups[g];
             let opened = solutions.get_mut(&b).map(|s| open(frozen, b, s));
             Message {
                 integers: vec![opened.unwrap_or(0) as i64],
@@ -134,12 +142,15 @@ fn move_nearer(
 
 /// Opens the conditions of block b that have a gap, and counts them.
 fn open(frozen: &Frozen<'_>, b: usize, solution: &mut BlockSolution) -> usize {
-    let Some(owned) = frozen.blocks.get(&b) else {
+    let Some(owned) = frozen.context.blocks.get(&b) else {
         return 0;
     };
     let largest = solution.u.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
     let mut opened = 0;
-    for (j, gap) in owned.gaps_left(&solution.u).into_iter().enumerate() {
+    let Some(loads) = frozen.step.loads.get(&b) else {
+        return 0;
+    };
+    for (j, gap) in loads.gaps_left(owned, &solution.u).into_iter().enumerate() {
         if solution.closed[j] && gap > OPENED * largest {
             solution.closed[j] = false;
             solution.forces[j] = 0.0;
@@ -157,10 +168,10 @@ fn loose_motions(
 ) -> Option<LooseMotions> {
     let mut carrying = Vec::new();
     let mut gaps = Vec::new();
-    frozen.comm.gather(
-        &frozen.plan.group_owners(),
+    frozen.context.comm.gather(
+        &frozen.context.plan.group_owners(),
         |g| {
-            let b = frozen.plan.groups[g];
+            let b = frozen.context.plan.groups[g];
             solutions
                 .get(&b)
                 .and_then(|solution| conditions(frozen, b, solution))
@@ -177,7 +188,7 @@ fn loose_motions(
 
 /// For every condition of block b whether it carries force, and what gap it has left.
 fn conditions(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option<Message> {
-    let owned = frozen.blocks.get(&b)?;
+    let owned = frozen.context.blocks.get(&b)?;
     let dim = owned.block.dim;
     let scale = frozen.balance(b, solution)?.scale;
     let mut message = Message::default();
@@ -189,6 +200,6 @@ fn conditions(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option
             .integers
             .push(i64::from(force > ROUND_OFF * largest));
     }
-    message.reals = owned.gaps_left(&solution.u);
+    message.reals = frozen.step.loads.get(&b)?.gaps_left(owned, &solution.u);
     Some(message)
 }

@@ -14,7 +14,6 @@ use crate::certificate::Certificate;
 use crate::fem::estimate::CellError;
 use crate::output::resultants::Reaction;
 use crate::rigid::survey::Survey;
-use crate::schur::local::CondensedLoad;
 
 /// What is known once U is.
 #[derive(Debug)]
@@ -38,19 +37,16 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// Substitutes U back, of which the root has `u` and every block the condensed `loads`, refines what
-    /// comes of it against the full discrete problem, and recovers stresses if they are asked for.
+    /// Substitutes U back, of which the root has `u`, refines what comes of it against the full discrete problem, and recovers stresses if they are asked for.
     /// Collective.
-    pub fn new(
-        frozen: &Frozen<'_>,
-        survey: &Survey,
-        loads: &BTreeMap<usize, CondensedLoad>,
-        u: Option<&[f64]>,
-        with_stress: bool,
-    ) -> Self {
-        let (comm, plan, catalog) = (frozen.comm, frozen.plan, frozen.catalog);
+    pub fn new(frozen: &Frozen<'_>, survey: &Survey, u: Option<&[f64]>, with_stress: bool) -> Self {
+        let (comm, plan, catalog) = (
+            frozen.context.comm,
+            frozen.context.plan,
+            frozen.context.catalog,
+        );
         let numbers = frozen.root.map(|root| &root.numbering.traces[..]);
-        let mut blocks = recover(frozen.factors(), loads, u.zip(numbers));
+        let mut blocks = recover(frozen.factors(), frozen.step, u.zip(numbers));
         settle_free_motions(frozen, &mut blocks);
         let mut certificate = refine(frozen, &mut blocks);
         let settled = settle_loose_motions(frozen, survey, &mut blocks, &mut certificate);
@@ -59,9 +55,10 @@ impl Solution {
             true => None,
             false => condition_number(frozen, &blocks),
         };
-        let stress = with_stress.then(|| stresses(comm, frozen.blocks, &blocks, catalog, plan));
+        let stress =
+            with_stress.then(|| stresses(comm, frozen.context.blocks, &blocks, catalog, plan));
         Self {
-            displacement: with_descent(frozen.blocks, &blocks, survey, catalog.dim),
+            displacement: with_descent(frozen.context.blocks, &blocks, survey, catalog.dim),
             reactions: reactions(frozen, &blocks),
             estimate: (stress.as_ref()).map(|stress| error_estimate(comm, stress, plan)),
             blocks,

@@ -6,6 +6,7 @@ use contact_dd_partition::problem::Catalog;
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Failure;
+use crate::fem::load::BlockLoads;
 use crate::fem::owned::OwnedBlock;
 use crate::rigid::nonnegative::residual;
 
@@ -22,7 +23,7 @@ type HalfSpace = ([f64; 3], f64);
 ///
 /// # Errors
 /// The first node that can't, with its contacts.
-pub fn check(owned: &OwnedBlock, catalog: &Catalog) -> Result<(), Failure> {
+pub fn check(owned: &OwnedBlock, loads: &BlockLoads, catalog: &Catalog) -> Result<(), Failure> {
     let mut at_node: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (j, point) in owned.points.iter().enumerate() {
         if let [(node, _)] = point.entries[..] {
@@ -31,20 +32,17 @@ pub fn check(owned: &OwnedBlock, catalog: &Catalog) -> Result<(), Failure> {
     }
     let block = &owned.block;
     let mut supports: BTreeMap<u32, Vec<HalfSpace>> = BTreeMap::new();
-    for (member, node_of) in block.members.iter().zip(&block.node_of) {
-        for support in &member.supports {
-            let node = node_of[support.node as usize];
-            if at_node.contains_key(&node) {
-                let (d, value) = (support.direction, support.value);
-                let both = [(d, value), (d.map(|c| -c), -value)];
-                supports.entry(node).or_default().extend(both);
-            }
+    for support in &loads.supports {
+        if at_node.contains_key(&support.node) {
+            let (d, value) = (support.direction, support.value);
+            let both = [(d, value), (d.map(|c| -c), -value)];
+            supports.entry(support.node).or_default().extend(both);
         }
     }
     for (node, at) in at_node {
         let of_points = at
             .iter()
-            .map(|&j| (owned.points[j].normal(), owned.gaps[j]));
+            .map(|&j| (owned.points[j].normal(), loads.gaps[j]));
         let held = supports.remove(&node).unwrap_or_default();
         let all: Vec<HalfSpace> = of_points.chain(held).collect();
         if at.len() > 1 && !leave_a_place(&all) {

@@ -1,55 +1,88 @@
-//! Load steps: what blocks are told of one before it is solved for.
+//! Load steps: what acts in one, and the state that it starts from and leaves.
 
 use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::descend::take_out_descent;
+use super::context::Context;
 use super::squeezed;
 use crate::comm::Comm;
+use crate::contact::pair::{ContactPair, PairState};
 use crate::error::Failure;
-use crate::fem::owned::OwnedBlock;
-use crate::plan::Plan;
+use crate::fem::load::BlockLoads;
 use crate::rigid::survey::{Survey, survey};
+use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
+
+/// What acts on the blocks of this rank in a load step, by their number.
+pub type Loads = BTreeMap<usize, BlockLoads>;
+
+/// Where a load step leaves the scene: what the next one starts from.
+#[derive(Clone, Debug, Default)]
+pub struct StepState {
+    /// U, and which approaches of every cluster in contact are open; on the root.
+    pub interface: Option<(Vec<f64>, Vec<Vec<bool>>)>,
+    /// The clusters in contact of this rank, by their place among those.
+    pub pairs: BTreeMap<usize, PairState>,
+}
+
+impl StepState {
+    /// The state after a step that ended with `outcome`, which the root has. A step that went nowhere is no
+    /// place to start from; neither are others for picard, whose relaxation is that of the contacts that the
+    /// bilateral solution leaves closed.
+    pub fn after(
+        pairs: BTreeMap<usize, ContactPair>,
+        outcome: Option<&SweepOutcome>,
+        method: Method,
+    ) -> Self {
+        let pairs = pairs.into_iter();
+        let starts = |outcome: &&SweepOutcome| {
+            method != Method::Picard && outcome.status == SweepStatus::Converged
+        };
+        Self {
+            interface: (outcome.filter(starts)).map(|o| (o.u.clone(), o.open.clone())),
+            pairs: pairs.map(|(p, pair)| (p, pair.into_state())).collect(),
+        }
+    }
+
+    /// Where the sweeps of the next step begin; on the root.
+    pub fn start(&self) -> Start {
+        match &self.interface {
+            Some((u, open)) => Start::Before(u.clone(), open.clone()),
+            None => Start::Bilateral,
+        }
+    }
+}
+
+/// What acts in load step k.
+pub fn loads_of_step(context: &Context<'_>, k: usize) -> Loads {
+    let blocks = context.blocks.iter();
+    blocks
+        .map(|(&b, owned)| (b, BlockLoads::new(owned, k)))
+        .collect()
+}
 
 /// Looks at the rigid motions of the scene in every load step, one where it has none. Collective.
 ///
 /// # Errors
 /// What a step prescribes leaves no place for a node, or its load drives a motion that nothing holds.
-pub fn survey_steps(
-    comm: &Comm,
-    blocks: &mut BTreeMap<usize, OwnedBlock>,
-    catalog: &Catalog,
-    plan: &Plan,
-) -> Result<Vec<Survey>, Failure> {
+pub fn survey_steps(context: &Context<'_>) -> Result<Vec<Survey>, Failure> {
+    let Context {
+        comm,
+        catalog,
+        plan,
+        blocks,
+        ..
+    } = *context;
     (0..catalog.steps.len().max(1))
         .map(|k| {
-            set_loads(blocks, k);
-            comm.agree(
-                blocks
-                    .values()
-                    .try_for_each(|owned| squeezed::check(owned, catalog)),
-            )
-            .and_then(|()| survey(comm, blocks, catalog, plan))
-            .map_err(|failure| in_step(failure, catalog, k))
+            let loads = loads_of_step(context, k);
+            let all = blocks.values().zip(loads.values());
+            let checked = all.map(|(owned, loads)| squeezed::check(owned, loads, catalog));
+            comm.agree(checked.collect())
+                .and_then(|()| survey(comm, blocks, catalog, plan, k))
+                .map_err(|failure| in_step(failure, catalog, k))
         })
         .collect()
-}
-
-/// Gives the blocks of this rank the supports and forces of load step k, and gaps and supports what its
-/// bodies' way to rest leaves of them.
-pub fn take_step(blocks: &mut BTreeMap<usize, OwnedBlock>, k: usize, of_step: &Survey, dim: usize) {
-    set_loads(blocks, k);
-    take_out_descent(blocks, of_step, dim);
-}
-
-fn set_loads(blocks: &mut BTreeMap<usize, OwnedBlock>, k: usize) {
-    for owned in blocks.values_mut() {
-        for member in &mut owned.block.members {
-            member.take_step(k);
-        }
-        owned.gaps = owned.points.iter().map(|point| point.gap).collect();
-    }
 }
 
 /// Ends the run before load step k if a signal asked for that, which sweeps that take long hear by themselves.
@@ -58,7 +91,7 @@ fn set_loads(blocks: &mut BTreeMap<usize, OwnedBlock>, k: usize) {
 /// # Errors
 /// A signal did.
 pub fn stop_if_asked(comm: &Comm, catalog: &Catalog, k: usize) -> Result<(), Failure> {
-    match comm.is_any_asked_to_stop() {
+    match k > 0 && comm.is_any_asked_to_stop() {
         false => Ok(()),
         true => Err(Failure::interrupted(format!(
             "interrupted after {k} of {} load steps, before a result was written",

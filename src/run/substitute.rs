@@ -3,17 +3,15 @@
 use std::collections::BTreeMap;
 
 use super::condensed_blocks::CondensedBlocks;
-use crate::comm::{Comm, Message};
-use crate::plan::Plan;
+use super::context::Context;
+use crate::comm::Message;
 use crate::schur::local::CondensedLoad;
 
 /// The factors of all ranks.
 #[derive(Clone, Copy)]
 pub struct Factors<'a> {
-    /// All ranks.
-    pub comm: &'a Comm,
-    /// Who owns what.
-    pub plan: &'a Plan,
+    /// What the run works on.
+    pub context: Context<'a>,
     /// What this rank has.
     pub condensed: &'a CondensedBlocks,
 }
@@ -22,14 +20,12 @@ impl Factors<'_> {
     /// Condenses `loads` on the blocks up to the clusters; returns the load of every node of this rank.
     /// Collective.
     pub fn condense(&self, mut loads: BTreeMap<usize, Vec<f64>>) -> BTreeMap<usize, CondensedLoad> {
-        let Self {
-            plan, condensed, ..
-        } = self;
+        let (plan, condensed) = (self.context.plan, self.condensed);
         let mut of_nodes: BTreeMap<usize, CondensedLoad> = BTreeMap::new();
         for v in self.nodes() {
-            if let Some(factor) = condensed.factors.get(&v) {
+            if let Some(block) = condensed.blocks.get(&v) {
                 let load = loads.remove(&v).unwrap_or_default();
-                of_nodes.insert(v, factor.condense(load));
+                of_nodes.insert(v, block.factor.condense(load));
                 continue;
             }
             let mut arrived = BTreeMap::new();
@@ -67,16 +63,14 @@ impl Factors<'_> {
         loads: &BTreeMap<usize, CondensedLoad>,
         mut boundaries: BTreeMap<usize, Vec<f64>>,
     ) -> BTreeMap<usize, Vec<f64>> {
-        let Self {
-            plan, condensed, ..
-        } = self;
+        let (plan, condensed) = (self.context.plan, self.condensed);
         let mut of_blocks = BTreeMap::new();
         for v in self.nodes().into_iter().rev() {
             let own = boundaries.remove(&v);
-            if let (Some(factor), Some(x), Some(load)) =
-                (condensed.factors.get(&v), &own, loads.get(&v))
+            if let (Some(block), Some(x), Some(load)) =
+                (condensed.blocks.get(&v), &own, loads.get(&v))
             {
-                of_blocks.insert(v, factor.recover(load, x));
+                of_blocks.insert(v, block.factor.recover(load, x));
                 continue;
             }
             let mut of_children: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
@@ -93,7 +87,7 @@ impl Factors<'_> {
                 |child, x| arrived.push((child, x)),
                 Direction::Down,
             );
-            let me = self.comm.rank();
+            let me = self.context.comm.rank();
             of_children.retain(|&child, _| plan.node_owners[child] == me);
             boundaries.extend(of_children);
             boundaries.extend(arrived);
@@ -103,9 +97,9 @@ impl Factors<'_> {
 
     /// The nodes of all clusters, children before parents, on all ranks the same.
     fn nodes(&self) -> Vec<usize> {
-        let clusters = self.plan.clusters.iter();
+        let clusters = self.context.plan.clusters.iter();
         clusters
-            .flat_map(|c| self.plan.tree.subtree(c.node))
+            .flat_map(|c| self.context.plan.tree.subtree(c.node))
             .collect()
     }
 
@@ -118,14 +112,14 @@ impl Factors<'_> {
         mut take: impl FnMut(usize, Vec<f64>),
         direction: Direction,
     ) {
-        let owners = &self.plan.node_owners;
-        let across = self.plan.tree.nodes[v].children.iter().copied();
+        let owners = &self.context.plan.node_owners;
+        let across = self.context.plan.tree.nodes[v].children.iter().copied();
         let across: Vec<usize> = across.filter(|&child| owners[child] != owners[v]).collect();
         let ways = across.iter().map(|&child| match direction {
             Direction::Up => (owners[child], owners[v]),
             Direction::Down => (owners[v], owners[child]),
         });
-        self.comm.route(
+        self.context.comm.route(
             ways,
             |i| Message {
                 integers: Vec::new(),

@@ -2,21 +2,21 @@
 
 mod parcel;
 
-use std::collections::BTreeMap;
-
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::error::OutputError;
 
 use self::parcel::{Parcel, pack, unpack};
+use super::context::Context;
+use super::load::StepProblem;
 use super::recover::BlockSolution;
 use super::solution::Solution;
-use crate::comm::{Comm, Message, ROOT};
+use crate::comm::{Message, ROOT};
 use crate::error::Failure;
+use crate::fem::load::BlockLoads;
 use crate::fem::owned::OwnedBlock;
 use crate::output::result::{ContactRow, ContactState, SubdomainResults};
 use crate::output::resultants::ContactResultant;
 use crate::output::vtkhdf::ResultFile;
-use crate::plan::Plan;
 
 /// Streams all subdomains and contact rows to the root, which writes a slab of subdomains as soon
 /// as it is complete. Collective; `file` is the root's.
@@ -28,13 +28,15 @@ use crate::plan::Plan;
 /// # Errors
 /// The file can't be written.
 pub fn write_solution(
-    comm: &Comm,
-    blocks: &BTreeMap<usize, OwnedBlock>,
+    context: &Context<'_>,
+    step: &StepProblem<'_>,
     solution: &Solution,
-    plan: &Plan,
     mut file: Option<&mut ResultFile>,
     contacts: &mut [ContactResultant],
 ) -> Result<(), Failure> {
+    let &Context {
+        comm, plan, blocks, ..
+    } = context;
     let slabs = file.as_ref().map_or(Vec::new(), |file| file.slabs());
     let mut failed = Ok(());
     let mut write = |write: &mut dyn FnMut(&mut ResultFile) -> Result<(), OutputError>| {
@@ -72,10 +74,11 @@ pub fn write_solution(
         &plan.group_owners(),
         |g| {
             let b = plan.groups[g];
-            match (blocks.get(&b), solution.blocks.get(&b)) {
-                (Some(owned), Some(solution)) => pack_contacts(owned, solution),
-                _ => Message::default(),
-            }
+            let of_block = || {
+                let (owned, loads) = (blocks.get(&b)?, step.loads.get(&b)?);
+                Some(pack_contacts(owned, loads, solution.blocks.get(&b)?))
+            };
+            of_block().unwrap_or_default()
         },
         |_, message| {
             let rows = unpack_contacts(message);
@@ -89,9 +92,9 @@ pub fn write_solution(
     comm.agree(failed.map_err(Failure::from))
 }
 
-fn pack_contacts(owned: &OwnedBlock, solution: &BlockSolution) -> Message {
+fn pack_contacts(owned: &OwnedBlock, loads: &BlockLoads, solution: &BlockSolution) -> Message {
     let mut message = Message::default();
-    let gaps = owned.gaps_left(&solution.u);
+    let gaps = loads.gaps_left(owned, &solution.u);
     for (j, point) in owned.points.iter().enumerate() {
         let closed = solution.closed[j];
         let gap = if closed { 0.0 } else { gaps[j].max(0.0) };

@@ -1,6 +1,6 @@
 //! A node of the hierarchy, condensed.
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 
 use crate::schur::trace::TraceDof;
 
@@ -20,6 +20,24 @@ pub struct Condensed {
 }
 
 impl Condensed {
+    /// S_tt, on the approaches.
+    pub fn s_tt(&self) -> MatRef<'_, f64> {
+        let m = self.approaches;
+        self.s.as_ref().submatrix(0, 0, m, m)
+    }
+
+    /// S_tΓ, approaches against traces; in the upper triangle.
+    pub fn s_t_gamma(&self) -> MatRef<'_, f64> {
+        let m = self.approaches;
+        self.s.as_ref().submatrix(0, m, m, self.traces.len())
+    }
+
+    /// S_ΓΓ: the Schur complement with every contact closed (16).
+    pub fn bilateral(&self) -> MatRef<'_, f64> {
+        let (m, n) = (self.approaches, self.traces.len());
+        self.s.as_ref().submatrix(m, m, n, n)
+    }
+
     /// Makes both triangles of S count.
     pub fn fill_upper_triangle(&mut self) {
         for j in 0..self.s.ncols() {

@@ -36,12 +36,12 @@ impl Chords {
 impl Sweeps<'_, '_> {
     pub(super) fn anderson(&mut self, mut chords: Chords, before: Residual) -> Next {
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
-        let hopeless = !before.relative.is_finite() || self.interface.len == 0;
+        let hopeless = !before.relative.is_finite() || self.problem.interface.len == 0;
         if hopeless || self.sweeps_done() >= limit {
             return Next::End(self.gave_up(&before, "anderson stopped"));
         }
         let mut chord = before.r;
-        self.interface.solve_bilateral(&mut chord);
+        self.problem.interface.solver.solve(&mut chord);
         let u = &mut self.progress.u;
         chords.remember(u, &chord);
         let weights = mixing_weights(&chords.history, &chord);

@@ -22,7 +22,7 @@ pub struct Stalls(usize);
 
 impl Sweeps<'_, '_> {
     pub(super) fn newton(&mut self, Stalls(mut stalls): Stalls, before: Residual) -> Next {
-        let Some(coupled) = CoupledContact::new(self.interface) else {
+        let Some(coupled) = CoupledContact::new(self.problem) else {
             return self.fall_back(before, "the pairs have too many conditions for newton");
         };
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
@@ -70,7 +70,7 @@ impl Sweeps<'_, '_> {
             if residual.relative <= ROUND_OFF {
                 return;
             }
-            let Some(coupled) = CoupledContact::new(self.interface) else {
+            let Some(coupled) = CoupledContact::new(self.problem) else {
                 return;
             };
             let step = coupled.solve(&self.progress.u, &residual.r, &self.state);

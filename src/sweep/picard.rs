@@ -30,7 +30,7 @@ pub struct Relaxation {
 impl Sweeps<'_, '_> {
     pub(super) fn picard(&mut self, relaxation: Option<Relaxation>, before: Residual) -> Next {
         if self.s_0.is_none() {
-            self.s_0 = self.interface.factor_s_0();
+            self.s_0 = self.problem.interface.factor_s_0();
         }
         let Some(s_0) = self.s_0.take() else {
             return Next::End(SweepStatus::NotConverged(
@@ -92,7 +92,7 @@ impl Sweeps<'_, '_> {
     /// ρ(S_0⁻¹ S_CON') at the active sets of the last evaluation, by power iteration from a vector
     /// that no symmetry of a scene can be orthogonal to.
     fn spectral_radius(&mut self, s_0: &BoundaryLastCholesky) -> f64 {
-        let n = self.interface.len;
+        let n = self.problem.interface.len;
         let mut x: Vec<f64> = (0..n)
             .map(|i| 1.0 + (i as f64 * 0.754_877_666).fract())
             .collect();
@@ -106,7 +106,8 @@ impl Sweeps<'_, '_> {
                 *x /= norm;
             }
             let mut y = vec![0.0; n];
-            self.s_con.add_derivative(self.interface, &x, &mut y);
+            self.s_con
+                .add_derivative(self.problem.interface, &x, &mut y);
             s_0.solve(&mut y);
             rho = dot(&y, &y).sqrt();
             x = y;

@@ -1,10 +1,11 @@
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::dot;
 use contact_dd_partition::element::{ElementKind, Elements};
 use contact_dd_partition::model::{Material, Support};
 use contact_dd_partition::problem::{InterfaceNode, Subdomain};
 
 use super::super::block::Block;
-use super::super::owned::OwnedBlock;
+use super::super::prescribed::Prescribed;
 use super::*;
 
 fn material() -> Material {
@@ -72,12 +73,14 @@ fn scene() -> OwnedBlock {
     OwnedBlock {
         block,
         points: vec![point(3, 4), point(2, 5)],
-        gaps: vec![0.5, -0.25],
     }
 }
 
-fn dofs_of(owned: &OwnedBlock) -> Dofs {
-    Dofs::new(&owned.block, &owned.points, &owned.gaps, &[material()]).unwrap()
+fn dofs_of(owned: &OwnedBlock) -> (Dofs, Prescribed) {
+    let (loads, materials) = (BlockLoads::new(owned, 0), [material()]);
+    let dofs = Dofs::new(owned, &loads, &materials).unwrap();
+    let prescribed = Prescribed::new(owned, &loads, &dofs, &materials).unwrap();
+    (dofs, prescribed)
 }
 
 fn vector(u: &[f64], node: usize) -> [f64; 3] {
@@ -91,8 +94,8 @@ fn unknowns(dofs: &Dofs) -> Vec<f64> {
 
 #[test]
 fn every_displacement_obeys_the_supports() {
-    let dofs = dofs_of(&scene());
-    let u = dofs.displacement(&unknowns(&dofs));
+    let (dofs, prescribed) = dofs_of(&scene());
+    let u = prescribed.displacement(&dofs, &unknowns(&dofs));
     assert!((dot(vector(&u, 0), [0.6, 0.8, 0.0]) - 0.25).abs() < 1e-15);
     assert!((u[2] + 0.5).abs() < 1e-15);
     assert!((u[14] - 0.5).abs() < 1e-15 && (u[15] - 0.125).abs() < 1e-15);
@@ -101,9 +104,9 @@ fn every_displacement_obeys_the_supports() {
 #[test]
 fn the_approach_of_a_point_is_its_unknown() {
     let owned = scene();
-    let dofs = dofs_of(&owned);
+    let (dofs, prescribed) = dofs_of(&owned);
     let x = unknowns(&dofs);
-    let u = dofs.displacement(&x);
+    let u = prescribed.displacement(&dofs, &x);
     for (j, point) in owned.points.iter().enumerate() {
         assert!((point.normal_jump(2, &u) - x[dofs.interior + j]).abs() < 1e-15);
     }
@@ -111,9 +114,9 @@ fn the_approach_of_a_point_is_its_unknown() {
 
 #[test]
 fn traces_come_last_and_are_the_displacement_of_shared_nodes() {
-    let dofs = dofs_of(&scene());
+    let (dofs, prescribed) = dofs_of(&scene());
     let x = unknowns(&dofs);
-    let u = dofs.displacement(&x);
+    let u = prescribed.displacement(&dofs, &x);
     assert_eq!(
         dofs.traces,
         [TraceDof { node: 7, axis: 0 }, TraceDof { node: 7, axis: 1 }]
@@ -125,7 +128,7 @@ fn traces_come_last_and_are_the_displacement_of_shared_nodes() {
 
 #[test]
 fn loads_work_on_unknowns_what_they_work_on_displacements() {
-    let dofs = dofs_of(&scene());
+    let (dofs, _) = dofs_of(&scene());
     let f: Vec<f64> = (0..16).map(|i| (0.7 * i as f64).cos()).collect();
     let x = unknowns(&dofs);
     let mut change = vec![0.0; 16];

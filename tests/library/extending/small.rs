@@ -1,13 +1,15 @@
 //! A scene so small that its solution is found by trying every set of closed contacts.
 
+use std::rc::Rc;
+
 use contact_dd_mpi::comm::Message;
 use contact_dd_mpi::contact::approach::ApproachOf;
 use contact_dd_mpi::contact::law::PairLaw;
 use contact_dd_mpi::contact::limits::Limits;
 use contact_dd_mpi::contact::pair::ContactPair;
 use contact_dd_mpi::interface::numbering::Numbering;
-use contact_dd_mpi::interface::operator::{ClusterLoad, Contribution, Interface};
-use contact_dd_mpi::rigid::energy::RigidDrive;
+use contact_dd_mpi::interface::operator::{Contribution, Interface};
+use contact_dd_mpi::interface::problem::ClusterLoad;
 use contact_dd_mpi::schur::condensed::Condensed;
 use contact_dd_mpi::schur::trace::TraceDof;
 use faer::{Mat, Par};
@@ -74,9 +76,8 @@ impl Cluster {
             .collect();
         let limits = Limits::new(of.len(), &of, &self.gaps, 0.0);
         let layer = Layer::new(&self.condensed, &self.compliances);
-        let mut pair = ContactPair::new(layer.before(&self.condensed), limits);
-        pair.set_load(layer.load(&self.load));
-        pair
+        let condensed = Rc::new(layer.before(&self.condensed));
+        ContactPair::new(condensed, limits, layer.load(&self.load), None)
     }
 }
 
@@ -116,8 +117,8 @@ impl Small {
         [&self.linear, &self.pairs[0], &self.pairs[1]]
     }
 
-    /// The interface problem of `pairs`, and the number of every trace on Γ in it.
-    pub fn interface(&self, pairs: &[ContactPair]) -> (Interface, Vec<u32>) {
+    /// The operators on Γ with these `pairs`, its numbering, and what loads the clusters.
+    pub fn interface(&self, pairs: &[ContactPair]) -> (Interface, Numbering, Vec<ClusterLoad>) {
         let clusters = self.clusters();
         let traces = clusters.map(|cluster| &cluster.condensed.traces[..]);
         let nodes = clusters.map(|cluster| &cluster.nodes[..]);
@@ -130,18 +131,15 @@ impl Small {
         }];
         contributions.extend(pairs.iter().map(|pair| {
             let mut message = Message::default();
-            PairLaw::pack(pair, &mut message);
+            let condensed = pair.condensed();
+            PairLaw::pack(condensed, pair.limits(), &mut message);
             Contribution {
-                s: pair.bilateral().to_owned(),
+                s: condensed.bilateral().to_owned(),
                 smallest_pivot: 1.0,
-                law: Some(PairLaw::unpack(
-                    &mut message.read(),
-                    pair.bilateral().nrows(),
-                )),
+                law: Some(PairLaw::unpack(&mut message.read(), condensed.traces.len())),
             }
         }));
-        let mut interface =
-            Interface::new(&numbering, contributions, &in_contact, Par::Seq).unwrap();
+        let interface = Interface::new(&numbering, contributions, &in_contact, Par::Seq).unwrap();
         let of_pairs = pairs.iter().map(|pair| pair.bilateral_load());
         let loads = [&self.linear.load[..]].into_iter().chain(of_pairs);
         let loads: Vec<ClusterLoad> = loads
@@ -150,8 +148,7 @@ impl Small {
                 scale: 0.0,
             })
             .collect();
-        interface.prescribe(&numbering, &loads, &RigidDrive::default());
-        (interface, numbering.traces[0].clone())
+        (interface, numbering, loads)
     }
 
     /// The solution of the whole.

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use clap::ValueEnum;
 use contact_dd_mpi::comm::{Comm, start};
 use contact_dd_mpi::contact::pair::ContactPair;
-use contact_dd_mpi::interface::operator::Interface;
+use contact_dd_mpi::interface::problem::InterfaceProblem;
 use contact_dd_mpi::interface::s_con::SCon;
+use contact_dd_mpi::rigid::energy::RigidDrive;
 use contact_dd_mpi::sweep::{Method, Start, SweepOutcome, SweepSettings, SweepStatus, Sweeps};
 
 use super::small::{APPROACHES, Small};
@@ -22,8 +23,8 @@ struct Aitken {
 }
 
 impl Aitken {
-    fn step(&mut self, interface: &Interface, mut r: Vec<f64>) -> Vec<f64> {
-        interface.solve_bilateral(&mut r);
+    fn step(&mut self, problem: &InterfaceProblem<'_>, mut r: Vec<f64>) -> Vec<f64> {
+        problem.interface.solver.solve(&mut r);
         if let Some(last) = self.last.replace(r.clone()) {
             let change: Vec<f64> = r.iter().zip(&last).map(|(now, last)| now - last).collect();
             let product = |x: &[f64]| x.iter().zip(&change).map(|(x, d)| x * d).sum::<f64>();
@@ -35,16 +36,16 @@ impl Aitken {
     /// Sweeps until they are there, or `limit` of them are done.
     fn solve(
         mut self,
-        interface: &Interface,
+        problem: &InterfaceProblem<'_>,
         s_con: &mut SCon<'_>,
         settings: SweepSettings,
         limit: usize,
     ) -> SweepOutcome {
         let mut observer = |_: &_| {};
         let (mut sweeps, mut residual) =
-            Sweeps::begin(interface, s_con, settings, Start::Bilateral, &mut observer);
+            Sweeps::begin(problem, s_con, settings, Start::Bilateral, &mut observer);
         while !sweeps.is_converged(&residual) && sweeps.sweeps_done() < limit {
-            let step = self.step(interface, residual.r);
+            let step = self.step(problem, residual.r);
             for (u, step) in sweeps.u().iter_mut().zip(step) {
                 *u += step;
             }
@@ -70,7 +71,9 @@ enum Way {
 /// What a way finds, and the traces on Γ in its numbering.
 fn solve(comm: &Comm, small: &Small, way: Way) -> (SweepOutcome, Vec<u32>) {
     let pairs = small.pairs.each_ref().map(|pair| pair.pair());
-    let (interface, numbers) = small.interface(&pairs);
+    let (interface, numbering, loads) = small.interface(&pairs);
+    let motions = RigidDrive::default();
+    let problem = InterfaceProblem::new(&interface, &numbering, &loads, &motions);
     let mut pairs: BTreeMap<usize, ContactPair> = pairs.into_iter().enumerate().collect();
     let mut s_con = SCon::new(comm, &[0, 0], &mut pairs);
     let mut settings = SweepSettings {
@@ -84,12 +87,12 @@ fn solve(comm: &Comm, small: &Small, way: Way) -> (SweepOutcome, Vec<u32>) {
             theta: 1.0,
             last: None,
         }
-        .solve(&interface, &mut s_con, settings, limit),
+        .solve(&problem, &mut s_con, settings, limit),
         Way::Built(method) => {
             settings.method = method;
             let mut observer = |_: &_| {};
             let found = Sweeps::solve(
-                &interface,
+                &problem,
                 &mut s_con,
                 settings,
                 Start::Bilateral,
@@ -98,7 +101,7 @@ fn solve(comm: &Comm, small: &Small, way: Way) -> (SweepOutcome, Vec<u32>) {
             found.unwrap()
         }
     };
-    (outcome, numbers)
+    (outcome, numbering.traces[0].clone())
 }
 
 /// All ways lead to the solution that trying every set of contacts finds, with and without a layer

@@ -1,0 +1,84 @@
+//! The interface problem of a load step: F of (15) beside the operators that all steps share.
+//!
+//! > F = Σ_T R̄_iᵀ f_i
+
+use super::numbering::Numbering;
+use super::operator::{Interface, diagonal_of};
+use crate::rigid::energy::{RigidBasis, RigidDrive};
+
+/// What loads a cluster.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ClusterLoad {
+    /// Its condensed load on its traces, with every contact closed.
+    pub load: Vec<f64>,
+    /// The largest displacement that is prescribed in a cluster in contact (m).
+    pub scale: f64,
+}
+
+/// S_0 U + S_CON(U) = F, (14), in a load step, as the root holds it.
+#[derive(Debug)]
+pub struct InterfaceProblem<'a> {
+    /// S_0 and the bilateral operator.
+    pub interface: &'a Interface,
+    /// F of the linear subdomains.
+    f: Vec<f64>,
+    f_scale: Vec<f64>,
+    /// F of the pairs with every contact closed.
+    f_bilateral: Vec<f64>,
+    /// The rigid motions of the bodies as their approaches see them, and the load along them.
+    pub motions: RigidBasis,
+    /// The largest displacement that is prescribed in a cluster in contact (m).
+    pub scale: f64,
+}
+
+impl<'a> InterfaceProblem<'a> {
+    /// Assembles F of the `loads` of all clusters, in their order; `drive` has the pairs' approaches
+    /// against the rigid motions of the bodies, and the load along these.
+    pub fn new(
+        interface: &'a Interface,
+        numbering: &Numbering,
+        loads: &[ClusterLoad],
+        drive: &RigidDrive,
+    ) -> Self {
+        let zeros = || vec![0.0; interface.len];
+        let (mut f, mut f_bilateral, mut f_scale) = (zeros(), zeros(), zeros());
+        let of_clusters = loads.iter().zip(&numbering.traces);
+        for ((of_cluster, traces), &in_contact) in of_clusters.zip(&interface.in_contact) {
+            let f = match in_contact {
+                true => &mut f_bilateral,
+                false => &mut f,
+            };
+            for (&dof, load) in traces.iter().zip(&of_cluster.load) {
+                f[dof as usize] += load;
+                f_scale[dof as usize] += load.abs();
+            }
+        }
+        Self {
+            interface,
+            f,
+            f_scale,
+            f_bilateral,
+            motions: RigidBasis::new(drive, &diagonal_of(&interface.laws)),
+            scale: loads.iter().fold(0.0, |m, load| m.max(load.scale)),
+        }
+    }
+
+    /// U^0: the solution of the bilateral problem (16)-(17).
+    pub fn bilateral_start(&self) -> Vec<f64> {
+        let parts = self.f.iter().zip(&self.f_bilateral);
+        let mut u: Vec<f64> = parts.map(|(a, b)| a + b).collect();
+        self.interface.solver.solve(&mut u);
+        u
+    }
+
+    /// F − S_0 U and the scale of its terms.
+    pub fn linear_residual(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let s_0 = self.interface.s_0();
+        let mut su = vec![0.0; self.interface.len];
+        s_0.multiply_add(u, &mut su);
+        let mut scale = self.f_scale.clone();
+        s_0.multiply_add_absolute(u, &mut scale);
+        let r = self.f.iter().zip(&su).map(|(f, su)| f - su).collect();
+        (r, scale)
+    }
+}
