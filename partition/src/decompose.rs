@@ -90,13 +90,13 @@ impl Decomposition {
     }
 }
 
-/// A number of subdomains that suits the size and gives every clump, and every material where
+/// A number of subdomains that suits the size and gives every contact patch, and every material where
 /// there are few, its own.
 fn suitable(model: &Model, atoms: &Atoms, units: &Units) -> usize {
     let dofs = model.mesh.dim * model.mesh.points.len();
-    let with_contact = match atoms.graph.clumps() {
+    let with_contact = match atoms.graph.contact_patches() {
         0 => 1,
-        clumps => clumps + LINEAR,
+        contact_patches => contact_patches + LINEAR,
     };
     let with_materials = match units.of_one_material() {
         many if many > MATERIALS => 1,
@@ -104,7 +104,7 @@ fn suitable(model: &Model, atoms: &Atoms, units: &Units) -> usize {
     };
     let outside = dofs * atoms.outside() / model.mesh.cells.len();
     let for_speed = match dofs > SMALL {
-        true => outside.div_ceil(DOFS) + atoms.graph.clumps(),
+        true => outside.div_ceil(DOFS) + atoms.graph.contact_patches(),
         false => 1,
     };
     for_speed.max(with_contact).max(with_materials)

@@ -5,15 +5,15 @@
 
 mod bodies;
 mod contact;
-mod doubts;
+mod diagnostics;
 mod groups;
 mod loads;
 mod mortar;
 mod node_pairs;
 mod obstacle;
 mod partition;
+mod ray_search;
 mod sides;
-mod sight;
 mod steps;
 mod supports;
 mod surface;
@@ -120,7 +120,7 @@ impl Model {
             .map(|(number, keys)| sides.contact(number, keys, &mut warnings))
             .collect::<Result<Vec<_>, _>>()?;
         let materials = bodies::materials(scene, plane);
-        let doubts = doubts::Doubts {
+        let diagnostics = diagnostics::Diagnostics {
             scene,
             bodies: &bodies,
             topology: &topology,
@@ -128,7 +128,7 @@ impl Model {
             loads: &loads,
             contacts: &contacts,
         };
-        warnings.extend(doubts.warnings());
+        warnings.extend(diagnostics.warnings());
         let prescribed_subdomains = (scene.subdomains.as_ref())
             .map(|names| partition::prescribed(&bodies.mesh, names))
             .transpose()?;

@@ -10,9 +10,9 @@ use crate::model::Model;
 /// subdomains of one material are preferred.
 const SAME_MATERIAL: u32 = 4;
 
-/// The cells of a mesh, contracted to clumps wherever a cut would let Γ meet Γ_c.
+/// The cells of a mesh, contracted to contact patches wherever a cut would let Γ meet Γ_c.
 ///
-/// All cells around a node with a contact condition are one clump, with the layers of cells behind
+/// All cells around a node with a contact condition are one contact patch, with the layers of cells behind
 /// it that make it cheaper; every other cell is an atom of its own. Where the mesh is pinched at such
 /// a node, the fans on both sides of it stay apart, so that every atom is connected across facets.
 pub(super) struct Atoms {
@@ -23,7 +23,7 @@ pub(super) struct Atoms {
 }
 
 impl Atoms {
-    /// Contracts the cells of a model; clumps grow as long as `spared` cells stay outside.
+    /// Contracts the cells of a model; contact patches grow as long as `spared` cells stay outside.
     pub fn new(model: &Model, topology: &Topology, spared: usize) -> Self {
         let around = Around::new(model);
         let (of_cell, count) = contract(model, topology, &around, spared);
@@ -56,10 +56,12 @@ impl Atoms {
         }
     }
 
-    /// Number of cells outside of clumps.
+    /// Number of cells outside of contact patches.
     pub fn outside(&self) -> usize {
         let atoms = 0..self.graph.len() as u32;
-        atoms.filter(|&atom| !self.graph.is_clump(atom)).count()
+        atoms
+            .filter(|&atom| !self.graph.is_contact_patch(atom))
+            .count()
     }
 
     /// The subdomain of every cell, from the part of every atom of every unit; subdomains are

@@ -8,7 +8,7 @@ pub(super) struct Graph {
     pub cells: Vec<u32>,
     /// Material of every atom, that of most of its cells.
     pub material: Vec<u32>,
-    /// The contacts of every atom, ascending; empty unless it is a clump.
+    /// The contacts of every atom, ascending; empty unless it is a contact patch.
     pub contacts: Vec<Vec<u32>>,
     /// The neighbours of every atom with the weight of the facets between them.
     pub edges: Lists<(u32, u32)>,
@@ -99,12 +99,12 @@ impl Graph {
     }
 
     /// Whether an atom holds nodes with contact conditions.
-    pub fn is_clump(&self, atom: u32) -> bool {
+    pub fn is_contact_patch(&self, atom: u32) -> bool {
         !self.contacts[atom as usize].is_empty()
     }
 
-    /// Number of clumps.
-    pub fn clumps(&self) -> usize {
+    /// Number of contact patches.
+    pub fn contact_patches(&self) -> usize {
         self.contacts.iter().filter(|list| !list.is_empty()).count()
     }
 }

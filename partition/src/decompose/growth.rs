@@ -1,4 +1,4 @@
-//! How far clumps grow into the bodies behind a contact surface.
+//! How far contact patches grow into the bodies behind a contact surface.
 
 use std::collections::BTreeMap;
 
@@ -15,14 +15,14 @@ const WORTH: f64 = 1e8;
 /// leave the others less to do.
 const LEFT: f64 = 0.5;
 
-/// A cell that no clump reaches.
+/// A cell that no contact patch reaches.
 const UNREACHED: u32 = u32::MAX;
 
-/// Adds to the clumps, the `sets` of cells around nodes in contact, the layers of cells of their
+/// Adds to the contact patches, the `sets` of cells around nodes in contact, the layers of cells of their
 /// material that make them cheapest, as long as `spared` cells stay outside.
 ///
-/// A clump of one layer of cells has a boundary as long as Γ_c, and its S is dense. Where a mesh
-/// becomes coarser behind Γ_c, the boundary of a clump of more layers is shorter; at last a whole
+/// A contact patch of one layer of cells has a boundary as long as Γ_c, and its S is dense. Where a mesh
+/// becomes coarser behind Γ_c, the boundary of a contact patch of more layers is shorter; at last a whole
 /// body is one subdomain and has none.
 pub(super) fn grow(
     model: &Model,
@@ -35,13 +35,13 @@ pub(super) fn grow(
     let groups = Groups::new(model, around, sets);
     let mut of_group: BTreeMap<u32, Layers> = BTreeMap::new();
     for &cell in &layering.reached {
-        let group = groups.of(layering.clump[cell as usize]);
+        let group = groups.of(layering.contact_patch[cell as usize]);
         let layers = of_group.entry(group).or_default();
         let layer = layering.layer[cell as usize];
         layers.add_cell(layer);
         for &other in topology.neighbours(cell as usize) {
-            let clump = layering.clump[other as usize];
-            let is_within = clump != UNREACHED && groups.of(clump) == group;
+            let contact_patch = layering.contact_patch[other as usize];
+            let is_within = contact_patch != UNREACHED && groups.of(contact_patch) == group;
             layers.add_facet(layer, is_within.then_some(layering.layer[other as usize]));
         }
     }
@@ -56,18 +56,18 @@ pub(super) fn grow(
         chosen.insert(group, added as u32);
     }
     for &cell in &layering.reached {
-        let clump = layering.clump[cell as usize];
-        if layering.layer[cell as usize] <= chosen[&groups.of(clump)] {
-            sets.unite(cell, clump);
+        let contact_patch = layering.contact_patch[cell as usize];
+        if layering.layer[cell as usize] <= chosen[&groups.of(contact_patch)] {
+            sets.unite(cell, contact_patch);
         }
     }
 }
 
-/// The cells that clumps reach across facets of one material.
+/// The cells that contact patches reach across facets of one material.
 struct Layering {
-    /// The nearest clump of every cell, by a cell of it.
-    clump: Vec<u32>,
-    /// The layer around it in which the cell is; 0 in the clump itself.
+    /// The nearest contact patch of every cell, by a cell of it.
+    contact_patch: Vec<u32>,
+    /// The layer around it in which the cell is; 0 in the contact patch itself.
     layer: Vec<u32>,
     /// The cells that are reached, by layers.
     reached: Vec<u32>,
@@ -76,12 +76,12 @@ struct Layering {
 impl Layering {
     fn new(model: &Model, topology: &Topology, around: &Around, sets: &mut DisjointSets) -> Self {
         let cells = model.mesh.cells.len();
-        let mut clump = vec![UNREACHED; cells];
+        let mut contact_patch = vec![UNREACHED; cells];
         let mut layer = vec![0; cells];
         let mut reached = Vec::new();
         for &(_, cell) in &around.cells {
-            if clump[cell as usize] == UNREACHED {
-                clump[cell as usize] = sets.find(cell);
+            if contact_patch[cell as usize] == UNREACHED {
+                contact_patch[cell as usize] = sets.find(cell);
                 reached.push(cell);
             }
         }
@@ -92,24 +92,24 @@ impl Layering {
             for &other in topology.neighbours(cell) {
                 let o = other as usize;
                 let is_same = model.cell_material[o] == model.cell_material[cell];
-                if is_same && clump[o] == UNREACHED {
-                    clump[o] = clump[cell];
+                if is_same && contact_patch[o] == UNREACHED {
+                    contact_patch[o] = contact_patch[cell];
                     layer[o] = layer[cell] + 1;
                     reached.push(other);
                 }
             }
         }
         Self {
-            clump,
+            contact_patch,
             layer,
             reached,
         }
     }
 }
 
-/// The clumps that contacts link: what is factorized together.
+/// The contact patches that contacts link: what is factorized together.
 struct Groups {
-    /// The group of every clump, by its cell.
+    /// The group of every contact patch, by its cell.
     of_clump: BTreeMap<u32, u32>,
     /// The number of conditions of every group.
     conditions: Vec<usize>,
@@ -138,12 +138,12 @@ impl Groups {
         }
     }
 
-    fn of(&self, clump: u32) -> u32 {
-        self.of_clump[&clump]
+    fn of(&self, contact_patch: u32) -> u32 {
+        self.of_clump[&contact_patch]
     }
 }
 
-/// The layers around the clumps of a group.
+/// The layers around the contact patches of a group.
 #[derive(Default)]
 struct Layers {
     /// The cells of every layer.

@@ -74,10 +74,10 @@ impl<'g> Regions<'g> {
     }
 
     /// Merges or divides regions until there are exactly `count`, at least one and at most as many
-    /// as atoms; every clump gets a region of its own where `count` allows.
+    /// as atoms; every contact patch gets a region of its own where `count` allows.
     pub fn adjust(&mut self, count: usize) {
-        if count >= self.graph.clumps() {
-            self.separate_clumps();
+        if count >= self.graph.contact_patches() {
+            self.separate_patches();
         }
         while self.members.len() > count && self.merge_one(u64::MAX) {}
         while self.members.len() < count && self.divide_one() {}
@@ -90,10 +90,12 @@ impl<'g> Regions<'g> {
             .sum()
     }
 
-    /// Number of clumps of a region.
-    pub fn clumps(&self, region: usize) -> usize {
+    /// Number of contact patches of a region.
+    pub fn contact_patches(&self, region: usize) -> usize {
         let members = self.members[region].iter();
-        members.filter(|&&atom| self.graph.is_clump(atom)).count()
+        members
+            .filter(|&&atom| self.graph.is_contact_patch(atom))
+            .count()
     }
 
     /// Weight of the facets between regions.

@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::multilevel::Request;
 use super::regions::Regions;
 
-/// What a clump weighs beside its cells, in shares of a subdomain's mean weight: the layers in
+/// What a contact patch weighs beside its cells, in shares of a subdomain's mean weight: the layers in
 /// contact become thinner and their subdomains cheaper, as all of a pair is factorized together.
 const LAYERS: [f64; 3] = [0.5, 0.65, 0.4];
 
@@ -59,7 +59,7 @@ pub(super) fn split(graph: &Graph, count: usize) -> Vec<u32> {
     best.map_or_else(Vec::new, |(_, parts)| parts)
 }
 
-/// The cells of every atom, and what a clump weighs beside them: no more than one subdomain, or
+/// The cells of every atom, and what a contact patch weighs beside them: no more than one subdomain, or
 /// METIS would plan several where there is one atom.
 fn weights(graph: &Graph, count: usize, layer: f64) -> Vec<u64> {
     let mean = graph.size() as f64 / count as f64;
@@ -67,7 +67,7 @@ fn weights(graph: &Graph, count: usize, layer: f64) -> Vec<u64> {
     (0..graph.len() as u32)
         .map(|atom| {
             let cells = u64::from(graph.cells[atom as usize]);
-            match graph.is_clump(atom) {
+            match graph.is_contact_patch(atom) {
                 true => (cells + extra).min(mean as u64).max(1),
                 false => cells,
             }
@@ -75,7 +75,7 @@ fn weights(graph: &Graph, count: usize, layer: f64) -> Vec<u64> {
         .collect()
 }
 
-/// How bad a partition is; clumps that share a part count first.
+/// How bad a partition is; contact patches that share a part count first.
 #[derive(PartialEq, PartialOrd)]
 struct Score {
     crowded: usize,
@@ -90,13 +90,13 @@ impl Score {
         let mut crowded = 0;
         let mut largest = 0.0f64;
         for (region, members) in regions.members().iter().enumerate() {
-            let clumps = regions.clumps(region);
-            crowded += clumps.saturating_sub(1);
+            let contact_patches = regions.contact_patches(region);
+            crowded += contact_patches.saturating_sub(1);
             let cells: u64 = members
                 .iter()
                 .map(|&a| u64::from(graph.cells[a as usize]))
                 .sum();
-            let share = if clumps > 0 { 1.5 } else { 1.0 };
+            let share = if contact_patches > 0 { 1.5 } else { 1.0 };
             largest = largest.max(share * cells as f64);
         }
         let size = graph.size() as f64;

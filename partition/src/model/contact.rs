@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::doubts::short;
+use super::diagnostics::short;
 use super::node_pairs::Unpaired;
 use super::sides::{Sides, side_nodes};
 use super::steps::Loads;

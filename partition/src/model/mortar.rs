@@ -46,14 +46,14 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, String> {
         .collect();
     let opposite = Opposite::new(sides.b, sides.behind);
     let mut covered = Vec::new();
-    let mut any_averted = false;
+    let mut any_back_facing = false;
     for facet in in_order(sides) {
         // Only a shared node may be without one, where the side turns back at a crack tip.
         let at_node = |node: &u32| normals.get(node).copied().unwrap_or(facet.normal);
         let normals = facet.nodes.iter().map(at_node).collect();
         let field = Field::new(facet, normals);
-        let (cover, averted) = opposite.cover(&field);
-        any_averted |= averted;
+        let (cover, back_facing) = opposite.cover(&field);
+        any_back_facing |= back_facing;
         if !cover.samples.is_empty() {
             covered.push(Covered { facet, cover });
         }
@@ -69,7 +69,7 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, String> {
         .filter_map(|a| Some(rows.remove(&a.node)?.point(a, sides.mesh)))
         .collect();
     if points.is_empty() {
-        return Err(apart(any_averted));
+        return Err(apart(any_back_facing));
     }
     Ok(points)
 }

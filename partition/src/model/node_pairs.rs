@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
+use super::ray_search::{Hit, Target};
 use super::sides::{SideNode, Sides, apart};
-use super::sight::{Met, Target};
 use super::surface::{CORNER, SurfaceFacet};
 use crate::contact_point::ContactPoint;
 use crate::element::geometry::{advance, dot, length};
@@ -28,10 +28,10 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> 
     let mut points = Vec::new();
     let mut partners = HashSet::new();
     let mut unmatched = Vec::new();
-    let mut any_averted = false;
+    let mut any_back_facing = false;
     for a in &sides.nodes_a {
-        match target.met(a.position, a.normal, sides.behind, skip) {
-            Met::Nodes(nodes, _) => {
+        match target.hit(a.position, a.normal, sides.behind, skip) {
+            Hit::Nodes(nodes, _) => {
                 partners.extend(nodes.iter().copied());
                 let is_mid = mid_a.contains(&a.node);
                 // Their shares of the force would differ.
@@ -54,14 +54,14 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> 
                     });
                 }
             }
-            Met::Facet(facet) => unmatched.push((a.node, "b", &sides.b.facets[facet])),
-            Met::Nothing { averted } => any_averted |= averted,
+            Hit::Facet(facet) => unmatched.push((a.node, "b", &sides.b.facets[facet])),
+            Hit::Nothing { back_facing } => any_back_facing |= back_facing,
         }
     }
     let target = Target::new(sides.a);
     let alone = (sides.nodes_b.iter()).filter(|b| !partners.contains(&b.node));
     for b in alone {
-        if let Met::Facet(facet) = target.met(b.position, b.normal, sides.behind, skip) {
+        if let Hit::Facet(facet) = target.hit(b.position, b.normal, sides.behind, skip) {
             unmatched.push((b.node, "a", &sides.a.facets[facet]));
         }
     }
@@ -79,7 +79,7 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> 
         )));
     }
     if points.is_empty() {
-        return Err(Unpaired::Apart(apart(any_averted)));
+        return Err(Unpaired::Apart(apart(any_back_facing)));
     }
     Ok(points)
 }
@@ -109,19 +109,19 @@ fn faced<'a>(a: &SideNode, partners: &[u32], sides: &Sides<'a>) -> Vec<Faced<'a>
 /// Along which node `a` is pressed: its normal, and in a corner of which one facet looks away from
 /// side b that of those which don't.
 fn pressed_along(a: &SideNode, faced: &[Faced]) -> [f64; 3] {
-    let (mut facing, mut averted) = ([0.0; 3], Vec::new());
+    let (mut facing, mut back_facing) = ([0.0; 3], Vec::new());
     for Faced { facet, partners } in faced {
         let Some(own) = facet.nodes.iter().position(|&node| node == a.node) else {
             continue;
         };
         match partners.contains(&true) {
             true => facing = advance(facing, facet.measure, facet.normal_at(own)),
-            false => averted.push(facet.normal_at(own)),
+            false => back_facing.push(facet.normal_at(own)),
         }
     }
     let size = length(facing);
     let is_corner = |&normal: &[f64; 3]| dot(normal, facing) < CORNER.cos() * size;
-    match size > 0.0 && averted.iter().any(is_corner) {
+    match size > 0.0 && back_facing.iter().any(is_corner) {
         true => facing.map(|c| c / size),
         false => a.normal,
     }

@@ -1,7 +1,7 @@
 //! Contact with a rigid obstacle, n·u ≤ g: points of one node.
 
+use super::ray_search::FACING;
 use super::sides::SideNode;
-use super::sight::FACING;
 use super::surface::Surface;
 use crate::contact_point::ContactPoint;
 use crate::element::geometry::{difference, dot, length};

@@ -65,10 +65,10 @@ impl<'a> Sides<'a> {
     }
 }
 
-/// Why sides that don't meet anywhere have no condition; `averted` if they would, were one of them
+/// Why sides that don't meet anywhere have no condition; `back_facing` if they would, were one of them
 /// turned round.
-pub(super) fn apart(averted: bool) -> String {
-    if averted {
+pub(super) fn apart(back_facing: bool) -> String {
+    if back_facing {
         "the sides face the same way; expected them face to face".to_owned()
     } else {
         "no node of side a has one of side b on its outward normal; \

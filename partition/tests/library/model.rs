@@ -3,7 +3,7 @@
 mod bodies;
 mod contact;
 mod corner;
-mod doubts;
+mod diagnostics;
 mod invariance;
 mod loads;
 mod mortar;

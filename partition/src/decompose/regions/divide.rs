@@ -5,13 +5,13 @@ use std::collections::{BTreeMap, BTreeSet, HashSet, VecDeque};
 use super::Regions;
 
 impl Regions<'_> {
-    /// Divides every region with several clumps among them.
-    pub(super) fn separate_clumps(&mut self) {
+    /// Divides every region with several contact patches among them.
+    pub(super) fn separate_patches(&mut self) {
         for region in 0..self.members.len() {
             let seeds: Vec<u32> = self.members[region]
                 .iter()
                 .copied()
-                .filter(|&atom| self.graph.is_clump(atom))
+                .filter(|&atom| self.graph.is_contact_patch(atom))
                 .collect();
             if seeds.len() > 1 {
                 self.divide(region, &seeds);

@@ -13,7 +13,7 @@ impl Regions<'_> {
         while self.merge_one(least) {}
     }
 
-    /// Merges the lightest region below `limit` that can be merged without bringing clumps
+    /// Merges the lightest region below `limit` that can be merged without bringing contact patches
     /// together with a neighbour; if there is none, the one where that does least harm.
     pub(super) fn merge_one(&mut self, limit: u64) -> bool {
         let mut lightest: BinaryHeap<Reverse<(u64, usize)>> = (0..self.members.len())
@@ -78,7 +78,7 @@ impl Regions<'_> {
             .map(|(conflict, _, other)| (conflict, other))
     }
 
-    /// 0: not both have clumps; 1: clumps of the same contacts; 2: of different ones.
+    /// 0: not both have contact patches; 1: contact patches of the same contacts; 2: of different ones.
     fn conflict(&self, contacts: &[u32], other: usize) -> u32 {
         if contacts.is_empty() {
             return 0;

@@ -1,6 +1,6 @@
 //! What of side b covers a facet of side a, cut into segments and sampled for integration.
 
-use super::super::sight::{FACING, Target};
+use super::super::ray_search::{FACING, Target};
 use super::super::surface::{Surface, SurfaceFacet};
 use super::field::{Field, ahead, beside, cross};
 use super::root::{ENDS, root};
@@ -40,13 +40,13 @@ pub(super) struct Opposite<'a> {
 }
 
 /// What a line from side a meets of side b.
-enum Met {
+enum Hit {
     /// A facet face to face.
     Facet(usize),
     /// Nothing that faces it.
     Nothing {
         /// Whether there are facets that face the same way.
-        averted: bool,
+        back_facing: bool,
     },
 }
 
@@ -79,17 +79,17 @@ impl<'a> Opposite<'a> {
             samples: Vec::new(),
             least_gap: f64::INFINITY,
         };
-        let mut any_averted = false;
+        let mut any_back_facing = false;
         for ends in cuts.windows(2).filter(|ends| ends[0] < ends[1]) {
             let middle = 0.5 * (ends[0] + ends[1]);
-            match self.met(field.position(middle), field.normal(middle), &candidates) {
-                Met::Facet(opposite) => {
+            match self.hit(field.position(middle), field.normal(middle), &candidates) {
+                Hit::Facet(opposite) => {
                     self.integrate(field, [ends[0], ends[1]], opposite, &mut cover)
                 }
-                Met::Nothing { averted } => any_averted |= averted,
+                Hit::Nothing { back_facing } => any_back_facing |= back_facing,
             }
         }
-        (cover, any_averted)
+        (cover, any_back_facing)
     }
 
     /// The facets of side b that may lie on a line of `field`: between its first and its last.
@@ -111,9 +111,9 @@ impl<'a> Opposite<'a> {
     }
 
     /// What the line through `x` along `normal` meets first, either way but not too far backwards.
-    fn met(&self, x: [f64; 3], normal: [f64; 3], candidates: &[usize]) -> Met {
+    fn hit(&self, x: [f64; 3], normal: [f64; 3], candidates: &[usize]) -> Hit {
         let mut nearest: Option<(usize, f64)> = None;
-        let mut averted = false;
+        let mut back_facing = false;
         for &candidate in candidates {
             let facet = &self.surface.facets[candidate];
             let Some(eta) = root(|eta| beside(facet, x, normal, eta)) else {
@@ -124,14 +124,14 @@ impl<'a> Opposite<'a> {
                 continue;
             }
             if dot(facet.normal, normal) > -FACING {
-                averted = true;
+                back_facing = true;
             } else if nearest.is_none_or(|(_, other)| distance.abs() < other.abs()) {
                 nearest = Some((candidate, distance));
             }
         }
         match nearest {
-            Some((facet, _)) => Met::Facet(facet),
-            None => Met::Nothing { averted },
+            Some((facet, _)) => Hit::Facet(facet),
+            None => Hit::Nothing { back_facing },
         }
     }
 

@@ -1,8 +1,8 @@
 //! What is allowed and all the same is most likely a mistake of the scene: warnings.
 
-mod passing;
 mod repeated;
 mod strains;
+mod undeclared;
 
 use super::bodies::Bodies;
 use super::steps::Loads;
@@ -12,7 +12,7 @@ use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 
 /// What a model is made of, all of it right by itself.
-pub(super) struct Doubts<'a> {
+pub(super) struct Diagnostics<'a> {
     pub scene: &'a Scene,
     pub bodies: &'a Bodies,
     pub topology: &'a Topology,
@@ -21,13 +21,13 @@ pub(super) struct Doubts<'a> {
     pub contacts: &'a [Contact],
 }
 
-impl Doubts<'_> {
+impl Diagnostics<'_> {
     /// A warning for each.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.strains();
         warnings.extend(self.far_apart());
         warnings.extend(self.repeated_contacts());
-        warnings.extend(self.passing());
+        warnings.extend(self.undeclared());
         warnings
     }
 

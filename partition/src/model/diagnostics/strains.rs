@@ -1,7 +1,7 @@
 //! Loads that can't go with the stiffness, and displacements that can't go with the bodies' size:
 //! their units are likely to differ.
 
-use super::{Doubts, short};
+use super::{Diagnostics, short};
 use crate::element::geometry::length;
 use crate::mesh::topology::CellFacet;
 use crate::model::groups;
@@ -10,7 +10,7 @@ use crate::scene::condition::Names;
 /// Strain that nobody means: by then small strains are no approximation.
 const LARGE: f64 = 0.1;
 
-impl Doubts<'_> {
+impl Diagnostics<'_> {
     /// Pressures and tractions not much below the stiffness, and displacements beyond the bodies' size.
     pub(super) fn strains(&self) -> Vec<String> {
         let mut warnings = Vec::new();

@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::Doubts;
+use super::Diagnostics;
 use crate::model::groups;
 use crate::scene::condition::{Contact, Names, Partner};
 
 /// Which sides of two contacts have a facet in common: the first's a with the second's a and b, then its b.
 type Common = [[bool; 2]; 2];
 
-impl Doubts<'_> {
+impl Diagnostics<'_> {
     /// Two contacts between the same facets, or with the same obstacle: each of them holds what the
     /// other holds already.
     pub(super) fn repeated_contacts(&self) -> Vec<String> {

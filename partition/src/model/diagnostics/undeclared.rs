@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashSet};
 use rstar::primitives::{GeomWithData, Line};
 use rstar::{AABB, RTree};
 
-use super::{Doubts, short};
+use super::{Diagnostics, short};
 use crate::mesh::topology::CellFacet;
 use crate::model::groups;
 use crate::scene::condition::Partner;
@@ -51,9 +51,9 @@ impl Chord {
     }
 }
 
-impl Doubts<'_> {
+impl Diagnostics<'_> {
     /// Facets that lie on each other, neither of which is on a side of a contact: body by body.
-    pub(super) fn passing(&self) -> Vec<String> {
+    pub(super) fn undeclared(&self) -> Vec<String> {
         let chords = self.free_chords();
         let leaf = |(index, chord): (usize, &Chord)| {
             GeomWithData::new(Line::new(chord.start, chord.end), index)

@@ -20,7 +20,7 @@ pub(super) struct Target<'a> {
 
 /// What a line meets first.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Met {
+pub(super) enum Hit {
     /// Nodes, more than one where several lie in one place, and their common distance.
     Nodes(Vec<u32>, f64),
     /// The inside of a facet.
@@ -28,7 +28,7 @@ pub(super) enum Met {
     /// Nothing, though facets that face the same way as the line may lie on it.
     Nothing {
         /// Whether there are such facets.
-        averted: bool,
+        back_facing: bool,
     },
 }
 
@@ -122,18 +122,18 @@ impl<'a> Target<'a> {
     /// What the line from `start` along the unit vector `direction` meets first, either way but
     /// no more than `behind` backwards, of what faces it; nodes for which `passes` holds are
     /// passed by. O(log n) for a surface that isn't parallel to the line.
-    pub fn met(
+    pub fn hit(
         &self,
         start: [f64; 3],
         direction: [f64; 3],
         behind: f64,
         passes: impl Fn(u32) -> bool,
-    ) -> Met {
+    ) -> Hit {
         let line = Line { start, direction };
         let boxes = Boxes(|low, high| line.meets(low, high));
         let mut nodes: Vec<(u32, f64, f64)> = Vec::new();
         let mut crossed: Option<(usize, f64)> = None;
-        let mut averted = false;
+        let mut back_facing = false;
         for leaf in self.tree.locate_with_selection_function(boxes) {
             let facet = &self.surface.facets[leaf.facet];
             let slack = ASIDE * facet.size();
@@ -149,7 +149,7 @@ impl<'a> Target<'a> {
                 if passes(node) || ahead < -behind {
                     continue;
                 }
-                averted |= !faces;
+                back_facing |= !faces;
                 if faces && !nodes.iter().any(|(other, ..)| *other == node) {
                     nodes.push((node, ahead, slack));
                 }
@@ -163,7 +163,7 @@ impl<'a> Target<'a> {
             if ahead < -behind {
                 continue;
             }
-            averted |= !faces;
+            back_facing |= !faces;
             if faces && crossed.is_none_or(|(_, other)| ahead.abs() < other.abs()) {
                 crossed = Some((leaf.facet, ahead));
             }
@@ -181,10 +181,10 @@ impl<'a> Target<'a> {
                     .map(|node| node.0)
                     .collect();
                 together.sort_unstable();
-                Met::Nodes(together, ahead)
+                Hit::Nodes(together, ahead)
             }
-            (_, Some((facet, _))) => Met::Facet(facet),
-            _ => Met::Nothing { averted },
+            (_, Some((facet, _))) => Hit::Facet(facet),
+            _ => Hit::Nothing { back_facing },
         }
     }
 }
