@@ -5,7 +5,6 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 
-use crate::decompose::summary::Summary;
 use crate::error::InputError;
 use crate::model::Material;
 use crate::problem::read::ProblemFile;
@@ -18,7 +17,6 @@ const MOST: usize = 20;
 #[derive(Clone, Debug)]
 pub struct Info {
     problem: Problem,
-    summary: Summary,
     /// Name of the file.
     name: String,
     /// Its size (bytes).
@@ -33,7 +31,6 @@ impl Info {
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let problem = ProblemFile::open(path)?.problem()?;
         Ok(Self {
-            summary: problem.summary(),
             problem,
             name: path.display().to_string(),
             bytes: fs::metadata(path).map_or(0, |data| data.len()),
@@ -73,29 +70,6 @@ impl Info {
         names.zip(nodes.iter().map(BTreeSet::len)).collect()
     }
 
-    /// Most merges between a subdomain and a root of the hierarchy.
-    pub fn depth(&self) -> usize {
-        let parent = &self.problem.catalog.hierarchy.parent;
-        let mut depth = vec![0; parent.len()];
-        // Parents come after their children.
-        for (node, above) in parent.iter().enumerate().rev() {
-            depth[node] = above.map_or(0, |above| depth[above as usize] + 1);
-        }
-        depth.into_iter().max().unwrap_or(0)
-    }
-
-    fn sizes(&self) -> String {
-        let cells = self.problem.catalog.subdomains.iter().map(|s| s.cells);
-        let (least, most) = (cells.clone().min(), cells.clone().max());
-        let count = self.summary.subdomains.max(1);
-        format!(
-            "{} to {} cells, {:.0} in the mean",
-            least.unwrap_or(0),
-            most.unwrap_or(0),
-            cells.sum::<usize>() as f64 / count as f64
-        )
-    }
-
     fn bodies(&self) -> Vec<String> {
         let catalog = &self.problem.catalog;
         let bodies = catalog.bodies.iter().enumerate().map(|(index, body)| {
@@ -122,14 +96,14 @@ impl Info {
                 rounded(moment)
             )
         };
-        let steps = self.problem.catalog.steps.iter().enumerate();
-        let of_steps: Vec<String> = steps
-            .map(|(k, step)| format!("{} at {}: {}", step.name, step.time, resultant(k)))
-            .collect();
-        match of_steps.is_empty() {
-            true => vec![resultant(0)],
-            false => of_steps,
+        let steps = &self.problem.catalog.steps;
+        if steps.is_empty() {
+            return vec![resultant(0)];
         }
+        let steps = steps.iter().enumerate();
+        steps
+            .map(|(k, step)| format!("{} at {}: {}", step.name, step.time, resultant(k)))
+            .collect()
     }
 
     /// The least and the largest gap of every contact (m).
@@ -141,17 +115,14 @@ impl Info {
             let gaps = points
                 .filter(|point| point.contact as usize == index)
                 .map(|point| point.gap);
-            let least = gaps.clone().reduce(f64::min)?;
-            let most = gaps.reduce(f64::max)?;
-            Some(match least == most {
-                true => format!("{} {unit} on {}", rounded(least), contact.name),
-                false => format!(
-                    "{} to {} {unit} on {}",
-                    rounded(least),
-                    rounded(most),
-                    contact.name
-                ),
-            })
+            let least = gaps.clone().reduce(f64::min).map(rounded)?;
+            let most = gaps.reduce(f64::max).map(rounded)?;
+            let to = if least == most {
+                String::new()
+            } else {
+                format!(" to {most}")
+            };
+            Some(format!("{least}{to} {unit} on {}", contact.name))
         });
         gaps.collect()
     }
@@ -170,38 +141,24 @@ impl fmt::Display for Info {
         );
         entry(f, "file", &size)?;
         entry(f, "plane", catalog.plane.name())?;
-        writeln!(f, "{}", self.summary)?;
-        entry(f, "sizes", &self.sizes())?;
-        entry(f, "depth", &format!("{} merges at most", self.depth()))?;
-        let supports = self.supported_nodes();
-        let supports = supports
-            .iter()
-            .map(|(name, nodes)| format!("{name}: {nodes} nodes"));
+        writeln!(f, "{}", self.problem.summary())?;
         let unit = catalog.units.stress();
         let materials = catalog.materials.iter().map(|m| elastic(m, unit));
-        let lists = [
+        let supports = self.supported_nodes().into_iter();
+        let supports = supports.map(|(name, nodes)| format!("{name}: {nodes} nodes"));
+        for (name, lines) in [
             ("gap", self.gaps()),
             ("body", self.bodies()),
             ("material", materials.collect()),
             ("support", supports.collect()),
-        ];
-        for (name, lines) in lists {
+            ("load", self.loads()),
+        ] {
             for line in lines.iter().take(MOST) {
                 entry(f, name, line)?;
             }
             if lines.len() > MOST {
                 entry(f, name, &format!("and {} more", lines.len() - MOST))?;
             }
-        }
-        for line in self.loads().iter().take(MOST) {
-            entry(f, "load", line)?;
-        }
-        if catalog.steps.len() > MOST {
-            entry(
-                f,
-                "load",
-                &format!("and {} more", catalog.steps.len() - MOST),
-            )?;
         }
         let settings = match catalog.solver.is_empty() {
             true => "none".to_owned(),
@@ -221,24 +178,19 @@ impl fmt::Display for Info {
 
 /// A material in words: by modulus and ratio where it is isotropic, else by its stiffness.
 fn elastic(material: &Material, unit: &str) -> String {
-    let Material {
-        name,
-        stiffness: [xx, yy, xy],
-        poisson,
-        ..
-    } = material;
-    match poisson {
+    let (name, c) = (&material.name, &material.stiffness);
+    match material.poisson {
         // G = E / (2 (1 + ν)) in both plane states.
         Some(ratio) => {
-            let young = rounded(2.0 * (1.0 + ratio) * xy[2]);
+            let young = rounded(2.0 * (1.0 + ratio) * c[2][2]);
             format!("{name}: E {young} {unit}, ν {ratio}")
         }
         None => format!(
             "{name}: C11 {}, C22 {}, C12 {}, C33 {} {unit}",
-            rounded(xx[0]),
-            rounded(yy[1]),
-            rounded(xx[1]),
-            rounded(xy[2])
+            rounded(c[0][0]),
+            rounded(c[1][1]),
+            rounded(c[0][1]),
+            rounded(c[2][2])
         ),
     }
 }

@@ -59,3 +59,4 @@ pub mod problem;
 pub mod scene;
 pub mod solver;
 pub mod source;
+pub mod stiffness;

@@ -27,6 +27,7 @@ use crate::scene::Scene;
 pub use crate::scene::plane::PlaneState;
 use crate::scene::units::Units;
 use crate::solver::SolverSettings;
+use crate::stiffness::Stiffness;
 
 /// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane).
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +35,7 @@ pub struct Material {
     /// Name in the scene.
     pub name: String,
     /// C, symmetric positive definite, for the scene's plane state (Pa).
-    pub stiffness: [[f64; 3]; 3],
+    pub stiffness: Stiffness,
     /// Row of σ_zz against (ε_xx, ε_yy, γ_xy) (Pa); `None` where the user didn't give it.
     pub out_of_plane: Option<[f64; 3]>,
     /// Poisson's ratio of an isotropic material.

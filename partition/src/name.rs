@@ -43,14 +43,20 @@ pub fn check_text(text: &str) -> Result<(), &'static str> {
     }
 }
 
-/// The start of a name as a message shows it.
+/// The start of a name as a message shows it, in one line.
 pub fn shown(name: &str) -> String {
     const SHOWN: usize = 60;
-    let mut start: String = name.chars().take(SHOWN).collect();
-    if start.len() < name.len() {
-        start.push('…');
+    let mut shown = String::new();
+    for letter in name.chars().take(SHOWN) {
+        match letter.is_control() {
+            true => shown.extend(letter.escape_default()),
+            false => shown.push(letter),
+        }
     }
-    start
+    if name.chars().nth(SHOWN).is_some() {
+        shown.push('…');
+    }
+    shown
 }
 
 #[cfg(test)]

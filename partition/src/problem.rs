@@ -4,9 +4,8 @@
 //! same for somebody who writes one with h5py.
 
 pub mod copies;
-mod dataset;
 pub mod read;
-mod slab;
+pub mod schema;
 mod strings;
 pub mod vtkhdf;
 pub mod write;
@@ -25,9 +24,6 @@ pub const FORMAT: &str = "contact-dd-mpi problem";
 
 /// How far a unit vector's length may be from 1, and two orthogonal ones' product from 0.
 const UNIT_TOLERANCE: f64 = 1e-10;
-
-/// How far a stiffness may be from its transpose, relative to its largest entry.
-const SYMMETRY_TOLERANCE: f64 = 1e-10;
 
 /// A node on Γ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,6 +84,22 @@ impl Subdomain {
         let loads = self.steps.get(step);
         let forces = self.forces.iter().enumerate();
         forces.map(move |(i, &(node, force))| (node, loads.map_or(force, |loads| loads.forces[i])))
+    }
+
+    /// The values of a support: in every load step, or the one that it has.
+    fn support(&self, i: usize) -> Vec<f64> {
+        match self.steps.is_empty() {
+            true => vec![self.supports[i].value],
+            false => self.steps.iter().map(|step| step.supports[i]).collect(),
+        }
+    }
+
+    /// The values of a nodal force: in every load step, or the one that it has.
+    fn force(&self, i: usize) -> Vec<&[f64; 3]> {
+        match self.steps.is_empty() {
+            true => vec![&self.forces[i].1],
+            false => self.steps.iter().map(|step| &step.forces[i]).collect(),
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 use contact_dd_partition::element::reference::ReferenceElement;
 use contact_dd_partition::element::tabulation::TabulatedPoint;
 use contact_dd_partition::model::{Material, PlaneState};
+use contact_dd_partition::stiffness::Stiffness;
 
 /// Most nodes that an element has.
 pub const MAX_NODES: usize = 9;
@@ -76,10 +77,10 @@ pub fn stress(material: &Material, plane: PlaneState, strain: &[f64; 3]) -> [f64
 
 /// σ = (XX, YY, XY) for a strain in the plane (Pa).
 pub fn stress_in_plane(material: &Material, strain: &[f64; 3]) -> [f64; 3] {
-    material.stiffness.map(|row| product(&row, strain))
+    [0, 1, 2].map(|i| product(&material.stiffness[i], strain))
 }
 
-fn product(row: &[f64; 3], strain: &[f64; 3]) -> f64 {
+fn product(row: &[f64], strain: &[f64; 3]) -> f64 {
     row.iter().zip(strain).map(|(c, e)| c * e).sum()
 }
 
@@ -111,7 +112,8 @@ impl ElementMatrix {
     }
 
     /// Becomes K_e = ∫ Bᵀ C B over an element of unit thickness (Pa), dofs node by node.
-    pub fn set(&mut self, element: &ReferenceElement, points: &[[f64; 3]], c: &[[f64; 3]; 3]) {
+    pub fn set(&mut self, element: &ReferenceElement, points: &[[f64; 3]], c: &Stiffness) {
+        let c = &c.rows::<3>();
         self.order = 2 * element.nodes();
         self.values[..self.order * self.order].fill(0.0);
         for point in stiffness_points(element, points) {
@@ -193,7 +195,7 @@ mod tests {
     fn material() -> Material {
         Material {
             name: "m".into(),
-            stiffness: C,
+            stiffness: C.into(),
             out_of_plane: Some([0.3, 0.4, 0.5]),
             poisson: None,
         }
@@ -215,7 +217,7 @@ mod tests {
 
     fn stiffness(kind: ElementKind) -> ElementMatrix {
         let mut k = ElementMatrix::default();
-        k.set(&kind, &points(kind), &C);
+        k.set(&kind, &points(kind), &C.into());
         k
     }
 

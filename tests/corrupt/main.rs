@@ -205,6 +205,7 @@ fn what_is_dropped_is_missed_unless_the_format_says_that_it_may_be() {
         optional,
         [
             "/@title",
+            "/@units",
             "/VTKHDF/@Type",
             "/VTKHDF/@Version",
             "/VTKHDF/CellData/Subdomain",

@@ -128,7 +128,7 @@ fn material(name: &str, elasticity: &Elasticity, plane: PlaneState) -> Material 
     };
     Material {
         name: name.to_owned(),
-        stiffness,
+        stiffness: stiffness.into(),
         out_of_plane: match plane {
             PlaneState::Strain => in_plane_strain,
             PlaneState::Stress => Some([0.0; 3]),

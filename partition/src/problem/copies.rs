@@ -35,15 +35,11 @@ impl Subdomain {
             let start = self.supports.partition_point(|s| s.node < on.node);
             let rows = self.supports.iter().enumerate().skip(start);
             let rows = rows.take_while(|(_, s)| s.node == on.node);
-            let values = |i: usize| match self.steps.is_empty() {
-                true => vec![self.supports[i].value],
-                false => self.steps.iter().map(|step| step.supports[i]).collect(),
-            };
             SharedNode {
                 interface: on.interface,
                 tag: self.node_tags[node],
                 point: self.points[node],
-                supports: rows.map(|(i, s)| (s.direction, values(i))).collect(),
+                supports: rows.map(|(i, s)| (s.direction, self.support(i))).collect(),
             }
         });
         let shared = shared.collect();
@@ -131,19 +127,6 @@ impl NodeCopies {
 
 /// A number that stands in a list twice.
 fn repeated(list: &[i64]) -> Option<i64> {
-    let (&least, &most) = (list.iter().min()?, list.iter().max()?);
-    let range = most.abs_diff(least);
-    // Meshers number nodes nearly without gaps: a bit each is several times faster than sorting.
-    if range < 64 * list.len() as u64 {
-        let mut seen = vec![0u64; range as usize / 64 + 1];
-        return list.iter().copied().find(|&number| {
-            let place = number.abs_diff(least) as usize;
-            let bit = 1 << (place % 64);
-            let was = seen[place / 64] & bit != 0;
-            seen[place / 64] |= bit;
-            was
-        });
-    }
     let mut sorted = list.to_vec();
     sorted.sort_unstable();
     let twice = sorted.windows(2).find(|two| two[0] == two[1]);
@@ -160,22 +143,5 @@ fn difference(a: &SharedNode, b: &SharedNode) -> Option<&'static str> {
         Some("supports (/support)")
     } else {
         None
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_number_that_stands_there_twice_is_found_however_far_apart_numbers_are() {
-        for step in [1, 1 << 40] {
-            let mut list: Vec<i64> = (0..1000).map(|k| (k * 7 % 1000 - 300) * step).collect();
-            assert_eq!(repeated(&list), None);
-            list[900] = list[17];
-            assert_eq!(repeated(&list), Some(list[17]));
-        }
-        assert_eq!(repeated(&[]), None);
-        assert_eq!(repeated(&[i64::MIN, 0, i64::MAX]), None);
     }
 }

@@ -3,21 +3,22 @@
 mod attribute;
 mod catalog;
 mod consistency;
+mod contents;
+mod dataset;
 mod header;
 mod hierarchy;
-mod known;
 mod materials;
 mod points;
 mod settings;
-mod sizes;
-mod slabs;
+mod slice;
 mod subdomain;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use self::contents::Contents;
+use self::header::Header;
 use super::copies::NodeCopies;
-use super::dataset::Dataset;
 use super::{Catalog, Problem, Subdomain, SubdomainNode};
 use crate::contact_point::ContactPoint;
 use crate::error::InputError;
@@ -27,14 +28,14 @@ use crate::source;
 #[derive(Debug)]
 pub struct ProblemFile {
     path: PathBuf,
-    file: hdf5::File,
+    contents: Contents,
     catalog: Catalog,
     offsets: Offsets,
     /// How many subdomains have each node of Γ.
     sharing: Vec<u32>,
 }
 
-/// Where the slice of every subdomain and group starts and ends.
+/// Where the slice of every subdomain, group and contact point starts and ends.
 #[derive(Debug)]
 struct Offsets {
     points: Vec<usize>,
@@ -44,6 +45,7 @@ struct Offsets {
     supports: Vec<usize>,
     forces: Vec<usize>,
     groups: Vec<usize>,
+    entries: Vec<usize>,
 }
 
 impl ProblemFile {
@@ -68,9 +70,9 @@ impl ProblemFile {
                     "isn't a whole HDF5 file ({reason}); expected one written by contact-dd-partition"
                 ))
             })?;
-        header::check_format(&file)?;
-        known::check(&file)?;
-        let (catalog, offsets) = catalog::read(&file)?;
+        let header = Header::read(&file)?;
+        let contents = Contents::open(&file, header.dim)?;
+        let (catalog, offsets) = catalog::read(&file, header, &contents)?;
         let mut sharing = vec![0; catalog.interface_nodes];
         for &number in catalog.interface.iter().flatten() {
             sharing[number as usize] += 1;
@@ -78,7 +80,7 @@ impl ProblemFile {
         Ok(Self {
             sharing,
             path: path.to_path_buf(),
-            file,
+            contents,
             catalog,
             offsets,
         })
@@ -150,13 +152,5 @@ impl ProblemFile {
             points: points.collect::<Result<_, _>>()?,
             subdomains,
         })
-    }
-
-    fn column(&self, name: &'static str) -> Result<Dataset, InputError> {
-        Dataset::column(&self.file, name, None)
-    }
-
-    fn table(&self, name: &'static str, width: usize) -> Result<Dataset, InputError> {
-        Dataset::table(&self.file, name, None, width)
     }
 }

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use hdf5::H5Type;
 use hdf5::types::VarLenUnicode;
+use toml::Value;
 
+use super::schema::{Counts, FIELDS};
 use super::{FORMAT, Problem, Subdomain, VERSION, vtkhdf};
 use crate::destination::Destination;
 use crate::error::OutputError;
@@ -26,15 +28,23 @@ impl Problem {
         let file = hdf5::File::with_options()
             .with_fapl(|access| access.file_locking(false))
             .create(path)?;
-        self.write_catalog(&file)?;
-        self.write_mesh(&file)?;
-        self.write_conditions(&file)?;
-        self.write_contacts(&file)?;
+        let mut datasets = Datasets {
+            file: &file,
+            counts: Counts::new(self.catalog.dim),
+        };
+        self.write_attributes(&file)?;
+        self.write_catalog(&mut datasets)?;
+        self.write_mesh(&mut datasets)?;
+        self.write_conditions(&mut datasets)?;
+        if !self.catalog.contacts.is_empty() {
+            self.write_contacts(&mut datasets)?;
+        }
+        vtkhdf::mark(&file.group("VTKHDF")?)?;
         file.flush()?;
         file.close()
     }
 
-    fn write_catalog(&self, file: &hdf5::File) -> hdf5::Result<()> {
+    fn write_attributes(&self, file: &hdf5::File) -> hdf5::Result<()> {
         let catalog = &self.catalog;
         text(file, "format", FORMAT)?;
         attribute(file, "version", VERSION)?;
@@ -42,228 +52,197 @@ impl Problem {
         attribute(file, "dimension", catalog.dim as i64)?;
         text(file, "plane", catalog.plane.name())?;
         text(file, "units", catalog.units.length())?;
-
-        let materials = Section::new(file, "materials")?;
-        let all = &catalog.materials;
-        materials.strings("name", all.iter().map(|m| m.name.as_str()))?;
-        let stiffness: Vec<f64> = all.iter().flat_map(|m| m.stiffness).flatten().collect();
-        materials.put("stiffness", &[all.len(), 3, 3], &stiffness)?;
-        let rows: Vec<f64> = all
-            .iter()
-            .flat_map(|m| m.out_of_plane.unwrap_or([f64::NAN; 3]))
-            .collect();
-        materials.put("out_of_plane", &[all.len(), 3], &rows)?;
-        materials.column("poisson", all.iter().map(|m| m.poisson.unwrap_or(f64::NAN)))?;
-
-        let bodies = Section::new(file, "bodies")?;
-        bodies.strings("name", catalog.bodies.iter().map(|b| b.name.as_str()))?;
-        let subdomains = Section::new(file, "subdomains")?;
-        let all = &catalog.subdomains;
-        subdomains.column("body", all.iter().map(|s| s.body as i64))?;
-        let group = |group: Option<usize>| group.map_or(-1, |g| g as i64);
-        subdomains.column("group", all.iter().map(|s| group(s.group)))?;
-        let hierarchy = Section::new(file, "hierarchy")?;
-        let parents = catalog.hierarchy.parent.iter();
-        hierarchy.column("parent", parents.map(|p| p.map_or(-1, i64::from)))?;
-        if !catalog.steps.is_empty() {
-            let steps = Section::new(file, "steps")?;
-            steps.strings("name", catalog.steps.iter().map(|step| step.name.as_str()))?;
-            steps.column("time", catalog.steps.iter().map(|step| step.time))?;
-        }
-        self.write_settings(file)?;
-        if !catalog.warnings.is_empty() {
-            let root = Section::root(file)?;
-            root.strings("warnings", catalog.warnings.iter().map(String::as_str))?;
-        }
-        Ok(())
-    }
-
-    fn write_settings(&self, file: &hdf5::File) -> hdf5::Result<()> {
-        let solver = &self.catalog.solver;
-        if solver.is_empty() {
+        if catalog.solver.is_empty() {
             return Ok(());
         }
         let settings = file.create_group("settings")?;
-        if let Some(method) = solver.method {
-            text(&settings, "method", method.name())?;
-        }
-        let positive = [
-            ("tolerance", solver.tolerance),
-            ("relaxation", solver.relaxation),
-        ];
-        for (name, value) in positive {
-            if let Some(value) = value {
-                attribute(&settings, name, value.value())?;
+        let values = toml::Table::try_from(catalog.solver).map_err(|error| error.to_string())?;
+        for (name, value) in &values {
+            match value {
+                Value::String(word) => text(&settings, name, word)?,
+                Value::Integer(count) => attribute(&settings, name, *count)?,
+                Value::Float(number) => attribute(&settings, name, *number)?,
+                Value::Boolean(truth) => attribute(&settings, name, *truth)?,
+                other => return Err(format!("{name} can't be {other}").into()),
             }
-        }
-        if let Some(count) = solver.max_sweeps {
-            attribute(&settings, "max_sweeps", count as i64)?;
-        }
-        if let Some(left_out) = solver.no_stress {
-            attribute(&settings, "no_stress", left_out)?;
         }
         Ok(())
     }
 
-    fn write_mesh(&self, file: &hdf5::File) -> hdf5::Result<()> {
-        let all = &self.subdomains;
-        let grid = Section::new(file, "VTKHDF")?;
-        vtkhdf::mark(&grid.group)?;
-        grid.column("NumberOfPoints", all.iter().map(|s| s.points.len() as i64))?;
-        grid.column("NumberOfCells", all.iter().map(|s| s.cells.len() as i64))?;
-        grid.column(
-            "NumberOfConnectivityIds",
-            all.iter().map(|s| s.cells.connectivity().len() as i64),
-        )?;
-        grid.vectors("Points", 3, all.iter().flat_map(|s| &s.points))?;
-        let connectivity = all.iter().flat_map(|s| s.cells.connectivity());
-        grid.column("Connectivity", connectivity.map(|&node| i64::from(node)))?;
-        let offsets = all.iter().flat_map(|s| s.cells.offsets());
-        grid.column("Offsets", offsets.map(|&offset| offset as i64))?;
-        let kinds = all.iter().flat_map(|s| s.cells.iter());
-        grid.column("Types", kinds.map(|(kind, _)| kind.vtk()))?;
-        let points = Section::new(file, "VTKHDF/PointData")?;
-        let tags = all.iter().flat_map(|s| &s.node_tags);
-        points.column("GlobalNodeId", tags.copied())?;
-        let cells = Section::new(file, "VTKHDF/CellData")?;
-        let numbers = all
-            .iter()
-            .flat_map(|s| std::iter::repeat_n(s.index as i64, s.cells.len()));
-        cells.column("Subdomain", numbers)?;
-        let materials = all.iter().flat_map(|s| &s.cell_material);
-        cells.column("Material", materials.map(|&m| i64::from(m)))
-    }
-
-    fn write_conditions(&self, file: &hdf5::File) -> hdf5::Result<()> {
+    fn write_catalog(&self, datasets: &mut Datasets) -> hdf5::Result<()> {
         let catalog = &self.catalog;
-        let dim = catalog.dim;
-        let all = &self.subdomains;
-        let interface = Section::new(file, "interface")?;
-        interface.offsets("offset", all.iter().map(|s| s.interface.len()))?;
-        let nodes = || all.iter().flat_map(|s: &Subdomain| &s.interface);
-        interface.column("node", nodes().map(|n| i64::from(n.node)))?;
-        interface.column("interface", nodes().map(|n| i64::from(n.interface)))?;
+        let materials = &catalog.materials;
+        let names = materials.iter().map(|m| m.name.as_str());
+        datasets.strings("/materials/name", names)?;
+        let stiffness = materials.iter().flat_map(|m| m.stiffness.values()).copied();
+        datasets.put("/materials/stiffness", stiffness)?;
+        let planes = materials.iter();
+        let planes = planes.flat_map(|m| m.out_of_plane.unwrap_or([f64::NAN; 3]));
+        datasets.put("/materials/out_of_plane", planes)?;
+        let ratios = materials.iter().map(|m| m.poisson.unwrap_or(f64::NAN));
+        datasets.put("/materials/poisson", ratios)?;
 
-        let support = Section::new(file, "support")?;
-        support.offsets("offset", all.iter().map(|s| s.supports.len()))?;
-        let rows = || all.iter().flat_map(|s: &Subdomain| &s.supports);
-        support.column("node", rows().map(|s| i64::from(s.node)))?;
-        support.vectors("direction", dim, rows().map(|s| &s.direction))?;
-        let steps = catalog.steps.len();
-        match steps {
-            0 => support.column("value", rows().map(|s| s.value))?,
-            _ => {
-                let values: Vec<f64> = (all.iter())
-                    .flat_map(|s| (0..s.supports.len()).map(move |i| (s, i)))
-                    .flat_map(|(s, i)| s.steps.iter().map(move |step| step.supports[i]))
-                    .collect();
-                support.put("value", &[values.len() / steps, steps], &values)?;
-            }
-        }
-        support.column("condition", rows().map(|s| i64::from(s.condition)))?;
-        support.strings("name", self.catalog.supports.iter().map(String::as_str))?;
-
-        let force = Section::new(file, "force")?;
-        force.offsets("offset", all.iter().map(|s| s.forces.len()))?;
-        let rows = || all.iter().flat_map(|s: &Subdomain| &s.forces);
-        force.column("node", rows().map(|&(node, _)| i64::from(node)))?;
-        match steps {
-            0 => force.vectors("value", dim, rows().map(|(_, value)| value)),
-            _ => {
-                let values: Vec<f64> = (all.iter())
-                    .flat_map(|s| (0..s.forces.len()).map(move |i| (s, i)))
-                    .flat_map(|(s, i)| s.steps.iter().map(move |step| &step.forces[i][..dim]))
-                    .flatten()
-                    .copied()
-                    .collect();
-                force.put("value", &[rows().count(), steps, dim], &values)
-            }
-        }
-    }
-
-    fn write_contacts(&self, file: &hdf5::File) -> hdf5::Result<()> {
-        if self.catalog.contacts.is_empty() {
-            return Ok(());
-        }
-        let dim = self.catalog.dim;
-        let contact = Section::new(file, "contact")?;
-        contact.strings(
-            "name",
-            self.catalog.contacts.iter().map(|c| c.name.as_str()),
+        let names = catalog.bodies.iter().map(|b| b.name.as_str());
+        datasets.strings("/bodies/name", names)?;
+        let subdomains = &catalog.subdomains;
+        datasets.put("/subdomains/body", subdomains.iter().map(|s| s.body as i64))?;
+        let groups = subdomains.iter().map(|s| s.group.map_or(-1, |g| g as i64));
+        datasets.put("/subdomains/group", groups)?;
+        let parents = catalog.hierarchy.parent.iter();
+        datasets.put(
+            "/hierarchy/parent",
+            parents.map(|p| p.map_or(-1, i64::from)),
         )?;
-        contact.offsets("group_offset", self.points.iter().map(Vec::len))?;
-        let points = || self.points.iter().flatten();
-        contact.column("contact", points().map(|p| i64::from(p.contact)))?;
-        contact.column("place", points().map(|p| i64::from(p.place)))?;
-        contact.column("gap", points().map(|p| p.gap))?;
-        contact.column("area", points().map(|p| p.area))?;
-        contact.vectors("position", dim, points().map(|p| &p.position))?;
-        contact.vectors("force_point", dim, points().map(|p| &p.force_point))?;
-        contact.vectors("normal", dim, points().map(|p| &p.frame.normal))?;
-        contact.column("node_a", points().map(|p| p.tag_a))?;
-        contact.column("node_b", points().map(|p| p.tag_b))?;
-        contact.offsets("entry_offset", points().map(|p| p.entries.len()))?;
-        let nodes = || points().flat_map(|p| p.entries.iter().map(|(node, _)| node));
-        contact.column("entry_subdomain", nodes().map(|n| i64::from(n.subdomain)))?;
-        contact.column("entry_node", nodes().map(|n| i64::from(n.node)))?;
-        let weights = points().flat_map(|p| p.entries.iter().map(|&(_, weight)| weight));
-        contact.column("entry_weight", weights)
-    }
-}
-
-/// A group of datasets.
-struct Section {
-    group: hdf5::Group,
-}
-
-impl Section {
-    fn new(file: &hdf5::File, name: &str) -> hdf5::Result<Self> {
-        Ok(Self {
-            group: file.create_group(name)?,
-        })
-    }
-
-    fn root(file: &hdf5::File) -> hdf5::Result<Self> {
-        Ok(Self {
-            group: file.group("/")?,
-        })
-    }
-
-    fn put<T: H5Type>(&self, name: &str, shape: &[usize], data: &[T]) -> hdf5::Result<()> {
-        let dataset = self.group.new_dataset::<T>().shape(shape).create(name)?;
-        if data.is_empty() {
-            return Ok(());
+        let steps = &catalog.steps;
+        if !steps.is_empty() {
+            datasets.strings("/steps/name", steps.iter().map(|step| step.name.as_str()))?;
+            datasets.put("/steps/time", steps.iter().map(|step| step.time))?;
         }
-        dataset.write_raw(data)
+        if !catalog.warnings.is_empty() {
+            datasets.strings("/warnings", catalog.warnings.iter().map(String::as_str))?;
+        }
+        Ok(())
     }
 
-    fn column<T: H5Type>(&self, name: &str, values: impl Iterator<Item = T>) -> hdf5::Result<()> {
+    fn write_mesh(&self, datasets: &mut Datasets) -> hdf5::Result<()> {
+        let all = &self.subdomains;
+        let points = all.iter().map(|s| s.points.len() as i64);
+        datasets.put("/VTKHDF/NumberOfPoints", points)?;
+        let cells = all.iter().map(|s| s.cells.len() as i64);
+        datasets.put("/VTKHDF/NumberOfCells", cells)?;
+        let entries = all.iter().map(|s| s.cells.connectivity().len() as i64);
+        datasets.put("/VTKHDF/NumberOfConnectivityIds", entries)?;
+        datasets.vectors("/VTKHDF/Points", all.iter().flat_map(|s| &s.points))?;
+        let kinds = all.iter().flat_map(|s| s.cells.iter());
+        datasets.put("/VTKHDF/Types", kinds.map(|(kind, _)| kind.vtk()))?;
+        let offsets = all.iter().flat_map(|s| s.cells.offsets());
+        datasets.put("/VTKHDF/Offsets", offsets.map(|&offset| offset as i64))?;
+        let nodes = all.iter().flat_map(|s| s.cells.connectivity());
+        datasets.put("/VTKHDF/Connectivity", nodes.map(|&node| i64::from(node)))?;
+        let tags = all.iter().flat_map(|s| &s.node_tags);
+        datasets.put("/VTKHDF/PointData/GlobalNodeId", tags.copied())?;
+        let numbers = all.iter().map(|s| (s.index as i64, s.cells.len()));
+        let numbers = numbers.flat_map(|(index, cells)| std::iter::repeat_n(index, cells));
+        datasets.put("/VTKHDF/CellData/Subdomain", numbers)?;
+        let materials = all.iter().flat_map(|s| &s.cell_material);
+        datasets.put(
+            "/VTKHDF/CellData/Material",
+            materials.map(|&m| i64::from(m)),
+        )
+    }
+
+    fn write_conditions(&self, datasets: &mut Datasets) -> hdf5::Result<()> {
+        let all = &self.subdomains;
+        datasets.offsets("/interface/offset", all.iter().map(|s| s.interface.len()))?;
+        let nodes = || all.iter().flat_map(|s: &Subdomain| &s.interface);
+        datasets.put("/interface/node", nodes().map(|n| i64::from(n.node)))?;
+        datasets.put(
+            "/interface/interface",
+            nodes().map(|n| i64::from(n.interface)),
+        )?;
+
+        datasets.offsets("/support/offset", all.iter().map(|s| s.supports.len()))?;
+        let rows = || all.iter().flat_map(|s: &Subdomain| &s.supports);
+        datasets.put("/support/node", rows().map(|s| i64::from(s.node)))?;
+        datasets.vectors("/support/direction", rows().map(|s| &s.direction))?;
+        let values = all
+            .iter()
+            .flat_map(|s| (0..s.supports.len()).map(move |i| s.support(i)));
+        datasets.put("/support/value", values.flatten())?;
+        datasets.put("/support/condition", rows().map(|s| i64::from(s.condition)))?;
+        let names = self.catalog.supports.iter().map(String::as_str);
+        datasets.strings("/support/name", names)?;
+
+        datasets.offsets("/force/offset", all.iter().map(|s| s.forces.len()))?;
+        let rows = || all.iter().flat_map(|s: &Subdomain| &s.forces);
+        datasets.put("/force/node", rows().map(|&(node, _)| i64::from(node)))?;
+        let values = all
+            .iter()
+            .flat_map(|s| (0..s.forces.len()).map(move |i| s.force(i)));
+        datasets.vectors("/force/value", values.flatten())
+    }
+
+    fn write_contacts(&self, datasets: &mut Datasets) -> hdf5::Result<()> {
+        let names = self.catalog.contacts.iter().map(|c| c.name.as_str());
+        datasets.strings("/contact/name", names)?;
+        datasets.offsets("/contact/group_offset", self.points.iter().map(Vec::len))?;
+        let points = || self.points.iter().flatten();
+        datasets.put("/contact/contact", points().map(|p| i64::from(p.contact)))?;
+        datasets.put("/contact/place", points().map(|p| i64::from(p.place)))?;
+        datasets.put("/contact/gap", points().map(|p| p.gap))?;
+        datasets.put("/contact/area", points().map(|p| p.area))?;
+        datasets.vectors("/contact/position", points().map(|p| &p.position))?;
+        datasets.vectors("/contact/force_point", points().map(|p| &p.force_point))?;
+        datasets.vectors("/contact/normal", points().map(|p| &p.frame.normal))?;
+        datasets.put("/contact/node_a", points().map(|p| p.tag_a))?;
+        datasets.put("/contact/node_b", points().map(|p| p.tag_b))?;
+        datasets.offsets("/contact/entry_offset", points().map(|p| p.entries.len()))?;
+        let nodes = || points().flat_map(|p| p.entries.iter().map(|(node, _)| node));
+        datasets.put(
+            "/contact/entry_subdomain",
+            nodes().map(|n| i64::from(n.subdomain)),
+        )?;
+        datasets.put("/contact/entry_node", nodes().map(|n| i64::from(n.node)))?;
+        let weights = points().flat_map(|p| p.entries.iter().map(|&(_, weight)| weight));
+        datasets.put("/contact/entry_weight", weights)
+    }
+}
+
+/// The datasets of a file in the making.
+struct Datasets<'a> {
+    file: &'a hdf5::File,
+    counts: Counts,
+}
+
+impl Datasets<'_> {
+    /// Writes values row by row, in the shape that the schema says.
+    fn put<T: H5Type>(&mut self, path: &str, values: impl Iterator<Item = T>) -> hdf5::Result<()> {
+        let field = FIELDS.iter().find(|field| field.path == path);
+        let field = field.ok_or_else(|| format!("the schema has no {path}"))?;
         let values: Vec<T> = values.collect();
-        self.put(name, &[values.len()], &values)
+        let mut shape = self.counts.shape(field);
+        shape[0] = values.len() / shape[1..].iter().product::<usize>();
+        (self.counts.learn(field, &shape))
+            .map_err(|expected| format!("{path} has shape {shape:?}; expected {expected}"))?;
+        if !self.file.link_exists(field.group()) {
+            self.file.create_group(field.group())?;
+        }
+        let dataset = self.file.new_dataset::<T>().shape(shape).create(path)?;
+        match values.is_empty() {
+            true => Ok(()),
+            false => dataset.write_raw(&values),
+        }
     }
 
-    fn vectors<'a>(
-        &self,
-        name: &str,
-        width: usize,
-        vectors: impl Iterator<Item = &'a [f64; 3]>,
+    /// Writes vectors, of which as many components are kept as the shape has.
+    fn vectors<'v>(
+        &mut self,
+        path: &str,
+        vectors: impl Iterator<Item = &'v [f64; 3]>,
     ) -> hdf5::Result<()> {
-        let values: Vec<f64> = vectors.flat_map(|v| &v[..width]).copied().collect();
-        self.put(name, &[values.len() / width, width], &values)
+        let width = match path {
+            "/VTKHDF/Points" => 3,
+            _ => self.counts.of('d'),
+        };
+        self.put(path, vectors.flat_map(|v| &v[..width]).copied())
     }
 
-    fn offsets(&self, name: &str, counts: impl Iterator<Item = usize>) -> hdf5::Result<()> {
-        let mut end = 0i64;
+    fn offsets(&mut self, path: &str, counts: impl Iterator<Item = usize>) -> hdf5::Result<()> {
+        let mut end = 0;
         let ends = counts.map(|count| {
             end += count as i64;
             end
         });
-        self.column(name, std::iter::once(0).chain(ends))
+        self.put(path, std::iter::once(0).chain(ends))
     }
 
-    fn strings<'a>(&self, name: &str, strings: impl Iterator<Item = &'a str>) -> hdf5::Result<()> {
+    fn strings<'v>(
+        &mut self,
+        path: &str,
+        strings: impl Iterator<Item = &'v str>,
+    ) -> hdf5::Result<()> {
         let strings = strings.map(variable).collect::<hdf5::Result<Vec<_>>>()?;
-        self.put(name, &[strings.len()], &strings)
+        self.put(path, strings.into_iter())
     }
 }
 

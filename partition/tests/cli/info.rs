@@ -5,7 +5,6 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use contact_dd_partition::info::Info;
-use contact_dd_partition::problem::read::ProblemFile;
 
 fn program(args: &[&str], dir: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_contact-dd-partition"))
@@ -79,16 +78,6 @@ fn loads_are_those_of_every_step() {
 }
 
 #[test]
-fn the_depth_is_that_of_the_tree() {
-    let dir = tempfile::tempdir().unwrap();
-    for (count, depth) in [("1", 0), ("2", 1)] {
-        make("plain", count, dir.path());
-        let path = dir.path().join("problem.h5");
-        assert_eq!(Info::read(&path).unwrap().depth(), depth);
-    }
-}
-
-#[test]
 fn the_program_tells_what_is_in_the_file() {
     let dir = tempfile::tempdir().unwrap();
     let solver = "\n[solver]\nmethod = 'picard'\ntolerance = 1e-6\n";
@@ -111,15 +100,6 @@ fn the_program_tells_what_is_in_the_file() {
     ] {
         assert!(said.lines().any(|said| said == line), "{line} in\n{said}");
     }
-    let file = ProblemFile::open(&dir.path().join("scene.h5")).unwrap();
-    let cells = file.catalog().subdomains.iter().map(|s| s.cells);
-    let sizes = format!(
-        "sizes         {} to {} cells, {} in the mean",
-        cells.clone().min().unwrap(),
-        cells.clone().max().unwrap(),
-        cells.sum::<usize>() / 8
-    );
-    assert!(said.contains(&sizes), "{sizes} in\n{said}");
 }
 
 #[test]

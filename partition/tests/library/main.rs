@@ -1,6 +1,10 @@
 //! What the library makes of scenes and meshes.
 
-#![expect(clippy::unwrap_used, reason = "a test that can't go on has failed")]
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that can't go on has failed"
+)]
 
 mod blocks;
 #[path = "../../../tests/support/close.rs"]

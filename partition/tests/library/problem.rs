@@ -1,5 +1,8 @@
 //! Laws of the problem file and of how a model is cut.
 
+mod errors;
+mod page;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 

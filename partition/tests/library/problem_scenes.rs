@@ -132,7 +132,7 @@ fn tag(node: u32) -> i64 {
 fn material(name: &str, out_of_plane: Option<[f64; 3]>, poisson: Option<f64>) -> Material {
     Material {
         name: name.into(),
-        stiffness: [[2.0, 0.5, 0.0], [0.5, 2.0, 0.1], [0.0, 0.1, 1.0]],
+        stiffness: [[2.0, 0.5, 0.0], [0.5, 2.0, 0.1], [0.0, 0.1, 1.0]].into(),
         out_of_plane,
         poisson,
     }

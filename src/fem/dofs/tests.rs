@@ -11,7 +11,7 @@ use super::*;
 fn material() -> Material {
     Material {
         name: "m".into(),
-        stiffness: [[3.0, 1.0, 0.0], [1.0, 3.0, 0.0], [0.0, 0.0, 1.0]],
+        stiffness: [[3.0, 1.0, 0.0], [1.0, 3.0, 0.0], [0.0, 0.0, 1.0]].into(),
         out_of_plane: None,
         poisson: None,
     }

@@ -23,7 +23,7 @@ fn it_keeps_the_laws_of_a_reference_element() {
 /// K of an element, dofs node by node.
 fn stiffness(element: &ReferenceElement, at: &[[f64; 3]]) -> DMatrix<f64> {
     let mut k = ElementMatrix::default();
-    k.set(element, at, &C);
+    k.set(element, at, &C.into());
     DMatrix::from_fn(2 * at.len(), 2 * at.len(), |i, j| k.row(i)[j])
 }
 

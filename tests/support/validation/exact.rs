@@ -46,7 +46,7 @@ impl Exact {
         let mut rules: BTreeMap<ElementKind, Vec<Sample>> = BTreeMap::new();
         let (mut error, mut energy) = (0.0, 0.0);
         for ((kind, nodes), &material) in mesh.cells.iter().zip(&model.cell_material) {
-            let stiffness = model.materials[material as usize].stiffness;
+            let stiffness = &model.materials[material as usize].stiffness;
             let stiffness = Matrix3::from_fn(|i, j| stiffness[i][j]);
             let compliance = stiffness.try_inverse().unwrap();
             let at: Vec<[f64; 3]> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();

@@ -65,8 +65,7 @@ impl Diagnostics<'_> {
                 .map(f64::abs)
                 .fold(0.0, f64::max);
             let material = &self.materials[self.bodies.cell_material[cell as usize] as usize];
-            let diagonal = (0..3).map(|i| material.stiffness[i][i]);
-            Some((load, diagonal.fold(0.0, f64::max), material.name.as_str()))
+            Some((load, material.stiffness.largest(), material.name.as_str()))
         });
         let unit = self.scene.units.stress();
         let (load, stiffness, name) = loaded.max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;

@@ -1,95 +1,47 @@
 //! An attribute that knows its name: reads one value and says what is wrong with it.
 
 use hdf5::types::TypeDescriptor;
+use toml::Value;
 
 use crate::error::InputError;
 use crate::problem::strings::read_strings;
 
-/// An open attribute of one value.
-pub(super) struct Attribute {
-    /// As in "attribute tolerance of /settings".
-    shown: String,
-    inner: hdf5::Attribute,
+/// Reads the attribute `name` of a group: a text, an integer, a number or a truth value.
+///
+/// # Errors
+/// It is missing, or none of these.
+pub(super) fn read(group: &hdf5::Group, name: &str) -> Result<Value, InputError> {
+    let refused = |what: &str| {
+        let place = group.name();
+        InputError::new(format!(
+            "attribute {}/{name} {what}",
+            place.trim_end_matches('/')
+        ))
+    };
+    let attribute = group.attr(name).map_err(|_| refused("is missing"))?;
+    if attribute.size() != 1 {
+        return Err(refused(&format!(
+            "holds {} values; expected one",
+            attribute.size()
+        )));
+    }
+    let unreadable = |reason: hdf5::Error| refused(&format!("can't be read: {reason}"));
+    let descriptor = attribute.dtype().and_then(|dtype| dtype.to_descriptor());
+    Ok(match descriptor.map_err(unreadable)? {
+        TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_) => {
+            Value::Integer(attribute.read_raw().map_err(unreadable)?[0])
+        }
+        TypeDescriptor::Float(_) => Value::Float(attribute.read_raw().map_err(unreadable)?[0]),
+        TypeDescriptor::Boolean => Value::Boolean(attribute.read_raw().map_err(unreadable)?[0]),
+        _ => {
+            let strings = read_strings(&attribute).map_err(|reason| refused(&reason))?;
+            Value::String(strings.concat())
+        }
+    })
 }
 
-impl Attribute {
-    /// Opens the attribute called `name`.
-    pub fn open(group: &hdf5::Group, name: &str) -> Result<Self, InputError> {
-        let shown = match group.name().as_str() {
-            "/" => format!("attribute {name}"),
-            place => format!("attribute {name} of {place}"),
-        };
-        let inner = group
-            .attr(name)
-            .map_err(|_| InputError::new(format!("{shown} is missing")))?;
-        match inner.size() {
-            1 => Ok(Self { shown, inner }),
-            size => Err(InputError::new(format!(
-                "{shown} holds {size} values; expected one"
-            ))),
-        }
-    }
-
-    /// Opens the attribute called `name`; `None` where there is none.
-    pub fn find(group: &hdf5::Group, name: &str) -> Result<Option<Self>, InputError> {
-        let names = group
-            .attr_names()
-            .map_err(|_| InputError::new("the list of attributes can't be read"))?;
-        match names.iter().any(|known| known == name) {
-            true => Self::open(group, name).map(Some),
-            false => Ok(None),
-        }
-    }
-
-    /// An error about the attribute, which goes on after its name.
-    pub fn error(&self, what: &str) -> InputError {
-        InputError::new(format!("{} {what}", self.shown))
-    }
-
-    /// Its text.
-    pub fn text(&self) -> Result<String, InputError> {
-        let mut strings = read_strings(&self.inner).map_err(|reason| self.error(&reason))?;
-        Ok(strings.pop().unwrap_or_default())
-    }
-
-    /// Its integer.
-    pub fn integer(&self) -> Result<i64, InputError> {
-        use TypeDescriptor::{Integer, Unsigned};
-        match self.descriptor() {
-            Some(Integer(_) | Unsigned(_)) => self.value(),
-            _ => Err(self.error("isn't an integer")),
-        }
-    }
-
-    /// Its number, which may be an integer.
-    pub fn number(&self) -> Result<f64, InputError> {
-        use TypeDescriptor::{Float, Integer, Unsigned};
-        match self.descriptor() {
-            Some(Integer(_) | Unsigned(_) | Float(_)) => self.value(),
-            _ => Err(self.error("isn't a number")),
-        }
-    }
-
-    /// Whether it says yes: as h5py writes `True` and `False`, or as 1 and 0.
-    pub fn truth(&self) -> Result<bool, InputError> {
-        match self.descriptor() {
-            Some(TypeDescriptor::Boolean) => self.value(),
-            _ => match self.integer() {
-                Ok(0) => Ok(false),
-                Ok(1) => Ok(true),
-                _ => Err(self.error("isn't true or false; expected one of them, or 1 or 0")),
-            },
-        }
-    }
-
-    fn descriptor(&self) -> Option<TypeDescriptor> {
-        let dtype = self.inner.dtype().ok()?;
-        dtype.to_descriptor().ok()
-    }
-
-    fn value<T: hdf5::H5Type + Copy>(&self) -> Result<T, InputError> {
-        let values = self.inner.read_raw::<T>().ok();
-        let value = values.and_then(|values| values.first().copied());
-        value.ok_or_else(|| self.error("can't be read"))
-    }
+/// Whether a group has an attribute.
+pub(super) fn is_there(group: &hdf5::Group, name: &str) -> bool {
+    let names = group.attr_names().unwrap_or_default();
+    names.iter().any(|known| known == name)
 }

@@ -2,43 +2,37 @@
 
 use std::collections::HashMap;
 
+use super::contents::Contents;
 use super::header::Header;
-use super::sizes::Sizes;
 use super::{Offsets, hierarchy, materials, settings};
 use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
-use crate::problem::dataset::Dataset;
 use crate::problem::{Body, Catalog, ContactSummary, Hierarchy, LoadStep, SubdomainSummary};
 
 /// Reads and checks the catalog, and where the slices lie.
-pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> {
-    let header = Header::read(file)?;
-    let sizes = Sizes::read(file)?;
-    let count = sizes.points.len();
-    let materials = materials::read(file)?;
-    let bodies = Dataset::column(file, "/bodies/name", None)?.names()?;
-    let (interface_offsets, interface) = read_interface(file, count)?;
-    if !file.link_exists("support") {
-        return Err(InputError::new(
-            "group /support is missing; expected one, empty where nothing is supported",
-        ));
-    }
-    let supports = section(
-        file,
-        "support",
-        count,
-        &["/support/offset", "/support/node"],
-    )?;
-    let support_names = read_support_names(file)?;
-    let forces = section(file, "force", count, &["/force/offset", "/force/node"])?;
-    let (contacts, groups) = read_contacts(file)?;
-    let subdomains = read_subdomains(file, &sizes, bodies.len(), groups.len() - 1)?;
+pub(super) fn read(
+    file: &hdf5::File,
+    header: Header,
+    contents: &Contents,
+) -> Result<(Catalog, Offsets), InputError> {
+    let offsets = Offsets {
+        points: contents.offsets("/VTKHDF/NumberOfPoints")?,
+        cells: contents.offsets("/VTKHDF/NumberOfCells")?,
+        connectivity: contents.offsets("/VTKHDF/NumberOfConnectivityIds")?,
+        interface: contents.offsets("/interface/offset")?,
+        supports: contents.offsets("/support/offset")?,
+        forces: contents.offsets("/force/offset")?,
+        groups: contents.offsets("/contact/group_offset")?,
+        entries: contents.offsets("/contact/entry_offset")?,
+    };
+    let materials = materials::read(contents, header.dim)?;
+    let bodies = contents.strings("/bodies/name")?;
+    let interface = read_interface(contents, &offsets.interface)?;
+    let groups = differences(&offsets.groups);
+    let contacts = read_contacts(contents, &groups)?;
+    let subdomains = read_subdomains(contents, &offsets, bodies.len(), groups.len())?;
     let interface_nodes = check_interface(&interface, &subdomains)?;
     check_bodies(&interface, &subdomains)?;
-    let warnings = match file.link_exists("warnings") {
-        true => Dataset::column(file, "/warnings", None)?.strings()?,
-        false => Vec::new(),
-    };
     let mut catalog = Catalog {
         title: header.title,
         dim: header.dim,
@@ -46,67 +40,40 @@ pub(super) fn read(file: &hdf5::File) -> Result<(Catalog, Offsets), InputError> 
         plane: header.plane,
         materials,
         bodies: bodies.into_iter().map(|name| Body { name }).collect(),
-        supports: support_names,
+        supports: read_support_names(contents)?,
         contacts,
-        steps: read_steps(file)?,
+        steps: read_steps(contents)?,
         subdomains,
         interface,
         interface_nodes,
-        groups: groups.windows(2).map(|w| w[1] - w[0]).collect(),
+        groups,
         hierarchy: Hierarchy::default(),
         solver: settings::read(file)?,
-        warnings,
+        warnings: contents.strings("/warnings")?,
     };
-    catalog.hierarchy = hierarchy::read(file, &catalog)?;
-    let offsets = Offsets {
-        points: running_sum(&sizes.points),
-        cells: running_sum(&sizes.cells),
-        connectivity: running_sum(&sizes.connectivity),
-        interface: interface_offsets,
-        supports,
-        forces,
-        groups,
-    };
+    catalog.hierarchy = hierarchy::read(contents, &catalog)?;
     Ok((catalog, offsets))
 }
 
-fn running_sum(counts: &[usize]) -> Vec<usize> {
-    let mut offsets = vec![0];
-    offsets.extend(counts.iter().scan(0, |sum, n| {
-        *sum += n;
-        Some(*sum)
-    }));
-    offsets
+fn differences(offsets: &[usize]) -> Vec<usize> {
+    offsets.windows(2).map(|w| w[1] - w[0]).collect()
 }
 
-fn read_interface(
-    file: &hdf5::File,
-    count: usize,
-) -> Result<(Vec<usize>, Vec<Vec<u32>>), InputError> {
-    let offsets = section(
-        file,
-        "interface",
-        count,
-        &["/interface/offset", "/interface/node"],
-    )?;
-    let total = offsets[count];
-    if total == 0 {
-        return Ok((offsets, vec![Vec::new(); count]));
-    }
-    let dataset = Dataset::column(file, "/interface/interface", Some(total))?;
-    let numbers = dataset.indices(0..total, total, "number on Γ")?;
-    let mut interface = Vec::with_capacity(count);
-    for slice in offsets.windows(2) {
-        let list = &numbers[slice[0]..slice[1]];
+/// The numbers on Γ of every subdomain.
+fn read_interface(contents: &Contents, offsets: &[usize]) -> Result<Vec<Vec<u32>>, InputError> {
+    let numbers = contents.all_integers("/interface/interface")?;
+    let mut interface = Vec::with_capacity(offsets.len());
+    for ends in offsets.windows(2) {
+        let list = numbers.of(ends[0]..ends[1]);
         if let Some(at) = list.windows(2).position(|w| w[0] >= w[1]) {
-            return Err(dataset.row_error(
-                slice[0] + at + 1,
+            return Err(numbers.error(
+                ends[0] + at + 1,
                 "expected the numbers on Γ of a subdomain in strictly ascending order",
             ));
         }
-        interface.push(list.to_vec());
+        interface.push(list.iter().map(|&number| number as u32).collect());
     }
-    Ok((offsets, interface))
+    Ok(interface)
 }
 
 /// Every number on Γ occurs, in two or more subdomains, all of one body.
@@ -114,11 +81,12 @@ fn check_interface(
     interface: &[Vec<u32>],
     subdomains: &[SubdomainSummary],
 ) -> Result<usize, InputError> {
-    let nodes = interface
-        .iter()
-        .flatten()
-        .max()
-        .map_or(0, |&n| n as usize + 1);
+    let most = interface.iter().flatten().max();
+    let nodes = most.map_or(0, |&number| number as usize + 1);
+    let refused = |number: usize, what: String| {
+        let place = "dataset /interface/interface: number";
+        Err(InputError::new(format!("{place} {number} lies in {what}")))
+    };
     let mut owners = vec![(0usize, usize::MAX); nodes];
     for (subdomain, list) in interface.iter().enumerate() {
         for &number in list {
@@ -127,17 +95,18 @@ fn check_interface(
             if *count == 1 {
                 *first = subdomain;
             } else if subdomains[*first].body != subdomains[subdomain].body {
-                return Err(InputError::new(format!(
-                    "dataset /interface/interface: number {number} lies in the subdomains {first} and {subdomain}, which belong to different bodies"
-                )));
+                let what = format!(
+                    "the subdomains {first} and {subdomain}, which belong to different bodies"
+                );
+                return refused(number as usize, what);
             }
         }
     }
     match owners.iter().position(|&(count, _)| count < 2) {
-        Some(number) => Err(InputError::new(format!(
-            "dataset /interface/interface: number {number} lies in {} subdomains; expected two or more",
-            owners[number].0
-        ))),
+        Some(number) => {
+            let count = owners[number].0;
+            refused(number, format!("{count} subdomains; expected two or more"))
+        }
         None => Ok(nodes),
     }
 }
@@ -167,145 +136,117 @@ fn check_bodies(interface: &[Vec<u32>], subdomains: &[SubdomainSummary]) -> Resu
 }
 
 fn read_subdomains(
-    file: &hdf5::File,
-    sizes: &Sizes,
+    contents: &Contents,
+    offsets: &Offsets,
     bodies: usize,
     groups: usize,
 ) -> Result<Vec<SubdomainSummary>, InputError> {
-    let count = sizes.points.len();
-    let body = Dataset::column(file, "/subdomains/body", Some(count))?;
-    let body_of = body.indices(0..count, bodies, "body")?;
-    if let Some(empty) = first_missing(bodies, body_of.iter().map(|&b| b as usize)) {
-        return Err(body.error(&format!("no subdomain belongs to body {empty}")));
+    let body = contents.all_integers("/subdomains/body")?;
+    let group = contents.all_integers("/subdomains/group")?;
+    let mut group_of = Vec::with_capacity(contents.count('N'));
+    for (row, &value) in group.all().iter().enumerate() {
+        let number = usize::try_from(value)
+            .ok()
+            .filter(|&number| number < groups);
+        if number.is_none() && value != -1 {
+            let what = format!(
+                "{value} is no contact group; expected -1 (no contact) or a number below {groups}"
+            );
+            return Err(group.error(row, &what));
+        }
+        group_of.push(number);
     }
-    let group = Dataset::column(file, "/subdomains/group", Some(count))?;
-    let group_of = group
-        .all_integers()?
+    let bodies_of = body.all().iter().map(|&body| body as usize);
+    check_each_occurs("/subdomains/body", "body", bodies, bodies_of)?;
+    let groups_of = group_of.iter().copied().flatten();
+    check_each_occurs("/subdomains/group", "contact group", groups, groups_of)?;
+    let sizes = differences(&offsets.points)
         .into_iter()
-        .enumerate()
-        .map(|(row, value)| match usize::try_from(value) {
-            Ok(g) if g < groups => Ok(Some(g)),
-            _ if value == -1 => Ok(None),
-            _ => Err(group.row_error(
-                row,
-                &format!(
-                    "{value} is no group; expected -1 (no contact) or a number below {groups}"
-                ),
-            )),
-        })
-        .collect::<Result<Vec<_>, _>>()?;
-    if let Some(empty) = first_missing(groups, group_of.iter().copied().flatten()) {
-        return Err(group.error(&format!("no subdomain belongs to group {empty}")));
-    }
-    Ok((0..count)
-        .map(|i| SubdomainSummary {
-            body: body_of[i] as usize,
-            group: group_of[i],
-            nodes: sizes.points[i],
-            cells: sizes.cells[i],
-        })
-        .collect())
+        .zip(differences(&offsets.cells));
+    let rows = body.all().iter().zip(group_of).zip(sizes);
+    let summary = |((&body, group), (nodes, cells))| SubdomainSummary {
+        body: body as usize,
+        group,
+        nodes,
+        cells,
+    };
+    Ok(rows.map(summary).collect())
 }
 
-/// The first number below `count` that isn't among the `named` ones.
-fn first_missing(count: usize, named: impl Iterator<Item = usize>) -> Option<usize> {
+/// Each number below `count` is among the `named` ones.
+fn check_each_occurs(
+    path: &str,
+    what: &str,
+    count: usize,
+    named: impl Iterator<Item = usize>,
+) -> Result<(), InputError> {
     let mut is_named = vec![false; count];
     for number in named {
         is_named[number] = true;
     }
-    is_named.iter().position(|named| !named)
+    match is_named.iter().position(|named| !named) {
+        Some(number) => Err(InputError::new(format!(
+            "dataset {path}: no subdomain belongs to {what} {number}"
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// Names of the conditions that prescribe displacements; one for all where the file doesn't tell.
-fn read_support_names(file: &hdf5::File) -> Result<Vec<String>, InputError> {
-    // Each of the two says nothing without the other.
-    if file.link_exists("support/condition") || file.link_exists("support/name") {
-        Dataset::column(file, "/support/condition", None)?;
-        return Dataset::column(file, "/support/name", None)?.strings();
+fn read_support_names(contents: &Contents) -> Result<Vec<String>, InputError> {
+    let pair = ["/support/condition", "/support/name"];
+    match pair.map(|path| contents.has(path)) {
+        [true, true] => contents.strings("/support/name"),
+        [false, false] => Ok(vec!["supports".into()]),
+        [has_condition, _] => Err(InputError::new(format!(
+            "dataset {} is missing; expected {} and {} or neither",
+            pair[usize::from(has_condition)],
+            pair[0],
+            pair[1]
+        ))),
     }
-    Ok(vec!["supports".into()])
 }
 
 /// Load steps; none where the file has none.
-fn read_steps(file: &hdf5::File) -> Result<Vec<LoadStep>, InputError> {
-    if !file.link_exists("steps") {
-        return Ok(Vec::new());
+fn read_steps(contents: &Contents) -> Result<Vec<LoadStep>, InputError> {
+    let names = contents.strings("/steps/name")?;
+    let time = contents.numbers("/steps/time", 0..names.len())?;
+    if let Some(row) = time.all().windows(2).position(|w| w[0] >= w[1]) {
+        let [before, after] = [row, row + 1].map(|row| time.all()[row]);
+        let what = format!("{after} comes after {before}; expected times that ascend");
+        return Err(time.error(row + 1, &what));
     }
-    let names = Dataset::column(file, "/steps/name", None)?.names()?;
-    let time = Dataset::column(file, "/steps/time", Some(names.len()))?;
-    let times = time.floats(0..names.len())?;
-    if let Some(row) = times.windows(2).position(|w| w[0] >= w[1]) {
-        return Err(time.row_error(
-            row + 1,
-            &format!(
-                "{} comes after {}; expected times that ascend",
-                times[row + 1],
-                times[row]
-            ),
-        ));
-    }
-    let steps = names.into_iter().zip(times);
-    Ok(steps.map(|(name, time)| LoadStep { name, time }).collect())
+    let steps = names.into_iter().zip(time.all());
+    Ok(steps.map(|(name, &time)| LoadStep { name, time }).collect())
 }
 
-/// Contacts, and the offsets of the groups' rows.
-fn read_contacts(file: &hdf5::File) -> Result<(Vec<ContactSummary>, Vec<usize>), InputError> {
-    if !is_filled(file, "contact") {
-        return Ok((Vec::new(), vec![0]));
+/// Contacts with the numbers of their points.
+fn read_contacts(contents: &Contents, groups: &[usize]) -> Result<Vec<ContactSummary>, InputError> {
+    if let Some(empty) = groups.iter().position(|&rows| rows == 0) {
+        return Err(InputError::new(format!(
+            "dataset /contact/group_offset, row {empty}: group {empty} has no rows"
+        )));
     }
-    let names = Dataset::column(file, "/contact/name", None)?.contact_names()?;
-    let contact = Dataset::column(file, "/contact/contact", None)?;
-    let rows = contact.rows();
-    let place = Dataset::column(file, "/contact/place", Some(rows))?;
-    let groups = Dataset::column(file, "/contact/group_offset", None)?;
-    let offsets = groups.offsets(rows)?;
-    if let Some(empty) = offsets.windows(2).position(|w| w[0] == w[1]) {
-        return Err(groups.row_error(empty, &format!("group {empty} has no rows")));
-    }
-    let contact_of = contact.indices(0..rows, names.len(), "contact")?;
+    let names = contents.strings("/contact/name")?;
+    let contact_of = contents.all_integers("/contact/contact")?;
     let mut conditions = vec![0; names.len()];
-    for &c in &contact_of {
-        conditions[c as usize] += 1;
+    for &contact in contact_of.all() {
+        conditions[contact as usize] += 1;
     }
-    let starts = running_sum(&conditions);
-    let mut seen = vec![false; rows];
-    let places = place.indices(0..rows, rows, "place")?;
-    for (row, (&c, &p)) in contact_of.iter().zip(&places).enumerate() {
-        let (c, p) = (c as usize, p as usize);
-        if p >= conditions[c] || std::mem::replace(&mut seen[starts[c] + p], true) {
-            return Err(place.row_error(
-                row,
-                &format!(
-                    "place {p} of contact {c}; expected each of 0 to {} once",
-                    conditions[c] - 1
-                ),
-            ));
-        }
+    let places = contents.all_integers("/contact/place")?;
+    let mut seen: Vec<Vec<bool>> = conditions.iter().map(|&n| vec![false; n]).collect();
+    for (row, (&c, &p)) in contact_of.all().iter().zip(places.all()).enumerate() {
+        let of_contact = &mut seen[c as usize];
+        let free = of_contact.get_mut(p as usize).filter(|taken| !**taken);
+        let Some(free) = free else {
+            let last = of_contact.len() - 1;
+            let what = format!("place {p} of contact {c}; expected each of 0 to {last} once");
+            return Err(places.error(row, &what));
+        };
+        *free = true;
     }
-    let contacts = names
-        .into_iter()
-        .zip(conditions)
+    let contacts = names.into_iter().zip(conditions);
+    Ok(contacts
         .map(|(name, conditions)| ContactSummary { name, conditions })
-        .collect();
-    Ok((contacts, offsets))
-}
-
-/// The offsets of a section that may be absent; `datasets` are its table of offsets and a column
-/// with a row for each entry.
-fn section(
-    file: &hdf5::File,
-    group: &str,
-    count: usize,
-    datasets: &[&'static str; 2],
-) -> Result<Vec<usize>, InputError> {
-    if !is_filled(file, group) {
-        return Ok(vec![0; count + 1]);
-    }
-    let rows = Dataset::column(file, datasets[1], None)?.rows();
-    Dataset::column(file, datasets[0], Some(count + 1))?.offsets(rows)
-}
-
-/// Whether the file has a group with something in it.
-fn is_filled(file: &hdf5::File, group: &str) -> bool {
-    file.link_exists(group) && !file.group(group).is_ok_and(|group| group.is_empty())
+        .collect())
 }

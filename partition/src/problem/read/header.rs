@@ -1,11 +1,11 @@
 //! The attributes of the file.
 
-use super::attribute::Attribute;
+use toml::Value;
+
+use super::attribute;
 use crate::error::InputError;
 use crate::model::PlaneState;
 use crate::name;
-use crate::problem::strings::read_strings;
-use crate::problem::vtkhdf::GRID;
 use crate::problem::{FORMAT, VERSION};
 use crate::scene::units::Units;
 
@@ -18,114 +18,72 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// Reads the other attributes; a title and units may be absent.
+    /// Checks that a file is a problem file of the version that is read here, and reads its other
+    /// attributes; a title and units may be absent.
     pub fn read(file: &hdf5::File) -> Result<Self, InputError> {
-        check_grid(file)?;
+        check_format(file)?;
+        if !attribute::is_there(file, "dimension")
+            || attribute::read(file, "dimension")? != 2.into()
+        {
+            return Err(unexpected(file, "dimension", "2"));
+        }
+        let title = text(file, "title", "")?;
+        name::check_text(&title).map_err(|reason| {
+            let shown = name::shown(&title);
+            InputError::new(format!("attribute title: '{shown}' {reason}"))
+        })?;
+        let plane = text(file, "plane", "")?;
+        let plane = PlaneState::ALL.into_iter().find(|p| p.name() == plane);
+        let units = text(file, "units", Units::default().length())?;
+        let units = Units::ALL.into_iter().find(|u| u.length() == units);
         Ok(Self {
-            dim: read_dimension(file)?,
-            title: read_title(file)?,
-            units: read_units(file)?,
-            plane: read_plane(file)?,
+            dim: 2,
+            title,
+            units: units.ok_or_else(|| unexpected(file, "units", "\"m\" or \"mm\""))?,
+            plane: plane.ok_or_else(|| unexpected(file, "plane", "\"strain\" or \"stress\""))?,
         })
     }
 }
 
-fn read_plane(file: &hdf5::File) -> Result<PlaneState, InputError> {
-    let plane = text(file, "plane")?;
-    let mut known = PlaneState::ALL.into_iter();
-    known.find(|known| known.name() == plane).ok_or_else(|| {
-        InputError::new(format!(
-            "attribute plane is \"{plane}\"; expected \"strain\" or \"stress\""
-        ))
-    })
-}
-
-/// The units that results are meant in; m, N and Pa where the file doesn't say.
-fn read_units(file: &hdf5::File) -> Result<Units, InputError> {
-    let Some(attribute) = Attribute::find(file, "units")? else {
-        return Ok(Units::default());
-    };
-    let name = attribute.text()?;
-    let known = Units::ALL.into_iter().find(|known| known.length() == name);
-    known.ok_or_else(|| attribute.error(&format!("is \"{name}\"; expected \"m\" or \"mm\"")))
-}
-
-/// The title; empty where there is none.
-fn read_title(file: &hdf5::File) -> Result<String, InputError> {
-    if file.attr("title").is_err() {
-        return Ok(String::new());
+/// The text of an attribute; `otherwise` where there is none.
+fn text(file: &hdf5::File, name: &str, otherwise: &str) -> Result<String, InputError> {
+    if !attribute::is_there(file, name) {
+        return Ok(otherwise.into());
     }
-    let title = text(file, "title")?;
-    name::check_text(&title).map_err(|reason| {
-        InputError::new(format!(
-            "attribute title: '{}' {reason}",
-            name::shown(&title)
-        ))
-    })?;
-    Ok(title)
+    match attribute::read(file, name)? {
+        Value::String(text) => Ok(text),
+        _ => Err(unexpected(file, name, "a line of text")),
+    }
 }
 
-/// What ParaView goes by, if it is there, is what is read here.
-fn check_grid(file: &hdf5::File) -> Result<(), InputError> {
-    let Ok(grid) = file.group("VTKHDF") else {
-        return Ok(());
-    };
-    if let Ok(kind) = grid.attr("Type") {
-        let kind = read_strings(&kind).map(|kinds| kinds.concat());
-        if kind.as_deref() != Ok(GRID) {
-            return Err(InputError::new(format!(
-                "attribute Type of /VTKHDF is {}; expected \"{GRID}\"",
-                kind.map_or_else(|reason| reason, |kind| format!("\"{kind}\""))
-            )));
-        }
-    }
-    if let Ok(version) = grid.attr("Version") {
-        let version = version.read_raw::<i64>().unwrap_or_default();
-        if version.len() != 2 || version[0] != 2 {
-            return Err(InputError::new(format!(
-                "attribute Version of /VTKHDF is {version:?}; expected [2, 0] or a later minor one"
-            )));
-        }
-    }
-    Ok(())
-}
-
-/// Checks that a file is a problem file of the version that is read here.
-pub(super) fn check_format(file: &hdf5::File) -> Result<(), InputError> {
-    let format = text(file, "format").map_err(|_| {
-        InputError::new(format!(
+fn check_format(file: &hdf5::File) -> Result<(), InputError> {
+    if !attribute::is_there(file, "format") {
+        return Err(InputError::new(format!(
             "is an HDF5 file, but no problem file: it has no attribute format = \"{FORMAT}\". \
              contact-dd-partition makes a problem file of a scene and a mesh"
-        ))
-    })?;
-    if format != FORMAT {
-        return Err(InputError::new(format!(
-            "isn't a problem file: attribute format is \"{}\"; expected \"{FORMAT}\"",
-            name::shown(&format)
         )));
     }
-    match Attribute::open(file, "version")?.integer()? {
-        VERSION => Ok(()),
-        older if (1..VERSION).contains(&older) => Err(InputError::new(format!(
+    if attribute::read(file, "format")?.as_str() != Some(FORMAT) {
+        return Err(unexpected(
+            file,
+            "format",
+            &format!("\"{FORMAT}\", that of a problem file"),
+        ));
+    }
+    match attribute::read(file, "version")?.as_integer() {
+        Some(VERSION) => Ok(()),
+        Some(older) if (1..VERSION).contains(&older) => Err(InputError::new(format!(
             "has version {older} of the format; expected {VERSION}. Make it again with \
              contact-dd-partition"
         ))),
-        other => Err(InputError::new(format!(
-            "has version {other} of the format; expected {VERSION}: make it again with \
-             contact-dd-partition"
-        ))),
+        _ => Err(unexpected(file, "version", &VERSION.to_string())),
     }
 }
 
-fn read_dimension(file: &hdf5::File) -> Result<usize, InputError> {
-    match Attribute::open(file, "dimension")?.integer()? {
-        2 => Ok(2),
-        other => Err(InputError::new(format!(
-            "attribute dimension is {other}; expected 2"
-        ))),
-    }
-}
-
-fn text(file: &hdf5::File, name: &str) -> Result<String, InputError> {
-    Attribute::open(file, name)?.text()
+/// An error about an attribute of the file.
+fn unexpected(file: &hdf5::File, name: &str, expected: &str) -> InputError {
+    let found = attribute::read(file, name).map(|value| value.to_string());
+    let found = found.unwrap_or_else(|error| error.to_string());
+    let found = name::shown(&found);
+    InputError::new(format!("attribute {name} is {found}; expected {expected}"))
 }

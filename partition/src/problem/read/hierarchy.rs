@@ -1,30 +1,31 @@
 //! The tree over the subdomains.
 
+use super::contents::Contents;
+use super::slice::Slice;
 use crate::error::InputError;
-use crate::problem::dataset::Dataset;
 use crate::problem::{Catalog, Hierarchy};
 
 /// Reads and checks the tree.
-pub(super) fn read(file: &hdf5::File, catalog: &Catalog) -> Result<Hierarchy, InputError> {
-    let dataset = Dataset::column(file, "/hierarchy/parent", None)?;
+pub(super) fn read(contents: &Contents, catalog: &Catalog) -> Result<Hierarchy, InputError> {
+    let rows = contents.all_integers("/hierarchy/parent")?;
     let hierarchy = Hierarchy {
-        parent: read_parents(&dataset, catalog.subdomains.len())?,
+        parent: read_parents(&rows, catalog.subdomains.len())?,
     };
-    check_groups(&dataset, &hierarchy, catalog)?;
-    check_roots(&dataset, &hierarchy, catalog)?;
+    check_groups(&rows, &hierarchy, catalog)?;
+    check_roots(&hierarchy, catalog)?;
     Ok(hierarchy)
 }
 
-fn read_parents(dataset: &Dataset, subdomains: usize) -> Result<Vec<Option<u32>>, InputError> {
-    let nodes = dataset.rows();
+fn read_parents(rows: &Slice<i64>, subdomains: usize) -> Result<Vec<Option<u32>>, InputError> {
+    let nodes = rows.all().len();
     if nodes < subdomains {
-        return Err(dataset.error(&format!(
-            "has {nodes} rows; expected one for each of the {subdomains} subdomains and for each inner node"
+        return Err(InputError::new(format!(
+            "dataset /hierarchy/parent: has {nodes} rows; expected one for each of the {subdomains} subdomains and for each inner node"
         )));
     }
     let mut is_parent = vec![false; nodes];
     let mut parents = Vec::with_capacity(nodes);
-    for (row, value) in dataset.all_integers()?.into_iter().enumerate() {
+    for (row, &value) in rows.all().iter().enumerate() {
         let least = subdomains.max(row + 1);
         let parent = u32::try_from(value).ok();
         match parent.filter(|&p| (least..nodes).contains(&(p as usize))) {
@@ -35,7 +36,7 @@ fn read_parents(dataset: &Dataset, subdomains: usize) -> Result<Vec<Option<u32>>
                     true => format!(" or an inner node, {least} to {}", nodes - 1),
                     false => String::new(),
                 };
-                return Err(dataset.row_error(
+                return Err(rows.error(
                     row,
                     &format!("{value} is no parent; expected -1 (a root){inner}"),
                 ));
@@ -44,16 +45,14 @@ fn read_parents(dataset: &Dataset, subdomains: usize) -> Result<Vec<Option<u32>>
         parents.push(parent);
     }
     match (subdomains..nodes).find(|&node| !is_parent[node]) {
-        Some(node) => {
-            Err(dataset.row_error(node, "the inner node has no child; expected one at least"))
-        }
+        Some(node) => Err(rows.error(node, "the inner node has no child; expected one at least")),
         None => Ok(parents),
     }
 }
 
 /// All members of a group have one parent.
 fn check_groups(
-    dataset: &Dataset,
+    rows: &Slice<i64>,
     hierarchy: &Hierarchy,
     catalog: &Catalog,
 ) -> Result<(), InputError> {
@@ -66,7 +65,7 @@ fn check_groups(
         let (parent, expected) = (hierarchy.parent[row], hierarchy.parent[known]);
         if parent != expected {
             let number = |parent: Option<u32>| parent.map_or(-1, i64::from);
-            return Err(dataset.row_error(
+            return Err(rows.error(
                 row,
                 &format!(
                     "{}; expected {}, the parent of subdomain {known} of the same group",
@@ -80,11 +79,7 @@ fn check_groups(
 }
 
 /// Blocks that share a node of Γ are under one root, or no front could eliminate it.
-fn check_roots(
-    dataset: &Dataset,
-    hierarchy: &Hierarchy,
-    catalog: &Catalog,
-) -> Result<(), InputError> {
+fn check_roots(hierarchy: &Hierarchy, catalog: &Catalog) -> Result<(), InputError> {
     // The members of a group are one block even where that is a root itself.
     let mut root: Vec<usize> = (0..hierarchy.parent.len()).collect();
     let mut first = vec![None; catalog.groups.len()];
@@ -104,8 +99,8 @@ fn check_roots(
             let (other, expected) =
                 *under[number as usize].get_or_insert((subdomain, root[subdomain]));
             if root[subdomain] != expected {
-                return Err(dataset.error(&format!(
-                    "the subdomains {other} and {subdomain} share the node {number} of Γ, but are under different roots; expected one above both"
+                return Err(InputError::new(format!(
+                    "dataset /hierarchy/parent: the subdomains {other} and {subdomain} share the node {number} of Γ, but are under different roots; expected one above both"
                 )));
             }
         }

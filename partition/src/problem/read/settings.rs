@@ -1,11 +1,13 @@
-//! How the problem wants to be solved: the attributes of `/settings`.
+//! How the problem wants to be solved: the attributes of `/settings`, which are what `[solver]` of a
+//! scene may hold.
 
-use clap::ValueEnum;
+use toml::{Table, Value};
 
-use super::attribute::Attribute;
+use super::attribute;
 use crate::error::InputError;
-use crate::scene::suggest::nearest;
-use crate::solver::{Method, Positive, SolverSettings};
+use crate::name;
+use crate::problem::schema;
+use crate::solver::SolverSettings;
 
 /// Reads and checks `/settings`; a file may have none.
 pub(super) fn read(file: &hdf5::File) -> Result<SolverSettings, InputError> {
@@ -15,41 +17,30 @@ pub(super) fn read(file: &hdf5::File) -> Result<SolverSettings, InputError> {
     let group = file
         .group("settings")
         .map_err(|_| InputError::new("/settings isn't a group; expected one with attributes"))?;
-    let find = |name| Attribute::find(&group, name);
-    Ok(SolverSettings {
-        method: find("method")?.map(|found| method(&found)).transpose()?,
-        tolerance: positive(find("tolerance")?)?,
-        max_sweeps: find("max_sweeps")?.map(|n| count(&n)).transpose()?,
-        relaxation: positive(find("relaxation")?)?,
-        no_stress: find("no_stress")?.map(|found| found.truth()).transpose()?,
-    })
-}
-
-fn method(attribute: &Attribute) -> Result<Method, InputError> {
-    let name = attribute.text()?;
-    Method::from_str(&name, false).map_err(|_| {
-        let known = || Method::value_variants().iter().map(|method| method.name());
-        let near = nearest(&name, known()).unwrap_or_default();
-        let known = known().collect::<Vec<_>>().join(", ");
-        attribute.error(&format!(
-            "is '{}'; did you mean '{near}'? Known here: {known}",
-            crate::name::shown(&name)
-        ))
-    })
-}
-
-fn positive(attribute: Option<Attribute>) -> Result<Option<Positive>, InputError> {
-    let Some(attribute) = attribute else {
-        return Ok(None);
-    };
-    let value = attribute.number()?;
-    let value =
-        Positive::try_from(value).map_err(|reason| attribute.error(&format!("is {reason}")));
-    value.map(Some)
-}
-
-fn count(attribute: &Attribute) -> Result<usize, InputError> {
-    let count = attribute.integer()?;
-    usize::try_from(count)
-        .map_err(|_| attribute.error(&format!("is {count}; expected a number of sweeps")))
+    let mut settings = SolverSettings::default();
+    let mut table = Table::new();
+    for schema::Attribute {
+        name,
+        value: expected,
+        ..
+    } in schema::attributes_of("/settings")
+    {
+        if !attribute::is_there(&group, name) {
+            continue;
+        }
+        let value = match attribute::read(&group, name)? {
+            // Not every language writes truth values as such.
+            Value::Integer(bit @ 0..=1) if *name == "no_stress" => Value::Boolean(bit == 1),
+            value => value,
+        };
+        let shown = name::shown(&value.to_string());
+        table.insert((*name).into(), value);
+        settings = table.clone().try_into().map_err(|_| {
+            let expected = expected.replace('`', "");
+            InputError::new(format!(
+                "attribute {name} of /settings is {shown}; expected {expected}"
+            ))
+        })?;
+    }
+    Ok(settings)
 }

@@ -1,18 +1,67 @@
-//! The slice of one subdomain.
+//! The slices of consecutive subdomains, each dataset read once.
 
 use std::collections::HashSet;
 use std::ops::Range;
 
 use super::ProblemFile;
-use super::slabs::Slabs;
-use crate::element::geometry::padded;
+use super::slice::Slice;
+use crate::element::geometry::{dot, padded};
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::magnitude::SMALLEST_AREA;
 use crate::mesh::topology::{CellFacet, Facets};
 use crate::model::Support;
-use crate::problem::slab::Slab;
 use crate::problem::{InterfaceNode, StepLoads, Subdomain, UNIT_TOLERANCE};
+
+/// What indices of nodes are, in messages.
+const NODE: &str = "node of its subdomain";
+
+/// What the file says of consecutive subdomains, each value by itself as the schema says.
+struct Slices {
+    points: Slice<f64>,
+    tags: Slice<i64>,
+    types: Slice<i64>,
+    connectivity: Slice<i64>,
+    offsets: Slice<i64>,
+    materials: Slice<i64>,
+    interface: Slice<i64>,
+    support_nodes: Slice<i64>,
+    support_directions: Slice<f64>,
+    support_values: Slice<f64>,
+    /// Absent from files that don't tell conditions apart.
+    support_conditions: Option<Slice<i64>>,
+    force_nodes: Slice<i64>,
+    force_values: Slice<f64>,
+}
+
+impl Slices {
+    fn read(file: &ProblemFile, subdomains: Range<usize>) -> Result<Self, InputError> {
+        let rows = |offsets: &[usize]| offsets[subdomains.start]..offsets[subdomains.end];
+        let (of, contents) = (&file.offsets, &file.contents);
+        let cells = rows(&of.cells);
+        // Each of the subdomains before has an offset more than cells.
+        let ends = cells.start + subdomains.start..cells.end + subdomains.end;
+        let [points, supports, forces] = [&of.points, &of.supports, &of.forces].map(|o| rows(o));
+        let conditions = contents.has("/support/condition");
+        let conditions =
+            conditions.then(|| contents.integers("/support/condition", supports.clone()));
+        Ok(Self {
+            points: contents.numbers("/VTKHDF/Points", points.clone())?,
+            tags: contents.integers("/VTKHDF/PointData/GlobalNodeId", points)?,
+            types: contents.integers("/VTKHDF/Types", cells.clone())?,
+            connectivity: contents.integers("/VTKHDF/Connectivity", rows(&of.connectivity))?,
+            offsets: contents.integers("/VTKHDF/Offsets", ends)?,
+            materials: contents.integers("/VTKHDF/CellData/Material", cells)?,
+            interface: contents.integers("/interface/node", rows(&of.interface))?,
+            support_nodes: contents.integers("/support/node", supports.clone())?,
+            support_directions: contents.numbers("/support/direction", supports.clone())?,
+            support_values: contents.numbers("/support/value", supports)?,
+            support_conditions: conditions.transpose()?,
+            force_nodes: contents.integers("/force/node", forces.clone())?,
+            force_values: contents.numbers("/force/value", forces)?,
+        })
+    }
+}
 
 impl ProblemFile {
     pub(super) fn read_subdomains(
@@ -27,62 +76,54 @@ impl ProblemFile {
         if range.is_empty() {
             return Ok(Vec::new());
         }
-        let slabs = Slabs::read(self, range.clone())?;
-        range.map(|index| self.take(&slabs, index)).collect()
+        let slices = Slices::read(self, range.clone())?;
+        range.map(|index| self.take(&slices, index)).collect()
     }
 
-    fn take(&self, slabs: &Slabs, index: usize) -> Result<Subdomain, InputError> {
-        let nodes = slice(&self.offsets.points, index);
-        let points = self.take_points(slabs, nodes.clone())?;
-        let elements = self.take_cells(slabs, index, &points)?;
+    fn take(&self, slices: &Slices, index: usize) -> Result<Subdomain, InputError> {
+        let rows = slice(&self.offsets.points, index);
+        let points = self.take_points(slices, rows.clone())?;
+        let materials = slices.materials.of(slice(&self.offsets.cells, index));
         Ok(Subdomain {
             index,
             body: self.catalog.subdomains[index].body,
-            node_tags: take_node_tags(slabs, nodes)?,
-            cell_material: slabs.materials.indices(
-                slice(&self.offsets.cells, index),
-                self.catalog.materials.len(),
-                "material",
-            )?,
-            supports: self.take_supports(slabs, index, points.len())?,
-            forces: self.take_forces(slabs, index, points.len())?,
-            interface: self.take_interface(slabs.interface.as_ref(), index)?,
-            steps: self.take_steps(slabs, index),
+            node_tags: take_node_tags(slices, rows)?,
+            cells: self.take_cells(slices, index, &points)?,
+            cell_material: materials.iter().map(|&material| material as u32).collect(),
+            supports: self.take_supports(slices, index, points.len())?,
+            forces: self.take_forces(slices, index, points.len())?,
+            interface: self.take_interface(slices, index)?,
+            steps: self.take_steps(slices, index),
             points,
-            cells: elements,
         })
     }
 
-    fn take_steps(&self, slabs: &Slabs, index: usize) -> Vec<StepLoads> {
+    fn take_steps(&self, slices: &Slices, index: usize) -> Vec<StepLoads> {
         let (dim, steps) = (self.catalog.dim, self.catalog.steps.len());
-        let rows = |slab: Option<&Slab<f64>>, offsets| -> Vec<f64> {
-            slab.map_or_else(Vec::new, |slab| slab.rows(slice(offsets, index)).to_vec())
+        let supports = slices
+            .support_values
+            .of(slice(&self.offsets.supports, index));
+        let forces = slices.force_values.of(slice(&self.offsets.forces, index));
+        let of_step = |k: usize| StepLoads {
+            supports: supports.chunks_exact(steps).map(|row| row[k]).collect(),
+            forces: (forces.chunks_exact(steps * dim))
+                .map(|row| padded(&row[k * dim..][..dim]))
+                .collect(),
         };
-        let supports = rows(
-            slabs.supports.as_ref().map(|s| &s.value),
-            &self.offsets.supports,
-        );
-        let forces = rows(
-            slabs.forces.as_ref().map(|f| &f.value),
-            &self.offsets.forces,
-        );
-        (0..steps)
-            .map(|k| StepLoads {
-                supports: supports.chunks_exact(steps).map(|row| row[k]).collect(),
-                forces: (forces.chunks_exact(steps * dim))
-                    .map(|row| padded(&row[k * dim..][..dim]))
-                    .collect(),
-            })
-            .collect()
+        (0..steps).map(of_step).collect()
     }
 
-    fn take_points(&self, slabs: &Slabs, rows: Range<usize>) -> Result<Vec<[f64; 3]>, InputError> {
+    fn take_points(
+        &self,
+        slices: &Slices,
+        rows: Range<usize>,
+    ) -> Result<Vec<[f64; 3]>, InputError> {
         let start = rows.start;
-        let points = slabs.points.vectors(rows);
+        let points = slices.points.vectors(rows);
         let dim = self.catalog.dim;
         let beside = |p: &[f64; 3]| p[dim..].iter().any(|&x| x != 0.0);
         match points.iter().position(beside) {
-            Some(row) => Err(slabs.points.dataset.row_error(
+            Some(row) => Err(slices.points.error(
                 start + row,
                 &format!("expected 0 beyond the first {dim} coordinates"),
             )),
@@ -92,169 +133,95 @@ impl ProblemFile {
 
     fn take_cells(
         &self,
-        slabs: &Slabs,
+        slices: &Slices,
         index: usize,
         points: &[[f64; 3]],
     ) -> Result<Elements, InputError> {
         let rows = slice(&self.offsets.cells, index);
         let entries = slice(&self.offsets.connectivity, index);
-        let (types, connectivity) = (&slabs.types.dataset, &slabs.connectivity.dataset);
-        let nodes =
-            (slabs.connectivity).indices(entries.clone(), points.len(), "node of its subdomain")?;
+        let (types, connectivity) = (&slices.types, &slices.connectivity);
+        let nodes = connectivity.indices(entries.clone(), NODE, points.len())?;
         // Each of the subdomains before this one has an offset more than cells.
         let first = rows.start + index;
-        let table = &slabs.offsets.dataset;
-        let offsets = slabs.offsets.rows(first..first + rows.len() + 1);
+        let offsets = slices.offsets.of(first..first + rows.len() + 1);
         let mut elements = Elements::default();
         let mut at_nodes = Vec::new();
         let mut used = vec![false; points.len()];
-        let mut at = 0;
-        for (cell, &code) in slabs.types.rows(rows.clone()).iter().enumerate() {
+        let mut start = 0;
+        for (cell, &code) in types.of(rows.clone()).iter().enumerate() {
             let kind = ElementKind::cell_from_vtk(code, self.catalog.dim)
-                .map_err(|error| types.row_error(rows.start + cell, &error))?;
-            let end = at + kind.nodes();
-            if offsets[cell] != at as i64 || offsets[cell + 1] != end as i64 {
-                return Err(table.row_error(
-                    first + cell,
-                    &format!(
-                        "the nodes of the cell run from {} to {}; expected {at} to {end}",
-                        offsets[cell],
-                        offsets[cell + 1]
-                    ),
-                ));
-            }
-            let Some(its_nodes) = nodes.get(at..end) else {
-                return Err(table.row_error(
-                    first + cell + 1,
-                    &format!("offset {end}; expected at most {}", nodes.len()),
-                ));
+                .map_err(|error| types.error(rows.start + cell, &error))?;
+            let end = start + kind.nodes();
+            let fits = offsets[cell..cell + 2] == [start as i64, end as i64];
+            let Some(its_nodes) = nodes.get(start..end).filter(|_| fits) else {
+                let what = format!(
+                    "the nodes of the cell run from {} to {} of {}; expected {start} to {end}",
+                    offsets[cell],
+                    offsets[cell + 1],
+                    nodes.len()
+                );
+                return Err(slices.offsets.error(first + cell, &what));
             };
-            if let Some(twice) =
-                (1..its_nodes.len()).find(|&i| its_nodes[..i].contains(&its_nodes[i]))
-            {
-                return Err(connectivity.row_error(
-                    entries.start + at + twice,
-                    &format!("cell {} has the node twice", rows.start + cell),
-                ));
-            }
             at_nodes.clear();
             at_nodes.extend(its_nodes.iter().map(|&n| points[n as usize]));
-            let size = kind.measure(&at_nodes);
-            if !(size > SMALLEST_AREA && size.is_finite()) {
-                return Err(connectivity.row_error(
-                    entries.start + at,
-                    &format!(
-                        "cell {} has the area {size:e}; expected a positive one (counter-clockwise)",
-                        rows.start + cell
-                    ),
-                ));
-            }
-            if let Some(fold) = kind.fold(&at_nodes, 0.0) {
-                return Err(connectivity.row_error(
-                    entries.start + at + fold.node,
-                    &format!(
-                        "cell {} ({}) is folded: its Jacobian near the node is {:e}; expected a \
-                         positive one everywhere",
-                        rows.start + cell,
-                        kind.name(),
-                        fold.jacobian
-                    ),
-                ));
+            if let Some((place, what)) = fault_of_cell(kind, its_nodes, &at_nodes) {
+                let what = format!("cell {} ({}) {what}", rows.start + cell, kind.name());
+                return Err(connectivity.error(entries.start + start + place, &what));
             }
             for &node in its_nodes {
                 used[node as usize] = true;
             }
             elements.push(kind, its_nodes);
-            at = end;
+            start = end;
         }
-        if at != nodes.len() {
-            return Err(table.row_error(
-                first + rows.len(),
-                &format!("offset {at}; expected {}", nodes.len()),
-            ));
+        if start != nodes.len() {
+            let what = format!("offset {start}; expected {}", nodes.len());
+            return Err(slices.offsets.error(first + rows.len(), &what));
         }
         if let Some(node) = used.iter().position(|used| !used) {
-            return Err(InputError::new(format!(
-                "dataset /VTKHDF/Points, row {}: the point belongs to no cell",
-                self.offsets.points[index] + node
-            )));
+            let row = self.offsets.points[index] + node;
+            return Err(slices.points.error(row, "the point belongs to no cell"));
         }
-        let refused = |[one, other]: [CellFacet; 2], what: &str| {
-            let [one, other] = [one.cell.min(other.cell), one.cell.max(other.cell)];
-            let [one, other] = [one as usize, other as usize];
-            Err(connectivity.row_error(
-                entries.start + elements.offsets()[other],
-                &format!(
-                    "the cells {} and {} {what}",
-                    rows.start + one,
-                    rows.start + other
-                ),
-            ))
-        };
-        if Facets::repeat_themselves(&elements, points.len())
-            && let Some(cells) = Facets::new(&elements, points.len()).overlap(&elements)
-        {
-            return refused(
-                cells,
-                "lie on the same side of an edge that they share; expected cells that don't overlap",
-            );
-        }
-        if let Some(cells) = Facets::torn(&elements, points.len()) {
-            return refused(
-                cells,
-                "share the ends of an edge, but not the node between them; expected the same nodes \
-                 on both sides",
-            );
+        if let Some((cells, what)) = fault_between_cells(&elements, points.len()) {
+            let [one, other] = cells.map(|facet| facet.cell as usize);
+            let [one, other] = [one.min(other), one.max(other)];
+            let row = entries.start + elements.offsets()[other];
+            let [one, other] = [one, other].map(|cell| rows.start + cell);
+            return Err(connectivity.error(row, &format!("the cells {one} and {other} {what}")));
         }
         Ok(elements)
     }
 
     fn take_supports(
         &self,
-        slabs: &Slabs,
+        slices: &Slices,
         index: usize,
         nodes: usize,
     ) -> Result<Vec<Support>, InputError> {
         let rows = slice(&self.offsets.supports, index);
-        let Some(slab) = slabs.supports.as_ref().filter(|_| !rows.is_empty()) else {
-            return Ok(Vec::new());
-        };
-        let dim = self.catalog.dim;
-        let (node, direction) = (&slab.node.dataset, &slab.direction.dataset);
-        let nodes_of = slab
-            .node
-            .indices(rows.clone(), nodes, "node of its subdomain")?;
-        let directions = slab.direction.vectors(rows.clone());
-        let values = slab.value.rows(rows.clone());
-        let values = values.iter().step_by(slab.value.width());
-        let conditions = match &slab.condition {
-            Some(slab) => slab.indices(rows.clone(), self.catalog.supports.len(), "condition")?,
-            None => vec![0; rows.len()],
-        };
+        let (node, direction) = (&slices.support_nodes, &slices.support_directions);
+        let nodes_of = node.indices(rows.clone(), NODE, nodes)?;
+        let directions = direction.vectors(rows.clone());
+        // The first step's, where there are steps.
+        let values = slices.support_values.of(rows.clone());
+        let values = values.iter().step_by(self.catalog.steps.len().max(1));
+        let conditions = slices.support_conditions.as_ref();
         let mut supports: Vec<Support> = Vec::with_capacity(rows.len());
-        for (((at, &node_of), (&d, &value)), &condition) in (nodes_of.iter().enumerate())
-            .zip(directions.iter().zip(values))
-            .zip(&conditions)
-        {
+        for (((row, node_of), d), &value) in rows.zip(nodes_of).zip(directions).zip(values) {
             for before in supports.iter().rev().take_while(|s| s.node >= node_of) {
                 if before.node > node_of {
-                    return Err(
-                        node.row_error(rows.start + at, "expected nodes in ascending order")
-                    );
+                    return Err(node.error(row, "expected nodes in ascending order"));
                 }
-                let product: f64 = (0..dim).map(|i| before.direction[i] * d[i]).sum();
-                if product.abs() > UNIT_TOLERANCE {
-                    return Err(direction.row_error(
-                        rows.start + at,
-                        "expected the directions at a node to be orthogonal",
-                    ));
+                if dot(before.direction, d).abs() > UNIT_TOLERANCE {
+                    let what = "expected the directions at a node to be orthogonal";
+                    return Err(direction.error(row, what));
                 }
             }
             supports.push(Support {
                 node: node_of,
                 direction: d,
                 value,
-                condition,
+                condition: conditions.map_or(0, |of| of.of(row..row + 1)[0] as u32),
             });
         }
         Ok(supports)
@@ -262,55 +229,83 @@ impl ProblemFile {
 
     fn take_forces(
         &self,
-        slabs: &Slabs,
+        slices: &Slices,
         index: usize,
         nodes: usize,
     ) -> Result<Vec<(u32, [f64; 3])>, InputError> {
         let rows = slice(&self.offsets.forces, index);
-        let Some(slab) = slabs.forces.as_ref().filter(|_| !rows.is_empty()) else {
-            return Ok(Vec::new());
-        };
-        let nodes_of = slab
-            .node
-            .indices(rows.clone(), nodes, "node of its subdomain")?;
+        let nodes_of = slices.force_nodes.indices(rows.clone(), NODE, nodes)?;
         if let Some(at) = nodes_of.windows(2).position(|w| w[0] >= w[1]) {
-            return Err(slab.node.dataset.row_error(
+            return Err(slices.force_nodes.error(
                 rows.start + at + 1,
                 "expected the nodes of a subdomain in strictly ascending order",
             ));
         }
-        let first_step = |row: &[f64]| padded(&row[..self.catalog.dim]);
-        let forces = slab.value.rows(rows).chunks_exact(slab.value.width());
-        Ok(nodes_of.into_iter().zip(forces.map(first_step)).collect())
+        let dim = self.catalog.dim;
+        let values = slices.force_values.of(rows);
+        let of_node = values.chunks_exact(dim * self.catalog.steps.len().max(1));
+        let first_step = of_node.map(|row| padded(&row[..dim]));
+        Ok(nodes_of.into_iter().zip(first_step).collect())
     }
 
     fn take_interface(
         &self,
-        slab: Option<&Slab<i64>>,
+        slices: &Slices,
         index: usize,
     ) -> Result<Vec<InterfaceNode>, InputError> {
         let rows = slice(&self.offsets.interface, index);
-        let Some(slab) = slab.filter(|_| !rows.is_empty()) else {
-            return Ok(Vec::new());
-        };
         let nodes = self.catalog.subdomains[index].nodes;
-        let nodes_of = slab.indices(rows.clone(), nodes, "node of its subdomain")?;
+        let nodes_of = slices.interface.indices(rows.clone(), NODE, nodes)?;
         let mut seen = vec![false; nodes];
         let twice = |&node: &u32| std::mem::replace(&mut seen[node as usize], true);
         if let Some(at) = nodes_of.iter().position(twice) {
-            return Err((slab.dataset).row_error(rows.start + at, "the node was named before"));
+            return Err(slices
+                .interface
+                .error(rows.start + at, "the node was named before"));
         }
-        Ok(nodes_of
-            .into_iter()
-            .zip(&self.catalog.interface[index])
+        let numbers = &self.catalog.interface[index];
+        let both = nodes_of.into_iter().zip(numbers);
+        Ok(both
             .map(|(node, &interface)| InterfaceNode { node, interface })
             .collect())
     }
 }
 
-fn take_node_tags(slabs: &Slabs, rows: Range<usize>) -> Result<Vec<i64>, InputError> {
+/// What is wrong with a cell, and at which of its nodes.
+fn fault_of_cell(kind: ElementKind, nodes: &[u32], points: &[[f64; 3]]) -> Option<(usize, String)> {
+    if let Some(twice) = (1..nodes.len()).find(|&i| nodes[..i].contains(&nodes[i])) {
+        return Some((twice, "has the node twice".into()));
+    }
+    let size = kind.measure(points);
+    if !(size > SMALLEST_AREA && size.is_finite()) {
+        let what = format!("has the area {size:e}; expected a positive one (counter-clockwise)");
+        return Some((0, what));
+    }
+    let fold = kind.fold(points, 0.0)?;
+    let what = format!(
+        "is folded: its Jacobian near the node is {:e}; expected a positive one everywhere",
+        fold.jacobian
+    );
+    Some((fold.node, what))
+}
+
+/// Two cells that can't stand side by side, and why.
+fn fault_between_cells(cells: &Elements, points: usize) -> Option<([CellFacet; 2], &'static str)> {
+    if Facets::repeat_themselves(cells, points)
+        && let Some(two) = Facets::new(cells, points).overlap(cells)
+    {
+        let what =
+            "lie on the same side of an edge that they share; expected cells that don't overlap";
+        return Some((two, what));
+    }
+    let what = "share the ends of an edge, but not the node between them; expected the same nodes \
+                on both sides";
+    Some((Facets::torn(cells, points)?, what))
+}
+
+fn take_node_tags(slices: &Slices, rows: Range<usize>) -> Result<Vec<i64>, InputError> {
     let start = rows.start;
-    let tags = slabs.tags.rows(rows).to_vec();
+    let tags = slices.tags.of(rows).to_vec();
     let mut sorted = tags.clone();
     sorted.sort_unstable();
     if sorted.first().is_none_or(|&tag| tag >= 0) && sorted.windows(2).all(|w| w[0] < w[1]) {
@@ -319,7 +314,7 @@ fn take_node_tags(slabs: &Slabs, rows: Range<usize>) -> Result<Vec<i64>, InputEr
     let mut seen = HashSet::new();
     let wrong = |&tag: &i64| tag < 0 || !seen.insert(tag);
     let row = tags.iter().position(wrong).unwrap_or_default();
-    Err(slabs.tags.dataset.row_error(
+    Err(slices.tags.error(
         start + row,
         &format!(
             "tag {}; expected tags ≥ 0, each once in a subdomain",

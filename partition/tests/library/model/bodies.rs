@@ -39,6 +39,7 @@ fn isotropic_stiffness_is_hookes_in_both_plane_states() {
         let strain = [3e-3, -1e-3, 2e-3];
         let stress = steel
             .stiffness
+            .rows::<3>()
             .map(|row| row.iter().zip(strain).map(|(c, e)| c * e).sum::<f64>());
         let out = steel.out_of_plane.unwrap();
         let stress_z: f64 = out.iter().zip(strain).map(|(c, e)| c * e).sum();
@@ -67,7 +68,7 @@ fn a_given_stiffness_is_used_as_it_stands() {
     let model = two().model(wood).unwrap();
     let material = &model.materials[1];
     assert_eq!(
-        material.stiffness,
+        material.stiffness.rows::<3>(),
         [[10.0, 2.0, 1.0], [2.0, 5.0, 0.0], [1.0, 0.0, 3.0]]
     );
     assert_eq!(material.out_of_plane, Some([1.0, 2.0, 3.0]));

@@ -1,0 +1,211 @@
+//! What a problem file holds: all datasets of the schema, read by slices.
+
+use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
+
+use hdf5::LinkType;
+
+use super::dataset::Dataset;
+use super::slice::Slice;
+use crate::error::InputError;
+use crate::name;
+use crate::problem::schema::{self, Counts, FIELDS, FREE, Kind, MAY_BE_EMPTY};
+use crate::scene::suggest::nearest;
+
+/// The datasets of a file, each of the type and shape that the schema says.
+#[derive(Debug)]
+pub(super) struct Contents {
+    datasets: BTreeMap<&'static str, Dataset>,
+    counts: Counts,
+}
+
+impl Contents {
+    /// Opens all datasets of a file in `dim` dimensions.
+    ///
+    /// # Errors
+    /// The first name that isn't known, or the dataset that is missing or not as it should be.
+    pub fn open(file: &hdf5::File, dim: usize) -> Result<Self, InputError> {
+        check_names(file)?;
+        let mut counts = Counts::new(dim);
+        let mut datasets = BTreeMap::new();
+        if !file.link_exists("support") {
+            return Err(InputError::new(
+                "group /support is missing; expected one, empty where nothing is supported",
+            ));
+        }
+        for field in FIELDS {
+            if file.link_exists(field.path) {
+                datasets.insert(field.path, Dataset::open(file, field, &mut counts)?);
+            } else if !field.optional && !is_empty(file, field.group()) {
+                return Err(InputError::new(format!(
+                    "dataset {} is missing",
+                    field.path
+                )));
+            }
+        }
+        Ok(Self { datasets, counts })
+    }
+
+    /// Whether the file holds a dataset.
+    pub fn has(&self, path: &str) -> bool {
+        self.datasets.contains_key(path)
+    }
+
+    /// How many there are of what a letter counts.
+    pub fn count(&self, letter: char) -> usize {
+        self.counts.of(letter)
+    }
+
+    /// Reads some rows of integers.
+    ///
+    /// # Errors
+    /// The row that isn't what the schema says.
+    pub fn integers(&self, path: &str, rows: Range<usize>) -> Result<Slice<i64>, InputError> {
+        let Some(dataset) = self.datasets.get(path) else {
+            return Ok(Slice::new("", 0, 1, Vec::new()));
+        };
+        let slice = dataset.slice(rows.clone())?;
+        if let Kind::Indices(what, letter) = dataset.field.kind {
+            slice.indices(rows, what, self.count(letter))?;
+        }
+        Ok(slice)
+    }
+
+    /// Reads all integers of a dataset of one dimension.
+    ///
+    /// # Errors
+    /// As [`Contents::integers`].
+    pub fn all_integers(&self, path: &str) -> Result<Slice<i64>, InputError> {
+        let rows = self.datasets.get(path).map_or(0, Dataset::rows);
+        self.integers(path, 0..rows)
+    }
+
+    /// Reads some rows of numbers.
+    ///
+    /// # Errors
+    /// The row that isn't what the schema says.
+    pub fn numbers(&self, path: &str, rows: Range<usize>) -> Result<Slice<f64>, InputError> {
+        let Some(dataset) = self.datasets.get(path) else {
+            return Ok(Slice::new("", 0, 1, Vec::new()));
+        };
+        let slice = dataset.slice(rows)?;
+        slice.check_numbers(dataset.field.kind)?;
+        Ok(slice)
+    }
+
+    /// Reads where slices begin and end, from their ends or sizes; all are empty in a group that is.
+    ///
+    /// # Errors
+    /// The row that isn't what the schema says.
+    pub fn offsets(&self, path: &str) -> Result<Vec<usize>, InputError> {
+        let slice = self.all_integers(path)?;
+        match self.datasets.get(path).map(|dataset| dataset.field.kind) {
+            Some(Kind::Offsets(letter)) => slice.offsets(self.count(letter)),
+            Some(Kind::Sizes(letter)) => {
+                slice.running_sum(self.count(letter), schema::noun(letter))
+            }
+            _ => {
+                let field = FIELDS.iter().find(|field| field.path == path);
+                Ok(vec![
+                    0;
+                    field.map_or(0, |field| self.counts.shape(field)[0])
+                ])
+            }
+        }
+    }
+
+    /// Reads all strings.
+    ///
+    /// # Errors
+    /// The row that isn't what the schema says.
+    pub fn strings(&self, path: &str) -> Result<Vec<String>, InputError> {
+        let Some(dataset) = self.datasets.get(path) else {
+            return Ok(Vec::new());
+        };
+        let kind = dataset.field.kind;
+        let law = match kind {
+            Kind::GroupNames => name::check_contact,
+            Kind::Names => name::check,
+            _ => name::check_text,
+        };
+        let strings = dataset.strings()?;
+        if kind == Kind::Names && strings.is_empty() {
+            return Err(dataset.error("is empty; expected at least one name"));
+        }
+        let mut seen = HashMap::new();
+        for (row, text) in strings.iter().enumerate() {
+            let refused = |what: String| {
+                let path = dataset.field.path;
+                InputError::new(format!(
+                    "dataset {path}, row {row}: '{}' {what}",
+                    name::shown(text)
+                ))
+            };
+            law(text).map_err(|reason| refused(reason.to_owned()))?;
+            match seen.insert(text, row) {
+                Some(first) if kind == Kind::GroupNames => {
+                    return Err(refused(format!("is the name of contact {first} already")));
+                }
+                _ => {}
+            }
+        }
+        Ok(strings)
+    }
+}
+
+/// Whether a group has nothing to say and may do so.
+fn is_empty(file: &hdf5::File, group: &str) -> bool {
+    let nothing = || file.group(group).is_ok_and(|group| group.is_empty());
+    MAY_BE_EMPTY.contains(&group) && (!file.link_exists(group) || nothing())
+}
+
+/// Checks that the file holds nothing but what the schema knows: another name was meant to be one
+/// of these. No link leads out of the file.
+fn check_names(file: &hdf5::File) -> Result<(), InputError> {
+    for path in schema::groups() {
+        // What is no group is found where its datasets are opened.
+        let Ok(group) = file.group(path) else {
+            continue;
+        };
+        let unreadable = |_| InputError::new(format!("the group {path} can't be read"));
+        let place = format!("{}/", path.trim_end_matches('/'));
+        let (mut names, mut leading_out) = (Vec::new(), None);
+        let visited = group.iter_visit_default(|name, link| {
+            names.push(name.to_owned());
+            if link.link_type == LinkType::External {
+                leading_out.get_or_insert_with(|| name.to_owned());
+            }
+            Ok(())
+        });
+        visited.map_err(unreadable)?;
+        if let Some(name) = leading_out {
+            return Err(InputError::new(format!(
+                "{place}{name} is a link to another file; expected all data in this one"
+            )));
+        }
+        if FREE.contains(&path) {
+            continue;
+        }
+        check_known(&place, names, &schema::names_in(path))?;
+        let attributes = group.attr_names().map_err(unreadable)?;
+        let known: Vec<&str> = schema::attributes_of(path).map(|a| a.name).collect();
+        check_known(&format!("attribute {place}"), attributes, &known)?;
+    }
+    Ok(())
+}
+
+fn check_known(place: &str, mut names: Vec<String>, known: &[&str]) -> Result<(), InputError> {
+    names.sort();
+    let unknown = names.iter().find(|name| !known.contains(&name.as_str()));
+    let Some(name) = unknown else {
+        return Ok(());
+    };
+    let what = match nearest(name, known.iter().copied()) {
+        Some(near) => format!("did you mean '{near}'? Known here: {}", known.join(", ")),
+        None => "expected none here".to_owned(),
+    };
+    Err(InputError::new(format!(
+        "{place}{} isn't known; {what}",
+        name::shown(name)
+    )))
+}

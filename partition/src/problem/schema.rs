@@ -1,0 +1,394 @@
+//! The schema of the problem file: every group, dataset and attribute, its shape, what it holds and
+//! what it means. The writer, the reader, the check of unknown names and the tables of
+//! docs/problem-file.md are made from it.
+
+use std::collections::BTreeMap;
+
+use self::Kind::{
+    GroupNames, Indices, Integers, Lines, Names, Numbers, NumbersOrNan, Offsets, Positive, Sizes,
+    UnitVectors,
+};
+use crate::stiffness::components;
+
+/// What a dataset holds, and the law that each of its values keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Integers.
+    Integers,
+    /// Numbers from 0 on of what a letter counts; the word says what in messages.
+    Indices(&'static str, char),
+    /// Positive integers whose sum is what a letter counts.
+    Sizes(char),
+    /// Integers that rise from 0 to what a letter counts.
+    Offsets(char),
+    /// Finite numbers.
+    Numbers,
+    /// Finite numbers above 0.
+    Positive,
+    /// Finite numbers, or NaN where one isn't known.
+    NumbersOrNan,
+    /// Finite numbers, of which each row is a unit vector.
+    UnitVectors,
+    /// Lines of text.
+    Lines,
+    /// Names, one at least.
+    Names,
+    /// Names of groups in the result file, each another one.
+    GroupNames,
+}
+
+impl Kind {
+    /// What its values are, in a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Integers | Self::Indices(..) | Self::Sizes(_) | Self::Offsets(_) => "integers",
+            Self::Numbers | Self::Positive | Self::NumbersOrNan | Self::UnitVectors => "numbers",
+            Self::Lines | Self::Names | Self::GroupNames => "strings",
+        }
+    }
+}
+
+/// A dataset.
+#[derive(Debug)]
+pub struct Field {
+    /// Its path in the file.
+    pub path: &'static str,
+    /// Its extents, by letter: "R, d". With a question mark one is there if it isn't 0.
+    pub shape: &'static str,
+    /// What it holds.
+    pub kind: Kind,
+    /// Whether it may be absent from a group that isn't empty.
+    pub optional: bool,
+    /// What it means.
+    pub meaning: &'static str,
+}
+
+/// An attribute.
+#[derive(Debug)]
+pub struct Attribute {
+    /// The group that has it.
+    pub group: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    /// Its value.
+    pub value: &'static str,
+}
+
+/// What letters of shapes count.
+pub const LETTERS: &[(char, &str)] = &[
+    ('N', "subdomains"),
+    (
+        'P',
+        "points, summed over subdomains (shared nodes counted in each)",
+    ),
+    ('C', "cells"),
+    ('K', "connectivity entries"),
+    ('M', "materials"),
+    ('B', "bodies"),
+    ('T', "nodes of the hierarchy"),
+    ('L', "load steps"),
+    ('I', "entries of Γ, summed over subdomains"),
+    ('S', "supports, summed over subdomains"),
+    ('U', "conditions that supports come from"),
+    ('F', "loaded nodes, summed over subdomains"),
+    ('Q', "contacts"),
+    ('G', "contact groups"),
+    ('R', "contact points"),
+    ('E', "entries of contact points"),
+    ('W', "warnings"),
+    ('d', "dimensions of space, 2"),
+    ('v', "components of a strain, 3 in the plane"),
+];
+
+/// Groups that may be empty where there is nothing to say. All but `/support` may be absent, too.
+pub const MAY_BE_EMPTY: [&str; 5] = ["/interface", "/support", "/force", "/contact", "/steps"];
+
+/// Groups that may hold further arrays for ParaView.
+pub const FREE: [&str; 3] = ["/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"];
+
+/// All attributes.
+#[rustfmt::skip]
+pub const ATTRIBUTES: &[Attribute] = &[
+    attribute("/", "format", "`\"contact-dd-mpi problem\"`"),
+    attribute("/", "version", "2"),
+    attribute("/", "title", "a line of text; optional"),
+    attribute("/", "units",
+        "`\"m\"` (m, N, Pa) or `\"mm\"` (mm, N, MPa), what messages and pictures call them; optional"),
+    attribute("/", "dimension", "2"),
+    attribute("/", "plane", "`\"strain\"` or `\"stress\"`"),
+    attribute("/VTKHDF", "Version", "`[2, 0]`; optional"),
+    attribute("/VTKHDF", "Type",
+        "`\"UnstructuredGrid\"`: ParaView's reader needs a string of 16 bytes, null-padded, \
+         without terminator; optional"),
+    attribute("/settings", "method", "`\"newton\"`, `\"anderson\"` or `\"picard\"`"),
+    attribute("/settings", "tolerance",
+        "residual of the interface problem at which sweeps end, above 0"),
+    attribute("/settings", "max_sweeps", "most sweeps, an integer"),
+    attribute("/settings", "relaxation", "relaxation of picard, above 0"),
+    attribute("/settings", "no_stress",
+        "true: stresses are left out. A truth value as h5py writes it, or 1 or 0"),
+];
+
+/// All datasets, those first whose shapes say what a letter counts.
+#[rustfmt::skip]
+pub const FIELDS: &[Field] = &[
+    field("/steps/name", "L", Names, "at least one"),
+    field("/steps/time", "L", Numbers, "ascending"),
+    field("/VTKHDF/NumberOfPoints", "N", Sizes('P'), "points of each subdomain"),
+    field("/VTKHDF/NumberOfCells", "N", Sizes('C'), "cells of each subdomain"),
+    field("/VTKHDF/NumberOfConnectivityIds", "N", Sizes('K'),
+        "connectivity entries of each subdomain"),
+    field("/VTKHDF/Points", "P, 3", Numbers, "coordinates [m]; z = 0"),
+    field("/VTKHDF/Types", "C", Integers,
+        "VTK's cell type: 5 or 22, triangle of 3 or 6 nodes; 9, 23 or 28, quadrilateral of 4, 8 \
+         or 9"),
+    field("/VTKHDF/Offsets", "C + N", Integers,
+        "start of each cell in the subdomain's connectivity, and its end: cells + 1 entries for \
+         every subdomain, each starting with 0"),
+    field("/VTKHDF/Connectivity", "K", Integers,
+        "nodes of the cells, counted within the subdomain: corners counter-clockwise, then the \
+         node on each edge, the first between the first two corners, then the one in the middle"),
+    field("/VTKHDF/PointData/GlobalNodeId", "P", Integers,
+        "a number ≥ 0 that names the node: equal for copies of one node on Γ, different for all \
+         others, such as those on the two sides of a contact"),
+    field("/VTKHDF/CellData/Material", "C", Indices("material", 'M'), "index of the material"),
+    optional("/VTKHDF/CellData/Subdomain", "C", Integers, "for ParaView; not read"),
+    field("/materials/name", "M", Names, ""),
+    field("/materials/stiffness", "M, v, v", Numbers,
+        "maps (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy) for the plane state of the file [Pa]; \
+         symmetric positive definite"),
+    optional("/materials/out_of_plane", "M, v", NumbersOrNan,
+        "maps the same strains to σ_zz; rows of NaN where it isn't known"),
+    optional("/materials/poisson", "M", NumbersOrNan, "Poisson's ratio; NaN where it isn't known"),
+    field("/bodies/name", "B", Names,
+        "a body is what hangs together through shared nodes, its subdomains through Γ"),
+    field("/subdomains/body", "N", Indices("body", 'B'), "body of each subdomain"),
+    field("/subdomains/group", "N", Integers, "contact group of each subdomain, −1 for none"),
+    field("/hierarchy/parent", "T", Integers, "parent of each node, −1 for a root"),
+    field("/interface/offset", "N + 1", Offsets('I'), "slices of the two datasets below"),
+    field("/interface/node", "I", Integers, "node, counted within the subdomain"),
+    field("/interface/interface", "I", Indices("number on Γ", 'I'),
+        "its number on Γ, equal in all subdomains that share it; strictly ascending within a \
+         subdomain. All numbers from 0 up occur, each in two or more subdomains of one body"),
+    field("/support/offset", "N + 1", Offsets('S'), "slices of the datasets below but for `name`"),
+    field("/support/node", "S", Integers, "node, ascending within a subdomain"),
+    field("/support/direction", "S, d", UnitVectors,
+        "unit vector; those of one node are orthogonal"),
+    field("/support/value", "S, L?", Numbers,
+        "prescribed displacement along it [m], in every load step"),
+    optional("/support/condition", "S", Indices("condition", 'U'),
+        "the condition that it comes from, an index into `name`: the report sums up reactions by \
+         condition"),
+    optional("/support/name", "U", Lines,
+        "names of the conditions; with `condition` or not at all"),
+    field("/force/offset", "N + 1", Offsets('F'), "slices of the two datasets below"),
+    field("/force/node", "F", Integers, "node, strictly ascending within a subdomain"),
+    field("/force/value", "F, L?, d", Numbers, "nodal force [N], in every load step"),
+    field("/contact/name", "Q", GroupNames, "names of the contacts"),
+    field("/contact/contact", "R", Indices("contact", 'Q'), "index of the contact"),
+    field("/contact/group_offset", "G + 1", Offsets('R'),
+        "contact points of each contact group, at least one"),
+    field("/contact/place", "R", Indices("place", 'R'),
+        "place in the contact's results: 0 up to the number of its points, each once"),
+    field("/contact/gap", "R", Numbers, "g [m]; negative for an interference fit"),
+    field("/contact/area", "R", Positive,
+        "tributary area on side a, the integral of the point's weight [m], above 0; pressure is \
+         force over area"),
+    field("/contact/position", "R, d", Numbers,
+        "undeformed position on side a, that of `node_a` where there is one [m]"),
+    field("/contact/force_point", "R, d", Numbers,
+        "where the force on side a acts [m], Σ weight · position over its nodes of side a: the \
+         report's moments follow from it"),
+    field("/contact/normal", "R, d", UnitVectors, "unit vector, outward of side a"),
+    field("/contact/node_a", "R", Integers,
+        "name (`GlobalNodeId`) of the node on side a, −1 where there is none"),
+    field("/contact/node_b", "R", Integers,
+        "the same on side b; −1 for an obstacle, which has none, and for mortar, which has \
+         several"),
+    field("/contact/entry_subdomain", "E", Indices("subdomain", 'N'),
+        "subdomain of the entry; one of the point's group"),
+    field("/contact/entry_offset", "R + 1", Offsets('E'),
+        "entries of each contact point, at least one"),
+    field("/contact/entry_node", "E", Integers, "node, counted within that subdomain"),
+    field("/contact/entry_weight", "E", Numbers,
+        "weight w of the node's displacement: w n is its coefficient"),
+    optional("/warnings", "W", Lines, "repeated in the solver's report"),
+];
+
+const fn attribute(group: &'static str, name: &'static str, value: &'static str) -> Attribute {
+    Attribute { group, name, value }
+}
+
+const fn field(
+    path: &'static str,
+    shape: &'static str,
+    kind: Kind,
+    meaning: &'static str,
+) -> Field {
+    Field {
+        path,
+        shape,
+        kind,
+        optional: false,
+        meaning,
+    }
+}
+
+const fn optional(
+    path: &'static str,
+    shape: &'static str,
+    kind: Kind,
+    meaning: &'static str,
+) -> Field {
+    Field {
+        optional: true,
+        ..field(path, shape, kind, meaning)
+    }
+}
+
+impl Field {
+    /// The group that holds it.
+    pub fn group(&self) -> &'static str {
+        match self.path.rsplit_once('/') {
+            Some((group, _)) if !group.is_empty() => group,
+            _ => "/",
+        }
+    }
+}
+
+/// All groups, each before those in it.
+pub fn groups() -> Vec<&'static str> {
+    let mut groups = vec!["/", "/settings"];
+    let parents = FIELDS.iter().map(Field::group).chain(FREE);
+    for group in parents {
+        if !groups.contains(&group) {
+            groups.push(group);
+        }
+    }
+    groups.sort_unstable();
+    groups
+}
+
+/// The names of what a group may hold.
+pub fn names_in(group: &str) -> Vec<&'static str> {
+    let mut names = Vec::new();
+    let paths = FIELDS.iter().map(|field| field.path).chain(groups());
+    let inside = paths.filter_map(|path| path.strip_prefix(group.trim_end_matches('/')));
+    for rest in inside {
+        let name = rest
+            .trim_start_matches('/')
+            .split('/')
+            .next()
+            .unwrap_or_default();
+        if rest.starts_with('/') && !name.is_empty() && !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// The attributes of a group.
+pub fn attributes_of(group: &str) -> impl Iterator<Item = &'static Attribute> {
+    (ATTRIBUTES.iter()).filter(move |attribute| attribute.group == group)
+}
+
+/// What a letter counts, in a word or two.
+pub fn noun(letter: char) -> &'static str {
+    let known = LETTERS.iter().find(|&&(known, _)| known == letter);
+    let noun = known.map_or("", |&(_, noun)| noun);
+    noun.split(',').next().unwrap_or_default()
+}
+
+/// How many there are of what letters count.
+#[derive(Clone, Debug, Default)]
+pub struct Counts(BTreeMap<char, usize>);
+
+impl Counts {
+    /// What the dimension of space says.
+    pub fn new(dim: usize) -> Self {
+        let mut counts = Self::default();
+        counts.set('d', dim);
+        counts.set('v', components(dim));
+        counts
+    }
+
+    /// The number behind a letter; 0 where nothing has said it.
+    pub fn of(&self, letter: char) -> usize {
+        self.0.get(&letter).copied().unwrap_or(0)
+    }
+
+    /// Says what a letter counts.
+    pub fn set(&mut self, letter: char, count: usize) {
+        self.0.insert(letter, count);
+    }
+
+    /// The extents of a field's shape; a letter of which nothing is known counts nothing.
+    pub fn shape(&self, field: &Field) -> Vec<usize> {
+        let terms = self.terms(field).into_iter();
+        terms.map(|term| self.sum(term).0).collect()
+    }
+
+    /// Compares the extents of a field with its shape. Where one letter of an extent isn't known
+    /// yet, the extent says what it counts.
+    ///
+    /// # Errors
+    /// The shape that was expected.
+    pub fn learn(&mut self, field: &Field, found: &[usize]) -> Result<(), String> {
+        let terms = self.terms(field);
+        // h5py writes `data=[]` with shape (0,) whatever the width of a row.
+        let rows = match found {
+            [0] => &terms[..1],
+            _ => &terms[..],
+        };
+        let mut fits = rows.len() == found.len();
+        for (&term, &extent) in rows.iter().zip(found) {
+            match self.sum(term) {
+                (known, None) => fits &= known == extent,
+                (known, Some(letter)) => match extent.checked_sub(known) {
+                    Some(count) => self.set(letter, count),
+                    None => fits = false,
+                },
+            }
+        }
+        match fits {
+            true => Ok(()),
+            false => Err(self.expected(&terms)),
+        }
+    }
+
+    /// The extents that a field has: one with a question mark only if it isn't 0.
+    fn terms(&self, field: &Field) -> Vec<&'static str> {
+        let terms = field.shape.split(", ");
+        let present = terms.filter_map(|term| match term.strip_suffix('?') {
+            Some(term) => (self.sum(term).0 > 0).then_some(term),
+            None => Some(term),
+        });
+        present.collect()
+    }
+
+    /// The sum of an extent's known parts, and its letter of which nothing is known.
+    fn sum(&self, term: &str) -> (usize, Option<char>) {
+        let (mut sum, mut unknown) = (0, None);
+        for part in term.split(" + ") {
+            let letter = part.chars().next().unwrap_or_default();
+            match part.parse().ok().or_else(|| self.0.get(&letter).copied()) {
+                Some(count) => sum += count,
+                None => unknown = Some(letter),
+            }
+        }
+        (sum, unknown)
+    }
+
+    /// A shape in words: "[R, d] with R = 12 contact points".
+    fn expected(&self, terms: &[&str]) -> String {
+        let shape = terms.join(", ");
+        let known = self.0.iter().filter(|(letter, _)| shape.contains(**letter));
+        let known: Vec<String> = known
+            .map(|(&letter, count)| format!("{letter} = {count} {}", noun(letter)))
+            .collect();
+        match known.is_empty() {
+            true => format!("[{shape}]"),
+            false => format!("[{shape}] with {}", known.join(", ")),
+        }
+    }
+}

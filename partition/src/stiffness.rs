@@ -1,0 +1,73 @@
+//! The stiffness of a material in Voigt's notation.
+
+use std::ops::Index;
+
+use nalgebra::{Cholesky, DMatrix};
+
+use crate::magnitude::SMALLEST_STIFFNESS;
+
+/// How far a stiffness may be from its transpose, relative to its largest entry.
+const SYMMETRY_TOLERANCE: f64 = 1e-10;
+
+/// The number of components of a strain in `dim` dimensions: xx, yy, xy in the plane.
+pub const fn components(dim: usize) -> usize {
+    dim * (dim + 1) / 2
+}
+
+/// C of σ = C ε (Pa), a row for each component of a stress.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stiffness {
+    size: usize,
+    values: Vec<f64>,
+}
+
+impl Stiffness {
+    /// The matrix of `values`, row by row, in `dim` dimensions.
+    pub fn new(dim: usize, values: &[f64]) -> Self {
+        Self {
+            size: components(dim),
+            values: values.to_vec(),
+        }
+    }
+
+    /// All entries, row by row.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Its rows as they are needed where the number of components is known.
+    pub fn rows<const V: usize>(&self) -> [[f64; V]; V] {
+        std::array::from_fn(|i| std::array::from_fn(|j| self[i][j]))
+    }
+
+    /// Its largest entry on the diagonal.
+    pub fn largest(&self) -> f64 {
+        (0..self.size).map(|i| self[i][i]).fold(0.0, f64::max)
+    }
+
+    /// Whether it is symmetric positive definite.
+    pub fn is_elastic(&self) -> bool {
+        let c = DMatrix::from_row_slice(self.size, self.size, &self.values);
+        let largest = c.amax();
+        let symmetric = (&c - c.transpose()).amax() <= SYMMETRY_TOLERANCE * largest;
+        // Scaled first, so that no product under- or overflows.
+        symmetric && largest >= SMALLEST_STIFFNESS && Cholesky::new(c / largest).is_some()
+    }
+}
+
+impl Index<usize> for Stiffness {
+    type Output = [f64];
+
+    fn index(&self, row: usize) -> &[f64] {
+        &self.values[row * self.size..(row + 1) * self.size]
+    }
+}
+
+impl<const V: usize> From<[[f64; V]; V]> for Stiffness {
+    fn from(rows: [[f64; V]; V]) -> Self {
+        Self {
+            size: V,
+            values: rows.concat(),
+        }
+    }
+}
