@@ -16,7 +16,7 @@ fn the_page_shows_what_is_tested() {
     let blocks: Vec<&str> = (page.split("```rust").skip(1))
         .map(|rest| rest.split("```").next().unwrap())
         .collect();
-    assert!(blocks.len() >= 5, "{}", blocks.len());
+    assert!(blocks.len() >= 3, "{}", blocks.len());
     for block in blocks {
         assert!(tested.contains(&plain(block)), "isn't tested:{block}");
     }
