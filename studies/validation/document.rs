@@ -2,14 +2,15 @@
 
 use std::fmt::Write as _;
 
-use crate::support::validation::{Case, Gate, Measured};
+use crate::support::validation::{Case, Measured};
 
 /// What stands before the cases.
 pub const HEAD: &str = "\
 # Validation
 
 `scripts/validate` solves scenes with exact answers on successively refined meshes and writes this page.
-Shown is the finest mesh of each kind; a short form with the same gates is among the tests.
+Shown is the finest mesh of each kind. A figure or an order that isn't what it has to be is reported; a short form with
+the same gates is among the tests.
 
 *Energy* is ‖σ_h − σ‖ over ‖σ‖ in the norm of C⁻¹, with σ_h evaluated independently of the solver from the
 displacements of the result file. *Backward error* is the certificate's equilibrium (at most 1e-14). All
@@ -18,7 +19,7 @@ last two meshes. Contact pressure is the force of a node over its tributary area
 
 ";
 
-/// A case with its table, its gates and what doesn't keep them.
+/// A case with its table, and which gates it doesn't keep.
 pub fn chapter(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String {
     let mut text = format!("## {}\n\n{}\n", case.title, case.text);
     let finest: Vec<&Measured> = ran.iter().filter_map(|meshes| meshes.last()).collect();
@@ -69,7 +70,6 @@ pub fn chapter(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String 
         text.push('\n');
     }
     text.push('\n');
-    text += &gates(case);
     if !faults.is_empty() {
         let _ = writeln!(text, "Not kept:\n\n- {}\n", faults.join("\n- "));
     }
@@ -87,35 +87,4 @@ fn shown(value: f64) -> String {
         }
         _ => format!("{value:.1e}"),
     }
-}
-
-/// The gates, families with the same ones together.
-fn gates(case: &Case) -> String {
-    let mut groups: Vec<(String, Vec<&str>)> = Vec::new();
-    for family in &case.families {
-        let words: Vec<String> = (family.gates.iter())
-            .map(|gate| match gate {
-                Gate::Order(name, least) => format!("order of {name} ≥ {least}"),
-                Gate::AtMost(name, most) if *most < 0.1 && *most > 0.0 => {
-                    format!("{name} ≤ {most:.0e}")
-                }
-                Gate::AtMost(name, most) => format!("{name} ≤ {most:.1}"),
-            })
-            .collect();
-        let words = words.join(", ");
-        match groups.iter_mut().find(|(known, _)| *known == words) {
-            Some((_, names)) => names.push(&family.name),
-            None => groups.push((words, vec![&family.name])),
-        }
-    }
-    let is_one = groups.len() == 1;
-    let mut text = String::new();
-    for (words, names) in groups {
-        let _ = match is_one {
-            true => writeln!(text, "Gates: {words}"),
-            false => writeln!(text, "- Gates of {}: {words}", names.join("; ")),
-        };
-    }
-    text.push('\n');
-    text
 }
