@@ -345,8 +345,9 @@ def belongs(report, problem, arguments):
     """Ends unless the report is that of a run of the problem on one rank."""
     for name, expected in [*problem.items(), ("ranks", 1)]:
         if report.get(name) != expected:
-            sys.exit(f"scaling predict: {arguments.report}: has {name.replace('_', ' ')} {report.get(name)}; expected "
-                     f"{expected}, the report of a run of {arguments.problem} on one rank")
+            print(f"scaling predict: {arguments.report}: has {report.get(name)} {name.replace('_', ' ')}; expected "
+                  f"{expected}, the report of a run of {arguments.problem} on one rank", file=sys.stderr)
+            sys.exit(2)
 
 
 def main():
