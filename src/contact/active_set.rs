@@ -5,12 +5,15 @@
 //! empty but where more conditions meet than there are directions. Flags, bounds and forces are
 //! those of approaches, then those of dependent conditions.
 //!
-//! A warm-started primal-dual active set flips every condition whose sign is wrong, at first with
-//! bodies that lose their hold back where they began, then, if that gets nowhere, with them where
-//! they were last within their gaps. Where that turns in circles or opens conditions one by one, too,
-//! an interior-point method names the set to start from, and from there Júdice and Pires' rule ends
-//! for every positive definite H: flip all as long as their number falls, else one at a time. With
-//! dependent conditions it's the dual method that ends.
+//! The active set, which conditions are open and which are closed, is found by the first of three
+//! strategies that gets there:
+//!
+//! 1. *Flipping*: a primal-dual active set (a semismooth Newton method) from the set that is given. Every
+//!    condition whose sign is wrong flips at once. A few linear systems, but it may cycle.
+//! 2. *Interior point* ([`super::interior_point`]): a set that is right or nearly so, and positions
+//!    within the gaps for bodies that nothing else holds. Some twenty systems, whatever the problem.
+//! 3. *Dual method* ([`super::dual`]): from that set, conditions close one by one. It ends for every
+//!    positive definite H, with linearly dependent conditions too.
 
 use faer::MatRef;
 
@@ -28,24 +31,11 @@ const DIAGONAL_SHARE: f64 = 1e-3;
 const GAP_TOLERANCE: f64 = 1e-14;
 /// Attempts at flipping all wrong signs without progress before that is given up.
 const PATIENCE: usize = 10;
-/// Linear systems solved from the start that is given before the interior-point method is asked.
-const QUICK_STEPS: usize = 25;
-/// Single flips at most, for each condition up to [`SINGLE_FLIPS`] of them.
-const FLIPS_EACH: usize = 10;
-/// Conditions for which every single flip that may be needed is tried.
-const SINGLE_FLIPS: usize = 100;
-
-/// How pivoting goes on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Pivoting {
-    /// All wrong signs flip, and what loses its hold goes back to where it began.
-    Quick,
-    /// All wrong signs flip, and what loses its hold stays where it was within its gaps: bodies that
-    /// go back may run into others, close there, and open again.
-    Following,
-    /// Single signs flip where flipping all of them gets nowhere.
-    Ending,
-}
+/// Linear systems that flipping may solve.
+const FLIPPING_STEPS: usize = 25;
+/// Linear systems that the dual method may solve: for each condition, and all told.
+const DUAL_STEPS_EACH: usize = 10;
+const MOST_DUAL_STEPS: usize = 1000;
 
 /// The contact problem.
 #[derive(Clone, Copy, Debug)]
@@ -115,27 +105,18 @@ impl GapProblem<'_> {
     /// ones are open in the solution.
     pub fn solve(&self, open: &mut [bool]) -> GapSolution {
         let mut set = open.to_vec();
-        let mut solution = self.pivot(&mut set, QUICK_STEPS, Pivoting::Quick);
+        let mut solution = self.flip(&mut set);
         if !solution.converged {
-            let steps = solution.steps;
-            set.copy_from_slice(open);
-            solution = self.pivot(&mut set, QUICK_STEPS, Pivoting::Following);
-            solution.steps += steps;
-        }
-        if !solution.converged {
-            let quick = solution.steps;
+            let before = solution.steps;
             let (mut named, center, named_in) = self.interior_point();
             // Where nothing resists, bodies are within their gaps there, and not just anywhere.
             let centered = GapProblem {
                 center: &center,
                 ..*self
             };
-            solution = if self.rows.is_empty() {
-                centered.pivot(&mut named, self.most_steps(), Pivoting::Ending)
-            } else {
-                centered.dual(&mut named, self.most_steps())
-            };
-            solution.steps += quick + named_in;
+            let most = FLIPPING_STEPS + (DUAL_STEPS_EACH * self.c.len()).min(MOST_DUAL_STEPS);
+            solution = centered.dual(&mut named, most);
+            solution.steps += before + named_in;
             solution.fell_back = true;
             set = named;
         }
@@ -170,45 +151,26 @@ impl GapProblem<'_> {
         (open, approaches.collect(), steps)
     }
 
-    fn most_steps(&self) -> usize {
-        QUICK_STEPS + FLIPS_EACH * self.c.len().min(SINGLE_FLIPS)
-    }
-
-    /// Pivots until all signs are right, or `limit` systems are solved, or flipping all wrong
-    /// signs gets nowhere and single flips aren't asked for.
-    fn pivot(&self, open: &mut [bool], limit: usize, pivoting: Pivoting) -> GapSolution {
+    /// Flips all wrong signs until there is none or their number no longer falls.
+    fn flip(&self, open: &mut [bool]) -> GapSolution {
         let mut fewest = usize::MAX;
         let mut patience = PATIENCE;
         let mut steps = 0;
-        let mut center = self.center.to_vec();
         loop {
             steps += 1;
-            let trial = GapProblem {
-                center: &center,
-                ..*self
-            }
-            .linear(open);
+            let trial = self.linear(open);
             self.open_idle(open, &trial);
             let wrong = self.wrong_signs(open, &trial);
             if wrong.len() < fewest {
                 fewest = wrong.len();
                 patience = PATIENCE;
             } else {
-                patience = patience.saturating_sub(1);
+                patience -= 1;
             }
-            let stuck = patience == 0 && pivoting != Pivoting::Ending;
-            if wrong.is_empty() || stuck || steps >= limit {
+            if wrong.is_empty() || patience == 0 || steps >= FLIPPING_STEPS {
                 return self.solution(&trial, steps, wrong.is_empty());
             }
-            if pivoting == Pivoting::Following && !wrong.iter().any(|&j| open[j]) {
-                center.clone_from(&trial.approaches);
-            }
-            let flips = if patience > 0 {
-                &wrong[..]
-            } else {
-                &wrong[wrong.len() - 1..]
-            };
-            for &j in flips {
+            for j in wrong {
                 if open[j] {
                     self.close(j, open, &trial.forces);
                 } else {
