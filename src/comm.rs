@@ -14,19 +14,21 @@ use std::cell::Cell;
 use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use environment::current_phase;
 pub use environment::{World, is_launched, library, phase, start};
 pub use message::{Message, MessageReader};
 pub use signal::is_asked_to_stop;
 
-use crate::error::{Failure, FailureKind};
+use crate::error::Failure;
 
 /// The rank that assembles S_0 and writes the results.
 pub const ROOT: usize = 0;
 
-/// Most elements in one piece of a message; MPI counts with 32 bits.
-const PIECE: usize = 1 << 27;
+/// Most bytes in one piece of a message; MPI counts with 32 bits.
+const PIECE: usize = 1 << 30;
 
 /// All ranks of a run.
 pub struct Comm {
@@ -86,12 +88,11 @@ impl Comm {
             &mut failed,
             SystemOperation::sum(),
         );
-        let mut message = match &result {
-            Err(failure) if self.rank() == lowest as usize => Message::of_failure(failure),
-            _ => Message::default(),
+        let mut failure = match result {
+            Err(failure) => failure,
+            Ok(_) => Failure::default(),
         };
-        self.broadcast_from(lowest as usize, &mut message);
-        let mut failure = message.into_failure();
+        self.broadcast_from(lowest as usize, &mut failure);
         if (failed as usize) < self.size() {
             let place = format!(" (rank {lowest} of {}, {})", self.size(), current_phase());
             failure.message += &place;
@@ -109,34 +110,34 @@ impl Comm {
     }
 
     /// The root's `decision`, on all ranks. Collective.
-    pub fn decide(&self, decision: bool) -> bool {
-        let mut message = Message {
-            integers: vec![i64::from(decision)],
-            reals: Vec::new(),
+    pub fn decide(&self, mut decision: bool) -> bool {
+        self.broadcast(&mut decision);
+        decision
+    }
+
+    /// Gives all ranks the root's `value`. Collective.
+    pub fn broadcast<T: Serialize + DeserializeOwned>(&self, value: &mut T) {
+        self.broadcast_from(ROOT, value);
+    }
+
+    fn broadcast_from<T: Serialize + DeserializeOwned>(&self, from: usize, value: &mut T) {
+        if self.size() == 1 {
+            return;
+        }
+        let is_mine = from == self.rank();
+        let mut bytes = match is_mine {
+            true => self.encode(value),
+            false => Vec::new(),
         };
-        self.broadcast(&mut message);
-        message.read().integer() != 0
-    }
-
-    /// Gives all ranks the root's message. Collective.
-    pub fn broadcast(&self, message: &mut Message) {
-        self.broadcast_from(ROOT, message);
-    }
-
-    fn broadcast_from(&self, from: usize, message: &mut Message) {
-        if from == self.rank() && self.size() > 1 {
-            self.count(message);
-        }
         let process = self.world.process_at_rank(from as i32);
-        let mut lengths = [message.integers.len() as u64, message.reals.len() as u64];
-        process.broadcast_into(&mut lengths);
-        message.integers.resize(lengths[0] as usize, 0);
-        message.reals.resize(lengths[1] as usize, 0.0);
-        for piece in message.integers.chunks_mut(PIECE) {
+        let mut length = bytes.len() as u64;
+        process.broadcast_into(&mut length);
+        bytes.resize(length as usize, 0);
+        for piece in bytes.chunks_mut(PIECE) {
             process.broadcast_into(piece);
         }
-        for piece in message.reals.chunks_mut(PIECE) {
-            process.broadcast_into(piece);
+        if !is_mine {
+            *value = self.decode(from, &bytes);
         }
     }
 
@@ -145,77 +146,83 @@ impl Comm {
         self.bytes_sent.get()
     }
 
-    fn count(&self, message: &Message) {
-        let numbers = message.integers.len() + message.reals.len();
-        let bytes = 8 * numbers as u64;
-        self.bytes_sent.set(self.bytes_sent.get() + bytes);
+    fn encode<T: Serialize>(&self, value: &T) -> Vec<u8> {
+        match message::encode(value) {
+            Ok(bytes) => {
+                let sent = self.bytes_sent.get() + bytes.len() as u64;
+                self.bytes_sent.set(sent);
+                bytes
+            }
+            Err(why) => self.give_up("can't be sent", &why),
+        }
     }
 
-    /// Sends a message to another rank, which receives it from this one.
-    pub fn send(&self, to: usize, message: &Message) {
-        self.count(message);
+    fn decode<T: DeserializeOwned>(&self, from: usize, bytes: &[u8]) -> T {
+        message::decode(bytes)
+            .unwrap_or_else(|why| self.give_up(&format!("of rank {from} can't be read"), &why))
+    }
+
+    /// The other ranks wait for what can't be had: no error could be agreed on.
+    #[expect(clippy::panic, reason = "both ends are the same program")]
+    fn give_up(&self, what: &str, why: &postcard::Error) -> ! {
+        panic!("a message {what}: {why}");
+    }
+
+    /// Sends a value to another rank, which receives it from this one.
+    pub fn send<T: Serialize>(&self, to: usize, value: &T) {
+        let bytes = self.encode(value);
         let process = self.world.process_at_rank(to as i32);
-        let lengths = [message.integers.len() as u64, message.reals.len() as u64];
-        process.send(&lengths);
-        for piece in message.integers.chunks(PIECE) {
-            process.send(piece);
-        }
-        for piece in message.reals.chunks(PIECE) {
+        process.send(&(bytes.len() as u64));
+        for piece in bytes.chunks(PIECE) {
             process.send(piece);
         }
     }
 
-    /// Receives the next message of another rank.
-    pub fn receive(&self, from: usize) -> Message {
+    /// Receives the next value of another rank.
+    pub fn receive<T: DeserializeOwned>(&self, from: usize) -> T {
         let process = self.world.process_at_rank(from as i32);
-        let mut lengths = [0u64; 2];
-        process.receive_into(&mut lengths);
-        let mut message = Message {
-            integers: vec![0; lengths[0] as usize],
-            reals: vec![0.0; lengths[1] as usize],
-        };
-        for piece in message.integers.chunks_mut(PIECE) {
+        let mut length = 0u64;
+        process.receive_into(&mut length);
+        let mut bytes = vec![0; length as usize];
+        for piece in bytes.chunks_mut(PIECE) {
             process.receive_into(piece);
         }
-        for piece in message.reals.chunks_mut(PIECE) {
-            process.receive_into(piece);
-        }
-        message
+        self.decode(from, &bytes)
     }
 
-    /// Brings one message for each of `owners` to the root, in their order whoever owns what.
+    /// Brings one value for each of `owners` to the root, in their order whoever owns what.
     /// Collective.
     ///
-    /// `make(i)` is called on the owner of `i`, `take(i, message)` on the root.
-    pub fn gather(
+    /// `make(i)` is called on the owner of `i`, `take(i, value)` on the root.
+    pub fn gather<T: Serialize + DeserializeOwned>(
         &self,
         owners: &[usize],
-        make: impl FnMut(usize) -> Message,
-        take: impl FnMut(usize, Message),
+        make: impl FnMut(usize) -> T,
+        take: impl FnMut(usize, T),
     ) {
         self.route(owners.iter().map(|&owner| (owner, ROOT)), make, take);
     }
 
-    /// Brings one message of the root to each of `owners`, in their order. Collective.
+    /// Brings one value of the root to each of `owners`, in their order. Collective.
     ///
-    /// `make(i)` is called on the root, `take(i, message)` on the owner of `i`.
-    pub fn scatter(
+    /// `make(i)` is called on the root, `take(i, value)` on the owner of `i`.
+    pub fn scatter<T: Serialize + DeserializeOwned>(
         &self,
         owners: &[usize],
-        make: impl FnMut(usize) -> Message,
-        take: impl FnMut(usize, Message),
+        make: impl FnMut(usize) -> T,
+        take: impl FnMut(usize, T),
     ) {
         self.route(owners.iter().map(|&owner| (ROOT, owner)), make, take);
     }
 
-    /// Brings a message along each of `ways`, from one rank to another, in their order. Collective.
+    /// Brings a value along each of `ways`, from one rank to another, in their order. Collective.
     ///
-    /// `make(i)` is called where way `i` begins, `take(i, message)` where it ends.
-    pub fn route(
+    /// `make(i)` is called where way `i` begins, `take(i, value)` where it ends.
+    pub fn route<T: Serialize + DeserializeOwned>(
         &self,
         ways: impl IntoIterator<Item = (usize, usize)>,
-        mut make: impl FnMut(usize) -> Message,
-        mut take: impl FnMut(usize, Message),
+        mut make: impl FnMut(usize) -> T,
+        mut take: impl FnMut(usize, T),
     ) {
         for (i, (from, to)) in ways.into_iter().enumerate() {
             match (from == self.rank(), to == self.rank()) {
@@ -227,36 +234,12 @@ impl Comm {
         }
     }
 
-    /// Brings a message of every rank to the root, which gets them in the order of ranks; the
+    /// Brings the value of every rank to the root, which gets them in the order of ranks; the
     /// others get nothing. Collective.
-    pub fn collect(&self, message: Message) -> Vec<Message> {
+    pub fn collect<T: Serialize + DeserializeOwned + Clone>(&self, value: &T) -> Vec<T> {
         let mut all = Vec::new();
-        let mut mine = Some(message);
         let ranks: Vec<usize> = (0..self.size()).collect();
-        self.gather(
-            &ranks,
-            |_| mine.take().unwrap_or_default(),
-            |_, message| all.push(message),
-        );
+        self.gather(&ranks, |_| value.clone(), |_, value| all.push(value));
         all
-    }
-}
-
-impl Message {
-    fn of_failure(failure: &Failure) -> Self {
-        let mut integers = vec![failure.kind as i64];
-        integers.extend(failure.message.bytes().map(i64::from));
-        Self {
-            integers,
-            reals: Vec::new(),
-        }
-    }
-
-    fn into_failure(self) -> Failure {
-        let bytes: Vec<u8> = self.integers.iter().skip(1).map(|&b| b as u8).collect();
-        Failure {
-            kind: FailureKind::from_code(self.integers.first().copied().unwrap_or(1)),
-            message: String::from_utf8_lossy(&bytes).into_owned(),
-        }
     }
 }

@@ -3,12 +3,14 @@
 use std::process::ExitCode;
 
 use contact_dd_partition::error::{InputError, OutputError};
+use serde::{Deserialize, Serialize};
 
 /// What a failed run ends with; the same on all ranks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum FailureKind {
     /// Anything that has no code of its own.
+    #[default]
     Internal = 1,
     /// Bad usage or bad input.
     Input = 2,
@@ -20,21 +22,8 @@ pub enum FailureKind {
     Interrupted = 6,
 }
 
-impl FailureKind {
-    /// The kind that a code received from another rank stands for.
-    pub fn from_code(code: i64) -> Self {
-        match code {
-            2 => Self::Input,
-            4 => Self::IllPosed,
-            5 => Self::Output,
-            6 => Self::Interrupted,
-            _ => Self::Internal,
-        }
-    }
-}
-
 /// A failed run: one message, one exit code.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 #[error("{message}")]
 pub struct Failure {
     /// What it ends with.

@@ -63,6 +63,7 @@ pub mod fem;
 pub mod interface;
 pub mod output;
 pub mod plan;
+pub mod reals;
 pub mod rigid;
 pub mod run;
 pub mod schur;

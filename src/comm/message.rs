@@ -1,13 +1,29 @@
-//! What travels: a list of integers and a list of reals.
+//! What travels.
 
 use faer::{Mat, MatRef};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+/// The bytes of a value.
+pub(super) fn encode<T: Serialize>(value: &T) -> postcard::Result<Vec<u8>> {
+    postcard::to_stdvec(value)
+}
+
+/// The value that `bytes` stand for, all of them.
+pub(super) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> postcard::Result<T> {
+    match postcard::take_from_bytes(bytes)? {
+        (value, []) => Ok(value),
+        _ => Err(postcard::Error::DeserializeBadEncoding),
+    }
+}
 
 /// A message.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Message {
     /// Integers.
     pub integers: Vec<i64>,
     /// Reals.
+    #[serde(with = "crate::reals")]
     pub reals: Vec<f64>,
 }
 

@@ -32,7 +32,7 @@ pub fn afford(comm: &Comm, demands: &[Demand]) -> Result<f64, Failure> {
         reals: vec![available_memory_bytes().map_or(f64::INFINITY, |bytes| bytes as f64)],
     };
     let mut hosts: BTreeMap<String, Host> = BTreeMap::new();
-    for (message, demand) in comm.collect(message).into_iter().zip(demands) {
+    for (message, demand) in comm.collect(&message).into_iter().zip(demands) {
         let name: Vec<u8> = message.integers.iter().map(|&byte| byte as u8).collect();
         let name = String::from_utf8_lossy(&name).into_owned();
         let host = hosts.entry(name).or_default();

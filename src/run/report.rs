@@ -76,7 +76,7 @@ pub fn collect(comm: &Comm, seconds: &PhaseSeconds, plan: &Plan) -> Vec<RankRepo
     message
         .reals
         .extend(seconds.phases().iter().map(|(_, s)| s));
-    comm.collect(message)
+    comm.collect(&message)
         .into_iter()
         .map(|message| {
             let mut reader = message.read();
