@@ -19,7 +19,6 @@ use serde::de::DeserializeOwned;
 
 use environment::current_phase;
 pub use environment::{World, is_launched, library, phase, start};
-pub use message::{Message, MessageReader};
 pub use signal::is_asked_to_stop;
 
 use crate::error::Failure;

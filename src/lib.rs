@@ -55,6 +55,7 @@
 //! [`run`] is all of it on one page. Only [`comm`] knows MPI; [`contact_dd_partition`] makes the
 //! problem file.
 
+pub mod bytes;
 pub mod certificate;
 pub mod comm;
 pub mod contact;
@@ -63,7 +64,6 @@ pub mod fem;
 pub mod interface;
 pub mod output;
 pub mod plan;
-pub mod reals;
 pub mod rigid;
 pub mod run;
 pub mod schur;

@@ -55,7 +55,7 @@ use self::steps::{StepState, in_step, loads_of_step, stop_if_asked, survey_steps
 use self::sweeping::sweep;
 use self::totals::{StepTotals, Totals};
 use self::write::write_solution;
-use crate::comm::{Comm, Message, phase};
+use crate::comm::{Comm, phase};
 use crate::error::Failure;
 use crate::output::ranks::PhaseSeconds;
 use crate::output::report::ReportFile;
@@ -246,12 +246,9 @@ fn create_outputs(context: &Context<'_>, settings: &Settings) -> Result<Option<O
             // Called on the owner of subdomain s, which has read its block.
             let block = &blocks[&plan.block_of[s]].block;
             let cells = block.member(s).map(|m| &block.members[m].cells);
-            Message {
-                integers: vec![cells.map_or(0, |c| c.connectivity().len() as i64)],
-                reals: Vec::new(),
-            }
+            cells.map_or(0, |c| c.connectivity().len())
         },
-        |_, message| connectivity.push(message.read().count()),
+        |_, length| connectivity.push(length),
     );
     let create = || -> Result<Outputs, Failure> {
         let layout = Layout::new(catalog, &connectivity, !settings.no_stress);

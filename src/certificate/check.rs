@@ -1,8 +1,8 @@
 //! The check of a block: what it says of its own part of the solution.
 
 use contact_dd_partition::element::geometry::{advance, cross, dot, padded};
+use serde::{Deserialize, Serialize};
 
-use crate::comm::Message;
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
 use crate::fem::frame::{Frame, support_frames};
@@ -12,7 +12,7 @@ use crate::schur::trace::TraceDof;
 use crate::vector::{larger, largest};
 
 /// What is largest in a block, or in several.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Most {
     /// Residual along directions that are free (N/m).
     pub residual: f64,
@@ -73,7 +73,7 @@ impl Most {
 }
 
 /// Sums of loads, contact forces and support reactions.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct External {
     pub force: [f64; 3],
     /// Of absolute values.
@@ -114,7 +114,7 @@ impl External {
 }
 
 /// What a block says of its own part of the solution.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BlockCheck {
     /// What is largest in it.
     pub most: Most,
@@ -123,10 +123,13 @@ pub struct BlockCheck {
     /// Its traces on Γ.
     pub(super) trace_dofs: Vec<TraceDof>,
     /// Residual on them, to be summed over the blocks that share them.
+    #[serde(with = "crate::bytes")]
     pub(super) traces: Vec<f64>,
+    #[serde(with = "crate::bytes")]
     pub(super) trace_scale: Vec<f64>,
     /// Displacement on the nodes that it shares.
     pub(super) shared_nodes: Vec<u32>,
+    #[serde(with = "crate::bytes")]
     pub(super) shared_displacement: Vec<f64>,
 }
 
@@ -219,70 +222,5 @@ impl BlockCheck {
             most.contact_force = larger(most.contact_force, force);
             most.complementarity = larger(most.complementarity, gap * force);
         }
-    }
-
-    /// As a message.
-    pub fn pack(&self) -> Message {
-        let mut message = Message::default();
-        message.integers.push(self.traces.len() as i64);
-        message.integers.push(self.shared_nodes.len() as i64);
-        message.integers.push(self.shared_displacement.len() as i64);
-        message
-            .integers
-            .extend(self.shared_nodes.iter().map(|&id| i64::from(id)));
-        TraceDof::pack(&self.trace_dofs, &mut message);
-        let (mut most, mut external) = (self.most, self.external);
-        message.reals.extend(most.all().map(|value| *value));
-        message.reals.extend(external.all().map(|value| *value));
-        message.reals.extend(&self.traces);
-        message.reals.extend(&self.trace_scale);
-        message.reals.extend(&self.shared_displacement);
-        message
-    }
-
-    /// From a message.
-    pub fn unpack(message: Message) -> Self {
-        let mut reader = message.read();
-        let traces = reader.count();
-        let nodes = reader.count();
-        let components = reader.count();
-        let shared_nodes = reader.integers(nodes).iter().map(|&id| id as u32).collect();
-        let mut check = Self {
-            shared_nodes,
-            trace_dofs: TraceDof::unpack(&mut reader, traces),
-            ..Self::default()
-        };
-        for value in check.most.all() {
-            *value = reader.real();
-        }
-        for value in check.external.all() {
-            *value = reader.real();
-        }
-        check.traces = reader.reals(traces);
-        check.trace_scale = reader.reals(traces);
-        check.shared_displacement = reader.reals(components);
-        check
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_a_block_says_arrives_as_it_was_sent() {
-        let mut check = BlockCheck {
-            trace_dofs: vec![TraceDof { node: 7, axis: 1 }, TraceDof { node: 9, axis: 0 }],
-            traces: vec![0.1, 0.2],
-            trace_scale: vec![0.3, 0.4],
-            shared_nodes: vec![7, 8, 9],
-            shared_displacement: (0..6).map(f64::from).collect(),
-            ..BlockCheck::default()
-        };
-        let numbers = check.most.all().into_iter().chain(check.external.all());
-        for (k, number) in numbers.enumerate() {
-            *number = 1.5 + k as f64;
-        }
-        assert_eq!(BlockCheck::unpack(check.pack()), check);
     }
 }

@@ -5,13 +5,13 @@
 
 use std::collections::HashMap;
 
-use crate::comm::{Message, MessageReader};
+use serde::{Deserialize, Serialize};
 
 /// A sum of multiples: numbers and factors.
 pub type Terms = Vec<(usize, f64)>;
 
 /// D, row by row.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DependentRows {
     rows: Vec<Terms>,
 }
@@ -68,29 +68,5 @@ impl DependentRows {
             }
         }
         scale
-    }
-
-    /// Appends this to a message.
-    pub fn pack(&self, message: &mut Message) {
-        message.integers.push(self.rows.len() as i64);
-        for row in &self.rows {
-            message.integers.push(row.len() as i64);
-            message.integers.extend(row.iter().map(|&(i, _)| i as i64));
-            message.reals.extend(row.iter().map(|&(_, c)| c));
-        }
-    }
-
-    /// This from a message.
-    pub fn unpack(reader: &mut MessageReader) -> Self {
-        let count = reader.count();
-        let row = |_| {
-            let terms = reader.count();
-            let numbers = reader.integers(terms);
-            let numbers = numbers.iter().map(|&i| i as usize);
-            numbers.zip(reader.reals(terms)).collect()
-        };
-        Self {
-            rows: (0..count).map(row).collect(),
-        }
     }
 }

@@ -1,21 +1,24 @@
 //! The law of a pair, λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0: what S_kl(U) of (12) follows from.
 
 use faer::Mat;
+use serde::{Deserialize, Serialize};
 
 use super::dependent::DependentRows;
 use super::limits::Limits;
-use crate::comm::{Message, MessageReader};
 use crate::schur::condensed::Condensed;
 
 /// λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0, and D t ≤ d where there is such: the part of S_kl
 /// that the root needs to solve for all pairs at once.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PairLaw {
     /// H, on the approaches (Pa).
+    #[serde(with = "crate::bytes::symmetric")]
     pub h: Mat<f64>,
     /// S_tΓ, approaches against traces (Pa).
+    #[serde(with = "crate::bytes::matrix")]
     pub s_t_gamma: Mat<f64>,
     /// The diagonal of the matrix that H is condensed from (Pa).
+    #[serde(with = "crate::bytes")]
     pub diagonal: Vec<f64>,
     /// D.
     pub rows: DependentRows,
@@ -34,27 +37,14 @@ impl PairLaw {
         self.diagonal.is_empty()
     }
 
-    /// Appends the law of a cluster in contact to a message.
-    pub fn pack(condensed: &Condensed, limits: &Limits, message: &mut Message) {
-        let diagonal = &condensed.diagonal[..condensed.approaches];
-        message.integers.push(diagonal.len() as i64);
-        let defining = limits.defining.iter();
-        message.integers.extend(defining.map(|&j| j as i64));
-        message.push_lower(condensed.s_tt());
-        message.push_matrix(condensed.s_t_gamma());
-        message.reals.extend(diagonal);
-        limits.rows.pack(message);
-    }
-
-    /// The law of a pair with `traces` traces.
-    pub fn unpack(reader: &mut MessageReader, traces: usize) -> Self {
-        let m = reader.count();
+    /// The law of a cluster in contact.
+    pub fn new(condensed: &Condensed, limits: &Limits) -> Self {
         Self {
-            defining: (reader.integers(m).iter()).map(|&j| j as usize).collect(),
-            h: reader.symmetric(m),
-            s_t_gamma: reader.matrix(m, traces),
-            diagonal: reader.reals(m),
-            rows: DependentRows::unpack(reader),
+            h: condensed.s_tt().to_owned(),
+            s_t_gamma: condensed.s_t_gamma().to_owned(),
+            diagonal: condensed.diagonal[..condensed.approaches].to_vec(),
+            rows: limits.rows.clone(),
+            defining: limits.defining.clone(),
         }
     }
 }

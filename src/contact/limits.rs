@@ -1,13 +1,15 @@
 //! The limits of a pair: t ≤ g, D t ≤ d.
 
+use serde::{Deserialize, Serialize};
+
 use super::approach::{ApproachOf, defining_conditions};
 use super::dependent::DependentRows;
-use crate::comm::{Message, MessageReader};
 
 /// The bounds t ≤ g and D t ≤ d, and the conditions that they come from.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
     /// g of every approach, the tightest of its conditions, then d of every dependent one (m).
+    #[serde(with = "crate::bytes")]
     pub bounds: Vec<f64>,
     /// D.
     pub rows: DependentRows,
@@ -125,37 +127,6 @@ impl Limits {
         };
         self.tightest.iter().map(of_condition).unzip()
     }
-
-    /// Appends them to a message.
-    pub fn pack(&self, message: &mut Message) {
-        let counts = [self.approaches(), self.bounds.len(), self.conditions];
-        message.integers.extend(counts.map(|n| n as i64));
-        message.reals.extend(&self.bounds);
-        for &(condition, factor) in &self.tightest {
-            message.integers.push(condition as i64);
-            message.reals.push(factor);
-        }
-        message
-            .integers
-            .extend(self.defining.iter().map(|&j| j as i64));
-        message.reals.push(self.scale);
-        self.rows.pack(message);
-    }
-
-    /// From a message.
-    pub fn unpack(reader: &mut MessageReader) -> Self {
-        let (approaches, bounds) = (reader.count(), reader.count());
-        Self {
-            conditions: reader.count(),
-            bounds: reader.reals(bounds),
-            tightest: (0..bounds)
-                .map(|_| (reader.count(), reader.real()))
-                .collect(),
-            defining: (0..approaches).map(|_| reader.count()).collect(),
-            scale: reader.real(),
-            rows: DependentRows::unpack(reader),
-        }
-    }
 }
 
 #[cfg(test)]
@@ -203,12 +174,5 @@ mod tests {
         assert_eq!(joined.rows.row(1), [(2, 1.0), (3, -2.0)]);
         let forces = joined.forces(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         assert_eq!(forces, [1.0, 5.0, 0.0, 1.0, 3.0, 6.0, 0.0, 2.0]);
-    }
-
-    #[test]
-    fn limits_arrive_as_they_were_sent() {
-        let mut message = Message::default();
-        limits(1.5).pack(&mut message);
-        assert_eq!(Limits::unpack(&mut message.read()), limits(1.5));
     }
 }

@@ -36,14 +36,19 @@ pub struct PairState {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PairResponse {
     /// S_kl(U): the forces that hold the traces, less the pair's load (N/m).
+    #[serde(with = "crate::bytes")]
     pub reaction: Vec<f64>,
     /// Scale of the terms that each reaction is a sum of.
+    #[serde(with = "crate::bytes")]
     pub scale: Vec<f64>,
     /// g − t: what every approach has left, then d − D t (m); 0 where closed.
+    #[serde(with = "crate::bytes")]
     pub gaps: Vec<f64>,
     /// c − H t: what contact forces hold where closed, round-off where open (N/m).
+    #[serde(with = "crate::bytes")]
     pub drives: Vec<f64>,
     /// Scale of the terms that each drive is a sum of.
+    #[serde(with = "crate::bytes")]
     pub drive_scale: Vec<f64>,
     /// Which approaches are open, then which dependent conditions.
     pub open: Vec<bool>,

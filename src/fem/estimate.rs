@@ -6,12 +6,13 @@
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::model::Material;
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 use super::elasticity::{stiffness_points, strain, stress_in_plane};
 use super::patch::COMPONENTS;
 
 /// Squares of energy norms over a cell (N, per metre of thickness).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CellError {
     /// ‖σ* − σ_h‖² = ∫ (σ* − σ_h) C⁻¹ (σ* − σ_h), with σ* the recovered stress.
     pub error: f64,

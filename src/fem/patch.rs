@@ -6,6 +6,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::SMatrix;
+use serde::{Deserialize, Serialize};
 
 /// Components of a stress in the plane: XX, YY, ZZ, XY.
 pub const COMPONENTS: usize = 4;
@@ -15,10 +16,6 @@ const TERMS: usize = 6;
 const LINEAR: usize = 3;
 /// Entries of the lower triangle of the normal equations.
 const GRAM: usize = TERMS * (TERMS + 1) / 2;
-/// Those of a linear polynomial.
-const LINEAR_GRAM: usize = LINEAR * (LINEAR + 1) / 2;
-/// Length of the record of a patch of linear cells.
-const LINEAR_RECORD: usize = 2 + LINEAR_GRAM + LINEAR * COMPONENTS;
 
 /// How near to a full turn the angles around a vertex within a body add up.
 const FULL_TURN: f64 = 1e-6;
@@ -26,7 +23,7 @@ const FULL_TURN: f64 = 1e-6;
 const DETERMINED: f64 = 1e-6;
 
 /// Degrees of the cells of a patch.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Cells {
     linear: bool,
     quadratic: bool,
@@ -37,22 +34,11 @@ impl Cells {
         self.linear |= other.linear;
         self.quadratic |= other.quadratic;
     }
-
-    fn code(self) -> f64 {
-        f64::from(u8::from(self.linear)) + 2.0 * f64::from(u8::from(self.quadratic))
-    }
-
-    fn decode(code: f64) -> Self {
-        Self {
-            linear: code == 1.0 || code == 3.0,
-            quadratic: code >= 2.0,
-        }
-    }
 }
 
 /// The normal equations of the polynomial around a vertex that is nearest to samples of the stress.
 /// Those of several blocks add up.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PatchSum {
     angle: f64,
     cells: Cells,
@@ -154,38 +140,6 @@ impl PatchSum {
         Some(polynomial)
     }
 
-    /// Appends it to a message. What linear cells need comes first, so that records of both
-    /// lengths can be added.
-    pub fn pack(&self, reals: &mut Vec<f64>) {
-        reals.extend([self.angle, self.cells.code()]);
-        reals.extend(&self.gram[..LINEAR_GRAM]);
-        reals.extend(self.load[..LINEAR].as_flattened());
-        if self.cells.quadratic {
-            reals.extend(&self.gram[LINEAR_GRAM..]);
-            reals.extend(self.load[LINEAR..].as_flattened());
-        }
-    }
-
-    /// Takes one off the front of what was packed.
-    pub fn unpack(reals: &mut &[f64]) -> Option<Self> {
-        let mut sum = Self::default();
-        let (head, rest) = reals.split_at_checked(LINEAR_RECORD)?;
-        sum.angle = head[0];
-        sum.cells = Cells::decode(head[1]);
-        let (gram, load) = head[2..].split_at(LINEAR_GRAM);
-        sum.gram[..LINEAR_GRAM].copy_from_slice(gram);
-        (sum.load[..LINEAR].as_flattened_mut()).copy_from_slice(load);
-        *reals = rest;
-        if sum.cells.quadratic {
-            let (gram, rest) = rest.split_at_checked(GRAM - LINEAR_GRAM)?;
-            let (load, rest) = rest.split_at_checked((TERMS - LINEAR) * COMPONENTS)?;
-            sum.gram[LINEAR_GRAM..].copy_from_slice(gram);
-            (sum.load[LINEAR..].as_flattened_mut()).copy_from_slice(load);
-            *reals = rest;
-        }
-        Some(sum)
-    }
-
     /// Adds what another block has of the patch.
     pub fn add(&mut self, other: &Self) {
         self.angle += other.angle;
@@ -201,7 +155,7 @@ impl PatchSum {
 }
 
 /// A stress that varies as a polynomial of the place, seen from a vertex.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Polynomial {
     coefficients: [[f64; COMPONENTS]; TERMS],
 }
@@ -369,11 +323,7 @@ mod tests {
             let mut parts = patch(degree, &POINTS[..3]);
             let mut other = patch(degree, &POINTS[3..]);
             other.angle = 0.0;
-            let mut reals = Vec::new();
-            other.pack(&mut reals);
-            let mut reals = &reals[..];
-            parts.add(&PatchSum::unpack(&mut reals).unwrap_or_default());
-            assert!(reals.is_empty());
+            parts.add(&other);
             assert!(parts.is_inner());
             let [a, b] = [whole.fit(), parts.fit()].map(|p| p.at([1e-3, 1e-3]));
             assert!(is_near(a, b));

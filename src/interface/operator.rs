@@ -5,6 +5,7 @@
 use std::cell::OnceCell;
 
 use faer::{Mat, MatRef, Par};
+use serde::{Deserialize, Serialize};
 
 use super::coupled::condense_laws;
 use super::numbering::Numbering;
@@ -19,9 +20,10 @@ use crate::schur::pattern::{LowerPattern, SparseSymmetric};
 const SINGULAR_PIVOT: f64 = 1e-13;
 
 /// What a cluster contributes to the interface problem.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Contribution {
     /// Its Schur complement on its traces, with every contact closed.
+    #[serde(with = "crate::bytes::symmetric")]
     pub s: Mat<f64>,
     /// The smallest pivot of its interior relative to its diagonal entry.
     pub smallest_pivot: f64,

@@ -7,9 +7,10 @@ use super::operator::{Interface, diagonal_of};
 use crate::rigid::energy::{RigidBasis, RigidDrive};
 
 /// What loads a cluster.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ClusterLoad {
     /// Its condensed load on its traces, with every contact closed.
+    #[serde(with = "crate::bytes")]
     pub load: Vec<f64>,
     /// The largest displacement that is prescribed in a cluster in contact (m).
     pub scale: f64,

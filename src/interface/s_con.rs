@@ -4,8 +4,12 @@
 
 use std::collections::BTreeMap;
 
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
 use super::operator::Interface;
-use crate::comm::{Comm, Message};
+use crate::bytes::Reals;
+use crate::comm::Comm;
 use crate::contact::pair::{ContactPair, PairResponse};
 
 /// S_CON = Σ R_kᵀ S_kl R_k, (15), as the root drives it and the other ranks serve it.
@@ -40,9 +44,20 @@ pub struct ConTotals {
     pub unmoved_pairs: usize,
 }
 
-const STOP: i64 = 0;
-const EVALUATE: i64 = 1;
-const DIFFERENTIATE: i64 = 2;
+/// What the root asks of the pairs.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+enum Request {
+    /// Nothing any more.
+    #[default]
+    Stop,
+    /// S_kl(U) of these pairs.
+    Evaluate(Vec<usize>),
+    /// S_kl'(U) x of these pairs.
+    Differentiate(Vec<usize>),
+}
+
+/// U of a pair, and the conditions that are expected to be open.
+type Question = (Reals, Option<Vec<bool>>);
 
 impl<'a> SCon<'a> {
     /// S_CON over `pairs` of this rank; `owners` has the owner of every pair.
@@ -85,15 +100,16 @@ impl<'a> SCon<'a> {
         let moved: Vec<usize> = (0..n)
             .filter(|&p| state.traces[p].as_ref() != Some(&traces[p]))
             .collect();
-        let question = |p: usize| Message {
-            integers: expected.map_or_else(Vec::new, |sets| {
-                sets[p].iter().map(|&open| i64::from(open)).collect()
-            }),
-            reals: traces[p].clone(),
-        };
-        self.ask(EVALUATE, &moved, question, |p, message| {
-            state.responses[p] = unpack(message);
-        });
+        if !moved.is_empty() {
+            (self.comm).broadcast(&mut Request::Evaluate(moved.clone()));
+            let question = |p: usize| -> Question {
+                let open = expected.map(|sets| sets[p].clone());
+                (Reals(traces[p].clone()), open)
+            };
+            self.exchange(&moved, question, evaluate, |p, response| {
+                state.responses[p] = response;
+            });
+        }
         let mut totals = ConTotals {
             unmoved_pairs: n - moved.len(),
             ..ConTotals::default()
@@ -114,13 +130,15 @@ impl<'a> SCon<'a> {
     /// y ← y + S_CON'(U) x with the active sets of the last evaluation. On the root; the other
     /// ranks [`serve`](Self::serve).
     pub fn add_derivative(&mut self, interface: &Interface, x: &[f64], y: &mut [f64]) {
+        if self.is_empty() {
+            return;
+        }
         let all: Vec<usize> = (0..self.len()).collect();
-        let question = |p: usize| Message {
-            integers: Vec::new(),
-            reals: interface.restrict(p, x),
-        };
-        self.ask(DIFFERENTIATE, &all, question, |p, message| {
-            interface.extend(p, &message.reals, y);
+        self.comm
+            .broadcast(&mut Request::Differentiate(all.clone()));
+        let question = |p: usize| Reals(interface.restrict(p, x));
+        self.exchange(&all, question, differentiate, |p, Reals(y_p)| {
+            interface.extend(p, &y_p, y);
         });
     }
 
@@ -128,74 +146,64 @@ impl<'a> SCon<'a> {
     /// root.
     pub fn serve(&mut self) {
         loop {
-            let mut command = Message::default();
-            self.comm.broadcast(&mut command);
-            let Some((&kind, called)) = command.integers.split_first() else {
-                return;
-            };
-            if kind == STOP {
-                return;
+            let mut request = Request::default();
+            self.comm.broadcast(&mut request);
+            // Only the root has questions and takes answers.
+            match request {
+                Request::Stop => return,
+                Request::Evaluate(called) => {
+                    self.exchange(&called, |_| Question::default(), evaluate, |_, _| {});
+                }
+                Request::Differentiate(called) => {
+                    self.exchange(&called, |_| Reals::default(), differentiate, |_, _| {});
+                }
             }
-            let called: Vec<usize> = called.iter().map(|&p| p as usize).collect();
-            self.exchange(kind, &called, |_| Message::default(), |_, _| {});
         }
     }
 
     /// Ends [`serve`](Self::serve) on the other ranks.
     pub fn stop(&self) {
-        self.comm.broadcast(&mut Message {
-            integers: vec![STOP],
-            reals: Vec::new(),
-        });
+        self.comm.broadcast(&mut Request::Stop);
     }
 
-    /// Puts a question to the pairs that are `called`, if any, and takes their answers.
-    fn ask(
+    /// Questions to the owners of the pairs that are `called`, answers to the root. Collective.
+    fn exchange<Q, A>(
         &mut self,
-        kind: i64,
         called: &[usize],
-        question: impl Fn(usize) -> Message,
-        take: impl FnMut(usize, Message),
-    ) {
-        if called.is_empty() {
-            return;
-        }
-        let mut command = Message {
-            integers: vec![kind],
-            reals: Vec::new(),
-        };
-        command.integers.extend(called.iter().map(|&p| p as i64));
-        self.comm.broadcast(&mut command);
-        self.exchange(kind, called, question, take);
-    }
-
-    /// Questions to the owners, answers to the root. Collective.
-    fn exchange(
-        &mut self,
-        kind: i64,
-        called: &[usize],
-        question: impl Fn(usize) -> Message,
-        mut take: impl FnMut(usize, Message),
-    ) {
+        question: impl Fn(usize) -> Q,
+        answer: impl Fn(&mut ContactPair, Q) -> A,
+        mut take: impl FnMut(usize, A),
+    ) where
+        Q: Serialize + DeserializeOwned,
+        A: Serialize + DeserializeOwned + Default,
+    {
         let owners: Vec<usize> = called.iter().map(|&p| self.owners[p]).collect();
-        let mut received: BTreeMap<usize, Message> = BTreeMap::new();
+        let mut received: BTreeMap<usize, Q> = BTreeMap::new();
         self.comm.scatter(
             &owners,
             |i| question(called[i]),
-            |i, message| {
-                received.insert(called[i], message);
+            |i, asked| {
+                received.insert(called[i], asked);
             },
         );
-        let mut answers: BTreeMap<usize, Message> = received
+        let mut answers: BTreeMap<usize, A> = received
             .into_iter()
-            .filter_map(|(p, message)| Some((p, answer(kind, self.pairs.get_mut(&p)?, message))))
+            .filter_map(|(p, asked)| Some((p, answer(self.pairs.get_mut(&p)?, asked))))
             .collect();
         self.comm.gather(
             &owners,
             |i| answers.remove(&called[i]).unwrap_or_default(),
-            |i, message| take(called[i], message),
+            |i, answer| take(called[i], answer),
         );
     }
+}
+
+fn evaluate(pair: &mut ContactPair, (Reals(u), expected): Question) -> PairResponse {
+    pair.evaluate(&u, expected)
+}
+
+fn differentiate(pair: &mut ContactPair, Reals(x): Reals) -> Reals {
+    Reals(pair.derivative(&x))
 }
 
 impl ConState {
@@ -211,68 +219,5 @@ impl ConState {
     /// The sets of open approaches and dependent conditions, pair by pair.
     pub fn open(&self) -> Vec<Vec<bool>> {
         self.responses.iter().map(|r| r.open.clone()).collect()
-    }
-}
-
-/// What a pair answers.
-fn answer(kind: i64, pair: &mut ContactPair, question: Message) -> Message {
-    match kind {
-        DIFFERENTIATE => Message {
-            integers: Vec::new(),
-            reals: pair.derivative(&question.reals),
-        },
-        _ => {
-            let expected: Vec<bool> = question.integers.iter().map(|&open| open != 0).collect();
-            let expected = (!expected.is_empty()).then_some(expected);
-            pack(&pair.evaluate(&question.reals, expected))
-        }
-    }
-}
-
-/// A response as a message.
-fn pack(response: &PairResponse) -> Message {
-    let mut message = Message::default();
-    message.integers.extend([
-        response.reaction.len() as i64,
-        response.drives.len() as i64,
-        response.open.len() as i64,
-        response.changed as i64,
-        response.steps as i64,
-        i64::from(response.fell_back),
-        i64::from(response.converged),
-    ]);
-    let open = response.open.iter().map(|&open| i64::from(open));
-    message.integers.extend(open);
-    for list in [
-        &response.reaction,
-        &response.scale,
-        &response.gaps,
-        &response.drives,
-        &response.drive_scale,
-    ] {
-        message.reals.extend(list);
-    }
-    message
-}
-
-/// A response from a message.
-fn unpack(message: Message) -> PairResponse {
-    let mut reader = message.read();
-    let traces = reader.count();
-    let approaches = reader.count();
-    let limits = reader.count();
-    PairResponse {
-        changed: reader.count(),
-        steps: reader.count(),
-        fell_back: reader.integer() != 0,
-        converged: reader.integer() != 0,
-        open: (reader.integers(limits).iter())
-            .map(|&open| open != 0)
-            .collect(),
-        reaction: reader.reals(traces),
-        scale: reader.reals(traces),
-        gaps: reader.reals(limits),
-        drives: reader.reals(approaches),
-        drive_scale: reader.reals(approaches),
     }
 }

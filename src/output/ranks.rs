@@ -1,10 +1,10 @@
 //! What each rank had to do, and how long it took.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Time that each phase of a run took, in seconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PhaseSeconds {
     /// From start to end.
     pub total: f64,

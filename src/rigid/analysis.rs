@@ -1,6 +1,7 @@
 //! Which rigid motions are free, whether the load drives one, and where to pin those it doesn't.
 
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 use super::free_motion::FreeMotion;
 use super::kinematics::{Kinematics, RANK_TOLERANCE, null_space};
@@ -45,7 +46,7 @@ impl BodyState {
 }
 
 /// A contact condition against the rigid motions of the bodies it touches.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RigidRow {
     /// Bodies, and the row against their motions.
     pub bodies: Vec<(usize, Vec<f64>)>,
@@ -55,7 +56,7 @@ pub struct RigidRow {
 
 /// A spring on one node of a body that can move freely: u·direction = 0 there. It carries no force
 /// because the load has no component along the motion that it stops.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pin {
     /// Subdomain.
     pub subdomain: u32,
@@ -66,7 +67,7 @@ pub struct Pin {
 }
 
 /// The rigid motions of a scene.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RigidMotions {
     /// Free ones.
     pub free: Vec<FreeMotion>,

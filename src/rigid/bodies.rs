@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use contact_dd_partition::mesh::bounding_box::BoundingBox;
 use contact_dd_partition::problem::{Catalog, Subdomain};
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 use super::analysis::BodyState;
 use super::motion::BodyFrame;
-use crate::comm::{Comm, Message};
+use crate::comm::Comm;
 
 /// The frame of every body. Collective; what is asked of a subdomain is asked on its owner, which has
 /// read it.
@@ -23,33 +24,16 @@ pub(super) fn body_frames(
         owners,
         |s| {
             let BoundingBox { low, high } = BoundingBox::around(&subdomains[&s].points);
-            Message {
-                integers: Vec::new(),
-                reals: low.into_iter().chain(high).collect(),
-            }
+            (low, high)
         },
-        |s, message| {
-            let mut reader = message.read();
-            let mut corner = || std::array::from_fn(|_| reader.real());
-            let (low, high) = (corner(), corner());
+        |s, (low, high)| {
             bounds[catalog.subdomains[s].body].include(&BoundingBox { low, high });
         },
     );
-    let mut message = Message::default();
-    for BoundingBox { low, high } in bounds {
-        let frame = BodyFrame::new(low, high);
-        message.reals.extend(frame.center);
-        message.reals.push(frame.size);
-    }
-    comm.broadcast(&mut message);
-    message
-        .reals
-        .chunks(4)
-        .map(|f| BodyFrame {
-            center: [f[0], f[1], f[2]],
-            size: f[3],
-        })
-        .collect()
+    let frame = |BoundingBox { low, high }| BodyFrame::new(low, high);
+    let mut frames = bounds.into_iter().map(frame).collect();
+    comm.broadcast(&mut frames);
+    frames
 }
 
 /// Every body as the analysis sees it in a load step, on the root. Collective.
@@ -77,31 +61,33 @@ pub(super) fn body_states(
         owners,
         |s| {
             let frame = &frames[catalog.subdomains[s].body];
-            pack_subdomain(subdomains[&s], dim, frame, step)
+            of_subdomain(subdomains[&s], dim, frame, step)
         },
-        |s, message| {
+        |s, part| {
             let state = &mut states[catalog.subdomains[s].body];
-            let mut reader = message.read();
-            let rows = reader.count();
-            for _ in 0..rows {
-                state.supports.push(reader.reals(modes + 1));
-            }
-            for (sum, part) in state.load.iter_mut().zip(reader.reals(modes)) {
+            state.supports.extend(part.supports);
+            for (sum, part) in state.load.iter_mut().zip(part.load) {
                 *sum += part;
             }
-            state.load_scale += reader.real();
-            for _ in 0..reader.count() {
-                let node = reader.integer() as u32;
-                let x = std::array::from_fn(|_| reader.real());
-                state.candidates.push((s as u32, node, x));
-            }
+            state.load_scale += part.load_scale;
+            let candidates = part.candidates.into_iter();
+            (state.candidates).extend(candidates.map(|(node, x)| (s as u32, node, x)));
         },
     );
     states.iter_mut().for_each(BodyState::drop_round_off);
     states
 }
 
-fn pack_subdomain(subdomain: &Subdomain, dim: usize, frame: &BodyFrame, step: usize) -> Message {
+/// What a subdomain adds to its body.
+#[derive(Serialize, Deserialize)]
+struct BodyPart {
+    supports: Vec<Vec<f64>>,
+    load: Vec<f64>,
+    load_scale: f64,
+    candidates: Vec<(u32, [f64; 3])>,
+}
+
+fn of_subdomain(subdomain: &Subdomain, dim: usize, frame: &BodyFrame, step: usize) -> BodyPart {
     let modes = BodyFrame::count(dim);
     let points = &subdomain.points;
     let rows: Vec<Vec<f64>> = subdomain
@@ -112,7 +98,6 @@ fn pack_subdomain(subdomain: &Subdomain, dim: usize, frame: &BodyFrame, step: us
             row
         })
         .collect();
-    let rows = compressed(rows, modes + 1);
     let mut load = vec![0.0; modes];
     let mut load_scale = 0.0;
     for (node, force) in subdomain.forces_in(step) {
@@ -122,18 +107,13 @@ fn pack_subdomain(subdomain: &Subdomain, dim: usize, frame: &BodyFrame, step: us
         }
         load_scale += force.iter().map(|f| f.abs()).sum::<f64>();
     }
-    let candidates = extreme_nodes(points, dim);
-    let mut message = Message::default();
-    message.integers.push(rows.len() as i64);
-    message.reals.extend(rows.iter().flatten());
-    message.reals.extend(load);
-    message.reals.push(load_scale);
-    message.integers.push(candidates.len() as i64);
-    for node in candidates {
-        message.integers.push(node as i64);
-        message.reals.extend(points[node]);
+    let candidates = extreme_nodes(points, dim).into_iter();
+    BodyPart {
+        supports: compressed(rows, modes + 1),
+        load,
+        load_scale,
+        candidates: (candidates.map(|node| (node as u32, points[node]))).collect(),
     }
-    message
 }
 
 /// Rows with the same null space and least squares solution as `rows`, at most as many as their

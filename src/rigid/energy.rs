@@ -5,6 +5,7 @@
 //! load of the bodies does. Both are known exactly, from geometry.
 
 use faer::Mat;
+use serde::{Deserialize, Serialize};
 
 use crate::vector::dot;
 
@@ -13,9 +14,10 @@ const INDEPENDENT: f64 = 1e-8;
 
 /// Approaches against rigid motions: R, a row an approach and a column a motion, and the load Rᵀ c
 /// along them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RigidDrive {
     /// R.
+    #[serde(with = "crate::bytes::matrix")]
     pub rows: Mat<f64>,
     /// The resultant of the bodies' load along every motion.
     pub load: Vec<f64>,

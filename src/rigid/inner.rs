@@ -8,7 +8,7 @@ use faer::Mat;
 use super::analysis::{Pin, RigidRow, Scene};
 use super::energy::RigidDrive;
 use super::kinematics::{Kinematics, null_space};
-use crate::comm::{Comm, Message};
+use crate::comm::Comm;
 use crate::plan::Plan;
 
 /// How far a motion moves a condition, relative to others, that is none.
@@ -108,20 +108,10 @@ pub(super) fn inner_motions(
             let cluster = plan.contact[p];
             let conditions = scene.conditions_of(&plan.clusters[cluster].groups);
             let within = |body: usize| !elsewhere[body] && home[body] == Some(cluster);
-            let drive = scene.drive(&kinematics, &conditions, pins, within);
-            let mut message = Message {
-                integers: vec![drive.rows.nrows() as i64, drive.rows.ncols() as i64],
-                reals: drive.load,
-            };
-            message.push_matrix(drive.rows.as_ref());
-            message
+            scene.drive(&kinematics, &conditions, pins, within)
         },
-        |p, message| {
-            let mut reader = message.read();
-            let (rows, columns) = (reader.count(), reader.count());
-            let load = reader.reals(columns);
-            let rows = reader.matrix(rows, columns);
-            motions.insert(p, RigidDrive { rows, load });
+        |p, drive| {
+            motions.insert(p, drive);
         },
     );
     motions

@@ -1,9 +1,10 @@
 //! Rigid motions z of a body: translations, and rotations ω × (x − x_0) about its center scaled by its size.
 
 use contact_dd_partition::element::geometry::cross;
+use serde::{Deserialize, Serialize};
 
 /// The frame in which the rigid motions of a body are written.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyFrame {
     /// Center of the body's bounding box (m).
     pub center: [f64; 3],

@@ -1,11 +1,12 @@
 //! Taking rigid motions out of a field on nodes, of displacements or of forces.
 
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 use crate::vector::dot;
 
 /// Sums over nodes of the products of rigid motions with each other and with a field.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MotionProducts {
     /// Σ z_i·z_j.
     pub gram: Vec<f64>,

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::problem::Catalog;
 
 use super::analysis::RigidRow;
 use super::motion::BodyFrame;
-use crate::comm::{Comm, Message};
+use crate::comm::Comm;
 use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
 
@@ -20,55 +19,34 @@ pub(super) fn rigid_rows(
     plan: &Plan,
     frames: &[BodyFrame],
 ) -> (Vec<RigidRow>, Vec<usize>) {
-    let modes = BodyFrame::count(catalog.dim);
     let mut rows = Vec::new();
     let mut conditions = Vec::new();
     comm.gather(
         &plan.group_owners(),
-        |g| {
-            let mut message = Message::default();
-            if let Some(owned) = blocks.get(&plan.groups[g]) {
-                for point in &owned.points {
-                    pack_row(owned, point, catalog, frames, &mut message);
-                    message.reals.push(point.gap);
-                }
-            }
-            message
+        |g| match blocks.get(&plan.groups[g]) {
+            Some(owned) => of_block(owned, catalog.dim, frames),
+            None => Vec::new(),
         },
-        |_, message| {
-            let count = message.integers.len();
-            let before = rows.len();
-            let mut reader = message.read();
-            let mut read = 0;
-            while read < count {
-                let entries = reader.count();
-                read += 1 + entries;
-                let bodies = (0..entries)
-                    .map(|_| (reader.count(), reader.reals(modes)))
-                    .collect();
-                let gap = reader.real();
-                rows.push(RigidRow { bodies, gap });
-            }
-            conditions.push(rows.len() - before);
+        |_, of_block| {
+            conditions.push(of_block.len());
+            rows.extend(of_block);
         },
     );
     (rows, conditions)
 }
 
-fn pack_row(
-    owned: &OwnedBlock,
-    point: &ContactPoint<u32>,
-    catalog: &Catalog,
-    frames: &[BodyFrame],
-    message: &mut Message,
-) {
+fn of_block(owned: &OwnedBlock, dim: usize, frames: &[BodyFrame]) -> Vec<RigidRow> {
     let block = &owned.block;
-    message.integers.push(point.entries.len() as i64);
-    for (node, row) in point.row() {
-        let (x, body) = (&block.points[node as usize], block.bodies[node as usize]);
-        message.integers.push(i64::from(body));
-        message
-            .reals
-            .extend(frames[body as usize].action(catalog.dim, x, &row));
-    }
+    let against = |(node, row): (u32, [f64; 3])| {
+        let body = block.bodies[node as usize] as usize;
+        let x = &block.points[node as usize];
+        (body, frames[body].action(dim, x, &row))
+    };
+    let points = owned.points.iter();
+    points
+        .map(|point| RigidRow {
+            bodies: point.row().map(against).collect(),
+            gap: point.gap,
+        })
+        .collect()
 }

@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::{Catalog, Subdomain};
+use serde::{Deserialize, Serialize};
 
-use super::analysis::{Pin, RigidMotions, Scene};
+use super::analysis::{RigidMotions, Scene};
 use super::bodies::{body_frames, body_states};
 use super::descent::descent;
 use super::energy::RigidDrive;
-use super::free_motion::FreeMotion;
 use super::inner::inner_motions;
 use super::motion::BodyFrame;
 use super::rows::rigid_rows;
-use crate::comm::{Comm, Message, MessageReader};
+use crate::comm::Comm;
 use crate::error::Failure;
 use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
@@ -22,7 +22,7 @@ use crate::plan::Plan;
 pub struct Survey {
     /// The frame of every body.
     pub frames: Vec<BodyFrame>,
-    /// Its free motions, their pins, and warnings; the latter on the root alone.
+    /// Its free motions, their pins, and warnings.
     pub motions: RigidMotions,
     /// The rigid motion by which every body comes to rest.
     pub descent: Vec<Vec<f64>>,
@@ -71,47 +71,31 @@ pub fn survey(
     };
     let found = comm.is_root().then(|| scene.analyse()).transpose();
     let found = comm.agree(found)?;
-    let told = found.as_ref().map(|motions| pack(motions, &scene));
-    let mut message = told.unwrap_or_default();
-    comm.broadcast(&mut message);
-    let mut reader = message.read();
-    let modes = BodyFrame::count(catalog.dim);
-    let motions = RigidMotions {
-        pins: (0..reader.count())
-            .map(|_| unpack_pin(&mut reader))
-            .collect(),
-        free: FreeMotion::unpack(&mut reader, modes),
-        warnings: found.map_or_else(Vec::new, |found| found.warnings),
-    };
+    let mut found = found.map(|motions| Found {
+        movable: scene.is_movable(),
+        descent: descent(scene.dim, &scene.bodies, &scene.rows),
+        motions,
+    });
+    comm.broadcast(&mut found);
+    let Found {
+        motions,
+        movable,
+        descent,
+    } = found.unwrap_or_default();
     Ok(Survey {
         inner_motions: inner_motions(comm, &scene, &motions.pins, catalog, plan),
         motions,
-        movable: reader.integer() != 0,
-        descent: frames.iter().map(|_| reader.reals(modes)).collect(),
+        movable,
+        descent,
         frames,
         scene: comm.is_root().then_some(scene),
     })
 }
 
 /// What the root tells all ranks of the motions that it found.
-fn pack(motions: &RigidMotions, scene: &Scene) -> Message {
-    let mut message = Message::default();
-    message.integers.push(motions.pins.len() as i64);
-    for pin in &motions.pins {
-        let numbers = [pin.subdomain, pin.node, pin.component];
-        message.integers.extend(numbers.map(i64::from));
-    }
-    FreeMotion::pack(&motions.free, &mut message);
-    message.integers.push(i64::from(scene.is_movable()));
-    (message.reals).extend(descent(scene.dim, &scene.bodies, &scene.rows).concat());
-    message
-}
-
-fn unpack_pin(reader: &mut MessageReader) -> Pin {
-    let mut number = || reader.integer() as u32;
-    Pin {
-        subdomain: number(),
-        node: number(),
-        component: number(),
-    }
+#[derive(Default, Serialize, Deserialize)]
+struct Found {
+    motions: RigidMotions,
+    movable: bool,
+    descent: Vec<Vec<f64>>,
 }

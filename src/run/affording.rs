@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::comm::{Comm, Message};
+use crate::comm::Comm;
 use crate::error::Failure;
 use crate::output::memory::available_memory_bytes;
 use crate::plan::demand::Demand;
@@ -25,18 +25,13 @@ struct Host {
 /// # Errors
 /// The first host with too little.
 pub fn afford(comm: &Comm, demands: &[Demand]) -> Result<f64, Failure> {
-    let name = comm.host_name();
-    let message = Message {
-        integers: name.bytes().map(i64::from).collect(),
-        // Where the system doesn't tell, nothing is refused.
-        reals: vec![available_memory_bytes().map_or(f64::INFINITY, |bytes| bytes as f64)],
-    };
+    // Where the system doesn't tell, nothing is refused.
+    let available = available_memory_bytes().map_or(f64::INFINITY, |bytes| bytes as f64);
     let mut hosts: BTreeMap<String, Host> = BTreeMap::new();
-    for (message, demand) in comm.collect(&message).into_iter().zip(demands) {
-        let name: Vec<u8> = message.integers.iter().map(|&byte| byte as u8).collect();
-        let name = String::from_utf8_lossy(&name).into_owned();
+    let ranks = comm.collect(&(comm.host_name(), available));
+    for ((name, available), demand) in ranks.into_iter().zip(demands) {
         let host = hosts.entry(name).or_default();
-        host.available = message.reals[0];
+        host.available = available;
         host.needed += demand.bytes;
         host.ranks += 1;
     }

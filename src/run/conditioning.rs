@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use super::frozen::{BlockLoad, Frozen};
 use super::recover::BlockSolution;
-use crate::comm::Message;
 
 /// Estimates κ = λ_max / λ_min of A = D^(−1/2) K D^(−1/2), K the stiffness of the whole scene with its
 /// contacts frozen as they are, D its diagonal: round-off makes a relative error of about
@@ -38,15 +37,11 @@ pub fn condition_number(
         |b| {
             let answer = answer.get(&b).into_iter().flatten();
             let terms = answer.zip(diagonal(frozen, b)).map(|(x, d)| d * x * x);
-            Message {
-                integers: vec![largest_cell(frozen, b) as i64],
-                reals: vec![terms.sum()],
-            }
+            (largest_cell(frozen, b), terms.sum::<f64>())
         },
-        |_, message| {
-            let mut reader = message.read();
-            largest = largest.max(reader.count());
-            sum += reader.real();
+        |_, (cell, part)| {
+            largest = largest.max(cell);
+            sum += part;
         },
     );
     (frozen.root.is_some() && sum > 0.0).then(|| largest as f64 * sum.sqrt())

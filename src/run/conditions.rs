@@ -2,53 +2,48 @@
 
 use std::collections::BTreeMap;
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
 use super::substitute::Factors;
-use crate::comm::Message;
 
 impl Factors<'_> {
-    /// Brings a message on the conditions of every block in contact to its cluster, group after group.
+    /// Brings what is said of the conditions of every block in contact to its cluster, group after group.
     /// Collective; blocks by number, clusters by their place among those in contact.
-    pub fn collect_conditions(
+    pub fn collect_conditions<T: Serialize + DeserializeOwned>(
         &self,
-        mut of_blocks: BTreeMap<usize, Message>,
-    ) -> BTreeMap<usize, Vec<Message>> {
+        mut of_blocks: BTreeMap<usize, Vec<T>>,
+    ) -> BTreeMap<usize, Vec<T>> {
         let plan = self.context.plan;
         let places = self.places();
-        let mut of_clusters: BTreeMap<usize, Vec<Message>> = BTreeMap::new();
+        let mut of_clusters: BTreeMap<usize, Vec<T>> = BTreeMap::new();
         self.context.comm.route(
             plan.ways_to_clusters(),
             |i| of_blocks.remove(&places[i].1).unwrap_or_default(),
-            |i, message| of_clusters.entry(places[i].0).or_default().push(message),
+            |i, said| of_clusters.entry(places[i].0).or_default().extend(said),
         );
         of_clusters
     }
 
-    /// Brings an integer and a real for every condition of a cluster to the blocks that they belong to.
-    /// Collective.
-    pub fn spread_conditions(
+    /// Brings what is said of every condition of a cluster to the blocks that they belong to. Collective.
+    pub fn spread_conditions<T: Serialize + DeserializeOwned>(
         &self,
-        of_clusters: BTreeMap<usize, Message>,
-    ) -> BTreeMap<usize, Message> {
+        mut of_clusters: BTreeMap<usize, Vec<T>>,
+    ) -> BTreeMap<usize, Vec<T>> {
         let plan = self.context.plan;
         let places = self.places();
-        let mut left: BTreeMap<usize, _> = (of_clusters.into_iter())
-            .map(|(p, message)| (p, message.read()))
-            .collect();
         let mut of_blocks = BTreeMap::new();
         self.context.comm.route(
             plan.ways_to_clusters()
                 .map(|(block, cluster)| (cluster, block)),
-            |i| {
+            |i| -> Vec<T> {
                 let (p, block) = places[i];
                 let count = plan.tree.nodes[block].conditions;
-                left.get_mut(&p)
-                    .map_or_else(Message::default, |reader| Message {
-                        integers: reader.integers(count),
-                        reals: reader.reals(count),
-                    })
+                let left = of_clusters.get_mut(&p).map(|left| left.drain(..count));
+                left.into_iter().flatten().collect()
             },
-            |i, message| {
-                of_blocks.insert(places[i].1, message);
+            |i, said| {
+                of_blocks.insert(places[i].1, said);
             },
         );
         of_blocks

@@ -2,13 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::condensed_blocks::CondensedBlocks;
 use super::context::Context;
 use super::load::StepProblem;
 use super::motions::Motions;
 use super::recover::BlockSolution;
 use super::substitute::Factors;
-use crate::comm::Message;
+use crate::bytes::Reals;
 use crate::fem::balance::Balance;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::numbering::Numbering;
@@ -129,19 +131,12 @@ impl<'a> Frozen<'a> {
     /// Collective.
     pub fn solve(&self, loads: BTreeMap<usize, BlockLoad>) -> BTreeMap<usize, BlockChange> {
         let factors = self.factors();
-        let mut conditions: BTreeMap<usize, Message> = BTreeMap::new();
+        let mut conditions: BTreeMap<usize, Vec<(bool, f64)>> = BTreeMap::new();
         let mut on_blocks: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         for (b, load) in loads {
             on_blocks.insert(b, load.load);
-            let message = Message {
-                integers: load
-                    .closed
-                    .iter()
-                    .map(|&closed| i64::from(closed))
-                    .collect(),
-                reals: load.missing,
-            };
-            conditions.insert(b, message);
+            let of_block = load.closed.into_iter().zip(load.missing);
+            conditions.insert(b, of_block.collect());
         }
         let limits = self.limits(factors.collect_conditions(conditions));
         let condensed = factors.condense(on_blocks);
@@ -150,19 +145,20 @@ impl<'a> Frozen<'a> {
         let recovered = factors.recover(&condensed, boundaries);
         (recovered.into_iter())
             .map(|(b, x)| {
-                let forces = forces.remove(&b).unwrap_or_default().reals;
+                let forces = forces.remove(&b).unwrap_or_default();
                 (b, BlockChange { x, forces })
             })
             .collect()
     }
 
     /// For every cluster in contact of this rank, which limits are open and what the others lack.
-    fn limits(&self, conditions: BTreeMap<usize, Vec<Message>>) -> BTreeMap<usize, FrozenLimits> {
+    fn limits(
+        &self,
+        conditions: BTreeMap<usize, Vec<(bool, f64)>>,
+    ) -> BTreeMap<usize, FrozenLimits> {
         let mut limits = BTreeMap::new();
-        for (p, messages) in conditions {
-            let closed = messages.iter().flat_map(|m| &m.integers);
-            let closed: Vec<bool> = closed.map(|&closed| closed != 0).collect();
-            let missing: Vec<f64> = messages.iter().flat_map(|m| m.reals.clone()).collect();
+        for (p, of_cluster) in conditions {
+            let (closed, missing): (Vec<bool>, Vec<f64>) = of_cluster.into_iter().unzip();
             if let Some(pair) = self.step.pairs.get(&p) {
                 limits.insert(p, pair.limits().frozen(&closed, &missing));
             }
@@ -176,7 +172,7 @@ impl<'a> Frozen<'a> {
         &self,
         limits: &BTreeMap<usize, FrozenLimits>,
         condensed: &BTreeMap<usize, CondensedLoad>,
-    ) -> (BTreeMap<usize, Message>, BTreeMap<usize, Vec<f64>>) {
+    ) -> (BTreeMap<usize, Vec<f64>>, BTreeMap<usize, Vec<f64>>) {
         let plan = self.context.plan;
         let owners = plan.cluster_owners();
         let of_cluster = |c: usize| {
@@ -187,23 +183,14 @@ impl<'a> Frozen<'a> {
             let load = condensed.get(&plan.clusters[c].node);
             load.map_or(&[][..], CondensedLoad::boundary)
         };
-        let mut gathered: Vec<Message> = Vec::new();
+        let mut gathered: Vec<ClusterQuestion> = Vec::new();
         self.context.comm.gather(
             &owners,
-            |c| {
-                let mut message = Message::default();
-                let boundary = boundary(c);
-                if let Some((_, (open, missing))) = of_cluster(c) {
-                    message.integers = vec![open.len() as i64, boundary.len() as i64];
-                    message
-                        .integers
-                        .extend(open.iter().map(|&open| i64::from(open)));
-                    message.reals.extend(missing);
-                }
-                message.reals.extend(boundary);
-                message
+            |c| ClusterQuestion {
+                limits: of_cluster(c).map(|(_, limits)| limits.clone()),
+                load: boundary(c).to_vec(),
             },
-            |_, message| gathered.push(message),
+            |_, question| gathered.push(question),
         );
         let mut answers = self
             .root
@@ -213,17 +200,12 @@ impl<'a> Frozen<'a> {
         self.context.comm.scatter(
             &owners,
             |c| std::mem::take(&mut answers[c]),
-            |c, message| {
-                let mut reader = message.read();
-                if let Some((p, (_, missing))) = of_cluster(c)
+            |c, (Reals(of_limits), Reals(x))| {
+                if let Some((p, _)) = of_cluster(c)
                     && let Some(pair) = self.step.pairs.get(&p)
                 {
-                    let of_limits = reader.reals(missing.len());
-                    let reals = pair.limits().forces(&of_limits);
-                    let integers = vec![0; reals.len()];
-                    forces.insert(p, Message { integers, reals });
+                    forces.insert(p, pair.limits().forces(&of_limits));
                 }
-                let x = reader.reals(boundary(c).len());
                 boundaries.insert(plan.clusters[c].node, x);
             },
         );
@@ -231,42 +213,52 @@ impl<'a> Frozen<'a> {
     }
 }
 
+/// What the owner of a cluster tells the root.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct ClusterQuestion {
+    /// Its limits, where it is in contact.
+    limits: Option<FrozenLimits>,
+    /// Its load, on approaches and traces.
+    #[serde(with = "crate::bytes")]
+    load: Vec<f64>,
+}
+
+/// Forces of the limits of a cluster, and its approaches and traces.
+type ClusterAnswer = (Reals, Reals);
+
 impl FrozenRoot<'_> {
-    /// What each cluster is answered: forces of its limits, approaches, traces.
-    fn solve(&self, plan: &Plan, gathered: Vec<Message>) -> Vec<Message> {
+    /// What each cluster is answered.
+    fn solve(&self, plan: &Plan, gathered: Vec<ClusterQuestion>) -> Vec<ClusterAnswer> {
         let mut r = vec![0.0; self.problem.interface.len];
         let mut loads = Vec::new();
         let mut missing = Vec::new();
         let mut open: Vec<Vec<bool>> = Vec::new();
-        for (c, message) in gathered.into_iter().enumerate() {
-            let traces = &self.numbering.traces[c];
-            let mut reader = message.read();
-            if plan.contact_place(c).is_some() {
-                let (limits, boundary) = (reader.count(), reader.count());
-                open.push(reader.integers(limits).iter().map(|&o| o != 0).collect());
-                missing.push(reader.reals(limits));
-                loads.push(reader.reals(boundary - traces.len()));
+        for (question, traces) in gathered.into_iter().zip(&self.numbering.traces) {
+            let mut on_approaches = question.load;
+            let on_traces = on_approaches.split_off(on_approaches.len() - traces.len());
+            if let Some((of_cluster, lacking)) = question.limits {
+                open.push(of_cluster);
+                missing.push(lacking);
+                loads.push(on_approaches);
             }
-            for (&i, part) in traces.iter().zip(reader.reals(traces.len())) {
+            for (&i, part) in traces.iter().zip(on_traces) {
                 r[i as usize] += part;
             }
         }
         let Some(coupled) = CoupledContact::new(self.problem) else {
-            return vec![Message::default(); self.numbering.traces.len()];
+            return vec![ClusterAnswer::default(); self.numbering.traces.len()];
         };
         let step = coupled.solve_frozen(&r, &loads, &missing, &open);
         let mut pairs = step.forces.into_iter().zip(step.approaches);
         let answer = |c: usize| {
-            let mut message = Message::default();
-            if plan.contact_place(c).is_some()
-                && let Some((forces, approaches)) = pairs.next()
-            {
-                message.reals.extend(forces);
-                message.reals.extend(approaches);
-            }
+            let of_pair = match plan.contact_place(c) {
+                Some(_) => pairs.next(),
+                None => None,
+            };
+            let (forces, mut x) = of_pair.unwrap_or_default();
             let traces = self.numbering.traces[c].iter();
-            message.reals.extend(traces.map(|&i| step.u[i as usize]));
-            message
+            x.extend(traces.map(|&i| step.u[i as usize]));
+            (Reals(forces), Reals(x))
         };
         (0..self.numbering.traces.len()).map(answer).collect()
     }

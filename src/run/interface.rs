@@ -4,14 +4,12 @@ use faer::Par;
 
 use super::condensed_blocks::CondensedBlocks;
 use super::context::Context;
-use crate::comm::Message;
 use crate::contact::law::PairLaw;
 use crate::error::Failure;
 use crate::interface::coupled::MAX_APPROACHES;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::{Contribution, Interface};
 use crate::plan::Plan;
-use crate::schur::condensed::Condensed;
 use crate::schur::trace::TraceDof;
 
 /// Numbers what clusters share of Γ and assembles S_0 and the bilateral operator on the root.
@@ -36,9 +34,12 @@ pub fn assemble_interface(
     let mut contributions: Vec<Contribution> = Vec::new();
     comm.gather(
         &plan.cluster_owners(),
-        |c| pack(blocks, plan, c, with_laws),
-        |_, message| {
-            let (list, contribution) = unpack(message);
+        |c| contribution(blocks, plan, c, with_laws),
+        |_, sent| {
+            // Owners have all that is their own.
+            let Some((list, contribution)) = sent else {
+                return;
+            };
             traces.push(list);
             contributions.push(contribution);
         },
@@ -65,38 +66,29 @@ fn assemble(
     Ok((numbering, interface))
 }
 
-fn pack(blocks: &CondensedBlocks, plan: &Plan, c: usize, with_laws: bool) -> Message {
-    let mut message = Message::default();
+/// The traces of cluster c of this rank, and what it contributes.
+fn contribution(
+    blocks: &CondensedBlocks,
+    plan: &Plan,
+    c: usize,
+    with_laws: bool,
+) -> Option<(Vec<TraceDof>, Contribution)> {
     if let Some(linear) = blocks.linear.get(&c) {
-        pack_head(linear, false, &mut message);
-        message.push_lower(linear.s.as_ref());
-    } else if let Some(cluster) = plan.contact_place(c).and_then(|p| blocks.contact.get(&p)) {
-        let condensed = &cluster.condensed;
-        pack_head(condensed, with_laws, &mut message);
-        message.push_lower(condensed.bilateral());
-        if with_laws {
-            PairLaw::pack(condensed, &cluster.limits, &mut message);
-        }
+        let mut condensed = linear.clone();
+        condensed.fill_upper_triangle();
+        let contribution = Contribution {
+            s: condensed.s,
+            smallest_pivot: condensed.smallest_pivot,
+            law: None,
+        };
+        return Some((condensed.traces, contribution));
     }
-    message
-}
-
-fn pack_head(condensed: &Condensed, has_law: bool, message: &mut Message) {
-    let head = [condensed.traces.len() as i64, i64::from(has_law)];
-    message.integers.extend(head);
-    TraceDof::pack(&condensed.traces, message);
-    message.reals.push(condensed.smallest_pivot);
-}
-
-fn unpack(message: Message) -> (Vec<TraceDof>, Contribution) {
-    let mut reader = message.read();
-    let n = reader.count();
-    let has_law = reader.integer() != 0;
-    let traces = TraceDof::unpack(&mut reader, n);
+    let cluster = blocks.contact.get(&plan.contact_place(c)?)?;
+    let condensed = &cluster.condensed;
     let contribution = Contribution {
-        smallest_pivot: reader.real(),
-        s: reader.symmetric(n),
-        law: has_law.then(|| PairLaw::unpack(&mut reader, n)),
+        s: condensed.bilateral().to_owned(),
+        smallest_pivot: condensed.smallest_pivot,
+        law: with_laws.then(|| PairLaw::new(condensed, &cluster.limits)),
     };
-    (traces, contribution)
+    Some((condensed.traces.clone(), contribution))
 }

@@ -8,7 +8,6 @@ use super::condense::dof_failure;
 use super::condensed_blocks::CondensedBlocks;
 use super::context::Context;
 use super::steps::Loads;
-use crate::comm::Message;
 use crate::contact::approach::ApproachOf;
 use crate::contact::limits::Limits;
 use crate::error::Failure;
@@ -64,15 +63,9 @@ pub(super) fn limits_of_clusters(
     let mut arrived: BTreeMap<usize, Limits> = BTreeMap::new();
     comm.route(
         plan.ways_to_clusters(),
-        |i| {
-            let mut message = Message::default();
-            if let Some(limits) = made.get(&groups[i]) {
-                limits.pack(&mut message);
-            }
-            message
-        },
-        |i, message| {
-            arrived.insert(groups[i], Limits::unpack(&mut message.read()));
+        |i| made.get(&groups[i]).cloned().unwrap_or_default(),
+        |i, limits| {
+            arrived.insert(groups[i], limits);
         },
     );
     let contact = plan.contact.iter().map(|&c| &plan.clusters[c]);

@@ -8,7 +8,6 @@ use super::context::Context;
 use super::limits::{limits_of_clusters, prescribe};
 use super::steps::{Loads, StepState};
 use super::substitute::Factors;
-use crate::comm::Message;
 use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
 use crate::error::Failure;
@@ -133,25 +132,20 @@ impl<'a> Loading<'a> {
         comm.gather(
             &plan.cluster_owners(),
             |c| {
-                let mut message = Message::default();
                 let pair = plan.contact_place(c).and_then(|p| pairs.get(&p));
-                if let Some(pair) = pair {
-                    message.reals.push(pair.limits().scale);
-                    message.reals.extend(pair.bilateral_load());
-                } else if let Some(load) = loads.get(&plan.clusters[c].node) {
-                    message.reals.push(0.0);
-                    message.reals.extend(load.boundary());
+                let load = loads.get(&plan.clusters[c].node);
+                match pair {
+                    Some(pair) => ClusterLoad {
+                        load: pair.bilateral_load().to_vec(),
+                        scale: pair.limits().scale,
+                    },
+                    None => ClusterLoad {
+                        load: load.map_or_else(Vec::new, |load| load.boundary().to_vec()),
+                        scale: 0.0,
+                    },
                 }
-                message
             },
-            |_, message| {
-                let traces = message.reals.len() - 1;
-                let mut reader = message.read();
-                of_clusters.push(ClusterLoad {
-                    scale: reader.real(),
-                    load: reader.reals(traces),
-                });
-            },
+            |_, load| of_clusters.push(load),
         );
         let (numbering, interface) = self.interface?;
         let drive = self.drive_of_approaches(interface);

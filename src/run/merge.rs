@@ -9,7 +9,7 @@ use super::condensed_blocks::CondensedBlocks;
 use super::context::Context;
 use super::limits::{limits_of_clusters, prescribe};
 use super::steps::in_step;
-use crate::comm::{Message, is_asked_to_stop};
+use crate::comm::is_asked_to_stop;
 use crate::error::Failure;
 use crate::interface::numbering::check_agreement;
 use crate::output::bar::Bar;
@@ -127,14 +127,12 @@ impl Merging<'_> {
             match (plan.node_owners[*child], owner == me) {
                 (of_child, true) if of_child == me => arrived.extend(self.waiting.remove(child)),
                 (of_child, true) => {
-                    arrived.extend(unpack(self.condensation.context.comm.receive(of_child)))
+                    let comm = self.condensation.context.comm;
+                    arrived.extend(comm.receive::<Option<Condensed>>(of_child));
                 }
                 (of_child, false) if of_child == me => {
-                    let waiting = self.waiting.remove(child);
-                    self.condensation
-                        .context
-                        .comm
-                        .send(owner, &waiting.map_or_else(Message::default, pack));
+                    let comm = self.condensation.context.comm;
+                    comm.send(owner, &self.waiting.remove(child));
                 }
                 _ => {}
             }
@@ -190,32 +188,4 @@ impl Merging<'_> {
             dof.node
         ))
     }
-}
-
-/// What a node sends to the owner of its parent.
-fn pack(condensed: Condensed) -> Message {
-    let mut message = Message::default();
-    let lengths = [condensed.approaches, condensed.traces.len()];
-    message.integers.extend(lengths.map(|n| n as i64));
-    TraceDof::pack(&condensed.traces, &mut message);
-    message.reals.push(condensed.smallest_pivot);
-    message.reals.extend(&condensed.diagonal);
-    message.push_lower(condensed.s.as_ref());
-    message
-}
-
-fn unpack(message: Message) -> Option<Condensed> {
-    if message.integers.is_empty() {
-        return None;
-    }
-    let mut reader = message.read();
-    let (approaches, traces) = (reader.count(), reader.count());
-    let n = approaches + traces;
-    Some(Condensed {
-        approaches,
-        traces: TraceDof::unpack(&mut reader, traces),
-        smallest_pivot: reader.real(),
-        diagonal: reader.reals(n),
-        s: reader.lower(n),
-    })
 }

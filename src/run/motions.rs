@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use contact_dd_partition::problem::Catalog;
 
 use super::frozen::Frozen;
-use crate::comm::Message;
 use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
 use crate::rigid::free_motion::FreeMotion;
@@ -43,12 +42,10 @@ impl<'a> Motions<'a> {
             return;
         }
         let products = self.products(frozen, kind, &fields);
-        let mut coefficients = Message::default();
-        if frozen.root.is_some() {
-            coefficients.reals = products.coefficients();
-        }
+        let found = frozen.root.map(|_| products.coefficients());
+        let mut coefficients = found.unwrap_or_default();
         frozen.context.comm.broadcast(&mut coefficients);
-        self.take_out(frozen, kind, &coefficients.reals, fields);
+        self.take_out(frozen, kind, &coefficients, fields);
     }
 
     /// Their products with each other and with a field, on the root. Collective.
@@ -80,23 +77,11 @@ impl<'a> Motions<'a> {
                         }
                     });
                 }
-                let mut message = Message::default();
-                for (body, products) in of_block {
-                    message.integers.push(body as i64);
-                    message.reals.extend(products.gram);
-                    message.reals.extend(products.field);
-                }
-                message
+                of_block
             },
-            |_, message| {
-                let bodies = message.integers.len();
-                let mut reader = message.read();
-                let bodies: Vec<usize> = (0..bodies).map(|_| reader.count()).collect();
-                for body in bodies {
-                    of_body(&mut of_bodies, body, modes).add(&MotionProducts {
-                        gram: reader.reals(modes * modes),
-                        field: reader.reals(modes),
-                    });
+            |_, of_block| {
+                for (body, products) in of_block {
+                    of_body(&mut of_bodies, body, modes).add(&products);
                 }
             },
         );

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use super::frozen::Frozen;
 use super::recover::BlockSolution;
-use crate::comm::Message;
 use crate::output::resultants::{Reaction, Resultant};
 
 /// What every condition that prescribes displacements exerts on the bodies; on the root it is that
@@ -21,12 +20,11 @@ pub fn reactions(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>
         &frozen.context.plan.owners(),
         |b| match solutions.get(&b) {
             Some(solution) => of_block(frozen, b, solution),
-            None => Message::default(),
+            None => Vec::new(),
         },
-        |_, message| {
-            for (&condition, r) in message.integers.iter().zip(message.reals.chunks(6)) {
-                let reaction = &mut reactions[condition as usize];
-                (reaction.resultant).add([r[0], r[1], r[2]], [r[3], r[4], r[5]]);
+        |_, of_block| {
+            for (condition, at, force) in of_block {
+                reactions[condition as usize].resultant.add(at, force);
             }
         },
     );
@@ -34,10 +32,14 @@ pub fn reactions(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>
 }
 
 /// For every support its condition, its position and the reaction.
-fn of_block(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Message {
-    let mut message = Message::default();
+fn of_block(
+    frozen: &Frozen<'_>,
+    b: usize,
+    solution: &BlockSolution,
+) -> Vec<(u32, [f64; 3], [f64; 3])> {
+    let mut reactions = Vec::new();
     let Some(owned) = frozen.context.blocks.get(&b) else {
-        return message;
+        return reactions;
     };
     let held = frozen
         .step
@@ -45,7 +47,7 @@ fn of_block(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Message 
         .get(&b)
         .map_or(&[][..], |loads| &loads.supports);
     if held.is_empty() {
-        return message;
+        return reactions;
     }
     let dim = owned.block.dim;
     let residual = frozen
@@ -58,9 +60,9 @@ fn of_block(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Message 
         let along: f64 = (residual.iter().zip(&support.direction[..dim]))
             .map(|(r, d)| r * d)
             .sum();
-        message.integers.push(i64::from(support.condition));
-        (message.reals).extend(owned.block.points[support.node as usize]);
-        (message.reals).extend(support.direction.map(|d| -along * d));
+        let at = owned.block.points[support.node as usize];
+        let force = support.direction.map(|d| -along * d);
+        reactions.push((support.condition, at, force));
     }
-    message
+    reactions
 }

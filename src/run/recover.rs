@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::context::Context;
 use super::load::StepProblem;
 use super::substitute::Factors;
-use crate::comm::Message;
+use crate::bytes::Reals;
 use crate::contact::pair::ContactPair;
 
 /// The solution on a block.
@@ -30,16 +30,15 @@ pub fn recover(
     let mut boundaries: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     comm.scatter(
         &plan.cluster_owners(),
-        |c| Message {
-            integers: Vec::new(),
-            reals: root.map_or_else(Vec::new, |(u, numbers)| {
+        |c| {
+            Reals(root.map_or_else(Vec::new, |(u, numbers)| {
                 numbers[c].iter().map(|&i| u[i as usize]).collect()
-            }),
+            }))
         },
-        |c, message| {
+        |c, Reals(traces)| {
             let pair = plan.contact_place(c).and_then(|p| step.pairs.get(&p));
             let mut x = pair.map_or_else(Vec::new, |pair| pair.approaches().to_vec());
-            x.extend(message.reals);
+            x.extend(traces);
             boundaries.insert(plan.clusters[c].node, x);
         },
     );
@@ -48,7 +47,8 @@ pub fn recover(
         .recover(&step.condensed, boundaries)
         .into_iter()
         .filter_map(|(b, x)| {
-            let (forces, closed) = conditions.remove(&b).unwrap_or_default();
+            let of_block = conditions.remove(&b).unwrap_or_default();
+            let (forces, closed) = of_block.into_iter().unzip();
             let dofs = &factors.condensed.blocks.get(&b)?.dofs;
             let solution = BlockSolution {
                 u: step.prescribed.get(&b)?.displacement(dofs, &x),
@@ -65,19 +65,10 @@ pub fn recover(
 fn conditions(
     factors: Factors<'_>,
     pairs: &BTreeMap<usize, ContactPair>,
-) -> BTreeMap<usize, (Vec<f64>, Vec<bool>)> {
+) -> BTreeMap<usize, Vec<(f64, bool)>> {
     let of_clusters = pairs.iter().map(|(&p, pair)| {
         let (forces, closed) = pair.conditions();
-        let message = Message {
-            integers: closed.iter().map(|&closed| i64::from(closed)).collect(),
-            reals: forces,
-        };
-        (p, message)
+        (p, forces.into_iter().zip(closed).collect())
     });
-    let of_blocks = factors.spread_conditions(of_clusters.collect());
-    let split = |(b, message): (usize, Message)| {
-        let closed = message.integers.iter().map(|&closed| closed != 0).collect();
-        (b, (message.reals, closed))
-    };
-    of_blocks.into_iter().map(split).collect()
+    factors.spread_conditions(of_clusters.collect())
 }

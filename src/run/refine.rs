@@ -8,7 +8,6 @@ use super::motions::Field;
 use super::recover::BlockSolution;
 use crate::certificate::check::BlockCheck;
 use crate::certificate::{Certificate, certificate};
-use crate::comm::Message;
 
 /// Equilibrium and penetration above which a solution is refined.
 const LIMIT: f64 = 4e-15;
@@ -85,8 +84,8 @@ fn check(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Cer
     let mut checks = Vec::new();
     frozen.context.comm.gather(
         &frozen.context.plan.owners(),
-        |b| of_block(b).map_or_else(Message::default, |check| check.pack()),
-        |_, message| checks.push(BlockCheck::unpack(message)),
+        |b| of_block(b).unwrap_or_default(),
+        |_, check| checks.push(check),
     );
     match frozen.root {
         Some(_) => certificate(

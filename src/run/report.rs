@@ -4,7 +4,7 @@ use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
 
 use super::totals::{StepTotals, Totals};
-use crate::comm::{self, Comm, Message};
+use crate::comm::{self, Comm};
 use crate::error::Failure;
 use crate::output::build::Build;
 use crate::output::memory::peak_memory_bytes;
@@ -63,40 +63,19 @@ impl Outputs {
 
 /// Brings every rank's times and memory to the root. Collective.
 pub fn collect(comm: &Comm, seconds: &PhaseSeconds, plan: &Plan) -> Vec<RankReport> {
-    let owned = plan
-        .blocks
-        .iter()
-        .filter(|b| b.owner == comm.rank())
-        .map(|b| b.subdomains.len() as i64)
-        .sum();
-    let mut message = Message {
-        integers: vec![peak_memory_bytes() as i64, comm.bytes_sent() as i64, owned],
-        reals: vec![seconds.total],
-    };
-    message
-        .reals
-        .extend(seconds.phases().iter().map(|(_, s)| s));
-    comm.collect(&message)
-        .into_iter()
-        .map(|message| {
-            let mut reader = message.read();
-            RankReport {
-                peak_memory_bytes: reader.integer() as u64,
-                bytes_sent: reader.integer() as u64,
-                subdomains: reader.count(),
-                seconds: PhaseSeconds {
-                    total: reader.real(),
-                    read: reader.real(),
-                    assemble: reader.real(),
-                    factorize: reader.real(),
-                    interface: reader.real(),
-                    sweeps: reader.real(),
-                    recover: reader.real(),
-                    write: reader.real(),
-                },
-            }
-        })
-        .collect()
+    let own = plan.blocks.iter().filter(|b| b.owner == comm.rank());
+    let subdomains: usize = own.map(|b| b.subdomains.len()).sum();
+    let mine = (*seconds, peak_memory_bytes(), comm.bytes_sent(), subdomains);
+    let all = comm.collect(&mine).into_iter();
+    all.map(
+        |(seconds, peak_memory_bytes, bytes_sent, subdomains)| RankReport {
+            seconds,
+            peak_memory_bytes,
+            bytes_sent,
+            subdomains,
+        },
+    )
+    .collect()
 }
 
 /// Makes the report. On the root.

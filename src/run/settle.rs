@@ -8,10 +8,8 @@ use super::motions::{Field, Motions};
 use super::recover::BlockSolution;
 use super::refine::replace_if_as_good;
 use crate::certificate::Certificate;
-use crate::comm::Message;
 use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::loose::LooseMotions;
-use crate::rigid::motion::BodyFrame;
 use crate::rigid::survey::Survey;
 
 /// A contact force, relative to the terms of the equilibrium at its nodes, that is round-off.
@@ -92,15 +90,8 @@ fn move_nearer(
         frozen.context.catalog.dim,
     );
     let loose = loose_motions(frozen, survey, solutions);
-    let mut message = Message::default();
-    if let Some(loose) = &loose {
-        FreeMotion::pack(&loose.motions, &mut message);
-    }
-    frozen.context.comm.broadcast(&mut message);
-    let list = FreeMotion::unpack(
-        &mut message.read(),
-        BodyFrame::count(frozen.context.catalog.dim),
-    );
+    let mut list: Vec<FreeMotion> = (loose.as_ref()).map_or_else(Vec::new, |l| l.motions.clone());
+    frozen.context.comm.broadcast(&mut list);
     if list.is_empty() {
         return Settled::default();
     }
@@ -113,13 +104,11 @@ fn move_nearer(
         Field::Shared,
         &displacement.iter_mut().map(|(&b, u)| (b, u)).collect(),
     );
-    let mut coefficients = Message::default();
-    if let Some(loose) = &loose {
-        coefficients.reals = loose.coefficients(&products);
-    }
+    let found = loose.as_ref().map(|loose| loose.coefficients(&products));
+    let mut coefficients = found.unwrap_or_default();
     frozen.context.comm.broadcast(&mut coefficients);
     let all = solutions.iter_mut().map(|(&b, s)| (b, &mut s.u)).collect();
-    motions.take_out(frozen, Field::Shared, &coefficients.reals, all);
+    motions.take_out(frozen, Field::Shared, &coefficients, all);
     let mut settled = Settled {
         is_loose: list.len() > frozen.free.list.len(),
         ..Settled::default()
@@ -129,12 +118,9 @@ fn move_nearer(
         |g| {
             let b = frozen.context.plan.groups[g];
             let opened = solutions.get_mut(&b).map(|s| open(frozen, b, s));
-            Message {
-                integers: vec![opened.unwrap_or(0) as i64],
-                reals: Vec::new(),
-            }
+            opened.unwrap_or(0)
         },
-        |_, message| settled.opened += message.read().count(),
+        |_, opened| settled.opened += opened,
     );
     settled.warnings = loose.map_or_else(Vec::new, |loose| loose.warnings);
     settled
@@ -177,9 +163,9 @@ fn loose_motions(
                 .and_then(|solution| conditions(frozen, b, solution))
                 .unwrap_or_default()
         },
-        |_, message| {
-            carrying.extend(message.integers.iter().map(|&c| c != 0));
-            gaps.extend(message.reals);
+        |_, (of_block, left)| {
+            carrying.extend(of_block);
+            gaps.extend(left);
         },
     );
     let scene = survey.scene.as_ref()?;
@@ -187,19 +173,21 @@ fn loose_motions(
 }
 
 /// For every condition of block b whether it carries force, and what gap it has left.
-fn conditions(frozen: &Frozen<'_>, b: usize, solution: &BlockSolution) -> Option<Message> {
+fn conditions(
+    frozen: &Frozen<'_>,
+    b: usize,
+    solution: &BlockSolution,
+) -> Option<(Vec<bool>, Vec<f64>)> {
     let owned = frozen.context.blocks.get(&b)?;
     let dim = owned.block.dim;
     let scale = frozen.balance(b, solution)?.scale;
-    let mut message = Message::default();
+    let mut carrying = Vec::new();
     for (point, &force) in owned.points.iter().zip(&solution.forces) {
         let nodes = point.entries.iter();
         let around = nodes.flat_map(|&(node, _)| &scale[node as usize * dim..][..dim]);
         let largest = around.fold(0.0, |m: f64, s| m.max(*s));
-        message
-            .integers
-            .push(i64::from(force > ROUND_OFF * largest));
+        carrying.push(force > ROUND_OFF * largest);
     }
-    message.reals = frozen.step.loads.get(&b)?.gaps_left(owned, &solution.u);
-    Some(message)
+    let gaps = frozen.step.loads.get(&b)?.gaps_left(owned, &solution.u);
+    Some((carrying, gaps))
 }

@@ -4,9 +4,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use contact_dd_partition::problem::Catalog;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use super::recover::BlockSolution;
-use crate::comm::{Comm, Message};
+use crate::comm::Comm;
 use crate::fem::block::Block;
 use crate::fem::estimate::CellError;
 use crate::fem::owned::OwnedBlock;
@@ -25,24 +27,12 @@ pub struct Stress {
 }
 
 /// What blocks know in parts of a node on Γ in one material.
-trait Part: Clone {
-    /// Appends it to a message.
-    fn pack(&self, reals: &mut Vec<f64>);
-    /// Takes one off the front of what was packed.
-    fn unpack(reals: &mut &[f64]) -> Option<Self>;
+trait Part: Clone + Serialize + DeserializeOwned {
     /// Adds another part.
     fn add(&mut self, other: &Self);
 }
 
 impl Part for PatchSum {
-    fn pack(&self, reals: &mut Vec<f64>) {
-        self.pack(reals);
-    }
-
-    fn unpack(reals: &mut &[f64]) -> Option<Self> {
-        Self::unpack(reals)
-    }
-
     fn add(&mut self, other: &Self) {
         self.add(other);
     }
@@ -50,19 +40,6 @@ impl Part for PatchSum {
 
 /// A sum of polynomials and how many these are.
 impl Part for (Polynomial, f64) {
-    fn pack(&self, reals: &mut Vec<f64>) {
-        reals.push(self.1);
-        reals.extend(self.0.as_slice());
-    }
-
-    fn unpack(reals: &mut &[f64]) -> Option<Self> {
-        let mut sum = Polynomial::default();
-        let (record, rest) = reals.split_at_checked(1 + sum.as_slice().len())?;
-        sum.add_slice(&record[1..]);
-        *reals = rest;
-        Some((sum, record[0]))
-    }
-
     fn add(&mut self, other: &Self) {
         self.0.add(1.0, &other.0);
         self.1 += other.1;
@@ -179,23 +156,11 @@ impl<'a> Exchange<'a> {
             self.ways.iter().copied(),
             |way| {
                 let to = self.ways[way].1;
-                let mut message = Message::default();
-                for ((node, material, block), part) in &all[..mine] {
-                    if self.ranks[*node as usize].contains(&to) {
-                        let numbers = [i64::from(*node), *material as i64, *block as i64];
-                        message.integers.extend(numbers);
-                        part.pack(&mut message.reals);
-                    }
-                }
-                message
+                let shared = |node: u32| self.ranks[node as usize].contains(&to);
+                let parts = all[..mine].iter().filter(|((node, ..), _)| shared(*node));
+                parts.cloned().collect::<Vec<(Place, P)>>()
             },
-            |_, message| {
-                let mut reals = &message.reals[..];
-                let parts = std::iter::from_fn(|| P::unpack(&mut reals));
-                let places = message.integers.chunks(3);
-                let places = places.map(|n| (n[0] as u32, n[1] as usize, n[2] as usize));
-                arrived.extend(places.zip(parts));
-            },
+            |_, parts| arrived.extend(parts),
         );
         all.append(&mut arrived);
         let mut order: Vec<usize> = (0..all.len()).collect();
@@ -236,16 +201,9 @@ pub fn error_estimate(comm: &Comm, stresses: &BTreeMap<usize, Stress>, plan: &Pl
             for &error in stresses.get(&b).iter().flat_map(|s| &s.recovered.errors) {
                 sum.add(error);
             }
-            Message {
-                integers: Vec::new(),
-                reals: vec![sum.error, sum.energy],
-            }
+            sum
         },
-        |_, message| {
-            let mut reader = message.read();
-            let (error, energy) = (reader.real(), reader.real());
-            total.add(CellError { error, energy });
-        },
+        |_, sum| total.add(sum),
     );
     total
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::condensed_blocks::CondensedBlocks;
 use super::context::Context;
-use crate::comm::Message;
+use crate::bytes::Reals;
 use crate::schur::local::CondensedLoad;
 
 /// The factors of all ranks.
@@ -121,11 +121,8 @@ impl Factors<'_> {
         });
         self.context.comm.route(
             ways,
-            |i| Message {
-                integers: Vec::new(),
-                reals: make(across[i]),
-            },
-            |i, message| take(across[i], message.reals),
+            |i| Reals(make(across[i])),
+            |i, Reals(list)| take(across[i], list),
         );
     }
 }

@@ -2,15 +2,14 @@
 
 mod parcel;
 
-use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::error::OutputError;
 
-use self::parcel::{Parcel, pack, unpack};
+use self::parcel::Parcel;
 use super::context::Context;
 use super::load::StepProblem;
 use super::recover::BlockSolution;
 use super::solution::Solution;
-use crate::comm::{Message, ROOT};
+use crate::comm::ROOT;
 use crate::error::Failure;
 use crate::fem::load::BlockLoads;
 use crate::fem::owned::OwnedBlock;
@@ -45,43 +44,35 @@ pub fn write_solution(
         }
     };
     let parcels = Parcel::cut(comm, &slabs, plan);
-    let owners: Vec<usize> = parcels.iter().map(|parcel| parcel.owner).collect();
     let (mut sent, mut slab) = (SubdomainResults::default(), SubdomainResults::default());
-    comm.gather(
-        &owners,
-        |p| {
+    for parcel in &parcels {
+        match (parcel.owner, comm.is_root()) {
             // What is the root's own needs no message.
-            if comm.is_root() {
-                return Message::default();
+            (ROOT, true) => parcel.append_to(&mut slab, blocks, solution, plan),
+            (owner, true) => slab.append(comm.receive(owner)),
+            (owner, false) if owner == comm.rank() => {
+                sent.restart(parcel.subdomains.start);
+                parcel.append_to(&mut sent, blocks, solution, plan);
+                comm.send(ROOT, &sent);
             }
-            sent.restart(parcels[p].subdomains.start);
-            parcels[p].append_to(&mut sent, blocks, solution, plan);
-            pack(&sent)
-        },
-        |p, message| {
-            let parcel = &parcels[p];
-            match parcel.owner {
-                ROOT => parcel.append_to(&mut slab, blocks, solution, plan),
-                _ => unpack(&message, &mut slab),
-            }
-            if parcel.ends_slab {
-                write(&mut |file| file.write_subdomains(&slab));
-                slab.restart(parcel.subdomains.end);
-            }
-        },
-    );
+            _ => {}
+        }
+        if parcel.ends_slab && comm.is_root() {
+            write(&mut |file| file.write_subdomains(&slab));
+            slab.restart(parcel.subdomains.end);
+        }
+    }
     comm.gather(
         &plan.group_owners(),
         |g| {
             let b = plan.groups[g];
             let of_block = || {
                 let (owned, loads) = (blocks.get(&b)?, step.loads.get(&b)?);
-                Some(pack_contacts(owned, loads, solution.blocks.get(&b)?))
+                Some(contact_rows(owned, loads, solution.blocks.get(&b)?))
             };
             of_block().unwrap_or_default()
         },
-        |_, message| {
-            let rows = unpack_contacts(message);
+        |_, rows| {
             for (point, state) in &rows {
                 contacts[point.contact as usize].add(point, state);
             }
@@ -92,48 +83,21 @@ pub fn write_solution(
     comm.agree(failed.map_err(Failure::from))
 }
 
-fn pack_contacts(owned: &OwnedBlock, loads: &BlockLoads, solution: &BlockSolution) -> Message {
-    let mut message = Message::default();
-    let gaps = loads.gaps_left(owned, &solution.u);
-    for (j, point) in owned.points.iter().enumerate() {
+/// The contact points of a block, and the solution there.
+fn contact_rows(
+    owned: &OwnedBlock,
+    loads: &BlockLoads,
+    solution: &BlockSolution,
+) -> Vec<ContactRow> {
+    let gaps = loads.gaps_left(owned, &solution.u).into_iter().enumerate();
+    let row = |(j, gap): (usize, f64)| {
         let closed = solution.closed[j];
-        let gap = if closed { 0.0 } else { gaps[j].max(0.0) };
-        message.integers.extend([
-            i64::from(point.contact),
-            i64::from(point.place),
-            point.tag_a,
-            point.tag_b,
-            i64::from(closed),
-        ]);
-        message.reals.extend(point.position);
-        message.reals.extend(point.force_point);
-        message.reals.extend(point.normal());
-        message.reals.extend([point.area, gap, solution.forces[j]]);
-    }
-    message
-}
-
-fn unpack_contacts(message: Message) -> Vec<ContactRow> {
-    let integers = message.integers.chunks(5);
-    let reals = message.reals.chunks(12);
-    integers
-        .zip(reals)
-        .map(|(i, r)| {
-            let vector = |k: usize| [r[k], r[k + 1], r[k + 2]];
-            let point = ContactPoint {
-                contact: i[0] as u32,
-                place: i[1] as u32,
-                tag_b: i[3],
-                force_point: vector(3),
-                area: r[9],
-                ..ContactPoint::new(Vec::new(), vector(6), vector(0), i[2])
-            };
-            let state = ContactState {
-                gap: r[10],
-                force: r[11],
-                closed: i[4] != 0,
-            };
-            (point, state)
-        })
-        .collect()
+        let state = ContactState {
+            gap: if closed { 0.0 } else { gap.max(0.0) },
+            force: solution.forces[j],
+            closed,
+        };
+        (owned.points[j].clone(), state)
+    };
+    gaps.map(row).collect()
 }

@@ -1,19 +1,22 @@
 //! A node of the hierarchy, condensed.
 
 use faer::{Mat, MatRef};
+use serde::{Deserialize, Serialize};
 
 use crate::schur::trace::TraceDof;
 
 /// The Schur complement of a node of the hierarchy on what it keeps: approaches, then traces on Γ.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Condensed {
     /// Number of approaches.
     pub approaches: usize,
     /// Its unknowns on Γ, ascending.
     pub traces: Vec<TraceDof>,
     /// S (Pa); only the lower triangle counts.
+    #[serde(with = "crate::bytes::lower")]
     pub s: Mat<f64>,
     /// The diagonal of the matrix that S is condensed from (Pa).
+    #[serde(with = "crate::bytes")]
     pub diagonal: Vec<f64>,
     /// The smallest pivot of what was eliminated, relative to its diagonal entry.
     pub smallest_pivot: f64,

@@ -1,10 +1,12 @@
 //! What subdomains must agree on: a node that several have, and that nodes are told apart by tag.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Catalog, Subdomain};
 use crate::error::InputError;
 
 /// What a subdomain says of one of its nodes on Γ.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SharedNode {
     /// Its number on Γ.
     pub interface: u32,
@@ -17,7 +19,7 @@ pub struct SharedNode {
 }
 
 /// The nodes of a subdomain, as far as others are concerned.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OwnNodes {
     /// Tags of those that aren't on Γ.
     pub inner: Vec<i64>,

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use contact_dd_partition::element::geometry::padded;
 
-use crate::comm::{Comm, Message};
+use crate::comm::Comm;
 use crate::fem::block::Block;
 use crate::fem::elasticity::{principal_stresses, von_mises};
 use crate::fem::owned::OwnedBlock;
@@ -28,14 +28,10 @@ pub(super) struct Parcel {
 impl Parcel {
     /// Cuts the root's `slabs` where the owner changes. Collective.
     pub(super) fn cut(comm: &Comm, slabs: &[Range<usize>], plan: &Plan) -> Vec<Self> {
-        let mut ends = Message {
-            integers: slabs.iter().map(|slab| slab.end as i64).collect(),
-            reals: Vec::new(),
-        };
+        let mut ends: Vec<usize> = slabs.iter().map(|slab| slab.end).collect();
         comm.broadcast(&mut ends);
-        let ends = ends.integers.iter().map(|&end| end as usize);
         let owners = plan.subdomain_owners();
-        cut(ends, |s| owners[s])
+        cut(ends.into_iter(), |s| owners[s])
     }
 
     /// Appends what was found on its subdomains; called on their owner.
@@ -131,81 +127,6 @@ fn append_stress(results: &mut SubdomainResults, block: &Block, m: usize, stress
     results.von_mises.extend(cells.iter().map(von_mises));
 }
 
-/// The results as they travel: list after list.
-pub(super) fn pack(results: &SubdomainResults) -> Message {
-    let mut message = Message::default();
-    let integers = &mut message.integers;
-    integers.push(results.sizes.len() as i64);
-    for size in &results.sizes {
-        let counts = [size.points, size.cells, size.connectivity];
-        integers.extend(counts.map(|count| count as i64));
-    }
-    integers.extend_from_slice(&results.node_tags);
-    integers.extend_from_slice(&results.connectivity);
-    integers.extend_from_slice(&results.offsets);
-    integers.extend(results.types.iter().map(|&kind| i64::from(kind)));
-    integers.extend(results.materials.iter().map(|&m| i64::from(m)));
-    let reals = &mut message.reals;
-    reals.extend_from_slice(results.points.as_flattened());
-    reals.extend_from_slice(results.displacement.as_flattened());
-    reals.extend_from_slice(results.nodal_stress.as_flattened());
-    reals.extend_from_slice(results.cell_stress.as_flattened());
-    reals.extend_from_slice(results.principal.as_flattened());
-    reals.extend_from_slice(&results.von_mises);
-    reals.extend_from_slice(&results.energy_error);
-    message
-}
-
-/// Appends what another rank has packed. The sender is the same program, so what is taken is
-/// there; from a list that is too short, as that of a run without stresses, nothing is taken.
-pub(super) fn unpack(message: &Message, results: &mut SubdomainResults) {
-    let mut integers = &message.integers[..];
-    let count = take(&mut integers, 1).first().map_or(0, |&n| n as usize);
-    let mut total = PartitionSize::default();
-    for size in take(&mut integers, 3 * count).chunks_exact(3) {
-        let size = PartitionSize {
-            points: size[0] as usize,
-            cells: size[1] as usize,
-            connectivity: size[2] as usize,
-        };
-        total.points += size.points;
-        total.cells += size.cells;
-        total.connectivity += size.connectivity;
-        results.sizes.push(size);
-    }
-    let (points, cells) = (total.points, total.cells);
-    let integers = &mut integers;
-    results.node_tags.extend_from_slice(take(integers, points));
-    let connectivity = take(integers, total.connectivity);
-    results.connectivity.extend_from_slice(connectivity);
-    let offsets = take(integers, cells + count);
-    results.offsets.extend_from_slice(offsets);
-    let types = take(integers, cells).iter();
-    results.types.extend(types.map(|&kind| kind as u8));
-    let materials = take(integers, cells).iter();
-    results.materials.extend(materials.map(|&m| m as i32));
-    let reals = &mut &message.reals[..];
-    results.points.extend_from_slice(tuples(reals, points));
-    results
-        .displacement
-        .extend_from_slice(tuples(reals, points));
-    results
-        .nodal_stress
-        .extend_from_slice(tuples(reals, points));
-    results.cell_stress.extend_from_slice(tuples(reals, cells));
-    results.principal.extend_from_slice(tuples(reals, cells));
-    results.von_mises.extend_from_slice(take(reals, cells));
-    results.energy_error.extend_from_slice(take(reals, cells));
-}
-
-fn take<'a, T>(list: &mut &'a [T], n: usize) -> &'a [T] {
-    list.split_off(..n).unwrap_or_default()
-}
-
-fn tuples<'a, const N: usize>(list: &mut &'a [f64], n: usize) -> &'a [[f64; N]] {
-    take(list, N * n).as_chunks().0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -228,35 +149,5 @@ mod tests {
                 parcel(5..6, 0, true),
             ]
         );
-    }
-
-    #[test]
-    fn results_arrive_as_they_were_sent() {
-        let three = |n: u32| vec![[f64::from(n), 0.5, -1.0]; n as usize];
-        let six = |n: u32| vec![[f64::from(n), 1.0, 2.0, 3.0, 4.0, 5.0]; n as usize];
-        let size = |points, cells, connectivity| PartitionSize {
-            points,
-            cells,
-            connectivity,
-        };
-        let sent = SubdomainResults {
-            first: 0,
-            sizes: vec![size(3, 1, 3), size(0, 0, 0), size(4, 2, 6)],
-            points: three(7),
-            node_tags: (10..17).collect(),
-            displacement: three(7),
-            nodal_stress: six(7),
-            connectivity: vec![0, 1, 2, 0, 1, 2, 1, 2, 3],
-            offsets: vec![0, 3, 0, 0, 3, 6],
-            types: vec![5; 3],
-            materials: vec![0, 1, 1],
-            cell_stress: six(3),
-            principal: three(3),
-            von_mises: vec![7.0, 8.0, 9.0],
-            energy_error: vec![0.1, 0.2, 0.3],
-        };
-        let mut arrived = SubdomainResults::default();
-        unpack(&pack(&sent), &mut arrived);
-        assert_eq!(arrived, sent);
     }
 }

@@ -2,7 +2,6 @@
 
 use std::rc::Rc;
 
-use contact_dd_mpi::comm::Message;
 use contact_dd_mpi::contact::approach::ApproachOf;
 use contact_dd_mpi::contact::law::PairLaw;
 use contact_dd_mpi::contact::limits::Limits;
@@ -129,15 +128,10 @@ impl Small {
             smallest_pivot: 1.0,
             law: None,
         }];
-        contributions.extend(pairs.iter().map(|pair| {
-            let mut message = Message::default();
-            let condensed = pair.condensed();
-            PairLaw::pack(condensed, pair.limits(), &mut message);
-            Contribution {
-                s: condensed.bilateral().to_owned(),
-                smallest_pivot: 1.0,
-                law: Some(PairLaw::unpack(&mut message.read(), condensed.traces.len())),
-            }
+        contributions.extend(pairs.iter().map(|pair| Contribution {
+            s: pair.condensed().bilateral().to_owned(),
+            smallest_pivot: 1.0,
+            law: Some(PairLaw::new(pair.condensed(), pair.limits())),
         }));
         let interface = Interface::new(&numbering, contributions, &in_contact, Par::Seq).unwrap();
         let of_pairs = pairs.iter().map(|pair| pair.bilateral_load());

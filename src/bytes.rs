@@ -1,18 +1,24 @@
-//! Lists of reals in messages: their bytes as they lie in memory, copied in one piece.
+//! Lists of numbers in messages: their bytes as they lie in memory, copied in one piece.
 //!
-//! `#[serde(with = "crate::reals")]` on a `Vec<f64>`, [`reals::lower`](lower) on the matrix of a symmetric one, of
-//! which the lower triangle travels. Number after number would take a run's largest messages many times as long.
+//! `#[serde(with = "crate::bytes")]` on a `Vec` of numbers, or [`Reals`] around it; [`mod@matrix`] and [`lower`] on
+//! matrices. Number after number would take a run's largest messages many times as long.
 
 use std::fmt;
+use std::marker::PhantomData;
 
+use bytemuck::Pod;
 use serde::de::{Error, Visitor};
-use serde::{Deserializer, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// A list of reals that travels as its bytes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Reals(#[serde(with = "self")] pub Vec<f64>);
 
 /// Writes a list.
 ///
 /// # Errors
 /// Those of the serializer.
-pub fn serialize<S: Serializer>(list: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
+pub fn serialize<T: Pod, S: Serializer>(list: &[T], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_bytes(bytemuck::cast_slice(list))
 }
 
@@ -20,25 +26,30 @@ pub fn serialize<S: Serializer>(list: &[f64], serializer: S) -> Result<S::Ok, S:
 ///
 /// # Errors
 /// It isn't there, or cut short.
-pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
-    deserializer.deserialize_bytes(List)
+pub fn deserialize<'de, T, D>(deserializer: D) -> Result<Vec<T>, D::Error>
+where
+    T: Pod,
+    D: Deserializer<'de>,
+{
+    deserializer.deserialize_bytes(List(PhantomData))
 }
 
-struct List;
+struct List<T>(PhantomData<T>);
 
-impl Visitor<'_> for List {
-    type Value = Vec<f64>;
+impl<T: Pod> Visitor<'_> for List<T> {
+    type Value = Vec<T>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("the bytes of reals")
+        f.write_str("the bytes of whole numbers")
     }
 
-    fn visit_bytes<E: Error>(self, bytes: &[u8]) -> Result<Vec<f64>, E> {
-        let (reals, rest) = bytes.as_chunks();
-        match rest.is_empty() {
-            true => Ok(reals.iter().map(|&real| f64::from_ne_bytes(real)).collect()),
-            false => Err(E::invalid_length(bytes.len(), &self)),
+    fn visit_bytes<E: Error>(self, bytes: &[u8]) -> Result<Vec<T>, E> {
+        if !bytes.len().is_multiple_of(size_of::<T>()) {
+            return Err(E::invalid_length(bytes.len(), &self));
         }
+        let mut list = vec![T::zeroed(); bytes.len() / size_of::<T>()];
+        bytemuck::cast_slice_mut(&mut list).copy_from_slice(bytes);
+        Ok(list)
     }
 }
 
@@ -84,6 +95,36 @@ pub mod lower {
             let (column, after) = rest.split_at(size - j);
             matrix.col_as_slice_mut(j)[j..].copy_from_slice(column);
             rest = after;
+        }
+        Ok(matrix)
+    }
+}
+
+/// The lower triangle of a symmetric matrix, both of whose triangles arrive.
+pub mod symmetric {
+    use faer::Mat;
+    use serde::{Deserializer, Serializer};
+
+    use super::lower;
+
+    /// Writes the lower triangle.
+    ///
+    /// # Errors
+    /// Those of the serializer.
+    pub fn serialize<S: Serializer>(matrix: &Mat<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+        lower::serialize(matrix, serializer)
+    }
+
+    /// Reads the lower triangle and mirrors it.
+    ///
+    /// # Errors
+    /// It isn't there, or cut short.
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Mat<f64>, D::Error> {
+        let mut matrix = lower::deserialize(deserializer)?;
+        for j in 0..matrix.ncols() {
+            for i in j + 1..matrix.nrows() {
+                matrix[(j, i)] = matrix[(i, j)];
+            }
         }
         Ok(matrix)
     }
