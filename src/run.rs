@@ -83,7 +83,7 @@ pub enum Ending {
 pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     let began = Instant::now();
     let mut seconds = PhaseSeconds::default();
-    // What a problem file asks for counts where nobody says otherwise.
+    // Settings of the command line take precedence over those of the problem file.
     phase("reading");
     let file = comm.agree(ProblemFile::open(&command_line.problem()).map_err(Failure::from))?;
     let settings = &Settings::new(command_line, &file.catalog().solver);
@@ -92,7 +92,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         1 => Par::Seq,
         n => Par::rayon(usize::from(n)),
     };
-    // Dense algebra, which takes no such argument everywhere, would use all cores.
+    // Where faer's dense algebra takes no `par`, it would use all cores.
     faer::set_global_parallelism(par);
     let narrator = Narrator::new(comm, settings, began);
 
@@ -113,7 +113,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         par,
     };
 
-    // Rigid motions that neither supports nor contact hold, and those by which bodies come to rest.
+    // Rigid-body modes that neither supports nor contact restrain, and the bodies' closing motions.
     narrator.phase("looking for free rigid motions", None);
     let surveys = survey_steps(&context)?;
     if settings.check {
@@ -226,7 +226,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     })
 }
 
-/// Makes the files of the outputs, so that a place where they can't be is found before the work.
+/// Creates the output files, so that a folder that can't be written is found before the work.
 /// Collective; the root has the files.
 ///
 /// # Errors
