@@ -6,7 +6,7 @@ pub mod check;
 
 use std::collections::HashMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use self::check::{BlockCheck, External, Most};
 use crate::schur::trace::TraceDof;
@@ -16,7 +16,7 @@ use crate::vector::{larger, largest};
 const NO_LOAD: f64 = 1e-12;
 
 /// Checks of the full discrete problem, all relative to the scale of what they check.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Certificate {
     /// ‖K u − f + Bᵀλ‖∞ / ‖|K||u| + |f| + |Bᵀλ|‖∞.
     pub equilibrium: f64,

@@ -23,6 +23,7 @@ pub mod read;
 pub mod recover;
 pub mod refine;
 mod report;
+mod restart;
 pub mod settle;
 pub mod solution;
 mod squeezed;
@@ -50,6 +51,7 @@ use self::merge::condense_clusters;
 use self::narrator::Narrator;
 use self::read::read_blocks;
 use self::report::Outputs;
+use self::restart::{finished_steps, keep};
 use self::solution::Solution;
 use self::steps::{StepState, in_step, loads_of_step, stop_if_asked, survey_steps};
 use self::sweeping::sweep;
@@ -121,7 +123,8 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         return Ok(Ending::Converged);
     }
     narrator.phase("creating the outputs", None);
-    let mut outputs = create_outputs(&context, settings)?;
+    let finished = finished_steps(&context, settings)?;
+    let mut outputs = create_outputs(&context, settings, finished.count)?;
     let loads = |k: usize| without_descent(&context, loads_of_step(&context, k), &surveys[k]);
     seconds.read = began.elapsed().as_secs_f64();
 
@@ -142,10 +145,9 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     seconds.interface = lap.elapsed().as_secs_f64();
 
     // Load step by load step: each starts from the state that the one before it left.
-    let mut state = StepState::default();
-    let mut steps: Vec<StepTotals> = Vec::new();
-    for (k, survey) in surveys.iter().enumerate() {
-        stop_if_asked(comm, catalog, k)?;
+    let (mut state, mut steps) = (finished.state, finished.steps);
+    for (k, survey) in surveys.iter().enumerate().skip(finished.count) {
+        stop_if_asked(&context, settings, k)?;
 
         // F, condensed like the blocks, and the bounds on approaches.
         narrator.phase("condensing the load", None);
@@ -198,6 +200,10 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         state = StepState::after(problem.pairs, outcome.as_ref(), settings.method);
         let totals = outcome.map(|o| StepTotals::new(o, &solution, resultants, survey));
         steps.extend(totals);
+        if k + 1 < surveys.len() {
+            let result = outputs.as_mut().map(|outputs| &mut outputs.result);
+            keep(&context, settings, &state, &steps, result)?;
+        }
     }
     seconds.total = began.elapsed().as_secs_f64();
 
@@ -213,7 +219,11 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
                 steps,
                 smallest_pivot: interface.smallest_pivot(),
                 ranks,
-                warnings: settings.unused().into_iter().collect(),
+                warnings: settings
+                    .unused()
+                    .into_iter()
+                    .chain(finished.warning)
+                    .collect(),
             };
             narrator.finish(&totals, outputs)
         }
@@ -226,12 +236,17 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     })
 }
 
-/// Creates the output files, so that a folder that can't be written is found before the work.
+/// Creates the output files, so that a folder that can't be written is found before the work, or opens those of a run
+/// that was stopped after some `finished` load steps.
 /// Collective; the root has the files.
 ///
 /// # Errors
 /// A file can't be made.
-fn create_outputs(context: &Context<'_>, settings: &Settings) -> Result<Option<Outputs>, Failure> {
+fn create_outputs(
+    context: &Context<'_>,
+    settings: &Settings,
+    finished: usize,
+) -> Result<Option<Outputs>, Failure> {
     let &Context {
         comm,
         catalog,
@@ -254,7 +269,10 @@ fn create_outputs(context: &Context<'_>, settings: &Settings) -> Result<Option<O
         let layout = Layout::new(catalog, &connectivity, !settings.no_stress);
         let report = settings.report.as_deref().map(ReportFile::create);
         Ok(Outputs {
-            result: ResultFile::create(&settings.output, &layout)?,
+            result: match finished {
+                0 => ResultFile::create(&settings.output, &layout)?,
+                steps => ResultFile::resume(&settings.output, &layout, steps)?,
+            },
             report: report.transpose()?,
         })
     };

@@ -49,6 +49,8 @@ pub struct Settings {
     pub threads: u16,
     /// Whether stresses are left out: neither recovered nor written.
     pub no_stress: bool,
+    /// Whether to go on after the load steps that a stopped run finished.
+    pub restart: bool,
     /// Whether to validate the problem file and solve nothing.
     pub check: bool,
     /// Whether to print nothing but warnings and errors.
@@ -89,6 +91,7 @@ impl Settings {
             threads: from
                 .choose("threads", &run.threads, &None)
                 .map_or(1, u16::from),
+            restart: run.restart,
             check: command_line.check,
             problem: path,
             from,

@@ -1,5 +1,6 @@
 //! A file that appears under its name only when it is complete.
 
+use std::ffi::OsString;
 use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, Write};
 use std::os::unix::fs::PermissionsExt;
@@ -27,25 +28,9 @@ impl Destination {
     /// A folder that doesn't exist or can't be written, a name that something other than a
     /// writable file has.
     pub fn new(path: &Path) -> Result<Self, OutputError> {
-        let fails = |reason: &str| Err(failure(path, reason));
-        // A link is followed: what it points to is replaced, not the link.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-        if let Ok(metadata) = fs::metadata(&target) {
-            if !metadata.is_file() {
-                return fails("it isn't a file");
-            }
-            if metadata.permissions().readonly() {
-                return fails("the file that is there is write-protected");
-            }
-        }
-        let Some(name) = target.file_name() else {
-            return fails("this names a folder; expected a file name");
-        };
-        if !folder_of(&target).is_dir() {
-            return fails("its folder doesn't exist");
-        }
-        let mut prefix = std::ffi::OsString::from(".");
-        prefix.push(name);
+        let target = target_of(path)?;
+        let mut prefix = OsString::from(".");
+        prefix.push(target.file_name().unwrap_or_default());
         prefix.push(".");
         let made = Builder::new()
             .prefix(&prefix)
@@ -58,6 +43,41 @@ impl Destination {
             temporary: made.map_err(|error| failure(path, error))?.into_temp_path(),
             target,
         })
+    }
+
+    /// The file that an earlier run [kept](Self::keep) for `path`, to be completed.
+    ///
+    /// # Errors
+    /// As of [`new`](Self::new).
+    pub fn kept(path: &Path) -> Result<Self, OutputError> {
+        let target = target_of(path)?;
+        let kept = TempPath::try_from_path(unfinished(&target));
+        let mut temporary = kept.map_err(|error| failure(path, error))?;
+        temporary.disable_cleanup(true);
+        Ok(Self {
+            path: path.to_path_buf(),
+            temporary,
+            target,
+        })
+    }
+
+    /// From now on the temporary file stays where it isn't committed, under the name
+    /// [`unfinished`] of the file.
+    ///
+    /// # Errors
+    /// What the system said.
+    pub fn keep(&mut self) -> Result<(), OutputError> {
+        let kept = unfinished(&self.target);
+        if *self.temporary == *kept {
+            return Ok(());
+        }
+        let fails = |error: io::Error| failure(&self.path, error);
+        fs::rename(&self.temporary, &kept).map_err(fails)?;
+        let mut temporary = TempPath::try_from_path(kept).map_err(fails)?;
+        temporary.disable_cleanup(true);
+        // What had the temporary name has none any more.
+        std::mem::replace(&mut self.temporary, temporary).disable_cleanup(true);
+        Ok(())
     }
 
     /// The file to write to.
@@ -86,6 +106,35 @@ impl Destination {
         let _ = sync(folder_of(&self.target));
         Ok(())
     }
+}
+
+/// The name of what a run that was stopped kept of the file `path`: `NAME.unfinished`.
+pub fn unfinished(path: &Path) -> PathBuf {
+    let mut name = OsString::from(path);
+    name.push(".unfinished");
+    PathBuf::from(name)
+}
+
+/// The file that `path` names, once links are followed.
+fn target_of(path: &Path) -> Result<PathBuf, OutputError> {
+    let fails = |reason: &str| Err(failure(path, reason));
+    // A link is followed: what it points to is replaced, not the link.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    if let Ok(metadata) = fs::metadata(&target) {
+        if !metadata.is_file() {
+            return fails("it isn't a file");
+        }
+        if metadata.permissions().readonly() {
+            return fails("the file that is there is write-protected");
+        }
+    }
+    if target.file_name().is_none() {
+        return fails("this names a folder; expected a file name");
+    }
+    if !folder_of(&target).is_dir() {
+        return fails("its folder doesn't exist");
+    }
+    Ok(target)
 }
 
 /// Writes `path` as a stream of bytes; it gets its name when it is complete.

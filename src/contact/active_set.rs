@@ -16,6 +16,7 @@
 //!    positive definite H, with linearly dependent conditions too.
 
 use faer::MatRef;
+use serde::{Deserialize, Serialize};
 
 use super::dependent::DependentRows;
 use super::interior_point::InGaps;
@@ -60,7 +61,7 @@ pub struct GapProblem<'a> {
 }
 
 /// Its solution.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GapSolution {
     /// t ≤ g; exactly g where closed.
     pub approaches: Vec<f64>,

@@ -25,7 +25,7 @@ pub struct ContactPair {
 }
 
 /// Where the last evaluation of a pair left it, and where the next one begins.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PairState {
     /// Which approaches are open, then which dependent conditions.
     open: Vec<bool>,

@@ -28,7 +28,7 @@ pub struct ConState {
 }
 
 /// Totals of one evaluation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ConTotals {
     /// Closed approaches and dependent conditions.
     pub active: usize,

@@ -4,12 +4,12 @@ use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{advance, cross};
 use contact_dd_partition::problem::Catalog;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::result::ContactState;
 
 /// A force and its moment about the origin (N and N m, per metre of thickness in the plane).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Resultant {
     /// Force.
     pub force: [f64; 3],
@@ -26,7 +26,7 @@ impl Resultant {
 }
 
 /// What a contact transfers.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ContactResultant {
     /// Name of the contact.
     pub name: String,
@@ -52,7 +52,7 @@ impl ContactResultant {
 }
 
 /// What a condition that prescribes displacements exerts on the bodies.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reaction {
     /// The condition: its kind, its number among those, and where it holds.
     pub support: String,
@@ -62,7 +62,7 @@ pub struct Reaction {
 }
 
 /// All of them.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Resultants {
     /// Contacts, in the order of the scene.
     pub contacts: Vec<ContactResultant>,

@@ -11,12 +11,12 @@ mod time_series;
 use std::ops::Range;
 use std::path::Path;
 
-use contact_dd_partition::destination::Destination;
+use contact_dd_partition::destination::{self, Destination};
 use contact_dd_partition::error::OutputError;
 use contact_dd_partition::problem::{Catalog, ContactSummary, SubdomainSummary};
 use contact_dd_partition::scene::units::Units;
-use hdf5::File;
 use hdf5::types::VarLenUnicode;
+use hdf5::{File, FileBuilder};
 
 use self::contact_table::ContactTables;
 use self::grid::Grid;
@@ -61,10 +61,13 @@ impl Layout {
     }
 }
 
+/// The dataset of a file of load steps, while it isn't complete, that holds what goes on after those finished.
+const STATE: &str = "unfinished";
+
 /// A result file that is being written, under a temporary name in the folder of the final one.
 ///
-/// Dropped without [`finish`](Self::finish) it leaves nothing behind, and what stood under the
-/// final name stays.
+/// Dropped without [`finish`](Self::finish) it leaves nothing behind, unless load steps are finished and
+/// [`kept`](Self::keep); what stood under the final name stays.
 #[derive(Debug)]
 pub struct ResultFile {
     grid: Grid,
@@ -86,11 +89,49 @@ impl ResultFile {
     /// The file can't be made: no such folder, no permission, a name that something else has.
     pub fn create(path: &Path, layout: &Layout) -> Result<Self, OutputError> {
         let destination = Destination::new(path)?;
+        Self::open(destination, layout, 0, |options, path| options.create(path))
+    }
+
+    /// Opens the file of a run that was stopped after `finished` load steps, to go on with it.
+    ///
+    /// # Errors
+    /// The file can't be opened, or has another layout.
+    pub fn resume(path: &Path, layout: &Layout, finished: usize) -> Result<Self, OutputError> {
+        let destination = Destination::kept(path)?;
+        Self::open(destination, layout, finished, |options, path| {
+            options.open_rw(path)
+        })
+    }
+
+    /// What a run that was stopped [kept](Self::keep) beside its finished load steps; `None` where there is
+    /// no such run.
+    ///
+    /// # Errors
+    /// The file isn't what such a run leaves.
+    pub fn kept_state(path: &Path) -> Result<Option<Vec<u8>>, OutputError> {
+        let kept = destination::unfinished(path);
+        if !kept.exists() {
+            return Ok(None);
+        }
+        let read = || {
+            let file = without_locks().open(&kept)?;
+            file.dataset(STATE)?.read_raw::<u8>()
+        };
+        let why =
+            |_: hdf5::Error| "isn't what a run that was stopped leaves; expected its load steps";
+        read()
+            .map(Some)
+            .map_err(|error| destination::failure(&kept, why(error)))
+    }
+
+    fn open(
+        destination: Destination,
+        layout: &Layout,
+        finished: usize,
+        open: impl Fn(FileBuilder, &Path) -> hdf5::Result<File>,
+    ) -> Result<Self, OutputError> {
         let make = || {
-            let file = File::with_options()
-                // A temporary file has no other reader, and not every file system can lock.
-                .with_fapl(|access| access.file_locking(false))
-                .create(destination.temporary())?;
+            let file = open(without_locks(), destination.temporary())?;
             attribute(&file, "units", layout.units.length())?;
             let grid = Grid::create(&file, layout)?;
             let contacts = ContactTables::create(&file, &layout.contacts, layout.times.len())?;
@@ -102,7 +143,7 @@ impl ResultFile {
                 contacts,
                 has_steps: !layout.times.is_empty(),
                 steps: layout.times.len().max(1),
-                step: 0,
+                step: finished,
                 file,
                 destination,
             }),
@@ -147,6 +188,33 @@ impl ResultFile {
         Ok(())
     }
 
+    /// Keeps what is written so far even if the run is stopped: with the `state` in which it goes on after the
+    /// load steps that are finished.
+    ///
+    /// # Errors
+    /// The file can't be written.
+    pub fn keep(&mut self, state: &[u8]) -> Result<(), OutputError> {
+        let write = || {
+            self.forget_state()?;
+            let dataset = self
+                .file
+                .new_dataset::<u8>()
+                .shape(state.len())
+                .create(STATE)?;
+            dataset.write_raw(state)?;
+            self.file.flush()
+        };
+        write().map_err(|error: hdf5::Error| failure(&self.destination, &error))?;
+        self.destination.keep()
+    }
+
+    fn forget_state(&self) -> hdf5::Result<()> {
+        match self.file.link_exists(STATE) {
+            true => self.file.unlink(STATE),
+            false => Ok(()),
+        }
+    }
+
     /// Writes `/convergence`: a row for the start and one for every sweep, load step by load step. Called
     /// once.
     ///
@@ -170,6 +238,7 @@ impl ResultFile {
     /// # Errors
     /// The file can't be written, or results are missing.
     pub fn finish(self, report_json: &str) -> Result<(), OutputError> {
+        (self.forget_state()).map_err(|error| failure(&self.destination, &error))?;
         let Self {
             grid,
             contacts,
@@ -199,8 +268,17 @@ fn attribute(file: &File, name: &str, text: &str) -> hdf5::Result<()> {
     let text: VarLenUnicode = text
         .parse()
         .map_err(|error| hdf5::Error::from(format!("{name}: {error}")))?;
-    let attribute = file.new_attr::<VarLenUnicode>().create(name)?;
+    let attribute = file
+        .attr(name)
+        .or_else(|_| file.new_attr::<VarLenUnicode>().create(name))?;
     attribute.write_scalar(&text)
+}
+
+/// A temporary file has no other reader, and not every file system can lock.
+fn without_locks() -> FileBuilder {
+    let mut options = File::with_options();
+    options.with_fapl(|access| access.file_locking(false));
+    options
 }
 
 fn failure(destination: &Destination, error: &hdf5::Error) -> OutputError {

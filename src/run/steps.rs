@@ -2,15 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::destination::unfinished;
 use contact_dd_partition::problem::Catalog;
 
 use super::context::Context;
 use super::squeezed;
-use crate::comm::Comm;
 use crate::contact::pair::{ContactPair, PairState};
 use crate::error::Failure;
 use crate::fem::load::BlockLoads;
 use crate::rigid::survey::{Survey, survey};
+use crate::settings::Settings;
 use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
 
 /// What acts on the blocks of this rank in a load step, by their number.
@@ -90,12 +91,14 @@ pub fn survey_steps(context: &Context<'_>) -> Result<Vec<Survey>, Failure> {
 ///
 /// # Errors
 /// A signal did.
-pub fn stop_if_asked(comm: &Comm, catalog: &Catalog, k: usize) -> Result<(), Failure> {
-    match k > 0 && comm.is_any_asked_to_stop() {
+pub fn stop_if_asked(context: &Context<'_>, settings: &Settings, k: usize) -> Result<(), Failure> {
+    match k > 0 && context.comm.is_any_asked_to_stop() {
         false => Ok(()),
         true => Err(Failure::interrupted(format!(
-            "interrupted after {k} of {} load steps, before a result was written",
-            catalog.steps.len()
+            "interrupted after {k} of {} load steps: {} has their results; the same command with \
+             --restart goes on after them",
+            context.catalog.steps.len(),
+            unfinished(&settings.output).display()
         ))),
     }
 }

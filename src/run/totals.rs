@@ -3,6 +3,8 @@
 use contact_dd_partition::problem::Catalog;
 
 use super::solution::Solution;
+use serde::{Deserialize, Serialize};
+
 use crate::certificate::Certificate;
 use crate::fem::estimate::CellError;
 use crate::output::ranks::RankReport;
@@ -29,6 +31,7 @@ pub struct Totals<'a> {
 }
 
 /// A load step, or a run without any.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct StepTotals {
     /// What the sweeps found.
     pub outcome: SweepOutcome,

@@ -113,6 +113,10 @@ pub struct RunSettings {
     #[arg(short, long, help_heading = "Output")]
     pub quiet: bool,
 
+    /// Go on after the last load step that a stopped run finished
+    #[arg(long, help_heading = "Running")]
+    pub restart: bool,
+
     /// Threads of each rank [default: 1]
     #[arg(long, value_name = "N", help_heading = "Running")]
     pub threads: Option<NonZeroU16>,

@@ -2,6 +2,7 @@
 
 use crate::certificate::Certificate;
 use crate::interface::s_con::ConTotals;
+use serde::{Deserialize, Serialize};
 
 /// Equilibrium and penetration of a certificate that isn't one.
 const NOT_BALANCED: f64 = 1e-10;
@@ -13,7 +14,7 @@ const LOADED: f64 = 1e-2;
 const NOT_BALANCED_OF_LOAD: f64 = 1e-2;
 
 /// One line of the convergence history; line 0 is the bilateral start.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SweepRecord {
     /// Number of the sweep.
     pub sweep: usize,
@@ -28,7 +29,7 @@ pub struct SweepRecord {
 }
 
 /// Why sweeps ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SweepStatus {
     /// The residual is below the tolerance and no contact changes any more.
     Converged,
@@ -37,7 +38,7 @@ pub enum SweepStatus {
 }
 
 /// What the sweeps found.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SweepOutcome {
     /// U.
     pub u: Vec<f64>,

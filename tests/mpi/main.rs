@@ -68,6 +68,7 @@ fn main() -> ExitCode {
     stopping::stopped_while_factorizing(&mut trials);
     stopping::stopped_while_sweeping(&mut trials);
     stopping::stopped_between_steps(&mut trials);
+    stopping::restarted_in_vain(&mut trials);
     steps::no_equilibrium(&mut trials);
     steps::squeezed(&mut trials);
     steps::not_converged(&mut trials);

@@ -34,20 +34,68 @@ pub fn stopped_while_sweeping(trials: &mut Trials) {
     }
 }
 
-/// Between two load steps it is enough that one rank hears of it.
+/// Between two load steps it is enough that one rank hears of it. What is finished is on disk, and going on from
+/// there has the bits of a run that wasn't stopped, on any number of ranks.
 pub fn stopped_between_steps(trials: &mut Trials) {
     if cfg!(not(debug_assertions)) {
         return;
     }
     trials.on_all_ranks("stopped::between_steps", |ranks| {
         let case = Case::of(&steps::two_blocks_in_steps(), 6);
-        let ended = stop(&case, ranks, "recovering", |running, _| {
-            let all = running.descendants("contact-dd-mpi");
-            send(*all.last().unwrap(), Signal::USR1);
-        });
-        failed_once(&ended, 6, &["interrupted after 1 of 3 load steps"]);
-        assert_eq!(case.files(), ["problem.h5"]);
+        let ended = case.run_on(ranks, &[]);
+        assert_eq!(ended.code(), 0, "{}", ended.stderr);
+        let expected = datasets(&case.result());
+        fs::write(case.result(), "an older result").unwrap();
+
+        stop_after_one_step(&case, ranks);
+        let result = fs::read_to_string(case.result()).unwrap();
+        assert_eq!(result, "an older result");
+        let ended = case.run_on(1 + ranks % 4, &["--restart"]);
+        assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+        assert!(datasets(&case.result()) == expected);
+        assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
     });
+}
+
+/// What isn't of this run is refused and stays; where there is nothing to go on with the run begins anew.
+pub fn restarted_in_vain(trials: &mut Trials) {
+    if cfg!(not(debug_assertions)) {
+        return;
+    }
+    trials.on_all_ranks("restarted::of_another_run", |ranks| {
+        let case = Case::of(&steps::two_blocks_in_steps(), 6);
+        stop_after_one_step(&case, ranks);
+        let kept = case.folder().join("problem.vtkhdf.unfinished");
+        let before = fs::read(&kept).unwrap();
+        let ended = case.run_on(ranks, &["--restart", "--tolerance", "1e-9"]);
+        failed_once(&ended, 2, &["problem.vtkhdf.unfinished", "other settings"]);
+        let other = Case::of(&steps::two_blocks_in_steps(), 4);
+        fs::copy(other.problem(), case.problem()).unwrap();
+        let ended = case.run_on(ranks, &["--restart"]);
+        failed_once(&ended, 2, &["problem.vtkhdf.unfinished", "another problem"]);
+        assert!(fs::read(&kept).unwrap() == before);
+        fs::write(&kept, "something else").unwrap();
+        let ended = case.run_on(ranks, &["--restart"]);
+        failed_once(&ended, 2, &["problem.vtkhdf.unfinished", "expected"]);
+    });
+    trials.on_all_ranks("restarted::where_nothing_is", |ranks| {
+        let case = Case::of(&steps::two_blocks_in_steps(), 6);
+        let ended = case.run_on(ranks, &["--restart"]);
+        assert_eq!(ended.code(), 0, "{}", ended.stderr);
+        assert!(ended.stdout.contains("this run begins at the start"));
+        assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
+    });
+}
+
+/// Stops a run of three load steps between the first two.
+fn stop_after_one_step(case: &Case, ranks: usize) {
+    let ended = stop(case, ranks, "recovering", |running, _| {
+        let all = running.descendants("contact-dd-mpi");
+        send(*all.last().unwrap(), Signal::USR1);
+    });
+    let words = ["interrupted after 1 of 3 load steps", "--restart"];
+    failed_once(&ended, 6, &words);
+    assert!(case.files().contains(&"problem.vtkhdf.unfinished".into()));
 }
 
 /// A run whose first rank stops in `phase` until something was `sent`.

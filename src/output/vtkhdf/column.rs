@@ -3,19 +3,33 @@
 use hdf5::{Dataset, Group, H5Type, Result};
 use ndarray::{ArrayView1, ArrayView2};
 
-/// A column of `rows` rows to be filled later.
-pub(super) fn empty<T: H5Type>(group: &Group, name: &str, rows: usize) -> Result<Dataset> {
-    group.new_dataset::<T>().shape(rows).create(name)
+/// A group, which an earlier run may have made.
+pub(super) fn group(parent: &Group, name: &str) -> Result<Group> {
+    match parent.link_exists(name) {
+        true => parent.group(name),
+        false => parent.create_group(name),
+    }
 }
 
-/// A table of `rows` rows of `width` numbers to be filled later.
+/// A column of `rows` rows to be filled later, or that of an earlier run.
+pub(super) fn empty<T: H5Type>(group: &Group, name: &str, rows: usize) -> Result<Dataset> {
+    match group.link_exists(name) {
+        true => group.dataset(name),
+        false => group.new_dataset::<T>().shape(rows).create(name),
+    }
+}
+
+/// A table of `rows` rows of `width` numbers to be filled later, or that of an earlier run.
 pub(super) fn empty_table<T: H5Type>(
     group: &Group,
     name: &str,
     rows: usize,
     width: usize,
 ) -> Result<Dataset> {
-    group.new_dataset::<T>().shape((rows, width)).create(name)
+    match group.link_exists(name) {
+        true => group.dataset(name),
+        false => group.new_dataset::<T>().shape((rows, width)).create(name),
+    }
 }
 
 /// A column of `rows` rows for each of some load `steps`, (steps, rows); a plain one where there are none.

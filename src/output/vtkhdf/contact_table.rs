@@ -29,7 +29,7 @@ struct Table {
 impl ContactTables {
     /// Makes all tables in their final sizes.
     pub(super) fn create(file: &File, contacts: &[ContactSummary], steps: usize) -> Result<Self> {
-        let parent = file.create_group("contact")?;
+        let parent = column::group(file, "contact")?;
         let tables = contacts
             .iter()
             .map(|contact| Table::create(&parent, contact, steps))
@@ -70,9 +70,8 @@ impl ContactTables {
 impl Table {
     fn create(parent: &Group, contact: &ContactSummary, steps: usize) -> Result<Self> {
         let (name, rows) = (&contact.name, contact.conditions);
-        let group = parent
-            .create_group(name)
-            .map_err(|error| format!("contact '{name}': {error}"))?;
+        let group =
+            column::group(parent, name).map_err(|error| format!("contact '{name}': {error}"))?;
         let tags = |name| column::empty::<i64>(&group, name, rows);
         let vectors = |name| column::empty_table::<f64>(&group, name, rows, 3);
         let states = |name| column::empty_by_step::<f64>(&group, name, steps, rows);

@@ -50,11 +50,14 @@ struct StressArrays {
 }
 
 impl Grid {
-    /// Makes all arrays in their final sizes.
+    /// Makes all arrays in their final sizes, or takes those that an earlier run made.
     pub(super) fn create(file: &File, layout: &Layout) -> Result<Self> {
         let (sizes, times) = (&layout.partitions, &layout.times);
-        let group = file.create_group("VTKHDF")?;
-        vtkhdf::mark(&group)?;
+        let is_new = !file.link_exists("VTKHDF");
+        let group = column::group(file, "VTKHDF")?;
+        if is_new {
+            vtkhdf::mark(&group)?;
+        }
 
         let counts =
             |of: fn(&PartitionSize) -> usize| sizes.iter().map(move |size| of(size) as i64);
@@ -148,8 +151,8 @@ impl Arrays {
         steps: usize,
         stress: bool,
     ) -> Result<Self> {
-        let points = group.create_group("PointData")?;
-        let cells = group.create_group("CellData")?;
+        let points = column::group(group, "PointData")?;
+        let cells = column::group(group, "CellData")?;
         let stress = match stress {
             true => Some(StressArrays::create(&points, &cells, total, steps)?),
             false => None,

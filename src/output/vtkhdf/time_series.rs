@@ -11,11 +11,12 @@ use super::{Layout, column};
 /// Writes times and offsets; `total` is the size of all partitions together.
 pub(super) fn create(grid: &Group, layout: &Layout, total: PartitionSize) -> Result<()> {
     let steps = layout.times.len();
-    let group = grid.create_group("Steps")?;
-    group
-        .new_attr::<i64>()
-        .create("NSteps")?
-        .write_scalar(&(steps as i64))?;
+    let is_new = !grid.link_exists("Steps");
+    let group = column::group(grid, "Steps")?;
+    if is_new {
+        let count = group.new_attr::<i64>().create("NSteps")?;
+        count.write_scalar(&(steps as i64))?;
+    }
     column::whole(&group, "Values", layout.times.iter().copied())?;
     let parts = layout.partitions.len() as i64;
     column::whole(&group, "NumberOfParts", vec![parts; steps].into_iter())?;
@@ -31,10 +32,10 @@ pub(super) fn create(grid: &Group, layout: &Layout, total: PartitionSize) -> Res
         let table = column::empty_table::<i64>(&group, name, steps, 1)?;
         column::fill_table(&table, 0, &vec![[0_i64]; steps])?;
     }
-    let points = group.create_group("PointDataOffsets")?;
+    let points = column::group(&group, "PointDataOffsets")?;
     stays(&points, "GlobalNodeId")?;
     follows(&points, "Displacement", total.points)?;
-    let cells = group.create_group("CellDataOffsets")?;
+    let cells = column::group(&group, "CellDataOffsets")?;
     for name in ["Subdomain", "Material"] {
         stays(&cells, name)?;
     }

@@ -1,0 +1,183 @@
+//! Going on after the load steps that a stopped run finished.
+//!
+//! After every load step but the last its results are on disk, under the result's name + `.unfinished`, and with
+//! them the state that the next step starts from. `--restart` takes both, on any number of ranks.
+
+use std::fs::File;
+use std::hash::{DefaultHasher, Hasher};
+use std::io::Read;
+use std::path::Path;
+
+use contact_dd_partition::destination::unfinished;
+use serde::{Deserialize, Serialize};
+
+use super::context::Context;
+use super::steps::StepState;
+use super::totals::StepTotals;
+use crate::contact::pair::PairState;
+use crate::error::Failure;
+use crate::output::vtkhdf::ResultFile;
+use crate::settings::Settings;
+
+/// What a run keeps beside the results of its finished load steps.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    /// What it is a run of.
+    run: Identity,
+    /// The finished load steps.
+    steps: Vec<StepTotals>,
+    /// U, and which approaches of every cluster in contact are open.
+    interface: Option<(Vec<f64>, Vec<Vec<bool>>)>,
+    /// The clusters in contact.
+    pairs: Vec<PairState>,
+}
+
+/// Two runs that agree in this go the same way.
+#[derive(PartialEq, Serialize, Deserialize)]
+struct Identity {
+    version: String,
+    problem: u64,
+    settings: String,
+}
+
+impl Identity {
+    fn new(settings: &Settings) -> Result<Self, Failure> {
+        let path = &settings.problem;
+        let problem =
+            digest(path).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+        let Settings {
+            threads, no_stress, ..
+        } = settings;
+        Ok(Self {
+            version: env!("CARGO_PKG_VERSION").into(),
+            problem,
+            settings: format!("{:?}, {threads} threads, {no_stress}", settings.sweeps()),
+        })
+    }
+}
+
+/// A number that is another one for another file.
+fn digest(path: &Path) -> std::io::Result<u64> {
+    let (mut file, mut hasher) = (File::open(path)?, DefaultHasher::new());
+    let mut bytes = vec![0; 1 << 20];
+    loop {
+        match file.read(&mut bytes)? {
+            0 => return Ok(hasher.finish()),
+            n => hasher.write(&bytes[..n]),
+        }
+    }
+}
+
+/// The finished load steps of a run that was stopped, and the state after them.
+#[derive(Default)]
+pub struct Finished {
+    /// How many there are.
+    pub count: usize,
+    /// What is known of them; on the root.
+    pub steps: Vec<StepTotals>,
+    /// The state that the next one starts from.
+    pub state: StepState,
+    /// What a user should know; on the root.
+    pub warning: Option<String>,
+}
+
+/// Looks for what a run like this one kept, where `settings` ask for that. Collective.
+///
+/// # Errors
+/// It is that of another problem, of other settings or of another version of the program.
+pub fn finished_steps(context: &Context<'_>, settings: &Settings) -> Result<Finished, Failure> {
+    let comm = context.comm;
+    if !settings.restart {
+        return Ok(Finished::default());
+    }
+    let kept = comm.agree(match comm.is_root() {
+        true => read(settings),
+        false => Ok(None),
+    })?;
+    let mut finished = Finished::default();
+    let mut pairs = Vec::new();
+    if let Some(kept) = kept {
+        finished.count = kept.steps.len();
+        finished.steps = kept.steps;
+        finished.state.interface = kept.interface;
+        pairs = kept.pairs;
+    } else {
+        finished.warning = Some(format!(
+            "--restart: there is no {}: this run begins at the start",
+            unfinished(&settings.output).display()
+        ));
+    }
+    comm.broadcast(&mut finished.count);
+    if finished.count > 0 {
+        comm.scatter(
+            &context.plan.contact_owners(),
+            |p| pairs[p].clone(),
+            |p, state| {
+                finished.state.pairs.insert(p, state);
+            },
+        );
+    }
+    Ok(finished)
+}
+
+fn read(settings: &Settings) -> Result<Option<Kept>, Failure> {
+    let bytes = ResultFile::kept_state(&settings.output)
+        .map_err(|error| Failure::input(format!("--restart: {error}")))?;
+    let Some(bytes) = bytes else {
+        return Ok(None);
+    };
+    let name = unfinished(&settings.output);
+    let refused = |why: &str| Failure::input(format!("--restart: {}: {why}", name.display()));
+    let kept: Kept = ciborium::from_reader(&bytes[..])
+        .map_err(|_| refused("it is of another version; expected one of this program"))?;
+    let run = Identity::new(settings)?;
+    let why = match &kept.run {
+        kept if kept.version != run.version => "it is of another version of the program",
+        kept if kept.problem != run.problem => "it is of another problem file",
+        kept if kept.settings != run.settings => "it is of a run with other settings",
+        _ => return Ok(Some(kept)),
+    };
+    Err(refused(why))
+}
+
+/// Keeps the results of the load steps so far and the `state` after them, for a run that goes on.
+/// Collective; `steps` and `result` are the root's.
+///
+/// # Errors
+/// The file can't be written.
+pub fn keep(
+    context: &Context<'_>,
+    settings: &Settings,
+    state: &StepState,
+    steps: &[StepTotals],
+    result: Option<&mut ResultFile>,
+) -> Result<(), Failure> {
+    let mut pairs = Vec::new();
+    context.comm.gather(
+        &context.plan.contact_owners(),
+        |p| state.pairs[&p].clone(),
+        |_, pair| pairs.push(pair),
+    );
+    let write = |result: &mut ResultFile| -> Result<(), Failure> {
+        let kept = KeptRef {
+            run: Identity::new(settings)?,
+            steps,
+            interface: &state.interface,
+            pairs,
+        };
+        let mut bytes = Vec::new();
+        ciborium::into_writer(&kept, &mut bytes)
+            .map_err(|error| Failure::internal(error.to_string()))?;
+        Ok(result.keep(&bytes)?)
+    };
+    context.comm.agree(result.map_or(Ok(()), write))
+}
+
+/// [`Kept`] as it is written.
+#[derive(Serialize)]
+struct KeptRef<'a> {
+    run: Identity,
+    steps: &'a [StepTotals],
+    interface: &'a Option<(Vec<f64>, Vec<Vec<bool>>)>,
+    pairs: Vec<PairState>,
+}
