@@ -39,7 +39,7 @@ pub struct Settings {
     pub report: Option<PathBuf>,
     /// How the interface problem is solved.
     pub method: Method,
-    /// Residual of the interface problem, relative to the terms it is a sum of, at which sweeps end.
+    /// Relative residual of the interface problem below which sweeps stop.
     pub tolerance: f64,
     /// Most sweeps.
     pub max_sweeps: Option<usize>,

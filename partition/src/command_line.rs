@@ -87,7 +87,7 @@ pub struct CommandLine {
           value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
 
-    /// Tell what a problem file holds, and write nothing
+    /// Print what a problem file holds, and write nothing
     #[arg(long, value_name = "FILE.h5", help_heading = "Problem file", exclusive = true,
           value_hint = ValueHint::FilePath)]
     pub info: Option<PathBuf>,

@@ -89,7 +89,7 @@ pub struct SolverSettings {
     #[arg(long, value_enum, value_name = "NAME")]
     pub method: Option<Method>,
 
-    /// Residual of the interface problem, relative to its terms, at which sweeps end [default: 1e-10]
+    /// Stop when the relative residual of the interface problem is below X [default: 1e-10]
     #[arg(long, value_name = "X")]
     pub tolerance: Option<Positive>,
 
@@ -101,7 +101,7 @@ pub struct SolverSettings {
     #[arg(long, value_name = "THETA")]
     pub relaxation: Option<Positive>,
 
-    /// Leave stresses out: neither recovered nor written
+    /// Neither recover nor write stresses
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true,
           default_missing_value = "true", value_parser = truth)]
     pub no_stress: Option<bool>,

@@ -79,7 +79,7 @@ pub struct CommandLine {
     #[command(flatten)]
     pub run: RunSettings,
 
-    /// Validate the problem file, tell what it holds and what solving it would take, solve nothing
+    /// Validate the problem file, estimate memory and flops of a run, and exit
     #[arg(long, help_heading = "Running")]
     pub check: bool,
 
