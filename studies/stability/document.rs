@@ -8,7 +8,7 @@ use crate::support::stress::FAMILIES;
 use crate::support::stress::trial::Verdict;
 
 /// How many of the worst cases are shown.
-const WORST: usize = 6;
+const WORST: usize = 3;
 
 /// A figure: its name, the limit that is promised, and how to read it off.
 type Figure = (&'static str, Option<f64>, fn(&Ran) -> Option<f64>);
