@@ -10,6 +10,7 @@ pub mod bar;
 pub mod build;
 pub mod event;
 pub mod memory;
+pub mod memory_check;
 pub mod message;
 pub mod ranks;
 pub mod report;

@@ -10,6 +10,7 @@
 pub mod analysis;
 mod bodies;
 mod columns;
+pub mod descend;
 mod descent;
 mod description;
 pub mod energy;
@@ -21,4 +22,5 @@ pub mod motion;
 pub mod nonnegative;
 pub mod projection;
 mod rows;
+pub mod squeezed;
 pub mod survey;

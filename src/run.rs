@@ -2,70 +2,41 @@
 //!
 //! read → assemble → condense → S_0 at the root → for each load step: F → sweeps → recover → write
 
-mod affording;
-mod clusters;
-pub mod condense;
-pub mod condensed_blocks;
-pub mod conditioning;
-mod conditions;
-pub mod context;
-mod copies;
-mod descend;
-pub mod frozen;
-pub mod interface;
-mod limits;
-pub mod load;
-pub mod merge;
-pub mod motions;
-mod narrator;
-mod reactions;
-pub mod read;
-pub mod recover;
-pub mod refine;
-mod report;
 mod restart;
-pub mod settle;
-pub mod solution;
-mod squeezed;
-mod steps;
-mod stresses;
-pub mod substitute;
 mod sweeping;
-mod totals;
-pub mod write;
 
 use std::time::Instant;
 
 use contact_dd_partition::problem::read::ProblemFile;
 use faer::Par;
 
-use self::affording::afford;
-use self::condense::Condensation;
-use self::context::Context;
-use self::copies::check_copies;
-use self::descend::without_descent;
-use self::frozen::Frozen;
-use self::interface::assemble_interface;
-use self::load::Loading;
-use self::merge::condense_clusters;
-use self::narrator::Narrator;
-use self::read::read_blocks;
-use self::report::Outputs;
 use self::restart::{finished_steps, keep};
-use self::solution::Solution;
-use self::steps::{StepState, in_step, loads_of_step, stop_if_asked, survey_steps};
 use self::sweeping::sweep;
-use self::totals::{StepTotals, Totals};
-use self::write::write_solution;
 use crate::comm::{Comm, phase};
+use crate::condense::Condensation;
+use crate::condense::interface::assemble_interface;
+use crate::condense::tree::condense_clusters;
+use crate::context::Context;
 use crate::error::Failure;
+use crate::output::memory_check::afford;
 use crate::output::ranks::PhaseSeconds;
 use crate::output::report::ReportFile;
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
+use crate::read::check_copies;
+use crate::read::read_blocks;
+use crate::recover::frozen::Frozen;
+use crate::recover::solution::Solution;
+use crate::report::log::Narrator;
+use crate::report::totals::{StepTotals, Totals};
+use crate::report::write::write_solution;
+use crate::report::{Outputs, collect};
+use crate::rigid::descend::without_descent;
 use crate::settings::Settings;
 use crate::settings::command_line::CommandLine;
+use crate::step::Loading;
+use crate::step::state::{StepState, stop_if_asked, survey_steps};
 use crate::sweep::SweepStatus;
 
 /// How a run ended that didn't fail.
@@ -125,7 +96,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     narrator.phase("creating the outputs", None);
     let finished = finished_steps(&context, settings)?;
     let mut outputs = create_outputs(&context, settings, finished.count)?;
-    let loads = |k: usize| without_descent(&context, loads_of_step(&context, k), &surveys[k]);
+    let loads = |k: usize| without_descent(&context, context.loads(k), &surveys[k]);
     seconds.read = began.elapsed().as_secs_f64();
 
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy.
@@ -135,7 +106,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         loads: &loads(0),
         pins: &surveys[0].motions.pins,
     };
-    let condensed = condense_clusters(&condensation, &surveys[0], &narrator.bar)?;
+    let condensed = condense_clusters(&condensation, &surveys[0], &|| narrator.bar.advance())?;
     [seconds.assemble, seconds.factorize] = condensed.seconds;
 
     // The root assembles S_0, (15), and the bilateral operator.
@@ -160,7 +131,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
             survey,
         };
         let problem = loading.problem(loads(k), state);
-        let mut problem = problem.map_err(|failure| in_step(failure, catalog, k))?;
+        let mut problem = problem.map_err(|failure| context.in_step(failure, k))?;
         seconds.interface += lap.elapsed().as_secs_f64();
 
         // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the step before.
@@ -207,7 +178,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     }
     seconds.total = began.elapsed().as_secs_f64();
 
-    let ranks = report::collect(comm, &seconds, &plan);
+    let ranks = collect(comm, &seconds, &plan);
     let converged = steps
         .iter()
         .all(|step| step.outcome.status == SweepStatus::Converged);

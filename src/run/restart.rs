@@ -11,13 +11,13 @@ use std::path::Path;
 use contact_dd_partition::destination::unfinished;
 use serde::{Deserialize, Serialize};
 
-use super::context::Context;
-use super::steps::StepState;
-use super::totals::StepTotals;
 use crate::contact::pair::PairState;
+use crate::context::Context;
 use crate::error::Failure;
 use crate::output::vtkhdf::ResultFile;
+use crate::report::totals::StepTotals;
 use crate::settings::Settings;
+use crate::step::state::StepState;
 
 /// What a run keeps beside the results of its finished load steps.
 #[derive(Serialize, Deserialize)]

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::context::Context;
-use super::narrator::Narrator;
 use crate::contact::pair::ContactPair;
+use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::SCon;
+use crate::report::log::Narrator;
 use crate::settings::Settings;
 use crate::sweep::{Start, SweepOutcome, SweepRecord, Sweeps};
 

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::condensed_blocks::CondensedBlocks;
-use super::context::Context;
 use crate::bytes::Reals;
+use crate::condense::blocks::CondensedBlocks;
+use crate::context::Context;
 use crate::schur::local::CondensedLoad;
 
 /// The factors of all ranks.

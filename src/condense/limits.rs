@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::condense::dof_failure;
-use super::condensed_blocks::CondensedBlocks;
-use super::context::Context;
-use super::steps::Loads;
+use crate::condense::blocks::CondensedBlocks;
+use crate::condense::dof_failure;
 use crate::contact::approach::ApproachOf;
 use crate::contact::limits::Limits;
+use crate::context::Context;
+use crate::context::Loads;
 use crate::error::Failure;
 use crate::fem::load::BlockLoads;
 use crate::fem::owned::OwnedBlock;
@@ -19,7 +19,7 @@ use crate::fem::prescribed::Prescribed;
 ///
 /// # Errors
 /// A contact point that lies on Γ.
-pub(super) fn prescribe(
+pub fn prescribe(
     context: &Context<'_>,
     condensed: &CondensedBlocks,
     loads: &Loads,
@@ -39,7 +39,7 @@ pub(super) fn prescribe(
 ///
 /// # Errors
 /// Supports that make two sides penetrate.
-pub(super) fn limits_of_clusters(
+pub fn limits_of_clusters(
     context: &Context<'_>,
     loads: &Loads,
     prescribed: &BTreeMap<usize, Prescribed>,

@@ -1,15 +1,17 @@
 //! A load step: everything in it that depends on loads, condensed onto Γ.
 
+pub mod state;
+
 use std::collections::BTreeMap;
 
-use super::clusters::settle_load;
-use super::condensed_blocks::{CondensedBlocks, ContactCluster};
-use super::context::Context;
-use super::limits::{limits_of_clusters, prescribe};
-use super::steps::{Loads, StepState};
-use super::substitute::Factors;
+use crate::condense::blocks::{CondensedBlocks, ContactCluster};
+use crate::condense::clusters::settle_load;
+use crate::condense::limits::{limits_of_clusters, prescribe};
+use crate::condense::substitute::Factors;
 use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
+use crate::context::Context;
+use crate::context::Loads;
 use crate::error::Failure;
 use crate::fem::load::load;
 use crate::fem::prescribed::Prescribed;
@@ -19,6 +21,7 @@ use crate::interface::problem::{ClusterLoad, InterfaceProblem};
 use crate::rigid::energy::RigidDrive;
 use crate::rigid::survey::Survey;
 use crate::schur::local::CondensedLoad;
+use crate::step::state::StepState;
 
 /// The problem of a load step, as this rank holds it.
 #[derive(Debug)]

@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::frozen::Frozen;
 use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
+use crate::recover::frozen::Frozen;
 use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::motion::BodyFrame;
 use crate::rigid::projection::MotionProducts;
 
 /// What blocks know of a field on a node that several of them have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Field {
+pub enum Field {
     /// Every one knows all of it, as of a displacement.
     Shared,
     /// Every one has a part, as of the forces that elements exert; the parts add up.
@@ -32,7 +32,7 @@ pub struct Motions<'a> {
 impl<'a> Motions<'a> {
     /// Makes a field orthogonal to every motion, in the Euclidean sense over the nodes of the bodies
     /// that take part. Collective.
-    pub(super) fn project(
+    pub fn project(
         &self,
         frozen: &Frozen<'_>,
         kind: Field,
@@ -49,7 +49,7 @@ impl<'a> Motions<'a> {
     }
 
     /// Their products with each other and with a field, on the root. Collective.
-    pub(super) fn products(
+    pub fn products(
         &self,
         frozen: &Frozen<'_>,
         kind: Field,
@@ -93,7 +93,7 @@ impl<'a> Motions<'a> {
     }
 
     /// v ← v − Σ c z.
-    pub(super) fn take_out(
+    pub fn take_out(
         &self,
         frozen: &Frozen<'_>,
         kind: Field,

@@ -1,12 +1,20 @@
 //! Assembling and condensing the blocks of this rank.
 
+pub mod blocks;
+pub mod clusters;
+mod conditions;
+pub mod interface;
+pub mod limits;
+pub mod substitute;
+pub mod tree;
+
 use std::time::Instant;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::condensed_blocks::{CondensedBlock, CondensedBlocks};
-use super::context::Context;
-use super::steps::Loads;
+use crate::condense::blocks::{CondensedBlock, CondensedBlocks};
+use crate::context::Context;
+use crate::context::Loads;
 use crate::error::Failure;
 use crate::fem::assembly::assemble;
 use crate::fem::block::Block;
@@ -95,7 +103,7 @@ fn size(plan: &Plan, number: usize) -> Failure {
     ))
 }
 
-pub(super) fn dof_failure(error: DofError, owned: &OwnedBlock, catalog: &Catalog) -> Failure {
+pub(crate) fn dof_failure(error: DofError, owned: &OwnedBlock, catalog: &Catalog) -> Failure {
     let DofError::OnInterface(j) = error else {
         return Failure::internal("a subdomain has more than 2^32 unknowns");
     };

@@ -5,17 +5,17 @@ mod parcel;
 use contact_dd_partition::error::OutputError;
 
 use self::parcel::Parcel;
-use super::context::Context;
-use super::load::StepProblem;
-use super::recover::BlockSolution;
-use super::solution::Solution;
 use crate::comm::ROOT;
+use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::load::BlockLoads;
 use crate::fem::owned::OwnedBlock;
 use crate::output::result::{ContactRow, ContactState, SubdomainResults};
 use crate::output::resultants::ContactResultant;
 use crate::output::vtkhdf::ResultFile;
+use crate::recover::BlockSolution;
+use crate::recover::solution::Solution;
+use crate::step::StepProblem;
 
 /// Streams all subdomains and contact rows to the root, which writes a slab of subdomains as soon
 /// as it is complete. Collective; `file` is the root's.

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use faer::Mat;
 
-use super::condensed_blocks::{CondensedBlocks, ContactCluster};
+use crate::condense::blocks::{CondensedBlocks, ContactCluster};
 use crate::contact::limits::Limits;
 use crate::plan::Plan;
 use crate::rigid::energy::{RigidBasis, RigidDrive};
@@ -13,7 +13,7 @@ use crate::rigid::survey::Survey;
 use crate::schur::condensed::Condensed;
 
 /// Makes the clusters of this rank of what was `merged`; `limits` bound the approaches of those in contact.
-pub(super) fn take_clusters(
+pub fn take_clusters(
     plan: &Plan,
     survey: &Survey,
     mut limits: BTreeMap<usize, Limits>,
@@ -63,12 +63,7 @@ fn settle_stiffness(cluster: &mut Condensed, defining: &[usize], drive: &RigidDr
 }
 
 /// The same for the `load` on the approaches; `diagonal` is that of the matrix they are condensed from.
-pub(super) fn settle_load(
-    load: &mut [f64],
-    defining: &[usize],
-    drive: &RigidDrive,
-    diagonal: &[f64],
-) {
+pub fn settle_load(load: &mut [f64], defining: &[usize], drive: &RigidDrive, diagonal: &[f64]) {
     if let Some(basis) = basis(defining, drive, diagonal) {
         basis.set_load(load);
     }

@@ -11,8 +11,8 @@ use crate::fem::elasticity::{principal_stresses, von_mises};
 use crate::fem::owned::OwnedBlock;
 use crate::output::result::{PartitionSize, SubdomainResults};
 use crate::plan::Plan;
-use crate::run::solution::Solution;
-use crate::run::stresses::Stress;
+use crate::recover::solution::Solution;
+use crate::recover::stresses::Stress;
 
 /// A slab of the result file, or a part of one.
 #[derive(Clone, Debug, PartialEq, Eq)]

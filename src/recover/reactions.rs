@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::frozen::Frozen;
-use super::recover::BlockSolution;
 use crate::output::resultants::{Reaction, Resultant};
+use crate::recover::BlockSolution;
+use crate::recover::frozen::Frozen;
 
 /// What every condition that prescribes displacements exerts on the bodies; on the root it is that
 /// of the whole solution. Collective.

@@ -3,19 +3,14 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::destination::unfinished;
-use contact_dd_partition::problem::Catalog;
 
-use super::context::Context;
-use super::squeezed;
 use crate::contact::pair::{ContactPair, PairState};
+use crate::context::Context;
 use crate::error::Failure;
-use crate::fem::load::BlockLoads;
+use crate::rigid::squeezed;
 use crate::rigid::survey::{Survey, survey};
 use crate::settings::Settings;
 use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
-
-/// What acts on the blocks of this rank in a load step, by their number.
-pub type Loads = BTreeMap<usize, BlockLoads>;
 
 /// Where a load step leaves the scene: what the next one starts from.
 #[derive(Clone, Debug, Default)]
@@ -54,14 +49,6 @@ impl StepState {
     }
 }
 
-/// What acts in load step k.
-pub fn loads_of_step(context: &Context<'_>, k: usize) -> Loads {
-    let blocks = context.blocks.iter();
-    blocks
-        .map(|(&b, owned)| (b, BlockLoads::new(owned, k)))
-        .collect()
-}
-
 /// Looks at the rigid motions of the scene in every load step, one where it has none. Collective.
 ///
 /// # Errors
@@ -76,12 +63,12 @@ pub fn survey_steps(context: &Context<'_>) -> Result<Vec<Survey>, Failure> {
     } = *context;
     (0..catalog.steps.len().max(1))
         .map(|k| {
-            let loads = loads_of_step(context, k);
+            let loads = context.loads(k);
             let all = blocks.values().zip(loads.values());
             let checked = all.map(|(owned, loads)| squeezed::check(owned, loads, catalog));
             comm.agree(checked.collect())
                 .and_then(|()| survey(comm, blocks, catalog, plan, k))
-                .map_err(|failure| in_step(failure, catalog, k))
+                .map_err(|failure| context.in_step(failure, k))
         })
         .collect()
 }
@@ -101,12 +88,4 @@ pub fn stop_if_asked(context: &Context<'_>, settings: &Settings, k: usize) -> Re
             unfinished(&settings.output).display()
         ))),
     }
-}
-
-/// A failure that says in which load step it was.
-pub fn in_step(mut failure: Failure, catalog: &Catalog, k: usize) -> Failure {
-    if let Some(step) = catalog.steps.get(k) {
-        failure.message = format!("step '{}': {}", step.name, failure.message);
-    }
-    failure
 }

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::descend::with_descent;
-use super::frozen::Frozen;
-use super::motions::{Field, Motions};
-use super::recover::BlockSolution;
-use super::refine::replace_if_as_good;
 use crate::certificate::Certificate;
+use crate::recover::frozen::Frozen;
+use crate::recover::motions::{Field, Motions};
+use crate::recover::refine::replace_if_as_good;
+use crate::recover::{BlockSolution, displacements};
+use crate::rigid::descend::with_descent;
 use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::loose::LooseMotions;
 use crate::rigid::survey::Survey;
@@ -83,12 +83,7 @@ fn move_nearer(
     survey: &Survey,
     solutions: &mut BTreeMap<usize, BlockSolution>,
 ) -> Settled {
-    let mut displacement = with_descent(
-        frozen.context.blocks,
-        solutions,
-        survey,
-        frozen.context.catalog.dim,
-    );
+    let mut displacement = with_descent(&frozen.context, displacements(solutions), survey);
     let loose = loose_motions(frozen, survey, solutions);
     let mut list: Vec<FreeMotion> = (loose.as_ref()).map_or_else(Vec::new, |l| l.motions.clone());
     frozen.context.comm.broadcast(&mut list);

@@ -2,9 +2,9 @@
 
 use faer::Par;
 
-use super::condensed_blocks::CondensedBlocks;
-use super::context::Context;
+use crate::condense::blocks::CondensedBlocks;
 use crate::contact::law::PairLaw;
+use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::coupled::MAX_APPROACHES;
 use crate::interface::numbering::Numbering;

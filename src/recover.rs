@@ -1,12 +1,21 @@
 //! Back-substitution: from U on Γ to displacements and contact forces everywhere.
 
+pub mod conditioning;
+pub mod frozen;
+pub mod motions;
+mod reactions;
+pub mod refine;
+pub mod settle;
+pub mod solution;
+pub mod stresses;
+
 use std::collections::BTreeMap;
 
-use super::context::Context;
-use super::load::StepProblem;
-use super::substitute::Factors;
 use crate::bytes::Reals;
+use crate::condense::substitute::Factors;
 use crate::contact::pair::ContactPair;
+use crate::context::Context;
+use crate::step::StepProblem;
 
 /// The solution on a block.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +26,13 @@ pub struct BlockSolution {
     pub forces: Vec<f64>,
     /// Which conditions are closed.
     pub closed: Vec<bool>,
+}
+
+/// The displacement of every block, node by node.
+pub fn displacements(
+    solutions: &BTreeMap<usize, BlockSolution>,
+) -> impl Iterator<Item = (usize, &[f64])> {
+    solutions.iter().map(|(&b, solution)| (b, &solution.u[..]))
 }
 
 /// Sends every cluster its part of U and recovers its interior. Collective; `root` holds U and the

@@ -4,21 +4,21 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::condensed_blocks::CondensedBlocks;
-use super::context::Context;
-use super::load::StepProblem;
-use super::motions::Motions;
-use super::recover::BlockSolution;
-use super::substitute::Factors;
 use crate::bytes::Reals;
+use crate::condense::blocks::CondensedBlocks;
+use crate::condense::substitute::Factors;
+use crate::context::Context;
 use crate::fem::balance::Balance;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
 use crate::interface::problem::InterfaceProblem;
 use crate::plan::Plan;
+use crate::recover::BlockSolution;
+use crate::recover::motions::Motions;
 use crate::rigid::survey::Survey;
 use crate::schur::local::CondensedLoad;
+use crate::step::StepProblem;
 use crate::sweep::{SweepOutcome, SweepStatus};
 
 /// What a rank holds of the frozen problem.

@@ -1,9 +1,12 @@
 //! What a run says of itself when it is done: in the report and in the result file.
 
+pub mod log;
+pub mod totals;
+pub mod write;
+
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
 
-use super::totals::{StepTotals, Totals};
 use crate::comm::{self, Comm};
 use crate::error::Failure;
 use crate::output::build::Build;
@@ -14,6 +17,7 @@ use crate::output::result::ConvergenceRow;
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
+use crate::report::totals::{StepTotals, Totals};
 use crate::settings::Settings;
 use crate::sweep::SweepStatus;
 
@@ -197,7 +201,7 @@ fn skipped(totals: &Totals<'_>) -> Vec<String> {
 }
 
 /// Why the sweeps ended, in words.
-pub(super) fn reason(totals: &Totals<'_>) -> String {
+pub fn reason(totals: &Totals<'_>) -> String {
     let sweeps: usize = totals.steps.iter().map(StepTotals::sweeps).sum();
     let in_the_end = match totals.catalog.steps.is_empty() {
         true => "",
@@ -217,7 +221,7 @@ pub(super) fn reason(totals: &Totals<'_>) -> String {
 }
 
 /// Why load steps didn't converge.
-pub(super) fn failures(totals: &Totals<'_>) -> Vec<String> {
+pub fn failures(totals: &Totals<'_>) -> Vec<String> {
     let of_step = |(k, step): (usize, &StepTotals)| {
         let SweepStatus::NotConverged(why) = &step.outcome.status else {
             return None;

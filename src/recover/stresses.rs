@@ -7,7 +7,6 @@ use contact_dd_partition::problem::Catalog;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::recover::BlockSolution;
 use crate::comm::Comm;
 use crate::fem::block::Block;
 use crate::fem::estimate::CellError;
@@ -16,6 +15,7 @@ use crate::fem::patch::{PatchSum, Polynomial};
 use crate::fem::recovery::Recovery;
 use crate::fem::stress::{BlockStress, RecoveredStress};
 use crate::plan::Plan;
+use crate::recover::BlockSolution;
 
 /// The stresses of a block.
 #[derive(Clone, Debug)]

@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::element::geometry::{dot, length};
 
-use super::context::Context;
-use super::recover::BlockSolution;
-use super::steps::Loads;
+use crate::context::Context;
+use crate::context::Loads;
 use crate::fem::owned::OwnedBlock;
 use crate::rigid::survey::Survey;
 
@@ -54,17 +53,16 @@ fn reduce(whole: &mut f64, row: &[f64; 3], moved: &[f64; 3]) {
     }
 }
 
-/// The displacement of every block, node by node: its solution and the bodies' descent.
-pub fn with_descent(
-    blocks: &BTreeMap<usize, OwnedBlock>,
-    solutions: &BTreeMap<usize, BlockSolution>,
+/// The displacement of every block, node by node: that of its solution and the bodies' descent.
+pub fn with_descent<'a>(
+    context: &Context<'_>,
+    solutions: impl Iterator<Item = (usize, &'a [f64])>,
     survey: &Survey,
-    dim: usize,
 ) -> BTreeMap<usize, Vec<f64>> {
-    let stays = survey.longest_descent() == 0.0;
-    let of_block = |(&b, solution): (&usize, &BlockSolution)| {
-        let block = &blocks.get(&b)?.block;
-        let mut u = solution.u.clone();
+    let (dim, stays) = (context.catalog.dim, survey.longest_descent() == 0.0);
+    let of_block = |(b, u): (usize, &[f64])| {
+        let block = &context.blocks.get(&b)?.block;
+        let mut u = u.to_vec();
         if stays {
             return Some((b, u));
         }
@@ -75,7 +73,7 @@ pub fn with_descent(
         }
         Some((b, u))
     };
-    solutions.iter().filter_map(of_block).collect()
+    solutions.filter_map(of_block).collect()
 }
 
 fn moved(survey: &Survey, dim: usize, body: usize, x: &[f64; 3]) -> [f64; 3] {

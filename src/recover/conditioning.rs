@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::frozen::{BlockLoad, Frozen};
-use super::recover::BlockSolution;
+use crate::recover::BlockSolution;
+use crate::recover::frozen::{BlockLoad, Frozen};
 
 /// Estimates κ = λ_max / λ_min of A = D^(−1/2) K D^(−1/2), K the stiffness of the whole scene with its
 /// contacts frozen as they are, D its diagonal: round-off makes a relative error of about

@@ -3,16 +3,14 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use super::clusters::take_clusters;
-use super::condense::Condensation;
-use super::condensed_blocks::CondensedBlocks;
-use super::context::Context;
-use super::limits::{limits_of_clusters, prescribe};
-use super::steps::in_step;
 use crate::comm::is_asked_to_stop;
+use crate::condense::Condensation;
+use crate::condense::blocks::CondensedBlocks;
+use crate::condense::clusters::take_clusters;
+use crate::condense::limits::{limits_of_clusters, prescribe};
+use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::numbering::check_agreement;
-use crate::output::bar::Bar;
 use crate::rigid::survey::Survey;
 use crate::schur::condensed::Condensed;
 use crate::schur::merge::{LooseTrace, Merge, Spare};
@@ -27,7 +25,7 @@ use crate::schur::trace::TraceDof;
 pub fn condense_clusters(
     condensation: &Condensation<'_>,
     survey: &Survey,
-    bar: &Bar,
+    condensed_one: &dyn Fn(),
 ) -> Result<CondensedBlocks, Failure> {
     let Context { comm, plan, .. } = condensation.context;
     let mut merging = Merging {
@@ -46,7 +44,7 @@ pub fn condense_clusters(
         }
         merging.own_node(v)?;
         if v < plan.blocks.len() {
-            bar.advance();
+            condensed_one();
         }
         Ok(())
     });
@@ -64,7 +62,7 @@ pub fn condense_clusters(
     let (context, loads) = (&condensation.context, condensation.loads);
     let limits = prescribe(context, &condensed, loads)
         .and_then(|prescribed| limits_of_clusters(context, loads, &prescribed, &condensed))
-        .map_err(|failure| in_step(failure, context.catalog, 0))?;
+        .map_err(|failure| context.in_step(failure, 0))?;
     take_clusters(plan, survey, limits, waiting, &mut condensed);
     Ok(condensed)
 }

@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use super::conditioning::condition_number;
-use super::descend::with_descent;
-use super::frozen::Frozen;
-use super::reactions::reactions;
-use super::recover::{BlockSolution, recover};
-use super::refine::refine;
-use super::settle::{Settled, settle_free_motions, settle_loose_motions};
-use super::stresses::{Stress, error_estimate, stresses};
 use crate::certificate::Certificate;
 use crate::fem::estimate::CellError;
 use crate::output::resultants::Reaction;
+use crate::recover::conditioning::condition_number;
+use crate::recover::frozen::Frozen;
+use crate::recover::reactions::reactions;
+use crate::recover::refine::refine;
+use crate::recover::settle::{Settled, settle_free_motions, settle_loose_motions};
+use crate::recover::stresses::{Stress, error_estimate, stresses};
+use crate::recover::{BlockSolution, displacements, recover};
+use crate::rigid::descend::with_descent;
 use crate::rigid::survey::Survey;
 
 /// What is known once U is.
@@ -58,7 +58,7 @@ impl Solution {
         let stress =
             with_stress.then(|| stresses(comm, frozen.context.blocks, &blocks, catalog, plan));
         Self {
-            displacement: with_descent(frozen.context.blocks, &blocks, survey, catalog.dim),
+            displacement: with_descent(&frozen.context, displacements(&blocks), survey),
             reactions: reactions(frozen, &blocks),
             estimate: (stress.as_ref()).map(|stress| error_estimate(comm, stress, plan)),
             blocks,

@@ -2,7 +2,7 @@
 
 use contact_dd_partition::problem::Catalog;
 
-use super::solution::Solution;
+use crate::recover::solution::Solution;
 use serde::{Deserialize, Serialize};
 
 use crate::certificate::Certificate;

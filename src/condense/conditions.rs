@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::substitute::Factors;
+use crate::condense::substitute::Factors;
 
 impl Factors<'_> {
     /// Brings what is said of the conditions of every block in contact to its cluster, group after group.

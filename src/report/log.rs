@@ -6,8 +6,6 @@ use std::time::Instant;
 
 use contact_dd_partition::problem::Catalog;
 
-use super::report::{Outputs, failures, reason, report};
-use super::totals::Totals;
 use crate::comm::{self, Comm};
 use crate::error::Failure;
 use crate::interface::operator::Interface;
@@ -17,6 +15,8 @@ use crate::output::message;
 use crate::output::terminal::{self, Summary, SweepLine};
 use crate::plan::Plan;
 use crate::plan::demand::{Demand, Demands};
+use crate::report::totals::Totals;
+use crate::report::{Outputs, failures, reason, report};
 use crate::rigid::survey::Survey;
 use crate::settings::Settings;
 use crate::settings::command_line::LogFormat;

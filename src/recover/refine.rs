@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 
-use super::frozen::{BlockLoad, Frozen};
-use super::motions::Field;
-use super::recover::BlockSolution;
 use crate::certificate::check::BlockCheck;
 use crate::certificate::{Certificate, certificate};
+use crate::recover::BlockSolution;
+use crate::recover::frozen::{BlockLoad, Frozen};
+use crate::recover::motions::Field;
 
 /// Equilibrium and penetration above which a solution is refined.
 const LIMIT: f64 = 4e-15;
