@@ -7,8 +7,9 @@
 //!
 //! > u = arg min ½ uᵀ K u − fᵀ u   subject to   B u ≤ g,   (1)-(3)
 //!
-//! a row of B for each [condition](fem::condition) n·(u_a − u_b) ≤ g of a contact surface Γ_c. Motions that
-//! neither supports nor contact hold are found before anything is factorized ([`rigid`]).
+//! a row of B for each [contact point](contact_dd_partition::contact_point), n·(u_a − u_b) ≤ g, of a contact
+//! surface Γ_c. Motions that neither supports nor contact hold are found before anything is factorized
+//! ([`rigid`]).
 //!
 //! **The split.** Bodies are cut into subdomains that are bonded on Γ; Γ never meets Γ_c. T are those
 //! without contact, ϑ the pairs [k, l] in contact. Every rank [owns](plan) some of them; what is left to
