@@ -59,12 +59,7 @@ pub mod lower {
     use serde::de::Error;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    #[derive(Serialize, Deserialize)]
-    struct Triangle {
-        size: usize,
-        #[serde(with = "super")]
-        columns: Vec<f64>,
-    }
+    use super::Reals;
 
     /// Writes the triangle.
     ///
@@ -77,7 +72,7 @@ pub mod lower {
         for j in 0..size {
             columns.extend_from_slice(&matrix.col_as_slice(j)[j..]);
         }
-        Triangle { size, columns }.serialize(serializer)
+        (size, Reals(columns)).serialize(serializer)
     }
 
     /// Reads the triangle.
@@ -85,7 +80,7 @@ pub mod lower {
     /// # Errors
     /// It isn't there, or cut short.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Mat<f64>, D::Error> {
-        let Triangle { size, columns } = Triangle::deserialize(deserializer)?;
+        let (size, Reals(columns)): (usize, Reals) = Deserialize::deserialize(deserializer)?;
         if columns.len() != size * (size + 1) / 2 {
             return Err(D::Error::invalid_length(columns.len(), &"a triangle"));
         }
@@ -136,13 +131,7 @@ pub mod matrix {
     use serde::de::Error;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    #[derive(Serialize, Deserialize)]
-    struct Columns {
-        rows: usize,
-        columns: usize,
-        #[serde(with = "super")]
-        values: Vec<f64>,
-    }
+    use super::Reals;
 
     /// Writes the matrix.
     ///
@@ -154,12 +143,7 @@ pub mod matrix {
         for j in 0..columns {
             values.extend_from_slice(matrix.col_as_slice(j));
         }
-        let columns = Columns {
-            rows,
-            columns,
-            values,
-        };
-        columns.serialize(serializer)
+        (rows, columns, Reals(values)).serialize(serializer)
     }
 
     /// Reads the matrix.
@@ -167,11 +151,8 @@ pub mod matrix {
     /// # Errors
     /// It isn't there, or cut short.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Mat<f64>, D::Error> {
-        let Columns {
-            rows,
-            columns,
-            values,
-        } = Columns::deserialize(deserializer)?;
+        let (rows, columns, Reals(values)): (usize, usize, Reals) =
+            Deserialize::deserialize(deserializer)?;
         if values.len() != rows * columns {
             return Err(D::Error::invalid_length(values.len(), &"a matrix"));
         }

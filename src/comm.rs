@@ -4,7 +4,6 @@
 //! rank waits for one that is gone.
 
 mod environment;
-mod message;
 #[cfg(debug_assertions)]
 mod on_purpose;
 mod signal;
@@ -146,7 +145,7 @@ impl Comm {
     }
 
     fn encode<T: Serialize>(&self, value: &T) -> Vec<u8> {
-        match message::encode(value) {
+        match postcard::to_stdvec(value) {
             Ok(bytes) => {
                 let sent = self.bytes_sent.get() + bytes.len() as u64;
                 self.bytes_sent.set(sent);
@@ -157,7 +156,7 @@ impl Comm {
     }
 
     fn decode<T: DeserializeOwned>(&self, from: usize, bytes: &[u8]) -> T {
-        message::decode(bytes)
+        read(bytes)
             .unwrap_or_else(|why| self.give_up(&format!("of rank {from} can't be read"), &why))
     }
 
@@ -240,5 +239,30 @@ impl Comm {
         let ranks: Vec<usize> = (0..self.size()).collect();
         self.gather(&ranks, |_| value.clone(), |_, value| all.push(value));
         all
+    }
+}
+
+/// The value that `bytes` stand for, all of them, in the encoding of postcard.
+fn read<T: DeserializeOwned>(bytes: &[u8]) -> postcard::Result<T> {
+    match postcard::take_from_bytes(bytes)? {
+        (value, []) => Ok(value),
+        _ => Err(postcard::Error::DeserializeBadEncoding),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_too_short_or_too_long_is_an_error() {
+        let sent = (7usize, vec![1.5, -0.0], String::from("a name"));
+        let bytes = postcard::to_stdvec(&sent).unwrap();
+        assert_eq!(read::<(usize, Vec<f64>, String)>(&bytes).unwrap(), sent);
+        for length in 0..bytes.len() {
+            assert!(read::<(usize, Vec<f64>, String)>(&bytes[..length]).is_err());
+        }
+        let longer = [&bytes[..], &[0]].concat();
+        assert!(read::<(usize, Vec<f64>, String)>(&longer).is_err());
     }
 }

@@ -33,36 +33,29 @@ pub struct Failure {
 }
 
 impl Failure {
+    fn new(kind: FailureKind, message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self { kind, message }
+    }
+
     /// A failure without an exit code of its own.
     pub fn internal(message: impl Into<String>) -> Self {
-        Self {
-            kind: FailureKind::Internal,
-            message: message.into(),
-        }
+        Self::new(FailureKind::Internal, message)
     }
 
     /// Bad usage or bad input.
     pub fn input(message: impl Into<String>) -> Self {
-        Self {
-            kind: FailureKind::Input,
-            message: message.into(),
-        }
+        Self::new(FailureKind::Input, message)
     }
 
     /// A scene without equilibrium.
     pub fn ill_posed(message: impl Into<String>) -> Self {
-        Self {
-            kind: FailureKind::IllPosed,
-            message: message.into(),
-        }
+        Self::new(FailureKind::IllPosed, message)
     }
 
     /// A run that was asked to stop.
     pub fn interrupted(message: impl Into<String>) -> Self {
-        Self {
-            kind: FailureKind::Interrupted,
-            message: message.into(),
-        }
+        Self::new(FailureKind::Interrupted, message)
     }
 
     /// The process's exit code.
@@ -79,9 +72,6 @@ impl From<InputError> for Failure {
 
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
-        Self {
-            kind: FailureKind::Output,
-            message: error.to_string(),
-        }
+        Self::new(FailureKind::Output, error.to_string())
     }
 }
