@@ -13,7 +13,6 @@ use crate::output::build::Build;
 use crate::output::memory::peak_memory_bytes;
 use crate::output::ranks::{PhaseSeconds, RankReport};
 use crate::output::report::{Report, ReportFile};
-use crate::output::result::ConvergenceRow;
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
@@ -46,20 +45,12 @@ impl Outputs {
             mut result,
             report: report_file,
         } = self;
-        let sweeps = (totals.steps.iter().enumerate())
-            .flat_map(|(k, step)| step.outcome.records.iter().map(move |r| (k, r)));
-        let rows: Vec<ConvergenceRow> = sweeps
-            .map(|(step, r)| ConvergenceRow {
-                step,
-                residual: r.residual,
-                active: r.active,
-                seconds: r.seconds,
-            })
-            .collect();
-        result.write_convergence(&rows)?;
-        result.finish(&report.to_json())?;
+        let histories = totals.steps.iter().map(|step| &step.outcome.records[..]);
+        result.write_convergence(histories)?;
+        let json = report.to_json();
+        result.finish(&json)?;
         if let Some(file) = report_file {
-            file.write(report)?;
+            file.write(&json)?;
         }
         Ok(())
     }

@@ -98,14 +98,6 @@ impl Settings {
         }
     }
 
-    /// What a command line of these words settles alone.
-    #[cfg(test)]
-    pub fn of_options(words: &[&str]) -> Self {
-        use clap::Parser;
-        let words = ["contact-dd-mpi"].iter().chain(words);
-        Self::new(&CommandLine::parse_from(words), &SolverSettings::default())
-    }
-
     /// Checks that the results replace nothing that they are made from.
     ///
     /// # Errors

@@ -194,11 +194,12 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     }
 
     fn record(&mut self, residual: &Residual) {
+        let sweep = self.progress.records.len();
         let record = SweepRecord {
-            sweep: self.progress.records.len(),
+            sweep,
             residual: residual.relative,
             active: residual.totals.active,
-            changed: residual.totals.changed,
+            changed: (sweep > 0).then_some(residual.totals.changed),
             seconds: self.began.elapsed().as_secs_f64(),
         };
         self.progress.records.push(record);

@@ -6,9 +6,10 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::report::Report;
-use super::terminal::{Summary, SweepLine};
+use super::terminal::Summary;
 use crate::settings::Settings;
 use crate::settings::origin::Origins;
+use crate::sweep::SweepRecord;
 
 /// One line of the log; `event` names its kind. Numbers that aren't finite are `null`.
 #[derive(Clone, Debug, Serialize)]
@@ -45,7 +46,7 @@ pub enum Event<'a> {
         time: f64,
     },
     /// A sweep is done.
-    Sweep(&'a SweepLine),
+    Sweep(&'a SweepRecord),
     /// What the user should know.
     Warning {
         /// In words.

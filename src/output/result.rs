@@ -148,16 +148,3 @@ pub struct ContactState {
 
 /// A contact point and the solution there.
 pub type ContactRow = (ContactPoint<u32>, ContactState);
-
-/// One sweep; the first row of a run is its bilateral start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ConvergenceRow {
-    /// Number of the load step.
-    pub step: usize,
-    /// Relative residual of the interface problem after the sweep.
-    pub residual: f64,
-    /// Number of closed contact conditions.
-    pub active: usize,
-    /// Time since the sweeps began (s).
-    pub seconds: f64,
-}

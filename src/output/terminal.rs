@@ -17,6 +17,7 @@ use serde::Serialize;
 use super::report::{Report, Status, StepReport};
 use crate::certificate::Certificate;
 use crate::plan::demand::Demands;
+use crate::sweep::SweepRecord;
 
 /// How the reason is shown for which sweeps ended well.
 const CONVERGED: Style = AnsiColor::Green.on_default();
@@ -44,21 +45,6 @@ pub struct Summary<'a> {
     pub ranks: usize,
     /// Number of threads of each rank.
     pub threads: usize,
-}
-
-/// One line of the table of sweeps.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct SweepLine {
-    /// Number of the sweep; 0 is the bilateral start.
-    pub sweep: usize,
-    /// Relative residual of the interface problem.
-    pub residual: f64,
-    /// Number of closed contact conditions.
-    pub active: usize,
-    /// Number of conditions that opened or closed in this sweep; the start has none.
-    pub changed: Option<usize>,
-    /// Time since the sweeps began (s).
-    pub seconds: f64,
 }
 
 /// Prints what solving would cost, against the memory that is `available` on the hosts together
@@ -169,7 +155,7 @@ pub fn sweep_header(out: &mut dyn Write) -> Result<()> {
 ///
 /// # Errors
 /// `out` can't be written.
-pub fn sweep(out: &mut dyn Write, line: &SweepLine) -> Result<()> {
+pub fn sweep(out: &mut dyn Write, line: &SweepRecord) -> Result<()> {
     let changed = line.changed.map_or("-".into(), |count| count.to_string());
     writeln!(
         out,
@@ -310,7 +296,7 @@ mod tests {
             (12, 3.2e-117, 1_234_567, Some(7)),
             (99_999, f64::NAN, 0, Some(12_345_678)),
         ] {
-            let line = SweepLine {
+            let line = SweepRecord {
                 sweep: sweep_number,
                 residual,
                 active,

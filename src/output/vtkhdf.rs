@@ -20,7 +20,8 @@ use hdf5::{File, FileBuilder};
 
 use self::contact_table::ContactTables;
 use self::grid::Grid;
-use super::result::{ContactRow, ConvergenceRow, PartitionSize, SubdomainResults};
+use super::result::{ContactRow, PartitionSize, SubdomainResults};
+use crate::sweep::SweepRecord;
 
 /// How much room everything takes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -215,20 +216,27 @@ impl ResultFile {
         }
     }
 
-    /// Writes `/convergence`: a row for the start and one for every sweep, load step by load step. Called
-    /// once.
+    /// Writes `/convergence`: a row for the start and one for every sweep, from the history of every load step.
+    /// Called once.
     ///
     /// # Errors
     /// The file can't be written.
-    pub fn write_convergence(&mut self, rows: &[ConvergenceRow]) -> Result<(), OutputError> {
+    pub fn write_convergence<'a>(
+        &mut self,
+        histories: impl Iterator<Item = &'a [SweepRecord]>,
+    ) -> Result<(), OutputError> {
+        let rows: Vec<(usize, &SweepRecord)> = histories
+            .enumerate()
+            .flat_map(|(step, history)| history.iter().map(move |row| (step, row)))
+            .collect();
         let write = || {
             let group = self.file.create_group("convergence")?;
             if self.has_steps {
-                column::whole(&group, "step", rows.iter().map(|row| row.step as i64))?;
+                column::whole(&group, "step", rows.iter().map(|row| row.0 as i64))?;
             }
-            column::whole(&group, "residual", rows.iter().map(|row| row.residual))?;
-            column::whole(&group, "active", rows.iter().map(|row| row.active as i64))?;
-            column::whole(&group, "seconds", rows.iter().map(|row| row.seconds))
+            column::whole(&group, "residual", rows.iter().map(|row| row.1.residual))?;
+            column::whole(&group, "active", rows.iter().map(|row| row.1.active as i64))?;
+            column::whole(&group, "seconds", rows.iter().map(|row| row.1.seconds))
         };
         write().map_err(|error: hdf5::Error| failure(&self.destination, &error))
     }

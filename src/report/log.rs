@@ -12,7 +12,7 @@ use crate::interface::operator::Interface;
 use crate::output::bar::Bar;
 use crate::output::event::{Event, shown};
 use crate::output::message;
-use crate::output::terminal::{self, Summary, SweepLine};
+use crate::output::terminal::{self, Summary};
 use crate::plan::Plan;
 use crate::plan::demand::{Demand, Demands};
 use crate::report::totals::Totals;
@@ -147,15 +147,8 @@ impl<'a> Narrator<'a> {
         if interface.pair_traces.is_empty() {
             return;
         }
-        let line = SweepLine {
-            sweep: record.sweep,
-            residual: record.residual,
-            active: record.active,
-            changed: (record.sweep > 0).then_some(record.changed),
-            seconds: record.seconds,
-        };
-        self.say(|out| terminal::sweep(out, &line));
-        self.log(&Event::Sweep(&line));
+        self.say(|out| terminal::sweep(out, record));
+        self.log(&Event::Sweep(record));
     }
 
     /// Finishes the result file, writes the report and says how the run ended. On the root.

@@ -20,11 +20,11 @@ pub struct SweepRecord {
     pub sweep: usize,
     /// ‖r‖∞ relative to the terms that r is a sum of.
     pub residual: f64,
-    /// Closed conditions.
+    /// Number of closed contact conditions.
     pub active: usize,
-    /// Conditions that opened or closed in it.
-    pub changed: usize,
-    /// Since the sweeps began (s).
+    /// Number of conditions that opened or closed in this sweep; the start has none.
+    pub changed: Option<usize>,
+    /// Time since the sweeps began (s).
     pub seconds: f64,
 }
 

@@ -5,10 +5,9 @@ mod time_series;
 use std::fs;
 use std::path::Path;
 
-use contact_dd_mpi::output::result::{
-    ContactRow, ContactState, ConvergenceRow, PartitionSize, SubdomainResults,
-};
+use contact_dd_mpi::output::result::{ContactRow, ContactState, PartitionSize, SubdomainResults};
 use contact_dd_mpi::output::vtkhdf::{Layout, ResultFile};
+use contact_dd_mpi::sweep::SweepRecord;
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::problem::ContactSummary;
 use contact_dd_partition::scene::units::Units;
@@ -99,13 +98,14 @@ fn write(path: &Path, cells: &[usize], runs: &[(usize, usize)], report: &str) {
     file.write_contacts(&[row(0, 3), row(2, 0), row(0, 2)])
         .unwrap();
     file.finish_step().unwrap();
-    file.write_convergence(&[ConvergenceRow {
-        step: 0,
+    let start = SweepRecord {
+        sweep: 0,
         residual: 0.5,
         active: 7,
+        changed: None,
         seconds: 0.25,
-    }])
-    .unwrap();
+    };
+    file.write_convergence([&[start][..]].into_iter()).unwrap();
     file.finish(report).unwrap();
 }
 

@@ -1,7 +1,7 @@
 //! Load steps as a time series.
 
-use contact_dd_mpi::output::result::ConvergenceRow;
 use contact_dd_mpi::output::vtkhdf::ResultFile;
+use contact_dd_mpi::sweep::SweepRecord;
 use hdf5::File;
 
 use super::{column, layout, row, strips};
@@ -26,13 +26,15 @@ fn load_steps_follow_one_another_on_one_mesh() {
         file.write_contacts(&rows).unwrap();
         file.finish_step().unwrap();
     }
-    let record = |step| ConvergenceRow {
-        step,
+    let history = [0, 1].map(|sweep| SweepRecord {
+        sweep,
         residual: 0.5,
         active: 7,
+        changed: None,
         seconds: 0.25,
-    };
-    file.write_convergence(&[0, 0, 1, 2].map(record)).unwrap();
+    });
+    let histories = [&history[..], &history[..1], &history[..1]];
+    file.write_convergence(histories.into_iter()).unwrap();
     file.finish("{}").unwrap();
 
     let file = File::open(&path).unwrap();
