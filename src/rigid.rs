@@ -10,8 +10,7 @@
 pub mod analysis;
 mod bodies;
 mod columns;
-pub mod descend;
-mod descent;
+pub mod descent;
 mod description;
 pub mod energy;
 pub mod free_motion;

@@ -32,7 +32,7 @@ use crate::report::log::Narrator;
 use crate::report::totals::{StepTotals, Totals};
 use crate::report::write::write_solution;
 use crate::report::{Outputs, collect};
-use crate::rigid::descend::without_descent;
+use crate::rigid::descent::without_descent;
 use crate::settings::Settings;
 use crate::settings::command_line::CommandLine;
 use crate::step::Loading;

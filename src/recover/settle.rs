@@ -7,7 +7,7 @@ use crate::recover::frozen::Frozen;
 use crate::recover::motions::{Field, Motions};
 use crate::recover::refine::replace_if_as_good;
 use crate::recover::{BlockSolution, displacements};
-use crate::rigid::descend::with_descent;
+use crate::rigid::descent::with_descent;
 use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::loose::LooseMotions;
 use crate::rigid::survey::Survey;

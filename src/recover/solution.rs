@@ -12,7 +12,7 @@ use crate::recover::refine::refine;
 use crate::recover::settle::{Settled, settle_free_motions, settle_loose_motions};
 use crate::recover::stresses::{Stress, error_estimate, stresses};
 use crate::recover::{BlockSolution, displacements, recover};
-use crate::rigid::descend::with_descent;
+use crate::rigid::descent::with_descent;
 use crate::rigid::survey::Survey;
 
 /// What is known once U is.
