@@ -21,7 +21,7 @@ use crate::fem::block::Block;
 use crate::fem::dofs::{DofError, Dofs};
 use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
-use crate::rigid::analysis::Pin;
+use crate::rigid::analysis::FixingDof;
 use crate::schur::condensed::Condensed;
 use crate::schur::factor::FactorError;
 use crate::schur::local::LocalSchur;
@@ -34,7 +34,7 @@ pub struct Condensation<'a> {
     /// What acts on the blocks of this rank in the first load step.
     pub loads: &'a Loads,
     /// Springs that hold what nothing else does.
-    pub pins: &'a [Pin],
+    pub fixing_dofs: &'a [FixingDof],
 }
 
 impl Condensation<'_> {
@@ -55,9 +55,9 @@ impl Condensation<'_> {
         let block = &owned.block;
         let dofs = Dofs::new(owned, &self.loads[&number], &catalog.materials)
             .map_err(|error| dof_failure(error, owned, catalog))?;
-        let pins = pins_of(block, self.pins);
-        let (stiffness, springs) =
-            assemble(block, &dofs, &catalog.materials, &pins).ok_or_else(|| size(plan, number))?;
+        let fixing_dofs = pins_of(block, self.fixing_dofs);
+        let (stiffness, springs) = assemble(block, &dofs, &catalog.materials, &fixing_dofs)
+            .ok_or_else(|| size(plan, number))?;
         let assembled = Instant::now();
         let (factor, s) =
             LocalSchur::new(&stiffness, dofs.interior, par).map_err(|error| match error {
@@ -85,12 +85,13 @@ impl Condensation<'_> {
 }
 
 /// The pins that lie in a block: node and component.
-fn pins_of(block: &Block, pins: &[Pin]) -> Vec<(u32, usize)> {
-    pins.iter()
-        .filter_map(|pin| {
-            let m = block.member(pin.subdomain as usize)?;
-            let node = block.node_of[m][pin.node as usize];
-            Some((node, pin.component as usize))
+fn pins_of(block: &Block, fixing_dofs: &[FixingDof]) -> Vec<(u32, usize)> {
+    fixing_dofs
+        .iter()
+        .filter_map(|fixing_dof| {
+            let m = block.member(fixing_dof.subdomain as usize)?;
+            let node = block.node_of[m][fixing_dof.node as usize];
+            Some((node, fixing_dof.component as usize))
         })
         .collect()
 }

@@ -1,11 +1,11 @@
 //! Back-substitution: from U on Γ to displacements and contact forces everywhere.
 
 pub mod conditioning;
-pub mod frozen;
+pub mod fixed_active_set;
+pub mod minimum_norm;
 pub mod motions;
 mod reactions;
 pub mod refine;
-pub mod settle;
 pub mod solution;
 pub mod stresses;
 

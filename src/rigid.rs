@@ -9,17 +9,17 @@
 
 pub mod analysis;
 mod bodies;
+pub mod body_analysis;
+pub mod closing_motion;
+mod cluster_modes;
 mod columns;
-pub mod descent;
 mod description;
 pub mod energy;
 pub mod free_motion;
-mod inner;
+pub mod infeasible_nodes;
 mod kinematics;
-pub mod loose;
 pub mod motion;
 pub mod nonnegative;
 pub mod projection;
+pub mod released_modes;
 mod rows;
-pub mod squeezed;
-pub mod survey;

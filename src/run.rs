@@ -26,17 +26,17 @@ use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
 use crate::read::check_copies;
 use crate::read::read_blocks;
-use crate::recover::frozen::Frozen;
+use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
 use crate::report::log::Narrator;
 use crate::report::totals::{StepTotals, Totals};
 use crate::report::write::write_solution;
 use crate::report::{Outputs, collect};
-use crate::rigid::descent::without_descent;
+use crate::rigid::closing_motion::without_closing_motions;
 use crate::settings::Settings;
 use crate::settings::command_line::CommandLine;
 use crate::step::Loading;
-use crate::step::state::{StepState, stop_if_asked, survey_steps};
+use crate::step::state::{StepState, analyse_steps, stop_if_asked};
 use crate::sweep::SweepStatus;
 
 /// How a run ended that didn't fail.
@@ -88,15 +88,15 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
 
     // Rigid-body modes that neither supports nor contact restrain, and the bodies' closing motions.
     narrator.phase("looking for free rigid motions", None);
-    let surveys = survey_steps(&context)?;
+    let analyses = analyse_steps(&context)?;
     if settings.check {
-        narrator.check(&surveys, &demands, available);
+        narrator.check(&analyses, &demands, available);
         return Ok(Ending::Converged);
     }
     narrator.phase("creating the outputs", None);
     let finished = finished_steps(&context, settings)?;
     let mut outputs = create_outputs(&context, settings, finished.count)?;
-    let loads = |k: usize| without_descent(&context, context.loads(k), &surveys[k]);
+    let loads = |k: usize| without_closing_motions(&context, context.loads(k), &analyses[k]);
     seconds.read = began.elapsed().as_secs_f64();
 
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy.
@@ -104,9 +104,9 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     let condensation = Condensation {
         context,
         loads: &loads(0),
-        pins: &surveys[0].motions.pins,
+        fixing_dofs: &analyses[0].motions.fixing_dofs,
     };
-    let condensed = condense_clusters(&condensation, &surveys[0], &|| narrator.bar.advance())?;
+    let condensed = condense_clusters(&condensation, &analyses[0], &|| narrator.bar.advance())?;
     [seconds.assemble, seconds.factorize] = condensed.seconds;
 
     // The root assembles S_0, (15), and the bilateral operator.
@@ -117,7 +117,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
 
     // Load step by load step: each starts from the state that the one before it left.
     let (mut state, mut steps) = (finished.state, finished.steps);
-    for (k, survey) in surveys.iter().enumerate().skip(finished.count) {
+    for (k, analysis) in analyses.iter().enumerate().skip(finished.count) {
         stop_if_asked(&context, settings, k)?;
 
         // F, condensed like the blocks, and the bounds on approaches.
@@ -128,7 +128,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
             context,
             factors: &condensed,
             interface: interface.as_ref(),
-            survey,
+            analysis,
         };
         let problem = loading.problem(loads(k), state);
         let mut problem = problem.map_err(|failure| context.in_step(failure, k))?;
@@ -145,16 +145,16 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         // Back-substitution, and the check of the full discrete problem.
         narrator.phase("recovering", None);
         let lap = Instant::now();
-        let frozen = Frozen::new(
+        let fixed = FixedActiveSet::new(
             context,
             &condensed,
             &problem,
-            survey,
+            analysis,
             interface.as_ref(),
             outcome.as_ref(),
         );
         let u = outcome.as_ref().map(|outcome| &outcome.u[..]);
-        let solution = Solution::new(&frozen, survey, u, !settings.no_stress);
+        let solution = Solution::new(&fixed, analysis, u, !settings.no_stress);
         if let Some(outcome) = &mut outcome {
             outcome.accept(&solution.certificate);
         }
@@ -169,9 +169,9 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         write_solution(&context, &problem, &solution, result, contacts)?;
         seconds.write += lap.elapsed().as_secs_f64();
         state = StepState::after(problem.pairs, outcome.as_ref(), settings.method);
-        let totals = outcome.map(|o| StepTotals::new(o, &solution, resultants, survey));
+        let totals = outcome.map(|o| StepTotals::new(o, &solution, resultants, analysis));
         steps.extend(totals);
-        if k + 1 < surveys.len() {
+        if k + 1 < analyses.len() {
             let result = outputs.as_mut().map(|outputs| &mut outputs.result);
             keep(&context, settings, &state, &steps, result)?;
         }

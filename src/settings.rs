@@ -152,27 +152,30 @@ impl Settings {
 
     /// The settings by name, for people: those that aren't the default with what settled them.
     pub fn in_words(&self) -> Vec<(&'static str, String)> {
-        let settled = |name: &str, value: String| match self.from.of(name) {
+        let minimum_norm = |name: &str, value: String| match self.from.of(name) {
             Origin::Default => value,
             origin => format!("{value} ({origin})"),
         };
         let mut list = vec![
-            ("method", settled("method", self.method.name().to_string())),
+            (
+                "method",
+                minimum_norm("method", self.method.name().to_string()),
+            ),
             (
                 "tolerance",
-                settled("tolerance", format!("{:e}", self.tolerance)),
+                minimum_norm("tolerance", format!("{:e}", self.tolerance)),
             ),
         ];
         if let Some(n) = self.max_sweeps {
-            list.push(("sweeps", settled("max_sweeps", format!("at most {n}"))));
+            list.push(("sweeps", minimum_norm("max_sweeps", format!("at most {n}"))));
         }
         if let Some(theta) = self.relaxation {
-            list.push(("relaxation", settled("relaxation", theta.to_string())));
+            list.push(("relaxation", minimum_norm("relaxation", theta.to_string())));
         }
         if self.no_stress {
-            list.push(("stress", settled("no_stress", "left out".to_string())));
+            list.push(("stress", minimum_norm("no_stress", "left out".to_string())));
         }
-        let path = |name: &str, path: &Path| settled(name, path.display().to_string());
+        let path = |name: &str, path: &Path| minimum_norm(name, path.display().to_string());
         if let Some(report) = &self.report {
             list.push(("report", path("report", report)));
         }

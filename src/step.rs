@@ -5,7 +5,7 @@ pub mod state;
 use std::collections::BTreeMap;
 
 use crate::condense::blocks::{CondensedBlocks, ContactCluster};
-use crate::condense::clusters::settle_load;
+use crate::condense::clusters::make_load_exact;
 use crate::condense::limits::{limits_of_clusters, prescribe};
 use crate::condense::substitute::Factors;
 use crate::contact::limits::Limits;
@@ -18,8 +18,8 @@ use crate::fem::prescribed::Prescribed;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
 use crate::interface::problem::{ClusterLoad, InterfaceProblem};
+use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::energy::RigidDrive;
-use crate::rigid::survey::Survey;
 use crate::schur::local::CondensedLoad;
 use crate::step::state::StepState;
 
@@ -48,7 +48,7 @@ pub struct Loading<'a> {
     /// Γ and the operators on it; on the root.
     pub interface: Option<&'a (Numbering, Interface)>,
     /// The rigid motions in the step.
-    pub survey: &'a Survey,
+    pub analysis: &'a RigidBodyAnalysis,
 }
 
 impl<'a> Loading<'a> {
@@ -114,9 +114,9 @@ impl<'a> Loading<'a> {
                 .get(&plan.clusters[plan.contact[p]].node)?
                 .boundary()
                 .to_vec();
-            if let Some(drive) = self.survey.inner_motions.get(&p) {
+            if let Some(drive) = self.analysis.cluster_modes.get(&p) {
                 let (on_approaches, _) = load.split_at_mut(condensed.approaches);
-                settle_load(on_approaches, &limits.defining, drive, &condensed.diagonal);
+                make_load_exact(on_approaches, &limits.defining, drive, &condensed.diagonal);
             }
             let before = before.pairs.remove(&p);
             Some((p, ContactPair::new(condensed.clone(), limits, load, before)))
@@ -162,8 +162,8 @@ impl<'a> Loading<'a> {
 
     /// The approaches of all pairs against the motions that supports leave to the bodies.
     fn drive_of_approaches(&self, interface: &Interface) -> RigidDrive {
-        let scene = self.survey.scene.as_ref();
-        let Some(scene) = scene.filter(|_| self.survey.movable) else {
+        let scene = self.analysis.scene.as_ref();
+        let Some(scene) = scene.filter(|_| self.analysis.movable) else {
             return RigidDrive::default();
         };
         let plan = self.context.plan;

@@ -32,7 +32,7 @@ pub struct Most {
     pub complementarity: f64,
     /// Displacement (m).
     pub displacement: f64,
-    /// Force that the bodies' way to rest would cause if it weren't rigid (N/m).
+    /// Force that the bodies' closing motions would cause if it weren't rigid (N/m).
     pub rest: f64,
 }
 

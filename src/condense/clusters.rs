@@ -8,14 +8,14 @@ use faer::Mat;
 use crate::condense::blocks::{CondensedBlocks, ContactCluster};
 use crate::contact::limits::Limits;
 use crate::plan::Plan;
+use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::energy::{RigidBasis, RigidDrive};
-use crate::rigid::survey::Survey;
 use crate::schur::condensed::Condensed;
 
 /// Makes the clusters of this rank of what was `merged`; `limits` bound the approaches of those in contact.
 pub fn take_clusters(
     plan: &Plan,
-    survey: &Survey,
+    analysis: &RigidBodyAnalysis,
     mut limits: BTreeMap<usize, Limits>,
     mut merged: BTreeMap<usize, Condensed>,
     condensed: &mut CondensedBlocks,
@@ -30,8 +30,8 @@ pub fn take_clusters(
         };
         let limits = limits.remove(&p).unwrap_or_default();
         of_cluster.fill_upper_triangle();
-        if let Some(drive) = survey.inner_motions.get(&p) {
-            settle_stiffness(&mut of_cluster, &limits.defining, drive);
+        if let Some(drive) = analysis.cluster_modes.get(&p) {
+            make_stiffness_exact(&mut of_cluster, &limits.defining, drive);
         }
         let cluster = ContactCluster {
             condensed: Rc::new(of_cluster),
@@ -43,7 +43,7 @@ pub fn take_clusters(
 
 /// Makes S exact along rigid motions of the bodies that lie wholly in the cluster; `drive` is that of its
 /// conditions, of which the approaches are the `defining` ones.
-fn settle_stiffness(cluster: &mut Condensed, defining: &[usize], drive: &RigidDrive) {
+fn make_stiffness_exact(cluster: &mut Condensed, defining: &[usize], drive: &RigidDrive) {
     let m = defining.len();
     let Some(basis) = basis(defining, drive, &cluster.diagonal[..m]) else {
         return;
@@ -63,7 +63,7 @@ fn settle_stiffness(cluster: &mut Condensed, defining: &[usize], drive: &RigidDr
 }
 
 /// The same for the `load` on the approaches; `diagonal` is that of the matrix they are condensed from.
-pub fn settle_load(load: &mut [f64], defining: &[usize], drive: &RigidDrive, diagonal: &[f64]) {
+pub fn make_load_exact(load: &mut [f64], defining: &[usize], drive: &RigidDrive, diagonal: &[f64]) {
     if let Some(basis) = basis(defining, drive, diagonal) {
         basis.set_load(load);
     }

@@ -11,7 +11,7 @@ use crate::condense::limits::{limits_of_clusters, prescribe};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::numbering::check_agreement;
-use crate::rigid::survey::Survey;
+use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::schur::condensed::Condensed;
 use crate::schur::merge::{LooseTrace, Merge, Spare};
 use crate::schur::trace::TraceDof;
@@ -24,7 +24,7 @@ use crate::schur::trace::TraceDof;
 /// between subdomains.
 pub fn condense_clusters(
     condensation: &Condensation<'_>,
-    survey: &Survey,
+    analysis: &RigidBodyAnalysis,
     condensed_one: &dyn Fn(),
 ) -> Result<CondensedBlocks, Failure> {
     let Context { comm, plan, .. } = condensation.context;
@@ -63,7 +63,7 @@ pub fn condense_clusters(
     let limits = prescribe(context, &condensed, loads)
         .and_then(|prescribed| limits_of_clusters(context, loads, &prescribed, &condensed))
         .map_err(|failure| context.in_step(failure, 0))?;
-    take_clusters(plan, survey, limits, waiting, &mut condensed);
+    take_clusters(plan, analysis, limits, waiting, &mut condensed);
     Ok(condensed)
 }
 

@@ -120,7 +120,7 @@ impl Limits {
 
     /// Which limits are open where these conditions are `closed`, and what every closed one lacks of
     /// its bound when the conditions lack `missing`; 0 for the open ones.
-    pub fn frozen(&self, closed: &[bool], missing: &[f64]) -> (Vec<bool>, Vec<f64>) {
+    pub fn fixed(&self, closed: &[bool], missing: &[f64]) -> (Vec<bool>, Vec<f64>) {
         let of_condition = |&(condition, factor): &(usize, f64)| match closed[condition] {
             true => (false, missing[condition] / factor),
             false => (true, 0.0),

@@ -19,27 +19,28 @@ pub struct Spring {
 }
 
 /// Assembles Tᵀ K T of `block`, for u = T x + c, by scattering every element into the pattern, and adds a
-/// spring at every one of `pins`, components of nodes.
+/// spring at every one of `fixing_dofs`, components of nodes.
 ///
 /// Returns `None` where the matrix has more than 2³² entries.
 pub fn assemble(
     block: &Block,
     dofs: &Dofs,
     materials: &[Material],
-    pins: &[(u32, usize)],
+    fixing_dofs: &[(u32, usize)],
 ) -> Option<(SparseSymmetric, Vec<Spring>)> {
     let cliques = dofs.cliques(block);
     let pattern = LowerPattern::of_sites(dofs.site_starts(), &cliques)?;
     let mut stiffness = SparseSymmetric::zeros(pattern);
     scatter(block, dofs, materials, &mut stiffness);
-    let pins = pins.iter();
-    let springs = pins.map(|&(node, component)| pin(dofs, node, component, &mut stiffness));
+    let fixing_dofs = fixing_dofs.iter();
+    let springs =
+        fixing_dofs.map(|&(node, component)| fixing_dof(dofs, node, component, &mut stiffness));
     let springs = springs.collect();
     Some((stiffness, springs))
 }
 
 /// Adds a spring as stiff as the node itself.
-fn pin(dofs: &Dofs, node: u32, component: usize, k: &mut SparseSymmetric) -> Spring {
+fn fixing_dof(dofs: &Dofs, node: u32, component: usize, k: &mut SparseSymmetric) -> Spring {
     let terms = dofs.terms(node, component);
     let diagonal = k.diagonal();
     let stiffness = terms

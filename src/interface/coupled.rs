@@ -134,7 +134,7 @@ impl<'a> CoupledContact<'a> {
 
     /// The change that balances `r` on Γ and `loads` on the approaches of every pair where the
     /// conditions stay `open` or closed and the closed ones still have to approach by `missing`.
-    pub fn solve_frozen(
+    pub fn solve_fixed(
         &self,
         r: &[f64],
         loads: &[Vec<f64>],

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::recover::BlockSolution;
-use crate::recover::frozen::{BlockLoad, Frozen};
+use crate::recover::fixed_active_set::{BlockLoad, FixedActiveSet};
 
 /// Estimates κ = λ_max / λ_min of A = D^(−1/2) K D^(−1/2), K the stiffness of the whole scene with its
-/// contacts frozen as they are, D its diagonal: round-off makes a relative error of about
+/// contacts fixed as they are, D its diagonal: round-off makes a relative error of about
 /// κ · 10⁻¹⁶ in displacements.
 ///
 /// For s of entries ±1 at random ‖A⁻¹ s‖² is Σ c² / λ² over the eigenvalues λ of A, where c² is 1 on the
@@ -14,42 +14,42 @@ use crate::recover::frozen::{BlockLoad, Frozen};
 /// at most the number of unknowns of a cell. Collective; the root gets the estimate, `None` where it
 /// can't be made.
 pub fn condition_number(
-    frozen: &Frozen<'_>,
+    fixed: &FixedActiveSet<'_>,
     solutions: &BTreeMap<usize, BlockSolution>,
 ) -> Option<f64> {
-    let able = frozen.root.is_some_and(|root| root.can_solve());
-    if !frozen.context.comm.decide(able) {
+    let able = fixed.root.is_some_and(|root| root.can_solve());
+    if !fixed.context.comm.decide(able) {
         return None;
     }
     let start = |&b: &usize| {
-        let diagonal = diagonal(frozen, b).iter().enumerate();
+        let diagonal = diagonal(fixed, b).iter().enumerate();
         let load = diagonal.map(|(i, d)| d.max(0.0).sqrt() * sign(b, i));
         (b, load.collect())
     };
-    let loads = frozen.condensed.blocks.keys().map(start).collect();
-    let answer = solve(frozen, solutions, loads);
+    let loads = fixed.condensed.blocks.keys().map(start).collect();
+    let answer = solve(fixed, solutions, loads);
 
     // xᵀ D x, summed block by block so that ranks make no difference.
     let mut largest = 0;
     let mut sum = 0.0;
-    frozen.context.comm.gather(
-        &frozen.context.plan.owners(),
+    fixed.context.comm.gather(
+        &fixed.context.plan.owners(),
         |b| {
             let answer = answer.get(&b).into_iter().flatten();
-            let terms = answer.zip(diagonal(frozen, b)).map(|(x, d)| d * x * x);
-            (largest_cell(frozen, b), terms.sum::<f64>())
+            let terms = answer.zip(diagonal(fixed, b)).map(|(x, d)| d * x * x);
+            (largest_cell(fixed, b), terms.sum::<f64>())
         },
         |_, (cell, part)| {
             largest = largest.max(cell);
             sum += part;
         },
     );
-    (frozen.root.is_some() && sum > 0.0).then(|| largest as f64 * sum.sqrt())
+    (fixed.root.is_some() && sum > 0.0).then(|| largest as f64 * sum.sqrt())
 }
 
-/// K⁻¹ `loads`, every contact frozen. Collective.
+/// K⁻¹ `loads`, the active set fixed. Collective.
 fn solve(
-    frozen: &Frozen<'_>,
+    fixed: &FixedActiveSet<'_>,
     solutions: &BTreeMap<usize, BlockSolution>,
     loads: BTreeMap<usize, Vec<f64>>,
 ) -> BTreeMap<usize, Vec<f64>> {
@@ -64,18 +64,18 @@ fn solve(
         };
         (b, load)
     };
-    let changes = frozen.solve(loads.into_iter().map(load_of).collect());
+    let changes = fixed.solve(loads.into_iter().map(load_of).collect());
     changes.into_iter().map(|(b, c)| (b, c.x)).collect()
 }
 
-fn diagonal<'a>(frozen: &Frozen<'a>, b: usize) -> &'a [f64] {
-    let block = frozen.condensed.blocks.get(&b);
+fn diagonal<'a>(fixed: &FixedActiveSet<'a>, b: usize) -> &'a [f64] {
+    let block = fixed.condensed.blocks.get(&b);
     block.map_or(&[], |block| &block.diagonal)
 }
 
 /// The most unknowns that a cell of block b has.
-fn largest_cell(frozen: &Frozen<'_>, b: usize) -> usize {
-    frozen.context.blocks.get(&b).map_or(0, |owned| {
+fn largest_cell(fixed: &FixedActiveSet<'_>, b: usize) -> usize {
+    fixed.context.blocks.get(&b).map_or(0, |owned| {
         let nodes = owned.block.cells().map(|cell| cell.kind.nodes()).max();
         nodes.unwrap_or(0) * owned.block.dim
     })

@@ -6,7 +6,7 @@ use contact_dd_partition::problem::Catalog;
 
 use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
-use crate::recover::frozen::Frozen;
+use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::motion::BodyFrame;
 use crate::rigid::projection::MotionProducts;
@@ -34,37 +34,36 @@ impl<'a> Motions<'a> {
     /// that take part. Collective.
     pub fn project(
         &self,
-        frozen: &Frozen<'_>,
+        fixed: &FixedActiveSet<'_>,
         kind: Field,
         fields: BTreeMap<usize, &mut Vec<f64>>,
     ) {
         if self.list.is_empty() {
             return;
         }
-        let products = self.products(frozen, kind, &fields);
-        let found = frozen.root.map(|_| products.coefficients());
+        let products = self.products(fixed, kind, &fields);
+        let found = fixed.root.map(|_| products.coefficients());
         let mut coefficients = found.unwrap_or_default();
-        frozen.context.comm.broadcast(&mut coefficients);
-        self.take_out(frozen, kind, &coefficients, fields);
+        fixed.context.comm.broadcast(&mut coefficients);
+        self.take_out(fixed, kind, &coefficients, fields);
     }
 
     /// Their products with each other and with a field, on the root. Collective.
     pub fn products(
         &self,
-        frozen: &Frozen<'_>,
+        fixed: &FixedActiveSet<'_>,
         kind: Field,
         fields: &BTreeMap<usize, &mut Vec<f64>>,
     ) -> MotionProducts {
-        let dim = frozen.context.catalog.dim;
+        let dim = fixed.context.catalog.dim;
         let modes = BodyFrame::count(dim);
-        let first_of = first_blocks(frozen.context.catalog, frozen.context.plan);
+        let first_of = first_blocks(fixed.context.catalog, fixed.context.plan);
         let mut of_bodies: BTreeMap<usize, MotionProducts> = BTreeMap::new();
-        frozen.context.comm.gather(
-            &frozen.context.plan.owners(),
+        fixed.context.comm.gather(
+            &fixed.context.plan.owners(),
             |b| {
                 let mut of_block: BTreeMap<usize, MotionProducts> = BTreeMap::new();
-                if let (Some(owned), Some(field)) = (frozen.context.blocks.get(&b), fields.get(&b))
-                {
+                if let (Some(owned), Some(field)) = (fixed.context.blocks.get(&b), fields.get(&b)) {
                     let is_first = first_in(owned, b, &first_of);
                     visit(owned, |node, body, x| {
                         let products = of_body(&mut of_block, body, modes);
@@ -95,13 +94,13 @@ impl<'a> Motions<'a> {
     /// v ← v − Σ c z.
     pub fn take_out(
         &self,
-        frozen: &Frozen<'_>,
+        fixed: &FixedActiveSet<'_>,
         kind: Field,
         coefficients: &[f64],
         fields: BTreeMap<usize, &mut Vec<f64>>,
     ) {
-        let dim = frozen.context.catalog.dim;
-        let first_of = first_blocks(frozen.context.catalog, frozen.context.plan);
+        let dim = fixed.context.catalog.dim;
+        let first_of = first_blocks(fixed.context.catalog, fixed.context.plan);
         let taken: Vec<Vec<f64>> = (0..self.frames.len())
             .map(|body| {
                 let mut sum = vec![0.0; BodyFrame::count(dim)];
@@ -114,7 +113,7 @@ impl<'a> Motions<'a> {
             })
             .collect();
         for (b, field) in fields {
-            let Some(owned) = frozen.context.blocks.get(&b) else {
+            let Some(owned) = fixed.context.blocks.get(&b) else {
                 continue;
             };
             let is_first = first_in(owned, b, &first_of);

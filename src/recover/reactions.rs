@@ -4,22 +4,25 @@ use std::collections::BTreeMap;
 
 use crate::output::resultants::{Reaction, Resultant};
 use crate::recover::BlockSolution;
-use crate::recover::frozen::Frozen;
+use crate::recover::fixed_active_set::FixedActiveSet;
 
 /// What every condition that prescribes displacements exerts on the bodies; on the root it is that
 /// of the whole solution. Collective.
-pub fn reactions(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Vec<Reaction> {
-    let names = frozen.context.catalog.supports.iter();
+pub fn reactions(
+    fixed: &FixedActiveSet<'_>,
+    solutions: &BTreeMap<usize, BlockSolution>,
+) -> Vec<Reaction> {
+    let names = fixed.context.catalog.supports.iter();
     let mut reactions: Vec<Reaction> = names
         .map(|support| Reaction {
             support: support.clone(),
             resultant: Resultant::default(),
         })
         .collect();
-    frozen.context.comm.gather(
-        &frozen.context.plan.owners(),
+    fixed.context.comm.gather(
+        &fixed.context.plan.owners(),
         |b| match solutions.get(&b) {
-            Some(solution) => of_block(frozen, b, solution),
+            Some(solution) => of_block(fixed, b, solution),
             None => Vec::new(),
         },
         |_, of_block| {
@@ -33,15 +36,15 @@ pub fn reactions(frozen: &Frozen<'_>, solutions: &BTreeMap<usize, BlockSolution>
 
 /// For every support its condition, its position and the reaction.
 fn of_block(
-    frozen: &Frozen<'_>,
+    fixed: &FixedActiveSet<'_>,
     b: usize,
     solution: &BlockSolution,
 ) -> Vec<(u32, [f64; 3], [f64; 3])> {
     let mut reactions = Vec::new();
-    let Some(owned) = frozen.context.blocks.get(&b) else {
+    let Some(owned) = fixed.context.blocks.get(&b) else {
         return reactions;
     };
-    let held = frozen
+    let held = fixed
         .step
         .loads
         .get(&b)
@@ -50,7 +53,7 @@ fn of_block(
         return reactions;
     }
     let dim = owned.block.dim;
-    let residual = frozen
+    let residual = fixed
         .balance(b, solution)
         .map_or_else(Vec::new, |b| b.residual);
     for support in held {

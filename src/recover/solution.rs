@@ -6,19 +6,19 @@ use crate::certificate::Certificate;
 use crate::fem::estimate::CellError;
 use crate::output::resultants::Reaction;
 use crate::recover::conditioning::condition_number;
-use crate::recover::frozen::Frozen;
+use crate::recover::fixed_active_set::FixedActiveSet;
+use crate::recover::minimum_norm::{MinimumNorm, remove_free_modes, take_minimum_norm};
 use crate::recover::reactions::reactions;
 use crate::recover::refine::refine;
-use crate::recover::settle::{Settled, settle_free_motions, settle_loose_motions};
 use crate::recover::stresses::{Stress, error_estimate, stresses};
 use crate::recover::{BlockSolution, displacements, recover};
-use crate::rigid::descent::with_descent;
-use crate::rigid::survey::Survey;
+use crate::rigid::body_analysis::RigidBodyAnalysis;
+use crate::rigid::closing_motion::with_closing_motions;
 
 /// What is known once U is.
 #[derive(Debug)]
 pub struct Solution {
-    /// Displacement without the bodies' way to rest, forces and closed conditions of every block.
+    /// Displacement without the bodies' closing motions, forces and closed conditions of every block.
     pub blocks: BTreeMap<usize, BlockSolution>,
     /// Displacement with it, node by node (m).
     pub displacement: BTreeMap<usize, Vec<f64>>,
@@ -28,8 +28,8 @@ pub struct Solution {
     pub certificate: Certificate,
     /// The condition number; on the root, where it can be made.
     pub condition: Option<f64>,
-    /// What became of loose motions.
-    pub settled: Settled,
+    /// What became of released modes.
+    pub minimum_norm: MinimumNorm,
     /// What supports carry; on the root.
     pub reactions: Vec<Reaction>,
     /// The estimate of the mesh's error, where there are stresses; on the root.
@@ -39,33 +39,38 @@ pub struct Solution {
 impl Solution {
     /// Substitutes U back, of which the root has `u`, refines what comes of it against the full discrete problem, and recovers stresses if they are asked for.
     /// Collective.
-    pub fn new(frozen: &Frozen<'_>, survey: &Survey, u: Option<&[f64]>, with_stress: bool) -> Self {
+    pub fn new(
+        fixed: &FixedActiveSet<'_>,
+        analysis: &RigidBodyAnalysis,
+        u: Option<&[f64]>,
+        with_stress: bool,
+    ) -> Self {
         let (comm, plan, catalog) = (
-            frozen.context.comm,
-            frozen.context.plan,
-            frozen.context.catalog,
+            fixed.context.comm,
+            fixed.context.plan,
+            fixed.context.catalog,
         );
-        let numbers = frozen.root.map(|root| &root.numbering.traces[..]);
-        let mut blocks = recover(frozen.factors(), frozen.step, u.zip(numbers));
-        settle_free_motions(frozen, &mut blocks);
-        let mut certificate = refine(frozen, &mut blocks);
-        let settled = settle_loose_motions(frozen, survey, &mut blocks, &mut certificate);
+        let numbers = fixed.root.map(|root| &root.numbering.traces[..]);
+        let mut blocks = recover(fixed.factors(), fixed.step, u.zip(numbers));
+        remove_free_modes(fixed, &mut blocks);
+        let mut certificate = refine(fixed, &mut blocks);
+        let minimum_norm = take_minimum_norm(fixed, analysis, &mut blocks, &mut certificate);
         // What is loose has no stiffness that could be compared.
-        let condition = match settled.is_loose {
+        let condition = match minimum_norm.has_released_modes {
             true => None,
-            false => condition_number(frozen, &blocks),
+            false => condition_number(fixed, &blocks),
         };
         let stress =
-            with_stress.then(|| stresses(comm, frozen.context.blocks, &blocks, catalog, plan));
+            with_stress.then(|| stresses(comm, fixed.context.blocks, &blocks, catalog, plan));
         Self {
-            displacement: with_descent(&frozen.context, displacements(&blocks), survey),
-            reactions: reactions(frozen, &blocks),
+            displacement: with_closing_motions(&fixed.context, displacements(&blocks), analysis),
+            reactions: reactions(fixed, &blocks),
             estimate: (stress.as_ref()).map(|stress| error_estimate(comm, stress, plan)),
             blocks,
             stress,
             certificate,
             condition,
-            settled,
+            minimum_norm,
         }
     }
 }

@@ -17,7 +17,7 @@ use crate::plan::Plan;
 use crate::plan::demand::{Demand, Demands};
 use crate::report::totals::Totals;
 use crate::report::{Outputs, failures, reason, report};
-use crate::rigid::survey::Survey;
+use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::settings::Settings;
 use crate::settings::command_line::LogFormat;
 use crate::sweep::SweepRecord;
@@ -100,9 +100,11 @@ impl<'a> Narrator<'a> {
     }
 
     /// What validating found, and what solving would cost.
-    pub fn check(&self, surveys: &[Survey], demands: &[Demand], available: f64) {
+    pub fn check(&self, analyses: &[RigidBodyAnalysis], demands: &[Demand], available: f64) {
         self.bar.finish();
-        let all = surveys.iter().flat_map(|survey| &survey.motions.warnings);
+        let all = analyses
+            .iter()
+            .flat_map(|analysis| &analysis.motions.warnings);
         let warnings: BTreeSet<&String> = all.collect();
         if self.comm.is_root() {
             for warning in warnings {

@@ -11,7 +11,7 @@ use crate::output::ranks::RankReport;
 use crate::output::report::{ErrorEstimate, Status, StepReport};
 use crate::output::resultants::Resultants;
 use crate::plan::Plan;
-use crate::rigid::survey::Survey;
+use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::sweep::{SweepOutcome, SweepStatus};
 
 /// A whole run.
@@ -55,15 +55,15 @@ impl StepTotals {
         outcome: SweepOutcome,
         solution: &Solution,
         resultants: Resultants,
-        survey: &Survey,
+        analysis: &RigidBodyAnalysis,
     ) -> Self {
         let warnings = [
-            &survey.motions.warnings[..],
-            &solution.settled.warnings,
+            &analysis.motions.warnings[..],
+            &solution.minimum_norm.warnings,
             &outcome.notes,
         ];
         Self {
-            active: outcome.totals.active - solution.settled.opened,
+            active: outcome.totals.active - solution.minimum_norm.opened,
             certificate: solution.certificate,
             condition: solution.condition,
             resultants,

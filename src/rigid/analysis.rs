@@ -57,7 +57,7 @@ pub struct RigidRow {
 /// A spring on one node of a body that can move freely: u·direction = 0 there. It carries no force
 /// because the load has no component along the motion that it stops.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pin {
+pub struct FixingDof {
     /// Subdomain.
     pub subdomain: u32,
     /// Node of the subdomain.
@@ -72,7 +72,7 @@ pub struct RigidMotions {
     /// Free ones.
     pub free: Vec<FreeMotion>,
     /// As many pins as there are free motions.
-    pub pins: Vec<Pin>,
+    pub fixing_dofs: Vec<FixingDof>,
     /// What a user should know.
     pub warnings: Vec<String>,
 }
@@ -196,7 +196,7 @@ impl Kinematics {
             warnings: (self.described(bodies, names, &motions).iter())
                 .map(fixed)
                 .collect(),
-            pins: self.pins(bodies, free),
+            fixing_dofs: self.fixing_dofs(bodies, free),
             free: motions,
         }
     }
@@ -213,8 +213,8 @@ impl Kinematics {
 
     /// As many components of candidate nodes as there are free motions, chosen one after the other
     /// where the motions not yet stopped are largest.
-    fn pins(&self, bodies: &[BodyState], free: &DMatrix<f64>) -> Vec<Pin> {
-        let mut candidates: Vec<(Pin, DVector<f64>)> = Vec::new();
+    fn fixing_dofs(&self, bodies: &[BodyState], free: &DMatrix<f64>) -> Vec<FixingDof> {
+        let mut candidates: Vec<(FixingDof, DVector<f64>)> = Vec::new();
         for (b, body) in bodies.iter().enumerate() {
             for &(subdomain, node, x) in &body.candidates {
                 let moves: Vec<[f64; 3]> = free
@@ -226,17 +226,17 @@ impl Kinematics {
                     })
                     .collect();
                 for component in 0..self.dim {
-                    let pin = Pin {
+                    let fixing_dof = FixingDof {
                         subdomain,
                         node,
                         component: component as u32,
                     };
                     let row = DVector::from_fn(moves.len(), |k, _| moves[k][component]);
-                    candidates.push((pin, row));
+                    candidates.push((fixing_dof, row));
                 }
             }
         }
-        let mut pins = Vec::new();
+        let mut fixing_dofs = Vec::new();
         for _ in 0..free.ncols() {
             let mut best = 0;
             for (i, (_, row)) in candidates.iter().enumerate() {
@@ -244,17 +244,17 @@ impl Kinematics {
                     best = i;
                 }
             }
-            let Some((pin, row)) = candidates.get(best).cloned() else {
+            let Some((fixing_dof, row)) = candidates.get(best).cloned() else {
                 break;
             };
-            pins.push(pin);
+            fixing_dofs.push(fixing_dof);
             let unit = row.normalize();
             for (_, other) in &mut candidates {
                 let along = other.dot(&unit);
                 other.axpy(-along, &unit, 1.0);
             }
         }
-        pins
+        fixing_dofs
     }
 }
 

@@ -7,8 +7,8 @@ use contact_dd_partition::destination::unfinished;
 use crate::contact::pair::{ContactPair, PairState};
 use crate::context::Context;
 use crate::error::Failure;
-use crate::rigid::squeezed;
-use crate::rigid::survey::{Survey, survey};
+use crate::rigid::body_analysis::{RigidBodyAnalysis, analyse_bodies};
+use crate::rigid::infeasible_nodes;
 use crate::settings::Settings;
 use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
 
@@ -53,7 +53,7 @@ impl StepState {
 ///
 /// # Errors
 /// What a step prescribes leaves no place for a node, or its load drives a motion that nothing holds.
-pub fn survey_steps(context: &Context<'_>) -> Result<Vec<Survey>, Failure> {
+pub fn analyse_steps(context: &Context<'_>) -> Result<Vec<RigidBodyAnalysis>, Failure> {
     let Context {
         comm,
         catalog,
@@ -65,9 +65,9 @@ pub fn survey_steps(context: &Context<'_>) -> Result<Vec<Survey>, Failure> {
         .map(|k| {
             let loads = context.loads(k);
             let all = blocks.values().zip(loads.values());
-            let checked = all.map(|(owned, loads)| squeezed::check(owned, loads, catalog));
+            let checked = all.map(|(owned, loads)| infeasible_nodes::check(owned, loads, catalog));
             comm.agree(checked.collect())
-                .and_then(|()| survey(comm, blocks, catalog, plan, k))
+                .and_then(|()| analyse_bodies(comm, blocks, catalog, plan, k))
                 .map_err(|failure| context.in_step(failure, k))
         })
         .collect()

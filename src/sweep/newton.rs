@@ -50,8 +50,8 @@ impl Sweeps<'_, '_> {
             return self.fall_back(residual, "newton got no further");
         }
         // A contact without force and gap may come out open at the root and closed in its pair.
-        let settled = before.relative.max(residual.relative) <= self.tolerance();
-        if settled && residual.totals.failed_pairs == 0 {
+        let minimum_norm = before.relative.max(residual.relative) <= self.tolerance();
+        if minimum_norm && residual.totals.failed_pairs == 0 {
             return Next::End(SweepStatus::Converged);
         }
         Next::Sweep(Memory::Newton(Stalls(stalls)), residual)

@@ -137,7 +137,7 @@ fn constants_of_approaches_follow_the_steps() {
 }
 
 /// The corner of a block lies in that of two walls, across which a third one stands: three conditions on
-/// a node, of which the tightest ones become unknowns. Which these are changes with the way to rest.
+/// a node, of which the tightest ones become unknowns. Which these are changes with the closing motion.
 #[test]
 fn conditions_that_depend_on_others_follow_the_steps() {
     let blocks = Blocks::new().rectangle("block", [0.01, 1.01], [0.02, 1.02], [8, 8]);

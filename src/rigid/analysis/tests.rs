@@ -41,8 +41,8 @@ fn a_block_on_the_floor_slides_freely_and_is_pinned_once() {
     let block = square(0.0, [0.0, -3.0, 0.0], vec![]);
     let rows = floor(&block, 0, &[0.0, 0.5, 1.0]);
     let motions = analyse(block, rows).unwrap();
-    assert_eq!(motions.pins.len(), 1);
-    assert_eq!(motions.pins[0].component, 0);
+    assert_eq!(motions.fixing_dofs.len(), 1);
+    assert_eq!(motions.fixing_dofs[0].component, 0);
     assert!(motions.warnings[0].contains("'block'"));
 }
 

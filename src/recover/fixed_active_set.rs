@@ -1,4 +1,4 @@
-//! The linear problem of the whole scene with every contact frozen as it is, open or closed.
+//! The linear problem of the whole scene with the active set fixed as it is, open or closed.
 
 use std::collections::BTreeMap;
 
@@ -16,31 +16,31 @@ use crate::interface::problem::InterfaceProblem;
 use crate::plan::Plan;
 use crate::recover::BlockSolution;
 use crate::recover::motions::Motions;
-use crate::rigid::survey::Survey;
+use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::schur::local::CondensedLoad;
 use crate::step::StepProblem;
 use crate::sweep::{SweepOutcome, SweepStatus};
 
-/// What a rank holds of the frozen problem.
+/// What a rank holds of the problem of the fixed active set.
 #[derive(Clone, Copy)]
-pub struct Frozen<'a> {
+pub struct FixedActiveSet<'a> {
     /// What the run works on.
     pub context: Context<'a>,
     /// The factors of this rank.
     pub condensed: &'a CondensedBlocks,
     /// The problem of the load step.
     pub step: &'a StepProblem<'a>,
-    /// The longest way of a body to rest (m).
-    pub descent: f64,
+    /// The longest closing motion of a body (m).
+    pub closing_motions: f64,
     /// Motions that are free whatever the contacts do; springs at pins hold them.
     pub free: Motions<'a>,
     /// What the root holds besides.
-    pub root: Option<FrozenRoot<'a>>,
+    pub root: Option<FixedActiveSetRoot<'a>>,
 }
 
 /// What the root holds besides.
 #[derive(Clone, Copy)]
-pub struct FrozenRoot<'a> {
+pub struct FixedActiveSetRoot<'a> {
     /// Numbering of Γ.
     pub numbering: &'a Numbering,
     /// The interface problem.
@@ -50,9 +50,9 @@ pub struct FrozenRoot<'a> {
 }
 
 /// Which limits of a cluster are open, and what the others still have to approach (m).
-type FrozenLimits = (Vec<bool>, Vec<f64>);
+type FixedLimits = (Vec<bool>, Vec<f64>);
 
-impl FrozenRoot<'_> {
+impl FixedActiveSetRoot<'_> {
     /// Whether the pairs' approaches can be solved for at once.
     pub fn can_solve(&self) -> bool {
         CoupledContact::new(self.problem).is_some()
@@ -79,13 +79,13 @@ pub struct BlockChange {
     pub forces: Vec<f64>,
 }
 
-impl<'a> Frozen<'a> {
+impl<'a> FixedActiveSet<'a> {
     /// The problem of a load step, solved with this `outcome`; `interface` and `outcome` are the root's.
     pub fn new(
         context: Context<'a>,
         condensed: &'a CondensedBlocks,
         step: &'a StepProblem<'a>,
-        survey: &'a Survey,
+        analysis: &'a RigidBodyAnalysis,
         interface: Option<&'a (Numbering, Interface)>,
         outcome: Option<&SweepOutcome>,
     ) -> Self {
@@ -94,12 +94,12 @@ impl<'a> Frozen<'a> {
             context,
             condensed,
             step,
-            descent: survey.longest_descent(),
+            closing_motions: analysis.longest_closing_motion(),
             free: Motions {
-                list: &survey.motions.free,
-                frames: &survey.frames,
+                list: &analysis.motions.free,
+                frames: &analysis.frames,
             },
-            root: on_root.map(|(((numbering, _), problem), outcome)| FrozenRoot {
+            root: on_root.map(|(((numbering, _), problem), outcome)| FixedActiveSetRoot {
                 numbering,
                 problem,
                 converged: outcome.status == SweepStatus::Converged,
@@ -155,12 +155,12 @@ impl<'a> Frozen<'a> {
     fn limits(
         &self,
         conditions: BTreeMap<usize, Vec<(bool, f64)>>,
-    ) -> BTreeMap<usize, FrozenLimits> {
+    ) -> BTreeMap<usize, FixedLimits> {
         let mut limits = BTreeMap::new();
         for (p, of_cluster) in conditions {
             let (closed, missing): (Vec<bool>, Vec<f64>) = of_cluster.into_iter().unzip();
             if let Some(pair) = self.step.pairs.get(&p) {
-                limits.insert(p, pair.limits().frozen(&closed, &missing));
+                limits.insert(p, pair.limits().fixed(&closed, &missing));
             }
         }
         limits
@@ -170,7 +170,7 @@ impl<'a> Frozen<'a> {
     /// conditions of clusters in contact, and unknowns on the boundary of every cluster's node. Collective.
     fn solve_interface(
         &self,
-        limits: &BTreeMap<usize, FrozenLimits>,
+        limits: &BTreeMap<usize, FixedLimits>,
         condensed: &BTreeMap<usize, CondensedLoad>,
     ) -> (BTreeMap<usize, Vec<f64>>, BTreeMap<usize, Vec<f64>>) {
         let plan = self.context.plan;
@@ -217,7 +217,7 @@ impl<'a> Frozen<'a> {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct ClusterQuestion {
     /// Its limits, where it is in contact.
-    limits: Option<FrozenLimits>,
+    limits: Option<FixedLimits>,
     /// Its load, on approaches and traces.
     #[serde(with = "crate::bytes")]
     load: Vec<f64>,
@@ -226,7 +226,7 @@ struct ClusterQuestion {
 /// Forces of the limits of a cluster, and its approaches and traces.
 type ClusterAnswer = (Reals, Reals);
 
-impl FrozenRoot<'_> {
+impl FixedActiveSetRoot<'_> {
     /// What each cluster is answered.
     fn solve(&self, plan: &Plan, gathered: Vec<ClusterQuestion>) -> Vec<ClusterAnswer> {
         let mut r = vec![0.0; self.problem.interface.len];
@@ -248,7 +248,7 @@ impl FrozenRoot<'_> {
         let Some(coupled) = CoupledContact::new(self.problem) else {
             return vec![ClusterAnswer::default(); self.numbering.traces.len()];
         };
-        let step = coupled.solve_frozen(&r, &loads, &missing, &open);
+        let step = coupled.solve_fixed(&r, &loads, &missing, &open);
         let mut pairs = step.forces.into_iter().zip(step.approaches);
         let answer = |c: usize| {
             let of_pair = match plan.contact_place(c) {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use contact_dd_partition::problem::Catalog;
 use faer::Mat;
 
-use super::analysis::{Pin, RigidRow, Scene};
+use super::analysis::{FixingDof, RigidRow, Scene};
 use super::energy::RigidDrive;
 use super::kinematics::{Kinematics, null_space};
 use crate::comm::Comm;
@@ -22,13 +22,13 @@ impl Scene {
         self.drive(&kinematics, conditions, &[], |_| true)
     }
 
-    /// The same for the motions of some `bodies` alone, as far as they leave the `pins` where they are:
+    /// The same for the motions of some `bodies` alone, as far as they leave the `fixing_dofs` where they are:
     /// others may hold a body's neighbours, and then it costs energy to move its pin.
     fn drive(
         &self,
         kinematics: &Kinematics,
         conditions: &[usize],
-        pins: &[Pin],
+        fixing_dofs: &[FixingDof],
         bodies: impl Fn(usize) -> bool,
     ) -> RigidDrive {
         let rows: Vec<_> = conditions.iter().map(|&j| self.rows[j].clone()).collect();
@@ -45,9 +45,9 @@ impl Scene {
         let (mut rows, mut load) = (b.select_columns(&columns), kinematics.load(&self.bodies));
         load = load.select_rows(&columns);
         let pinned = kinematics.rows(
-            &pins
+            &fixing_dofs
                 .iter()
-                .filter_map(|pin| self.pin_row(pin))
+                .filter_map(|fixing_dof| self.fixing_row(fixing_dof))
                 .collect::<Vec<_>>(),
         );
         let pinned = pinned.select_columns(&columns);
@@ -62,11 +62,12 @@ impl Scene {
     }
 
     /// How motions move a pin.
-    fn pin_row(&self, pin: &Pin) -> Option<RigidRow> {
+    fn fixing_row(&self, fixing_dof: &FixingDof) -> Option<RigidRow> {
         self.bodies.iter().enumerate().find_map(|(b, body)| {
             let mut nodes = body.candidates.iter();
-            let (.., x) = nodes.find(|(s, n, _)| (*s, *n) == (pin.subdomain, pin.node))?;
-            let axis = std::array::from_fn(|k| f64::from(k == pin.component as usize));
+            let (.., x) =
+                nodes.find(|(s, n, _)| (*s, *n) == (fixing_dof.subdomain, fixing_dof.node))?;
+            let axis = std::array::from_fn(|k| f64::from(k == fixing_dof.component as usize));
             Some(RigidRow {
                 bodies: vec![(b, body.frame.action(self.dim, x, &axis))],
                 gap: 0.0,
@@ -85,11 +86,11 @@ impl Scene {
 }
 
 /// For every cluster in contact of this rank, its conditions against the motions of the bodies wholly
-/// in it that leave the `pins` where they are. Collective; `scene` counts on the root alone.
-pub(super) fn inner_motions(
+/// in it that leave the `fixing_dofs` where they are. Collective; `scene` counts on the root alone.
+pub(super) fn cluster_modes(
     comm: &Comm,
     scene: &Scene,
-    pins: &[Pin],
+    fixing_dofs: &[FixingDof],
     catalog: &Catalog,
     plan: &Plan,
 ) -> BTreeMap<usize, RigidDrive> {
@@ -108,7 +109,7 @@ pub(super) fn inner_motions(
             let cluster = plan.contact[p];
             let conditions = scene.conditions_of(&plan.clusters[cluster].groups);
             let within = |body: usize| !elsewhere[body] && home[body] == Some(cluster);
-            scene.drive(&kinematics, &conditions, pins, within)
+            scene.drive(&kinematics, &conditions, fixing_dofs, within)
         },
         |p, drive| {
             motions.insert(p, drive);

@@ -8,9 +8,9 @@ use super::kinematics::{Kinematics, null_space};
 use super::nonnegative;
 use super::projection::MotionProducts;
 
-/// The loose motions of a solution.
+/// The released modes of a solution.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct LooseMotions {
+pub struct ReleasedModes {
     /// Them, first those that are free with every contact closed.
     pub motions: Vec<FreeMotion>,
     /// B of the conditions without force against them.
@@ -24,15 +24,15 @@ pub struct LooseMotions {
 impl Scene {
     /// The motions that no support and no contact force resists, where `free` ones are known
     /// already; `carrying[j]` tells whether condition j carries force, `gaps[j]` is what it has left.
-    pub fn loose_motions(
+    pub fn released_modes(
         &self,
         free: &[FreeMotion],
         carrying: &[bool],
         gaps: &[f64],
-    ) -> LooseMotions {
+    ) -> ReleasedModes {
         let kinematics = Kinematics::new(self.dim, &self.bodies);
         if kinematics.len == 0 {
-            return LooseMotions::default();
+            return ReleasedModes::default();
         }
         let b = kinematics.rows(&self.rows);
         let (held, idle): (Vec<usize>, Vec<usize>) =
@@ -51,20 +51,20 @@ impl Scene {
             motions.push(kinematics.motion(&x));
             columns.push(x);
         }
-        let loose = kinematics.described(&self.bodies, &self.names, &motions[free.len()..]);
+        let released = kinematics.described(&self.bodies, &self.names, &motions[free.len()..]);
         let z = DMatrix::from_fn(kinematics.len, columns.len(), |i, k| columns[k][i]);
-        LooseMotions {
+        ReleasedModes {
             motions,
             rows: b.select_rows(&idle) * z,
             gaps: idle.iter().map(|&j| gaps[j].max(0.0)).collect(),
-            warnings: (loose.iter())
+            warnings: (released.iter())
                 .map(|what| format!("no contact force holds {what}"))
                 .collect(),
         }
     }
 }
 
-impl LooseMotions {
+impl ReleasedModes {
     /// How much of each motion to take out of a displacement u to make it the smallest one that
     /// leaves no gap negative: min ‖u − Z c‖ subject to g − B u + B Z c ≥ 0, by Lawson and Hanson's
     /// least-distance programming.
@@ -116,11 +116,11 @@ mod tests {
         products
     }
 
-    fn loose(rows: &[[f64; 2]], gaps: &[f64]) -> LooseMotions {
-        LooseMotions {
+    fn released(rows: &[[f64; 2]], gaps: &[f64]) -> ReleasedModes {
+        ReleasedModes {
             rows: DMatrix::from_fn(rows.len(), 2, |i, j| rows[i][j]),
             gaps: gaps.to_vec(),
-            ..LooseMotions::default()
+            ..ReleasedModes::default()
         }
     }
 
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn what_nothing_stops_goes_back_to_where_it_was() {
         close(
-            &loose(&[], &[]).coefficients(&products([3.0, -1.0])),
+            &released(&[], &[]).coefficients(&products([3.0, -1.0])),
             [3.0, -1.0],
         );
     }
@@ -142,15 +142,16 @@ mod tests {
     #[test]
     fn a_gap_that_would_close_stops_it() {
         // Taking out c opens the gap by −c_x: at most 2 of x.
-        let c = loose(&[[-1.0, 0.0]], &[2.0]).coefficients(&products([3.0, -1.0]));
+        let c = released(&[[-1.0, 0.0]], &[2.0]).coefficients(&products([3.0, -1.0]));
         close(&c, [2.0, -1.0]);
     }
 
     #[test]
     fn along_a_slope_it_slides_to_the_nearest_place() {
-        let c = loose(&[[-0.6, -0.8]], &[0.0]).coefficients(&products([3.0, 4.0]));
+        let c = released(&[[-0.6, -0.8]], &[0.0]).coefficients(&products([3.0, 4.0]));
         close(&c, [0.0, 0.0]);
-        let c = loose(&[[-1.0, 0.0], [0.0, -1.0]], &[0.0, 1.0]).coefficients(&products([3.0, 4.0]));
+        let c =
+            released(&[[-1.0, 0.0], [0.0, -1.0]], &[0.0, 1.0]).coefficients(&products([3.0, 4.0]));
         close(&c, [0.0, 1.0]);
     }
 }

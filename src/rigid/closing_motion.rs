@@ -1,7 +1,7 @@
-//! The rigid motions by which bodies come to rest.
+//! Closing motions: the rigid motions by which bodies come to rest.
 //!
 //! A body that falls 0.1 m until it touches another and deforms by 1 µm then has a displacement of
-//! which elasticity is the last digits. So the way to rest is found from geometry and load alone
+//! which elasticity is the last digits. So the closing motion is found from geometry and load alone
 //! and taken out of the problem: what is left is small, and starts where contact holds.
 
 use std::collections::BTreeMap;
@@ -10,10 +10,10 @@ use contact_dd_partition::element::geometry::{dot, length};
 use nalgebra::{DMatrix, DVector};
 
 use super::analysis::{BodyState, RigidRow};
+use super::body_analysis::RigidBodyAnalysis;
 use super::kinematics::Kinematics;
 use super::motion::BodyFrame;
 use super::nonnegative;
-use super::survey::Survey;
 use crate::context::{Context, Loads};
 use crate::fem::owned::OwnedBlock;
 
@@ -29,7 +29,11 @@ const LIGHTEST: f64 = 1e-4;
 /// Which rigid motion each of `bodies` makes until contact `rows` balance the load: first what its
 /// supports prescribe, as far as no gap closes, then downhill along the load until one closes, and
 /// again. Gaps that are closed from the beginning stay as they are.
-pub(super) fn descent(dim: usize, bodies: &[BodyState], rows: &[RigidRow]) -> Vec<Vec<f64>> {
+pub(super) fn closing_motions(
+    dim: usize,
+    bodies: &[BodyState],
+    rows: &[RigidRow],
+) -> Vec<Vec<f64>> {
     let mut motions: Vec<Vec<f64>> = bodies.iter().map(|body| prescribed(dim, body)).collect();
     let round_off = ALONG
         * motions
@@ -140,9 +144,13 @@ fn fall(b: &DMatrix<f64>, load: &DVector<f64>, mut left: Vec<f64>, touching: f64
 /// enough to make forces of it.
 const ROUND_OFF: f64 = 1e-14;
 
-/// What acts on the blocks once the bodies' descent is taken out of gaps and supports.
-pub fn without_descent(context: &Context<'_>, mut loads: Loads, survey: &Survey) -> Loads {
-    if survey.longest_descent() == 0.0 {
+/// What acts on the blocks once the bodies' closing motions is taken out of gaps and supports.
+pub fn without_closing_motions(
+    context: &Context<'_>,
+    mut loads: Loads,
+    analysis: &RigidBodyAnalysis,
+) -> Loads {
+    if analysis.longest_closing_motion() == 0.0 {
         return loads;
     }
     let dim = context.catalog.dim;
@@ -153,7 +161,7 @@ pub fn without_descent(context: &Context<'_>, mut loads: Loads, survey: &Survey)
         let moved = |node: u32| {
             let node = node as usize;
             moved(
-                survey,
+                analysis,
                 dim,
                 block.bodies[node] as usize,
                 &block.points[node],
@@ -180,13 +188,16 @@ fn reduce(whole: &mut f64, row: &[f64; 3], moved: &[f64; 3]) {
     }
 }
 
-/// The displacement of every block, node by node: that of its solution and the bodies' descent.
-pub fn with_descent<'a>(
+/// The displacement of every block, node by node: that of its solution and the bodies' closing motions.
+pub fn with_closing_motions<'a>(
     context: &Context<'_>,
     solutions: impl Iterator<Item = (usize, &'a [f64])>,
-    survey: &Survey,
+    analysis: &RigidBodyAnalysis,
 ) -> BTreeMap<usize, Vec<f64>> {
-    let (dim, stays) = (context.catalog.dim, survey.longest_descent() == 0.0);
+    let (dim, stays) = (
+        context.catalog.dim,
+        analysis.longest_closing_motion() == 0.0,
+    );
     let of_block = |(b, u): (usize, &[f64])| {
         let block = &context.blocks.get(&b)?.block;
         let mut u = u.to_vec();
@@ -195,7 +206,7 @@ pub fn with_descent<'a>(
         }
         let nodes = block.points.iter().zip(&block.bodies);
         for ((x, &body), u) in nodes.zip(u.chunks_exact_mut(dim)) {
-            let moved = moved(survey, dim, body as usize, x);
+            let moved = moved(analysis, dim, body as usize, x);
             u.iter_mut().zip(moved).for_each(|(u, m)| *u += m);
         }
         Some((b, u))
@@ -203,8 +214,8 @@ pub fn with_descent<'a>(
     solutions.filter_map(of_block).collect()
 }
 
-fn moved(survey: &Survey, dim: usize, body: usize, x: &[f64; 3]) -> [f64; 3] {
-    survey.frames[body].displacement(dim, x, &survey.descent[body])
+fn moved(analysis: &RigidBodyAnalysis, dim: usize, body: usize, x: &[f64; 3]) -> [f64; 3] {
+    analysis.frames[body].displacement(dim, x, &analysis.closing_motions[body])
 }
 
 #[cfg(test)]
@@ -244,7 +255,7 @@ mod tests {
     fn a_square_falls_onto_an_uneven_floor_and_leans_on_it() {
         let body = square([0.0, -2.0, 0.1], vec![]);
         let rows = floor(&body, [0.1, 0.3]);
-        let z = descent(2, std::slice::from_ref(&body), &rows).remove(0);
+        let z = closing_motions(2, std::slice::from_ref(&body), &rows).remove(0);
         let motions = [z.clone()];
         close(&[0, 1].map(|j| approach(&rows[j], &motions)), &[0.1, 0.3]);
         // It sinks by the mean, and turns by the difference over its width.
@@ -255,7 +266,7 @@ mod tests {
     fn what_rests_stays() {
         let body = square([0.0, -2.0, 0.1], vec![]);
         let rows = floor(&body, [0.0, 0.0]);
-        close(&descent(2, &[body], &rows)[0], &[0.0; 3]);
+        close(&closing_motions(2, &[body], &rows)[0], &[0.0; 3]);
     }
 
     #[test]
@@ -265,7 +276,7 @@ mod tests {
         support.push(-0.4);
         let body = square([0.0; 3], vec![support]);
         let rows = floor(&body, [0.1, 0.3]);
-        close(&descent(2, &[body], &rows)[0], &[0.0, -0.1, 0.0]);
+        close(&closing_motions(2, &[body], &rows)[0], &[0.0, -0.1, 0.0]);
     }
 
     #[test]
@@ -277,7 +288,10 @@ mod tests {
             row
         };
         let body = square([0.0, 5.0, 0.0], vec![support(-1.0), support(1.0)]);
-        close(&descent(2, &[body], &[])[0], &[0.0, 0.3, 0.1 * frame.size]);
+        close(
+            &closing_motions(2, &[body], &[])[0],
+            &[0.0, 0.3, 0.1 * frame.size],
+        );
     }
 
     #[test]
@@ -298,7 +312,7 @@ mod tests {
                 ]
             })
             .collect();
-        let motions = descent(2, &bodies, &rows);
+        let motions = closing_motions(2, &bodies, &rows);
         close(&motions[0], &[0.0, -0.75, 0.0]);
         close(&motions[1], &[0.0, -0.25, 0.0]);
     }

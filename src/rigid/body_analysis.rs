@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::analysis::{RigidMotions, Scene};
 use super::bodies::{body_frames, body_states};
-use super::descent::descent;
+use super::closing_motion::closing_motions;
+use super::cluster_modes::cluster_modes;
 use super::energy::RigidDrive;
-use super::inner::inner_motions;
 use super::motion::BodyFrame;
 use super::rows::rigid_rows;
 use crate::comm::Comm;
@@ -19,26 +19,26 @@ use crate::plan::Plan;
 
 /// Free rigid motions, and the frames that they are written in.
 #[derive(Clone, Debug, Default)]
-pub struct Survey {
+pub struct RigidBodyAnalysis {
     /// The frame of every body.
     pub frames: Vec<BodyFrame>,
     /// Its free motions, their pins, and warnings.
     pub motions: RigidMotions,
     /// The rigid motion by which every body comes to rest.
-    pub descent: Vec<Vec<f64>>,
+    pub closing_motions: Vec<Vec<f64>>,
     /// For every cluster in contact of this rank, its conditions against the motions that supports
     /// leave to the bodies that lie wholly in it: what moves them costs the cluster no energy.
-    pub inner_motions: BTreeMap<usize, RigidDrive>,
+    pub cluster_modes: BTreeMap<usize, RigidDrive>,
     /// Whether supports leave any rigid motion to any body.
     pub movable: bool,
     /// What all this follows from, on the root.
     pub scene: Option<Scene>,
 }
 
-impl Survey {
-    /// The longest way of a body to rest (m).
-    pub fn longest_descent(&self) -> f64 {
-        let motions = self.descent.iter().flatten();
+impl RigidBodyAnalysis {
+    /// The longest closing motion of a body (m).
+    pub fn longest_closing_motion(&self) -> f64 {
+        let motions = self.closing_motions.iter().flatten();
         motions.fold(0.0, |longest, z| longest.max(z.abs()))
     }
 }
@@ -48,13 +48,13 @@ impl Survey {
 ///
 /// # Errors
 /// The load drives a motion that nothing holds.
-pub fn survey(
+pub fn analyse_bodies(
     comm: &Comm,
     blocks: &BTreeMap<usize, OwnedBlock>,
     catalog: &Catalog,
     plan: &Plan,
     step: usize,
-) -> Result<Survey, Failure> {
+) -> Result<RigidBodyAnalysis, Failure> {
     let subdomains: BTreeMap<usize, &Subdomain> = blocks
         .values()
         .flat_map(|owned| owned.block.members.iter().map(|m| (m.index, m)))
@@ -73,20 +73,20 @@ pub fn survey(
     let found = comm.agree(found)?;
     let mut found = found.map(|motions| Found {
         movable: scene.is_movable(),
-        descent: descent(scene.dim, &scene.bodies, &scene.rows),
+        closing_motions: closing_motions(scene.dim, &scene.bodies, &scene.rows),
         motions,
     });
     comm.broadcast(&mut found);
     let Found {
         motions,
         movable,
-        descent,
+        closing_motions,
     } = found.unwrap_or_default();
-    Ok(Survey {
-        inner_motions: inner_motions(comm, &scene, &motions.pins, catalog, plan),
+    Ok(RigidBodyAnalysis {
+        cluster_modes: cluster_modes(comm, &scene, &motions.fixing_dofs, catalog, plan),
         motions,
         movable,
-        descent,
+        closing_motions,
         frames,
         scene: comm.is_root().then_some(scene),
     })
@@ -97,5 +97,5 @@ pub fn survey(
 struct Found {
     motions: RigidMotions,
     movable: bool,
-    descent: Vec<Vec<f64>>,
+    closing_motions: Vec<Vec<f64>>,
 }
