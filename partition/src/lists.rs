@@ -7,10 +7,13 @@ pub(crate) struct Lists<T> {
     items: Vec<T>,
 }
 
-impl<T> Lists<T> {
-    /// Lists that lie one behind the other already; each ends where the next one starts.
-    pub fn from_offsets(offsets: Vec<usize>, items: Vec<T>) -> Self {
-        debug_assert_eq!(offsets.last(), Some(&items.len()));
+impl<T, L: IntoIterator<Item = T>> FromIterator<L> for Lists<T> {
+    fn from_iter<I: IntoIterator<Item = L>>(lists: I) -> Self {
+        let (mut offsets, mut items) = (vec![0], Vec::new());
+        for list in lists {
+            items.extend(list);
+            offsets.push(items.len());
+        }
         Self { offsets, items }
     }
 }

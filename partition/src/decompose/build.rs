@@ -2,7 +2,6 @@
 
 mod bodies;
 mod groups;
-mod scattered;
 
 use self::bodies::Bodies;
 use self::groups::Groups;
@@ -34,7 +33,7 @@ impl Problem {
         let points = gather_points(model, &owners, &groups);
         let mut warnings = model.warnings.clone();
         warnings.extend(groups.warning.clone());
-        warnings.extend(scattered::warning(model, decomposition));
+        warnings.extend(bodies::scattered(model, decomposition));
         let mut catalog = Catalog {
             supports: model.support_names.clone(),
             title: model.title.clone(),

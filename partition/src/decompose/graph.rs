@@ -1,16 +1,16 @@
-//! The graph of a mesh: atoms, and the facets between them.
+//! The graph of a mesh: its vertices are cells or contact patches, its edges the facets between them.
 
 use crate::lists::Lists;
 
-/// A graph of atoms.
+/// A graph of cells and contact patches.
 pub(super) struct Graph {
-    /// Number of cells of every atom.
+    /// Number of cells of every vertex.
     pub cells: Vec<u32>,
-    /// Material of every atom, that of most of its cells.
+    /// Material of every vertex, that of most of its cells.
     pub material: Vec<u32>,
-    /// The contacts of every atom, ascending; empty unless it is a contact patch.
+    /// The contacts of every vertex, ascending; empty unless it is a contact patch.
     pub contacts: Vec<Vec<u32>>,
-    /// The neighbours of every atom with the weight of the facets between them.
+    /// The neighbours of every vertex with the weight of the facets between them.
     pub edges: Lists<(u32, u32)>,
 }
 
@@ -25,67 +25,71 @@ impl Graph {
     ) -> Self {
         let mut all = Lists::new(cells.len(), directed);
         all.sort();
-        let mut offsets = Vec::with_capacity(cells.len() + 1);
-        let mut edges: Vec<(u32, u32)> = Vec::new();
-        offsets.push(0);
-        for list in all.iter() {
-            for same in list.chunk_by(|a, b| a.0 == b.0) {
-                edges.push((same[0].0, same.iter().map(|&(_, weight)| weight).sum()));
-            }
-            offsets.push(edges.len());
-        }
+        let added_up = all.iter().map(|list| {
+            let same = list.chunk_by(|a, b| a.0 == b.0);
+            same.map(|same| (same[0].0, same.iter().map(|&(_, weight)| weight).sum()))
+        });
         Self {
             cells,
             material,
             contacts,
-            edges: Lists::from_offsets(offsets, edges),
+            edges: added_up.collect(),
         }
     }
 
-    /// The graph of some of the atoms for each of several lists, none of which have an atom in
-    /// common; an atom's number there is its place in the list.
+    /// The graph of some of the vertices for each of several lists, none of which have a vertex in
+    /// common; a vertex's number there is its place in the list.
     pub fn split(&self, lists: &[Vec<u32>]) -> Vec<Self> {
         let mut place = vec![(u32::MAX, 0); self.len()];
-        for (list, atoms) in lists.iter().enumerate() {
-            for (number, &atom) in atoms.iter().enumerate() {
-                place[atom as usize] = (list as u32, number as u32);
+        for (list, vertices) in lists.iter().enumerate() {
+            for (number, &vertex) in vertices.iter().enumerate() {
+                place[vertex as usize] = (list as u32, number as u32);
             }
         }
-        let part = |(list, atoms): (usize, &Vec<u32>)| {
-            let mut offsets = Vec::with_capacity(atoms.len() + 1);
-            let mut edges = Vec::new();
-            offsets.push(0);
-            for &atom in atoms {
-                for &(next, weight) in self.edges(atom) {
-                    if let (of, number) = place[next as usize]
-                        && of as usize == list
-                    {
-                        edges.push((number, weight));
-                    }
-                }
-                offsets.push(edges.len());
-            }
-            let of_atoms = |values: &[u32]| atoms.iter().map(|&a| values[a as usize]).collect();
+        let part = |(list, vertices): (usize, &Vec<u32>)| {
+            let place = &place;
+            let within = |&vertex: &u32| {
+                let edges = self.edges(vertex).iter();
+                edges.filter_map(move |&(next, weight)| {
+                    let (of, number) = place[next as usize];
+                    (of as usize == list).then_some((number, weight))
+                })
+            };
+            let of_vertices =
+                |values: &[u32]| vertices.iter().map(|&a| values[a as usize]).collect();
             Self {
-                cells: of_atoms(&self.cells),
-                material: of_atoms(&self.material),
-                contacts: (atoms.iter())
-                    .map(|&atom| self.contacts[atom as usize].clone())
+                cells: of_vertices(&self.cells),
+                material: of_vertices(&self.material),
+                contacts: (vertices.iter())
+                    .map(|&vertex| self.contacts[vertex as usize].clone())
                     .collect(),
-                edges: Lists::from_offsets(offsets, edges),
+                edges: vertices.iter().map(within).collect(),
             }
         };
         lists.iter().enumerate().map(part).collect()
     }
 
-    /// Number of atoms.
+    /// Number of vertices.
     pub fn len(&self) -> usize {
         self.cells.len()
     }
 
-    /// The neighbours of an atom with the weight of the facets between them.
-    pub fn edges(&self, atom: u32) -> &[(u32, u32)] {
-        self.edges.of(atom as usize)
+    /// The neighbours of a vertex with the weight of the facets between them.
+    pub fn edges(&self, vertex: u32) -> &[(u32, u32)] {
+        self.edges.of(vertex as usize)
+    }
+
+    /// The vertices that a breadth-first search from `start` reaches, `start` first; `enters` tells
+    /// whether it goes on to a vertex, and remembers where it was.
+    pub fn reach(&self, start: u32, mut enters: impl FnMut(u32) -> bool) -> Vec<u32> {
+        let mut reached = vec![start];
+        let mut at = 0;
+        while at < reached.len() {
+            let edges = self.edges(reached[at]).iter().map(|&(next, _)| next);
+            reached.extend(edges.filter(|&next| enters(next)));
+            at += 1;
+        }
+        reached
     }
 
     /// The numbers of cells as weights.
@@ -95,12 +99,12 @@ impl Graph {
 
     /// Number of cells.
     pub fn size(&self) -> u64 {
-        self.cells.iter().map(|&n| u64::from(n)).sum()
+        self.cell_weights().iter().sum()
     }
 
-    /// Whether an atom holds nodes with contact conditions.
-    pub fn is_contact_patch(&self, atom: u32) -> bool {
-        !self.contacts[atom as usize].is_empty()
+    /// Whether a vertex holds nodes with contact conditions.
+    pub fn is_contact_patch(&self, vertex: u32) -> bool {
+        !self.contacts[vertex as usize].is_empty()
     }
 
     /// Number of contact patches.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::atoms::Around;
+use super::contraction::Around;
 use crate::disjoint_sets::DisjointSets;
 use crate::flops::{Front, condensation};
 use crate::mesh::topology::Topology;
@@ -33,16 +33,22 @@ pub(super) fn grow(
 ) {
     let layering = Layering::new(model, topology, around, sets);
     let groups = Groups::new(model, around, sets);
+    let count = 1 + layering
+        .layer
+        .iter()
+        .max()
+        .map_or(0, |&layer| layer as usize);
     let mut of_group: BTreeMap<u32, Layers> = BTreeMap::new();
     for &cell in &layering.reached {
         let group = groups.of(layering.contact_patch[cell as usize]);
-        let layers = of_group.entry(group).or_default();
-        let layer = layering.layer[cell as usize];
-        layers.add_cell(layer);
+        let layers = of_group.entry(group).or_insert_with(|| Layers::new(count));
+        let layer = layering.layer[cell as usize] as usize;
+        layers.cells[layer] += 1;
         for &other in topology.neighbours(cell as usize) {
             let contact_patch = layering.contact_patch[other as usize];
             let is_within = contact_patch != UNREACHED && groups.of(contact_patch) == group;
-            layers.add_facet(layer, is_within.then_some(layering.layer[other as usize]));
+            let other = is_within.then_some(layering.layer[other as usize] as usize);
+            layers.add_facet(layer, other);
         }
     }
     let in_contact: usize = of_group.values().map(|layers| layers.cells[0]).sum();
@@ -110,7 +116,7 @@ impl Layering {
 /// The contact patches that contacts link: what is factorized together.
 struct Groups {
     /// The group of every contact patch, by its cell.
-    of_clump: BTreeMap<u32, u32>,
+    of_patch: BTreeMap<u32, u32>,
     /// The number of conditions of every group.
     conditions: Vec<usize>,
 }
@@ -118,14 +124,14 @@ struct Groups {
 impl Groups {
     fn new(model: &Model, around: &Around, sets: &mut DisjointSets) -> Self {
         let mut contacts = DisjointSets::new(model.contacts.len());
-        let mut of_clump = BTreeMap::new();
+        let mut of_patch = BTreeMap::new();
         for &(node, cell) in &around.cells {
             for &contact in &around.contacts[node as usize] {
-                let first = *of_clump.entry(sets.find(cell)).or_insert(contact);
+                let first = *of_patch.entry(sets.find(cell)).or_insert(contact);
                 contacts.unite(first, contact);
             }
         }
-        for group in of_clump.values_mut() {
+        for group in of_patch.values_mut() {
             *group = contacts.find(*group);
         }
         let mut conditions = vec![0; model.contacts.len()];
@@ -133,18 +139,17 @@ impl Groups {
             conditions[contacts.find(number as u32) as usize] += contact.points.len();
         }
         Self {
-            of_clump,
+            of_patch,
             conditions,
         }
     }
 
     fn of(&self, contact_patch: u32) -> u32 {
-        self.of_clump[&contact_patch]
+        self.of_patch[&contact_patch]
     }
 }
 
 /// The layers around the contact patches of a group.
-#[derive(Default)]
 struct Layers {
     /// The cells of every layer.
     cells: Vec<usize>,
@@ -153,29 +158,22 @@ struct Layers {
 }
 
 impl Layers {
-    fn add_cell(&mut self, layer: u32) {
-        let layer = layer as usize;
-        if layer >= self.cells.len() {
-            self.cells.resize(layer + 1, 0);
-            self.facets.resize(layer + 2, 0);
+    /// None yet of so many layers.
+    fn new(count: usize) -> Self {
+        Self {
+            cells: vec![0; count],
+            facets: vec![0; count],
         }
-        self.cells[layer] += 1;
     }
 
     /// Counts a facet of a cell of `layer`, the other cell of which is in layer `other`, or not
     /// in the group.
-    fn add_facet(&mut self, layer: u32, other: Option<u32>) {
-        match other {
-            None => self.facets[layer as usize] += 1,
-            Some(other) if other > layer => {
-                let end = other as usize;
-                if end >= self.facets.len() {
-                    self.facets.resize(end + 1, 0);
-                }
-                self.facets[layer as usize] += 1;
-                self.facets[end] -= 1;
-            }
-            Some(_) => {}
+    fn add_facet(&mut self, layer: usize, other: Option<usize>) {
+        if other.is_none_or(|other| other > layer) {
+            self.facets[layer] += 1;
+        }
+        if let Some(other) = other.filter(|&other| other > layer) {
+            self.facets[other] -= 1;
         }
     }
 

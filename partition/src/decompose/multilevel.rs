@@ -21,9 +21,7 @@ pub(crate) struct Request<'a> {
     pub weights: &'a [u64],
     /// Number of parts.
     pub parts: usize,
-    /// How much of the weight each part shall have; all the same without it.
-    pub shares: Option<&'a [f32]>,
-    /// How much heavier than it shall be a part may be, in thousandths.
+    /// How much heavier than the mean a part may be, in thousandths.
     pub slack: i32,
     /// The answer is the same for the same seed.
     pub seed: u32,
@@ -67,15 +65,12 @@ impl Request<'_> {
         let weights = (self.weights.iter())
             .map(|&w| index((w / shrink).max(1) as usize))
             .collect::<Option<Vec<Idx>>>()?;
-        let mut problem = metis::Graph::new(1, index(self.parts)?, &offsets, &neighbours)
+        let problem = metis::Graph::new(1, index(self.parts)?, &offsets, &neighbours)
             .ok()?
             .set_vwgt(&weights)
             .set_adjwgt(&edge_weights)
             .set_option(Seed(index(self.seed as usize)?))
             .set_option(UFactor(self.slack));
-        if let Some(shares) = self.shares {
-            problem = problem.set_tpwgts(shares);
-        }
         let mut part = vec![0; vertices];
         let guard = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
         let result = call(problem, &mut part);

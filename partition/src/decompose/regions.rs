@@ -1,17 +1,18 @@
-//! Regions: connected sets of atoms that are merged and divided until there are as many as wanted.
+//! Regions: connected sets of vertices that are merged and divided until there are as many as wanted.
 
 mod divide;
 mod merge;
 
 use super::graph::Graph;
+use crate::disjoint_sets::DisjointSets;
 
 /// A partition of a graph into connected regions.
 pub(super) struct Regions<'g> {
     graph: &'g Graph,
     weights: &'g [u64],
-    /// The region of every atom.
+    /// The region of every vertex.
     of: Vec<u32>,
-    /// The atoms of every region, none empty.
+    /// The vertices of every region, none empty.
     members: Vec<Vec<u32>>,
     /// The weight of every region.
     heaviness: Vec<u64>,
@@ -27,54 +28,53 @@ impl<'g> Regions<'g> {
             members: Vec::new(),
             heaviness: Vec::new(),
         };
-        for atom in 0..graph.len() as u32 {
-            if regions.of[atom as usize] != u32::MAX {
+        for vertex in 0..graph.len() as u32 {
+            if regions.of[vertex as usize] != u32::MAX {
                 continue;
             }
             let number = regions.members.len() as u32;
-            regions.of[atom as usize] = number;
-            let mut members = vec![atom];
-            let mut at = 0;
-            while at < members.len() {
-                let from = members[at];
-                for &(next, _) in graph.edges(from) {
-                    if regions.of[next as usize] == u32::MAX
-                        && parts[next as usize] == parts[from as usize]
-                    {
-                        regions.of[next as usize] = number;
-                        members.push(next);
-                    }
+            regions.of[vertex as usize] = number;
+            let members = graph.reach(vertex, |next| {
+                let of = &mut regions.of[next as usize];
+                let enters = *of == u32::MAX && parts[next as usize] == parts[vertex as usize];
+                if enters {
+                    *of = number;
                 }
-                at += 1;
-            }
+                enters
+            });
             regions.members.push(members);
             regions.heaviness.push(regions.weigh(number as usize));
         }
         regions
     }
 
-    /// The region of every atom.
+    /// The region of every vertex.
     pub fn parts(self) -> Vec<u32> {
         self.of
     }
 
-    /// The atoms of every region.
+    /// The vertices of every region.
     pub fn members(&self) -> &[Vec<u32>] {
         &self.members
     }
 
-    /// The region of an atom.
-    pub fn region(&self, atom: u32) -> u32 {
-        self.of[atom as usize]
-    }
-
-    /// The atoms of every region.
-    pub fn into_members(self) -> Vec<Vec<u32>> {
-        self.members
+    /// Number of sets of regions that hang together across facets: the fewest subdomains that there
+    /// can be.
+    pub fn pieces(&self) -> usize {
+        let mut sets = DisjointSets::new(self.members.len());
+        for vertex in 0..self.graph.len() as u32 {
+            for &(next, _) in self.graph.edges(vertex) {
+                sets.unite(self.of[vertex as usize], self.of[next as usize]);
+            }
+        }
+        let numbers = 0..self.members.len() as u32;
+        numbers
+            .filter(|&region| sets.find(region) == region)
+            .count()
     }
 
     /// Merges or divides regions until there are exactly `count`, at least one and at most as many
-    /// as atoms; every contact patch gets a region of its own where `count` allows.
+    /// as vertices; every contact patch gets a region of its own where `count` allows.
     pub fn adjust(&mut self, count: usize) {
         if count >= self.graph.contact_patches() {
             self.separate_patches();
@@ -86,7 +86,7 @@ impl<'g> Regions<'g> {
     fn weigh(&self, region: usize) -> u64 {
         self.members[region]
             .iter()
-            .map(|&atom| self.weights[atom as usize])
+            .map(|&vertex| self.weights[vertex as usize])
             .sum()
     }
 
@@ -94,16 +94,16 @@ impl<'g> Regions<'g> {
     pub fn contact_patches(&self, region: usize) -> usize {
         let members = self.members[region].iter();
         members
-            .filter(|&&atom| self.graph.is_contact_patch(atom))
+            .filter(|&&vertex| self.graph.is_contact_patch(vertex))
             .count()
     }
 
     /// Weight of the facets between regions.
     pub fn cut(&self) -> u64 {
-        let across = |atom: u32| {
-            let edges = self.graph.edges(atom).iter();
+        let across = |vertex: u32| {
+            let edges = self.graph.edges(vertex).iter();
             edges
-                .filter(move |&&(next, _)| self.of[next as usize] != self.of[atom as usize])
+                .filter(move |&&(next, _)| self.of[next as usize] != self.of[vertex as usize])
                 .map(|&(_, weight)| u64::from(weight))
         };
         (0..self.graph.len() as u32).flat_map(across).sum::<u64>() / 2
@@ -111,8 +111,8 @@ impl<'g> Regions<'g> {
 
     fn add(&mut self, members: Vec<u32>) {
         let number = self.members.len() as u32;
-        for &atom in &members {
-            self.of[atom as usize] = number;
+        for &vertex in &members {
+            self.of[vertex as usize] = number;
         }
         self.members.push(members);
         self.heaviness.push(self.weigh(number as usize));

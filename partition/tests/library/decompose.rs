@@ -272,14 +272,21 @@ fn a_prescribed_partition_is_taken_as_it_is() {
 
     let mut across = halves.clone();
     across[0] = 0;
+    let refused = |model: &Model| {
+        let decomposition = Decomposition::new(model, None).unwrap();
+        Problem::new(model, &decomposition).unwrap_err().to_string()
+    };
     model.prescribed_subdomains = Some(across);
-    let message = Decomposition::new(&model, None).unwrap_err().to_string();
-    assert!(message.contains("different pieces"), "{message}");
+    let message = refused(&model);
+    assert!(
+        message.contains("subdomain 0 lies in two bodies"),
+        "{message}"
+    );
 
     let mut gap = halves;
     gap[0] = 3;
     model.prescribed_subdomains = Some(gap);
-    let message = Decomposition::new(&model, None).unwrap_err().to_string();
+    let message = refused(&model);
     assert!(message.contains("subdomain 2 has no cells"), "{message}");
 }
 
@@ -350,7 +357,7 @@ fn a_node_with_a_condition_at_which_the_mesh_is_pinched_keeps_its_group_together
 }
 
 #[test]
-fn clumps_grow_where_a_boundary_along_the_contact_would_be_dear() {
+fn contact_patches_grow_where_a_boundary_along_the_contact_would_be_dear() {
     let long = stacked(2, 400, 8);
     let catalog = |count| {
         let decomposition = Decomposition::new(&long, count).unwrap();

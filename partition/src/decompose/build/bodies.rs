@@ -1,8 +1,10 @@
-//! Bodies: what hangs together through shared nodes.
+//! Bodies, which hang together through shared nodes, and subdomains that don't hang together.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::decompose::Decomposition;
 use crate::disjoint_sets::DisjointSets;
+use crate::mesh::topology::Topology;
 use crate::model::Model;
 
 /// The bodies of a mesh, in the order of their first cell.
@@ -68,4 +70,37 @@ fn numbered(names: impl Iterator<Item = String>) -> Vec<String> {
             }
         })
         .collect()
+}
+
+/// Names the subdomains of the user's own partition that don't hang together across facets.
+pub(super) fn scattered(model: &Model, decomposition: &Decomposition) -> Option<String> {
+    model.prescribed_subdomains.as_ref()?;
+    let of = &decomposition.subdomain;
+    let topology = Topology::new(&model.mesh);
+    let mut sets = DisjointSets::new(of.len());
+    for cell in 0..of.len() {
+        for &next in topology.neighbours(cell) {
+            if of[cell] == of[next as usize] {
+                sets.unite(cell as u32, next);
+            }
+        }
+    }
+    let mut components = vec![0; decomposition.count];
+    for cell in 0..of.len() as u32 {
+        if sets.find(cell) == cell {
+            components[of[cell as usize] as usize] += 1;
+        }
+    }
+    let scattered: Vec<String> = components
+        .iter()
+        .enumerate()
+        .filter(|&(_, &count)| count > 1)
+        .map(|(subdomain, _)| subdomain.to_string())
+        .collect();
+    (!scattered.is_empty()).then(|| {
+        format!(
+            "the scene's partition has subdomains that don't hang together: {}",
+            scattered.join(", ")
+        )
+    })
 }

@@ -89,10 +89,8 @@ impl Blocks {
     /// The other blocks that each one shares seams with, and how many dofs these have.
     pub fn neighbours(&self) -> Lists<(u32, u32)> {
         let mut shared = vec![0u32; self.len()];
-        let mut offsets = vec![0];
-        let mut edges = Vec::new();
-        for block in 0..self.len() {
-            let start = edges.len();
+        let of_block = |block| {
+            let mut edges = Vec::new();
             for &seam in self.seams.of(block) {
                 let others = self.sharing.of(seam as usize).iter();
                 for &other in others.filter(|&&other| other as usize != block) {
@@ -102,12 +100,12 @@ impl Blocks {
                     shared[other as usize] += self.seam_dofs[seam as usize] as u32;
                 }
             }
-            edges[start..].sort_unstable();
-            for (other, weight) in &mut edges[start..] {
+            edges.sort_unstable();
+            for (other, weight) in &mut edges {
                 *weight = std::mem::take(&mut shared[*other as usize]);
             }
-            offsets.push(edges.len());
-        }
-        Lists::from_offsets(offsets, edges)
+            edges
+        };
+        (0..self.len()).map(of_block).collect()
     }
 }

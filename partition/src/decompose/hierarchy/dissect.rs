@@ -184,18 +184,15 @@ impl<'b> Dissection<'b> {
         for (place, &block) in (0..).zip(&set.blocks) {
             self.place[block as usize] = place;
         }
-        let mut offsets = vec![0];
-        let mut edges = Vec::new();
-        for &block in &set.blocks {
-            let inside = self.edges.of(block as usize).iter();
-            let inside = inside.map(|&(next, weight)| (self.place[next as usize], weight));
-            edges.extend(inside.filter(|&(next, _)| next != u32::MAX));
-            offsets.push(edges.len());
-        }
+        let inside = |&block: &u32| {
+            let edges = self.edges.of(block as usize).iter();
+            let edges = edges.map(|&(next, weight)| (self.place[next as usize], weight));
+            edges.filter(|&(next, _)| next != u32::MAX)
+        };
+        let edges: Lists<_> = set.blocks.iter().map(inside).collect();
         for &block in &set.blocks {
             self.place[block as usize] = u32::MAX;
         }
-        let edges = Lists::from_offsets(offsets, edges);
         let weight = |&block: &u32| self.weights[block as usize];
         let largest = set.blocks.iter().map(weight).fold(1.0, f64::max);
         let scaled = |block| (weight(block) / largest * LARGEST_WEIGHT).max(1.0) as u64;
@@ -205,7 +202,6 @@ impl<'b> Dissection<'b> {
                 edges: &edges,
                 weights: &weights,
                 parts: 2,
-                shares: None,
                 slack,
                 seed: number + self.pass * SLACKS.len() as u32,
             };

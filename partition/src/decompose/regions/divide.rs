@@ -11,7 +11,7 @@ impl Regions<'_> {
             let seeds: Vec<u32> = self.members[region]
                 .iter()
                 .copied()
-                .filter(|&atom| self.graph.is_contact_patch(atom))
+                .filter(|&vertex| self.graph.is_contact_patch(vertex))
                 .collect();
             if seeds.len() > 1 {
                 self.divide(region, &seeds);
@@ -19,7 +19,7 @@ impl Regions<'_> {
         }
     }
 
-    /// Gives each atom of a region to the seed from which a breadth-first search reaches it first;
+    /// Gives each vertex of a region to the seed from which a breadth-first search reaches it first;
     /// the first seed keeps the region's number, the others get new ones.
     fn divide(&mut self, region: usize, seeds: &[u32]) {
         let old = region as u32;
@@ -30,9 +30,9 @@ impl Regions<'_> {
             owner.insert(seed, number);
             queue.push_back((seed, number));
         }
-        while let Some((atom, number)) = queue.pop_front() {
-            members[number].push(atom);
-            for &(next, _) in self.graph.edges(atom) {
+        while let Some((vertex, number)) = queue.pop_front() {
+            members[number].push(vertex);
+            for &(next, _) in self.graph.edges(vertex) {
                 if self.of[next as usize] == old && !owner.contains_key(&next) {
                     owner.insert(next, number);
                     queue.push_back((next, number));
@@ -47,7 +47,7 @@ impl Regions<'_> {
         }
     }
 
-    /// Divides the heaviest region of two or more atoms into two of like weight.
+    /// Divides the heaviest region of two or more vertices into two of like weight.
     pub(super) fn divide_one(&mut self) -> bool {
         let heaviest = (0..self.members.len())
             .filter(|&region| self.members[region].len() > 1)
@@ -59,7 +59,7 @@ impl Regions<'_> {
         let mut size = 0;
         while size + 1 < order.len() {
             let weight = self.weights[order[size] as usize];
-            // Taking the next atom must bring the sum nearer to one half.
+            // Taking the next vertex must bring the sum nearer to one half.
             if size > 0 && grown + weight / 2 > half {
                 break;
             }
@@ -70,12 +70,12 @@ impl Regions<'_> {
         self.keep_connected(&order[..size], &mut rest);
         self.add(rest);
         let of = &self.of;
-        self.members[region].retain(|&atom| of[atom as usize] as usize == region);
+        self.members[region].retain(|&vertex| of[vertex as usize] as usize == region);
         self.heaviness[region] = self.weigh(region);
         true
     }
 
-    /// The atoms of a region, breadth-first from one that lies at its outside.
+    /// The vertices of a region, breadth-first from one that lies at its outside.
     fn outside_in(&self, region: usize) -> Vec<u32> {
         let first = self.breadth_first(region, self.members[region][0]);
         let far = first.last().copied().unwrap_or(self.members[region][0]);
@@ -83,18 +83,10 @@ impl Regions<'_> {
     }
 
     fn breadth_first(&self, region: usize, start: u32) -> Vec<u32> {
-        let mut order = vec![start];
         let mut seen = HashSet::from([start]);
-        let mut at = 0;
-        while at < order.len() {
-            for &(next, _) in self.graph.edges(order[at]) {
-                if self.of[next as usize] as usize == region && seen.insert(next) {
-                    order.push(next);
-                }
-            }
-            at += 1;
-        }
-        order
+        self.graph.reach(start, |next| {
+            self.of[next as usize] as usize == region && seen.insert(next)
+        })
     }
 
     /// Leaves the heaviest component of `rest`; the others touch `grown` and stay with it.
@@ -103,16 +95,7 @@ impl Regions<'_> {
         let mut left: BTreeSet<u32> = rest.iter().copied().collect();
         let mut best: (u64, Vec<u32>) = (0, Vec::new());
         while let Some(start) = left.pop_first() {
-            let mut component = vec![start];
-            let mut at = 0;
-            while at < component.len() {
-                for (next, _) in self.graph.edges(component[at]) {
-                    if left.remove(next) {
-                        component.push(*next);
-                    }
-                }
-                at += 1;
-            }
+            let component = self.graph.reach(start, |next| left.remove(&next));
             let weight = component.iter().map(|&a| self.weights[a as usize]).sum();
             if weight > best.0 {
                 best = (weight, component);

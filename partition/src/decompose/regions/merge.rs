@@ -36,7 +36,7 @@ impl Regions<'_> {
         true
     }
 
-    /// Gives the atoms of the region that has fewer to the other; the last region takes the number
+    /// Gives the vertices of the region that has fewer to the other; the last region takes the number
     /// that becomes free.
     fn merge(&mut self, a: usize, b: usize) {
         let (keep, drop) = match self.members[a].len() < self.members[b].len() {
@@ -44,23 +44,23 @@ impl Regions<'_> {
             false => (a, b),
         };
         let moved = std::mem::take(&mut self.members[drop]);
-        for &atom in &moved {
-            self.of[atom as usize] = keep as u32;
+        for &vertex in &moved {
+            self.of[vertex as usize] = keep as u32;
         }
         self.members[keep].extend(moved);
         self.heaviness[keep] += self.heaviness[drop];
         self.members.swap_remove(drop);
         self.heaviness.swap_remove(drop);
-        for &atom in self.members.get(drop).into_iter().flatten() {
-            self.of[atom as usize] = drop as u32;
+        for &vertex in self.members.get(drop).into_iter().flatten() {
+            self.of[vertex as usize] = drop as u32;
         }
     }
 
     /// The neighbour with the least conflict and, among those, the longest common boundary.
     fn best_neighbour(&self, region: usize) -> Option<(u32, usize)> {
         let mut boundary: BTreeMap<u32, u64> = BTreeMap::new();
-        for &atom in &self.members[region] {
-            for &(next, weight) in self.graph.edges(atom) {
+        for &vertex in &self.members[region] {
+            for &(next, weight) in self.graph.edges(vertex) {
                 let other = self.of[next as usize];
                 if other as usize != region {
                     *boundary.entry(other).or_default() += u64::from(weight);
@@ -95,7 +95,7 @@ impl Regions<'_> {
     fn contacts(&self, region: usize) -> Vec<u32> {
         let members = self.members[region].iter();
         let mut all: Vec<u32> = members
-            .flat_map(|&atom| &self.graph.contacts[atom as usize])
+            .flat_map(|&vertex| &self.graph.contacts[vertex as usize])
             .copied()
             .collect();
         all.sort_unstable();

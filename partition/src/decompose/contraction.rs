@@ -1,4 +1,4 @@
-//! Atoms: what a partition can't divide.
+//! The graph that is partitioned: cells that have to stay in one subdomain are contracted to a vertex.
 
 use super::graph::Graph;
 use super::growth::grow;
@@ -13,31 +13,31 @@ const SAME_MATERIAL: u32 = 4;
 /// The cells of a mesh, contracted to contact patches wherever a cut would let Γ meet Γ_c.
 ///
 /// All cells around a node with a contact condition are one contact patch, with the layers of cells behind
-/// it that make it cheaper; every other cell is an atom of its own. Where the mesh is pinched at such
-/// a node, the fans on both sides of it stay apart, so that every atom is connected across facets.
-pub(super) struct Atoms {
-    /// The atom of every cell, numbered by first cell.
-    of_cell: Vec<u32>,
-    /// How they hang together.
+/// it that make it cheaper; every other cell is a vertex of its own. Where the mesh is pinched at such
+/// a node, the fans on both sides of it stay apart, so that every vertex is connected across facets.
+pub(super) struct Contraction {
+    /// The vertex of every cell, numbered by first cell.
+    pub of_cell: Vec<u32>,
+    /// The vertices, and the facets between them.
     pub graph: Graph,
 }
 
-impl Atoms {
+impl Contraction {
     /// Contracts the cells of a model; contact patches grow as long as `spared` cells stay outside.
     pub fn new(model: &Model, topology: &Topology, spared: usize) -> Self {
         let around = Around::new(model);
         let (of_cell, count) = contract(model, topology, &around, spared);
         let mut cells = vec![0; count];
-        for &atom in &of_cell {
-            cells[atom as usize] += 1;
+        for &vertex in &of_cell {
+            cells[vertex as usize] += 1;
         }
-        let atom_of = &of_cell;
+        let vertex_of = &of_cell;
         let edges = of_cell.iter().enumerate().flat_map(|(cell, &a)| {
             let others = topology.neighbours(cell).iter().map(|&next| next as usize);
-            let others = others.filter(move |&next| atom_of[next] != a);
+            let others = others.filter(move |&next| vertex_of[next] != a);
             others.map(move |next| {
                 let same = model.cell_material[cell] == model.cell_material[next];
-                (a, (atom_of[next], if same { SAME_MATERIAL } else { 1 }))
+                (a, (vertex_of[next], if same { SAME_MATERIAL } else { 1 }))
             })
         });
         let mut contacts: Vec<Vec<u32>> = vec![Vec::new(); count];
@@ -54,33 +54,6 @@ impl Atoms {
             graph: Graph::new(cells, material, contacts, edges),
             of_cell,
         }
-    }
-
-    /// Number of cells outside of contact patches.
-    pub fn outside(&self) -> usize {
-        let atoms = 0..self.graph.len() as u32;
-        atoms
-            .filter(|&atom| !self.graph.is_contact_patch(atom))
-            .count()
-    }
-
-    /// The subdomain of every cell, from the part of every atom of every unit; subdomains are
-    /// numbered by first cell.
-    pub fn subdomains(&self, units: &[Vec<u32>], parts: &[Vec<u32>]) -> Vec<u32> {
-        let mut label = vec![(0, 0); self.graph.len()];
-        for (number, (atoms, parts)) in units.iter().zip(parts).enumerate() {
-            for (&atom, &part) in atoms.iter().zip(parts) {
-                label[atom as usize] = (number, part);
-            }
-        }
-        let mut numbers = std::collections::HashMap::new();
-        self.of_cell
-            .iter()
-            .map(|&atom| {
-                let next = numbers.len() as u32;
-                *numbers.entry(label[atom as usize]).or_insert(next)
-            })
-            .collect()
     }
 }
 
@@ -113,7 +86,7 @@ impl Around {
     }
 }
 
-/// The atom of every cell, and how many atoms there are.
+/// The vertex of every cell, and how many vertices there are.
 fn contract(
     model: &Model,
     topology: &Topology,
@@ -144,18 +117,18 @@ fn contract(
     (of_cell, count as usize)
 }
 
-/// The material of most cells of every atom; the first in the scene where two have as many.
+/// The material of most cells of every vertex; the first in the scene where two have as many.
 fn materials(model: &Model, of_cell: &[u32], count: usize) -> Vec<u32> {
-    let mut of_atom: Vec<(u32, u32)> = of_cell
+    let mut of_vertex: Vec<(u32, u32)> = of_cell
         .iter()
         .copied()
         .zip(model.cell_material.iter().copied())
         .collect();
-    of_atom.sort_unstable();
+    of_vertex.sort_unstable();
     let mut most = vec![(0, 0); count];
-    for cells in of_atom.chunk_by(|a, b| a == b) {
-        let (atom, material) = cells[0];
-        let best = &mut most[atom as usize];
+    for cells in of_vertex.chunk_by(|a, b| a == b) {
+        let (vertex, material) = cells[0];
+        let best = &mut most[vertex as usize];
         if cells.len() > best.0 {
             *best = (cells.len(), material);
         }

@@ -1,4 +1,4 @@
-//! The partition of one unit.
+//! The partition of one region into subdomains.
 
 use super::graph::Graph;
 use super::multilevel::Request;
@@ -11,22 +11,22 @@ const LAYERS: [f64; 3] = [0.5, 0.65, 0.4];
 /// Number of tries with each: every other one by recursive bisection, the rest k-way.
 const SEEDS: usize = 4;
 
-/// Atoms times tries times doublings of parts that may be spent; large meshes need fewer tries.
+/// Contraction times tries times doublings of parts that may be spent; large meshes need fewer tries.
 const BUDGET: usize = 5_000_000;
 
 /// How much heavier than the mean METIS may make a part, in thousandths.
 const SLACK: i32 = 40;
 
-/// METIS isn't asked for parts of fewer atoms than these.
-const FEWEST_ATOMS: usize = 8;
+/// METIS isn't asked for parts of fewer vertices than these.
+const FEWEST_VERTICES: usize = 8;
 
-/// Splits a unit into exactly `count` connected parts; `count` is at least one and at most the
-/// number of atoms. Returns the part of every atom.
+/// Splits the graph of a region into exactly `count` connected parts; `count` is at least one and at most the
+/// number of vertices. Returns the part of every vertex.
 pub(super) fn split(graph: &Graph, count: usize) -> Vec<u32> {
     if count == 1 {
         return vec![0; graph.len()];
     }
-    let multilevel = graph.len() >= FEWEST_ATOMS * count;
+    let multilevel = graph.len() >= FEWEST_VERTICES * count;
     let seeds = if multilevel { SEEDS } else { 1 };
     let doublings = 1 + count.ilog2() as usize;
     let tries = (BUDGET / (graph.len() * doublings)).clamp(1, LAYERS.len() * seeds);
@@ -37,11 +37,10 @@ pub(super) fn split(graph: &Graph, count: usize) -> Vec<u32> {
             edges: &graph.edges,
             weights: &weights,
             parts: count,
-            shares: None,
             slack: SLACK,
             seed: number as u32,
         };
-        // The boundaries of recursive bisection run straight through the whole unit, so that the
+        // The boundaries of recursive bisection run straight through the whole region, so that the
         // hierarchy has smaller fronts; k-way cuts less where there are few parts.
         let parts = match (multilevel, number % 2) {
             (false, _) => None,
@@ -59,15 +58,15 @@ pub(super) fn split(graph: &Graph, count: usize) -> Vec<u32> {
     best.map_or_else(Vec::new, |(_, parts)| parts)
 }
 
-/// The cells of every atom, and what a contact patch weighs beside them: no more than one subdomain, or
-/// METIS would plan several where there is one atom.
+/// The cells of every vertex, and what a contact patch weighs beside them: no more than one subdomain, or
+/// METIS would plan several where there is one vertex.
 fn weights(graph: &Graph, count: usize, layer: f64) -> Vec<u64> {
     let mean = graph.size() as f64 / count as f64;
     let extra = (layer * mean).round() as u64;
     (0..graph.len() as u32)
-        .map(|atom| {
-            let cells = u64::from(graph.cells[atom as usize]);
-            match graph.is_contact_patch(atom) {
+        .map(|vertex| {
+            let cells = u64::from(graph.cells[vertex as usize]);
+            match graph.is_contact_patch(vertex) {
                 true => (cells + extra).min(mean as u64).max(1),
                 false => cells,
             }
