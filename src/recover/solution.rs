@@ -55,7 +55,7 @@ impl Solution {
         remove_free_modes(fixed, &mut blocks);
         let mut certificate = refine(fixed, &mut blocks);
         let minimum_norm = take_minimum_norm(fixed, analysis, &mut blocks, &mut certificate);
-        // What is loose has no stiffness that could be compared.
+        // A released mode has no stiffness that could be compared.
         let condition = match minimum_norm.has_released_modes {
             true => None,
             false => condition_number(fixed, &blocks),
