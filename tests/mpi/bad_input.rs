@@ -99,7 +99,7 @@ pub fn bad_settings(trials: &mut Trials) {
         tolerance.write_scalar(&-1.0).unwrap();
         // What is open isn't written yet.
         drop((settings, tolerance));
-        let words = ["problem.h5", "tolerance of /settings", "positive"];
+        let words = ["problem.h5", "tolerance of /settings", "above 0"];
         failed_once(&case.run_on(ranks, &[]), 2, &words);
         assert_eq!(case.files(), ["problem.h5"]);
     });
