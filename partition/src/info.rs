@@ -42,9 +42,7 @@ impl Info {
     pub fn load(&self, step: usize) -> ([f64; 3], f64) {
         let (mut force, mut moment) = ([0.0; 3], 0.0);
         for subdomain in &self.problem.subdomains {
-            let of_step = subdomain.steps.get(step);
-            for (i, &(node, at_once)) in subdomain.forces.iter().enumerate() {
-                let [x, y, z] = of_step.map_or(at_once, |step| step.forces[i]);
+            for (node, [x, y, z]) in subdomain.forces_in(step) {
                 let at = subdomain.points[node as usize];
                 force[0] += x;
                 force[1] += y;

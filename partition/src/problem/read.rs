@@ -30,22 +30,8 @@ pub struct ProblemFile {
     path: PathBuf,
     contents: Contents,
     catalog: Catalog,
-    offsets: Offsets,
     /// How many subdomains have each node of Γ.
     sharing: Vec<u32>,
-}
-
-/// Where the slice of every subdomain, group and contact point starts and ends.
-#[derive(Debug)]
-struct Offsets {
-    points: Vec<usize>,
-    cells: Vec<usize>,
-    connectivity: Vec<usize>,
-    interface: Vec<usize>,
-    supports: Vec<usize>,
-    forces: Vec<usize>,
-    groups: Vec<usize>,
-    entries: Vec<usize>,
 }
 
 impl ProblemFile {
@@ -72,7 +58,7 @@ impl ProblemFile {
             })?;
         let header = Header::read(&file)?;
         let contents = Contents::open(&file, header.dim)?;
-        let (catalog, offsets) = catalog::read(&file, header, &contents)?;
+        let catalog = catalog::read(&file, header, &contents)?;
         let mut sharing = vec![0; catalog.interface_nodes];
         for &number in catalog.interface.iter().flatten() {
             sharing[number as usize] += 1;
@@ -82,7 +68,6 @@ impl ProblemFile {
             path: path.to_path_buf(),
             contents,
             catalog,
-            offsets,
         })
     }
 

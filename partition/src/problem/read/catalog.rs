@@ -4,35 +4,24 @@ use std::collections::HashMap;
 
 use super::contents::Contents;
 use super::header::Header;
-use super::{Offsets, hierarchy, materials, settings};
+use super::{hierarchy, materials, settings};
 use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::problem::{Body, Catalog, ContactSummary, Hierarchy, LoadStep, SubdomainSummary};
 
-/// Reads and checks the catalog, and where the slices lie.
+/// Reads and checks the catalog.
 pub(super) fn read(
     file: &hdf5::File,
     header: Header,
     contents: &Contents,
-) -> Result<(Catalog, Offsets), InputError> {
-    let offsets = Offsets {
-        points: contents.offsets("/VTKHDF/NumberOfPoints")?,
-        cells: contents.offsets("/VTKHDF/NumberOfCells")?,
-        connectivity: contents.offsets("/VTKHDF/NumberOfConnectivityIds")?,
-        interface: contents.offsets("/interface/offset")?,
-        supports: contents.offsets("/support/offset")?,
-        forces: contents.offsets("/force/offset")?,
-        groups: contents.offsets("/contact/group_offset")?,
-        entries: contents.offsets("/contact/entry_offset")?,
-    };
+) -> Result<Catalog, InputError> {
     let materials = materials::read(contents, header.dim)?;
     let bodies = contents.strings("/bodies/name")?;
-    let interface = read_interface(contents, &offsets.interface)?;
-    let groups = differences(&offsets.groups);
+    let interface = read_interface(contents)?;
+    let groups = contents.sizes('R');
     let contacts = read_contacts(contents, &groups)?;
-    let subdomains = read_subdomains(contents, &offsets, bodies.len(), groups.len())?;
+    let subdomains = read_subdomains(contents, bodies.len(), groups.len())?;
     let interface_nodes = check_interface(&interface, &subdomains)?;
-    check_bodies(&interface, &subdomains)?;
     let mut catalog = Catalog {
         title: header.title,
         dim: header.dim,
@@ -52,22 +41,19 @@ pub(super) fn read(
         warnings: contents.strings("/warnings")?,
     };
     catalog.hierarchy = hierarchy::read(contents, &catalog)?;
-    Ok((catalog, offsets))
-}
-
-fn differences(offsets: &[usize]) -> Vec<usize> {
-    offsets.windows(2).map(|w| w[1] - w[0]).collect()
+    Ok(catalog)
 }
 
 /// The numbers on Γ of every subdomain.
-fn read_interface(contents: &Contents, offsets: &[usize]) -> Result<Vec<Vec<u32>>, InputError> {
+fn read_interface(contents: &Contents) -> Result<Vec<Vec<u32>>, InputError> {
     let numbers = contents.all_integers("/interface/interface")?;
-    let mut interface = Vec::with_capacity(offsets.len());
-    for ends in offsets.windows(2) {
-        let list = numbers.of(ends[0]..ends[1]);
+    let mut interface = Vec::new();
+    for subdomain in 0..contents.count('N') {
+        let rows = contents.rows('I', subdomain);
+        let list = numbers.of(rows.clone());
         if let Some(at) = list.windows(2).position(|w| w[0] >= w[1]) {
             return Err(numbers.error(
-                ends[0] + at + 1,
+                rows.start + at + 1,
                 "expected the numbers on Γ of a subdomain in strictly ascending order",
             ));
         }
@@ -76,7 +62,8 @@ fn read_interface(contents: &Contents, offsets: &[usize]) -> Result<Vec<Vec<u32>
     Ok(interface)
 }
 
-/// Every number on Γ occurs, in two or more subdomains, all of one body.
+/// Every number on Γ occurs, in two or more subdomains, all of one body; the subdomains of a body
+/// hang together through Γ. Returns how many numbers there are.
 fn check_interface(
     interface: &[Vec<u32>],
     subdomains: &[SubdomainSummary],
@@ -88,6 +75,7 @@ fn check_interface(
         Err(InputError::new(format!("{place} {number} lies in {what}")))
     };
     let mut owners = vec![(0usize, usize::MAX); nodes];
+    let mut pieces = DisjointSets::new(subdomains.len());
     for (subdomain, list) in interface.iter().enumerate() {
         for &number in list {
             let (count, first) = &mut owners[number as usize];
@@ -100,26 +88,12 @@ fn check_interface(
                 );
                 return refused(number as usize, what);
             }
+            pieces.unite(*first as u32, subdomain as u32);
         }
     }
-    match owners.iter().position(|&(count, _)| count < 2) {
-        Some(number) => {
-            let count = owners[number].0;
-            refused(number, format!("{count} subdomains; expected two or more"))
-        }
-        None => Ok(nodes),
-    }
-}
-
-/// The subdomains of a body hang together through Γ.
-fn check_bodies(interface: &[Vec<u32>], subdomains: &[SubdomainSummary]) -> Result<(), InputError> {
-    let mut pieces = DisjointSets::new(subdomains.len());
-    let mut first: HashMap<u32, usize> = HashMap::new();
-    for (subdomain, list) in interface.iter().enumerate() {
-        for &number in list {
-            let other = *first.entry(number).or_insert(subdomain);
-            pieces.unite(other as u32, subdomain as u32);
-        }
+    if let Some(number) = owners.iter().position(|&(count, _)| count < 2) {
+        let count = owners[number].0;
+        return refused(number, format!("{count} subdomains; expected two or more"));
     }
     let mut of_body = HashMap::new();
     for (subdomain, summary) in subdomains.iter().enumerate() {
@@ -132,12 +106,11 @@ fn check_bodies(interface: &[Vec<u32>], subdomains: &[SubdomainSummary]) -> Resu
             )));
         }
     }
-    Ok(())
+    Ok(nodes)
 }
 
 fn read_subdomains(
     contents: &Contents,
-    offsets: &Offsets,
     bodies: usize,
     groups: usize,
 ) -> Result<Vec<SubdomainSummary>, InputError> {
@@ -160,9 +133,7 @@ fn read_subdomains(
     check_each_occurs("/subdomains/body", "body", bodies, bodies_of)?;
     let groups_of = group_of.iter().copied().flatten();
     check_each_occurs("/subdomains/group", "contact group", groups, groups_of)?;
-    let sizes = differences(&offsets.points)
-        .into_iter()
-        .zip(differences(&offsets.cells));
+    let sizes = contents.sizes('P').into_iter().zip(contents.sizes('C'));
     let rows = body.all().iter().zip(group_of).zip(sizes);
     let summary = |((&body, group), (nodes, cells))| SubdomainSummary {
         body: body as usize,

@@ -9,7 +9,7 @@ use super::dataset::Dataset;
 use super::slice::Slice;
 use crate::error::InputError;
 use crate::name;
-use crate::problem::schema::{self, Counts, FIELDS, FREE, Kind, MAY_BE_EMPTY};
+use crate::problem::schema::{self, Counts, FIELDS, FREE, Field, Kind, MAY_BE_EMPTY};
 use crate::scene::suggest::nearest;
 
 /// The datasets of a file, each of the type and shape that the schema says.
@@ -17,6 +17,9 @@ use crate::scene::suggest::nearest;
 pub(super) struct Contents {
     datasets: BTreeMap<&'static str, Dataset>,
     counts: Counts,
+    /// Where the slices of what a letter counts begin and end, for every letter whose offsets or
+    /// sizes the schema has; all are empty in a group that is.
+    offsets: BTreeMap<char, Vec<usize>>,
 }
 
 impl Contents {
@@ -43,7 +46,45 @@ impl Contents {
                 )));
             }
         }
-        Ok(Self { datasets, counts })
+        let mut contents = Self {
+            datasets,
+            counts,
+            offsets: BTreeMap::new(),
+        };
+        for field in FIELDS {
+            if let Kind::Offsets(letter) | Kind::Sizes(letter) = field.kind {
+                let offsets = contents.read_offsets(field, letter)?;
+                contents.offsets.insert(letter, offsets);
+            }
+        }
+        Ok(contents)
+    }
+
+    fn read_offsets(&self, field: &Field, letter: char) -> Result<Vec<usize>, InputError> {
+        let slice = self.all_integers(field.path)?;
+        let count = self.count(letter);
+        match field.kind {
+            _ if !self.has(field.path) => Ok(vec![0; self.counts.shape(field)[0]]),
+            Kind::Sizes(_) => slice.running_sum(count, schema::noun(letter)),
+            _ => slice.offsets(count),
+        }
+    }
+
+    /// The rows of slice `index` of what a letter counts.
+    pub fn rows(&self, letter: char, index: usize) -> Range<usize> {
+        self.rows_of(letter, index..index + 1)
+    }
+
+    /// The rows of consecutive slices of what a letter counts.
+    pub fn rows_of(&self, letter: char, slices: Range<usize>) -> Range<usize> {
+        let offsets = &self.offsets[&letter];
+        offsets[slices.start]..offsets[slices.end]
+    }
+
+    /// How many of what a letter counts each slice has.
+    pub fn sizes(&self, letter: char) -> Vec<usize> {
+        let ends = self.offsets[&letter].windows(2);
+        ends.map(|w| w[1] - w[0]).collect()
     }
 
     /// Whether the file holds a dataset.
@@ -91,27 +132,6 @@ impl Contents {
         let slice = dataset.slice(rows)?;
         slice.check_numbers(dataset.field.kind)?;
         Ok(slice)
-    }
-
-    /// Reads where slices begin and end, from their ends or sizes; all are empty in a group that is.
-    ///
-    /// # Errors
-    /// The row that isn't what the schema says.
-    pub fn offsets(&self, path: &str) -> Result<Vec<usize>, InputError> {
-        let slice = self.all_integers(path)?;
-        match self.datasets.get(path).map(|dataset| dataset.field.kind) {
-            Some(Kind::Offsets(letter)) => slice.offsets(self.count(letter)),
-            Some(Kind::Sizes(letter)) => {
-                slice.running_sum(self.count(letter), schema::noun(letter))
-            }
-            _ => {
-                let field = FIELDS.iter().find(|field| field.path == path);
-                Ok(vec![
-                    0;
-                    field.map_or(0, |field| self.counts.shape(field)[0])
-                ])
-            }
-        }
     }
 
     /// Reads all strings.

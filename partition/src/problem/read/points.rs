@@ -4,7 +4,6 @@ use std::collections::{HashMap, HashSet};
 
 use super::ProblemFile;
 use super::consistency::Members;
-use super::subdomain::slice;
 use crate::contact_point::ContactPoint;
 use crate::error::InputError;
 use crate::problem::{Subdomain, SubdomainNode};
@@ -18,7 +17,7 @@ impl ProblemFile {
         if group >= self.catalog.groups.len() {
             return Err(InputError::new(format!("there is no group {group}")));
         }
-        let rows = slice(&self.offsets.groups, group);
+        let rows = self.contents.rows('R', group);
         let integers = |path| self.contents.integers(path, rows.clone());
         let numbers = |path| self.contents.numbers(path, rows.clone());
         let contact = integers("/contact/contact")?;
@@ -56,9 +55,8 @@ impl ProblemFile {
         group: usize,
         members: &[&Subdomain],
     ) -> Result<Vec<Vec<(SubdomainNode, f64)>>, InputError> {
-        let rows = slice(&self.offsets.groups, group);
-        let offsets = &self.offsets.entries;
-        let span = offsets[rows.start]..offsets[rows.end];
+        let rows = self.contents.rows('R', group);
+        let span = self.contents.rows_of('E', rows.clone());
         let subdomain = (self.contents).integers("/contact/entry_subdomain", span.clone())?;
         let node = (self.contents).integers("/contact/entry_node", span.clone())?;
         let weight = (self.contents).numbers("/contact/entry_weight", span.clone())?;
@@ -66,9 +64,9 @@ impl ProblemFile {
         let mut entries = Vec::with_capacity(rows.len());
         let mut named = HashSet::new();
         for row in rows {
-            let mut list = Vec::with_capacity(offsets[row + 1] - offsets[row]);
+            let mut list = Vec::new();
             named.clear();
-            for at in offsets[row]..offsets[row + 1] {
+            for at in self.contents.rows('E', row) {
                 let owner = subdomain.of(at..at + 1)[0] as u32;
                 let summary = &self.catalog.subdomains[owner as usize];
                 if summary.group != Some(group) {

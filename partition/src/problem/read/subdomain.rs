@@ -36,12 +36,11 @@ struct Slices {
 
 impl Slices {
     fn read(file: &ProblemFile, subdomains: Range<usize>) -> Result<Self, InputError> {
-        let rows = |offsets: &[usize]| offsets[subdomains.start]..offsets[subdomains.end];
-        let (of, contents) = (&file.offsets, &file.contents);
-        let cells = rows(&of.cells);
+        let contents = &file.contents;
+        let rows = |letter| contents.rows_of(letter, subdomains.clone());
+        let [points, cells, supports, forces] = ['P', 'C', 'S', 'F'].map(rows);
         // Each of the subdomains before has an offset more than cells.
         let ends = cells.start + subdomains.start..cells.end + subdomains.end;
-        let [points, supports, forces] = [&of.points, &of.supports, &of.forces].map(|o| rows(o));
         let conditions = contents.has("/support/condition");
         let conditions =
             conditions.then(|| contents.integers("/support/condition", supports.clone()));
@@ -49,10 +48,10 @@ impl Slices {
             points: contents.numbers("/VTKHDF/Points", points.clone())?,
             tags: contents.integers("/VTKHDF/PointData/GlobalNodeId", points)?,
             types: contents.integers("/VTKHDF/Types", cells.clone())?,
-            connectivity: contents.integers("/VTKHDF/Connectivity", rows(&of.connectivity))?,
+            connectivity: contents.integers("/VTKHDF/Connectivity", rows('K'))?,
             offsets: contents.integers("/VTKHDF/Offsets", ends)?,
             materials: contents.integers("/VTKHDF/CellData/Material", cells)?,
-            interface: contents.integers("/interface/node", rows(&of.interface))?,
+            interface: contents.integers("/interface/node", rows('I'))?,
             support_nodes: contents.integers("/support/node", supports.clone())?,
             support_directions: contents.numbers("/support/direction", supports.clone())?,
             support_values: contents.numbers("/support/value", supports)?,
@@ -81,9 +80,9 @@ impl ProblemFile {
     }
 
     fn take(&self, slices: &Slices, index: usize) -> Result<Subdomain, InputError> {
-        let rows = slice(&self.offsets.points, index);
+        let rows = self.contents.rows('P', index);
         let points = self.take_points(slices, rows.clone())?;
-        let materials = slices.materials.of(slice(&self.offsets.cells, index));
+        let materials = slices.materials.of(self.contents.rows('C', index));
         Ok(Subdomain {
             index,
             body: self.catalog.subdomains[index].body,
@@ -100,10 +99,8 @@ impl ProblemFile {
 
     fn take_steps(&self, slices: &Slices, index: usize) -> Vec<StepLoads> {
         let (dim, steps) = (self.catalog.dim, self.catalog.steps.len());
-        let supports = slices
-            .support_values
-            .of(slice(&self.offsets.supports, index));
-        let forces = slices.force_values.of(slice(&self.offsets.forces, index));
+        let supports = slices.support_values.of(self.contents.rows('S', index));
+        let forces = slices.force_values.of(self.contents.rows('F', index));
         let of_step = |k: usize| StepLoads {
             supports: supports.chunks_exact(steps).map(|row| row[k]).collect(),
             forces: (forces.chunks_exact(steps * dim))
@@ -137,8 +134,8 @@ impl ProblemFile {
         index: usize,
         points: &[[f64; 3]],
     ) -> Result<Elements, InputError> {
-        let rows = slice(&self.offsets.cells, index);
-        let entries = slice(&self.offsets.connectivity, index);
+        let rows = self.contents.rows('C', index);
+        let entries = self.contents.rows('K', index);
         let (types, connectivity) = (&slices.types, &slices.connectivity);
         let nodes = connectivity.indices(entries.clone(), NODE, points.len())?;
         // Each of the subdomains before this one has an offset more than cells.
@@ -179,7 +176,7 @@ impl ProblemFile {
             return Err(slices.offsets.error(first + rows.len(), &what));
         }
         if let Some(node) = used.iter().position(|used| !used) {
-            let row = self.offsets.points[index] + node;
+            let row = self.contents.rows('P', index).start + node;
             return Err(slices.points.error(row, "the point belongs to no cell"));
         }
         if let Some((cells, what)) = fault_between_cells(&elements, points.len()) {
@@ -198,7 +195,7 @@ impl ProblemFile {
         index: usize,
         nodes: usize,
     ) -> Result<Vec<Support>, InputError> {
-        let rows = slice(&self.offsets.supports, index);
+        let rows = self.contents.rows('S', index);
         let (node, direction) = (&slices.support_nodes, &slices.support_directions);
         let nodes_of = node.indices(rows.clone(), NODE, nodes)?;
         let directions = direction.vectors(rows.clone());
@@ -233,7 +230,7 @@ impl ProblemFile {
         index: usize,
         nodes: usize,
     ) -> Result<Vec<(u32, [f64; 3])>, InputError> {
-        let rows = slice(&self.offsets.forces, index);
+        let rows = self.contents.rows('F', index);
         let nodes_of = slices.force_nodes.indices(rows.clone(), NODE, nodes)?;
         if let Some(at) = nodes_of.windows(2).position(|w| w[0] >= w[1]) {
             return Err(slices.force_nodes.error(
@@ -253,7 +250,7 @@ impl ProblemFile {
         slices: &Slices,
         index: usize,
     ) -> Result<Vec<InterfaceNode>, InputError> {
-        let rows = slice(&self.offsets.interface, index);
+        let rows = self.contents.rows('I', index);
         let nodes = self.catalog.subdomains[index].nodes;
         let nodes_of = slices.interface.indices(rows.clone(), NODE, nodes)?;
         let mut seen = vec![false; nodes];
@@ -321,9 +318,4 @@ fn take_node_tags(slices: &Slices, rows: Range<usize>) -> Result<Vec<i64>, Input
             tags[row]
         ),
     ))
-}
-
-/// The rows of entry `index` in a table of offsets.
-pub(super) fn slice(offsets: &[usize], index: usize) -> Range<usize> {
-    offsets[index]..offsets[index + 1]
 }
