@@ -1,7 +1,5 @@
 //! Meshes made of mapped unit squares.
 
-use std::collections::BTreeMap;
-
 use super::pattern::{Pattern, UnitSquare};
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
@@ -16,28 +14,57 @@ const SAME: f64 = 1e-9;
 /// The image of the unit square, a piece of one body.
 pub(super) struct Square {
     /// Group of its cells.
-    pub(super) body: &'static str,
+    body: String,
     /// Where a point of the unit square lies (m); keeps orientation.
-    pub(super) map: Box<dyn Fn([f64; 2]) -> [f64; 2]>,
+    map: Map,
     /// How the unit square is divided.
-    pub(super) pattern: Pattern,
+    pattern: Pattern,
     /// Whether edges of quadratic cells follow the map; else they are straight, with the node in
     /// their middle, as a map that only grades the mesh wants them.
-    pub(super) is_curved: bool,
+    is_curved: bool,
     /// Groups of bottom, right, top and left. A side without a group is glued to the side without
     /// a group that has the same ends; a side with a group, such as that of a contact, never is.
-    pub(super) sides: [Option<&'static str>; 4],
+    sides: [Option<String>; 4],
+}
+
+/// Where a point of the unit square lies (m).
+type Map = Box<dyn Fn([f64; 2]) -> [f64; 2]>;
+
+impl Square {
+    /// A square whose cells have straight edges, with the groups of bottom, right, top and left.
+    pub(super) fn new(
+        body: &str,
+        pattern: Pattern,
+        map: impl Fn([f64; 2]) -> [f64; 2] + 'static,
+        sides: [Option<&str>; 4],
+    ) -> Self {
+        Self {
+            body: body.to_owned(),
+            map: Box::new(map),
+            pattern,
+            is_curved: false,
+            sides: sides.map(|name| name.map(str::to_owned)),
+        }
+    }
+
+    /// The same square with edges of quadratic cells that follow the map.
+    pub(super) fn curved(self) -> Self {
+        Self {
+            is_curved: true,
+            ..self
+        }
+    }
 }
 
 /// The bilinear map to the quadrilateral with these corners, counter-clockwise from the image of
 /// (0, 0).
-pub(super) fn quadrilateral(corners: [[f64; 2]; 4]) -> Box<dyn Fn([f64; 2]) -> [f64; 2]> {
+pub(super) fn quadrilateral(corners: [[f64; 2]; 4]) -> impl Fn([f64; 2]) -> [f64; 2] {
     let [a, b, c, d] = corners;
-    Box::new(move |[s, t]| {
+    move |[s, t]| {
         // Exact at both ends, so that sides with the same ends get the same nodes.
         let between = |p: f64, q: f64, w: f64| p * (1.0 - w) + q * w;
         [0, 1].map(|i| between(between(a[i], b[i], s), between(d[i], c[i], s), t))
-    })
+    }
 }
 
 /// A square in its mesh.
@@ -70,7 +97,6 @@ pub(super) fn mesh(squares: &[Square], refine: u32, kind: ElementKind) -> Result
         ..Mesh::default()
     };
     let mut number = vec![u32::MAX; node.len()];
-    let mut groups: BTreeMap<&str, Group> = BTreeMap::new();
     for (square, placed) in squares.iter().zip(&placed) {
         for (local, point) in placed.points.iter().enumerate() {
             let glued = node[placed.first + local];
@@ -81,20 +107,20 @@ pub(super) fn mesh(squares: &[Square], refine: u32, kind: ElementKind) -> Result
         }
         let number = |local: u32| number[node[placed.first + local as usize]];
         for (kind, nodes) in placed.unit.cells.iter() {
-            let members = &mut group(&mut groups, square.body, 2).members;
-            members.push(mesh.cells.len() as u32);
+            let cell = mesh.cells.len() as u32;
+            group(&mut mesh, &square.body, 2).members.push(cell);
             let nodes: Vec<u32> = nodes.iter().map(|&node| number(node)).collect();
             mesh.cells.push(kind, &nodes);
         }
-        for (side, name) in placed.unit.sides.iter().zip(square.sides) {
+        for (side, name) in placed.unit.sides.iter().zip(&square.sides) {
             let Some(name) = name else { continue };
             let (facet, segments) = match kind.is_linear() {
                 true => (ElementKind::Line2, 1),
                 false => (ElementKind::Line3, 2),
             };
             for along in side.windows(segments + 1).step_by(segments) {
-                let members = &mut group(&mut groups, name, 1).members;
-                members.push(mesh.facets.len() as u32);
+                let number_of = mesh.facets.len() as u32;
+                group(&mut mesh, name, 1).members.push(number_of);
                 let order = facet.along().iter();
                 let nodes: Vec<u32> = order.map(|&i| number(along[i])).collect();
                 mesh.facets.push(facet, &nodes);
@@ -103,23 +129,14 @@ pub(super) fn mesh(squares: &[Square], refine: u32, kind: ElementKind) -> Result
     }
     mesh.node_tags = (1..=mesh.points.len() as i64).collect();
     mesh.cell_tags = (1..=mesh.cells.len() as i64).collect();
-    mesh.groups = groups
-        .into_iter()
-        .map(|(name, group)| (name.to_string(), group))
-        .collect();
     mesh.orient_cells()?;
     Ok(mesh)
 }
 
-fn group<'a>(
-    groups: &'a mut BTreeMap<&'static str, Group>,
-    name: &'static str,
-    dim: usize,
-) -> &'a mut Group {
-    groups.entry(name).or_insert_with(|| Group {
-        dim,
-        members: Vec::new(),
-    })
+fn group<'a>(mesh: &'a mut Mesh, name: &str, dim: usize) -> &'a mut Group {
+    let group = mesh.groups.entry(name.to_owned()).or_default();
+    group.dim = dim;
+    group
 }
 
 fn place(squares: &[Square], refine: u32, kind: ElementKind) -> Vec<Placed> {
@@ -175,7 +192,7 @@ fn glue(squares: &[Square], placed: &[Placed]) -> Vec<usize> {
 
     let mut open: Vec<(Vec<usize>, [[f64; 2]; 2])> = Vec::new();
     for (square, placed) in squares.iter().zip(placed) {
-        for (side, name) in placed.unit.sides.iter().zip(square.sides) {
+        for (side, name) in placed.unit.sides.iter().zip(&square.sides) {
             if name.is_some() {
                 continue;
             }

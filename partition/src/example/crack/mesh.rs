@@ -43,16 +43,12 @@ fn squares() -> Vec<Square> {
                 false => (Some("bottom"), crack),
                 true => (crack, Some("top")),
             };
-            squares.push(Square {
-                body: "plate",
-                map: Box::new(move |[s, t]| match is_above {
-                    false => [x(column, s), 0.0 - away(1.0 - t, HALF)],
-                    true => [x(column, s), away(t, HALF)],
-                }),
-                pattern: Pattern::Grid(cells, ROWS),
-                is_curved: false,
-                sides: [bottom, outer(2, "right"), top, outer(0, "left")],
-            });
+            let map = move |[s, t]: [f64; 2]| match is_above {
+                false => [x(column, s), 0.0 - away(1.0 - t, HALF)],
+                true => [x(column, s), away(t, HALF)],
+            };
+            let sides = [bottom, outer(2, "right"), top, outer(0, "left")];
+            squares.push(Square::new("plate", Pattern::Grid(cells, ROWS), map, sides));
         }
     }
     squares

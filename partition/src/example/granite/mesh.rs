@@ -28,7 +28,7 @@ const COLUMNS: [usize; 3] = [12, 16, 12];
 /// Rows of the coarse and of the fine band on each side of the line.
 const ROWS: (usize, usize) = (15, 7);
 
-/// Where the coarse band ends and the fine one starts, as shares of the way to the line.
+/// Where the coarse band ends and the fine one starts, as fractions of the way to the line.
 const BANDS: (f64, f64) = (0.768, 0.818);
 
 fn squares() -> Vec<Square> {
@@ -49,19 +49,19 @@ fn squares() -> Vec<Square> {
     squares
 }
 
-/// The part of a column between two shares of the way from the outside to the line.
+/// The part of a column between two fractions of the way from the outside to the line.
 fn band(
     column: usize,
     line: [[f64; 2]; 2],
     upper: bool,
-    shares: [f64; 2],
+    fractions: [f64; 2],
     pattern: Pattern,
 ) -> Square {
-    let height = |[x, y]: [f64; 2], share: f64| match upper {
-        false => [x, share * y],
-        true => [x, SIDE - share * (SIDE - y)],
+    let height = |[x, y]: [f64; 2], fraction: f64| match upper {
+        false => [x, fraction * y],
+        true => [x, SIDE - fraction * (SIDE - y)],
     };
-    let (outer, inner) = (shares[0], shares[1]);
+    let (outer, inner) = (fractions[0], fractions[1]);
     let [left, right] = line;
     let outside = (outer == 0.0).then_some(if upper { "top" } else { "bottom" });
     let inside = match (inner == 1.0, column) {
@@ -73,30 +73,16 @@ fn band(
     };
     let left_side = (column == 0).then_some(if upper { "upper left" } else { "lower left" });
     let right_side = (column == 2).then_some(if upper { "upper right" } else { "lower right" });
-    let (low, high) = if upper {
-        (inner, outer)
-    } else {
-        (outer, inner)
+    let pattern = match (upper, pattern) {
+        (true, Pattern::Refining(columns)) => Pattern::Coarsening(columns),
+        _ => pattern,
     };
-    let (below, above) = if upper {
-        (inside, outside)
-    } else {
-        (outside, inside)
+    let (low, high, below, above) = match upper {
+        true => (inner, outer, inside, outside),
+        false => (outer, inner, outside, inside),
     };
-    let corners = [
-        height(left, low),
-        height(right, low),
-        height(right, high),
-        height(left, high),
-    ];
-    Square {
-        body: "block",
-        map: quadrilateral(corners),
-        pattern: match (upper, pattern) {
-            (true, Pattern::Refining(columns)) => Pattern::Coarsening(columns),
-            _ => pattern,
-        },
-        is_curved: false,
-        sides: [below, right_side, above, left_side],
-    }
+    let corners = [(left, low), (right, low), (right, high), (left, high)];
+    let corners = corners.map(|(point, fraction)| height(point, fraction));
+    let sides = [below, right_side, above, left_side];
+    Square::new("block", pattern, quadrilateral(corners), sides)
 }

@@ -35,19 +35,17 @@ fn squares() -> Vec<Square> {
     let down = |t: f64| 0.0 - SIDE * (1.0 - t).powf(GRADING);
     let beside = SIDE - half_width;
     vec![
-        Square {
-            body: "cylinder",
-            map: Box::new(move |[s, t]| [half_width * (1.0 - (1.0 - s).powf(GRADING)), down(t)]),
-            pattern: Pattern::Grid(COLUMNS[0], ROWS),
-            is_curved: false,
-            sides: [Some("bottom"), None, Some("top"), Some("axis")],
-        },
-        Square {
-            body: "cylinder",
-            map: Box::new(move |[s, t]| [half_width + beside * s.powf(GRADING), down(t)]),
-            pattern: Pattern::Grid(COLUMNS[1], ROWS),
-            is_curved: false,
-            sides: [Some("bottom"), Some("right"), Some("top"), None],
-        },
+        Square::new(
+            "cylinder",
+            Pattern::Grid(COLUMNS[0], ROWS),
+            move |[s, t]| [half_width * (1.0 - (1.0 - s).powf(GRADING)), down(t)],
+            [Some("bottom"), None, Some("top"), Some("axis")],
+        ),
+        Square::new(
+            "cylinder",
+            Pattern::Grid(COLUMNS[1], ROWS),
+            move |[s, t]| [half_width + beside * s.powf(GRADING), down(t)],
+            [Some("bottom"), Some("right"), Some("top"), None],
+        ),
     ]
 }

@@ -30,13 +30,7 @@ const MIDDLE: [f64; 2] = [0.0, 0.0];
 
 fn squares() -> Vec<Square> {
     let grid = Pattern::Grid(CELLS, CELLS);
-    let block = |body, corners, sides| Square {
-        body,
-        map: quadrilateral(corners),
-        pattern: grid,
-        is_curved: false,
-        sides,
-    };
+    let block = |body, corners, sides| Square::new(body, grid, quadrilateral(corners), sides);
     let (west, east) = ([-HALF, RISE], [HALF, -RISE]);
     let mut squares = vec![
         block(
@@ -82,12 +76,11 @@ fn wedge(east: [f64; 2]) -> [Square; 3] {
     let centre = [0, 1].map(|i| corners.iter().map(|c| c[i]).sum::<f64>() / 3.0);
     [0, 1, 2].map(|k| {
         let (corner, next, last) = (corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
-        Square {
-            body: "wedge",
-            map: quadrilateral([corner, between(corner, next), centre, between(last, corner)]),
-            pattern: Pattern::Grid(CELLS / 2, CELLS / 2),
-            is_curved: false,
-            sides: [Some(sides[k]), None, None, Some(sides[(k + 2) % 3])],
-        }
+        Square::new(
+            "wedge",
+            Pattern::Grid(CELLS / 2, CELLS / 2),
+            quadrilateral([corner, between(corner, next), centre, between(last, corner)]),
+            [Some(sides[k]), None, None, Some(sides[(k + 2) % 3])],
+        )
     })
 }

@@ -19,24 +19,17 @@ fn squares() -> Vec<Square> {
     let (left, right) = ([0.0, 0.8], [2.0, 1.2]);
     let pattern = Pattern::Grid(16, 8);
     vec![
-        Square {
-            body: "lower",
-            map: quadrilateral([[0.0, 0.0], [2.0, 0.0], right, left]),
+        Square::new(
+            "lower",
             pattern,
-            is_curved: false,
-            sides: [
-                Some("bottom"),
-                Some("right"),
-                Some("lower face"),
-                Some("left"),
-            ],
-        },
-        Square {
-            body: "upper",
-            map: quadrilateral([left, right, [2.0, 2.0], [0.0, 2.0]]),
+            quadrilateral([[0.0, 0.0], [2.0, 0.0], right, left]),
+            ["bottom", "right", "lower face", "left"].map(Some),
+        ),
+        Square::new(
+            "upper",
             pattern,
-            is_curved: false,
-            sides: [Some("upper face"), Some("right"), Some("top"), Some("left")],
-        },
+            quadrilateral([left, right, [2.0, 2.0], [0.0, 2.0]]),
+            ["upper face", "right", "top", "left"].map(Some),
+        ),
     ]
 }

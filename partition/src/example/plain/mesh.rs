@@ -26,24 +26,24 @@ const GRADING: f64 = 6.0;
 fn squares() -> Vec<Square> {
     let pattern = Pattern::Grid(24, 12);
     vec![
-        Square {
-            body: "plate",
-            map: Box::new(eighth),
+        Square::new(
+            "plate",
             pattern,
-            is_curved: true,
-            sides: [Some("horizontal axis"), Some("right"), None, Some("hole")],
-        },
+            eighth,
+            [Some("horizontal axis"), Some("right"), None, Some("hole")],
+        )
+        .curved(),
         // The mirror image, exact to the last bit, so that the axis lies where it should.
-        Square {
-            body: "plate",
-            map: Box::new(|[s, t]| {
+        Square::new(
+            "plate",
+            pattern,
+            |[s, t]| {
                 let [x, y] = eighth([s, 1.0 - t]);
                 [y, x]
-            }),
-            pattern,
-            is_curved: true,
-            sides: [None, Some("top"), Some("vertical axis"), Some("hole")],
-        },
+            },
+            [None, Some("top"), Some("vertical axis"), Some("hole")],
+        )
+        .curved(),
     ]
 }
 

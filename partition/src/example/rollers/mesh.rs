@@ -35,46 +35,8 @@ const INWARD: usize = 12;
 const BETWEEN: usize = 18;
 const ACROSS: usize = 14;
 
-/// A roller and the groups of its contacts.
-struct Roller {
-    body: &'static str,
-    x: f64,
-    /// Side of the lower plate, lowest quarter, uppermost quarter, side of the upper plate.
-    sides: [&'static str; 4],
-}
-
-const ROLLERS: [Roller; 3] = [
-    Roller {
-        body: "left roller",
-        x: -APART,
-        sides: [
-            "lower plate under left",
-            "left roller below",
-            "left roller above",
-            "upper plate over left",
-        ],
-    },
-    Roller {
-        body: "middle roller",
-        x: 0.0,
-        sides: [
-            "lower plate under middle",
-            "middle roller below",
-            "middle roller above",
-            "upper plate over middle",
-        ],
-    },
-    Roller {
-        body: "right roller",
-        x: APART,
-        sides: [
-            "lower plate under right",
-            "right roller below",
-            "right roller above",
-            "upper plate over right",
-        ],
-    },
-];
+/// Where each roller is, and its axis (m).
+const ROLLERS: [(&str, f64); 3] = [("left", -APART), ("middle", 0.0), ("right", APART)];
 
 /// From 0 to 1, slowly at first.
 fn slow_start(s: f64) -> f64 {
@@ -84,25 +46,23 @@ fn slow_start(s: f64) -> f64 {
 fn squares() -> Vec<Square> {
     let ends = [-APART - BEYOND, APART + BEYOND];
     let mut squares = Vec::new();
-    for (i, roller) in ROLLERS.iter().enumerate() {
+    for (i, (place, axis)) in ROLLERS.into_iter().enumerate() {
         let half = 0.5 * APART;
-        let left = if i == 0 { ends[0] } else { roller.x - half };
-        let right = if i == 2 { ends[1] } else { roller.x + half };
+        let left = if i == 0 { ends[0] } else { axis - half };
+        let right = if i == 2 { ends[1] } else { axis + half };
         for (edge, is_right) in [(left, false), (right, true)] {
-            squares.extend(plate(roller, edge, is_right));
+            squares.extend(plates(place, axis, edge, is_right));
         }
-        squares.extend(disc(roller));
+        squares.extend(disc(place, axis));
     }
     squares
 }
 
-/// Both plates from the axis of a roller to `edge`.
-fn plate(roller: &Roller, edge: f64, is_right: bool) -> [Square; 2] {
-    let axis = roller.x;
+/// Both plates from the axis of the roller at `place` to `edge`.
+fn plates(place: &str, axis: f64, edge: f64, is_right: bool) -> [Square; 2] {
     let is_end = edge.abs() > APART;
-    let piece = |body, face: f64, outer: f64, sides| Square {
-        body,
-        map: Box::new(move |[s, t]: [f64; 2]| {
+    let piece = |body, face: f64, outer: f64, sides| {
+        let map = move |[s, t]: [f64; 2]| {
             // Exact at both ends, so that neighbours have the same nodes.
             let between = |p: f64, q: f64, w: f64| p * (1.0 - w) + q * w;
             let x = match is_right {
@@ -114,50 +74,40 @@ fn plate(roller: &Roller, edge: f64, is_right: bool) -> [Square; 2] {
                 false => between(face, outer, slow_start(t)),
             };
             [x, y]
-        }),
-        pattern: Pattern::Grid(BETWEEN, ACROSS),
-        is_curved: false,
-        sides,
+        };
+        Square::new(body, Pattern::Grid(BETWEEN, ACROSS), map, sides)
     };
-    let end = |name: &'static str, of: bool| (is_end && is_right == of).then_some(name);
-    let [below, .., above] = roller.sides;
+    let left = (is_end && !is_right).then_some("left");
+    let right = (is_end && is_right).then_some("right");
+    let below = format!("lower plate under {place}");
+    let above = format!("upper plate over {place}");
     let faces = [0.0, 2.0 * RADIUS];
     [
         piece(
             "lower plate",
             faces[0],
             faces[0] - HEIGHT,
-            [
-                Some("bottom"),
-                end("right", true),
-                Some(below),
-                end("left", false),
-            ],
+            [Some("bottom"), right, Some(&below), left],
         ),
         piece(
             "upper plate",
             faces[1],
             faces[1] + HEIGHT,
-            [
-                Some(above),
-                end("right", true),
-                Some("top"),
-                end("left", false),
-            ],
+            [Some(&above), right, Some("top"), left],
         ),
     ]
 }
 
-/// A roller: a core and four squares around it.
-fn disc(roller: &Roller) -> Vec<Square> {
-    let (axis, body) = (roller.x, roller.body);
+/// The roller at `place`: a core and four squares around it.
+fn disc(place: &str, axis: f64) -> Vec<Square> {
+    let body = format!("{place} roller");
     let core = 0.45 * RADIUS;
     // From −1 to 1, slowly in the middle.
     let along = |s: f64| {
         let w = 2.0 * s - 1.0;
         w.signum() * slow_start(w.abs())
     };
-    let [_, below, above, _] = roller.sides;
+    let [below, above] = ["below", "above"].map(|side| format!("{body} {side}"));
     let mut squares: Vec<Square> = [Some(below), None, Some(above), None]
         .into_iter()
         .enumerate()
@@ -169,30 +119,22 @@ fn disc(roller: &Roller) -> Vec<Square> {
                 2 => [axis - x, RADIUS - y],
                 _ => [axis + y, RADIUS - x],
             };
-            Square {
-                body,
-                map: Box::new(move |[s, t]: [f64; 2]| {
-                    let w = along(s);
-                    let (sin, cos) = (FRAC_PI_4 * w).sin_cos();
-                    let inward = slow_start(t);
-                    let between = |p: f64, q: f64| p * (1.0 - inward) + q * inward;
-                    turn([
-                        between(RADIUS * sin, core * w),
-                        between(-RADIUS * cos, -core),
-                    ])
-                }),
-                pattern: Pattern::Grid(QUARTER, INWARD),
-                is_curved: true,
-                sides: [outer, None, None, None],
-            }
+            let map = move |[s, t]: [f64; 2]| {
+                let w = along(s);
+                let (sin, cos) = (FRAC_PI_4 * w).sin_cos();
+                let inward = slow_start(t);
+                let between = |p: f64, q: f64| p * (1.0 - inward) + q * inward;
+                turn([
+                    between(RADIUS * sin, core * w),
+                    between(-RADIUS * cos, -core),
+                ])
+            };
+            let sides = [outer.as_deref(), None, None, None];
+            Square::new(&body, Pattern::Grid(QUARTER, INWARD), map, sides).curved()
         })
         .collect();
-    squares.push(Square {
-        body,
-        map: Box::new(move |[s, t]: [f64; 2]| [axis + core * along(s), RADIUS + core * along(t)]),
-        pattern: Pattern::Grid(QUARTER, QUARTER),
-        is_curved: true,
-        sides: [None; 4],
-    });
+    let map = move |[s, t]: [f64; 2]| [axis + core * along(s), RADIUS + core * along(t)];
+    let grid = Pattern::Grid(QUARTER, QUARTER);
+    squares.push(Square::new(&body, grid, map, [None; 4]).curved());
     squares
 }

@@ -60,11 +60,6 @@ fn rectangle(
 ) -> Square {
     let (low, high) = (level as f64, level as f64 + 1.0);
     let columns = ((right - left) * CELLS).round() as usize;
-    Square {
-        body,
-        map: quadrilateral([[left, low], [right, low], [right, high], [left, high]]),
-        pattern: Pattern::Grid(columns, CELLS as usize),
-        is_curved: false,
-        sides,
-    }
+    let map = quadrilateral([[left, low], [right, low], [right, high], [left, high]]);
+    Square::new(body, Pattern::Grid(columns, CELLS as usize), map, sides)
 }

@@ -24,103 +24,42 @@ const ALONG: usize = 5;
 /// Cells in the height of a brick, and in half its length.
 const CELLS: usize = 4;
 
-/// The bricks of each course, from below and from the left.
-const COURSES: [&[&str]; 6] = [
-    &[
-        "brick 1.1",
-        "brick 1.2",
-        "brick 1.3",
-        "brick 1.4",
-        "brick 1.5",
-    ],
-    &[
-        "brick 2.1",
-        "brick 2.2",
-        "brick 2.3",
-        "brick 2.4",
-        "brick 2.5",
-        "brick 2.6",
-    ],
-    &[
-        "brick 3.1",
-        "brick 3.2",
-        "brick 3.3",
-        "brick 3.4",
-        "brick 3.5",
-    ],
-    &[
-        "brick 4.1",
-        "brick 4.2",
-        "brick 4.3",
-        "brick 4.4",
-        "brick 4.5",
-        "brick 4.6",
-    ],
-    &[
-        "brick 5.1",
-        "brick 5.2",
-        "brick 5.3",
-        "brick 5.4",
-        "brick 5.5",
-    ],
-    &[
-        "brick 6.1",
-        "brick 6.2",
-        "brick 6.3",
-        "brick 6.4",
-        "brick 6.5",
-        "brick 6.6",
-    ],
-];
-
-/// The joints between courses: their sides below and above.
-const BEDS: [[&str; 2]; 5] = [
-    ["bed joint 1 below", "bed joint 1 above"],
-    ["bed joint 2 below", "bed joint 2 above"],
-    ["bed joint 3 below", "bed joint 3 above"],
-    ["bed joint 4 below", "bed joint 4 above"],
-    ["bed joint 5 below", "bed joint 5 above"],
-];
-
-/// The joints in each course: their sides on the left and on the right.
-const HEADS: [[&str; 2]; 6] = [
-    ["head joints 1 left", "head joints 1 right"],
-    ["head joints 2 left", "head joints 2 right"],
-    ["head joints 3 left", "head joints 3 right"],
-    ["head joints 4 left", "head joints 4 right"],
-    ["head joints 5 left", "head joints 5 right"],
-    ["head joints 6 left", "head joints 6 right"],
-];
+/// Courses; every other one has a brick more, of which the outermost are halves.
+const COURSES: usize = 6;
 
 fn squares() -> Vec<Square> {
     let mut squares = Vec::new();
-    for (course, bricks) in COURSES.into_iter().enumerate() {
+    for course in 0..COURSES {
         let below = match course {
-            0 => "foot",
-            _ => BEDS[course - 1][1],
+            0 => "foot".to_owned(),
+            _ => format!("bed joint {course} above"),
         };
-        let above = BEDS.get(course).map_or("top", |sides| sides[0]);
+        let above = match course + 1 {
+            COURSES => "top".to_owned(),
+            next => format!("bed joint {next} below"),
+        };
         // Ends of bricks in halves of a brick.
         let staggered = course % 2;
         let ends = |brick: usize| (2 * brick - staggered.min(brick)).min(2 * ALONG);
-        for (i, body) in bricks.iter().enumerate() {
-            let (start, end) = (ends(i), ends(i + 1));
-            let is_last = i + 1 == bricks.len();
-            let left = if i == 0 { "left end" } else { HEADS[course][1] };
-            let right = if is_last {
-                "right end"
-            } else {
-                HEADS[course][0]
+        let bricks = ALONG + staggered;
+        for brick in 0..bricks {
+            let (start, end) = (ends(brick), ends(brick + 1));
+            let left = match brick {
+                0 => "left end".to_owned(),
+                _ => format!("head joints {} right", course + 1),
+            };
+            let right = match brick + 1 {
+                last if last == bricks => "right end".to_owned(),
+                _ => format!("head joints {} left", course + 1),
             };
             let [x_0, x_1] = [start, end].map(|halves| 0.5 * LENGTH * halves as f64);
             let [y_0, y_1] = [course, course + 1].map(|rows| HEIGHT * rows as f64);
-            squares.push(Square {
-                body,
-                map: quadrilateral([[x_0, y_0], [x_1, y_0], [x_1, y_1], [x_0, y_1]]),
-                pattern: Pattern::Grid(CELLS * (end - start), CELLS),
-                is_curved: false,
-                sides: [Some(below), Some(right), Some(above), Some(left)],
-            });
+            squares.push(Square::new(
+                &format!("brick {}.{}", course + 1, brick + 1),
+                Pattern::Grid(CELLS * (end - start), CELLS),
+                quadrilateral([[x_0, y_0], [x_1, y_0], [x_1, y_1], [x_0, y_1]]),
+                [&below, &right, &above, &left].map(|name| Some(name.as_str())),
+            ));
         }
     }
     squares
