@@ -11,7 +11,6 @@ mod loads;
 mod mortar;
 mod node_pairs;
 mod obstacle;
-mod partition;
 mod ray_search;
 mod sides;
 mod steps;
@@ -131,7 +130,7 @@ impl Model {
         };
         warnings.extend(diagnostics.warnings());
         let prescribed_subdomains = (scene.subdomains.as_ref())
-            .map(|names| partition::prescribed(&bodies.mesh, names))
+            .map(|names| bodies::prescribed_subdomains(&bodies.mesh, names))
             .transpose()?;
         Ok(Self {
             title: scene.title.clone(),

@@ -7,7 +7,7 @@ use crate::element::Elements;
 use crate::error::InputError;
 use crate::mesh::{Group, Mesh};
 use crate::scene::Scene;
-use crate::scene::condition::Partner;
+use crate::scene::condition::{Contact, Names};
 use crate::scene::material::Elasticity;
 
 /// Poisson's ratio from which on linear cells lock: too stiff by 7 % in energy at 0.499.
@@ -23,18 +23,8 @@ pub(super) struct Bodies {
 impl Bodies {
     /// Gives every cell its body; cells in none are left out, with a warning.
     pub fn new(scene: &Scene, mesh: Mesh, warnings: &mut Vec<String>) -> Result<Self, InputError> {
-        let mut owner: Vec<Option<u32>> = vec![None; mesh.cells.len()];
-        let names: Vec<&String> = scene.bodies.keys().collect();
-        for (body, name) in names.iter().enumerate() {
-            for &cell in &groups::cells(&mesh, name, &format!("body '{name}'"))?.members {
-                if let Some(other) = owner[cell as usize].replace(body as u32) {
-                    return Err(InputError::new(format!(
-                        "cell {} of the mesh is in two bodies, '{}' and '{name}'",
-                        mesh.cell_tags[cell as usize], names[other as usize]
-                    )));
-                }
-            }
-        }
+        let names: Vec<&str> = scene.bodies.keys().map(String::as_str).collect();
+        let owner = groups::owners(&mesh, &names, "bodies")?;
         let left_out = owner.iter().filter(|owner| owner.is_none()).count();
         let kept: Vec<bool> = owner.iter().map(Option::is_some).collect();
         let unnamed = unnamed(&mesh, &kept);
@@ -67,6 +57,21 @@ impl Bodies {
             cell_body,
         })
     }
+}
+
+/// The subdomain of every cell, from one group of cells for each.
+pub(super) fn prescribed_subdomains(mesh: &Mesh, names: &Names) -> Result<Vec<u32>, InputError> {
+    let list: Vec<&str> = names.iter().collect();
+    let owner = groups::owners(mesh, &list, "subdomains")?;
+    if let Some(cell) = owner.iter().position(Option::is_none) {
+        return Err(InputError::new(format!(
+            "subdomains: cell {} of the mesh (nodes {}) is in none of them; \
+             expected each cell of the bodies in exactly one",
+            mesh.cell_tags[cell],
+            mesh.tags_of(mesh.cells.nodes_of(cell))
+        )));
+    }
+    Ok(owner.into_iter().flatten().collect())
 }
 
 /// Warns of linear cells of a material that hardly changes its volume.
@@ -155,26 +160,15 @@ fn unnamed(mesh: &Mesh, kept: &[bool]) -> String {
 
 /// The groups of facets or points that conditions refer to, in any load step.
 fn used_groups(scene: &Scene) -> BTreeSet<&str> {
-    let steps = scene.step.iter();
-    let lists = steps.map(|step| (&step.displacement, &step.traction, &step.pressure));
-    let of_steps = lists.flat_map(|(displacement, traction, pressure)| {
-        (displacement.iter().flatten().map(|c| &c.on))
-            .chain(traction.iter().flatten().map(|c| &c.on))
-            .chain(pressure.iter().flatten().map(|c| &c.on))
+    let loaded = scene.loadings().into_iter().flat_map(|loading| {
+        (loading.displacement.iter().map(|c| &c.on))
+            .chain(loading.traction.iter().map(|c| &c.on))
+            .chain(loading.pressure.iter().map(|c| &c.on))
     });
-    let on = (scene.displacement.iter().map(|c| &c.on))
-        .chain(scene.bilateral.iter().map(|c| &c.on))
-        .chain(scene.traction.iter().map(|c| &c.on))
-        .chain(scene.pressure.iter().map(|c| &c.on))
-        .chain(of_steps);
-    let sides = scene.contact.iter().flat_map(|contact| {
-        let side_b = match &contact.partner {
-            Partner::Side(names) => Some(names),
-            Partner::Obstacle(_) => None,
-        };
-        std::iter::once(&contact.side_a).chain(side_b)
-    });
-    on.chain(sides).flat_map(|names| names.iter()).collect()
+    (loaded.chain(scene.bilateral.iter().map(|c| &c.on)))
+        .chain(scene.contact.iter().flat_map(Contact::sides))
+        .flat_map(Names::iter)
+        .collect()
 }
 
 /// The mesh of the cells that are `kept`, with the nodes and facets that they hold together. A

@@ -60,9 +60,28 @@ pub(super) fn nodes(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>, 
     Ok(nodes.into_iter().collect())
 }
 
-/// The group of cells `name`. `what` names the key of the scene that asks for it.
-pub(super) fn cells<'a>(mesh: &'a Mesh, name: &str, what: &str) -> Result<&'a Group, InputError> {
-    find(mesh, name, Members::Cells, what)
+/// For every cell which of the groups of cells `names` it is in. `what` names the key of the scene
+/// that asks for them.
+///
+/// # Errors
+/// A cell in two of them.
+pub(super) fn owners(
+    mesh: &Mesh,
+    names: &[&str],
+    what: &str,
+) -> Result<Vec<Option<u32>>, InputError> {
+    let mut owner: Vec<Option<u32>> = vec![None; mesh.cells.len()];
+    for (number, name) in (0..).zip(names) {
+        for &cell in &find(mesh, name, Members::Cells, what)?.members {
+            if let Some(other) = owner[cell as usize].replace(number) {
+                return Err(InputError::new(format!(
+                    "{what}: cell {} of the mesh is in both '{}' and '{name}'",
+                    mesh.cell_tags[cell as usize], names[other as usize]
+                )));
+            }
+        }
+    }
+    Ok(owner)
 }
 
 fn find<'a>(

@@ -30,13 +30,11 @@ pub(super) fn forces(
     for (body, (name, force)) in scene.bodies.keys().zip(&loading.body_force).enumerate() {
         let Some(force) = force else { continue };
         let what = loading.body_force_label(name);
-        expect_dim(force, mesh.dim, &what)?;
         body_force(bodies, body as u32, force, scale.body_force, &mut forces)
             .map_err(|reason| InputError::new(format!("{what}: {reason}")))?;
     }
     for (index, traction) in loading.traction.iter().enumerate() {
         let what = loading.traction_label(index, &traction.on);
-        expect_dim(&traction.value, mesh.dim, &what)?;
         let facets = groups::facets(mesh, &traction.on, &what)?;
         let surface = Surface::new(mesh, topology, &facets, &what)?;
         surface_load(&surface, &mut forces, |x, area| {
@@ -65,16 +63,6 @@ pub(super) fn forces(
         }
     }
     Ok(forces)
-}
-
-fn expect_dim(vector: &Vector, dim: usize, what: &str) -> Result<(), InputError> {
-    if vector.dim() == dim {
-        return Ok(());
-    }
-    Err(InputError::new(format!(
-        "{what}: a vector of {} components; the mesh has {dim} dimensions",
-        vector.dim()
-    )))
 }
 
 /// Adds ∫ N_i b dx over the cells of a body, b a `factor` of the force.

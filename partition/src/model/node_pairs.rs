@@ -31,10 +31,10 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> 
     let mut any_back_facing = false;
     for a in &sides.nodes_a {
         match target.hit(a.position, a.normal, sides.behind, skip) {
-            Hit::Nodes(nodes, _) => {
+            Hit::Nodes(nodes) => {
                 partners.extend(nodes.iter().copied());
                 let is_mid = mid_a.contains(&a.node);
-                // Their shares of the force would differ.
+                // A corner and a node on an edge stand for different parts of the area.
                 if let Some(other) = nodes.iter().find(|&b| mid_b.contains(b) != is_mid) {
                     let facet = sides.around_b[other][0];
                     unmatched.push((a.node, "b", &sides.b.facets[facet]));
@@ -111,12 +111,9 @@ fn faced<'a>(a: &SideNode, partners: &[u32], sides: &Sides<'a>) -> Vec<Faced<'a>
 fn pressed_along(a: &SideNode, faced: &[Faced]) -> [f64; 3] {
     let (mut facing, mut back_facing) = ([0.0; 3], Vec::new());
     for Faced { facet, partners } in faced {
-        let Some(own) = facet.nodes.iter().position(|&node| node == a.node) else {
-            continue;
-        };
         match partners.contains(&true) {
-            true => facing = advance(facing, facet.measure, facet.normal_at(own)),
-            false => back_facing.push(facet.normal_at(own)),
+            true => facing = advance(facing, facet.measure, facet.normal_at(a.node)),
+            false => back_facing.push(facet.normal_at(a.node)),
         }
     }
     let size = length(facing);
@@ -128,24 +125,23 @@ fn pressed_along(a: &SideNode, faced: &[Faced]) -> [f64; 3] {
 }
 
 /// Which of the nodes `partners` in one place on side b node `a` of side a has conditions with, and
-/// its share of each: of what lies opposite facets of side b, as side a may reach beyond it.
+/// the part of its tributary area that is of each: that opposite facets of side b, as side a may reach
+/// beyond it.
 ///
 /// Where corners of several bodies meet in a point, two that lie diagonally across share nothing but
 /// that point, and a condition between them would follow from those between neighbours.
 fn opposite(a: &SideNode, partners: Vec<u32>, faced: &[Faced]) -> Vec<(u32, f64)> {
-    let mut shares: Vec<f64> = vec![0.0; partners.len()];
+    let mut areas: Vec<f64> = vec![0.0; partners.len()];
     for Faced { facet, partners } in faced {
         let count = partners.iter().filter(|&&met| met).count();
-        let own = facet.nodes.iter().position(|&node| node == a.node);
-        let share = own.map_or(0.0, |i| facet.share(i)) / count.max(1) as f64;
-        (shares.iter_mut().zip(partners).filter(|(_, met)| **met))
-            .for_each(|(sum, _)| *sum += share);
+        let area = facet.tributary_area(a.node) / count.max(1) as f64;
+        (areas.iter_mut().zip(partners).filter(|(_, met)| **met)).for_each(|(sum, _)| *sum += area);
     }
-    if shares.iter().all(|&share| share == 0.0) {
-        let share = a.share / partners.len() as f64;
-        return partners.into_iter().map(|b| (b, share)).collect();
+    if areas.iter().all(|&area| area == 0.0) {
+        let area = a.tributary_area / partners.len() as f64;
+        return partners.into_iter().map(|b| (b, area)).collect();
     }
-    (partners.into_iter().zip(shares))
-        .filter(|&(_, share)| share > 0.0)
+    (partners.into_iter().zip(areas))
+        .filter(|&(_, area)| area > 0.0)
         .collect()
 }

@@ -19,23 +19,13 @@ pub(super) fn points(
     side: &Surface,
     nodes: Vec<SideNode>,
 ) -> Result<Vec<ContactPoint<u32>>, String> {
-    if obstacle.dim() != mesh.dim {
-        return Err(format!(
-            "the obstacle's vectors have {} components; the mesh has {} dimensions",
-            obstacle.dim(),
-            mesh.dim
-        ));
-    }
     let around = side.around();
     // Of an outline that turns a corner at the node the part that faces the obstacle.
     let facing_area = |a: &SideNode, normal: [f64; 3]| {
         let facets = around[&a.node].iter().map(|&f| &side.facets[f]);
-        let shares = facets.filter_map(|facet| {
-            let own = facet.nodes.iter().position(|&node| node == a.node)?;
-            (dot(facet.normal_at(own), normal) >= FACING).then(|| facet.share(own))
-        });
-        let area: f64 = shares.sum();
-        if area > 0.0 { area } else { a.share }
+        let facing = facets.filter(|facet| dot(facet.normal_at(a.node), normal) >= FACING);
+        let area: f64 = facing.map(|facet| facet.tributary_area(a.node)).sum();
+        if area > 0.0 { area } else { a.tributary_area }
     };
     let mut points = Vec::with_capacity(nodes.len());
     for a in nodes {

@@ -21,8 +21,8 @@ pub(super) struct Target<'a> {
 /// What a line meets first.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Hit {
-    /// Nodes, more than one where several lie in one place, and their common distance.
-    Nodes(Vec<u32>, f64),
+    /// Nodes, more than one where several lie in one place.
+    Nodes(Vec<u32>),
     /// The inside of a facet.
     Facet(usize),
     /// Nothing, though facets that face the same way as the line may lie on it.
@@ -59,31 +59,23 @@ impl<F: Fn([f64; 3], [f64; 3]) -> bool> SelectionFunction<Leaf> for Boxes<F> {
     }
 }
 
-/// The line through a point along a unit vector, in both directions.
-struct Line {
-    start: [f64; 3],
-    direction: [f64; 3],
-}
-
-impl Line {
-    /// Whether the line goes through a box: the ranges in which it lies between the opposite
-    /// faces have something in common.
-    fn meets(&self, low: [f64; 3], high: [f64; 3]) -> bool {
-        let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
-        for axis in 0..3 {
-            let (start, slope) = (self.start[axis], self.direction[axis]);
-            if slope == 0.0 {
-                if start < low[axis] || start > high[axis] {
-                    return false;
-                }
-                continue;
+/// Whether the line through `start` along `direction`, both ways, goes through a box: the ranges in
+/// which it lies between the opposite faces have something in common.
+fn meets(start: [f64; 3], direction: [f64; 3], low: [f64; 3], high: [f64; 3]) -> bool {
+    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+    for axis in 0..3 {
+        let (start, slope) = (start[axis], direction[axis]);
+        if slope == 0.0 {
+            if start < low[axis] || start > high[axis] {
+                return false;
             }
-            let (a, b) = ((low[axis] - start) / slope, (high[axis] - start) / slope);
-            from = from.max(a.min(b));
-            to = to.min(a.max(b));
+            continue;
         }
-        from <= to
+        let (a, b) = ((low[axis] - start) / slope, (high[axis] - start) / slope);
+        from = from.max(a.min(b));
+        to = to.min(a.max(b));
     }
+    from <= to
 }
 
 impl<'a> Target<'a> {
@@ -129,8 +121,7 @@ impl<'a> Target<'a> {
         behind: f64,
         passes: impl Fn(u32) -> bool,
     ) -> Hit {
-        let line = Line { start, direction };
-        let boxes = Boxes(|low, high| line.meets(low, high));
+        let boxes = Boxes(|low, high| meets(start, direction, low, high));
         let mut nodes: Vec<(u32, f64, f64)> = Vec::new();
         let mut crossed: Option<(usize, f64)> = None;
         let mut back_facing = false;
@@ -181,7 +172,7 @@ impl<'a> Target<'a> {
                     .map(|node| node.0)
                     .collect();
                 together.sort_unstable();
-                Hit::Nodes(together, ahead)
+                Hit::Nodes(together)
             }
             (_, Some((facet, _))) => Hit::Facet(facet),
             _ => Hit::Nothing { back_facing },

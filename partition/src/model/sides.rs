@@ -10,12 +10,12 @@ use crate::mesh::Mesh;
 /// the material lies between them.
 const INTERFERENCE: f64 = 0.1;
 
-/// A node of a side with its outward normal, and its share of the side.
+/// A node of a side with its outward normal, and the part of the side's area that it stands for.
 pub(super) struct SideNode {
     pub node: u32,
     pub position: [f64; 3],
     pub normal: [f64; 3],
-    pub share: f64,
+    pub tributary_area: f64,
 }
 
 /// Two sides that may touch.
@@ -102,7 +102,7 @@ pub(super) fn side_nodes(
                 node,
                 position: mesh.points[node as usize],
                 normal,
-                share: nodes[&node].share,
+                tributary_area: nodes[&node].tributary_area,
             })
         })
         .collect()

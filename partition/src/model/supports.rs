@@ -20,11 +20,11 @@ pub(super) const PARALLEL: f64 = 1e-6;
 const CORNER: f64 = 0.766_044_443_118_978;
 
 /// A direction that a condition prescribes at a node.
-struct Row<'a> {
+struct Row {
     direction: [f64; 3],
     value: f64,
+    /// Index of the condition among the names.
     condition: usize,
-    name: &'a str,
 }
 
 /// The names of the conditions that prescribe displacements in a loading of `scene`, displacements before
@@ -45,11 +45,18 @@ pub(super) fn supports(
     topology: &Topology,
 ) -> Result<Vec<Support>, InputError> {
     let names = names(scene, loading);
-    let mut names = names.iter().enumerate();
+    let mut numbered = names.iter().enumerate();
     let mut rows: BTreeMap<u32, Vec<Row>> = BTreeMap::new();
-    for (condition, (number_of, label)) in loading.displacement.iter().zip(&mut names) {
-        for node in groups::nodes(mesh, &condition.on, label)? {
-            for (axis, number) in condition.components.iter().enumerate() {
+    let mut add = |node, direction, value, condition| {
+        rows.entry(node).or_default().push(Row {
+            direction,
+            value,
+            condition,
+        });
+    };
+    for (keys, (condition, label)) in loading.displacement.iter().zip(&mut numbered) {
+        for node in groups::nodes(mesh, &keys.on, label)? {
+            for (axis, number) in keys.components.iter().enumerate() {
                 let Some(number) = number else { continue };
                 let value = number
                     .at(mesh.points[node as usize])
@@ -57,32 +64,22 @@ pub(super) fn supports(
                     * loading.scale.displacement;
                 let mut direction = [0.0; 3];
                 direction[axis] = 1.0;
-                rows.entry(node).or_default().push(Row {
-                    direction,
-                    value,
-                    condition: number_of,
-                    name: label,
-                });
+                add(node, direction, value, condition);
             }
         }
     }
-    for (condition, (number_of, label)) in scene.bilateral.iter().zip(names) {
-        let facets = groups::facets(mesh, &condition.on, label)?;
+    for (keys, (condition, label)) in scene.bilateral.iter().zip(numbered) {
+        let facets = groups::facets(mesh, &keys.on, label)?;
         let surface = Surface::new(mesh, topology, &facets, label)?;
         for (node, facets) in surface.around() {
             for direction in corner_normals(&surface, node, facets) {
-                rows.entry(node).or_default().push(Row {
-                    direction,
-                    value: 0.0,
-                    condition: number_of,
-                    name: label,
-                });
+                add(node, direction, 0.0, condition);
             }
         }
     }
     let mut supports = Vec::new();
     for (node, rows) in rows {
-        orthonormal(node, mesh, &rows, &mut supports)?;
+        orthonormal(node, mesh, &names, &rows, &mut supports)?;
     }
     Ok(supports)
 }
@@ -94,8 +91,7 @@ fn corner_normals(surface: &Surface, node: u32, mut facets: Vec<usize>) -> Vec<[
     facets.sort_by(|a, b| measure(b).total_cmp(&measure(a)));
     let mut sums: Vec<[f64; 3]> = Vec::new();
     for facet in facets.iter().map(|&f| &surface.facets[f]) {
-        let place = facet.nodes.iter().position(|&n| n == node);
-        let normal = place.map_or(facet.normal, |i| facet.normal_at(i));
+        let normal = facet.normal_at(node);
         let same = |sum: &&mut [f64; 3]| dot(**sum, normal) >= CORNER * length(**sum);
         match sums.iter_mut().find(same) {
             Some(sum) => *sum = advance(*sum, facet.measure, normal),
@@ -111,6 +107,7 @@ fn corner_normals(surface: &Surface, node: u32, mut facets: Vec<usize>) -> Vec<[
 fn orthonormal(
     node: u32,
     mesh: &Mesh,
+    names: &[String],
     rows: &[Row],
     supports: &mut Vec<Support>,
 ) -> Result<(), InputError> {
@@ -142,17 +139,17 @@ fn orthonormal(
         let agreed = if exact.is_some() { AGREE } else { PARALLEL };
         if value.abs() > agreed * scale {
             let others = match exact {
-                Some(other) => format!("{} says {}", other.name, other.value),
+                Some(other) => format!("{} says {}", names[other.condition], other.value),
                 None => {
-                    let names: Vec<&str> = rows[..index].iter().map(|r| r.name).collect();
-                    format!("{} say otherwise", names.join(" and "))
+                    let before = rows[..index].iter().map(|r| names[r.condition].as_str());
+                    format!("{} say otherwise", before.collect::<Vec<_>>().join(" and "))
                 }
             };
             let [x, y, z] = row.direction;
             return Err(InputError::new(format!(
                 "node {}: {} says {} for the displacement along ({x}, {y}, {z}), {others}; \
                  expected conditions that agree",
-                mesh.node_tags[node as usize], row.name, row.value
+                mesh.node_tags[node as usize], names[row.condition], row.value
             )));
         }
     }

@@ -39,12 +39,13 @@ impl SurfaceFacet {
         }
     }
 
-    /// Unit outward normal at its node `i`: that of the facet itself, be it curved.
-    pub fn normal_at(&self, i: usize) -> [f64; 3] {
-        if self.kind.is_linear() {
+    /// Unit outward normal at one of its nodes: that of the facet itself, be it curved.
+    pub fn normal_at(&self, node: u32) -> [f64; 3] {
+        let place = self.nodes.iter().position(|&own| own == node);
+        let Some(place) = place.filter(|_| !self.kind.is_linear()) else {
             return self.normal;
-        }
-        let area = (self.kind).area_vector(&self.at, self.kind.node_coordinates()[i]);
+        };
+        let area = (self.kind).area_vector(&self.at, self.kind.node_coordinates()[place]);
         let size = length(area);
         area.map(|c| c / size)
     }
@@ -54,14 +55,17 @@ impl SurfaceFacet {
         self.kind.along().iter().map(|&i| self.nodes[i])
     }
 
-    /// ∫ of the shape function of its node `i` over it.
-    pub fn share(&self, i: usize) -> f64 {
-        let share = integrate(self.kind, |xi| {
-            let weight = self.kind.shape(xi)[i];
+    /// ∫ of the shape function of a node over it; 0 of one that isn't its own.
+    pub fn tributary_area(&self, node: u32) -> f64 {
+        let Some(place) = self.nodes.iter().position(|&own| own == node) else {
+            return 0.0;
+        };
+        let area = integrate(self.kind, |xi| {
+            let weight = self.kind.shape(xi)[place];
             let measure = length(self.kind.area_vector(&self.at, xi));
             [weight * measure, 0.0, 0.0]
         });
-        share[0]
+        area[0]
     }
 
     /// The way from its node `node` to its middle, across `normal`; `None` if it isn't its node.
@@ -94,7 +98,7 @@ pub(super) struct SurfaceNode {
     /// Σ measure of the facets around it.
     pub measure: f64,
     /// ∫ of its shape function over the surface.
-    pub share: f64,
+    pub tributary_area: f64,
 }
 
 impl SurfaceNode {
@@ -160,15 +164,15 @@ impl Surface {
         Ok(Self { facets })
     }
 
-    /// Its nodes with their normals and shares.
+    /// Its nodes with their normals and tributary areas.
     pub fn nodes(&self) -> HashMap<u32, SurfaceNode> {
         let mut nodes: HashMap<u32, SurfaceNode> = HashMap::new();
         for facet in &self.facets {
-            for (i, &node) in facet.nodes.iter().enumerate() {
+            for &node in &facet.nodes {
                 let sum = nodes.entry(node).or_default();
-                sum.area = advance(sum.area, facet.measure, facet.normal_at(i));
+                sum.area = advance(sum.area, facet.measure, facet.normal_at(node));
                 sum.measure += facet.measure;
-                sum.share += facet.share(i);
+                sum.tributary_area += facet.tributary_area(node);
             }
         }
         nodes
@@ -182,11 +186,7 @@ impl Surface {
                 return None;
             };
             let (a, b) = (&self.facets[a], &self.facets[b]);
-            let normal = |facet: &SurfaceFacet| {
-                let own = facet.nodes.iter().position(|&n| n == node)?;
-                Some(facet.normal_at(own))
-            };
-            let cosine = dot(normal(a)?, normal(b)?).clamp(-1.0, 1.0);
+            let cosine = dot(a.normal_at(node), b.normal_at(node)).clamp(-1.0, 1.0);
             Some((node, cosine.acos(), a.size().max(b.size())))
         };
         self.in_order().into_iter().filter_map(turn).collect()

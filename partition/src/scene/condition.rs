@@ -148,6 +148,17 @@ pub struct Contact {
     pub interference: bool,
 }
 
+impl Contact {
+    /// Its sides, one of them where its partner is an obstacle.
+    pub fn sides(&self) -> impl Iterator<Item = &Names> {
+        let side_b = match &self.partner {
+            Partner::Side(names) => Some(names),
+            Partner::Obstacle(_) => None,
+        };
+        std::iter::once(&self.side_a).chain(side_b)
+    }
+}
+
 /// What the side a of a contact may touch.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Partner {

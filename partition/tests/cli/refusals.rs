@@ -59,7 +59,10 @@ fn what_is_wrong_between_scene_and_mesh_is_said_with_the_scene() {
         (
             "[bodies.lower]",
             "[bodies.lowr]",
-            ["scene.toml: body 'lowr'", "did you mean 'lower'"],
+            [
+                "scene.toml: bodies: the mesh has no physical group 'lowr'",
+                "did you mean 'lower'",
+            ],
         ),
         (
             "\"mesh.msh\"",

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::Diagnostics;
 use crate::model::groups;
-use crate::scene::condition::{Contact, Names, Partner};
+use crate::scene::condition::Partner;
 
 /// Which sides of two contacts have a facet in common: the first's a with the second's a and b, then its b.
 type Common = [[bool; 2]; 2];
@@ -18,7 +18,7 @@ impl Diagnostics<'_> {
         let mut of_facet: HashMap<u32, Vec<(usize, usize)>> = HashMap::new();
         let mut common: BTreeMap<(usize, usize), Common> = BTreeMap::new();
         for (index, contact) in contacts.iter().enumerate() {
-            for (side, names) in sides(contact).into_iter().enumerate() {
+            for (side, names) in contact.sides().enumerate() {
                 for facet in groups::facets(mesh, names, "").unwrap_or_default() {
                     let others = of_facet.entry(facet).or_default();
                     for &(other, of_other) in others.iter().filter(|(other, _)| *other != index) {
@@ -43,12 +43,5 @@ impl Diagnostics<'_> {
             })
         });
         again.collect()
-    }
-}
-
-fn sides(contact: &Contact) -> Vec<&Names> {
-    match &contact.partner {
-        Partner::Side(b) => vec![&contact.side_a, b],
-        Partner::Obstacle(_) => vec![&contact.side_a],
     }
 }

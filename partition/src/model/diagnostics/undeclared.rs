@@ -8,7 +8,7 @@ use rstar::{AABB, RTree};
 use super::{Diagnostics, short};
 use crate::mesh::topology::CellFacet;
 use crate::model::groups;
-use crate::scene::condition::Partner;
+use crate::scene::condition::Contact;
 
 /// Distance up to which facets touch, relative to their length.
 const TOUCHING: f64 = 1e-6;
@@ -90,16 +90,10 @@ impl Diagnostics<'_> {
     fn free_chords(&self) -> Vec<Chord> {
         let mesh = &self.bodies.mesh;
         let mut on_sides = HashSet::new();
-        for contact in &self.scene.contact {
-            let side_b = match &contact.partner {
-                Partner::Side(names) => Some(names),
-                Partner::Obstacle(_) => None,
-            };
-            for names in std::iter::once(&contact.side_a).chain(side_b) {
-                let facets = groups::facets(mesh, names, "").unwrap_or_default();
-                let nodes = facets.into_iter().map(|f| mesh.facets.nodes_of(f as usize));
-                on_sides.extend(nodes.flat_map(|nodes| self.topology.cells_at(nodes)));
-            }
+        for names in self.scene.contact.iter().flat_map(Contact::sides) {
+            let facets = groups::facets(mesh, names, "").unwrap_or_default();
+            let nodes = facets.into_iter().map(|f| mesh.facets.nodes_of(f as usize));
+            on_sides.extend(nodes.flat_map(|nodes| self.topology.cells_at(nodes)));
         }
         let free = self
             .topology

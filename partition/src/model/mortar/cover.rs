@@ -39,17 +39,6 @@ pub(super) struct Opposite<'a> {
     behind: f64,
 }
 
-/// What a line from side a meets of side b.
-enum Hit {
-    /// A facet face to face.
-    Facet(usize),
-    /// Nothing that faces it.
-    Nothing {
-        /// Whether there are facets that face the same way.
-        back_facing: bool,
-    },
-}
-
 impl<'a> Opposite<'a> {
     /// Makes side b ready to be searched; `behind` is how far backwards it may lie (m).
     pub fn new(surface: &'a Surface, behind: f64) -> Self {
@@ -82,11 +71,10 @@ impl<'a> Opposite<'a> {
         let mut any_back_facing = false;
         for ends in cuts.windows(2).filter(|ends| ends[0] < ends[1]) {
             let middle = 0.5 * (ends[0] + ends[1]);
-            match self.hit(field.position(middle), field.normal(middle), &candidates) {
-                Hit::Facet(opposite) => {
-                    self.integrate(field, [ends[0], ends[1]], opposite, &mut cover)
-                }
-                Hit::Nothing { back_facing } => any_back_facing |= back_facing,
+            let (x, normal) = (field.position(middle), field.normal(middle));
+            match self.nearest(x, normal, &candidates) {
+                Ok(opposite) => self.integrate(field, [ends[0], ends[1]], opposite, &mut cover),
+                Err(back_facing) => any_back_facing |= back_facing,
             }
         }
         (cover, any_back_facing)
@@ -110,8 +98,9 @@ impl<'a> Opposite<'a> {
         candidates
     }
 
-    /// What the line through `x` along `normal` meets first, either way but not too far backwards.
-    fn hit(&self, x: [f64; 3], normal: [f64; 3], candidates: &[usize]) -> Hit {
+    /// The facet that the line through `x` along `normal` meets first face to face, either way but not
+    /// too far backwards; where there is none, whether it meets one that faces the same way.
+    fn nearest(&self, x: [f64; 3], normal: [f64; 3], candidates: &[usize]) -> Result<usize, bool> {
         let mut nearest: Option<(usize, f64)> = None;
         let mut back_facing = false;
         for &candidate in candidates {
@@ -129,10 +118,7 @@ impl<'a> Opposite<'a> {
                 nearest = Some((candidate, distance));
             }
         }
-        match nearest {
-            Some((facet, _)) => Hit::Facet(facet),
-            None => Hit::Nothing { back_facing },
-        }
+        nearest.map(|(facet, _)| facet).ok_or(back_facing)
     }
 
     /// Adds the samples of the segment between `ends`, which the facet `opposite` covers.

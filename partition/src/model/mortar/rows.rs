@@ -70,7 +70,7 @@ impl Row {
     /// It is so already where the sides are straight. Without it, the ragged facets of round bodies
     /// would keep them from turning against each other.
     fn balance(&mut self, a: &SideNode, mesh: &Mesh) {
-        // In shares of side a, so that no square of a length overflows.
+        // In multiples of its part of side a, so that no square of a length overflows.
         let place = |node: u32| {
             let way = difference(mesh.points[node as usize], a.position);
             cross(a.normal, way) / self.area

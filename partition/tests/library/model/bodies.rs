@@ -131,7 +131,7 @@ fn a_cell_in_two_bodies_is_named() {
     let error = blocks.model("").unwrap_err();
     assert_eq!(
         error,
-        "cell 5000 of the mesh is in two bodies, 'both' and 'lower'"
+        "bodies: cell 5000 of the mesh is in both 'both' and 'lower'"
     );
 }
 
@@ -151,7 +151,7 @@ fn a_cell_without_area_is_named() {
 #[test]
 fn unknown_groups_are_named_with_the_nearest_and_the_list() {
     let error = two().model("bodies.uper.material = 'steel'").unwrap_err();
-    assert!(error.contains("body 'uper': the mesh has no physical group 'uper'; did you mean 'upper'? (groups of cells: lower, upper)"), "{error}");
+    assert!(error.contains("bodies: the mesh has no physical group 'uper'; did you mean 'upper'? (groups of cells: lower, upper)"), "{error}");
     let error = two()
         .model("[[pressure]]\non = 'uper top'\nvalue = 1")
         .unwrap_err();
@@ -187,7 +187,7 @@ fn a_partition_holds_every_cell_once() {
     assert_eq!(owner, Some(vec![0, 0, 1, 1, 0, 0, 0, 1]));
     let error = model("['s1', 's2', 's3']").unwrap_err();
     assert!(
-        error.contains("cell 5003 of the mesh is in two of them, 's2' and 's3'"),
+        error.contains("cell 5003 of the mesh is in both 's2' and 's3'"),
         "{error}"
     );
     let error = model("['s1', 's3']").unwrap_err();
