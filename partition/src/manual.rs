@@ -1,13 +1,14 @@
 //! What a program says of itself: its help, its man page, completions for shells, and the answer to a
 //! command line that asks for no work.
 
-mod page;
-
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{Command, ValueEnum};
 use clap_complete::{Shell, generate};
+use clap_mangen::Man;
+use roff::{Roff, bold, roman};
 
 use crate::message;
 
@@ -79,7 +80,6 @@ impl Answer {
 
     /// Prints the answer. A closed pipe is nobody's error.
     pub fn print(&self) {
-        use std::io::Write as _;
         match self {
             Self::Text(text) => {
                 let _ = write!(anstream::stdout(), "{text}");
@@ -131,11 +131,63 @@ impl Manual {
             String::from_utf8_lossy(&script).into_owned()
         };
         match document {
-            Document::Man => page::of(self, command),
+            Document::Man => self.page(command),
             Document::CompleteBash => complete(Shell::Bash),
             Document::CompleteZsh => complete(Shell::Zsh),
             Document::CompleteFish => complete(Shell::Fish),
         }
+    }
+
+    /// The man page of the program that `command` parses the options of.
+    fn page(&self, command: Command) -> String {
+        let mut page = Vec::new();
+        // Writing to memory doesn't fail.
+        let _: io::Result<()> = self.write_page(command, &mut page);
+        // Where a list of values begins, an empty line is meant.
+        let page = String::from_utf8_lossy(&page).replace("\n.br\n\n.br\n", "\n.sp\n");
+        let mut text = String::new();
+        for c in page.chars() {
+            // Not every reader of man pages takes more than ASCII.
+            match c.is_ascii() {
+                true => text.push(c),
+                false => text += &format!("\\[u{:04X}]", u32::from(c)),
+            }
+        }
+        text
+    }
+
+    fn write_page(&self, command: Command, out: &mut impl Write) -> io::Result<()> {
+        // What they hold comes in sections of their own.
+        let command = command
+            .after_help(None::<&str>)
+            .after_long_help(None::<&str>);
+        let name = command.get_name().to_owned();
+        let version = command.get_version().unwrap_or_default().to_owned();
+        let page = Man::new(command);
+        // Without a date: a page of one version is the same whenever it is made.
+        writeln!(out, r#".TH {name} 1 "" "{name} {version}" "User Commands""#)?;
+        page.render_name_section(out)?;
+        page.render_synopsis_section(out)?;
+        page.render_description_section(out)?;
+        page.render_options_section(out)?;
+        let mut more = Roff::new();
+        let sections = [
+            ("EXAMPLES", self.examples),
+            ("EXIT STATUS", self.exit_codes),
+            ("FILES", self.files),
+            ("ENVIRONMENT", self.environment),
+        ];
+        for (title, entries) in sections {
+            more.control("SH", [title]);
+            for (name, meaning) in entries {
+                more.control("TP", []);
+                more.text([bold(*name)]);
+                more.text([roman(*meaning)]);
+            }
+        }
+        more.control("SH", ["SEE ALSO"]);
+        more.text([bold(self.see_also), roman("(1)")]);
+        more.to_writer(out)
     }
 }
 

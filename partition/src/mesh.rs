@@ -1,7 +1,6 @@
 //! A mesh: points, cells, facets, and the physical groups that name them.
 
 pub mod bounding_box;
-mod conform;
 mod foreign;
 pub mod gmsh;
 mod measure;

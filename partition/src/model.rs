@@ -23,7 +23,7 @@ use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
-pub use crate::scene::plane::PlaneState;
+pub use crate::scene::material::PlaneState;
 use crate::scene::units::Units;
 use crate::solver::SolverSettings;
 use crate::stiffness::Stiffness;

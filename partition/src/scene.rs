@@ -6,7 +6,6 @@ mod fault;
 pub mod material;
 pub mod number;
 pub mod place;
-pub mod plane;
 pub mod step;
 pub mod suggest;
 mod syntax;
@@ -21,8 +20,7 @@ use crate::error::InputError;
 use crate::solver::SolverSettings;
 use crate::source;
 use condition::{Bilateral, Body, Contact, Displacement, Names, Pressure, Traction};
-use material::Elasticity;
-use plane::PlaneState;
+use material::{Elasticity, PlaneState};
 use step::LoadStep;
 use units::Units;
 

@@ -52,7 +52,7 @@ fn read_unnamed(path: &Path) -> Result<Mesh, InputError> {
         .map_err(unreadable)?;
     let first = b"$MeshFormat";
     if !bytes.windows(first.len()).any(|w| w == first) {
-        return Err(foreign::refusal(path, &bytes));
+        return Err(foreign::refusal(path));
     }
     file.read_to_end(&mut bytes).map_err(unreadable)?;
     parse(&bytes)

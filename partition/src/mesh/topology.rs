@@ -20,6 +20,16 @@ pub struct CellFacet {
     pub facet: u8,
 }
 
+impl CellFacet {
+    /// Its nodes, from its start to its end and then those between.
+    pub fn nodes(self, cells: &Elements) -> Vec<u32> {
+        let cell = self.cell as usize;
+        let (_, local) = cells.kind(cell).facets()[self.facet as usize];
+        let nodes = cells.nodes_of(cell);
+        local.iter().map(|&i| nodes[i]).collect()
+    }
+}
+
 /// The facets of cells, those of the same nodes beside each other.
 #[derive(Clone, Debug)]
 pub struct Facets {
@@ -66,14 +76,7 @@ impl Facets {
     /// Two cells on the same side of an edge that they share, if there are any: one of them is
     /// turned over, or they overlap.
     pub fn overlap(&self, cells: &Elements) -> Option<[CellFacet; 2]> {
-        let start = |of: &CellFacet| {
-            let (kind, nodes) = (
-                cells.kind(of.cell as usize),
-                cells.nodes_of(of.cell as usize),
-            );
-            let (_, local) = kind.facets()[of.facet as usize];
-            nodes[local[0]]
-        };
+        let start = |of: &CellFacet| of.nodes(cells)[0];
         self.places().find_map(|same| {
             // Of three cells two are on one side.
             let count = same.len().min(3);
@@ -110,6 +113,28 @@ impl Facets {
     }
 }
 
+impl Mesh {
+    /// Checks that cells which share the ends of an edge share the node between them as well.
+    ///
+    /// # Errors
+    /// Two that don't, by their tags: such as a linear cell beside a quadratic one, whose node in the
+    /// middle would hang.
+    pub(crate) fn check_edges(&self) -> Result<(), InputError> {
+        let Some([a, b]) = Facets::torn(&self.cells, self.points.len()) else {
+            return Ok(());
+        };
+        let [a_name, b_name] = [a, b].map(|at| self.cells.kind(at.cell as usize).name());
+        Err(InputError::new(format!(
+            "elements {} ({a_name}) and {} ({b_name}) share an edge between the nodes {}, but not the \
+             node in its middle; expected linear or quadratic elements on both of its sides, of the same \
+             nodes",
+            self.cell_tags[a.cell as usize],
+            self.cell_tags[b.cell as usize],
+            self.tags_of(&a.nodes(&self.cells)[..2])
+        )))
+    }
+}
+
 /// The adjacency of a mesh's cells across facets.
 #[derive(Clone, Debug)]
 pub struct Topology {
@@ -139,18 +164,12 @@ impl Topology {
         let Some([a, b]) = self.facets.overlap(&mesh.cells) else {
             return Ok(());
         };
-        let cell = a.cell as usize;
-        let (_, local) = mesh.cells.kind(cell).facets()[a.facet as usize];
-        let nodes: Vec<u32> = local
-            .iter()
-            .map(|&i| mesh.cells.nodes_of(cell)[i])
-            .collect();
         Err(InputError::new(format!(
             "elements {} and {} lie on the same side of the edge of nodes {} that they share; \
              expected cells that don't overlap (is one of them inside out?)",
-            mesh.cell_tags[cell],
+            mesh.cell_tags[a.cell as usize],
             mesh.cell_tags[b.cell as usize],
-            mesh.tags_of(&nodes)
+            mesh.tags_of(&a.nodes(&mesh.cells))
         )))
     }
 

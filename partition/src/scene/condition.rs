@@ -185,7 +185,8 @@ pub enum Pairing {
     expecting = "a table of name, sides, pairing, gap, interference and obstacle"
 )]
 struct ContactKeys {
-    name: ContactName,
+    #[serde(deserialize_with = "contact_name")]
+    name: String,
     sides: Vec<Names>,
     pairing: Option<Pairing>,
     gap: Option<Number>,
@@ -211,20 +212,14 @@ impl TryFrom<ContactKeys> for Contact {
                 return Err("'pairing' is of two sides; expected none beside an 'obstacle'".into());
             }
             (Some(a), None, None, Some(obstacle)) => (a, Partner::Obstacle(obstacle)),
-            (_, _, _, None) => {
-                let entries = if count == 1 { "entry" } else { "entries" };
+            _ => {
                 return Err(format!(
-                    "'sides' has {count} {entries}; expected 2 (or 1 and an 'obstacle')"
-                ));
-            }
-            (_, _, _, Some(_)) => {
-                return Err(format!(
-                    "'sides' has {count} entries; expected 1 beside an 'obstacle'"
+                    "the number of 'sides' is {count}; expected 2, or 1 beside an 'obstacle'"
                 ));
             }
         };
         Ok(Self {
-            name: keys.name.0,
+            name: keys.name,
             side_a,
             partner,
             pairing: keys.pairing,
@@ -234,18 +229,14 @@ impl TryFrom<ContactKeys> for Contact {
     }
 }
 
-#[derive(Deserialize)]
-#[serde(try_from = "String")]
-struct ContactName(String);
-
-impl TryFrom<String> for ContactName {
-    type Error = String;
-
-    fn try_from(name: String) -> Result<Self, String> {
-        match name::check_contact(&name) {
-            Ok(()) => Ok(Self(name)),
-            Err(reason) => Err(format!("'{}' {reason}", name::shown(&name))),
-        }
+fn contact_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    let name = String::deserialize(deserializer)?;
+    match name::check_contact(&name) {
+        Ok(()) => Ok(name),
+        Err(reason) => Err(D::Error::custom(format!(
+            "'{}' {reason}",
+            name::shown(&name)
+        ))),
     }
 }
 
@@ -278,9 +269,11 @@ pub enum Obstacle {
 )]
 struct ObstacleKeys {
     point: Option<ConstantVector>,
-    normal: Option<Direction>,
+    #[serde(default, deserialize_with = "direction")]
+    normal: Option<ConstantVector>,
     center: Option<ConstantVector>,
-    radius: Option<Radius>,
+    #[serde(default, deserialize_with = "radius")]
+    radius: Option<f64>,
     inside: Option<bool>,
 }
 
@@ -291,7 +284,7 @@ impl TryFrom<ObstacleKeys> for Obstacle {
         match keys {
             ObstacleKeys {
                 point: Some(point),
-                normal: Some(Direction(normal)),
+                normal: Some(normal),
                 center: None,
                 radius: None,
                 inside: None,
@@ -306,7 +299,7 @@ impl TryFrom<ObstacleKeys> for Obstacle {
                 point: None,
                 normal: None,
                 center: Some(center),
-                radius: Some(Radius(radius)),
+                radius: Some(radius),
                 inside,
             } => Ok(Self::Circle {
                 center,
@@ -329,34 +322,23 @@ impl Obstacle {
     }
 }
 
-#[derive(Deserialize)]
-#[serde(try_from = "ConstantVector")]
-struct Direction(ConstantVector);
-
-impl TryFrom<ConstantVector> for Direction {
-    type Error = &'static str;
-
-    fn try_from(vector: ConstantVector) -> Result<Self, Self::Error> {
-        if vector.value == [0.0; 3] {
-            Err("the zero vector has no direction")
-        } else {
-            Ok(Self(vector))
-        }
+fn direction<'de, D>(deserializer: D) -> Result<Option<ConstantVector>, D::Error>
+where
+    D: Deserializer<'de>,
+{
+    let vector = ConstantVector::deserialize(deserializer)?;
+    match vector.value == [0.0; 3] {
+        true => Err(D::Error::custom("the zero vector has no direction")),
+        false => Ok(Some(vector)),
     }
 }
 
-#[derive(Deserialize)]
-#[serde(try_from = "Constant")]
-struct Radius(f64);
-
-impl TryFrom<Constant> for Radius {
-    type Error = String;
-
-    fn try_from(Constant(value): Constant) -> Result<Self, String> {
-        if value > 0.0 {
-            Ok(Self(value))
-        } else {
-            Err(format!("the radius is {value}; expected more than 0"))
-        }
+fn radius<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    let Constant(value) = Constant::deserialize(deserializer)?;
+    match value > 0.0 {
+        true => Ok(Some(value)),
+        false => Err(D::Error::custom(format!(
+            "the radius is {value}; expected more than 0"
+        ))),
     }
 }

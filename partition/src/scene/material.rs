@@ -1,7 +1,8 @@
-//! Materials as a scene gives them.
+//! Materials as a scene gives them, and its plane state.
 
 use nalgebra::Matrix3;
 use serde::Deserialize;
+use serde::de::{Deserializer, Error};
 
 use super::number::Constant;
 use crate::magnitude::SMALLEST_STIFFNESS;
@@ -26,15 +27,41 @@ pub enum Elasticity {
     },
 }
 
+/// Which plane state a two-dimensional scene is in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PlaneState {
+    /// ε_zz = 0.
+    Strain,
+    /// σ_zz = 0.
+    Stress,
+}
+
+impl PlaneState {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Strain, Self::Stress];
+
+    /// Its name in scenes and problem files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Strain => "strain",
+            Self::Stress => "stress",
+        }
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(
     deny_unknown_fields,
     expecting = "a table of young and poisson, or of stiffness"
 )]
 struct MaterialKeys {
-    young: Option<Young>,
-    poisson: Option<Poisson>,
-    stiffness: Option<Stiffness>,
+    #[serde(default, deserialize_with = "young")]
+    young: Option<f64>,
+    #[serde(default, deserialize_with = "poisson")]
+    poisson: Option<f64>,
+    #[serde(default, deserialize_with = "stiffness")]
+    stiffness: Option<[[f64; 3]; 3]>,
     out_of_plane: Option<[Constant; 3]>,
 }
 
@@ -48,13 +75,10 @@ impl TryFrom<MaterialKeys> for Elasticity {
                     return Err("'out_of_plane' belongs to 'stiffness'; \
                                 it follows from 'young' and 'poisson'");
                 }
-                Ok(Self::Isotropic {
-                    young: young.0,
-                    poisson: poisson.0,
-                })
+                Ok(Self::Isotropic { young, poisson })
             }
             (None, None, Some(stiffness)) => Ok(Self::Anisotropic {
-                stiffness: stiffness.0,
+                stiffness,
                 out_of_plane: keys.out_of_plane.map(|row| row.map(|c| c.0)),
             }),
             (Some(_), None, None) => Err("the key 'poisson' is missing"),
@@ -67,76 +91,53 @@ impl TryFrom<MaterialKeys> for Elasticity {
     }
 }
 
-#[derive(Deserialize)]
-#[serde(try_from = "Constant")]
-struct Young(f64);
-
-impl TryFrom<Constant> for Young {
-    type Error = String;
-
-    fn try_from(Constant(value): Constant) -> Result<Self, String> {
-        if value >= SMALLEST_STIFFNESS {
-            Ok(Self(value))
-        } else {
-            Err(format!(
-                "Young's modulus is {value}; expected more than 0 (at least {SMALLEST_STIFFNESS:e})"
-            ))
-        }
+fn young<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    let Constant(value) = Constant::deserialize(deserializer)?;
+    match value >= SMALLEST_STIFFNESS {
+        true => Ok(Some(value)),
+        false => Err(D::Error::custom(format!(
+            "Young's modulus is {value}; expected more than 0 (at least {SMALLEST_STIFFNESS:e})"
+        ))),
     }
 }
 
-#[derive(Deserialize)]
-#[serde(try_from = "Constant")]
-struct Poisson(f64);
-
-impl TryFrom<Constant> for Poisson {
-    type Error = String;
-
-    fn try_from(Constant(value): Constant) -> Result<Self, String> {
-        if -1.0 < value && value < 0.5 {
-            Ok(Self(value))
-        } else {
-            Err(format!(
-                "Poisson's ratio is {value}; expected more than -1 and less than 0.5"
-            ))
-        }
+fn poisson<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    let Constant(value) = Constant::deserialize(deserializer)?;
+    match -1.0 < value && value < 0.5 {
+        true => Ok(Some(value)),
+        false => Err(D::Error::custom(format!(
+            "Poisson's ratio is {value}; expected more than -1 and less than 0.5"
+        ))),
     }
 }
 
-#[derive(Deserialize)]
-#[serde(try_from = "[[Constant; 3]; 3]")]
-struct Stiffness([[f64; 3]; 3]);
-
-impl TryFrom<[[Constant; 3]; 3]> for Stiffness {
-    type Error = String;
-
-    fn try_from(rows: [[Constant; 3]; 3]) -> Result<Self, String> {
-        let given = Matrix3::from(rows.map(|row| row.map(|c| c.0))).transpose();
-        let slack = 1e-9 * given.amax();
-        for i in 0..3 {
-            for j in 0..i {
-                if (given[(i, j)] - given[(j, i)]).abs() > slack {
-                    return Err(format!(
-                        "the stiffness isn't symmetric: row {}, column {} is {}, its mirror image is {}",
-                        i + 1,
-                        j + 1,
-                        given[(i, j)],
-                        given[(j, i)]
-                    ));
-                }
-            }
+/// A symmetric positive definite matrix, its symmetric part.
+fn stiffness<'de, D>(deserializer: D) -> Result<Option<[[f64; 3]; 3]>, D::Error>
+where
+    D: Deserializer<'de>,
+{
+    let rows = <[[Constant; 3]; 3]>::deserialize(deserializer)?;
+    let given = Matrix3::from(rows.map(|row| row.map(|c| c.0))).transpose();
+    let slack = 1e-9 * given.amax();
+    for (i, j) in [(1, 0), (2, 0), (2, 1)] {
+        let (below, above) = (given[(i, j)], given[(j, i)]);
+        if (below - above).abs() > slack {
+            return Err(D::Error::custom(format!(
+                "the stiffness isn't symmetric: row {}, column {} is {below}, its mirror image is {above}",
+                i + 1,
+                j + 1
+            )));
         }
-        let symmetric = 0.5 * (given + given.transpose());
-        // Scaled first, so that no product under- or overflows.
-        let scale = symmetric.amax();
-        let eigenvalues = (symmetric / scale).symmetric_eigenvalues() * scale;
-        let (least, largest) = (eigenvalues.min(), eigenvalues.max());
-        if least > 1e-15 * largest && scale >= SMALLEST_STIFFNESS {
-            Ok(Self(symmetric.into()))
-        } else {
-            Err(format!(
-                "the stiffness isn't positive definite: its eigenvalues reach from {least:.3e} to {largest:.3e}"
-            ))
-        }
+    }
+    let symmetric = 0.5 * (given + given.transpose());
+    // Scaled first, so that no product under- or overflows.
+    let scale = symmetric.amax();
+    let eigenvalues = (symmetric / scale).symmetric_eigenvalues() * scale;
+    let (least, largest) = (eigenvalues.min(), eigenvalues.max());
+    match least > 1e-15 * largest && scale >= SMALLEST_STIFFNESS {
+        true => Ok(Some(symmetric.into())),
+        false => Err(D::Error::custom(format!(
+            "the stiffness isn't positive definite: its eigenvalues reach from {least:.3e} to {largest:.3e}"
+        ))),
     }
 }

@@ -151,42 +151,33 @@ struct Entry {
     value: Range<usize>,
 }
 
+/// All values of the text; none where it isn't TOML.
 fn entries(text: &str) -> Vec<Entry> {
     let mut entries = Vec::new();
     if let Ok(table) = DeTable::parse(text) {
-        collect_table(table.get_ref(), &mut Vec::new(), &mut entries);
+        collect(&DeValue::Table(table.into_inner()), &[], &mut entries);
     }
     entries
 }
 
-fn collect_table(table: &DeTable, path: &mut Vec<Step>, entries: &mut Vec<Entry>) {
-    for (key, value) in table {
-        path.push(Step::Key(key.get_ref().to_string()));
+/// Adds what `value`, to which `path` leads, holds.
+fn collect(value: &DeValue, path: &[Step], entries: &mut Vec<Entry>) {
+    let held: Vec<_> = match value {
+        DeValue::Table(table) => (table.iter())
+            .map(|(key, value)| (key.get_ref().as_ref().into(), Some(key.span()), value))
+            .collect(),
+        DeValue::Array(array) => (array.iter().enumerate())
+            .map(|(index, item)| (Step::Index(index), None, item))
+            .collect(),
+        _ => return,
+    };
+    for (step, key, value) in held {
+        let path = [path, &[step]].concat();
+        collect(value.get_ref(), &path, entries);
         entries.push(Entry {
-            path: path.clone(),
-            key: Some(key.span()),
+            path,
+            key,
             value: value.span(),
         });
-        collect(value.get_ref(), path, entries);
-        path.pop();
-    }
-}
-
-fn collect(value: &DeValue, path: &mut Vec<Step>, entries: &mut Vec<Entry>) {
-    match value {
-        DeValue::Table(table) => collect_table(table, path, entries),
-        DeValue::Array(array) => {
-            for (index, item) in array.iter().enumerate() {
-                path.push(Step::Index(index));
-                entries.push(Entry {
-                    path: path.clone(),
-                    key: None,
-                    value: item.span(),
-                });
-                collect(item.get_ref(), path, entries);
-                path.pop();
-            }
-        }
-        _ => {}
     }
 }

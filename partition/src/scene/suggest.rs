@@ -1,7 +1,7 @@
 //! The known word that an unknown one was probably meant to be.
 
 /// What other programs call what a scene has another word for, or doesn't have.
-const ELSEWHERE: [(&[&str], &str); 8] = [
+const ELSEWHERE: [(&[&str], &str); 7] = [
     (&["e", "modulus", "youngs"], "Young's modulus is 'young'"),
     (&["nu", "ν"], "Poisson's ratio is 'poisson'"),
     (
@@ -29,7 +29,6 @@ const ELSEWHERE: [(&[&str], &str); 8] = [
         &["thickness"],
         "forces are those of a thickness of 1, and all is in proportion to it",
     ),
-    (&["log"], "logarithms are 'ln' and 'log10'"),
 ];
 
 /// The candidate with the fewest letters different from `word`, capitals aside; the first of

@@ -116,7 +116,7 @@ fn what_is_wrong_with_a_file_is_said_with_its_place() {
         (
             "2 2 2 1 90",
             "2 2 21 1 90",
-            "element 90 is of type 21 (triangle of third",
+            "element 90 is of type 21, of third",
         ),
         ("2 2 2 1 90", "2 2 2 8000000000 90", "it is truncated"),
         (

@@ -18,6 +18,7 @@ pub(super) enum Encoding {
 }
 
 /// A place in the bytes of an MSH file.
+#[derive(Clone)]
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -144,14 +145,7 @@ impl<'a> Cursor<'a> {
     pub(super) fn int(&mut self, what: &str) -> Result<i64, InputError> {
         match self.encoding {
             Encoding::Ascii => self.word(what, "an integer"),
-            Encoding::Binary { big_endian, .. } => {
-                let bytes = self.take(what)?;
-                Ok(match big_endian {
-                    true => i32::from_be_bytes(bytes),
-                    false => i32::from_le_bytes(bytes),
-                }
-                .into())
-            }
+            Encoding::Binary { .. } => Ok(i32::from_le_bytes(self.take(what)?).into()),
         }
     }
 
@@ -159,24 +153,8 @@ impl<'a> Cursor<'a> {
     pub(super) fn size(&mut self, what: &str) -> Result<i64, InputError> {
         let value: u64 = match self.encoding {
             Encoding::Ascii => self.word(what, "a whole number")?,
-            Encoding::Binary {
-                big_endian,
-                size_bytes: 4,
-            } => {
-                let bytes = self.take(what)?;
-                match big_endian {
-                    true => u32::from_be_bytes(bytes),
-                    false => u32::from_le_bytes(bytes),
-                }
-                .into()
-            }
-            Encoding::Binary { big_endian, .. } => {
-                let bytes = self.take(what)?;
-                match big_endian {
-                    true => u64::from_be_bytes(bytes),
-                    false => u64::from_le_bytes(bytes),
-                }
-            }
+            Encoding::Binary { size_bytes: 4, .. } => u32::from_le_bytes(self.take(what)?).into(),
+            Encoding::Binary { .. } => u64::from_le_bytes(self.take(what)?),
         };
         i64::try_from(value).map_err(|_| self.error(format!("{what} is too large: {value}")))
     }
@@ -185,13 +163,7 @@ impl<'a> Cursor<'a> {
     pub(super) fn real(&mut self, what: &str) -> Result<f64, InputError> {
         let value: f64 = match self.encoding {
             Encoding::Ascii => self.word(what, "a number")?,
-            Encoding::Binary { big_endian, .. } => {
-                let bytes = self.take(what)?;
-                match big_endian {
-                    true => f64::from_be_bytes(bytes),
-                    false => f64::from_le_bytes(bytes),
-                }
-            }
+            Encoding::Binary { .. } => f64::from_le_bytes(self.take(what)?),
         };
         magnitude::check(value)
             .map_err(|expected| self.error(format!("{what} is {value:e}; expected {expected}")))
@@ -273,14 +245,21 @@ impl<'a> Cursor<'a> {
         })
     }
 
+    /// The bytes of a number, the least significant first whatever their order in the file.
     fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N], InputError> {
         let rest = &self.bytes[self.at..];
-        let Some(bytes) = rest.first_chunk::<N>() else {
+        let Some(mut bytes) = rest.first_chunk::<N>().copied() else {
             return Err(self.ended(what));
         };
         self.last = self.at;
         self.at += N;
-        Ok(*bytes)
+        if let Encoding::Binary {
+            big_endian: true, ..
+        } = self.encoding
+        {
+            bytes.reverse();
+        }
+        Ok(bytes)
     }
 
     fn ended(&self, what: &str) -> InputError {

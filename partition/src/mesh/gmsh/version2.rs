@@ -56,7 +56,7 @@ pub(super) fn elements(cursor: &mut Cursor, content: &mut Content) -> Result<(),
             for _ in 0..count {
                 let tag = cursor.int("an element tag")?;
                 let code = cursor.int("an element type")?;
-                let kind = kind(cursor, tag, code)?;
+                let kind = element_type::kind(tag, code).map_err(|why| cursor.error(why))?;
                 let tags = cursor.int_count("the number of tags of an element", 1)?;
                 element(cursor, content, tag, kind, tags)?;
             }
@@ -75,7 +75,7 @@ pub(super) fn elements(cursor: &mut Cursor, content: &mut Content) -> Result<(),
                 }
                 for _ in 0..follow {
                     let tag = cursor.int("an element tag")?;
-                    let kind = kind(cursor, tag, code)?;
+                    let kind = element_type::kind(tag, code).map_err(|why| cursor.error(why))?;
                     element(cursor, content, tag, kind, tags)?;
                 }
                 found += follow;
@@ -83,11 +83,6 @@ pub(super) fn elements(cursor: &mut Cursor, content: &mut Content) -> Result<(),
         }
     }
     Ok(())
-}
-
-fn kind(cursor: &Cursor, tag: i64, code: i64) -> Result<ElementKind, InputError> {
-    element_type::kind(code)
-        .map_err(|name| cursor.error(element_type::unsupported(tag, code, name)))
 }
 
 /// Reads an element from its tags on: the first is the physical group.

@@ -130,13 +130,8 @@ pub(super) fn elements(cursor: &mut Cursor, content: &mut Content) -> Result<(),
             continue;
         }
         found += count;
-        let kind = match element_type::kind(code) {
-            Ok(kind) => kind,
-            Err(name) => {
-                let first = cursor.size("an element tag")?;
-                return Err(cursor.error(element_type::unsupported(first, code, name)));
-            }
-        };
+        let first = cursor.clone().size("an element tag")?;
+        let kind = element_type::kind(first, code).map_err(|why| cursor.error(why))?;
         if kind.dim() != dim {
             return Err(cursor.error(format!(
                 "expected elements of dimension {dim}, as their entity {entity} has, found \

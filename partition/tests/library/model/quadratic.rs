@@ -269,7 +269,7 @@ fn linear_cells_that_share_an_edge_with_quadratic_ones_are_refused() {
     blocks.mesh.cells = cells;
     let error = blocks.model("").unwrap_err();
     assert!(
-        error.contains("elements 5001 (triangle of 3 nodes) and 5000 (triangle of 6 nodes)"),
+        error.contains("elements 5000 (triangle of 6 nodes) and 5001 (triangle of 3 nodes)"),
         "{error}"
     );
 }

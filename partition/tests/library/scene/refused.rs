@@ -202,17 +202,17 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
         (
             "[\"base\"]",
             "[\"base\", \"top\"]",
-            "contact[2] 'table': 'sides' has 2 entries; expected 1",
+            "contact[2] 'table': the number of 'sides' is 2; expected 2, or 1 beside an 'obstacle'",
         ),
         (
             "[\"base\"]",
             "[]",
-            "contact[2] 'table': 'sides' has 0 entries",
+            "contact[2] 'table': the number of 'sides' is 0",
         ),
         (
             "obstacle = { point = [0.0, 0.0], normal = [0.0, 2.0] }",
             "",
-            "contact[2] 'table': 'sides' has 1 entry; expected 2",
+            "contact[2] 'table': the number of 'sides' is 1; expected 2",
         ),
         (
             "\"more\"",
