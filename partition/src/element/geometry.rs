@@ -164,7 +164,6 @@ fn roots(a: f64, b: f64, c: f64) -> impl Iterator<Item = f64> {
 #[cfg(test)]
 mod tests {
     use super::super::ElementKind;
-    use super::*;
 
     #[test]
     fn a_line_crosses_a_curved_facet_where_it_is() {
