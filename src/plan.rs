@@ -2,38 +2,22 @@
 
 mod assign;
 pub mod cluster;
-pub mod demand;
-mod size;
-pub mod tree;
+pub mod cost;
 
 use contact_dd_partition::problem::Catalog;
+use contact_dd_partition::problem::tree::{Block, Tree};
 
-use self::assign::{assign, block_cost, front_cost};
+use self::assign::assign;
 use self::cluster::{ClusterPlan, Merging, cluster_nodes};
-use self::size::Size;
-use self::tree::Tree;
-
-/// A block of the problem: a linear subdomain, or a group in contact.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct BlockPlan {
-    /// Its subdomains, ascending.
-    pub subdomains: Vec<usize>,
-    /// Its group; `None` for a linear subdomain.
-    pub group: Option<usize>,
-    /// The rank that owns it.
-    pub owner: usize,
-}
 
 /// The blocks in the order of their first subdomains and the clusters in that of the hierarchy; every
 /// sum runs in this order, whoever owns what.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plan {
     /// Blocks.
-    pub blocks: Vec<BlockPlan>,
+    pub blocks: Vec<Block>,
     /// The block of every group in contact, ascending.
     pub groups: Vec<usize>,
-    /// How many blocks have each node of Γ.
-    pub sharing: Vec<u32>,
     /// The block of every subdomain.
     pub block_of: Vec<usize>,
     /// The hierarchy of the blocks.
@@ -50,39 +34,14 @@ impl Plan {
     /// Assigns the blocks of `catalog` and the merges of their Schur complements to `ranks` ranks
     /// by estimated cost.
     pub fn new(catalog: &Catalog, ranks: usize, merging: Merging) -> Self {
-        let mut blocks: Vec<BlockPlan> = Vec::new();
-        let mut block_of_group = vec![None; catalog.groups.len()];
-        let mut block_of = Vec::with_capacity(catalog.subdomains.len());
-        for (index, subdomain) in catalog.subdomains.iter().enumerate() {
-            let known = subdomain.group.and_then(|g| block_of_group[g]);
-            let block = known.unwrap_or_else(|| {
-                blocks.push(BlockPlan {
-                    subdomains: Vec::new(),
-                    group: subdomain.group,
-                    owner: 0,
-                });
-                blocks.len() - 1
-            });
-            if let Some(g) = subdomain.group {
-                block_of_group[g] = Some(block);
-            }
-            blocks[block].subdomains.push(index);
-            block_of.push(block);
-        }
-        let mut sharing = vec![0u32; catalog.interface_nodes];
-        for block in &blocks {
-            for node in interface_nodes(catalog, block) {
-                sharing[node as usize] += 1;
-            }
-        }
+        let (blocks, block_of) = Block::of(catalog);
         let groups = (0..blocks.len())
             .filter(|&b| blocks[b].group.is_some())
             .collect();
-        let tree = Tree::new(catalog, &blocks, &block_of, &sharing);
+        let tree = Tree::new(catalog, &blocks, &block_of);
         let mut plan = Self {
             blocks,
             groups,
-            sharing,
             block_of,
             tree,
             node_owners: Vec::new(),
@@ -98,13 +57,10 @@ impl Plan {
         let mut costs = vec![0.0; self.tree.nodes.len()];
         for &cluster in &clusters {
             for v in self.tree.subtree(cluster) {
-                costs[v] = self.cost(catalog, v);
+                costs[v] = cost::weight(&self.tree, v, catalog.dim);
             }
         }
         self.node_owners = assign(&self.tree, &clusters, &costs, ranks);
-        for (b, block) in self.blocks.iter_mut().enumerate() {
-            block.owner = self.node_owners[b];
-        }
         for node in clusters {
             let under = self.tree.subtree(node).into_iter();
             self.clusters.push(ClusterPlan {
@@ -118,33 +74,29 @@ impl Plan {
             .collect();
     }
 
-    /// Estimated flops of condensing a block, or of merging what lies under an inner node.
-    fn cost(&self, catalog: &Catalog, v: usize) -> f64 {
-        match self.size(catalog, v) {
-            Size::Block { interior, kept, .. } => block_cost(interior as f64, kept as f64),
-            Size::Merge(front) => front_cost(front),
-        }
-    }
-
     /// Number of nodes of Γ, each counted once.
     pub fn interface_nodes(&self) -> usize {
-        self.sharing.iter().filter(|&&blocks| blocks > 1).count()
+        self.tree
+            .sharing
+            .iter()
+            .filter(|&&blocks| blocks > 1)
+            .count()
     }
 
     /// The owner of every block.
     pub fn owners(&self) -> Vec<usize> {
-        self.blocks.iter().map(|b| b.owner).collect()
+        self.node_owners[..self.blocks.len()].to_vec()
     }
 
     /// The owner of every subdomain.
     pub fn subdomain_owners(&self) -> Vec<usize> {
         let blocks = self.block_of.iter();
-        blocks.map(|&b| self.blocks[b].owner).collect()
+        blocks.map(|&b| self.node_owners[b]).collect()
     }
 
     /// The owner of every group.
     pub fn group_owners(&self) -> Vec<usize> {
-        self.groups.iter().map(|&b| self.blocks[b].owner).collect()
+        self.groups.iter().map(|&b| self.node_owners[b]).collect()
     }
 
     /// The place of block b among the groups.
@@ -193,21 +145,9 @@ impl Plan {
     pub fn ways_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.clusters.iter().flat_map(|cluster| {
             let groups = cluster.groups.iter();
-            groups.map(|&g| (self.blocks[self.groups[g]].owner, cluster.owner))
+            groups.map(|&g| (self.node_owners[self.groups[g]], cluster.owner))
         })
     }
-}
-
-/// The nodes of Γ of a block, each once, ascending.
-fn interface_nodes(catalog: &Catalog, block: &BlockPlan) -> Vec<u32> {
-    let mut nodes: Vec<u32> = block
-        .subdomains
-        .iter()
-        .flat_map(|&s| catalog.interface[s].iter().copied())
-        .collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    nodes
 }
 
 #[cfg(test)]
@@ -270,7 +210,7 @@ mod tests {
         let catalog = catalog();
         let plan = Plan::new(&catalog, 1, Merging::All);
         assert_eq!(plan.tree.nodes[1].kept, [1, 3]);
-        assert_eq!(plan.sharing, [3, 2, 1, 2]);
+        assert_eq!(plan.tree.sharing, [3, 2, 1, 2]);
     }
 
     #[test]
@@ -279,10 +219,8 @@ mod tests {
         let one = Plan::new(&catalog, 1, Merging::All);
         for ranks in 2..8 {
             let plan = Plan::new(&catalog, ranks, Merging::All);
-            for (a, b) in one.blocks.iter().zip(&plan.blocks) {
-                assert_eq!(a.subdomains, b.subdomains);
-                assert!(b.owner < ranks);
-            }
+            assert_eq!(one.blocks, plan.blocks);
+            assert!(plan.node_owners.iter().all(|&owner| owner < ranks));
         }
     }
 
@@ -313,7 +251,7 @@ mod tests {
         let plan = Plan::new(&catalog(), 2, Merging::All);
         let nodes = [40, 60, 20, 90];
         let of_rank = |rank: usize| -> usize {
-            let own = (0..4).filter(|&b| plan.blocks[b].owner == rank);
+            let own = (0..4).filter(|&b| plan.node_owners[b] == rank);
             own.map(|b| nodes[b]).sum()
         };
         assert_eq!((of_rank(0), of_rank(1)), (110, 100));

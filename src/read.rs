@@ -29,7 +29,7 @@ pub fn read_blocks(
     let mut subdomains = read_subdomains(rank, file, plan)?;
     let mut blocks = BTreeMap::new();
     for (number, of_plan) in plan.blocks.iter().enumerate() {
-        if of_plan.owner != rank {
+        if plan.node_owners[number] != rank {
             continue;
         }
         let members = of_plan.subdomains.iter();
@@ -41,7 +41,7 @@ pub fn read_blocks(
             .map(|group| file.points(group, &members.iter().collect::<Vec<_>>()))
             .transpose()?
             .unwrap_or_default();
-        let block = Block::new(members, dim, |node| plan.sharing[node as usize] > 1);
+        let block = Block::new(members, dim, |node| plan.tree.sharing[node as usize] > 1);
         blocks.insert(number, OwnedBlock::new(block, &points));
     }
     Ok(blocks)

@@ -58,8 +58,8 @@ impl Outputs {
 
 /// Brings every rank's times and memory to the root. Collective.
 pub fn collect(comm: &Comm, seconds: &PhaseSeconds, plan: &Plan) -> Vec<RankReport> {
-    let own = plan.blocks.iter().filter(|b| b.owner == comm.rank());
-    let subdomains: usize = own.map(|b| b.subdomains.len()).sum();
+    let owners = plan.subdomain_owners().into_iter();
+    let subdomains = owners.filter(|&owner| owner == comm.rank()).count();
     let mine = (*seconds, peak_memory_bytes(), comm.bytes_sent(), subdomains);
     let all = comm.collect(&mine).into_iter();
     all.map(

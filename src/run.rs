@@ -72,8 +72,8 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     // Every rank reads its own subdomains and pairs.
     let catalog = file.catalog();
     let plan = Plan::new(catalog, comm.size(), settings.merging());
-    let demands = plan.demands(catalog, comm.size());
-    let available = afford(comm, &demands)?;
+    let costs = plan.cost_estimates(catalog, comm.size());
+    let available = afford(comm, &costs)?;
     let blocks = comm.agree(read_blocks(comm.rank(), &file, &plan))?;
     check_copies(comm, &file, &plan, &blocks)?;
     narrator.problem(catalog, &plan);
@@ -90,7 +90,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     narrator.phase("looking for free rigid motions", None);
     let analyses = analyse_steps(&context)?;
     if settings.check {
-        narrator.check(&analyses, &demands, available);
+        narrator.check(&analyses, &costs, available);
         return Ok(Ending::Converged);
     }
     narrator.phase("creating the outputs", None);

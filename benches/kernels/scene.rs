@@ -36,7 +36,7 @@ impl Scene {
             .map(|of_plan| {
                 let members = of_plan.subdomains.iter();
                 let members = members.map(|&s| problem.subdomains[s].clone()).collect();
-                let shared = |node: u32| plan.sharing[node as usize] > 1;
+                let shared = |node: u32| plan.tree.sharing[node as usize] > 1;
                 let block = Block::new(members, problem.catalog.dim, shared);
                 let points = of_plan.group.map_or(&[][..], |g| &problem.points[g]);
                 OwnedBlock::new(block, points)

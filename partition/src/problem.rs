@@ -7,6 +7,7 @@ pub mod copies;
 pub mod read;
 pub mod schema;
 mod strings;
+pub mod tree;
 pub mod vtkhdf;
 pub mod write;
 

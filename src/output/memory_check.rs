@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::comm::Comm;
 use crate::error::Failure;
 use crate::output::memory::available_memory_bytes;
-use crate::plan::demand::Demand;
+use crate::plan::cost::CostEstimate;
 
 /// Share of the estimate that is needed for certain.
 const CERTAIN: f64 = 0.7;
@@ -19,20 +19,20 @@ struct Host {
 }
 
 /// Refuses a run for which a host has too little memory, limits of control groups among it; each of
-/// its ranks has one of `demands`. Returns what the hosts have together, on the root (bytes).
+/// its ranks has one of `costs`. Returns what the hosts have together, on the root (bytes).
 /// Collective.
 ///
 /// # Errors
 /// The first host with too little.
-pub fn afford(comm: &Comm, demands: &[Demand]) -> Result<f64, Failure> {
+pub fn afford(comm: &Comm, costs: &[CostEstimate]) -> Result<f64, Failure> {
     // Where the system doesn't tell, nothing is refused.
     let available = available_memory_bytes().map_or(f64::INFINITY, |bytes| bytes as f64);
     let mut hosts: BTreeMap<String, Host> = BTreeMap::new();
     let ranks = comm.collect(&(comm.host_name(), available));
-    for ((name, available), demand) in ranks.into_iter().zip(demands) {
+    for ((name, available), cost) in ranks.into_iter().zip(costs) {
         let host = hosts.entry(name).or_default();
         host.available = available;
-        host.needed += demand.bytes;
+        host.needed += cost.bytes;
         host.ranks += 1;
     }
     comm.agree(check(&hosts))?;

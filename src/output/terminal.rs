@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use super::report::{Report, Status, StepReport};
 use crate::certificate::Certificate;
-use crate::plan::demand::Demands;
+use crate::plan::cost::CostEstimate;
 use crate::sweep::SweepRecord;
 
 /// How the reason is shown for which sweeps ended well.
@@ -47,21 +47,24 @@ pub struct Summary<'a> {
     pub threads: usize,
 }
 
-/// Prints what solving would cost, against the memory that is `available` on the hosts together
-/// (bytes).
+/// Prints what solving would cost `all` ranks together and one of them at `most`, against the memory that is
+/// `available` on the hosts together (bytes).
 ///
 /// # Errors
 /// `out` can't be written.
-pub fn demands(out: &mut dyn Write, demands: &Demands, available: f64) -> Result<()> {
-    let Demands { all, most } = demands;
-    let gigabytes = |bytes: f64| bytes / 1e9;
+pub fn costs(
+    out: &mut dyn Write,
+    all: CostEstimate,
+    most: CostEstimate,
+    available: f64,
+) -> Result<()> {
     writeln!(out, "\nsolving it would take about")?;
     writeln!(
         out,
         "  memory       {:.2} GB, {:.2} GB on the largest rank; {:.1} GB are available",
-        gigabytes(all.bytes),
-        gigabytes(most.bytes),
-        gigabytes(available)
+        all.bytes / 1e9,
+        most.bytes / 1e9,
+        available / 1e9
     )?;
     writeln!(
         out,

@@ -1,35 +1,12 @@
 //! Who owns what: subtrees of the hierarchy are handed out by estimated cost.
 
-use contact_dd_partition::flops::{Front, condensation};
-
-use super::tree::Tree;
-
-/// Cost of an unknown of a block beside its elimination, in flops.
-const PER_UNKNOWN: f64 = 3e4;
-
-/// Cost of an entry of a block's S beside its elimination, in flops: a block's fronts are small, and
-/// what is kept goes through many of them.
-const PER_ENTRY_OF_BLOCK: f64 = 900.0;
-
-/// Cost of an entry of a front beside its elimination, in flops.
-const PER_ENTRY: f64 = 40.0;
+use contact_dd_partition::problem::tree::Tree;
 
 /// Splits that are tried, for every rank.
 const SPLITS: usize = 8;
 
 /// What a further split must gain.
 const GAIN: f64 = 0.97;
-
-/// Estimated cost of a block of so many interior unknowns that keeps `kept`.
-pub(super) fn block_cost(interior: f64, kept: f64) -> f64 {
-    let beside = PER_UNKNOWN * interior + PER_ENTRY_OF_BLOCK * kept * kept;
-    beside + condensation(interior, kept)
-}
-
-/// Estimated cost of a front.
-pub(super) fn front_cost(front: Front) -> f64 {
-    PER_ENTRY * ((front.eliminated + front.kept) as f64).powi(2) + front.flops()
-}
 
 /// A way to hand out the tree.
 struct Share {
@@ -42,26 +19,21 @@ struct Share {
 /// above which nothing is merged.
 ///
 /// Each rank gets whole subtrees as far as that balances; the largest ones are split first, and
-/// what is above a split goes to the owner of its dearest part.
+/// what is above a split goes to the owner of its most expensive part.
 pub(super) fn assign(tree: &Tree, clusters: &[usize], costs: &[f64], ranks: usize) -> Vec<usize> {
-    let mut of_subtree = costs.to_vec();
-    for v in 0..tree.nodes.len() {
-        for &child in &tree.nodes[v].children {
-            of_subtree[v] += of_subtree[child];
-        }
-    }
+    let of_subtree = tree.sums(costs);
     let mut tasks = clusters.to_vec();
     let mut best = share(tree, &tasks, costs, &of_subtree, ranks);
     for _ in 0..SPLITS * ranks {
         let dividable = (0..tasks.len()).filter(|&t| !tree.nodes[tasks[t]].children.is_empty());
-        let dearest = dividable.max_by(|&a, &b| {
+        let costliest = dividable.max_by(|&a, &b| {
             let (a, b) = (tasks[a], tasks[b]);
             of_subtree[a].total_cmp(&of_subtree[b]).then(b.cmp(&a))
         });
-        let Some(dearest) = dearest.filter(|_| ranks > 1) else {
+        let Some(costliest) = costliest.filter(|_| ranks > 1) else {
             break;
         };
-        let node = tasks.swap_remove(dearest);
+        let node = tasks.swap_remove(costliest);
         tasks.extend(&tree.nodes[node].children);
         tasks.sort_unstable();
         let next = share(tree, &tasks, costs, &of_subtree, ranks);
@@ -72,7 +44,7 @@ pub(super) fn assign(tree: &Tree, clusters: &[usize], costs: &[f64], ranks: usiz
     best.owner
 }
 
-/// Hands out `tasks`, subtrees, the dearest first, each to the rank that has least.
+/// Hands out `tasks`, subtrees, the most expensive first, each to the rank that has least.
 fn share(tree: &Tree, tasks: &[usize], costs: &[f64], of_subtree: &[f64], ranks: usize) -> Share {
     const NOBODY: usize = usize::MAX;
     let mut order = tasks.to_vec();
@@ -100,11 +72,11 @@ fn share(tree: &Tree, tasks: &[usize], costs: &[f64], of_subtree: &[f64], ranks:
         if !above_tasks {
             continue;
         }
-        let dearest = node
+        let costliest = node
             .children
             .iter()
             .max_by(|&&a, &&b| of_subtree[a].total_cmp(&of_subtree[b]).then(b.cmp(&a)));
-        let rank = dearest.map_or(0, |&child| owner[child]);
+        let rank = costliest.map_or(0, |&child| owner[child]);
         let ready = node.children.iter().map(|&child| done[child]);
         done[v] = ready.fold(busy[rank], f64::max) + costs[v];
         busy[rank] = done[v];

@@ -109,7 +109,7 @@ impl<'a> Exchange<'a> {
     fn new(comm: &'a Comm, catalog: &Catalog, plan: &Plan) -> Self {
         let mut ranks: Vec<Vec<usize>> = vec![Vec::new(); catalog.interface_nodes];
         for (nodes, &block) in catalog.interface.iter().zip(&plan.block_of) {
-            let owner = plan.blocks[block].owner;
+            let owner = plan.node_owners[block];
             for &node in nodes {
                 let ranks = &mut ranks[node as usize];
                 if let Err(at) = ranks.binary_search(&owner) {

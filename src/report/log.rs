@@ -14,7 +14,7 @@ use crate::output::event::{Event, shown};
 use crate::output::message;
 use crate::output::terminal::{self, Summary};
 use crate::plan::Plan;
-use crate::plan::demand::{Demand, Demands};
+use crate::plan::cost::CostEstimate;
 use crate::report::totals::Totals;
 use crate::report::{Outputs, failures, reason, report};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
@@ -100,7 +100,7 @@ impl<'a> Narrator<'a> {
     }
 
     /// What validating found, and what solving would cost.
-    pub fn check(&self, analyses: &[RigidBodyAnalysis], demands: &[Demand], available: f64) {
+    pub fn check(&self, analyses: &[RigidBodyAnalysis], costs: &[CostEstimate], available: f64) {
         self.bar.finish();
         let all = analyses
             .iter()
@@ -111,15 +111,15 @@ impl<'a> Narrator<'a> {
                 message::warning(self.settings.log, warning);
             }
         }
-        let demands = Demands::of(demands);
-        self.say(|out| terminal::demands(out, &demands, available));
+        let (all, most) = (CostEstimate::sum(costs), CostEstimate::largest(costs));
+        self.say(|out| terminal::costs(out, all, most, available));
         self.say(|out| writeln!(out, "\nthe problem file is valid"));
         self.log(&Event::Check {
-            memory_bytes: demands.all.bytes,
-            largest_rank_memory_bytes: demands.most.bytes,
+            memory_bytes: all.bytes,
+            largest_rank_memory_bytes: most.bytes,
             available_bytes: available,
-            flops: demands.all.flops,
-            busiest_rank_flops: demands.most.flops,
+            flops: all.flops,
+            busiest_rank_flops: most.flops,
         });
     }
 

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::hierarchy::Work;
 use crate::problem::Problem;
 
 /// Sizes and balance of a problem; its `Display` is what the partition tool prints.
@@ -83,7 +84,7 @@ impl fmt::Display for Summary<'_> {
             "balance       {imbalance:.2} (largest subdomain over the mean, by cells)"
         )?;
         writeln!(f, "interface     {} nodes", catalog.interface_nodes)?;
-        let work = catalog.hierarchy.work(catalog);
+        let work = Work::new(catalog);
         let fronts = work.fronts.iter().map(|f| f.eliminated + f.kept);
         writeln!(
             f,
@@ -91,7 +92,7 @@ impl fmt::Display for Summary<'_> {
             fronts.len(),
             work.of_fronts(),
             fronts.max().unwrap_or(0),
-            catalog.hierarchy.uneven_halves(&work)
+            work.uneven_halves
         )?;
         writeln!(f, "contact       {} conditions", catalog.conditions())?;
         for (contact, pairing) in catalog.contacts.iter().zip(self.pairings()) {

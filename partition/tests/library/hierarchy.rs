@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 
 use crate::problem_scenes::{cracked, shuffled, stacked};
 use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::decompose::hierarchy::Work;
 use contact_dd_partition::flops::Front;
 use contact_dd_partition::model::Model;
 use contact_dd_partition::problem::read::ProblemFile;
@@ -157,7 +158,7 @@ fn a_tree_is_binary_and_what_the_format_asks_for() {
 fn fronts_are_what_their_definition_says() {
     for problem in problems() {
         let catalog = &problem.catalog;
-        let fronts = catalog.hierarchy.work(catalog).fronts;
+        let fronts = Work::new(catalog).fronts;
         for (inner, &found) in (catalog.subdomains.len()..).zip(&fronts) {
             assert_eq!(found, front(catalog, &catalog.hierarchy, inner));
         }
@@ -173,9 +174,7 @@ fn halves_are_even() {
         problem(&crack, 200),
     ] {
         let catalog = &problem.catalog;
-        let uneven = catalog
-            .hierarchy
-            .uneven_halves(&catalog.hierarchy.work(catalog));
+        let uneven = Work::new(catalog).uneven_halves;
         assert!((1.0..1.06).contains(&uneven), "{uneven}");
     }
 }
@@ -194,7 +193,7 @@ fn in_its_order_what_is_under_a_node_is_one_slice() {
             assert_eq!(last + 1 - first, set.len(), "{:?}", catalog.hierarchy);
         }
         assert_eq!(tags(&ordered), tags(&problem));
-        let fronts = |catalog: &Catalog| catalog.hierarchy.work(catalog).fronts;
+        let fronts = |catalog: &Catalog| Work::new(catalog).fronts;
         assert_eq!(fronts(catalog), fronts(&problem.catalog));
         // The order is one already, and the whole is still a problem that can be read.
         assert_eq!(ordered.clone().in_order_of_hierarchy(), ordered);
@@ -218,7 +217,7 @@ fn trees_with_one_child_or_many_are_taken_as_they_are() {
     let file = ProblemFile::open(&path).unwrap();
     let catalog = file.catalog();
     assert_eq!(numbers(&catalog.hierarchy), parent);
-    for (inner, front_of) in (9..).zip(catalog.hierarchy.work(catalog).fronts) {
+    for (inner, front_of) in (9..).zip(Work::new(catalog).fronts) {
         assert_eq!(front_of, front(catalog, &catalog.hierarchy, inner));
     }
 }

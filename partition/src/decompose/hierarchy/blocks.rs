@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::flops::condensation;
 use crate::lists::Lists;
 use crate::problem::Catalog;
+use crate::problem::tree::Block;
 
 /// The linear subdomains and the groups in contact, in the order of their first subdomains.
 ///
@@ -28,42 +29,29 @@ pub(super) struct Blocks {
 impl Blocks {
     /// Finds the blocks of a problem.
     pub fn new(catalog: &Catalog) -> Self {
-        let mut of_group = vec![None; catalog.groups.len()];
-        let mut of_subdomain = Vec::with_capacity(catalog.subdomains.len());
-        let mut dofs: Vec<f64> = Vec::new();
-        let mut conditions = Vec::new();
-        for subdomain in &catalog.subdomains {
-            let known = subdomain.group.and_then(|group| of_group[group]);
-            let block = known.unwrap_or(dofs.len() as u32);
-            if known.is_none() {
-                dofs.push(0.0);
-                conditions.push(subdomain.group.map_or(0, |group| catalog.groups[group]));
-            }
-            if let Some(group) = subdomain.group {
-                of_group[group] = Some(block);
-            }
-            dofs[block as usize] += (catalog.dim * subdomain.nodes) as f64;
-            of_subdomain.push(block);
-        }
+        let (blocks, of_subdomain) = Block::of(catalog);
+        let of_subdomain: Vec<u32> = of_subdomain.iter().map(|&block| block as u32).collect();
         let on = (of_subdomain.iter().zip(&catalog.interface))
             .flat_map(|(&block, nodes)| nodes.iter().map(move |&node| (node, block)));
         let mut sharing = Lists::new(catalog.interface_nodes, on);
         sharing.sort();
         sharing.dedup();
         let mut of_blocks: BTreeMap<&[u32], usize> = BTreeMap::new();
-        for blocks in sharing.iter().filter(|blocks| blocks.len() > 1) {
-            *of_blocks.entry(blocks).or_default() += catalog.dim;
+        for shared in sharing.iter().filter(|blocks| blocks.len() > 1) {
+            *of_blocks.entry(shared).or_default() += catalog.dim;
         }
         let on = (0..)
             .zip(of_blocks.keys())
             .flat_map(|(seam, blocks)| blocks.iter().map(move |&block| (seam, block)));
         let sharing = Lists::new(of_blocks.len(), on.clone());
         Self {
-            seams: Lists::new(dofs.len(), on.map(|(seam, block)| (block, seam))),
+            seams: Lists::new(blocks.len(), on.map(|(seam, block)| (block, seam))),
             seam_dofs: of_blocks.values().copied().collect(),
             of_subdomain,
-            dofs,
-            conditions,
+            dofs: (blocks.iter())
+                .map(|block| (catalog.dim * block.nodes(catalog)) as f64)
+                .collect(),
+            conditions: blocks.iter().map(|b| b.conditions(catalog)).collect(),
             sharing,
         }
     }

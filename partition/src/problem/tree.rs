@@ -5,15 +5,72 @@
 //! have, too. The tree stands in the problem file, so that merges are the same on any number of
 //! ranks.
 
-use contact_dd_partition::problem::Catalog;
+use super::Catalog;
+use crate::flops::{Front, condensation};
 
-use super::BlockPlan;
+/// A block of the problem: a linear subdomain, or a group in contact.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Block {
+    /// Its subdomains, ascending.
+    pub subdomains: Vec<usize>,
+    /// Its group; `None` for a linear subdomain.
+    pub group: Option<usize>,
+}
+
+impl Block {
+    /// The blocks of a problem in the order of their first subdomains, and the block of every subdomain.
+    pub fn of(catalog: &Catalog) -> (Vec<Self>, Vec<usize>) {
+        let mut blocks: Vec<Self> = Vec::new();
+        let mut of_group = vec![None; catalog.groups.len()];
+        let mut of_subdomain = Vec::with_capacity(catalog.subdomains.len());
+        for (index, subdomain) in catalog.subdomains.iter().enumerate() {
+            let group = subdomain.group;
+            let block = group.and_then(|g| of_group[g]).unwrap_or(blocks.len());
+            if block == blocks.len() {
+                let subdomains = Vec::new();
+                blocks.push(Self { subdomains, group });
+            }
+            if let Some(g) = group {
+                of_group[g] = Some(block);
+            }
+            blocks[block].subdomains.push(index);
+            of_subdomain.push(block);
+        }
+        (blocks, of_subdomain)
+    }
+
+    /// Its number of nodes, those that several of its subdomains have counted in each.
+    pub fn nodes(&self, catalog: &Catalog) -> usize {
+        let subdomains = self.subdomains.iter();
+        subdomains.map(|&s| catalog.subdomains[s].nodes).sum()
+    }
+
+    /// Its number of contact conditions.
+    pub fn conditions(&self, catalog: &Catalog) -> usize {
+        self.group.map_or(0, |group| catalog.groups[group])
+    }
+
+    /// Its nodes of Γ, each once, ascending.
+    fn interface(&self, catalog: &Catalog) -> Vec<u32> {
+        let subdomains = self.subdomains.iter();
+        let mut nodes: Vec<u32> = subdomains
+            .flat_map(|&s| catalog.interface[s].iter().copied())
+            .collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+}
 
 /// The tree.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tree {
     /// Its nodes: the blocks in their order, then the inner ones, children before parents.
     pub nodes: Vec<TreeNode>,
+    /// Number of blocks.
+    pub blocks: usize,
+    /// How many blocks have each node of Γ.
+    pub sharing: Vec<u32>,
 }
 
 /// A node of the tree.
@@ -23,6 +80,8 @@ pub struct TreeNode {
     pub parent: Option<usize>,
     /// The nodes that are merged into it, ascending.
     pub children: Vec<usize>,
+    /// Nodes of a block, on Γ or not; none of an inner one.
+    pub of_block: usize,
     /// Nodes of Γ that are eliminated here, ascending.
     pub eliminated: Vec<u32>,
     /// Nodes of Γ that blocks outside share, ascending.
@@ -34,14 +93,8 @@ pub struct TreeNode {
 }
 
 impl Tree {
-    /// The hierarchy of `catalog` over its blocks; `sharing` tells how many of them have each node
-    /// of Γ.
-    pub fn new(
-        catalog: &Catalog,
-        blocks: &[BlockPlan],
-        block_of: &[usize],
-        sharing: &[u32],
-    ) -> Self {
+    /// The hierarchy of `catalog` over its blocks; `block_of` has that of every subdomain.
+    pub fn new(catalog: &Catalog, blocks: &[Block], block_of: &[usize]) -> Self {
         let subdomains = catalog.subdomains.len();
         let parents = &catalog.hierarchy.parent;
         // Members of a group hang under one parent: the group is one leaf.
@@ -58,25 +111,35 @@ impl Tree {
                 nodes[parent].children.push(node);
             }
         }
-        let mut tree = Self { nodes };
-        tree.share_interface(catalog, blocks, sharing);
+        let mut tree = Self {
+            nodes,
+            blocks: blocks.len(),
+            sharing: vec![0; catalog.interface_nodes],
+        };
+        tree.share_interface(catalog, blocks);
         tree
     }
 
     /// Finds what every node eliminates and keeps, from the leaves up.
-    fn share_interface(&mut self, catalog: &Catalog, blocks: &[BlockPlan], sharing: &[u32]) {
+    fn share_interface(&mut self, catalog: &Catalog, blocks: &[Block]) {
+        let shared: Vec<Vec<u32>> = blocks.iter().map(|b| b.interface(catalog)).collect();
+        for &node in shared.iter().flatten() {
+            self.sharing[node as usize] += 1;
+        }
+        let sharing = &self.sharing;
         // For every node of the tree, the nodes of Γ it keeps and how many blocks under it have each.
         let mut under: Vec<Vec<(u32, u32)>> = Vec::with_capacity(self.nodes.len());
         for v in 0..self.nodes.len() {
-            if let Some(block) = blocks.get(v) {
-                let shared = super::interface_nodes(catalog, block).into_iter();
-                let kept: Vec<(u32, u32)> = (shared.filter(|&id| sharing[id as usize] > 1))
-                    .map(|id| (id, 1))
+            if let Some((block, shared)) = blocks.get(v).zip(shared.get(v)) {
+                let kept: Vec<(u32, u32)> = (shared.iter())
+                    .filter(|&&id| sharing[id as usize] > 1)
+                    .map(|&id| (id, 1))
                     .collect();
                 let node = &mut self.nodes[v];
                 node.kept = kept.iter().map(|&(id, _)| id).collect();
+                node.of_block = block.nodes(catalog);
                 node.groups = usize::from(block.group.is_some());
-                node.conditions = block.group.map_or(0, |g| catalog.groups[g]);
+                node.conditions = block.conditions(catalog);
                 under.push(kept);
                 continue;
             }
@@ -101,6 +164,37 @@ impl Tree {
             self.nodes[v].kept = kept.iter().map(|&(id, _)| id).collect();
             under.push(kept);
         }
+    }
+
+    /// The unknowns, `dim` at a node, that node v eliminates and keeps.
+    pub fn front(&self, v: usize, dim: usize) -> Front {
+        let node = &self.nodes[v];
+        let kept = dim * node.kept.len() + node.conditions;
+        let eliminated = match v < self.blocks {
+            true => (dim * node.of_block).saturating_sub(kept),
+            false => dim * node.eliminated.len(),
+        };
+        Front { eliminated, kept }
+    }
+
+    /// Estimated flops of condensing a block, or of merging what lies under an inner node.
+    pub fn flops(&self, v: usize, dim: usize) -> f64 {
+        let front = self.front(v, dim);
+        match v < self.blocks {
+            true => condensation(front.eliminated as f64, front.kept as f64),
+            false => front.flops(),
+        }
+    }
+
+    /// For every node, the sum of `costs` over it and all that is under it.
+    pub fn sums(&self, costs: &[f64]) -> Vec<f64> {
+        let mut sums = costs.to_vec();
+        for v in 0..self.nodes.len() {
+            for &child in &self.nodes[v].children {
+                sums[v] += sums[child];
+            }
+        }
+        sums
     }
 
     /// The highest nodes for which `is_whole` holds, ascending; leaves do at the latest.
