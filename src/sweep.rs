@@ -1,7 +1,7 @@
 //! Sweeps: how S_0 U + S_CON(U) = F, (14), is solved for U, from the bilateral start (16)-(17) or from the
 //! solution of the load step before.
 //!
-//! A signal that asks the run to stop is heard between two sweeps.
+//! A signal to any rank that asks the run to stop is heard between two sweeps.
 //!
 //! All methods share the residual r(U) = F − S_0 U − S_CON(U) and differ in what is inverted:
 //! M δ = r with M = S_0 ([`picard`], the paper's (18)), S_0 + S_CON' of the bilateral problem
@@ -20,7 +20,6 @@ use self::method::Memory;
 pub use self::method::{Method, merging};
 pub use self::outcome::{SweepOutcome, SweepRecord, SweepStatus};
 use self::progress::Progress;
-use crate::comm::is_asked_to_stop;
 use crate::error::Failure;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::{ConState, ConTotals, SCon};
@@ -159,7 +158,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     /// Sweeps until that ends.
     fn sweep(&mut self, mut residual: Residual) -> Result<SweepStatus, Failure> {
         while !self.is_converged(&residual) {
-            if is_asked_to_stop() {
+            if self.s_con.is_any_asked_to_stop() {
                 let done = self.sweeps_done();
                 let message =
                     format!("interrupted after {done} sweeps, before a result was written");

@@ -54,6 +54,8 @@ enum Request {
     Evaluate(Vec<usize>),
     /// S_kl'(U) x of these pairs.
     Differentiate(Vec<usize>),
+    /// Whether a signal has asked a rank to stop.
+    Signals,
 }
 
 /// U of a pair, and the conditions that are expected to be open.
@@ -142,6 +144,13 @@ impl<'a> SCon<'a> {
         });
     }
 
+    /// Whether a signal has asked any rank to stop. On the root; the other ranks
+    /// [`serve`](Self::serve).
+    pub fn is_any_asked_to_stop(&self) -> bool {
+        self.comm.broadcast(&mut Request::Signals);
+        self.comm.is_any_asked_to_stop()
+    }
+
     /// Answers for this rank's pairs whatever the root asks, until it stops. On all ranks but the
     /// root.
     pub fn serve(&mut self) {
@@ -156,6 +165,9 @@ impl<'a> SCon<'a> {
                 }
                 Request::Differentiate(called) => {
                     self.exchange(&called, |_| Reals::default(), differentiate, |_, _| {});
+                }
+                Request::Signals => {
+                    self.comm.is_any_asked_to_stop();
                 }
             }
         }
