@@ -305,8 +305,8 @@ def rest(report):
              for i, text in enumerate(report[name])]
     rows += [[name, escape(report["build"][name])] for name in ("mpi", "hdf5", "compiler", "profile", "commit")
              if report["build"][name]]
-    if report["condition"] is not None:
-        rows.insert(1, ["condition", f"about {short(report['condition'])}"])
+    if report["condition_number"] is not None:
+        rows.insert(1, ["condition", f"about {short(report['condition_number'])}"])
     return section("How it was made", table(["", ""], rows))
 
 

@@ -116,7 +116,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         status: totals.status(),
         method: settings.method.name().into(),
         sweeps: sum(StepTotals::sweeps),
-        inner_steps: sum(|step| step.outcome.inner_steps),
+        active_set_iterations: sum(|step| step.outcome.active_set_iterations),
         fallbacks: totals.fallbacks(),
         interface_residual: (totals.steps.iter())
             .fold(0.0, |worst: f64, step| worst.max(step.outcome.residual)),
@@ -130,7 +130,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         hosts: comm.hosts(),
         threads: usize::from(settings.threads),
         certificate,
-        condition,
+        condition_number: condition,
         seconds: PhaseSeconds::slowest(&seconds),
         peak_memory_bytes: totals.ranks.iter().map(|r| r.peak_memory_bytes).sum(),
         per_rank: totals.ranks.clone(),

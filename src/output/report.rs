@@ -48,7 +48,7 @@ pub struct StepReport {
     /// Number of sweeps after the start.
     pub sweeps: usize,
     /// Number of linear systems solved within contact problems.
-    pub inner_steps: usize,
+    pub active_set_iterations: usize,
     /// Relative residual of the interface problem at the end.
     pub interface_residual: f64,
     /// Number of contact conditions that are closed.
@@ -56,7 +56,7 @@ pub struct StepReport {
     /// Checks of its solution.
     pub certificate: Certificate,
     /// Estimate of the condition number; `null` where it can't be made.
-    pub condition: Option<f64>,
+    pub condition_number: Option<f64>,
     /// Estimate of the mesh's error; `null` where stresses are left out.
     pub error_estimate: Option<ErrorEstimate>,
     /// What contacts and supports carry.
@@ -74,7 +74,7 @@ pub struct Report {
     /// Number of sweeps after the bilateral start.
     pub sweeps: usize,
     /// Number of linear systems solved within contact problems.
-    pub inner_steps: usize,
+    pub active_set_iterations: usize,
     /// Which other methods had to help, in words.
     pub fallbacks: Vec<String>,
     /// Relative residual of the interface problem at the end.
@@ -101,7 +101,7 @@ pub struct Report {
     pub certificate: Certificate,
     /// Estimate of the condition number of the stiffness, scaled to a unit diagonal, with the
     /// contacts as they are in the solution; `null` where it can't be made.
-    pub condition: Option<f64>,
+    pub condition_number: Option<f64>,
     /// Time of each phase, that of the slowest rank.
     pub seconds: PhaseSeconds,
     /// What each rank had to do.

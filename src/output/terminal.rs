@@ -181,7 +181,7 @@ pub fn closing(out: &mut dyn Write, reason: &str, report: &Report, result: &Path
     writeln!(out, "{style}{reason}{style:#}")?;
     writeln!(out)?;
     certificate(out, &report.certificate)?;
-    if let Some(condition) = report.condition {
+    if let Some(condition) = report.condition_number {
         writeln!(out, "             condition number about {condition:.0e}")?;
     }
     if let Some(estimate) = report.error_estimate {

@@ -152,11 +152,11 @@ impl Totals<'_> {
                 time: step.time,
                 status: totals.status(),
                 sweeps: totals.sweeps(),
-                inner_steps: totals.outcome.inner_steps,
+                active_set_iterations: totals.outcome.active_set_iterations,
                 interface_residual: totals.outcome.residual,
                 active_contacts: totals.active,
                 certificate: totals.certificate,
-                condition: totals.condition,
+                condition_number: totals.condition,
                 error_estimate: totals.error_estimate(),
                 resultants: totals.resultants.clone(),
             })

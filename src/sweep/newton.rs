@@ -34,7 +34,7 @@ impl Sweeps<'_, '_> {
             return self.fall_back(before, &why);
         }
         let step = coupled.solve(&self.progress.u, &before.r, &self.state);
-        self.progress.inner_steps += step.steps;
+        self.progress.active_set_iterations += step.steps;
         if step.fell_back {
             (self.progress)
                 .fell_back("newton: the interior-point method named the closed contacts");
@@ -74,7 +74,7 @@ impl Sweeps<'_, '_> {
                 return;
             };
             let step = coupled.solve(&self.progress.u, &residual.r, &self.state);
-            self.progress.inner_steps += step.steps;
+            self.progress.active_set_iterations += step.steps;
             let coarse = self.progress.u.clone();
             axpy(1.0, &step.u, &mut self.progress.u);
             let after = self.residual(Some(&step.open));

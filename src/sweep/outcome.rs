@@ -49,7 +49,7 @@ pub struct SweepOutcome {
     /// What a user should know.
     pub notes: Vec<String>,
     /// Linear systems solved in contact problems, those of single pairs and the coupled one.
-    pub inner_steps: usize,
+    pub active_set_iterations: usize,
     /// Evaluations of pairs, and how many more weren't made because nothing had changed.
     pub evaluations: [usize; 2],
     /// Which other methods had to help, in words.
@@ -99,7 +99,7 @@ mod tests {
             status: SweepStatus::Converged,
             records: Vec::new(),
             notes: Vec::new(),
-            inner_steps: 0,
+            active_set_iterations: 0,
             evaluations: [0; 2],
             fallbacks: Vec::new(),
             residual: 0.0,

@@ -16,7 +16,7 @@ pub struct Progress {
     pub(super) has_fallen_back: bool,
     pub(super) totals: ConTotals,
     pub(super) notes: Vec<String>,
-    pub(super) inner_steps: usize,
+    pub(super) active_set_iterations: usize,
     evaluations: [usize; 2],
     fallbacks: Vec<String>,
 }
@@ -31,7 +31,7 @@ impl Progress {
             has_fallen_back: false,
             totals: ConTotals::default(),
             notes: Vec::new(),
-            inner_steps: 0,
+            active_set_iterations: 0,
             evaluations: [0; 2],
             fallbacks: Vec::new(),
         }
@@ -40,7 +40,7 @@ impl Progress {
     /// Counts an evaluation of `pairs` pairs.
     pub(super) fn count(&mut self, totals: &ConTotals, pairs: usize) {
         self.totals = *totals;
-        self.inner_steps += totals.steps;
+        self.active_set_iterations += totals.steps;
         self.evaluations[0] += pairs - totals.unmoved_pairs;
         self.evaluations[1] += totals.unmoved_pairs;
         if totals.fallen_back_pairs > 0 {
@@ -66,7 +66,7 @@ impl Progress {
             status,
             records: self.records,
             notes: self.notes,
-            inner_steps: self.inner_steps,
+            active_set_iterations: self.active_set_iterations,
             evaluations: self.evaluations,
             fallbacks: self.fallbacks,
             residual,

@@ -16,7 +16,7 @@ type Figure = (&'static str, Option<f64>, fn(&Ran) -> Option<f64>);
 const FIGURES: [Figure; 8] = [
     ("sweeps", Some(12.0), |ran| ran.trial.reported(&["sweeps"])),
     ("inner steps", None, |ran| {
-        ran.trial.reported(&["inner_steps"])
+        ran.trial.reported(&["active_set_iterations"])
     }),
     ("backward error", Some(1e-14), |ran| {
         ran.trial.reported(&["certificate", "equilibrium"])
@@ -32,7 +32,7 @@ const FIGURES: [Figure; 8] = [
     }),
     ("difference to the reference", None, difference),
     ("condition number", None, |ran| {
-        ran.trial.reported(&["condition"])
+        ran.trial.reported(&["condition_number"])
     }),
 ];
 
@@ -251,7 +251,7 @@ fn columns(one: &Ran) -> String {
     format!(
         "{} | {} | {fallbacks} | {} | {} | {} | {difference} | {status} |",
         reported(&["sweeps"]),
-        reported(&["inner_steps"]),
+        reported(&["active_set_iterations"]),
         reported(&["certificate", "equilibrium"]),
         reported(&["certificate", "penetration"]),
         reported(&["certificate", "tension"]),

@@ -50,7 +50,9 @@ fn the_condition_number_is_estimated_to_within_a_small_factor() {
         let model = model(&text, mesh.mesh);
         let exact = condition_number(&model);
         for count in [2, 7] {
-            let estimate = solve(&model, count).report["condition"].as_f64().unwrap();
+            let estimate = solve(&model, count).report["condition_number"]
+                .as_f64()
+                .unwrap();
             let ratio = estimate / exact;
             assert!((0.5..10.0).contains(&ratio), "{estimate:e} for {exact:e}");
         }
