@@ -40,7 +40,7 @@ fn subdomain(c: &mut Criterion) {
         let (dofs, stiffness) = scene.assembled(b);
         let (_, schur, _, load) = scene.condensed(b);
         let x_b = vec![1e-3; load.boundary().len()];
-        let prescribed = scene.prescribed(b, &dofs);
+        let prescribed = scene.prescribed(b);
         let u = prescribed.displacement(&dofs, &schur.recover(&load, &x_b));
         let balance = Balance::new(owned, &loads, materials, &u, &[]);
 
@@ -79,7 +79,7 @@ fn pair(c: &mut Criterion) {
     let scene = Scene::granite(1, 20);
     let b = scene.plan.groups[0];
     let (dofs, ..) = scene.condensed(b);
-    let (prescribed, gaps) = (scene.prescribed(b, &dofs), scene.loads(b).gaps);
+    let (prescribed, gaps) = (scene.prescribed(b), scene.loads(b).gaps);
     let limits = Limits::new(dofs.approaches, &prescribed.approach_of, &gaps, 0.0);
     let mut condensed = scene.of_block(b);
     condensed.fill_upper_triangle();

@@ -67,8 +67,8 @@ impl Scene {
     }
 
     /// What supports prescribe in it.
-    pub fn prescribed(&self, b: usize, dofs: &Dofs) -> Prescribed {
-        Prescribed::new(&self.blocks[b], &self.loads(b), dofs, self.materials()).unwrap()
+    pub fn prescribed(&self, b: usize) -> Prescribed {
+        Prescribed::new(&self.blocks[b], &self.loads(b), self.materials()).unwrap()
     }
 
     /// A block's unknowns and stiffness.
@@ -84,7 +84,7 @@ impl Scene {
         let (dofs, stiffness) = self.assembled(b);
         let (schur, s) = LocalSchur::new(&stiffness, dofs.interior, Par::Seq).unwrap();
         let (block, loads) = (&self.blocks[b].block, self.loads(b));
-        let prescribed = self.prescribed(b, &dofs);
+        let prescribed = self.prescribed(b);
         let load = load(block, &loads, &dofs, &prescribed, self.materials(), &[]);
         let load = schur.condense(load);
         (dofs, schur, s, load)

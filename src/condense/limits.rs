@@ -25,9 +25,9 @@ pub fn prescribe(
     loads: &Loads,
 ) -> Result<BTreeMap<usize, Prescribed>, Failure> {
     let Context { comm, catalog, .. } = context;
-    let made = condensed.blocks.iter().filter_map(|(&b, of_block)| {
+    let made = condensed.blocks.keys().filter_map(|&b| {
         let owned = context.blocks.get(&b)?;
-        let made = Prescribed::new(owned, loads.get(&b)?, &of_block.dofs, &catalog.materials)
+        let made = Prescribed::new(owned, loads.get(&b)?, &catalog.materials)
             .map_err(|error| dof_failure(error, owned, catalog));
         Some(made.map(|prescribed| (b, prescribed)))
     });

@@ -38,8 +38,6 @@ pub struct ApproachRow {
     pub constant: f64,
     /// Unknowns and coefficients.
     pub terms: Vec<(u32, f64)>,
-    /// What bounds it (m).
-    pub gap: f64,
 }
 
 impl Affine {
@@ -146,27 +144,16 @@ pub struct Approaches {
     pub of: Vec<ApproachOf>,
     /// Number of unknown approaches.
     pub len: usize,
-    /// How they were found.
-    pub order: SolvingOrder,
-}
-
-/// In which order conditions are solved for an unknown each. Together with their coefficients it says
-/// which unknowns go; gaps and what supports prescribe make nothing but constants.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SolvingOrder {
-    conditions: Vec<usize>,
-    /// Those last of which elimination leaves less than this share of their largest coefficient.
-    least: f64,
 }
 
 impl Approaches {
-    /// Solves each of `rows`, t = b·v, for one of its unknowns.
+    /// Solves each of `rows`, t = b·v, in their order, for one of its unknowns.
     ///
     /// `may_go` tells which unknowns may be replaced (not those on Γ, which other blocks share),
     /// `stiffness` how stiff the body is around them: the softer side follows the stiffer one, because
     /// a stiff side in terms of a soft one is a small difference of large forces. Where some depend
-    /// on others, the tightest ones become unknowns, those that are nearly parallel to these last:
-    /// what closes is then a combination of little.
+    /// on others, those that are nearly parallel to others come last: a combination of these would
+    /// have large factors.
     ///
     /// # Errors
     /// The first condition that lies on Γ.
@@ -175,28 +162,19 @@ impl Approaches {
         may_go: impl Fn(u32) -> bool,
         stiffness: impl Fn(u32) -> f64,
     ) -> Result<Self, OnInterface> {
-        let mut order = SolvingOrder {
-            conditions: (0..rows.len()).collect(),
-            least: 0.0,
-        };
-        let as_given = Self::in_order(rows, order.clone(), &may_go, &stiffness)?;
-        let dependent = |of: &ApproachOf| matches!(of, ApproachOf::Combination { .. });
-        if !as_given.of.iter().any(dependent) {
-            return Ok(as_given);
+        let as_given = Self::solve(rows, 0.0, &may_go, &stiffness)?;
+        let depends = |of: &ApproachOf| matches!(of, ApproachOf::Combination { .. });
+        match as_given.of.iter().any(depends) {
+            true => Self::solve(rows, PARALLEL, &may_go, &stiffness),
+            false => Ok(as_given),
         }
-        let left = |j: usize| rows[j].gap - rows[j].constant;
-        (order.conditions).sort_by(|&i, &j| left(i).total_cmp(&left(j)));
-        order.least = PARALLEL;
-        Self::in_order(rows, order, &may_go, &stiffness)
     }
 
-    /// Solves `rows` in an `order` that is known.
-    ///
-    /// # Errors
-    /// The first condition that lies on Γ.
-    pub fn in_order(
+    /// Solves `rows`, those last of which elimination leaves less than a share `least` of their largest
+    /// coefficient.
+    fn solve(
         rows: &[ApproachRow],
-        order: SolvingOrder,
+        least: f64,
         may_go: &impl Fn(u32) -> bool,
         stiffness: &impl Fn(u32) -> f64,
     ) -> Result<Self, OnInterface> {
@@ -206,39 +184,29 @@ impl Approaches {
                 *uses.entry(v).or_default() += 1;
             }
         }
+        let prescribed = |row: &ApproachRow| ApproachOf::Prescribed(row.constant);
         let mut approaches = Self {
-            of: rows
-                .iter()
-                .map(|row| ApproachOf::Prescribed(row.constant))
-                .collect(),
+            of: rows.iter().map(prescribed).collect(),
             ..Self::default()
         };
-        // Whether condition j needn't wait.
-        let mut solve = |j: usize, least: f64| -> Result<bool, OnInterface> {
-            let row = &rows[j];
-            let rest = approaches.remainder(row);
-            let own: Vec<u32> = row.terms.iter().map(|&(v, _)| v).collect();
-            let nowhere_else = |v: u32| uses[&v] == 1 && own.contains(&v);
-            let largest = row.terms.iter().fold(0.0, |m: f64, (_, c)| m.max(c.abs()));
-            if rest.largest_displacement() < least * largest {
-                return Ok(false);
-            }
-            approaches.of[j] = approaches
-                .solve_for_one(rest, nowhere_else, may_go, stiffness)
-                .ok_or(OnInterface(j))?;
-            Ok(true)
-        };
-        let unknown = |&&j: &&usize| !rows[j].terms.is_empty();
-        let mut later = Vec::new();
-        for &j in order.conditions.iter().filter(unknown) {
-            if !solve(j, order.least)? {
-                later.push(j);
+        let mut waiting: Vec<usize> = (0..rows.len())
+            .filter(|&j| !rows[j].terms.is_empty())
+            .collect();
+        for least in [least, 0.0] {
+            for j in std::mem::take(&mut waiting) {
+                let terms = &rows[j].terms;
+                let rest = approaches.remainder(&rows[j]);
+                let largest = terms.iter().fold(0.0, |m: f64, (_, c)| m.max(c.abs()));
+                if rest.largest_displacement() < least * largest {
+                    waiting.push(j);
+                    continue;
+                }
+                let nowhere_else = |v: u32| uses[&v] == 1 && terms.iter().any(|&(own, _)| own == v);
+                approaches.of[j] = approaches
+                    .solve_for_one(rest, nowhere_else, may_go, stiffness)
+                    .ok_or(OnInterface(j))?;
             }
         }
-        for j in later {
-            solve(j, 0.0)?;
-        }
-        approaches.order = order;
         Ok(approaches)
     }
 

@@ -8,21 +8,18 @@ use contact_dd_partition::model::Material;
 
 use super::block::Block;
 use super::frame::Frame;
-use super::load::BlockLoads;
 use super::node_frames::NodeFrames;
 use super::owned::OwnedBlock;
-use crate::contact::approach::{ApproachRow, Approaches, OnInterface, SolvingOrder};
+use crate::contact::approach::{ApproachRow, Approaches, OnInterface};
 
-/// The approaches of a block's contact points, found in an `order` that is known or in one that suits them.
+/// The approaches of a block's contact points.
 ///
 /// # Errors
 /// A condition that lies on Γ.
 pub(super) fn approaches(
     owned: &OwnedBlock,
-    loads: &BlockLoads,
     materials: &[Material],
     frames: &NodeFrames,
-    order: Option<&SolvingOrder>,
 ) -> Result<Approaches, OnInterface> {
     let OwnedBlock { block, points } = owned;
     if points.is_empty() {
@@ -30,17 +27,14 @@ pub(super) fn approaches(
     }
     let dim = block.dim;
     let frame = |node: u32| frames.of(node).unwrap_or(&Frame::CARTESIAN);
-    let rows: Vec<_> = (points.iter().zip(&loads.gaps))
-        .map(|(point, &gap)| in_frames(point, gap, frame, dim))
+    let rows: Vec<_> = (points.iter())
+        .map(|point| in_frames(point, frame, dim))
         .collect();
     let on_interface = block.is_on_interface();
     let may_go = |v: u32| !on_interface[v as usize / dim];
     let of_nodes = node_stiffness(block, materials);
     let stiffness = |v: u32| of_nodes[v as usize / dim];
-    match order {
-        Some(order) => Approaches::in_order(&rows, order.clone(), &may_go, &stiffness),
-        None => Approaches::new(&rows, may_go, stiffness),
-    }
+    Approaches::new(&rows, may_go, stiffness)
 }
 
 /// The stiffest material around every node (Pa).
@@ -59,7 +53,6 @@ fn node_stiffness(block: &Block, materials: &[Material]) -> Vec<f64> {
 /// The normal jump at a point in terms of components along the axes of its nodes' frames.
 fn in_frames<'a>(
     point: &ContactPoint<u32>,
-    gap: f64,
     frame: impl Fn(u32) -> &'a Frame,
     dim: usize,
 ) -> ApproachRow {
@@ -84,6 +77,5 @@ fn in_frames<'a>(
             .into_iter()
             .filter(|(_, c)| c.abs() > 1e-14 * scale)
             .collect(),
-        gap,
     }
 }

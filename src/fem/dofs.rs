@@ -12,7 +12,7 @@ use super::load::BlockLoads;
 use super::node_frames::NodeFrames;
 use super::owned::OwnedBlock;
 use super::sites::Sites;
-use crate::contact::approach::{Approaches, OnInterface, SolvingOrder, Variable};
+use crate::contact::approach::{Approaches, OnInterface, Variable};
 use crate::schur::pattern::Cliques;
 use crate::schur::trace::TraceDof;
 
@@ -34,7 +34,6 @@ pub struct Dofs {
     terms: Vec<(u32, f64)>,
     first: Vec<u32>,
     sites: Sites,
-    order: SolvingOrder,
     /// Number of interior unknowns I.
     pub interior: usize,
     /// Number of approaches; approach j is unknown `interior + j`.
@@ -47,8 +46,8 @@ const NOT_DIRECT: u32 = u32::MAX;
 
 impl Dofs {
     /// Numbers the unknowns of `block`: its interior in a fill-reducing order, then the
-    /// approach of each of its contact points, then the traces on Γ. `loads` tell which of several
-    /// approaches that depend on each other are unknowns.
+    /// approach of each of its contact points, then the traces on Γ. Of `loads` the directions of
+    /// supports count, not their values.
     ///
     /// # Errors
     /// A condition that lies on Γ, or too many unknowns.
@@ -63,7 +62,7 @@ impl Dofs {
             return Err(DofError::Size);
         }
         let frames = NodeFrames::new(owned, loads);
-        let approaches = approaches(owned, loads, materials, &frames, None)
+        let approaches = approaches(owned, materials, &frames)
             .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
         let on_interface = block.is_on_interface();
         let mut is_free = vec![true; block.nodes() * dim];
@@ -119,7 +118,6 @@ impl Dofs {
             sites,
             interior,
             approaches: approaches.len,
-            order: approaches.order.clone(),
             traces,
         };
         dofs.offsets.push(0);
@@ -137,11 +135,6 @@ impl Dofs {
             }
         }
         Ok(dofs)
-    }
-
-    /// In which order approaches are solved for an unknown each.
-    pub(super) fn order(&self) -> &SolvingOrder {
-        &self.order
     }
 
     /// Appends the rows of T for a node whose components are unknowns.

@@ -30,11 +30,10 @@ impl Prescribed {
     pub fn new(
         owned: &OwnedBlock,
         loads: &BlockLoads,
-        dofs: &Dofs,
         materials: &[Material],
     ) -> Result<Self, DofError> {
         let frames = NodeFrames::new(owned, loads);
-        let approaches = approaches(owned, loads, materials, &frames, Some(dofs.order()))
+        let approaches = approaches(owned, materials, &frames)
             .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
         let dim = owned.block.dim;
         let mut prescribed = Self {

@@ -79,7 +79,7 @@ fn scene() -> OwnedBlock {
 fn dofs_of(owned: &OwnedBlock) -> (Dofs, Prescribed) {
     let (loads, materials) = (BlockLoads::new(owned, 0), [material()]);
     let dofs = Dofs::new(owned, &loads, &materials).unwrap();
-    let prescribed = Prescribed::new(owned, &loads, &dofs, &materials).unwrap();
+    let prescribed = Prescribed::new(owned, &loads, &materials).unwrap();
     (dofs, prescribed)
 }
 
