@@ -8,22 +8,19 @@
 //! ([`anderson`]), or S_0 + S_CON(U + ·) as it is, the contact conditions included ([`newton`]).
 
 pub mod anderson;
-pub mod method;
 pub mod newton;
 mod outcome;
 pub mod picard;
-pub mod progress;
 
 use std::time::Instant;
 
-use self::method::Memory;
-pub use self::method::{Method, merging};
+pub use contact_dd_partition::solver::Method;
+
 pub use self::outcome::{SweepOutcome, SweepRecord, SweepStatus};
-use self::progress::Progress;
 use crate::error::Failure;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::{ConState, ConTotals, SCon};
-use crate::schur::factor::BoundaryLastCholesky;
+use crate::plan::cluster::Merging;
 use crate::vector::largest;
 
 /// Residual that is round-off and nothing else.
@@ -31,6 +28,15 @@ const ROUND_OFF: f64 = 1e-15;
 
 /// Residual to which a method goes that took over: there may be nothing to refine with afterwards.
 const FALL_BACK_TOLERANCE: f64 = 1e-13;
+
+/// What becomes of contact when Schur complements are merged: picard inverts S_0 alone, which has to
+/// be that of all linear subdomains.
+pub fn merging(method: Method) -> Merging {
+    match method {
+        Method::Picard => Merging::Linear,
+        Method::Newton | Method::Anderson => Merging::All,
+    }
+}
 
 /// What a user sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,9 +57,10 @@ pub struct Sweeps<'a, 'c> {
     s_con: &'a mut SCon<'c>,
     state: ConState,
     settings: SweepSettings,
-    progress: Progress,
-    /// The factor of S_0, where the method inverts it.
-    s_0: Option<BoundaryLastCholesky>,
+    /// How far they have come.
+    outcome: SweepOutcome,
+    /// Whether another method took over from newton: then nothing may refine afterwards.
+    has_fallen_back: bool,
     began: Instant,
     observer: &'a mut dyn FnMut(&SweepRecord),
 }
@@ -67,14 +74,6 @@ pub struct Residual {
     pub relative: f64,
     /// What the pairs said at U.
     pub totals: ConTotals,
-}
-
-/// What a sweep leads to.
-enum Next {
-    /// More sweeps, of this method or another one.
-    Sweep(Memory, Residual),
-    /// The end.
-    End(SweepStatus),
 }
 
 /// Where sweeps begin.
@@ -100,7 +99,11 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         observer: &'a mut dyn FnMut(&SweepRecord),
     ) -> Result<SweepOutcome, Failure> {
         let (mut sweeps, residual) = Self::begin(problem, s_con, settings, start, observer);
-        let status = sweeps.sweep(residual)?;
+        let status = match settings.method {
+            Method::Newton => sweeps.newton(residual)?,
+            Method::Anderson => sweeps.anderson(residual)?,
+            Method::Picard => sweeps.picard(residual)?,
+        };
         Ok(sweeps.end(status))
     }
 
@@ -122,9 +125,9 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             s_con,
             state: ConState::default(),
             settings,
-            s_0: None,
             began: Instant::now(),
-            progress: Progress::new(u, settings.method),
+            outcome: SweepOutcome::before(u),
+            has_fallen_back: false,
             observer,
         };
         let residual = sweeps.evaluate(expected.as_deref());
@@ -133,7 +136,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
 
     /// U, to be moved; then [`evaluate`](Self::evaluate) makes a sweep of it.
     pub fn u(&mut self) -> &mut [f64] {
-        &mut self.progress.u
+        &mut self.outcome.u
     }
 
     /// r(U), and a line of the history; the pairs' searches begin at the conditions `expected` to be
@@ -151,37 +154,36 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         }
         // The pairs keep the approaches and forces of their last evaluation: it has to be S_CON(U).
         let last = self.residual(None);
-        let open = self.state.open();
-        self.progress.outcome(status, last.relative, open)
+        SweepOutcome {
+            status,
+            residual: last.relative,
+            open: self.state.open(),
+            ..self.outcome
+        }
     }
 
-    /// Sweeps until that ends.
-    fn sweep(&mut self, mut residual: Residual) -> Result<SweepStatus, Failure> {
-        while !self.is_converged(&residual) {
-            if self.s_con.is_any_asked_to_stop() {
-                let done = self.sweeps_done();
-                let message =
-                    format!("interrupted after {done} sweeps, before a result was written");
-                return Err(Failure::interrupted(message));
-            }
-            let memory = std::mem::take(&mut self.progress.memory);
-            match memory.sweep(self, residual) {
-                Next::Sweep(memory, after) => {
-                    self.progress.memory = memory;
-                    residual = after;
-                }
-                Next::End(status) => return Ok(status),
-            }
+    /// Whether the sweeps go on from here.
+    ///
+    /// # Errors
+    /// A signal has asked the run to stop.
+    fn goes_on(&self, residual: &Residual) -> Result<bool, Failure> {
+        if self.is_converged(residual) {
+            return Ok(false);
         }
-        Ok(SweepStatus::Converged)
+        if self.s_con.is_any_asked_to_stop() {
+            let done = self.sweeps_done();
+            let message = format!("interrupted after {done} sweeps, before a result was written");
+            return Err(Failure::interrupted(message));
+        }
+        Ok(true)
     }
 
     /// r(U), where the pairs' approaches are `expected` to be open; else as they were last.
     fn residual(&mut self, expected: Option<&[Vec<bool>]>) -> Residual {
-        let u = &self.progress.u;
+        let u = &self.outcome.u;
         let totals = (self.s_con).evaluate(self.problem.interface, u, expected, &mut self.state);
-        self.progress.count(&totals, self.s_con.len());
-        let (mut r, mut scale) = self.problem.linear_residual(&self.progress.u);
+        self.outcome.count(&totals, self.s_con.len());
+        let (mut r, mut scale) = self.problem.linear_residual(&self.outcome.u);
         self.state
             .subtract(self.problem.interface, &mut r, &mut scale);
         let (r_max, scale_max) = (largest(&r), largest(&scale));
@@ -193,7 +195,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     }
 
     fn record(&mut self, residual: &Residual) {
-        let sweep = self.progress.records.len();
+        let sweep = self.outcome.records.len();
         let record = SweepRecord {
             sweep,
             residual: residual.relative,
@@ -201,7 +203,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             changed: (sweep > 0).then_some(residual.totals.changed),
             seconds: self.began.elapsed().as_secs_f64(),
         };
-        self.progress.records.push(record);
+        self.outcome.records.push(record);
         (self.observer)(&record);
     }
 
@@ -214,7 +216,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
 
     /// Residual at which the sweeps end.
     fn tolerance(&self) -> f64 {
-        match self.progress.has_fallen_back {
+        match self.has_fallen_back {
             true => self.settings.tolerance.min(FALL_BACK_TOLERANCE),
             false => self.settings.tolerance,
         }
@@ -222,7 +224,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
 
     /// Number of sweeps so far.
     pub fn sweeps_done(&self) -> usize {
-        self.progress.records.len() - 1
+        self.outcome.records.len() - 1
     }
 
     fn gave_up(&self, residual: &Residual, why: &str) -> SweepStatus {

@@ -2,9 +2,10 @@
 
 use std::collections::VecDeque;
 
-use super::method::Memory;
-use super::{Next, Residual, Sweeps, axpy};
 use nalgebra::{DMatrix, DVector};
+
+use super::{Residual, SweepStatus, Sweeps, axpy};
+use crate::error::Failure;
 
 /// Steps that are remembered.
 const DEPTH: usize = 5;
@@ -12,8 +13,8 @@ const DEPTH: usize = 5;
 const MAX_SWEEPS: usize = 500;
 
 /// The steps that are remembered.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Chords {
+#[derive(Default)]
+struct Chords {
     /// U and the chord's step there, last time.
     last: Option<(Vec<f64>, Vec<f64>)>,
     /// Changes of both.
@@ -34,24 +35,27 @@ impl Chords {
 }
 
 impl Sweeps<'_, '_> {
-    pub(super) fn anderson(&mut self, mut chords: Chords, before: Residual) -> Next {
+    pub(super) fn anderson(&mut self, mut residual: Residual) -> Result<SweepStatus, Failure> {
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
-        let hopeless = !before.relative.is_finite() || self.problem.interface.len == 0;
-        if hopeless || self.sweeps_done() >= limit {
-            return Next::End(self.gave_up(&before, "anderson stopped"));
+        let mut chords = Chords::default();
+        while self.goes_on(&residual)? {
+            let hopeless = !residual.relative.is_finite() || self.problem.interface.len == 0;
+            if hopeless || self.sweeps_done() >= limit {
+                return Ok(self.gave_up(&residual, "anderson stopped"));
+            }
+            let mut chord = residual.r;
+            self.problem.interface.solver.solve(&mut chord);
+            let u = &mut self.outcome.u;
+            chords.remember(u, &chord);
+            let weights = mixing_weights(&chords.history, &chord);
+            axpy(1.0, &chord, u);
+            for ((du, dc), weight) in chords.history.iter().zip(&weights) {
+                axpy(-weight, du, u);
+                axpy(-weight, dc, u);
+            }
+            residual = self.evaluate(None);
         }
-        let mut chord = before.r;
-        self.problem.interface.solver.solve(&mut chord);
-        let u = &mut self.progress.u;
-        chords.remember(u, &chord);
-        let weights = mixing_weights(&chords.history, &chord);
-        axpy(1.0, &chord, u);
-        for ((du, dc), weight) in chords.history.iter().zip(&weights) {
-            axpy(-weight, du, u);
-            axpy(-weight, dc, u);
-        }
-        let residual = self.evaluate(None);
-        Next::Sweep(Memory::Anderson(chords), residual)
+        Ok(SweepStatus::Converged)
     }
 }
 

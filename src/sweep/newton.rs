@@ -5,9 +5,8 @@
 //! whose sets may peel off one condition a sweep; keeping the law as it stands, λ ≥ 0, t ≤ g, gives
 //! a [`CoupledContact`] whose solution is U: one sweep gets there, the next ones take off round-off.
 
-use super::anderson::Chords;
-use super::method::Memory;
-use super::{Next, ROUND_OFF, Residual, SweepStatus, Sweeps, axpy};
+use super::{ROUND_OFF, Residual, SweepStatus, Sweeps, axpy};
+use crate::error::Failure;
 use crate::interface::coupled::CoupledContact;
 
 /// Sweeps before another method takes over.
@@ -16,51 +15,56 @@ const MAX_SWEEPS: usize = 20;
 /// of stiff bodies leaves it.
 const PATIENCE: usize = 3;
 
-/// Sweeps in a row that got no further.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stalls(usize);
+/// Most refinements after the sweeps.
+const MAX_REFINEMENTS: usize = 3;
 
 impl Sweeps<'_, '_> {
-    pub(super) fn newton(&mut self, Stalls(mut stalls): Stalls, before: Residual) -> Next {
-        let Some(coupled) = CoupledContact::new(self.problem) else {
-            return self.fall_back(before, "the pairs have too many conditions for newton");
-        };
+    pub(super) fn newton(&mut self, mut residual: Residual) -> Result<SweepStatus, Failure> {
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
-        if self.sweeps_done() >= limit {
-            if self.settings.max_sweeps.is_some() {
-                return Next::End(self.gave_up(&before, "newton stopped"));
+        // Sweeps in a row that got no further.
+        let mut stalls = 0;
+        while self.goes_on(&residual)? {
+            let Some(coupled) = CoupledContact::new(self.problem) else {
+                return self.fall_back(residual, "the pairs have too many conditions for newton");
+            };
+            if self.sweeps_done() >= limit {
+                if self.settings.max_sweeps.is_some() {
+                    return Ok(self.gave_up(&residual, "newton stopped"));
+                }
+                let why = format!("newton didn't converge in {limit} sweeps");
+                return self.fall_back(residual, &why);
             }
-            let why = format!("newton didn't converge in {limit} sweeps");
-            return self.fall_back(before, &why);
+            let step = coupled.solve(&self.outcome.u, &residual.r, &self.state);
+            self.outcome.active_set_iterations += step.steps;
+            if step.fell_back {
+                (self.outcome)
+                    .fell_back("newton: the interior-point method named the closed contacts");
+            }
+            if !step.converged {
+                return self.fall_back(residual, "newton's contact problem didn't converge");
+            }
+            axpy(1.0, &step.u, &mut self.outcome.u);
+            let before = residual.relative;
+            residual = self.evaluate(Some(&step.open));
+            let stalled = residual.totals.changed == 0 && residual.relative >= 0.5 * before;
+            stalls = if stalled { stalls + 1 } else { 0 };
+            if stalls == PATIENCE && !self.is_converged(&residual) {
+                return self.fall_back(residual, "newton got no further");
+            }
+            // A contact without force and gap may come out open at the root and closed in its pair.
+            let settled = before.max(residual.relative) <= self.tolerance();
+            if settled && residual.totals.failed_pairs == 0 {
+                break;
+            }
         }
-        let step = coupled.solve(&self.progress.u, &before.r, &self.state);
-        self.progress.active_set_iterations += step.steps;
-        if step.fell_back {
-            (self.progress)
-                .fell_back("newton: the interior-point method named the closed contacts");
-        }
-        if !step.converged {
-            return self.fall_back(before, "newton's contact problem didn't converge");
-        }
-        axpy(1.0, &step.u, &mut self.progress.u);
-        let residual = self.evaluate(Some(&step.open));
-        let stalled = residual.totals.changed == 0 && residual.relative >= 0.5 * before.relative;
-        stalls = if stalled { stalls + 1 } else { 0 };
-        if stalls == PATIENCE && !self.is_converged(&residual) {
-            return self.fall_back(residual, "newton got no further");
-        }
-        // A contact without force and gap may come out open at the root and closed in its pair.
-        let minimum_norm = before.relative.max(residual.relative) <= self.tolerance();
-        if minimum_norm && residual.totals.failed_pairs == 0 {
-            return Next::End(SweepStatus::Converged);
-        }
-        Next::Sweep(Memory::Newton(Stalls(stalls)), residual)
+        Ok(SweepStatus::Converged)
     }
 
-    fn fall_back(&mut self, residual: Residual, why: &str) -> Next {
-        (self.progress).fell_back(&format!("{why}; anderson took over"));
-        self.progress.has_fallen_back = true;
-        Next::Sweep(Memory::Anderson(Chords::default()), residual)
+    /// Leaves the rest to anderson.
+    fn fall_back(&mut self, residual: Residual, why: &str) -> Result<SweepStatus, Failure> {
+        (self.outcome).fell_back(&format!("{why}; anderson took over"));
+        self.has_fallen_back = true;
+        self.anderson(residual)
     }
 
     /// Newton's steps beyond the tolerance of the sweeps, which isn't what limits the solution.
@@ -73,22 +77,19 @@ impl Sweeps<'_, '_> {
             let Some(coupled) = CoupledContact::new(self.problem) else {
                 return;
             };
-            let step = coupled.solve(&self.progress.u, &residual.r, &self.state);
-            self.progress.active_set_iterations += step.steps;
-            let coarse = self.progress.u.clone();
-            axpy(1.0, &step.u, &mut self.progress.u);
+            let step = coupled.solve(&self.outcome.u, &residual.r, &self.state);
+            self.outcome.active_set_iterations += step.steps;
+            let coarse = self.outcome.u.clone();
+            axpy(1.0, &step.u, &mut self.outcome.u);
             let after = self.residual(Some(&step.open));
             if !step.converged
                 || after.totals.failed_pairs > 0
                 || after.relative > 0.5 * residual.relative
             {
-                self.progress.u = coarse;
+                self.outcome.u = coarse;
                 return;
             }
             residual = after;
         }
     }
 }
-
-/// Most refinements after the sweeps.
-const MAX_REFINEMENTS: usize = 3;

@@ -63,6 +63,40 @@ pub struct SweepOutcome {
 }
 
 impl SweepOutcome {
+    /// What is known at U before the first sweep.
+    pub(super) fn before(u: Vec<f64>) -> Self {
+        Self {
+            u,
+            status: SweepStatus::NotConverged("the sweeps haven't ended".into()),
+            records: Vec::new(),
+            notes: Vec::new(),
+            active_set_iterations: 0,
+            evaluations: [0; 2],
+            fallbacks: Vec::new(),
+            residual: f64::INFINITY,
+            totals: ConTotals::default(),
+            open: Vec::new(),
+        }
+    }
+
+    /// Counts an evaluation of `pairs` pairs.
+    pub(super) fn count(&mut self, totals: &ConTotals, pairs: usize) {
+        self.totals = *totals;
+        self.active_set_iterations += totals.steps;
+        self.evaluations[0] += pairs - totals.unmoved_pairs;
+        self.evaluations[1] += totals.unmoved_pairs;
+        if totals.fallen_back_pairs > 0 {
+            self.fell_back("pairs: the interior-point method named the closed contacts");
+        }
+    }
+
+    /// Remembers that another method had to help.
+    pub(super) fn fell_back(&mut self, what: &str) {
+        if !self.fallbacks.iter().any(|known| known == what) {
+            self.fallbacks.push(what.into());
+        }
+    }
+
     /// Takes back that the sweeps converged if the full discrete problem says otherwise: their
     /// residual is relative to terms that may be far larger than the load.
     pub fn accept(&mut self, certificate: &Certificate) {
@@ -95,16 +129,8 @@ mod tests {
         [equilibrium, equilibrium_of_load, load_share, penetration]: [f64; 4],
     ) -> SweepStatus {
         let mut outcome = SweepOutcome {
-            u: Vec::new(),
             status: SweepStatus::Converged,
-            records: Vec::new(),
-            notes: Vec::new(),
-            active_set_iterations: 0,
-            evaluations: [0; 2],
-            fallbacks: Vec::new(),
-            residual: 0.0,
-            totals: ConTotals::default(),
-            open: Vec::new(),
+            ..SweepOutcome::before(Vec::new())
         };
         outcome.accept(&Certificate {
             equilibrium,
