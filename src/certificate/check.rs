@@ -1,5 +1,8 @@
 //! The check of a block: what it says of its own part of the solution.
 
+use std::collections::HashMap;
+use std::ops::Range;
+
 use contact_dd_partition::element::geometry::{advance, cross, dot, padded};
 use serde::{Deserialize, Serialize};
 
@@ -37,38 +40,20 @@ pub struct Most {
 }
 
 impl Most {
-    fn all(&mut self) -> [&mut f64; 10] {
-        let Self {
-            residual,
-            scale,
-            penetration,
-            tension,
-            contact_force,
-            external,
-            load,
-            complementarity,
-            displacement,
-            rest,
-        } = self;
-        [
-            residual,
-            scale,
-            penetration,
-            tension,
-            contact_force,
-            external,
-            load,
-            complementarity,
-            displacement,
-            rest,
-        ]
-    }
-
     /// Of everything the larger of two.
-    pub(super) fn include(&mut self, mut other: Self) {
-        for (mine, theirs) in self.all().into_iter().zip(other.all()) {
-            *mine = larger(*mine, *theirs);
-        }
+    pub(super) fn include(&mut self, other: Self) {
+        *self = Self {
+            residual: larger(self.residual, other.residual),
+            scale: larger(self.scale, other.scale),
+            penetration: larger(self.penetration, other.penetration),
+            tension: larger(self.tension, other.tension),
+            contact_force: larger(self.contact_force, other.contact_force),
+            external: larger(self.external, other.external),
+            load: larger(self.load, other.load),
+            complementarity: larger(self.complementarity, other.complementarity),
+            displacement: larger(self.displacement, other.displacement),
+            rest: larger(self.rest, other.rest),
+        };
     }
 }
 
@@ -84,17 +69,6 @@ pub(super) struct External {
 }
 
 impl External {
-    fn all(&mut self) -> impl Iterator<Item = &mut f64> {
-        let Self {
-            force,
-            force_scale,
-            moment,
-            moment_scale,
-        } = self;
-        let scales = [force_scale, moment_scale];
-        force.iter_mut().chain(moment).chain(scales)
-    }
-
     /// Adds a force that acts at a point; its own scale is counted by the components that it is made of.
     fn add(&mut self, at: [f64; 3], force: [f64; 3]) {
         self.force = advance(self.force, 1.0, force);
@@ -106,10 +80,13 @@ impl External {
     }
 
     /// Adds what acts on another block.
-    pub fn include(&mut self, mut other: Self) {
-        for (mine, theirs) in self.all().zip(other.all()) {
-            *mine += *theirs;
-        }
+    pub fn include(&mut self, other: Self) {
+        *self = Self {
+            force: advance(self.force, 1.0, other.force),
+            force_scale: self.force_scale + other.force_scale,
+            moment: advance(self.moment, 1.0, other.moment),
+            moment_scale: self.moment_scale + other.moment_scale,
+        };
     }
 }
 
@@ -164,14 +141,7 @@ impl BlockCheck {
         let is_shared = block.is_on_interface();
         // Residual and scale along the free axes of nodes on Γ, in the order of nodes.
         let mut of_trace = Vec::new();
-        let mut first_trace = vec![
-            0..0;
-            if block.interface.is_empty() {
-                0
-            } else {
-                block.nodes()
-            }
-        ];
+        let mut of_shared: HashMap<usize, Range<usize>> = HashMap::new();
         let vector = |values: &[f64], node: usize| padded(&values[node * dim..(node + 1) * dim]);
         for node in 0..block.nodes() {
             let frame = frames
@@ -201,12 +171,12 @@ impl BlockCheck {
                 }
             }
             if is_shared[node] {
-                first_trace[node] = first..of_trace.len();
+                of_shared.insert(node, first..of_trace.len());
             }
             self.external.add(block.points[node], force);
         }
         for &(node, id) in &block.interface {
-            for &(axis, residual, scale) in &of_trace[first_trace[node as usize].clone()] {
+            for &(axis, residual, scale) in &of_trace[of_shared[&(node as usize)].clone()] {
                 self.trace_dofs.push(TraceDof { node: id, axis });
                 self.traces.push(residual);
                 self.trace_scale.push(scale);
