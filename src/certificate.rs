@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use serde::{Deserialize, Serialize};
 
 use self::check::{BlockCheck, External, Most};
-use crate::schur::trace::TraceDof;
+use crate::schur::condensed::TraceDof;
 use crate::vector::{larger, largest};
 
 /// Sum of forces, relative to the terms that they are sums of, that is no load.

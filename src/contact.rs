@@ -7,7 +7,6 @@ pub mod approach;
 pub mod dependent;
 pub mod dual;
 pub mod interior_point;
-pub mod law;
 pub mod limits;
 pub mod open_factor;
 pub mod pair;

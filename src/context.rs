@@ -7,8 +7,8 @@ use faer::Par;
 
 use crate::comm::Comm;
 use crate::error::Failure;
+use crate::fem::block::OwnedBlock;
 use crate::fem::load::BlockLoads;
-use crate::fem::owned::OwnedBlock;
 use crate::plan::Plan;
 
 /// What every phase of a run works on.

@@ -9,8 +9,7 @@ use contact_dd_partition::problem::read::ProblemFile;
 
 use crate::comm::Comm;
 use crate::error::Failure;
-use crate::fem::block::Block;
-use crate::fem::owned::OwnedBlock;
+use crate::fem::block::{Block, OwnedBlock};
 use crate::plan::Plan;
 
 /// Most subdomains that are read at once: what HDF5 hands over is there twice for a while.

@@ -4,18 +4,14 @@
 //! > S = K_BB − K_BI K_II⁻¹ K_IB,   u_I = K_II⁻¹ (f_I − K_IB u_B)
 
 mod children;
-mod columns;
 pub mod condensed;
 mod dissection;
 pub mod factor;
 mod front;
 mod fronts;
-mod graph;
 pub mod local;
 pub mod merge;
 pub mod ordering;
 mod panel;
-mod partial;
 pub mod pattern;
 mod supernodes;
-pub mod trace;

@@ -7,11 +7,10 @@ use contact_dd_partition::element::geometry::{advance, cross, dot, padded};
 use serde::{Deserialize, Serialize};
 
 use crate::fem::balance::Balance;
-use crate::fem::block::Block;
+use crate::fem::block::{Block, OwnedBlock};
 use crate::fem::frame::{Frame, support_frames};
 use crate::fem::load::BlockLoads;
-use crate::fem::owned::OwnedBlock;
-use crate::schur::trace::TraceDof;
+use crate::schur::condensed::TraceDof;
 use crate::vector::{larger, largest};
 
 /// What is largest in a block, or in several.

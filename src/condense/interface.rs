@@ -3,14 +3,14 @@
 use faer::Par;
 
 use crate::condense::blocks::CondensedBlocks;
-use crate::contact::law::PairLaw;
+use crate::contact::pair::PairLaw;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::coupled::MAX_APPROACHES;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::{Contribution, Interface};
 use crate::plan::Plan;
-use crate::schur::trace::TraceDof;
+use crate::schur::condensed::TraceDof;
 
 /// Numbers what clusters share of Γ and assembles S_0 and the bilateral operator on the root.
 /// Collective; the other ranks get nothing.

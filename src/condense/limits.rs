@@ -11,8 +11,8 @@ use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::context::Loads;
 use crate::error::Failure;
+use crate::fem::block::OwnedBlock;
 use crate::fem::load::BlockLoads;
-use crate::fem::owned::OwnedBlock;
 use crate::fem::prescribed::Prescribed;
 
 /// What supports prescribe in the blocks of this rank in a load step. Collective.

@@ -12,9 +12,8 @@ use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::numbering::check_agreement;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
-use crate::schur::condensed::Condensed;
+use crate::schur::condensed::{Condensed, TraceDof};
 use crate::schur::merge::{LooseTrace, Merge, Spare};
-use crate::schur::trace::TraceDof;
 
 /// Condenses the `blocks` of this rank and merges them, and what other ranks send, up to the
 /// clusters. Collective.

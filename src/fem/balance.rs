@@ -2,9 +2,9 @@
 
 use contact_dd_partition::model::Material;
 
+use super::block::OwnedBlock;
 use super::elasticity::{ElementMatrix, MAX_NODES};
 use super::load::BlockLoads;
-use super::owned::OwnedBlock;
 
 /// f − K u − Bᵀλ of a block and the scale of its terms, node by node (N/m).
 #[derive(Clone, Debug)]

@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::ElementKind;
-use contact_dd_partition::problem::Subdomain;
+use contact_dd_partition::problem::{Subdomain, SubdomainNode};
 
 /// One linear subdomain, or all subdomains of a group in contact, with their nodes numbered
 /// together: a node that two members share is one node of the block.
@@ -126,5 +127,23 @@ impl BlockCell<'_> {
     /// Its nodes of the block.
     pub fn nodes(&self) -> impl ExactSizeIterator<Item = u32> + Clone {
         self.local.iter().map(|&i| self.node_of[i as usize])
+    }
+}
+
+/// A block as it was read.
+#[derive(Clone, Debug)]
+pub struct OwnedBlock {
+    /// Its subdomains.
+    pub block: Block,
+    /// Its contact points, over the nodes of the block.
+    pub points: Vec<ContactPoint<u32>>,
+}
+
+impl OwnedBlock {
+    /// A block and the contact `points` of its group.
+    pub fn new(block: Block, points: &[ContactPoint<SubdomainNode>]) -> Self {
+        let of_block = |at: SubdomainNode| block.node(at.subdomain as usize, at.node);
+        let points = points.iter().map(|point| point.rename(of_block)).collect();
+        Self { block, points }
     }
 }

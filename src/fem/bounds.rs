@@ -6,10 +6,8 @@ use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{dot, length};
 use contact_dd_partition::model::Material;
 
-use super::block::Block;
-use super::frame::Frame;
-use super::node_frames::NodeFrames;
-use super::owned::OwnedBlock;
+use super::block::{Block, OwnedBlock};
+use super::frame::{Frame, NodeFrames};
 use crate::contact::approach::{ApproachRow, Approaches, OnInterface};
 
 /// The approaches of a block's contact points.

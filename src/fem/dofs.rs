@@ -4,17 +4,14 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::model::Material;
 
-use super::block::Block;
+use super::block::{Block, OwnedBlock};
 use super::bounds::approaches;
-use super::elimination::elimination_order;
-use super::frame::Frame;
+use super::frame::{Frame, NodeFrames};
 use super::load::BlockLoads;
-use super::node_frames::NodeFrames;
-use super::owned::OwnedBlock;
-use super::sites::Sites;
+use super::sites::{Sites, elimination_order};
 use crate::contact::approach::{Approaches, OnInterface, Variable};
+use crate::schur::condensed::TraceDof;
 use crate::schur::pattern::Cliques;
-use crate::schur::trace::TraceDof;
 
 /// Why a block's unknowns can't be numbered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

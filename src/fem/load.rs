@@ -5,10 +5,9 @@ use std::collections::BTreeMap;
 use contact_dd_partition::model::{Material, Support};
 
 use super::assembly::Spring;
-use super::block::Block;
+use super::block::{Block, OwnedBlock};
 use super::dofs::Dofs;
 use super::elasticity::{ElementMatrix, MAX_NODES};
-use super::owned::OwnedBlock;
 use super::prescribed::Prescribed;
 
 /// What acts on a block in a load step.

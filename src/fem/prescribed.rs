@@ -4,12 +4,11 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::model::Material;
 
+use super::block::OwnedBlock;
 use super::bounds::approaches;
 use super::dofs::{DofError, Dofs};
-use super::frame::Frame;
+use super::frame::{Frame, NodeFrames};
 use super::load::BlockLoads;
-use super::node_frames::NodeFrames;
-use super::owned::OwnedBlock;
 use crate::contact::approach::{ApproachOf, Approaches, OnInterface};
 
 /// What supports prescribe in a load step.

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::error::Failure;
+use crate::schur::condensed::TraceDof;
 use crate::schur::pattern::Cliques;
-use crate::schur::trace::TraceDof;
 
 /// The numbering of the interface's unknowns.
 #[derive(Clone, Debug, Default)]

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::coupled::condense_laws;
 use super::numbering::Numbering;
 use super::solver::{DirectSolver, InterfaceSolver};
-use crate::contact::law::PairLaw;
+use crate::contact::pair::PairLaw;
 use crate::error::Failure;
 use crate::rigid::energy::RigidBasis;
 use crate::schur::factor::BoundaryLastCholesky;

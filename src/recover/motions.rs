@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 
-use crate::fem::owned::OwnedBlock;
+use crate::fem::block::OwnedBlock;
 use crate::plan::Plan;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::rigid::free_motion::FreeMotion;

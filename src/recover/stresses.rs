@@ -8,9 +8,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::comm::Comm;
-use crate::fem::block::Block;
+use crate::fem::block::{Block, OwnedBlock};
 use crate::fem::estimate::CellError;
-use crate::fem::owned::OwnedBlock;
 use crate::fem::patch::{PatchSum, Polynomial};
 use crate::fem::recovery::Recovery;
 use crate::fem::stress::{BlockStress, RecoveredStress};

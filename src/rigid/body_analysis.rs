@@ -14,7 +14,7 @@ use super::motion::BodyFrame;
 use super::rows::rigid_rows;
 use crate::comm::Comm;
 use crate::error::Failure;
-use crate::fem::owned::OwnedBlock;
+use crate::fem::block::OwnedBlock;
 use crate::plan::Plan;
 
 /// Free rigid motions, and the frames that they are written in.

@@ -15,7 +15,7 @@ use super::kinematics::Kinematics;
 use super::motion::BodyFrame;
 use super::nonnegative;
 use crate::context::{Context, Loads};
-use crate::fem::owned::OwnedBlock;
+use crate::fem::block::OwnedBlock;
 
 /// Drive that is left, relative to all, that counts as none.
 const BALANCED: f64 = 1e-9;

@@ -6,8 +6,8 @@ use contact_dd_partition::problem::Catalog;
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Failure;
+use crate::fem::block::OwnedBlock;
 use crate::fem::load::BlockLoads;
-use crate::fem::owned::OwnedBlock;
 use crate::rigid::nonnegative::residual;
 
 /// How far obstacles may overlap, relative to the gaps and displacements that they prescribe.

@@ -7,7 +7,7 @@ use contact_dd_partition::problem::Catalog;
 use super::analysis::RigidRow;
 use super::motion::BodyFrame;
 use crate::comm::Comm;
-use crate::fem::owned::OwnedBlock;
+use crate::fem::block::OwnedBlock;
 use crate::plan::Plan;
 
 /// The conditions against the rigid motions of the bodies, group by group, and how many each group has;

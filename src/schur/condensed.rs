@@ -1,9 +1,7 @@
-//! A node of the hierarchy, condensed.
+//! A node of the hierarchy, condensed onto approaches and traces, the unknowns on Γ.
 
 use faer::{Mat, MatRef};
 use serde::{Deserialize, Serialize};
-
-use crate::schur::trace::TraceDof;
 
 /// The Schur complement of a node of the hierarchy on what it keeps: approaches, then traces on Γ.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -49,4 +47,13 @@ impl Condensed {
             }
         }
     }
+}
+
+/// An unknown on Γ: the node's number on Γ and the axis of its frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct TraceDof {
+    /// Number on Γ.
+    pub node: u32,
+    /// Axis of the node's frame.
+    pub axis: u32,
 }

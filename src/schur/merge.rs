@@ -15,9 +15,9 @@ use faer::linalg::triangular_solve::{
 use faer::{Accum, Mat, MatMut, Par};
 
 use super::condensed::Condensed;
+use super::front::partial_cholesky;
 use super::local::CondensedLoad;
-use super::partial::partial_cholesky;
-use crate::schur::trace::TraceDof;
+use crate::schur::condensed::TraceDof;
 
 /// What a merge leaves behind for solving.
 #[derive(Debug)]

@@ -1,8 +1,7 @@
 //! Fill-reducing elimination orders.
 
 use super::children::{Children, NO_PARENT};
-use super::dissection::dissect;
-use super::graph::Graph;
+use super::dissection::{Graph, dissect};
 use super::pattern::Cliques;
 
 /// The order in which sites at `points`, connected by `cliques`, are eliminated: nested dissection,

@@ -4,10 +4,9 @@ use std::collections::BTreeMap;
 
 use clap::ValueEnum;
 use contact_dd_mpi::fem::assembly::assemble;
-use contact_dd_mpi::fem::block::Block;
+use contact_dd_mpi::fem::block::{Block, OwnedBlock};
 use contact_dd_mpi::fem::dofs::Dofs;
 use contact_dd_mpi::fem::load::BlockLoads;
-use contact_dd_mpi::fem::owned::OwnedBlock;
 use contact_dd_mpi::schur::local::LocalSchur;
 use contact_dd_mpi::sweep::Method;
 use contact_dd_partition::mesh::Mesh;

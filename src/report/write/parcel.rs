@@ -6,9 +6,8 @@ use std::ops::Range;
 use contact_dd_partition::element::geometry::padded;
 
 use crate::comm::Comm;
-use crate::fem::block::Block;
+use crate::fem::block::{Block, OwnedBlock};
 use crate::fem::elasticity::{principal_stresses, von_mises};
-use crate::fem::owned::OwnedBlock;
 use crate::output::result::{PartitionSize, SubdomainResults};
 use crate::plan::Plan;
 use crate::recover::solution::Solution;

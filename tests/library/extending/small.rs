@@ -3,14 +3,12 @@
 use std::rc::Rc;
 
 use contact_dd_mpi::contact::approach::ApproachOf;
-use contact_dd_mpi::contact::law::PairLaw;
 use contact_dd_mpi::contact::limits::Limits;
-use contact_dd_mpi::contact::pair::ContactPair;
+use contact_dd_mpi::contact::pair::{ContactPair, PairLaw};
 use contact_dd_mpi::interface::numbering::Numbering;
 use contact_dd_mpi::interface::operator::{Contribution, Interface};
 use contact_dd_mpi::interface::problem::ClusterLoad;
-use contact_dd_mpi::schur::condensed::Condensed;
-use contact_dd_mpi::schur::trace::TraceDof;
+use contact_dd_mpi::schur::condensed::{Condensed, TraceDof};
 use faer::{Mat, Par};
 use nalgebra::{DMatrix, DVector};
 
