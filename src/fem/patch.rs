@@ -22,26 +22,14 @@ const FULL_TURN: f64 = 1e-6;
 /// Pivot, relative to a unit diagonal, below which samples don't determine a polynomial.
 const DETERMINED: f64 = 1e-6;
 
-/// Degrees of the cells of a patch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Cells {
-    linear: bool,
-    quadratic: bool,
-}
-
-impl Cells {
-    fn add(&mut self, other: Self) {
-        self.linear |= other.linear;
-        self.quadratic |= other.quadratic;
-    }
-}
-
 /// The normal equations of the polynomial around a vertex that is nearest to samples of the stress.
 /// Those of several blocks add up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PatchSum {
     angle: f64,
-    cells: Cells,
+    /// Whether any of its cells is linear, and any quadratic.
+    has_linear: bool,
+    has_quadratic: bool,
     gram: [f64; GRAM],
     load: [[f64; COMPONENTS]; TERMS],
 }
@@ -50,10 +38,8 @@ impl PatchSum {
     /// Adds a cell that fills an `angle` at the vertex (rad).
     pub fn add_cell(&mut self, angle: f64, is_quadratic: bool) {
         self.angle += angle;
-        self.cells.add(Cells {
-            linear: !is_quadratic,
-            quadratic: is_quadratic,
-        });
+        self.has_linear |= !is_quadratic;
+        self.has_quadratic |= is_quadratic;
     }
 
     /// Adds the stress (Pa) at a point, given from the vertex on (m).
@@ -73,7 +59,7 @@ impl PatchSum {
     }
 
     fn terms(&self) -> usize {
-        match self.cells.quadratic {
+        match self.has_quadratic {
             true => TERMS,
             false => LINEAR,
         }
@@ -92,14 +78,14 @@ impl PatchSum {
     /// The polynomial: quadratic where all cells are, else linear; where the samples
     /// don't determine it, or lie on one side of the vertex only, one of lower degree.
     pub fn fit(&self) -> Polynomial {
-        let quadratic = match self.cells.quadratic && !self.cells.linear && self.is_inner() {
+        let quadratic = match self.has_quadratic && !self.has_linear && self.is_inner() {
             true => self.solve::<TERMS>(),
             false => None,
         };
         // A quadratic cell alone has a linear stress; three linear ones have no better than a mean.
-        let enough = LINEAR as f64 + if self.cells.linear { 1.0 } else { 0.0 };
-        let has_linear = self.is_inner() || self.gram[0] >= enough;
-        let linear = || match has_linear {
+        let enough = LINEAR as f64 + if self.has_linear { 1.0 } else { 0.0 };
+        let is_enough = self.is_inner() || self.gram[0] >= enough;
+        let linear = || match is_enough {
             true => self.solve::<LINEAR>(),
             false => None,
         };
@@ -143,7 +129,8 @@ impl PatchSum {
     /// Adds what another block has of the patch.
     pub fn add(&mut self, other: &Self) {
         self.angle += other.angle;
-        self.cells.add(other.cells);
+        self.has_linear |= other.has_linear;
+        self.has_quadratic |= other.has_quadratic;
         for (a, b) in self.gram.iter_mut().zip(&other.gram) {
             *a += b;
         }
@@ -198,18 +185,6 @@ impl Polynomial {
             *a += factor * b;
         }
     }
-
-    /// Its coefficients in a row: of 1, x, y for all components, then those of x², xy, y².
-    pub fn as_slice(&self) -> &[f64] {
-        self.coefficients.as_flattened()
-    }
-
-    /// Adds coefficients in a row.
-    pub fn add_slice(&mut self, coefficients: &[f64]) {
-        for (a, b) in (self.coefficients.as_flattened_mut().iter_mut()).zip(coefficients) {
-            *a += b;
-        }
-    }
 }
 
 /// Polynomials around nodes, in as little memory as they need: there is one for every vertex of a
@@ -233,14 +208,15 @@ impl Polynomials {
     /// That of a node.
     pub fn get(&self, node: usize) -> Polynomial {
         let mut polynomial = Polynomial::default();
-        polynomial.add_slice(&self.values[self.width * node..][..self.width]);
+        let coefficients = polynomial.coefficients.as_flattened_mut();
+        coefficients[..self.width].copy_from_slice(&self.values[self.width * node..][..self.width]);
         polynomial
     }
 
     /// Sets that of a node; of a quadratic one, among linear ones, its linear terms.
     pub fn set(&mut self, node: usize, polynomial: &Polynomial) {
         let values = &mut self.values[self.width * node..][..self.width];
-        values.copy_from_slice(&polynomial.as_slice()[..self.width]);
+        values.copy_from_slice(&polynomial.coefficients.as_flattened()[..self.width]);
     }
 }
 
