@@ -137,12 +137,11 @@ impl BlockCheck {
         let dim = block.dim;
         let frames = support_frames(&loads.supports, block.dim);
         let mut frames = frames.iter().peekable();
-        let is_shared = block.is_on_interface();
         // Residual and scale along the free axes of nodes on Γ, in the order of nodes.
         let mut of_trace = Vec::new();
         let mut of_shared: HashMap<usize, Range<usize>> = HashMap::new();
         let vector = |values: &[f64], node: usize| padded(&values[node * dim..(node + 1) * dim]);
-        for node in 0..block.nodes() {
+        for (node, &is_shared) in block.is_on_interface().iter().enumerate() {
             let frame = frames
                 .next_if(|(supported, _)| **supported as usize == node)
                 .map_or(&Frame::CARTESIAN, |(_, frame)| frame);
@@ -162,14 +161,14 @@ impl BlockCheck {
                     }
                     self.external.force_scale += along.abs();
                     self.most.external = larger(self.most.external, along);
-                } else if is_shared[node] {
+                } else if is_shared {
                     of_trace.push((axis as u32, along, along_scale));
                 } else {
                     self.most.residual = larger(self.most.residual, along);
                     self.most.scale = larger(self.most.scale, along_scale);
                 }
             }
-            if is_shared[node] {
+            if is_shared {
                 of_shared.insert(node, first..of_trace.len());
             }
             self.external.add(block.points[node], force);
