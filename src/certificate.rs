@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use serde::{Deserialize, Serialize};
 
 use self::check::{BlockCheck, External, Most};
-use crate::schur::condensed::TraceDof;
+use crate::schur::condensed::InterfaceDof;
 use crate::vector::{larger, largest};
 
 /// Sum of forces, relative to the terms that they are sums of, that is no load.
@@ -70,8 +70,8 @@ pub fn certificate(checks: &[BlockCheck], interface_nodes: usize, dim: usize) ->
     let mut known: HashMap<u32, Vec<f64>> = HashMap::new();
     let mut jump = 0.0;
     for check in checks {
-        let traces = check.trace_dofs.iter().zip(&check.traces);
-        for ((&TraceDof { node, axis }, r), s) in traces.zip(&check.trace_scale) {
+        let interface_dofs = check.trace_dofs.iter().zip(&check.interface_dofs);
+        for ((&InterfaceDof { node, axis }, r), s) in interface_dofs.zip(&check.trace_scale) {
             let dof = node as usize * dim + axis as usize;
             on_interface[dof] += r;
             interface_scale[dof] += s;

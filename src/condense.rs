@@ -65,7 +65,7 @@ impl Condensation<'_> {
             })?;
         let of_block = Condensed {
             approaches: dofs.approaches,
-            traces: dofs.traces.clone(),
+            interface_dofs: dofs.interface_dofs.clone(),
             s,
             diagonal: factor.diagonal.clone(),
             smallest_pivot: factor.smallest_pivot(),

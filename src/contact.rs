@@ -2,6 +2,7 @@
 //!
 //! > S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ,   t(U) = arg min ½ tᵀ H t − (c − S_tΓ U)ᵀ t   over   t ≤ g
 
+pub mod active_equalities;
 pub mod active_set;
 pub mod approach;
 pub mod dependent;
@@ -10,4 +11,3 @@ pub mod interior_point;
 pub mod limits;
 pub mod open_factor;
 pub mod pair;
-pub mod ties;

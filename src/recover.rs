@@ -51,10 +51,10 @@ pub fn recover(
                 numbers[c].iter().map(|&i| u[i as usize]).collect()
             }))
         },
-        |c, Reals(traces)| {
+        |c, Reals(interface_dofs)| {
             let pair = plan.contact_place(c).and_then(|p| step.pairs.get(&p));
             let mut x = pair.map_or_else(Vec::new, |pair| pair.approaches().to_vec());
-            x.extend(traces);
+            x.extend(interface_dofs);
             boundaries.insert(plan.clusters[c].node, x);
         },
     );

@@ -19,7 +19,7 @@ use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
 use crate::interface::problem::{ClusterLoad, InterfaceProblem};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
-use crate::rigid::energy::RigidDrive;
+use crate::rigid::energy::RigidModes;
 use crate::schur::local::CondensedLoad;
 use crate::step::state::StepState;
 
@@ -151,7 +151,7 @@ impl<'a> Loading<'a> {
             |_, load| of_clusters.push(load),
         );
         let (numbering, interface) = self.interface?;
-        let drive = self.drive_of_approaches(interface);
+        let drive = self.modes_of_approaches(interface);
         Some(InterfaceProblem::new(
             interface,
             numbering,
@@ -161,10 +161,10 @@ impl<'a> Loading<'a> {
     }
 
     /// The approaches of all pairs against the motions that supports leave to the bodies.
-    fn drive_of_approaches(&self, interface: &Interface) -> RigidDrive {
+    fn modes_of_approaches(&self, interface: &Interface) -> RigidModes {
         let scene = self.analysis.scene.as_ref();
         let Some(scene) = scene.filter(|_| self.analysis.movable) else {
-            return RigidDrive::default();
+            return RigidModes::default();
         };
         let plan = self.context.plan;
         let defining: Vec<usize> = (interface.laws.iter().zip(&plan.contact))

@@ -83,7 +83,7 @@ fn pair(c: &mut Criterion) {
     let limits = Limits::new(dofs.approaches, &prescribed.approach_of, &gaps, 0.0);
     let mut condensed = scene.of_block(b);
     condensed.fill_upper_triangle();
-    let u = vec![0.0; condensed.traces.len()];
+    let u = vec![0.0; condensed.interface_dofs.len()];
     let load = vec![0.0; condensed.s.nrows()];
     let mut pair = ContactPair::new(Rc::new(condensed), limits, load, None);
     c.bench_function("S_CON of a pair", |bench| {
@@ -121,11 +121,11 @@ fn interface(c: &mut Criterion) {
         .map(|b| scene.plan.group_of(b).is_some())
         .collect();
     let condensed: Vec<Condensed> = (0..blocks).map(|b| scene.of_block(b)).collect();
-    let traces: Vec<_> = condensed.iter().map(|c| &c.traces[..]).collect();
+    let interface_dofs: Vec<_> = condensed.iter().map(|c| &c.interface_dofs[..]).collect();
     let nodes: Vec<_> = (0..blocks)
         .map(|b| &scene.plan.tree.nodes[b].kept[..])
         .collect();
-    let numbering = Numbering::new(&traces, &nodes, &in_contact).unwrap();
+    let numbering = Numbering::new(&interface_dofs, &nodes, &in_contact).unwrap();
     c.bench_function("S_0", |bench| {
         bench.iter_batched(
             || condensed.iter().map(contribution).collect(),
@@ -137,7 +137,7 @@ fn interface(c: &mut Criterion) {
 
 /// What a block brings to Γ with its approaches, which come first on its boundary, at 0.
 fn contribution(condensed: &Condensed) -> Contribution {
-    let (m, n) = (condensed.approaches, condensed.traces.len());
+    let (m, n) = (condensed.approaches, condensed.interface_dofs.len());
     let mut condensed = condensed.clone();
     condensed.fill_upper_triangle();
     Contribution {

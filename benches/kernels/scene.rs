@@ -94,7 +94,7 @@ impl Scene {
         let (dofs, schur, s, _) = self.condensed(b);
         Condensed {
             approaches: dofs.approaches,
-            traces: dofs.traces.clone(),
+            interface_dofs: dofs.interface_dofs.clone(),
             smallest_pivot: schur.smallest_pivot(),
             diagonal: schur.diagonal,
             s,

@@ -10,7 +10,7 @@ use crate::fem::balance::Balance;
 use crate::fem::block::{Block, OwnedBlock};
 use crate::fem::frame::{Frame, support_frames};
 use crate::fem::load::BlockLoads;
-use crate::schur::condensed::TraceDof;
+use crate::schur::condensed::InterfaceDof;
 use crate::vector::{larger, largest};
 
 /// What is largest in a block, or in several.
@@ -97,10 +97,10 @@ pub struct BlockCheck {
     /// What acts on it from outside.
     pub(super) external: External,
     /// Its traces on Γ.
-    pub(super) trace_dofs: Vec<TraceDof>,
+    pub(super) trace_dofs: Vec<InterfaceDof>,
     /// Residual on them, to be summed over the blocks that share them.
     #[serde(with = "crate::bytes")]
-    pub(super) traces: Vec<f64>,
+    pub(super) interface_dofs: Vec<f64>,
     #[serde(with = "crate::bytes")]
     pub(super) trace_scale: Vec<f64>,
     /// Displacement on the nodes that it shares.
@@ -175,8 +175,8 @@ impl BlockCheck {
         }
         for &(node, id) in &block.interface {
             for &(axis, residual, scale) in &of_trace[of_shared[&(node as usize)].clone()] {
-                self.trace_dofs.push(TraceDof { node: id, axis });
-                self.traces.push(residual);
+                self.trace_dofs.push(InterfaceDof { node: id, axis });
+                self.interface_dofs.push(residual);
                 self.trace_scale.push(scale);
             }
         }

@@ -9,7 +9,7 @@ use crate::condense::blocks::{CondensedBlocks, ContactCluster};
 use crate::contact::limits::Limits;
 use crate::plan::Plan;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
-use crate::rigid::energy::{RigidBasis, RigidDrive};
+use crate::rigid::energy::{RigidBasis, RigidModes};
 use crate::schur::condensed::Condensed;
 
 /// Makes the clusters of this rank of what was `merged`; `limits` bound the approaches of those in contact.
@@ -30,8 +30,8 @@ pub fn take_clusters(
         };
         let limits = limits.remove(&p).unwrap_or_default();
         of_cluster.fill_upper_triangle();
-        if let Some(drive) = analysis.cluster_modes.get(&p) {
-            make_stiffness_exact(&mut of_cluster, &limits.defining, drive);
+        if let Some(modes) = analysis.cluster_modes.get(&p) {
+            make_stiffness_exact(&mut of_cluster, &limits.defining, modes);
         }
         let cluster = ContactCluster {
             condensed: Rc::new(of_cluster),
@@ -41,11 +41,11 @@ pub fn take_clusters(
     }
 }
 
-/// Makes S exact along rigid motions of the bodies that lie wholly in the cluster; `drive` is that of its
+/// Makes S exact along rigid motions of the bodies that lie wholly in the cluster; `modes` is that of its
 /// conditions, of which the approaches are the `defining` ones.
-fn make_stiffness_exact(cluster: &mut Condensed, defining: &[usize], drive: &RigidDrive) {
+fn make_stiffness_exact(cluster: &mut Condensed, defining: &[usize], modes: &RigidModes) {
     let m = defining.len();
-    let Some(basis) = basis(defining, drive, &cluster.diagonal[..m]) else {
+    let Some(basis) = basis(defining, modes, &cluster.diagonal[..m]) else {
         return;
     };
     let s = &mut cluster.s;
@@ -63,21 +63,21 @@ fn make_stiffness_exact(cluster: &mut Condensed, defining: &[usize], drive: &Rig
 }
 
 /// The same for the `load` on the approaches; `diagonal` is that of the matrix they are condensed from.
-pub fn make_load_exact(load: &mut [f64], defining: &[usize], drive: &RigidDrive, diagonal: &[f64]) {
-    if let Some(basis) = basis(defining, drive, diagonal) {
+pub fn make_load_exact(load: &mut [f64], defining: &[usize], modes: &RigidModes, diagonal: &[f64]) {
+    if let Some(basis) = basis(defining, modes, diagonal) {
         basis.set_load(load);
     }
 }
 
-/// The motions of `drive` as the approaches see them; `None` where there is none.
-fn basis(defining: &[usize], drive: &RigidDrive, diagonal: &[f64]) -> Option<RigidBasis> {
-    let columns = drive.rows.ncols();
+/// The motions of `modes` as the approaches see them; `None` where there is none.
+fn basis(defining: &[usize], modes: &RigidModes, diagonal: &[f64]) -> Option<RigidBasis> {
+    let columns = modes.rows.ncols();
     if columns == 0 {
         return None;
     }
-    let of_approaches = RigidDrive {
-        rows: Mat::from_fn(defining.len(), columns, |i, k| drive.rows[(defining[i], k)]),
-        load: drive.load.clone(),
+    let of_approaches = RigidModes {
+        rows: Mat::from_fn(defining.len(), columns, |i, k| modes.rows[(defining[i], k)]),
+        load: modes.load.clone(),
     };
     Some(RigidBasis::new(&of_approaches, diagonal))
 }

@@ -3,14 +3,14 @@
 use faer::Par;
 
 use crate::condense::blocks::CondensedBlocks;
-use crate::contact::pair::PairLaw;
+use crate::contact::pair::CondensedContact;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::coupled::MAX_APPROACHES;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::{Contribution, Interface};
 use crate::plan::Plan;
-use crate::schur::condensed::TraceDof;
+use crate::schur::condensed::InterfaceDof;
 
 /// Numbers what clusters share of Γ and assembles S_0 and the bilateral operator on the root.
 /// Collective; the other ranks get nothing.
@@ -30,7 +30,7 @@ pub fn assemble_interface(
     } = context;
     // Few enough conditions for the root to solve for all of them at once.
     let with_laws = catalog.conditions() <= MAX_APPROACHES;
-    let mut traces: Vec<Vec<TraceDof>> = Vec::new();
+    let mut interface_dofs: Vec<Vec<InterfaceDof>> = Vec::new();
     let mut contributions: Vec<Contribution> = Vec::new();
     comm.gather(
         &plan.cluster_owners(),
@@ -40,18 +40,18 @@ pub fn assemble_interface(
             let Some((list, contribution)) = sent else {
                 return;
             };
-            traces.push(list);
+            interface_dofs.push(list);
             contributions.push(contribution);
         },
     );
-    let assemble = || assemble(plan, &traces, contributions, par);
+    let assemble = || assemble(plan, &interface_dofs, contributions, par);
     comm.agree(comm.is_root().then(assemble).transpose())
 }
 
 /// The interface problem of what the clusters sent to the root.
 fn assemble(
     plan: &Plan,
-    traces: &[Vec<TraceDof>],
+    interface_dofs: &[Vec<InterfaceDof>],
     contributions: Vec<Contribution>,
     par: Par,
 ) -> Result<(Numbering, Interface), Failure> {
@@ -60,8 +60,8 @@ fn assemble(
         .iter()
         .map(|c| &plan.tree.nodes[c.node].kept[..]);
     let in_contact: Vec<bool> = plan.clusters.iter().map(|c| c.is_in_contact()).collect();
-    let traces: Vec<&[TraceDof]> = traces.iter().map(Vec::as_slice).collect();
-    let numbering = Numbering::new(&traces, &nodes.collect::<Vec<_>>(), &in_contact)?;
+    let interface_dofs: Vec<&[InterfaceDof]> = interface_dofs.iter().map(Vec::as_slice).collect();
+    let numbering = Numbering::new(&interface_dofs, &nodes.collect::<Vec<_>>(), &in_contact)?;
     let interface = Interface::new(&numbering, contributions, &in_contact, par)?;
     Ok((numbering, interface))
 }
@@ -72,7 +72,7 @@ fn contribution(
     plan: &Plan,
     c: usize,
     with_laws: bool,
-) -> Option<(Vec<TraceDof>, Contribution)> {
+) -> Option<(Vec<InterfaceDof>, Contribution)> {
     if let Some(linear) = blocks.linear.get(&c) {
         let mut condensed = linear.clone();
         condensed.fill_upper_triangle();
@@ -81,14 +81,14 @@ fn contribution(
             smallest_pivot: condensed.smallest_pivot,
             law: None,
         };
-        return Some((condensed.traces, contribution));
+        return Some((condensed.interface_dofs, contribution));
     }
     let cluster = blocks.contact.get(&plan.contact_place(c)?)?;
     let condensed = &cluster.condensed;
     let contribution = Contribution {
         s: condensed.bilateral().to_owned(),
         smallest_pivot: condensed.smallest_pivot,
-        law: with_laws.then(|| PairLaw::new(condensed, &cluster.limits)),
+        law: with_laws.then(|| CondensedContact::new(condensed, &cluster.limits)),
     };
-    Some((condensed.traces.clone(), contribution))
+    Some((condensed.interface_dofs.clone(), contribution))
 }

@@ -12,8 +12,8 @@ use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::numbering::check_agreement;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
-use crate::schur::condensed::{Condensed, TraceDof};
-use crate::schur::merge::{LooseTrace, Merge, Spare};
+use crate::schur::condensed::{Condensed, InterfaceDof};
+use crate::schur::merge::{FreeInterfaceDof, Merge, Spare};
 
 /// Condenses the `blocks` of this rank and merges them, and what other ranks send, up to the
 /// clusters. Collective.
@@ -145,26 +145,27 @@ impl Merging<'_> {
         let began = Instant::now();
         let plan = self.condensation.context.plan;
         let node = &plan.tree.nodes[v];
-        let traces: Vec<&[TraceDof]> = children.iter().map(|c| &c.traces[..]).collect();
+        let interface_dofs: Vec<&[InterfaceDof]> =
+            children.iter().map(|c| &c.interface_dofs[..]).collect();
         let kept = node
             .children
             .iter()
             .map(|&child| &plan.tree.nodes[child].kept[..]);
-        check_agreement(&traces, &kept.collect::<Vec<_>>())?;
+        check_agreement(&interface_dofs, &kept.collect::<Vec<_>>())?;
         let (merge, condensed) = Merge::new(
             children,
             &node.eliminated,
             &mut self.spare,
             self.condensation.context.par,
         )
-        .map_err(|LooseTrace(dof)| self.moves(v, dof))?;
+        .map_err(|FreeInterfaceDof(dof)| self.moves(v, dof))?;
         self.condensed.merges.insert(v, merge);
         self.waiting.insert(v, condensed);
         self.condensed.seconds[1] += began.elapsed().as_secs_f64();
         Ok(())
     }
 
-    fn moves(&self, v: usize, dof: TraceDof) -> Failure {
+    fn moves(&self, v: usize, dof: InterfaceDof) -> Failure {
         let plan = self.condensation.context.plan;
         let blocks = plan
             .tree

@@ -3,7 +3,7 @@
 //! t are the approaches of the conditions, of one pair or of all, H the stiffness condensed onto
 //! them, c the load that drives them; λ = c − H t − Dᵀ μ ≥ 0 and μ ≥ 0 are the contact forces. D is
 //! empty but where more conditions meet than there are directions. Flags, bounds and forces are
-//! those of approaches, then those of dependent conditions.
+//! those of approaches, then those of linearly dependent constraints.
 //!
 //! The active set, which conditions are open and which are closed, is found by the first of three
 //! strategies that gets there:
@@ -13,15 +13,15 @@
 //! 2. *Interior point* ([`super::interior_point`]): a set that is right or nearly so, and positions
 //!    within the gaps for bodies that nothing else holds. Some twenty systems, whatever the problem.
 //! 3. *Dual method* ([`super::dual`]): from that set, conditions close one by one. It ends for every
-//!    positive definite H, with linearly dependent conditions too.
+//!    positive definite H, with linearly dependent constraints too.
 
 use faer::MatRef;
 use serde::{Deserialize, Serialize};
 
-use super::dependent::DependentRows;
+use super::active_equalities::ActiveEqualities;
+use super::dependent::DependentConstraints;
 use super::interior_point::InGaps;
 use super::open_factor::{OpenFactor, scale_of};
-use super::ties::Ties;
 
 /// How far below zero, relative to its scale, a force must be to open a contact.
 pub(super) const FORCE_TOLERANCE: f64 = 1e-12;
@@ -50,7 +50,7 @@ pub struct GapProblem<'a> {
     /// Scale of the terms that c is a difference of, for each condition.
     pub c_scale: &'a [f64],
     /// D.
-    pub rows: &'a DependentRows,
+    pub rows: &'a DependentConstraints,
     /// g, then d.
     pub bounds: &'a [f64],
     /// Approaches from which open conditions go where the load drives them, and where they stay
@@ -95,8 +95,8 @@ pub struct Trial {
     pub approaches: Vec<f64>,
     /// λ = c − H t − Dᵀ μ, then μ; exactly 0 where open.
     pub forces: Vec<f64>,
-    /// What closed dependent conditions make of the open approaches.
-    pub(super) ties: Ties,
+    /// What closed linearly dependent constraints make of the open approaches.
+    pub(super) equalities: ActiveEqualities,
     /// What is left of c at open approaches, relative to its terms.
     unbalanced: f64,
 }
@@ -160,7 +160,7 @@ impl GapProblem<'_> {
         loop {
             steps += 1;
             let trial = self.linear(open);
-            self.open_idle(open, &trial);
+            self.open_redundant(open, &trial);
             let wrong = self.wrong_signs(open, &trial);
             if wrong.len() < fewest {
                 fewest = wrong.len();
@@ -207,7 +207,7 @@ impl GapProblem<'_> {
                 }
             })
             .collect();
-        factor.ties.hold(self.rows, self.bounds, &mut t);
+        factor.equalities.hold(self.rows, self.bounds, &mut t);
         // What the closed conditions leave of the load.
         let mut left = self.c.to_vec();
         self.subtract(&t, &mut left);
@@ -227,7 +227,7 @@ impl GapProblem<'_> {
             t[j] += opened;
         }
         self.subtract(&moved, &mut left);
-        let mut of_rows = factor.ties.forces(self.rows.len(), |j| left[j]);
+        let mut of_rows = factor.equalities.forces(self.rows.len(), |j| left[j]);
         let by_rows = self.rows.subtract_transposed(&of_rows, &mut left);
         let mut unbalanced = 0.0;
         for &i in &factor.open {
@@ -242,7 +242,7 @@ impl GapProblem<'_> {
         Trial {
             approaches: t,
             forces: left,
-            ties: factor.ties,
+            equalities: factor.equalities,
             unbalanced,
         }
     }

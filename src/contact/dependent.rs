@@ -12,11 +12,11 @@ pub type Terms = Vec<(usize, f64)>;
 
 /// D, row by row.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct DependentRows {
+pub struct DependentConstraints {
     rows: Vec<Terms>,
 }
 
-impl DependentRows {
+impl DependentConstraints {
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.rows.len()

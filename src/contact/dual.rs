@@ -1,20 +1,20 @@
-//! Contact problems with dependent conditions, where closed conditions may follow from each other.
+//! Contact problems with linearly dependent constraints, where closed conditions may follow from each other.
 //!
 //! Goldfarb and Idnani's dual method: closed conditions are independent of each other and all press;
 //! one that is violated closes, its force growing from zero, and each that would have to pull on
 //! the way opens. The energy rises with every condition that closes, so that no set comes back.
 
+use super::active_equalities::ActiveEqualities;
 use super::active_set::{FORCE_TOLERANCE, GapProblem, GapSolution, Trial};
-use super::ties::Ties;
 
 /// Share of a condition's normal in another's below which there is none.
 const NO_SHARE: f64 = 1e-10;
 
 impl GapProblem<'_> {
-    /// Opens the dependent conditions that say nothing beyond closed ones: their gaps are what these
+    /// Opens the linearly dependent constraints that say nothing beyond closed ones: their gaps are what these
     /// make them.
-    pub(super) fn open_idle(&self, open: &mut [bool], trial: &Trial) {
-        for &j in &trial.ties.idle {
+    pub(super) fn open_redundant(&self, open: &mut [bool], trial: &Trial) {
+        for &j in &trial.equalities.redundant {
             open[self.c.len() + j] = true;
         }
     }
@@ -23,7 +23,7 @@ impl GapProblem<'_> {
     pub(super) fn force_scale(&self, i: usize, trial: &Trial) -> f64 {
         let m = self.c.len();
         let of_approach = |i: usize| self.scale_of(i, &trial.approaches);
-        let of_row = |j: usize| trial.ties.force_scale(j, of_approach);
+        let of_row = |j: usize| trial.equalities.force_scale(j, of_approach);
         if i >= m {
             return of_row(i - m);
         }
@@ -38,7 +38,7 @@ impl GapProblem<'_> {
     /// vanishes first as that of k grows.
     pub(super) fn close(&self, k: usize, open: &mut [bool], forces: &[f64]) {
         if !self.rows.is_empty()
-            && let Some(shares) = self.shares_in(k, open, &Ties::new(self.rows, open))
+            && let Some(shares) = self.shares_in(k, open, &ActiveEqualities::new(self.rows, open))
             && let Some((blocking, _)) = first_to_vanish(&shares, forces)
         {
             open[blocking] = true;
@@ -51,7 +51,9 @@ impl GapProblem<'_> {
         if self.rows.is_empty() {
             return 0.0;
         }
-        let shares = self.shares_in(k, open, &trial.ties).unwrap_or_default();
+        let shares = self
+            .shares_in(k, open, &trial.equalities)
+            .unwrap_or_default();
         shares.iter().map(|(_, share)| share.abs()).sum()
     }
 
@@ -61,11 +63,16 @@ impl GapProblem<'_> {
     }
 
     /// The multiples of closed conditions' normals that the normal of k is, if it is.
-    fn shares_in(&self, k: usize, open: &[bool], ties: &Ties) -> Option<Vec<(usize, f64)>> {
+    fn shares_in(
+        &self,
+        k: usize,
+        open: &[bool],
+        equalities: &ActiveEqualities,
+    ) -> Option<Vec<(usize, f64)>> {
         let m = self.c.len();
         let own = [(k, 1.0)];
         let normal = if k < m { &own } else { self.rows.row(k - m) };
-        let of_rows = ties.express(normal, open)?;
+        let of_rows = equalities.express(normal, open)?;
         let mut of_approaches = vec![0.0; m];
         for &(i, c) in normal {
             of_approaches[i] += c;
@@ -88,14 +95,14 @@ impl GapProblem<'_> {
         let mut trial = loop {
             steps += 1;
             let trial = self.linear(open);
-            self.open_idle(open, &trial);
-            let idle: Vec<usize> = (0..open.len())
+            self.open_redundant(open, &trial);
+            let redundant: Vec<usize> = (0..open.len())
                 .filter(|&i| !open[i] && !self.presses(i, &trial))
                 .collect();
-            if idle.is_empty() {
+            if redundant.is_empty() {
                 break trial;
             }
-            for i in idle {
+            for i in redundant {
                 open[i] = true;
             }
         };
@@ -127,8 +134,8 @@ impl GapProblem<'_> {
     ) -> Option<Trial> {
         let mut forces: Vec<f64> = from.forces.iter().map(|f| f.max(0.0)).collect();
         loop {
-            let ties = Ties::new(self.rows, open);
-            if let Some(shares) = self.shares_in(k, open, &ties) {
+            let equalities = ActiveEqualities::new(self.rows, open);
+            if let Some(shares) = self.shares_in(k, open, &equalities) {
                 let (blocking, growth) = first_to_vanish(&shares, &forces)?;
                 for &(i, share) in &shares {
                     forces[i] = (forces[i] - growth * share).max(0.0);

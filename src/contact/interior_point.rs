@@ -2,13 +2,13 @@
 //!
 //! The problem in gaps, w = q + H s with s, w ≥ 0 and sᵀw = 0, is solved along the path sᵢwᵢ = μ → 0
 //! in some twenty steps whatever the number of conditions and however H is conditioned, where an
-//! active set may open them one by one or turn in circles. Dependent conditions have gaps
+//! active set may open them one by one or turn in circles. Linearly dependent constraints have gaps
 //! σ = e + D s ≥ 0 and forces μ ≥ 0 besides, w + Dᵀ μ = q + H s.
 
 use faer::linalg::solvers::SolveCore;
 use faer::{Conj, Mat, MatMut, MatRef, Side};
 
-use super::dependent::DependentRows;
+use super::dependent::DependentConstraints;
 
 /// Most steps.
 const MAX_STEPS: usize = 60;
@@ -29,7 +29,7 @@ pub struct InGaps<'a> {
     /// What measures the diagonal of H.
     pub scale: &'a [f64],
     /// D.
-    pub rows: &'a DependentRows,
+    pub rows: &'a DependentConstraints,
     /// e.
     pub e: &'a [f64],
 }
@@ -42,7 +42,7 @@ impl InGaps<'_> {
         let all = n + self.rows.len();
         // Gaps and forces become square roots of energies, so that units don't matter.
         let root: Vec<f64> = self.scale.iter().map(|d| d.sqrt()).collect();
-        let mut rows = DependentRows::default();
+        let mut rows = DependentConstraints::default();
         let mut e = Vec::with_capacity(self.e.len());
         for (row, e_j) in self.rows.iter().zip(self.e) {
             let scaled = row.iter().map(|&(i, c)| (i, c / root[i]));
@@ -85,7 +85,7 @@ impl InGaps<'_> {
 struct Scaled {
     h: Mat<f64>,
     q: Vec<f64>,
-    rows: DependentRows,
+    rows: DependentConstraints,
     e: Vec<f64>,
 }
 

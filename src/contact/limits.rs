@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::approach::{ApproachOf, defining_conditions};
-use super::dependent::DependentRows;
+use super::dependent::DependentConstraints;
 
 /// The bounds t ≤ g and D t ≤ d, and the conditions that they come from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -12,7 +12,7 @@ pub struct Limits {
     #[serde(with = "crate::bytes")]
     pub bounds: Vec<f64>,
     /// D.
-    pub rows: DependentRows,
+    pub rows: DependentConstraints,
     /// Which condition each bound is, and its factor.
     tightest: Vec<(usize, f64)>,
     /// The condition that each approach is the unknown of.
@@ -29,7 +29,7 @@ impl Limits {
     pub fn new(approaches: usize, of: &[ApproachOf], gaps: &[f64], scale: f64) -> Self {
         let mut limits = Self {
             bounds: vec![f64::INFINITY; approaches],
-            rows: DependentRows::default(),
+            rows: DependentConstraints::default(),
             tightest: vec![(0, 1.0); approaches],
             defining: defining_conditions(of, approaches),
             conditions: of.len(),
@@ -75,7 +75,7 @@ impl Limits {
         gaps
     }
 
-    /// The limits of several groups as those of one pair, whose approaches, dependent conditions and
+    /// The limits of several groups as those of one pair, whose approaches, linearly dependent constraints and
     /// conditions follow each other in the same order.
     pub fn join(groups: &[Self]) -> Self {
         let mut all = Self::default();

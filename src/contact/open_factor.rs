@@ -5,8 +5,8 @@
 use faer::linalg::solvers::{Llt, SolveCore};
 use faer::{Conj, Mat, MatMut, MatRef, Side};
 
-use super::dependent::DependentRows;
-use super::ties::Ties;
+use super::active_equalities::ActiveEqualities;
+use super::dependent::DependentConstraints;
 
 /// Pivot relative to its diagonal entry below which H is taken as singular.
 const SINGULAR_PIVOT: f64 = 1e-13;
@@ -22,16 +22,16 @@ const MAX_REFINEMENTS: usize = 40;
 ///
 /// H is singular where a motion opens gaps without resistance. Springs make it definite then, and
 /// refinement takes their forces off again: what drives the motion decides how far it goes, and
-/// where nothing drives it, it stays where it is. Closed dependent conditions leave fewer directions:
-/// H_NN is that of the open approaches that they don't tie.
+/// where nothing drives it, it stays where it is. Closed linearly dependent constraints leave fewer directions:
+/// H_NN is that of the open approaches that they leave independent.
 #[derive(Debug)]
 pub struct OpenFactor {
     /// The open approaches, ascending.
     pub open: Vec<usize>,
-    /// What the closed dependent conditions make of them.
-    pub ties: Ties,
-    /// The open approaches that aren't tied, ascending; empty where none is tied.
-    untied: Vec<usize>,
+    /// What the closed linearly dependent constraints make of them.
+    pub equalities: ActiveEqualities,
+    /// The open approaches that no equality eliminates, ascending; empty where there is no equality.
+    independent: Vec<usize>,
     h_nn: Mat<f64>,
     factor: Option<Llt<f64>>,
     /// Whether springs were needed.
@@ -41,18 +41,28 @@ pub struct OpenFactor {
 impl OpenFactor {
     /// Factorizes H_NN; `diagonal` is the diagonal of the matrix that H is condensed from, `open`
     /// has a flag for every approach and one for each of `rows`.
-    pub fn new(h: MatRef<'_, f64>, diagonal: &[f64], rows: &DependentRows, open: &[bool]) -> Self {
-        let ties = Ties::new(rows, open);
+    pub fn new(
+        h: MatRef<'_, f64>,
+        diagonal: &[f64],
+        rows: &DependentConstraints,
+        open: &[bool],
+    ) -> Self {
+        let equalities = ActiveEqualities::new(rows, open);
         let open: Vec<usize> = (0..diagonal.len()).filter(|&j| open[j]).collect();
         let mut diagonal: Vec<f64> = open.iter().map(|&j| diagonal[j]).collect();
         let mut h_nn = Mat::zeros(open.len(), open.len());
-        let mut untied = Vec::new();
-        if ties.ties.is_empty() {
+        let mut independent = Vec::new();
+        if equalities.equalities.is_empty() {
             gather(h, &open, &mut h_nn);
         } else {
-            let is_pivot = |j: &usize| ties.ties.iter().any(|tie| tie.pivot == *j);
-            untied = open.iter().copied().filter(|j| !is_pivot(j)).collect();
-            (h_nn, diagonal) = tied(h, &diagonal, &open, &untied, &ties);
+            let is_pivot = |j: &usize| {
+                equalities
+                    .equalities
+                    .iter()
+                    .any(|equality| equality.pivot == *j)
+            };
+            independent = open.iter().copied().filter(|j| !is_pivot(j)).collect();
+            (h_nn, diagonal) = eliminated(h, &diagonal, &open, &independent, &equalities);
         }
         let scale: Vec<f64> = (diagonal.iter().enumerate())
             .map(|(a, &diagonal)| scale_of(h_nn[(a, a)], diagonal))
@@ -68,41 +78,41 @@ impl OpenFactor {
         });
         Self {
             open,
-            ties,
-            untied,
+            equalities,
+            independent,
             h_nn,
             factor,
             singular,
         }
     }
 
-    /// x ← H_NN⁻¹ x, `x` the entries of the open approaches; with ties it is T (Tᵀ H_NN T)⁻¹ Tᵀ x
-    /// for the T that the untied ones move all by.
+    /// x ← H_NN⁻¹ x, `x` the entries of the open approaches; with equalities it is T (Tᵀ H_NN T)⁻¹ Tᵀ x
+    /// for the T by which the independent ones move all.
     pub fn solve(&self, x: &mut [f64]) {
-        if self.ties.ties.is_empty() {
-            self.solve_untied(x);
+        if self.equalities.equalities.is_empty() {
+            self.solve_independent(x);
             return;
         }
-        // The entries of `open` and `untied` are sorted, and every tied approach is open.
+        // The entries of `open` and `independent` are sorted, and every eliminated approach is open.
         let place = |j: usize| self.open.partition_point(|&i| i < j);
-        for tie in &self.ties.ties {
-            let held = x[place(tie.pivot)];
-            for &(i, c) in &tie.others {
+        for equality in &self.equalities.equalities {
+            let held = x[place(equality.pivot)];
+            for &(i, c) in &equality.others {
                 x[place(i)] -= c * held;
             }
         }
-        let mut of_untied: Vec<f64> = self.untied.iter().map(|&j| x[place(j)]).collect();
-        self.solve_untied(&mut of_untied);
-        for (&j, of_untied) in self.untied.iter().zip(of_untied) {
-            x[place(j)] = of_untied;
+        let mut of_independent: Vec<f64> = self.independent.iter().map(|&j| x[place(j)]).collect();
+        self.solve_independent(&mut of_independent);
+        for (&j, of_independent) in self.independent.iter().zip(of_independent) {
+            x[place(j)] = of_independent;
         }
-        for tie in &self.ties.ties {
-            let others = tie.others.iter().map(|&(i, c)| c * x[place(i)]);
-            x[place(tie.pivot)] = -others.sum::<f64>();
+        for equality in &self.equalities.equalities {
+            let others = equality.others.iter().map(|&(i, c)| c * x[place(i)]);
+            x[place(equality.pivot)] = -others.sum::<f64>();
         }
     }
 
-    fn solve_untied(&self, x: &mut [f64]) {
+    fn solve_independent(&self, x: &mut [f64]) {
         let Some(factor) = &self.factor else { return };
         let apply = |x: &mut [f64]| {
             let n = x.len();
@@ -143,21 +153,21 @@ fn gather(h: MatRef<'_, f64>, open: &[usize], h_nn: &mut Mat<f64>) {
     }
 }
 
-/// Tᵀ H_NN T on the `untied` approaches, and the `diagonal` of the open ones seen from there.
-fn tied(
+/// Tᵀ H_NN T on the `independent` approaches, and the `diagonal` of the open ones seen from there.
+fn eliminated(
     h: MatRef<'_, f64>,
     diagonal: &[f64],
     open: &[usize],
-    untied: &[usize],
-    ties: &Ties,
+    independent: &[usize],
+    equalities: &ActiveEqualities,
 ) -> (Mat<f64>, Vec<f64>) {
     let mut whole = Mat::zeros(open.len(), open.len());
     gather(h, open, &mut whole);
     let mut diagonal = diagonal.to_vec();
     let place = |j: usize| open.partition_point(|&i| i < j);
-    for tie in &ties.ties {
-        let pivot = place(tie.pivot);
-        for &(i, c) in &tie.others {
+    for equality in &equalities.equalities {
+        let pivot = place(equality.pivot);
+        for &(i, c) in &equality.others {
             let i = place(i);
             for a in 0..open.len() {
                 let moved = c * whole[(a, pivot)];
@@ -166,9 +176,9 @@ fn tied(
             diagonal[i] += c * c * diagonal[pivot];
         }
     }
-    for tie in &ties.ties {
-        let pivot = place(tie.pivot);
-        for &(i, c) in &tie.others {
+    for equality in &equalities.equalities {
+        let pivot = place(equality.pivot);
+        for &(i, c) in &equality.others {
             let i = place(i);
             for b in 0..open.len() {
                 let moved = c * whole[(pivot, b)];
@@ -176,8 +186,8 @@ fn tied(
             }
         }
     }
-    let places: Vec<usize> = untied.iter().map(|&j| place(j)).collect();
-    let mut h_nn = Mat::zeros(untied.len(), untied.len());
+    let places: Vec<usize> = independent.iter().map(|&j| place(j)).collect();
+    let mut h_nn = Mat::zeros(independent.len(), independent.len());
     gather(whole.as_ref(), &places, &mut h_nn);
     let diagonal = places.iter().map(|&a| diagonal[a]).collect();
     (h_nn, diagonal)

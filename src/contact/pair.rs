@@ -8,7 +8,7 @@ use faer::Mat;
 use serde::{Deserialize, Serialize};
 
 use super::active_set::{GapProblem, GapSolution};
-use super::dependent::DependentRows;
+use super::dependent::DependentConstraints;
 use super::limits::Limits;
 use super::open_factor::OpenFactor;
 use crate::schur::condensed::Condensed;
@@ -29,7 +29,7 @@ pub struct ContactPair {
 /// Where the last evaluation of a pair left it, and where the next one begins.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PairState {
-    /// Which approaches are open, then which dependent conditions.
+    /// Which approaches are open, then which linearly dependent constraints.
     open: Vec<bool>,
     contact: GapSolution,
 }
@@ -37,7 +37,7 @@ pub struct PairState {
 /// One evaluation of S_kl.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PairResponse {
-    /// S_kl(U): the forces that hold the traces, less the pair's load (N/m).
+    /// S_kl(U): the forces that hold the interface dofs, less the pair's load (N/m).
     #[serde(with = "crate::bytes")]
     pub reaction: Vec<f64>,
     /// Scale of the terms that each reaction is a sum of.
@@ -48,11 +48,11 @@ pub struct PairResponse {
     pub gaps: Vec<f64>,
     /// c − H t: what contact forces hold where closed, round-off where open (N/m).
     #[serde(with = "crate::bytes")]
-    pub drives: Vec<f64>,
-    /// Scale of the terms that each drive is a sum of.
+    pub contact_residual: Vec<f64>,
+    /// Scale of the terms that each contact residual is a sum of.
     #[serde(with = "crate::bytes")]
-    pub drive_scale: Vec<f64>,
-    /// Which approaches are open, then which dependent conditions.
+    pub contact_residual_scale: Vec<f64>,
+    /// Which approaches are open, then which linearly dependent constraints.
     pub open: Vec<bool>,
     /// Conditions that opened or closed, against what was expected or the last evaluation.
     pub changed: usize,
@@ -108,7 +108,7 @@ impl ContactPair {
         )
     }
 
-    /// Load on the traces with every approach zero.
+    /// Load on the interface dofs with every approach zero.
     pub fn bilateral_load(&self) -> &[f64] {
         &self.load[self.condensed.approaches..]
     }
@@ -150,17 +150,17 @@ impl ContactPair {
             scale: u.iter().fold(self.limits.scale, |m, u| m.max(u.abs())),
         }
         .solve(&mut open);
-        let (mut drives, mut drive_scale) = (c, c_scale);
+        let (mut contact_residual, mut contact_residual_scale) = (c, c_scale);
         for (column, &t) in self.condensed.s_tt().col_iter().zip(&contact.approaches) {
             for (i, h) in column.iter().enumerate() {
-                drives[i] -= h * t;
-                drive_scale[i] += (h * t).abs();
+                contact_residual[i] -= h * t;
+                contact_residual_scale[i] += (h * t).abs();
             }
         }
         let mut response = PairResponse {
             gaps: self.limits.gaps(&contact.approaches, &open),
-            drives,
-            drive_scale,
+            contact_residual,
+            contact_residual_scale,
             changed: before.iter().zip(&open).filter(|(a, b)| a != b).count(),
             steps: contact.steps,
             fell_back: contact.fell_back,
@@ -217,7 +217,7 @@ impl ContactPair {
 /// λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0, and D t ≤ d where there is such: the part of S_kl
 /// that the root needs to solve for all pairs at once.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct PairLaw {
+pub struct CondensedContact {
     /// H, on the approaches (Pa).
     #[serde(with = "crate::bytes::symmetric")]
     pub h: Mat<f64>,
@@ -228,12 +228,12 @@ pub struct PairLaw {
     #[serde(with = "crate::bytes")]
     pub diagonal: Vec<f64>,
     /// D.
-    pub rows: DependentRows,
+    pub rows: DependentConstraints,
     /// The condition that each approach is the unknown of.
     pub defining: Vec<usize>,
 }
 
-impl PairLaw {
+impl CondensedContact {
     /// Number of approaches.
     pub fn len(&self) -> usize {
         self.diagonal.len()

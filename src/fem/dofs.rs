@@ -10,7 +10,7 @@ use super::frame::{Frame, NodeFrames};
 use super::load::BlockLoads;
 use super::sites::{Sites, elimination_order};
 use crate::contact::approach::{Approaches, OnInterface, Variable};
-use crate::schur::condensed::TraceDof;
+use crate::schur::condensed::InterfaceDof;
 use crate::schur::pattern::Cliques;
 
 /// Why a block's unknowns can't be numbered.
@@ -36,14 +36,14 @@ pub struct Dofs {
     /// Number of approaches; approach j is unknown `interior + j`.
     pub approaches: usize,
     /// Its unknowns on Γ; they come last, in this order.
-    pub traces: Vec<TraceDof>,
+    pub interface_dofs: Vec<InterfaceDof>,
 }
 
 const NOT_DIRECT: u32 = u32::MAX;
 
 impl Dofs {
     /// Numbers the unknowns of `block`: its interior in a fill-reducing order, then the
-    /// approach of each of its contact points, then the traces on Γ. Of `loads` the directions of
+    /// approach of each of its contact points, then the interface dofs on Γ. Of `loads` the directions of
     /// supports count, not their values.
     ///
     /// # Errors
@@ -92,14 +92,14 @@ impl Dofs {
             sites.unknown();
             sites.end();
         }
-        let mut traces = Vec::new();
+        let mut interface_dofs = Vec::new();
         for &(node, id) in &block.interface {
             sites.of_node[node as usize] = sites.len() as u32;
             for axis in 0..dim {
                 let raw = node as usize * dim + axis;
                 if is_free[raw] {
                     number[raw] = sites.unknown();
-                    traces.push(TraceDof {
+                    interface_dofs.push(InterfaceDof {
                         node: id,
                         axis: axis as u32,
                     });
@@ -115,7 +115,7 @@ impl Dofs {
             sites,
             interior,
             approaches: approaches.len,
-            traces,
+            interface_dofs,
         };
         dofs.offsets.push(0);
         let mut is_replaced = vec![false; block.nodes()];
@@ -192,7 +192,7 @@ impl Dofs {
 
     /// Number of unknowns.
     pub fn len(&self) -> usize {
-        self.interior + self.approaches + self.traces.len()
+        self.interior + self.approaches + self.interface_dofs.len()
     }
 
     /// Whether there is no unknown.

@@ -8,7 +8,7 @@
 //!
 //! is what the interface problem (14) asks of a change δ of U and τ of the approaches: r is its
 //! residual, d and s are the forces and gaps at U. Eliminating δ leaves a contact problem with
-//! H − Cᵀ A⁻¹ C in the approaches of all pairs and nothing else. Dependent conditions of a pair,
+//! H − Cᵀ A⁻¹ C in the approaches of all pairs and nothing else. Linearly dependent constraints of a pair,
 //! D τ ≤ d − D t, stay what they are.
 
 use faer::{Mat, MatRef};
@@ -16,8 +16,8 @@ use faer::{Mat, MatRef};
 use super::operator::{Interface, diagonal_of};
 use super::problem::InterfaceProblem;
 use crate::contact::active_set::GapProblem;
-use crate::contact::dependent::DependentRows;
-use crate::contact::pair::{PairLaw, PairResponse};
+use crate::contact::dependent::DependentConstraints;
+use crate::contact::pair::{CondensedContact, PairResponse};
 use crate::interface::s_con::ConState;
 use crate::rigid::energy::RigidBasis;
 use crate::schur::local::multiply_add;
@@ -37,7 +37,7 @@ pub struct CoupledContact<'a> {
     /// No change.
     center: Vec<f64>,
     /// D of all pairs.
-    rows: DependentRows,
+    rows: DependentConstraints,
     scale: f64,
 }
 
@@ -48,7 +48,7 @@ pub struct CoupledStep {
     pub u: Vec<f64>,
     /// τ.
     pub approaches: Vec<Vec<f64>>,
-    /// λ, then the forces of dependent conditions.
+    /// λ, then the forces of linearly dependent constraints.
     pub forces: Vec<Vec<f64>>,
     /// Which of both are open then.
     pub open: Vec<Vec<bool>>,
@@ -73,15 +73,15 @@ struct Condensed {
 /// H − Cᵀ A⁻¹ C for the laws of all pairs.
 pub fn condense_laws(interface: &Interface, motions: &RigidBasis) -> Mat<f64> {
     let laws = &interface.laws;
-    let m = laws.iter().map(PairLaw::len).sum();
+    let m = laws.iter().map(CondensedContact::len).sum();
     let mut h = Mat::zeros(m, m);
     let mut w = Mat::zeros(interface.len - interface.linear, m);
     let mut first = 0;
-    for (law, traces) in laws.iter().zip(&interface.pair_traces) {
+    for (law, interface_dofs) in laws.iter().zip(&interface.pair_interface_dofs) {
         h.as_mut()
             .submatrix_mut(first, first, law.len(), law.len())
             .copy_from(&law.h);
-        for (column, &trace) in law.s_t_gamma.col_iter().zip(traces) {
+        for (column, &trace) in law.s_t_gamma.col_iter().zip(interface_dofs) {
             for (i, s) in column.iter().enumerate() {
                 w[(trace as usize - interface.linear, first + i)] = *s;
             }
@@ -103,13 +103,13 @@ impl<'a> CoupledContact<'a> {
     pub fn new(problem: &'a InterfaceProblem<'_>) -> Option<Self> {
         let (interface, motions) = (problem.interface, &problem.motions);
         let laws = &interface.laws;
-        (laws.len() == interface.pair_traces.len()).then(|| Self {
+        (laws.len() == interface.pair_interface_dofs.len()).then(|| Self {
             interface,
             motions,
             h: interface.condensed_laws(motions),
             diagonal: diagonal_of(laws),
             rows: all_rows(laws),
-            center: vec![0.0; laws.iter().map(PairLaw::len).sum()],
+            center: vec![0.0; laws.iter().map(CondensedContact::len).sum()],
             scale: problem.scale,
         })
     }
@@ -119,7 +119,11 @@ impl<'a> CoupledContact<'a> {
         let all = |of: fn(&PairResponse) -> &Vec<f64>| -> Vec<f64> {
             state.responses.iter().flat_map(of).copied().collect()
         };
-        let mut condensed = self.condense(r, all(|p| &p.drives), all(|p| &p.drive_scale));
+        let mut condensed = self.condense(
+            r,
+            all(|p| &p.contact_residual),
+            all(|p| &p.contact_residual_scale),
+        );
         self.motions.set_load(&mut condensed.c);
         let mut open = self.side_by_side(state.responses.iter().map(|p| &p.open[..]));
         let gaps = self.side_by_side(state.responses.iter().map(|p| &p.gaps[..]));
@@ -219,7 +223,7 @@ impl<'a> CoupledContact<'a> {
         }
     }
 
-    /// What every pair has of approaches, then what every pair has of dependent conditions.
+    /// What every pair has of approaches, then what every pair has of linearly dependent constraints.
     fn side_by_side<'b, T: Copy + 'b>(
         &self,
         of_pairs: impl Iterator<Item = &'b [T]> + Clone,
@@ -231,10 +235,10 @@ impl<'a> CoupledContact<'a> {
         approaches.chain(dependent).copied().collect()
     }
 
-    /// What every pair has of all approaches, and of dependent conditions if these follow.
+    /// What every pair has of all approaches, and of linearly dependent constraints if these follow.
     fn by_pair<T: Copy>(&self, all: &[T]) -> Vec<Vec<T>> {
         let (mut approaches, mut dependent) = all.split_at(self.h.nrows());
-        let mut take = |law: &PairLaw| {
+        let mut take = |law: &CondensedContact| {
             let (own, others) = approaches.split_at(law.len());
             let (own_rows, other_rows) = dependent.split_at(law.rows.len().min(dependent.len()));
             (approaches, dependent) = (others, other_rows);
@@ -245,8 +249,8 @@ impl<'a> CoupledContact<'a> {
 }
 
 /// D of all pairs, whose approaches are numbered one after the other.
-fn all_rows(laws: &[PairLaw]) -> DependentRows {
-    let mut rows = DependentRows::default();
+fn all_rows(laws: &[CondensedContact]) -> DependentConstraints {
+    let mut rows = DependentConstraints::default();
     let mut first = 0;
     for law in laws {
         rows.append(&law.rows, first);

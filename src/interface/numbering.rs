@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::error::Failure;
-use crate::schur::condensed::TraceDof;
+use crate::schur::condensed::InterfaceDof;
 use crate::schur::pattern::Cliques;
 
 /// The numbering of the interface's unknowns.
@@ -13,30 +13,30 @@ pub struct Numbering {
     pub len: usize,
     /// Number of those that no pair has; they come first.
     pub linear: usize,
-    /// For every cluster the numbers of its traces.
-    pub traces: Vec<Vec<u32>>,
+    /// For every cluster the numbers of its interface dofs.
+    pub interface_dofs: Vec<Vec<u32>>,
 }
 
 impl Numbering {
-    /// Numbers the traces of all clusters, those of pairs last; `nodes[c]` are the nodes of Γ that
+    /// Numbers the interface dofs of all clusters, those of pairs last; `nodes[c]` are the nodes of Γ that
     /// cluster c shares with others, `in_contact[c]` tells whether it is a pair.
     ///
     /// # Errors
     /// Two clusters disagree on which components of a shared node are free.
     pub fn new(
-        traces: &[&[TraceDof]],
+        interface_dofs: &[&[InterfaceDof]],
         nodes: &[&[u32]],
         in_contact: &[bool],
     ) -> Result<Self, Failure> {
-        check_agreement(traces, nodes)?;
-        let mut clusters_of: BTreeMap<TraceDof, Vec<u32>> = BTreeMap::new();
-        for (c, list) in traces.iter().enumerate() {
+        check_agreement(interface_dofs, nodes)?;
+        let mut clusters_of: BTreeMap<InterfaceDof, Vec<u32>> = BTreeMap::new();
+        for (c, list) in interface_dofs.iter().enumerate() {
             for &dof in *list {
                 clusters_of.entry(dof).or_default().push(c as u32);
             }
         }
-        let faces = Faces::new(&clusters_of, traces.len());
-        let mut number: HashMap<TraceDof, u32> = HashMap::with_capacity(clusters_of.len());
+        let faces = Faces::new(&clusters_of, interface_dofs.len());
+        let mut number: HashMap<InterfaceDof, u32> = HashMap::with_capacity(clusters_of.len());
         let mut linear = 0;
         for face in faces.elimination_order(in_contact) {
             for &dof in &faces.dofs[face] {
@@ -49,7 +49,7 @@ impl Numbering {
         Ok(Self {
             len: number.len(),
             linear,
-            traces: traces
+            interface_dofs: interface_dofs
                 .iter()
                 .map(|list| list.iter().map(|dof| number[dof]).collect())
                 .collect(),
@@ -60,24 +60,27 @@ impl Numbering {
     pub fn cliques(&self, clusters: impl IntoIterator<Item = usize>) -> Cliques {
         let mut cliques = Cliques::default();
         for c in clusters {
-            cliques.push(self.traces[c].iter().copied());
+            cliques.push(self.interface_dofs[c].iter().copied());
         }
         cliques
     }
 }
 
 /// Checks that every node of Γ is free along the same axes in all parts that have it; `nodes[p]` are
-/// those of part p, `traces[p]` its unknowns, both ascending.
+/// those of part p, `interface_dofs[p]` its unknowns, both ascending.
 ///
 /// # Errors
 /// A node that parts hold in different ways.
-pub fn check_agreement(traces: &[&[TraceDof]], nodes: &[&[u32]]) -> Result<(), Failure> {
+pub fn check_agreement(
+    interface_dofs: &[&[InterfaceDof]],
+    nodes: &[&[u32]],
+) -> Result<(), Failure> {
     let mut known: Vec<(u32, u32)> = Vec::new();
-    for (traces, nodes) in traces.iter().zip(nodes) {
-        let mut traces = traces.iter().peekable();
+    for (interface_dofs, nodes) in interface_dofs.iter().zip(nodes) {
+        let mut interface_dofs = interface_dofs.iter().peekable();
         for &node in *nodes {
             let mut free = 0;
-            while let Some(dof) = traces.next_if(|dof| dof.node <= node) {
+            while let Some(dof) = interface_dofs.next_if(|dof| dof.node <= node) {
                 free |= 1 << dof.axis;
             }
             known.push((node, free));
@@ -98,13 +101,13 @@ pub fn check_agreement(traces: &[&[TraceDof]], nodes: &[&[u32]]) -> Result<(), F
 /// Pieces of Γ whose unknowns belong to the same clusters: what the root eliminates at once.
 struct Faces {
     clusters: Vec<Vec<u32>>,
-    dofs: Vec<Vec<TraceDof>>,
+    dofs: Vec<Vec<InterfaceDof>>,
     of_cluster: Vec<Vec<usize>>,
 }
 
 impl Faces {
-    fn new(clusters_of: &BTreeMap<TraceDof, Vec<u32>>, cluster_count: usize) -> Self {
-        let mut faces: BTreeMap<&[u32], Vec<TraceDof>> = BTreeMap::new();
+    fn new(clusters_of: &BTreeMap<InterfaceDof, Vec<u32>>, cluster_count: usize) -> Self {
+        let mut faces: BTreeMap<&[u32], Vec<InterfaceDof>> = BTreeMap::new();
         for (&dof, clusters) in clusters_of {
             faces.entry(clusters).or_default().push(dof);
         }
@@ -172,22 +175,22 @@ impl Faces {
 mod tests {
     use super::*;
 
-    fn traces(nodes: &[u32]) -> Vec<TraceDof> {
+    fn interface_dofs(nodes: &[u32]) -> Vec<InterfaceDof> {
         nodes
             .iter()
-            .flat_map(|&node| (0..2).map(move |axis| TraceDof { node, axis }))
+            .flat_map(|&node| (0..2).map(move |axis| InterfaceDof { node, axis }))
             .collect()
     }
 
     #[test]
     fn every_trace_gets_one_number_whichever_cluster_asks() {
         let nodes = [vec![0, 1, 2], vec![2, 3, 4], vec![0, 1, 4, 5], vec![3, 5]];
-        let lists: Vec<_> = nodes.iter().map(|n| traces(n)).collect();
-        let slices: Vec<&[TraceDof]> = lists.iter().map(Vec::as_slice).collect();
+        let lists: Vec<_> = nodes.iter().map(|n| interface_dofs(n)).collect();
+        let slices: Vec<&[InterfaceDof]> = lists.iter().map(Vec::as_slice).collect();
         let of_cluster: Vec<&[u32]> = nodes.iter().map(Vec::as_slice).collect();
         let numbering = Numbering::new(&slices, &of_cluster, &[false, true, false, false]).unwrap();
-        let mut seen: BTreeMap<TraceDof, u32> = BTreeMap::new();
-        for (list, numbers) in lists.iter().zip(&numbering.traces) {
+        let mut seen: BTreeMap<InterfaceDof, u32> = BTreeMap::new();
+        for (list, numbers) in lists.iter().zip(&numbering.interface_dofs) {
             for (&dof, &number) in list.iter().zip(numbers) {
                 assert_eq!(*seen.entry(dof).or_insert(number), number);
             }
@@ -197,12 +200,12 @@ mod tests {
         assert_eq!(numbers, (0..12).collect::<Vec<u32>>());
         // Nodes 2, 3 and 4 belong to the pair.
         assert_eq!(numbering.linear, 6);
-        assert!(numbering.traces[1].iter().all(|&i| i >= 6));
+        assert!(numbering.interface_dofs[1].iter().all(|&i| i >= 6));
     }
 
     #[test]
     fn parts_that_hold_a_shared_node_differently_are_told_so() {
-        let mut lists = [traces(&[7]), traces(&[7])];
+        let mut lists = [interface_dofs(&[7]), interface_dofs(&[7])];
         lists[1].pop();
         let error = check_agreement(&[&lists[0], &lists[1]], &[&[7], &[7]]).unwrap_err();
         assert!(error.message.contains("node 7"));

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::coupled::condense_laws;
 use super::numbering::Numbering;
 use super::solver::{DirectSolver, InterfaceSolver};
-use crate::contact::pair::PairLaw;
+use crate::contact::pair::CondensedContact;
 use crate::error::Failure;
 use crate::rigid::energy::RigidBasis;
 use crate::schur::factor::BoundaryLastCholesky;
@@ -22,14 +22,14 @@ const SINGULAR_PIVOT: f64 = 1e-13;
 /// What a cluster contributes to the interface problem.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Contribution {
-    /// Its Schur complement on its traces, with every contact closed.
+    /// Its Schur complement on its interface dofs, with every contact closed.
     #[serde(with = "crate::bytes::symmetric")]
     pub s: Mat<f64>,
     /// The smallest pivot of its interior relative to its diagonal entry.
     pub smallest_pivot: f64,
     /// The law of a pair; `None` for a linear subdomain, and where all pairs have too many
     /// approaches to be solved for at once.
-    pub law: Option<PairLaw>,
+    pub law: Option<CondensedContact>,
 }
 
 /// The operators of the interface problem S_0 U + S_CON(U) = F, (14), as the root holds them; F is
@@ -41,9 +41,9 @@ pub struct Interface {
     /// Number of those that no pair has; they come first.
     pub linear: usize,
     /// The traces of every pair.
-    pub pair_traces: Vec<Vec<u32>>,
+    pub pair_interface_dofs: Vec<Vec<u32>>,
     /// The law of every pair; empty where they have too many approaches to be solved for at once.
-    pub laws: Vec<PairLaw>,
+    pub laws: Vec<CondensedContact>,
     /// S_0 = Σ R_iᵀ S_i R_i over the linear subdomains, (15).
     s_0: SparseSymmetric,
     /// Which clusters are in contact.
@@ -79,18 +79,18 @@ impl Interface {
         };
         let mut s_0 = SparseSymmetric::zeros(LowerPattern::new(n, &linear).ok_or_else(too_large)?);
         let mut sum = SparseSymmetric::zeros(LowerPattern::new(n, &all).ok_or_else(too_large)?);
-        let mut pair_traces = Vec::new();
+        let mut pair_interface_dofs = Vec::new();
         let mut laws = Vec::new();
         let mut smallest_pivot = f64::INFINITY;
-        let parts = contributions.into_iter().zip(&numbering.traces);
-        for ((part, traces), &in_contact) in parts.zip(in_contact) {
+        let parts = contributions.into_iter().zip(&numbering.interface_dofs);
+        for ((part, interface_dofs), &in_contact) in parts.zip(in_contact) {
             smallest_pivot = smallest_pivot.min(part.smallest_pivot);
             if in_contact {
-                sum.add_large(traces, part.s.as_ref());
-                pair_traces.push(traces.clone());
+                sum.add_large(interface_dofs, part.s.as_ref());
+                pair_interface_dofs.push(interface_dofs.clone());
                 laws.extend(part.law);
             } else {
-                s_0.add_large(traces, part.s.as_ref());
+                s_0.add_large(interface_dofs, part.s.as_ref());
             }
         }
         sum.add_sparse(&s_0);
@@ -103,7 +103,7 @@ impl Interface {
         Ok(Self {
             len: n,
             linear: numbering.linear,
-            pair_traces,
+            pair_interface_dofs,
             laws,
             s_0,
             in_contact: in_contact.to_vec(),
@@ -139,20 +139,23 @@ impl Interface {
         (factor.smallest_pivot() > SINGULAR_PIVOT).then_some(factor)
     }
 
-    /// The entries of `u` on the traces of pair p.
+    /// The entries of `u` on the interface dofs of pair p.
     pub fn restrict(&self, p: usize, u: &[f64]) -> Vec<f64> {
-        self.pair_traces[p].iter().map(|&i| u[i as usize]).collect()
+        self.pair_interface_dofs[p]
+            .iter()
+            .map(|&i| u[i as usize])
+            .collect()
     }
 
     /// y ← y + R_pᵀ x.
     pub fn extend(&self, p: usize, x: &[f64], y: &mut [f64]) {
-        for (&i, x) in self.pair_traces[p].iter().zip(x) {
+        for (&i, x) in self.pair_interface_dofs[p].iter().zip(x) {
             y[i as usize] += x;
         }
     }
 }
 
 /// The diagonal of what all laws are condensed from, side by side.
-pub(super) fn diagonal_of(laws: &[PairLaw]) -> Vec<f64> {
+pub(super) fn diagonal_of(laws: &[CondensedContact]) -> Vec<f64> {
     laws.iter().flat_map(|law| law.diagonal.clone()).collect()
 }

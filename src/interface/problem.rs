@@ -4,12 +4,12 @@
 
 use super::numbering::Numbering;
 use super::operator::{Interface, diagonal_of};
-use crate::rigid::energy::{RigidBasis, RigidDrive};
+use crate::rigid::energy::{RigidBasis, RigidModes};
 
 /// What loads a cluster.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ClusterLoad {
-    /// Its condensed load on its traces, with every contact closed.
+    /// Its condensed load on its interface dofs, with every contact closed.
     #[serde(with = "crate::bytes")]
     pub load: Vec<f64>,
     /// The largest displacement that is prescribed in a cluster in contact (m).
@@ -33,23 +33,23 @@ pub struct InterfaceProblem<'a> {
 }
 
 impl<'a> InterfaceProblem<'a> {
-    /// Assembles F of the `loads` of all clusters, in their order; `drive` has the pairs' approaches
+    /// Assembles F of the `loads` of all clusters, in their order; `modes` has the pairs' approaches
     /// against the rigid motions of the bodies, and the load along these.
     pub fn new(
         interface: &'a Interface,
         numbering: &Numbering,
         loads: &[ClusterLoad],
-        drive: &RigidDrive,
+        modes: &RigidModes,
     ) -> Self {
         let zeros = || vec![0.0; interface.len];
         let (mut f, mut f_bilateral, mut f_scale) = (zeros(), zeros(), zeros());
-        let of_clusters = loads.iter().zip(&numbering.traces);
-        for ((of_cluster, traces), &in_contact) in of_clusters.zip(&interface.in_contact) {
+        let of_clusters = loads.iter().zip(&numbering.interface_dofs);
+        for ((of_cluster, interface_dofs), &in_contact) in of_clusters.zip(&interface.in_contact) {
             let f = match in_contact {
                 true => &mut f_bilateral,
                 false => &mut f,
             };
-            for (&dof, load) in traces.iter().zip(&of_cluster.load) {
+            for (&dof, load) in interface_dofs.iter().zip(&of_cluster.load) {
                 f[dof as usize] += load;
                 f_scale[dof as usize] += load.abs();
             }
@@ -59,7 +59,7 @@ impl<'a> InterfaceProblem<'a> {
             f,
             f_scale,
             f_bilateral,
-            motions: RigidBasis::new(drive, &diagonal_of(&interface.laws)),
+            motions: RigidBasis::new(modes, &diagonal_of(&interface.laws)),
             scale: loads.iter().fold(0.0, |m, load| m.max(load.scale)),
         }
     }

@@ -22,7 +22,7 @@ pub struct SCon<'a> {
 /// What the root knows of all pairs after an evaluation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConState {
-    traces: Vec<Option<Vec<f64>>>,
+    interface_dofs: Vec<Option<Vec<f64>>>,
     /// The answer of every pair.
     pub responses: Vec<PairResponse>,
 }
@@ -30,7 +30,7 @@ pub struct ConState {
 /// Totals of one evaluation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ConTotals {
-    /// Closed approaches and dependent conditions.
+    /// Closed approaches and linearly dependent constraints.
     pub active: usize,
     /// Those that opened or closed, against what was expected or the last evaluation.
     pub changed: usize,
@@ -96,17 +96,17 @@ impl<'a> SCon<'a> {
         state: &mut ConState,
     ) -> ConTotals {
         let n = self.len();
-        state.traces.resize(n, None);
+        state.interface_dofs.resize(n, None);
         state.responses.resize_with(n, PairResponse::default);
-        let traces: Vec<Vec<f64>> = (0..n).map(|p| interface.restrict(p, u)).collect();
+        let interface_dofs: Vec<Vec<f64>> = (0..n).map(|p| interface.restrict(p, u)).collect();
         let moved: Vec<usize> = (0..n)
-            .filter(|&p| state.traces[p].as_ref() != Some(&traces[p]))
+            .filter(|&p| state.interface_dofs[p].as_ref() != Some(&interface_dofs[p]))
             .collect();
         if !moved.is_empty() {
             (self.comm).broadcast(&mut Request::Evaluate(moved.clone()));
             let question = |p: usize| -> Question {
                 let open = expected.map(|sets| sets[p].clone());
-                (Reals(traces[p].clone()), open)
+                (Reals(interface_dofs[p].clone()), open)
             };
             self.exchange(&moved, question, evaluate, |p, response| {
                 state.responses[p] = response;
@@ -125,7 +125,7 @@ impl<'a> SCon<'a> {
                 totals.fallen_back_pairs += usize::from(response.fell_back);
             }
         }
-        state.traces = traces.into_iter().map(Some).collect();
+        state.interface_dofs = interface_dofs.into_iter().map(Some).collect();
         totals
     }
 
@@ -228,7 +228,7 @@ impl ConState {
         }
     }
 
-    /// The sets of open approaches and dependent conditions, pair by pair.
+    /// The sets of open approaches and linearly dependent constraints, pair by pair.
     pub fn open(&self) -> Vec<Vec<bool>> {
         self.responses.iter().map(|r| r.open.clone()).collect()
     }

@@ -233,20 +233,20 @@ impl FixedActiveSetRoot<'_> {
         let mut loads = Vec::new();
         let mut missing = Vec::new();
         let mut open: Vec<Vec<bool>> = Vec::new();
-        for (question, traces) in gathered.into_iter().zip(&self.numbering.traces) {
+        for (question, interface_dofs) in gathered.into_iter().zip(&self.numbering.interface_dofs) {
             let mut on_approaches = question.load;
-            let on_traces = on_approaches.split_off(on_approaches.len() - traces.len());
+            let on_traces = on_approaches.split_off(on_approaches.len() - interface_dofs.len());
             if let Some((of_cluster, lacking)) = question.limits {
                 open.push(of_cluster);
                 missing.push(lacking);
                 loads.push(on_approaches);
             }
-            for (&i, part) in traces.iter().zip(on_traces) {
+            for (&i, part) in interface_dofs.iter().zip(on_traces) {
                 r[i as usize] += part;
             }
         }
         let Some(coupled) = CoupledContact::new(self.problem) else {
-            return vec![ClusterAnswer::default(); self.numbering.traces.len()];
+            return vec![ClusterAnswer::default(); self.numbering.interface_dofs.len()];
         };
         let step = coupled.solve_fixed(&r, &loads, &missing, &open);
         let mut pairs = step.forces.into_iter().zip(step.approaches);
@@ -256,10 +256,12 @@ impl FixedActiveSetRoot<'_> {
                 None => None,
             };
             let (forces, mut x) = of_pair.unwrap_or_default();
-            let traces = self.numbering.traces[c].iter();
-            x.extend(traces.map(|&i| step.u[i as usize]));
+            let interface_dofs = self.numbering.interface_dofs[c].iter();
+            x.extend(interface_dofs.map(|&i| step.u[i as usize]));
             (Reals(forces), Reals(x))
         };
-        (0..self.numbering.traces.len()).map(answer).collect()
+        (0..self.numbering.interface_dofs.len())
+            .map(answer)
+            .collect()
     }
 }

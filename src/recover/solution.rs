@@ -50,7 +50,7 @@ impl Solution {
             fixed.context.plan,
             fixed.context.catalog,
         );
-        let numbers = fixed.root.map(|root| &root.numbering.traces[..]);
+        let numbers = fixed.root.map(|root| &root.numbering.interface_dofs[..]);
         let mut blocks = recover(fixed.factors(), fixed.step, u.zip(numbers));
         remove_free_modes(fixed, &mut blocks);
         let mut certificate = refine(fixed, &mut blocks);

@@ -139,14 +139,14 @@ impl<'a> Narrator<'a> {
 
     /// The head of the table of sweeps, if there are going to be any.
     pub fn sweeps(&self, interface: &Interface) {
-        if !interface.pair_traces.is_empty() {
+        if !interface.pair_interface_dofs.is_empty() {
             self.say(|out| terminal::sweep_header(out));
         }
     }
 
     /// One sweep.
     pub fn sweep(&self, interface: &Interface, record: &SweepRecord) {
-        if interface.pair_traces.is_empty() {
+        if interface.pair_interface_dofs.is_empty() {
             return;
         }
         self.say(|out| terminal::sweep(out, record));

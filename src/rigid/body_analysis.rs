@@ -9,7 +9,7 @@ use super::analysis::{RigidMotions, Scene};
 use super::bodies::{body_frames, body_states};
 use super::closing_motion::closing_motions;
 use super::cluster_modes::cluster_modes;
-use super::energy::RigidDrive;
+use super::energy::RigidModes;
 use super::motion::BodyFrame;
 use super::rows::rigid_rows;
 use crate::comm::Comm;
@@ -28,7 +28,7 @@ pub struct RigidBodyAnalysis {
     pub closing_motions: Vec<Vec<f64>>,
     /// For every cluster in contact of this rank, its conditions against the motions that supports
     /// leave to the bodies that lie wholly in it: what moves them costs the cluster no energy.
-    pub cluster_modes: BTreeMap<usize, RigidDrive>,
+    pub cluster_modes: BTreeMap<usize, RigidModes>,
     /// Whether supports leave any rigid motion to any body.
     pub movable: bool,
     /// What all this follows from, on the root.

@@ -6,7 +6,7 @@ use contact_dd_partition::problem::Catalog;
 use faer::Mat;
 
 use super::analysis::{FixingDof, RigidRow, Scene};
-use super::energy::RigidDrive;
+use super::energy::RigidModes;
 use super::kinematics::{Kinematics, null_space};
 use crate::comm::Comm;
 use crate::plan::Plan;
@@ -17,7 +17,7 @@ const ROUND_OFF: f64 = 1e-9;
 impl Scene {
     /// The conditions with these numbers against the motions that supports leave to the bodies, and
     /// the load along these.
-    pub fn against(&self, conditions: &[usize]) -> RigidDrive {
+    pub fn against(&self, conditions: &[usize]) -> RigidModes {
         let kinematics = Kinematics::new(self.dim, &self.bodies);
         self.drive(&kinematics, conditions, &[], |_| true)
     }
@@ -30,7 +30,7 @@ impl Scene {
         conditions: &[usize],
         fixing_dofs: &[FixingDof],
         bodies: impl Fn(usize) -> bool,
-    ) -> RigidDrive {
+    ) -> RigidModes {
         let rows: Vec<_> = conditions.iter().map(|&j| self.rows[j].clone()).collect();
         let mut b = kinematics.rows(&rows);
         // A motion along a side moves it nowhere but by round-off.
@@ -55,7 +55,7 @@ impl Scene {
             let kept = null_space(&pinned);
             (rows, load) = (rows * &kept, kept.transpose() * load);
         }
-        RigidDrive {
+        RigidModes {
             rows: Mat::from_fn(rows.nrows(), rows.ncols(), |i, k| rows[(i, k)]),
             load: load.iter().copied().collect(),
         }
@@ -93,7 +93,7 @@ pub(super) fn cluster_modes(
     fixing_dofs: &[FixingDof],
     catalog: &Catalog,
     plan: &Plan,
-) -> BTreeMap<usize, RigidDrive> {
+) -> BTreeMap<usize, RigidModes> {
     let mut home: Vec<Option<usize>> = vec![None; catalog.bodies.len()];
     let mut elsewhere = vec![false; catalog.bodies.len()];
     let clusters = plan.clusters_of_blocks();

@@ -15,7 +15,7 @@ const INDEPENDENT: f64 = 1e-8;
 /// Approaches against rigid motions: R, a row an approach and a column a motion, and the load Rᵀ c
 /// along them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RigidDrive {
+pub struct RigidModes {
     /// R.
     #[serde(with = "crate::bytes::matrix")]
     pub rows: Mat<f64>,
@@ -23,7 +23,7 @@ pub struct RigidDrive {
     pub load: Vec<f64>,
 }
 
-impl Default for RigidDrive {
+impl Default for RigidModes {
     /// No motions.
     fn default() -> Self {
         Self {
@@ -46,7 +46,7 @@ pub struct RigidBasis {
 impl RigidBasis {
     /// The basis for approaches with this `diagonal` D, by Gram and Schmidt, twice; soft bodies first, so
     /// that what is left for stiff ones leaves theirs alone, to which it would be far more.
-    pub fn new(drive: &RigidDrive, diagonal: &[f64]) -> Self {
+    pub fn new(drive: &RigidModes, diagonal: &[f64]) -> Self {
         let root: Vec<f64> = diagonal.iter().map(|k| k.max(0.0).sqrt()).collect();
         let mut basis = Self {
             root,
@@ -138,8 +138,8 @@ mod tests {
     const STIFFNESS: [f64; 3] = [1.0, 4.0, 2.0];
 
     /// Lifting, rocking, and both at once, of a beam on three supports.
-    fn lifting_and_rocking(load: [f64; 2]) -> RigidDrive {
-        RigidDrive {
+    fn lifting_and_rocking(load: [f64; 2]) -> RigidModes {
+        RigidModes {
             rows: Mat::from_fn(3, 3, |i, k| [1.0, i as f64 - 1.0, i as f64][k]),
             load: vec![load[0], load[1], load[0] + load[1]],
         }
@@ -160,7 +160,7 @@ mod tests {
     /// stiff one's load would drive it.
     #[test]
     fn round_off_of_a_stiff_body_is_nothing_to_a_soft_one() {
-        let drive = RigidDrive {
+        let drive = RigidModes {
             rows: Mat::from_fn(3, 2, |i, k| [[1.0, 0.0], [1.0, 0.0], [-1.0, 1.0]][i][k]),
             load: vec![1e10, 0.0],
         };

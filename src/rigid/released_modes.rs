@@ -35,7 +35,7 @@ impl Scene {
             return ReleasedModes::default();
         }
         let b = kinematics.rows(&self.rows);
-        let (held, idle): (Vec<usize>, Vec<usize>) =
+        let (held, redundant): (Vec<usize>, Vec<usize>) =
             (0..carrying.len()).partition(|&j| carrying[j]);
         // What is free anyway comes first; the rest is orthogonal to it.
         let known: Vec<DVector<f64>> = free.iter().map(|m| kinematics.unknowns_of(m)).collect();
@@ -55,8 +55,8 @@ impl Scene {
         let z = DMatrix::from_fn(kinematics.len, columns.len(), |i, k| columns[k][i]);
         ReleasedModes {
             motions,
-            rows: b.select_rows(&idle) * z,
-            gaps: idle.iter().map(|&j| gaps[j].max(0.0)).collect(),
+            rows: b.select_rows(&redundant) * z,
+            gaps: redundant.iter().map(|&j| gaps[j].max(0.0)).collect(),
             warnings: (released.iter())
                 .map(|what| format!("no contact force holds {what}"))
                 .collect(),

@@ -9,7 +9,7 @@ pub struct Condensed {
     /// Number of approaches.
     pub approaches: usize,
     /// Its unknowns on Γ, ascending.
-    pub traces: Vec<TraceDof>,
+    pub interface_dofs: Vec<InterfaceDof>,
     /// S (Pa); only the lower triangle counts.
     #[serde(with = "crate::bytes::lower")]
     pub s: Mat<f64>,
@@ -30,12 +30,14 @@ impl Condensed {
     /// S_tΓ, approaches against traces; in the upper triangle.
     pub fn s_t_gamma(&self) -> MatRef<'_, f64> {
         let m = self.approaches;
-        self.s.as_ref().submatrix(0, m, m, self.traces.len())
+        self.s
+            .as_ref()
+            .submatrix(0, m, m, self.interface_dofs.len())
     }
 
     /// S_ΓΓ: the Schur complement with every contact closed (16).
     pub fn bilateral(&self) -> MatRef<'_, f64> {
-        let (m, n) = (self.approaches, self.traces.len());
+        let (m, n) = (self.approaches, self.interface_dofs.len());
         self.s.as_ref().submatrix(m, m, n, n)
     }
 
@@ -51,7 +53,7 @@ impl Condensed {
 
 /// An unknown on Γ: the node's number on Γ and the axis of its frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub struct TraceDof {
+pub struct InterfaceDof {
     /// Number on Γ.
     pub node: u32,
     /// Axis of the node's frame.

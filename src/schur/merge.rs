@@ -17,7 +17,7 @@ use faer::{Accum, Mat, MatMut, Par};
 use super::condensed::Condensed;
 use super::front::partial_cholesky;
 use super::local::CondensedLoad;
-use crate::schur::condensed::TraceDof;
+use crate::schur::condensed::InterfaceDof;
 
 /// What a merge leaves behind for solving.
 #[derive(Debug)]
@@ -61,7 +61,7 @@ impl Spare {
 
 /// Why Schur complements can't be merged: this unknown can move although all that is kept is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LooseTrace(pub TraceDof);
+pub struct FreeInterfaceDof(pub InterfaceDof);
 
 /// Indices of a child's boundary that follow one another in [E | K], too.
 struct Run {
@@ -81,11 +81,11 @@ impl Merge {
         eliminated: &[u32],
         spare: &mut Spare,
         par: Par,
-    ) -> Result<(Self, Condensed), LooseTrace> {
-        let (gone, traces) = union_of_traces(&children, eliminated);
+    ) -> Result<(Self, Condensed), FreeInterfaceDof> {
+        let (gone, interface_dofs) = union_of_interface_dofs(&children, eliminated);
         let approaches = children.iter().map(|c| c.approaches).sum();
         let e = gone.len();
-        let k = approaches + traces.len();
+        let k = approaches + interface_dofs.len();
         let mut columns = Mat::<f64>::zeros(e + k, e);
         let mut s = spare.zeros(k);
         let mut diagonal = vec![0.0; e + k];
@@ -93,7 +93,13 @@ impl Merge {
         let mut smallest_pivot = f64::INFINITY;
         let mut first_approach = e;
         for child in children {
-            let place = places_of(&child, first_approach, &gone, &traces, e + approaches);
+            let place = places_of(
+                &child,
+                first_approach,
+                &gone,
+                &interface_dofs,
+                e + approaches,
+            );
             first_approach += child.approaches;
             for (&to, d) in place.iter().zip(&child.diagonal) {
                 diagonal[to as usize] += d;
@@ -109,13 +115,13 @@ impl Merge {
             places,
         };
         partial_cholesky(merge.columns.as_mut(), s.as_mut(), par)
-            .map_err(|j| LooseTrace(gone[j]))?;
+            .map_err(|j| FreeInterfaceDof(gone[j]))?;
         for (j, d) in diagonal[..e].iter().enumerate() {
             smallest_pivot = smallest_pivot.min(merge.columns[(j, j)].powi(2) / d);
         }
         let condensed = Condensed {
             approaches,
-            traces,
+            interface_dofs,
             s,
             diagonal: diagonal[e..].to_vec(),
             smallest_pivot,
@@ -164,10 +170,13 @@ fn column_of(x: &mut [f64]) -> MatMut<'_, f64> {
 }
 
 /// The traces of all children, each once, ascending: those at `eliminated` nodes, and the others.
-fn union_of_traces(children: &[Condensed], eliminated: &[u32]) -> (Vec<TraceDof>, Vec<TraceDof>) {
-    let mut all: Vec<TraceDof> = children
+fn union_of_interface_dofs(
+    children: &[Condensed],
+    eliminated: &[u32],
+) -> (Vec<InterfaceDof>, Vec<InterfaceDof>) {
+    let mut all: Vec<InterfaceDof> = children
         .iter()
-        .flat_map(|c| c.traces.iter().copied())
+        .flat_map(|c| c.interface_dofs.iter().copied())
         .collect();
     all.sort_unstable();
     all.dedup();
@@ -183,13 +192,13 @@ fn union_of_traces(children: &[Condensed], eliminated: &[u32]) -> (Vec<TraceDof>
 fn places_of(
     child: &Condensed,
     first_approach: usize,
-    gone: &[TraceDof],
-    kept: &[TraceDof],
+    gone: &[InterfaceDof],
+    kept: &[InterfaceDof],
     first_kept: usize,
 ) -> Vec<u32> {
     let approaches = (0..child.approaches).map(|j| (first_approach + j) as u32);
     let (mut in_gone, mut in_kept) = (0, 0);
-    let traces = child.traces.iter().map(|dof| {
+    let interface_dofs = child.interface_dofs.iter().map(|dof| {
         // All three lists ascend, and the trace is in one of the two.
         while gone.get(in_gone).is_some_and(|other| other < dof) {
             in_gone += 1;
@@ -202,7 +211,7 @@ fn places_of(
             false => (first_kept + in_kept) as u32,
         }
     });
-    approaches.chain(traces).collect()
+    approaches.chain(interface_dofs).collect()
 }
 
 /// Maximal runs of `place`, none of which reaches across the first `e` indices.

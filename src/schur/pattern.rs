@@ -3,7 +3,7 @@
 use faer::MatRef;
 
 /// Lists of unknowns, one list for every dense matrix that is scattered: the unknowns of an
-/// element, or the traces of a subdomain.
+/// element, or the interface dofs of a subdomain.
 #[derive(Clone, Debug)]
 pub struct Cliques {
     offsets: Vec<usize>,

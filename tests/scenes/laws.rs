@@ -331,7 +331,7 @@ fn a_schur_complement_is_positive_and_rigid_motions_cost_nothing() {
             [|_| [1.0, 0.0], |_| [0.0, 1.0], |x| [-x[1], x[0]]];
         for motion in motions {
             let value = |i: usize| {
-                let trace = dofs.traces[i];
+                let trace = dofs.interface_dofs[i];
                 let on = subdomain.interface.iter();
                 let node = on.clone().find(|on| on.interface == trace.node).unwrap();
                 motion(subdomain.points[node.node as usize])[trace.axis as usize]

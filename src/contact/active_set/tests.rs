@@ -6,13 +6,13 @@ use faer::{Mat, Side};
 use super::*;
 
 fn solve(h: &Mat<f64>, c: &[f64], bounds: &[f64]) -> (GapSolution, Vec<bool>) {
-    solve_with(h, c, &DependentRows::default(), bounds)
+    solve_with(h, c, &DependentConstraints::default(), bounds)
 }
 
 fn solve_with(
     h: &Mat<f64>,
     c: &[f64],
-    rows: &DependentRows,
+    rows: &DependentConstraints,
     bounds: &[f64],
 ) -> (GapSolution, Vec<bool>) {
     let mut open = vec![false; bounds.len()];
@@ -38,14 +38,14 @@ fn noise(seed: usize) -> f64 {
 }
 
 fn assert_optimal(h: &Mat<f64>, c: &[f64], bounds: &[f64], solution: &GapSolution) {
-    assert_optimal_with(h, c, &DependentRows::default(), bounds, solution);
+    assert_optimal_with(h, c, &DependentConstraints::default(), bounds, solution);
 }
 
 /// Fails unless the solution meets t ≤ g and D t ≤ d and is optimal with it.
 fn assert_optimal_with(
     h: &Mat<f64>,
     c: &[f64],
-    rows: &DependentRows,
+    rows: &DependentConstraints,
     bounds: &[f64],
     solution: &GapSolution,
 ) {
@@ -159,7 +159,7 @@ fn the_interior_point_method_names_the_closed_conditions() {
             h: h.as_ref(),
             q: &c,
             scale: &diagonal,
-            rows: &DependentRows::default(),
+            rows: &DependentConstraints::default(),
             e: &[],
         }
         .open_conditions();
@@ -171,8 +171,8 @@ fn the_interior_point_method_names_the_closed_conditions() {
 }
 
 /// `count` rows of up to `most` of m approaches.
-fn random_rows(seed: usize, m: usize, count: usize, most: usize) -> DependentRows {
-    let mut rows = DependentRows::default();
+fn random_rows(seed: usize, m: usize, count: usize, most: usize) -> DependentConstraints {
+    let mut rows = DependentConstraints::default();
     for j in 0..count {
         let first = (seed * 7 + j * 3) % m;
         let terms = 1 + (seed + j) % most.min(m);
@@ -205,7 +205,7 @@ fn a_vertex_of_more_conditions_than_directions_is_found() {
     // Three and more lines through one point of the plane, a load into each of the sectors.
     let h = Mat::from_fn(2, 2, |i, j| if i == j { 2.0 } else { 0.5 });
     for count in 1..6 {
-        let mut rows = DependentRows::default();
+        let mut rows = DependentConstraints::default();
         for j in 0..count {
             let angle = (j as f64 + 0.5) * std::f64::consts::FRAC_PI_2 / count as f64;
             rows.push(vec![(0, angle.cos()), (1, angle.sin())]);
@@ -223,7 +223,7 @@ fn a_vertex_of_more_conditions_than_directions_is_found() {
 #[test]
 fn an_approach_may_be_bounded_from_both_sides() {
     let h = Mat::from_fn(3, 3, |i, j| if i == j { 2.0 } else { -0.5 });
-    let mut rows = DependentRows::default();
+    let mut rows = DependentConstraints::default();
     rows.push(vec![(0, -1.0)]);
     rows.push(vec![(2, -1.0)]);
     for (c, bounds) in [
@@ -240,7 +240,7 @@ fn an_approach_may_be_bounded_from_both_sides() {
 fn a_dependent_condition_alone_holds_what_nothing_resists() {
     // H = 0 along moving both approaches at once, which only their sum's bound stops.
     let h = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 } else { -1.0 });
-    let mut rows = DependentRows::default();
+    let mut rows = DependentConstraints::default();
     rows.push(vec![(0, 0.6), (1, 0.8)]);
     let (c, bounds) = ([1.0, 0.5], [9.0, 9.0, 0.7]);
     let (solution, open) = solve_with(&h, &c, &rows, &bounds);
@@ -251,7 +251,7 @@ fn a_dependent_condition_alone_holds_what_nothing_resists() {
 #[test]
 fn conditions_that_contradict_each_other_have_no_solution() {
     let h = Mat::<f64>::identity(1, 1);
-    let mut rows = DependentRows::default();
+    let mut rows = DependentConstraints::default();
     rows.push(vec![(0, -1.0)]);
     let (solution, _) = solve_with(&h, &[1.0], &rows, &[0.1, -0.2]);
     assert!(!solution.converged);

@@ -118,8 +118,11 @@ fn traces_come_last_and_are_the_displacement_of_shared_nodes() {
     let x = unknowns(&dofs);
     let u = prescribed.displacement(&dofs, &x);
     assert_eq!(
-        dofs.traces,
-        [TraceDof { node: 7, axis: 0 }, TraceDof { node: 7, axis: 1 }]
+        dofs.interface_dofs,
+        [
+            InterfaceDof { node: 7, axis: 0 },
+            InterfaceDof { node: 7, axis: 1 }
+        ]
     );
     assert_eq!(vector(&u, 6)[..2], x[dofs.len() - 2..]);
     // 16 components less 4 that are prescribed; approaches replace displacements one by one.

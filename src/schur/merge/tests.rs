@@ -3,8 +3,8 @@ use faer::linalg::solvers::Solve;
 
 use super::*;
 
-fn trace(node: u32) -> TraceDof {
-    TraceDof { node, axis: 0 }
+fn trace(node: u32) -> InterfaceDof {
+    InterfaceDof { node, axis: 0 }
 }
 
 /// A symmetric positive definite matrix.
@@ -21,7 +21,7 @@ fn child(approaches: usize, nodes: &[u32], seed: usize) -> Condensed {
     let s = spd(n, seed);
     Condensed {
         approaches,
-        traces: nodes.iter().map(|&node| trace(node)).collect(),
+        interface_dofs: nodes.iter().map(|&node| trace(node)).collect(),
         diagonal: (0..n).map(|i| s[(i, i)]).collect(),
         s,
         smallest_pivot: 1.0,
@@ -37,7 +37,7 @@ fn example() -> (Vec<Condensed>, [Vec<f64>; 2], Mat<f64>, Vec<f64>) {
     let names = |c: &Condensed, first: usize| -> Vec<usize> {
         let approaches = (0..c.approaches).map(move |j| 9 + first + j);
         approaches
-            .chain(c.traces.iter().map(|t| t.node as usize))
+            .chain(c.interface_dofs.iter().map(|t| t.node as usize))
             .collect()
     };
     let mut a = Mat::zeros(12, 12);
@@ -71,7 +71,10 @@ fn a_merge_is_the_schur_complement_of_the_sum() {
     let exact = part(&kept, &kept) - part(&kept, &gone) * solved.solve(part(&gone, &kept));
     let f_gone = Mat::from_fn(3, 1, |i, _| f[gone[i]]);
     let taken = part(&kept, &gone) * solved.solve(f_gone);
-    assert_eq!((condensed.approaches, condensed.traces.len()), (3, 6));
+    assert_eq!(
+        (condensed.approaches, condensed.interface_dofs.len()),
+        (3, 6)
+    );
     for i in 0..9 {
         assert!((load.boundary()[i] - (f[kept[i]] - taken[(i, 0)])).abs() < 1e-14);
         for j in 0..=i {
@@ -103,10 +106,10 @@ fn an_unknown_that_nothing_holds_is_named() {
     let mut children = vec![child(0, &[1, 2], 3), child(0, &[2, 4], 4)];
     for c in &mut children {
         c.s[(
-            usize::from(c.traces[0] == trace(1)),
-            usize::from(c.traces[0] == trace(1)),
+            usize::from(c.interface_dofs[0] == trace(1)),
+            usize::from(c.interface_dofs[0] == trace(1)),
         )] = -50.0;
     }
     let error = Merge::new(children, &[2], &mut Spare::default(), Par::Seq).unwrap_err();
-    assert_eq!(error, LooseTrace(trace(2)));
+    assert_eq!(error, FreeInterfaceDof(trace(2)));
 }

@@ -34,7 +34,7 @@ fn along(pair: &Cluster, i: usize, u: &[f64]) -> f64 {
 fn answers(pair: &Cluster) -> Vec<(Vec<f64>, PairResponse, Vec<f64>)> {
     let (mut random, mut of_program) = (Random::new(2), pair.pair());
     let ask = |_| {
-        let u: Vec<f64> = (0..pair.condensed.traces.len())
+        let u: Vec<f64> = (0..pair.condensed.interface_dofs.len())
             .map(|_| 2.0 * random.signed())
             .collect();
         let response = of_program.evaluate(&u, None);

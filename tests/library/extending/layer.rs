@@ -29,10 +29,12 @@ impl Layer {
         let m = pair.approaches;
         let unit = |i, j| f64::from(u8::from(i == j));
         let one_plus_he = Mat::from_fn(m, m, |i, j| unit(i, j) + pair.s[(i, j)] * compliances[j]);
-        let traces = pair.s.nrows() - m;
+        let interface_dofs = pair.s.nrows() - m;
         Self {
             g: one_plus_he.partial_piv_lu().solve(Mat::from_fn(m, m, unit)),
-            give: Mat::from_fn(traces, m, |i, j| pair.s[(m + i, j)] * compliances[j]),
+            give: Mat::from_fn(interface_dofs, m, |i, j| {
+                pair.s[(m + i, j)] * compliances[j]
+            }),
         }
     }
 

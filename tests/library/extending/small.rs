@@ -4,11 +4,11 @@ use std::rc::Rc;
 
 use contact_dd_mpi::contact::approach::ApproachOf;
 use contact_dd_mpi::contact::limits::Limits;
-use contact_dd_mpi::contact::pair::{ContactPair, PairLaw};
+use contact_dd_mpi::contact::pair::{CondensedContact, ContactPair};
 use contact_dd_mpi::interface::numbering::Numbering;
 use contact_dd_mpi::interface::operator::{Contribution, Interface};
 use contact_dd_mpi::interface::problem::ClusterLoad;
-use contact_dd_mpi::schur::condensed::{Condensed, TraceDof};
+use contact_dd_mpi::schur::condensed::{Condensed, InterfaceDof};
 use faer::{Mat, Par};
 use nalgebra::{DMatrix, DVector};
 
@@ -51,7 +51,7 @@ impl Cluster {
             nodes: nodes.to_vec(),
             condensed: Condensed {
                 approaches,
-                traces: dofs(nodes),
+                interface_dofs: dofs(nodes),
                 s: Mat::from_fn(n, n, |i, j| s[(i, j)]),
                 diagonal: (0..n).map(|i| s[(i, i)]).collect(),
                 smallest_pivot: 1.0,
@@ -79,8 +79,8 @@ impl Cluster {
 }
 
 /// Both components of every node.
-fn dofs(nodes: &[u32]) -> Vec<TraceDof> {
-    let of_node = |&node: &u32| [0, 1].map(|axis| TraceDof { node, axis });
+fn dofs(nodes: &[u32]) -> Vec<InterfaceDof> {
+    let of_node = |&node: &u32| [0, 1].map(|axis| InterfaceDof { node, axis });
     nodes.iter().flat_map(of_node).collect()
 }
 
@@ -117,10 +117,10 @@ impl Small {
     /// The operators on Γ with these `pairs`, its numbering, and what loads the clusters.
     pub fn interface(&self, pairs: &[ContactPair]) -> (Interface, Numbering, Vec<ClusterLoad>) {
         let clusters = self.clusters();
-        let traces = clusters.map(|cluster| &cluster.condensed.traces[..]);
+        let interface_dofs = clusters.map(|cluster| &cluster.condensed.interface_dofs[..]);
         let nodes = clusters.map(|cluster| &cluster.nodes[..]);
         let in_contact = [false, true, true];
-        let numbering = Numbering::new(&traces, &nodes, &in_contact).unwrap();
+        let numbering = Numbering::new(&interface_dofs, &nodes, &in_contact).unwrap();
         let mut contributions = vec![Contribution {
             s: self.linear.condensed.s.clone(),
             smallest_pivot: 1.0,
@@ -129,7 +129,7 @@ impl Small {
         contributions.extend(pairs.iter().map(|pair| Contribution {
             s: pair.condensed().bilateral().to_owned(),
             smallest_pivot: 1.0,
-            law: Some(PairLaw::new(pair.condensed(), pair.limits())),
+            law: Some(CondensedContact::new(pair.condensed(), pair.limits())),
         }));
         let interface = Interface::new(&numbering, contributions, &in_contact, Par::Seq).unwrap();
         let of_pairs = pairs.iter().map(|pair| pair.bilateral_load());
@@ -146,13 +146,13 @@ impl Small {
     /// The solution of the whole.
     pub fn exact(&self) -> Exact {
         let approaches = 2 * APPROACHES;
-        let n = approaches + self.linear.condensed.traces.len();
+        let n = approaches + self.linear.condensed.interface_dofs.len();
         let (mut k, mut f) = (DMatrix::zeros(n, n), DVector::zeros(n));
         for (c, cluster) in self.clusters().into_iter().enumerate() {
             let own = (0..cluster.gaps.len()).map(|i| (c.max(1) - 1) * APPROACHES + i);
-            let dof = |dof: &TraceDof| approaches + (2 * dof.node + dof.axis) as usize;
+            let dof = |dof: &InterfaceDof| approaches + (2 * dof.node + dof.axis) as usize;
             let places: Vec<usize> = own
-                .chain(cluster.condensed.traces.iter().map(dof))
+                .chain(cluster.condensed.interface_dofs.iter().map(dof))
                 .collect();
             for (i, &row) in places.iter().enumerate() {
                 for (j, &column) in places.iter().enumerate() {

@@ -7,7 +7,7 @@ use contact_dd_mpi::comm::{Comm, start};
 use contact_dd_mpi::contact::pair::ContactPair;
 use contact_dd_mpi::interface::problem::InterfaceProblem;
 use contact_dd_mpi::interface::s_con::SCon;
-use contact_dd_mpi::rigid::energy::RigidDrive;
+use contact_dd_mpi::rigid::energy::RigidModes;
 use contact_dd_mpi::sweep::{Method, Start, SweepOutcome, SweepSettings, SweepStatus, Sweeps};
 
 use super::small::{APPROACHES, Small};
@@ -68,11 +68,11 @@ enum Way {
     Added(usize),
 }
 
-/// What a way finds, and the traces on Γ in its numbering.
+/// What a way finds, and the interface dofs on Γ in its numbering.
 fn solve(comm: &Comm, small: &Small, way: Way) -> (SweepOutcome, Vec<u32>) {
     let pairs = small.pairs.each_ref().map(|pair| pair.pair());
     let (interface, numbering, loads) = small.interface(&pairs);
-    let motions = RigidDrive::default();
+    let motions = RigidModes::default();
     let problem = InterfaceProblem::new(&interface, &numbering, &loads, &motions);
     let mut pairs: BTreeMap<usize, ContactPair> = pairs.into_iter().enumerate().collect();
     let mut s_con = SCon::new(comm, &[0, 0], &mut pairs);
@@ -101,7 +101,7 @@ fn solve(comm: &Comm, small: &Small, way: Way) -> (SweepOutcome, Vec<u32>) {
             found.unwrap()
         }
     };
-    (outcome, numbering.traces[0].clone())
+    (outcome, numbering.interface_dofs[0].clone())
 }
 
 /// All ways lead to the solution that trying every set of contacts finds, with and without a layer

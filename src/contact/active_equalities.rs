@@ -1,22 +1,22 @@
-//! Closed dependent conditions: equations D t = d that tie open approaches to the rest.
+//! Closed linearly dependent constraints: equations D t = d that eliminate open approaches.
 
-use super::dependent::{DependentRows, Terms};
+use super::dependent::{DependentConstraints, Terms};
 
 /// What elimination leaves of a coefficient of order one that should be zero.
 const ROUND_OFF: f64 = 1e-10;
 
 /// The closed rows as equations, each solved for an open approach of its own.
 #[derive(Clone, Debug, Default)]
-pub struct Ties {
+pub struct ActiveEqualities {
     /// The equations; none has the pivot of another.
-    pub ties: Vec<Tie>,
+    pub equalities: Vec<ActiveEquality>,
     /// Closed rows that say nothing beyond the others and the closed approaches.
-    pub idle: Vec<usize>,
+    pub redundant: Vec<usize>,
 }
 
 /// t_pivot + Σ factor·t = Σ share·(d − D_C g_C), over open approaches and closed rows.
 #[derive(Clone, Debug)]
-pub struct Tie {
+pub struct ActiveEquality {
     /// The approach that follows from others.
     pub pivot: usize,
     /// Those others.
@@ -25,13 +25,13 @@ pub struct Tie {
     shares: Terms,
 }
 
-impl Ties {
+impl ActiveEqualities {
     /// Solves the rows that aren't `open`; flags of approaches come first, then those of rows.
-    pub fn new(rows: &DependentRows, open: &[bool]) -> Self {
-        let mut ties = Self::default();
+    pub fn new(rows: &DependentConstraints, open: &[bool]) -> Self {
+        let mut equalities = Self::default();
         let m = open.len() - rows.len();
         for (j, row) in rows.iter().enumerate().filter(|&(j, _)| !open[m + j]) {
-            let (mut terms, mut shares) = ties.remainder(row, open);
+            let (mut terms, mut shares) = equalities.remainder(row, open);
             scale(&mut shares, -1.0);
             add(&mut shares, j, 1.0);
             let largest = (terms.iter().enumerate()).max_by(|(_, a), (_, b)| {
@@ -39,38 +39,38 @@ impl Ties {
                 a.total_cmp(&b)
             });
             let Some((place, &(pivot, factor))) = largest else {
-                ties.idle.push(j);
+                equalities.redundant.push(j);
                 continue;
             };
             terms.swap_remove(place);
             scale(&mut terms, 1.0 / factor);
             scale(&mut shares, 1.0 / factor);
-            for tie in &mut ties.ties {
-                if let Some(place) = tie.others.iter().position(|&(i, _)| i == pivot) {
-                    let (_, factor) = tie.others.swap_remove(place);
-                    add_multiple(&mut tie.others, &terms, -factor);
-                    add_multiple(&mut tie.shares, &shares, -factor);
+            for equality in &mut equalities.equalities {
+                if let Some(place) = equality.others.iter().position(|&(i, _)| i == pivot) {
+                    let (_, factor) = equality.others.swap_remove(place);
+                    add_multiple(&mut equality.others, &terms, -factor);
+                    add_multiple(&mut equality.shares, &shares, -factor);
                 }
             }
-            ties.ties.push(Tie {
+            equalities.equalities.push(ActiveEquality {
                 pivot,
                 others: terms,
                 shares,
             });
         }
-        ties
+        equalities
     }
 
-    /// What is left of `normal` on the open approaches once the ties are taken off, and how much of
+    /// What is left of `normal` on the open approaches once the equalities are taken off, and how much of
     /// every closed row that took.
     fn remainder(&self, normal: &[(usize, f64)], open: &[bool]) -> (Terms, Terms) {
         let mut left: Terms = normal.iter().copied().filter(|&(i, _)| open[i]).collect();
         let mut taken = Terms::new();
-        for tie in &self.ties {
-            if let Some(place) = left.iter().position(|&(i, _)| i == tie.pivot) {
+        for equality in &self.equalities {
+            if let Some(place) = left.iter().position(|&(i, _)| i == equality.pivot) {
                 let (_, factor) = left.swap_remove(place);
-                add_multiple(&mut left, &tie.others, -factor);
-                add_multiple(&mut taken, &tie.shares, factor);
+                add_multiple(&mut left, &equality.others, -factor);
+                add_multiple(&mut taken, &equality.shares, factor);
             }
         }
         left.retain(|(_, c)| c.abs() > ROUND_OFF);
@@ -83,30 +83,30 @@ impl Ties {
         left.is_empty().then_some(taken)
     }
 
-    /// Puts the pivots of `t` where the ties want them with the other approaches as they are; `bounds`
+    /// Puts the pivots of `t` where the equalities want them with the other approaches as they are; `bounds`
     /// are those of approaches, then those of rows.
-    pub fn hold(&self, rows: &DependentRows, bounds: &[f64], t: &mut [f64]) {
+    pub fn hold(&self, rows: &DependentConstraints, bounds: &[f64], t: &mut [f64]) {
         let m = t.len();
-        for tie in &self.ties {
-            t[tie.pivot] = 0.0;
+        for equality in &self.equalities {
+            t[equality.pivot] = 0.0;
         }
         let t_free = t.to_vec();
-        let held = |tie: &Tie| -> f64 {
+        let held = |equality: &ActiveEquality| -> f64 {
             let of_row =
                 |&(j, share): &(usize, f64)| share * (bounds[m + j] - rows.value(j, &t_free));
-            tie.shares.iter().map(of_row).sum()
+            equality.shares.iter().map(of_row).sum()
         };
-        for tie in &self.ties {
-            t[tie.pivot] = held(tie);
+        for equality in &self.equalities {
+            t[equality.pivot] = held(equality);
         }
     }
 
     /// The forces μ of `count` rows that hold what is `left` of the load on the pivots.
     pub fn forces(&self, count: usize, left: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut forces = vec![0.0; count];
-        for tie in &self.ties {
-            let left = left(tie.pivot);
-            for &(j, share) in &tie.shares {
+        for equality in &self.equalities {
+            let left = left(equality.pivot);
+            for &(j, share) in &equality.shares {
                 forces[j] += share * left;
             }
         }
@@ -115,11 +115,11 @@ impl Ties {
 
     /// Scale of the terms that the force of row j is a sum of, for the `scale` of every approach.
     pub fn force_scale(&self, j: usize, scale: impl Fn(usize) -> f64) -> f64 {
-        let of_tie = |tie: &Tie| -> f64 {
-            let share = tie.shares.iter().find(|&&(row, _)| row == j);
-            share.map_or(0.0, |(_, share)| share.abs() * scale(tie.pivot))
+        let of_equality = |equality: &ActiveEquality| -> f64 {
+            let share = equality.shares.iter().find(|&&(row, _)| row == j);
+            share.map_or(0.0, |(_, share)| share.abs() * scale(equality.pivot))
         };
-        self.ties.iter().map(of_tie).sum()
+        self.equalities.iter().map(of_equality).sum()
     }
 }
 
@@ -146,8 +146,8 @@ fn add_multiple(terms: &mut Terms, others: &[(usize, f64)], factor: f64) {
 mod tests {
     use super::*;
 
-    fn rows(rows: &[&[(usize, f64)]]) -> DependentRows {
-        let mut all = DependentRows::default();
+    fn rows(rows: &[&[(usize, f64)]]) -> DependentConstraints {
+        let mut all = DependentConstraints::default();
         rows.iter().for_each(|row| all.push(row.to_vec()));
         all
     }
@@ -161,33 +161,33 @@ mod tests {
         ]);
         let open = [true, true, true, false, false, false, false];
         let bounds = [0.0, 0.0, 0.0, 0.6, 0.1, -0.2, 0.3];
-        let ties = Ties::new(&rows, &open);
-        assert!(ties.idle.is_empty());
+        let equalities = ActiveEqualities::new(&rows, &open);
+        assert!(equalities.redundant.is_empty());
         let mut t = [0.0, 0.0, 0.0, 0.6];
-        ties.hold(&rows, &bounds, &mut t);
+        equalities.hold(&rows, &bounds, &mut t);
         for j in 0..3 {
             assert!((rows.value(j, &t) - bounds[4 + j]).abs() < 1e-15);
         }
         let forces = [2.0, 3.0, 5.0];
         let mut left = [0.0; 4];
         rows.subtract_transposed(&forces.map(|f| -f), &mut left);
-        for (found, force) in ties.forces(3, |i| left[i]).iter().zip(forces) {
+        for (found, force) in equalities.forces(3, |i| left[i]).iter().zip(forces) {
             assert!((found - force).abs() < 1e-14);
         }
     }
 
     #[test]
-    fn a_row_that_follows_from_closed_ones_is_idle() {
+    fn a_row_that_follows_from_closed_ones_is_redundant() {
         let rows = rows(&[
             &[(0, 1.0), (1, 1.0)],
             &[(1, 1.0), (2, -1.0)],
             &[(0, 2.0), (1, 1.0), (2, 1.0)],
         ]);
-        let ties = Ties::new(&rows, &[true, true, true, false, false, false]);
-        assert_eq!(ties.idle, [2]);
-        let mut made_of = ties.express(rows.row(2), &[true; 3]).unwrap();
+        let equalities = ActiveEqualities::new(&rows, &[true, true, true, false, false, false]);
+        assert_eq!(equalities.redundant, [2]);
+        let mut made_of = equalities.express(rows.row(2), &[true; 3]).unwrap();
         made_of.sort_by_key(|&(j, _)| j);
         assert_eq!(made_of, [(0, 2.0), (1, -1.0)]);
-        assert!(ties.express(&[(0, 1.0)], &[true; 3]).is_none());
+        assert!(equalities.express(&[(0, 1.0)], &[true; 3]).is_none());
     }
 }
