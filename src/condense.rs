@@ -64,7 +64,7 @@ impl Condensation<'_> {
                 FactorError::Pivot(unknown) => moves(owned, &dofs, unknown, catalog),
             })?;
         let of_block = Condensed {
-            approaches: dofs.approaches,
+            jumps: dofs.jumps,
             interface_dofs: dofs.interface_dofs.clone(),
             s,
             diagonal: factor.diagonal.clone(),

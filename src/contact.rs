@@ -1,13 +1,13 @@
-//! Unilateral contact: S_kl of a pair, (12), with its contact problem condensed onto approaches.
+//! Unilateral contact: S_kl of a pair, (12), with its contact problem condensed onto normal jumps.
 //!
 //! > S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ,   t(U) = arg min ½ tᵀ H t − (c − S_tΓ U)ᵀ t   over   t ≤ g
 
 pub mod active_equalities;
 pub mod active_set;
-pub mod approach;
 pub mod dependent;
 pub mod dual;
 pub mod interior_point;
 pub mod limits;
+pub mod normal_jump;
 pub mod open_factor;
 pub mod pair;

@@ -120,7 +120,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     for (k, analysis) in analyses.iter().enumerate().skip(finished.count) {
         stop_if_asked(&context, settings, k)?;
 
-        // F, condensed like the blocks, and the bounds on approaches.
+        // F, condensed like the blocks, and the bounds on normal jumps.
         narrator.phase("condensing the load", None);
         let lap = Instant::now();
         let start = state.start();

@@ -115,8 +115,8 @@ impl<'a> Loading<'a> {
                 .boundary()
                 .to_vec();
             if let Some(drive) = self.analysis.cluster_modes.get(&p) {
-                let (on_approaches, _) = load.split_at_mut(condensed.approaches);
-                make_load_exact(on_approaches, &limits.defining, drive, &condensed.diagonal);
+                let (on_jumps, _) = load.split_at_mut(condensed.jumps);
+                make_load_exact(on_jumps, &limits.defining, drive, &condensed.diagonal);
             }
             let before = before.pairs.remove(&p);
             Some((p, ContactPair::new(condensed.clone(), limits, load, before)))
@@ -151,7 +151,7 @@ impl<'a> Loading<'a> {
             |_, load| of_clusters.push(load),
         );
         let (numbering, interface) = self.interface?;
-        let drive = self.modes_of_approaches(interface);
+        let drive = self.modes_of_jumps(interface);
         Some(InterfaceProblem::new(
             interface,
             numbering,
@@ -160,8 +160,8 @@ impl<'a> Loading<'a> {
         ))
     }
 
-    /// The approaches of all pairs against the motions that supports leave to the bodies.
-    fn modes_of_approaches(&self, interface: &Interface) -> RigidModes {
+    /// The normal jumps of all pairs against the motions that supports leave to the bodies.
+    fn modes_of_jumps(&self, interface: &Interface) -> RigidModes {
         let scene = self.analysis.scene.as_ref();
         let Some(scene) = scene.filter(|_| self.analysis.movable) else {
             return RigidModes::default();

@@ -152,7 +152,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         if status == SweepStatus::Converged {
             self.refine();
         }
-        // The pairs keep the approaches and forces of their last evaluation: it has to be S_CON(U).
+        // The pairs keep the normal jumps and forces of their last evaluation: it has to be S_CON(U).
         let last = self.residual(None);
         SweepOutcome {
             status,
@@ -178,7 +178,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         Ok(true)
     }
 
-    /// r(U), where the pairs' approaches are `expected` to be open; else as they were last.
+    /// r(U), where the pairs' normal jumps are `expected` to be open; else as they were last.
     fn residual(&mut self, expected: Option<&[Vec<bool>]>) -> Residual {
         let u = &self.outcome.u;
         let totals = (self.s_con).evaluate(self.problem.interface, u, expected, &mut self.state);

@@ -80,7 +80,7 @@ fn pair(c: &mut Criterion) {
     let b = scene.plan.groups[0];
     let (dofs, ..) = scene.condensed(b);
     let (prescribed, gaps) = (scene.prescribed(b), scene.loads(b).gaps);
-    let limits = Limits::new(dofs.approaches, &prescribed.approach_of, &gaps, 0.0);
+    let limits = Limits::new(dofs.jumps, &prescribed.jump_of, &gaps, 0.0);
     let mut condensed = scene.of_block(b);
     condensed.fill_upper_triangle();
     let u = vec![0.0; condensed.interface_dofs.len()];
@@ -135,9 +135,9 @@ fn interface(c: &mut Criterion) {
     });
 }
 
-/// What a block brings to Γ with its approaches, which come first on its boundary, at 0.
+/// What a block brings to Γ with its normal jumps, which come first on its boundary, at 0.
 fn contribution(condensed: &Condensed) -> Contribution {
-    let (m, n) = (condensed.approaches, condensed.interface_dofs.len());
+    let (m, n) = (condensed.jumps, condensed.interface_dofs.len());
     let mut condensed = condensed.clone();
     condensed.fill_upper_triangle();
     Contribution {

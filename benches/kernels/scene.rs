@@ -93,7 +93,7 @@ impl Scene {
     pub fn of_block(&self, b: usize) -> Condensed {
         let (dofs, schur, s, _) = self.condensed(b);
         Condensed {
-            approaches: dofs.approaches,
+            jumps: dofs.jumps,
             interface_dofs: dofs.interface_dofs.clone(),
             smallest_pivot: schur.smallest_pivot(),
             diagonal: schur.diagonal,

@@ -28,7 +28,7 @@ pub struct CondensedBlock {
 pub struct ContactCluster {
     /// Its Schur complement, both triangles.
     pub condensed: Rc<Condensed>,
-    /// The bounds on its approaches in the first load step. Which conditions they are of is the same in all.
+    /// The bounds on its normal jumps in the first load step. Which conditions they are of is the same in all.
     pub limits: Limits,
 }
 

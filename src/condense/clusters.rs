@@ -12,7 +12,7 @@ use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::energy::{RigidBasis, RigidModes};
 use crate::schur::condensed::Condensed;
 
-/// Makes the clusters of this rank of what was `merged`; `limits` bound the approaches of those in contact.
+/// Makes the clusters of this rank of what was `merged`; `limits` bound the normal jumps of those in contact.
 pub fn take_clusters(
     plan: &Plan,
     analysis: &RigidBodyAnalysis,
@@ -42,7 +42,7 @@ pub fn take_clusters(
 }
 
 /// Makes S exact along rigid motions of the bodies that lie wholly in the cluster; `modes` is that of its
-/// conditions, of which the approaches are the `defining` ones.
+/// conditions, of which the normal jumps are the `defining` ones.
 fn make_stiffness_exact(cluster: &mut Condensed, defining: &[usize], modes: &RigidModes) {
     let m = defining.len();
     let Some(basis) = basis(defining, modes, &cluster.diagonal[..m]) else {
@@ -62,22 +62,22 @@ fn make_stiffness_exact(cluster: &mut Condensed, defining: &[usize], modes: &Rig
     }
 }
 
-/// The same for the `load` on the approaches; `diagonal` is that of the matrix they are condensed from.
+/// The same for the `load` on the normal jumps; `diagonal` is that of the matrix they are condensed from.
 pub fn make_load_exact(load: &mut [f64], defining: &[usize], modes: &RigidModes, diagonal: &[f64]) {
     if let Some(basis) = basis(defining, modes, diagonal) {
         basis.set_load(load);
     }
 }
 
-/// The motions of `modes` as the approaches see them; `None` where there is none.
+/// The motions of `modes` as the normal jumps see them; `None` where there is none.
 fn basis(defining: &[usize], modes: &RigidModes, diagonal: &[f64]) -> Option<RigidBasis> {
     let columns = modes.rows.ncols();
     if columns == 0 {
         return None;
     }
-    let of_approaches = RigidModes {
+    let of_jumps = RigidModes {
         rows: Mat::from_fn(defining.len(), columns, |i, k| modes.rows[(defining[i], k)]),
         load: modes.load.clone(),
     };
-    Some(RigidBasis::new(&of_approaches, diagonal))
+    Some(RigidBasis::new(&of_jumps, diagonal))
 }

@@ -6,7 +6,7 @@ use crate::condense::blocks::CondensedBlocks;
 use crate::contact::pair::CondensedContact;
 use crate::context::Context;
 use crate::error::Failure;
-use crate::interface::coupled::MAX_APPROACHES;
+use crate::interface::coupled::MAX_JUMPS;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::{Contribution, Interface};
 use crate::plan::Plan;
@@ -29,7 +29,7 @@ pub fn assemble_interface(
         ..
     } = context;
     // Few enough conditions for the root to solve for all of them at once.
-    let with_laws = catalog.conditions() <= MAX_APPROACHES;
+    let with_laws = catalog.conditions() <= MAX_JUMPS;
     let mut interface_dofs: Vec<Vec<InterfaceDof>> = Vec::new();
     let mut contributions: Vec<Contribution> = Vec::new();
     comm.gather(

@@ -1,4 +1,4 @@
-//! Bounds on approaches: made where the blocks are, joined where their clusters are.
+//! Bounds on normal jumps: made where the blocks are, joined where their clusters are.
 
 use std::collections::BTreeMap;
 
@@ -6,8 +6,8 @@ use contact_dd_partition::problem::Catalog;
 
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::dof_failure;
-use crate::contact::approach::ApproachOf;
 use crate::contact::limits::Limits;
+use crate::contact::normal_jump::NormalJumpOf;
 use crate::context::Context;
 use crate::context::Loads;
 use crate::error::Failure;
@@ -34,7 +34,7 @@ pub fn prescribe(
     comm.agree(made.collect())
 }
 
-/// The bounds on the approaches of every cluster in contact of this rank in a load step, by its place among
+/// The bounds on the normal jumps of every cluster in contact of this rank in a load step, by its place among
 /// those. Collective.
 ///
 /// # Errors
@@ -53,9 +53,9 @@ pub fn limits_of_clusters(
         ..
     } = context;
     let made = plan.groups.iter().enumerate().filter_map(|(g, b)| {
-        let approaches = condensed.blocks.get(b)?.dofs.approaches;
+        let jumps = condensed.blocks.get(b)?.dofs.jumps;
         let (owned, loads) = (blocks.get(b)?, loads.get(b)?);
-        let limits = of_block(owned, loads, prescribed.get(b)?, approaches, catalog);
+        let limits = of_block(owned, loads, prescribed.get(b)?, jumps, catalog);
         Some(limits.map(|limits| (g, limits)))
     });
     let made: BTreeMap<usize, Limits> = comm.agree(made.collect())?;
@@ -79,19 +79,19 @@ pub fn limits_of_clusters(
         .collect())
 }
 
-/// The bounds on a block's `approaches`.
+/// The bounds on a block's `jumps`.
 fn of_block(
     owned: &OwnedBlock,
     loads: &BlockLoads,
     prescribed: &Prescribed,
-    approaches: usize,
+    jumps: usize,
     catalog: &Catalog,
 ) -> Result<Limits, Failure> {
     let scale = loads.largest_prescribed();
     let points = owned.points.iter().zip(&loads.gaps);
-    for ((point, gap), of) in points.zip(&prescribed.approach_of) {
-        if let &ApproachOf::Prescribed(approach) = of
-            && approach > gap + 1e-12 * scale
+    for ((point, gap), of) in points.zip(&prescribed.jump_of) {
+        if let &NormalJumpOf::Prescribed(jump) = of
+            && jump > gap + 1e-12 * scale
         {
             let contact = &catalog.contacts[point.contact as usize].name;
             return Err(Failure::input(format!(
@@ -99,10 +99,10 @@ fn of_block(
                  expected displacements that leave a gap",
                 point.tag_a,
                 point.tag_b,
-                approach - gap
+                jump - gap
             )));
         }
     }
-    let of = &prescribed.approach_of;
-    Ok(Limits::new(approaches, of, &loads.gaps, scale))
+    let of = &prescribed.jump_of;
+    Ok(Limits::new(jumps, of, &loads.gaps, scale))
 }

@@ -1,23 +1,23 @@
-//! Closed linearly dependent constraints: equations D t = d that eliminate open approaches.
+//! Closed linearly dependent constraints: equations D t = d that eliminate open normal jumps.
 
 use super::dependent::{DependentConstraints, Terms};
 
 /// What elimination leaves of a coefficient of order one that should be zero.
 const ROUND_OFF: f64 = 1e-10;
 
-/// The closed rows as equations, each solved for an open approach of its own.
+/// The closed rows as equations, each solved for an open normal jump of its own.
 #[derive(Clone, Debug, Default)]
 pub struct ActiveEqualities {
     /// The equations; none has the pivot of another.
     pub equalities: Vec<ActiveEquality>,
-    /// Closed rows that say nothing beyond the others and the closed approaches.
+    /// Closed rows that say nothing beyond the others and the closed normal jumps.
     pub redundant: Vec<usize>,
 }
 
-/// t_pivot + Σ factor·t = Σ share·(d − D_C g_C), over open approaches and closed rows.
+/// t_pivot + Σ factor·t = Σ share·(d − D_C g_C), over open normal jumps and closed rows.
 #[derive(Clone, Debug)]
 pub struct ActiveEquality {
-    /// The approach that follows from others.
+    /// The normal jump that follows from others.
     pub pivot: usize,
     /// Those others.
     pub others: Terms,
@@ -26,7 +26,7 @@ pub struct ActiveEquality {
 }
 
 impl ActiveEqualities {
-    /// Solves the rows that aren't `open`; flags of approaches come first, then those of rows.
+    /// Solves the rows that aren't `open`; flags of normal jumps come first, then those of rows.
     pub fn new(rows: &DependentConstraints, open: &[bool]) -> Self {
         let mut equalities = Self::default();
         let m = open.len() - rows.len();
@@ -61,7 +61,7 @@ impl ActiveEqualities {
         equalities
     }
 
-    /// What is left of `normal` on the open approaches once the equalities are taken off, and how much of
+    /// What is left of `normal` on the open normal jumps once the equalities are taken off, and how much of
     /// every closed row that took.
     fn remainder(&self, normal: &[(usize, f64)], open: &[bool]) -> (Terms, Terms) {
         let mut left: Terms = normal.iter().copied().filter(|&(i, _)| open[i]).collect();
@@ -77,14 +77,14 @@ impl ActiveEqualities {
         (left, taken)
     }
 
-    /// The multiples of closed rows that `normal` is on the open approaches, if it is.
+    /// The multiples of closed rows that `normal` is on the open normal jumps, if it is.
     pub fn express(&self, normal: &[(usize, f64)], open: &[bool]) -> Option<Terms> {
         let (left, taken) = self.remainder(normal, open);
         left.is_empty().then_some(taken)
     }
 
-    /// Puts the pivots of `t` where the equalities want them with the other approaches as they are; `bounds`
-    /// are those of approaches, then those of rows.
+    /// Puts the pivots of `t` where the equalities want them with the other normal jumps as they are; `bounds`
+    /// are those of normal jumps, then those of rows.
     pub fn hold(&self, rows: &DependentConstraints, bounds: &[f64], t: &mut [f64]) {
         let m = t.len();
         for equality in &self.equalities {
@@ -113,7 +113,7 @@ impl ActiveEqualities {
         forces
     }
 
-    /// Scale of the terms that the force of row j is a sum of, for the `scale` of every approach.
+    /// Scale of the terms that the force of row j is a sum of, for the `scale` of every normal jump.
     pub fn force_scale(&self, j: usize, scale: impl Fn(usize) -> f64) -> f64 {
         let of_equality = |equality: &ActiveEquality| -> f64 {
             let share = equality.shares.iter().find(|&&(row, _)| row == j);
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn tied_approaches_meet_every_closed_row() {
+    fn eliminated_jumps_meet_every_closed_row() {
         let rows = rows(&[
             &[(0, 0.5), (1, 0.7)],
             &[(1, -0.4), (2, 1.0), (3, 0.2)],

@@ -1,9 +1,9 @@
 //! The contact problem: min ½ tᵀ H t − cᵀ t subject to t ≤ g, D t ≤ d.
 //!
-//! t are the approaches of the conditions, of one pair or of all, H the stiffness condensed onto
+//! t are the normal jumps of the conditions, of one pair or of all, H the stiffness condensed onto
 //! them, c the load that drives them; λ = c − H t − Dᵀ μ ≥ 0 and μ ≥ 0 are the contact forces. D is
 //! empty but where more conditions meet than there are directions. Flags, bounds and forces are
-//! those of approaches, then those of linearly dependent constraints.
+//! those of normal jumps, then those of linearly dependent constraints.
 //!
 //! The active set, which conditions are open and which are closed, is found by the first of three
 //! strategies that gets there:
@@ -53,10 +53,10 @@ pub struct GapProblem<'a> {
     pub rows: &'a DependentConstraints,
     /// g, then d.
     pub bounds: &'a [f64],
-    /// Approaches from which open conditions go where the load drives them, and where they stay
+    /// Normal jumps from which open conditions go where the load drives them, and where they stay
     /// along motions that nothing resists.
     pub center: &'a [f64],
-    /// Scale of the displacements that the approaches are differences of.
+    /// Scale of the displacements that the normal jumps are differences of.
     pub scale: f64,
 }
 
@@ -64,7 +64,7 @@ pub struct GapProblem<'a> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GapSolution {
     /// t ≤ g; exactly g where closed.
-    pub approaches: Vec<f64>,
+    pub jumps: Vec<f64>,
     /// λ ≥ 0, then μ ≥ 0; exactly 0 where open.
     pub forces: Vec<f64>,
     /// Linear systems solved.
@@ -76,10 +76,10 @@ pub struct GapSolution {
 }
 
 impl GapSolution {
-    /// Every one of `approaches` closed, before anything is known of the forces of `conditions`.
-    pub fn bilateral(approaches: usize, conditions: usize) -> Self {
+    /// Every one of `jumps` closed, before anything is known of the forces of `conditions`.
+    pub fn bilateral(jumps: usize, conditions: usize) -> Self {
         Self {
-            approaches: vec![0.0; approaches],
+            jumps: vec![0.0; jumps],
             forces: vec![0.0; conditions],
             steps: 0,
             fell_back: false,
@@ -92,12 +92,12 @@ impl GapSolution {
 #[derive(Clone, Debug)]
 pub struct Trial {
     /// t, exactly g where closed.
-    pub approaches: Vec<f64>,
+    pub jumps: Vec<f64>,
     /// λ = c − H t − Dᵀ μ, then μ; exactly 0 where open.
     pub forces: Vec<f64>,
-    /// What closed linearly dependent constraints make of the open approaches.
+    /// What closed linearly dependent constraints make of the open normal jumps.
     pub(super) equalities: ActiveEqualities,
-    /// What is left of c at open approaches, relative to its terms.
+    /// What is left of c at open normal jumps, relative to its terms.
     unbalanced: f64,
 }
 
@@ -125,7 +125,7 @@ impl GapProblem<'_> {
         solution
     }
 
-    /// The open conditions and the approaches of the interior-point method, and what it cost.
+    /// The open conditions and the normal jumps of the interior-point method, and what it cost.
     fn interior_point(&self) -> (Vec<bool>, Vec<f64>, usize) {
         let m = self.c.len();
         let mut q = self.c.to_vec();
@@ -148,8 +148,8 @@ impl GapProblem<'_> {
             e: &e,
         }
         .open_conditions();
-        let approaches = self.bounds.iter().zip(&gaps).map(|(g, s)| g - s);
-        (open, approaches.collect(), steps)
+        let jumps = self.bounds.iter().zip(&gaps).map(|(g, s)| g - s);
+        (open, jumps.collect(), steps)
     }
 
     /// Flips all wrong signs until there is none or their number no longer falls.
@@ -183,9 +183,9 @@ impl GapProblem<'_> {
 
     /// The solution that `trial` is if all signs are `right`.
     pub(super) fn solution(&self, trial: &Trial, steps: usize, right: bool) -> GapSolution {
-        let approaches = trial.approaches.iter().zip(self.bounds);
+        let jumps = trial.jumps.iter().zip(self.bounds);
         GapSolution {
-            approaches: approaches.map(|(t, g)| t.min(*g)).collect(),
+            jumps: jumps.map(|(t, g)| t.min(*g)).collect(),
             forces: trial.forces.iter().map(|f| f.max(0.0)).collect(),
             steps,
             fell_back: false,
@@ -240,7 +240,7 @@ impl GapProblem<'_> {
         }
         left.append(&mut of_rows);
         Trial {
-            approaches: t,
+            jumps: t,
             forces: left,
             equalities: factor.equalities,
             unbalanced,
@@ -283,7 +283,7 @@ impl GapProblem<'_> {
     /// How far condition i, which is open, is beyond its bound, 0 within round-off.
     pub(super) fn violation(&self, i: usize, open: &[bool], trial: &Trial) -> f64 {
         let m = self.c.len();
-        let t = &trial.approaches;
+        let t = &trial.jumps;
         let (value, size) = if i < m {
             (t[i], 1.0)
         } else {

@@ -1,6 +1,6 @@
-//! Conditions that depend on several approaches: D t ≤ d.
+//! Conditions that depend on several normal jumps: D t ≤ d.
 //!
-//! Where more conditions meet at a node than it has directions, the approaches of some bound those
+//! Where more conditions meet at a node than it has directions, the normal jumps of some bound those
 //! of the others.
 
 use std::collections::HashMap;
@@ -32,7 +32,7 @@ impl DependentConstraints {
         self.rows.push(terms);
     }
 
-    /// Appends the rows of `others`, whose first approach is number `first` here.
+    /// Appends the rows of `others`, whose first normal jump is number `first` here.
     pub fn append(&mut self, others: &Self, first: usize) {
         let shifted = |row: &Terms| row.iter().map(|&(i, c)| (first + i, c)).collect();
         self.rows.extend(others.rows.iter().map(shifted));
@@ -43,7 +43,7 @@ impl DependentConstraints {
         self.rows.iter().map(Vec::as_slice)
     }
 
-    /// Approaches and factors of row j.
+    /// Normal jumps and factors of row j.
     pub fn row(&self, j: usize) -> &[(usize, f64)] {
         &self.rows[j]
     }

@@ -22,16 +22,16 @@ impl GapProblem<'_> {
     /// Scale of the terms that the force of condition i is a sum of.
     pub(super) fn force_scale(&self, i: usize, trial: &Trial) -> f64 {
         let m = self.c.len();
-        let of_approach = |i: usize| self.scale_of(i, &trial.approaches);
-        let of_row = |j: usize| trial.equalities.force_scale(j, of_approach);
+        let of_jump = |i: usize| self.scale_of(i, &trial.jumps);
+        let of_row = |j: usize| trial.equalities.force_scale(j, of_jump);
         if i >= m {
             return of_row(i - m);
         }
         let held = (self.rows.iter().enumerate()).map(|(j, row)| {
-            let share = row.iter().find(|&&(approach, _)| approach == i);
+            let share = row.iter().find(|&&(jump, _)| jump == i);
             share.map_or(0.0, |(_, share)| share.abs() * of_row(j))
         });
-        of_approach(i) + held.sum::<f64>()
+        of_jump(i) + held.sum::<f64>()
     }
 
     /// Closes condition k; where it follows from closed ones, the one opens in exchange whose force
@@ -73,17 +73,17 @@ impl GapProblem<'_> {
         let own = [(k, 1.0)];
         let normal = if k < m { &own } else { self.rows.row(k - m) };
         let of_rows = equalities.express(normal, open)?;
-        let mut of_approaches = vec![0.0; m];
+        let mut of_jumps = vec![0.0; m];
         for &(i, c) in normal {
-            of_approaches[i] += c;
+            of_jumps[i] += c;
         }
         for &(j, share) in &of_rows {
             for &(i, c) in self.rows.row(j) {
-                of_approaches[i] -= share * c;
+                of_jumps[i] -= share * c;
             }
         }
-        let closed = (0..m).filter(|&i| !open[i] && of_approaches[i].abs() > NO_SHARE);
-        let mut shares: Vec<_> = closed.map(|i| (i, of_approaches[i])).collect();
+        let closed = (0..m).filter(|&i| !open[i] && of_jumps[i].abs() > NO_SHARE);
+        let mut shares: Vec<_> = closed.map(|i| (i, of_jumps[i])).collect();
         shares.extend(of_rows.into_iter().map(|(j, share)| (m + j, share)));
         Some(shares)
     }

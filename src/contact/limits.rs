@@ -2,20 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::approach::{ApproachOf, defining_conditions};
 use super::dependent::DependentConstraints;
+use super::normal_jump::{NormalJumpOf, defining_conditions};
 
 /// The bounds t ≤ g and D t ≤ d, and the conditions that they come from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
-    /// g of every approach, the tightest of its conditions, then d of every dependent one (m).
+    /// g of every normal jump, the tightest of its conditions, then d of every dependent one (m).
     #[serde(with = "crate::bytes")]
     pub bounds: Vec<f64>,
     /// D.
     pub rows: DependentConstraints,
     /// Which condition each bound is, and its factor.
     tightest: Vec<(usize, f64)>,
-    /// The condition that each approach is the unknown of.
+    /// The condition that each normal jump is the unknown of.
     pub defining: Vec<usize>,
     /// Number of conditions.
     pub conditions: usize,
@@ -24,20 +24,20 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// The bounds on `approaches` unknowns that conditions with these `gaps` make; `scale` bounds
+    /// The bounds on `jumps` unknowns that conditions with these `gaps` make; `scale` bounds
     /// the displacements that are prescribed.
-    pub fn new(approaches: usize, of: &[ApproachOf], gaps: &[f64], scale: f64) -> Self {
+    pub fn new(jumps: usize, of: &[NormalJumpOf], gaps: &[f64], scale: f64) -> Self {
         let mut limits = Self {
-            bounds: vec![f64::INFINITY; approaches],
+            bounds: vec![f64::INFINITY; jumps],
             rows: DependentConstraints::default(),
-            tightest: vec![(0, 1.0); approaches],
-            defining: defining_conditions(of, approaches),
+            tightest: vec![(0, 1.0); jumps],
+            defining: defining_conditions(of, jumps),
             conditions: of.len(),
             scale,
         };
         for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
             match of {
-                &ApproachOf::Unknown {
+                &NormalJumpOf::Unknown {
                     number,
                     factor,
                     constant,
@@ -48,19 +48,19 @@ impl Limits {
                         limits.tightest[number] = (j, factor);
                     }
                 }
-                ApproachOf::Combination { terms, constant } => {
+                NormalJumpOf::Combination { terms, constant } => {
                     limits.rows.push(terms.clone());
                     limits.bounds.push(gap - constant);
                     limits.tightest.push((j, 1.0));
                 }
-                ApproachOf::Prescribed(_) => {}
+                NormalJumpOf::Prescribed(_) => {}
             }
         }
         limits
     }
 
-    /// Number of approaches.
-    pub fn approaches(&self) -> usize {
+    /// Number of normal jumps.
+    pub fn jumps(&self) -> usize {
         self.bounds.len() - self.rows.len()
     }
 
@@ -75,13 +75,13 @@ impl Limits {
         gaps
     }
 
-    /// The limits of several groups as those of one pair, whose approaches, linearly dependent constraints and
+    /// The limits of several groups as those of one pair, whose normal jumps, linearly dependent constraints and
     /// conditions follow each other in the same order.
     pub fn join(groups: &[Self]) -> Self {
         let mut all = Self::default();
         let mut dependent = (Vec::new(), Vec::new());
         for group in groups {
-            let m = group.approaches();
+            let m = group.jumps();
             let shifted =
                 |&(condition, factor): &(usize, f64)| (all.conditions + condition, factor);
             let (own, rows) = group.tightest.split_at(m);
@@ -133,8 +133,8 @@ impl Limits {
 mod tests {
     use super::*;
 
-    fn unknown(number: usize, factor: f64) -> ApproachOf {
-        ApproachOf::Unknown {
+    fn unknown(number: usize, factor: f64) -> NormalJumpOf {
+        NormalJumpOf::Unknown {
             number,
             factor,
             constant: 0.0,
@@ -142,7 +142,7 @@ mod tests {
     }
 
     fn limits(gap: f64) -> Limits {
-        let combination = ApproachOf::Combination {
+        let combination = NormalJumpOf::Combination {
             terms: vec![(0, 1.0), (1, -2.0)],
             constant: 0.5,
         };
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tightest_condition_bounds_an_approach() {
+    fn the_tightest_condition_bounds_a_normal_jump() {
         let limits = limits(1.0);
         assert_eq!(limits.bounds, [1.0, 3.0, 2.5]);
         assert_eq!(limits.forces(&[7.0, 8.0, 9.0]), [7.0, 9.0, 0.0, 4.0]);

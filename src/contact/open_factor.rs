@@ -23,14 +23,14 @@ const MAX_REFINEMENTS: usize = 40;
 /// H is singular where a motion opens gaps without resistance. Springs make it definite then, and
 /// refinement takes their forces off again: what drives the motion decides how far it goes, and
 /// where nothing drives it, it stays where it is. Closed linearly dependent constraints leave fewer directions:
-/// H_NN is that of the open approaches that they leave independent.
+/// H_NN is that of the open normal jumps that they leave independent.
 #[derive(Debug)]
 pub struct OpenFactor {
-    /// The open approaches, ascending.
+    /// The open normal jumps, ascending.
     pub open: Vec<usize>,
     /// What the closed linearly dependent constraints make of them.
     pub equalities: ActiveEqualities,
-    /// The open approaches that no equality eliminates, ascending; empty where there is no equality.
+    /// The open normal jumps that no equality eliminates, ascending; empty where there is no equality.
     independent: Vec<usize>,
     h_nn: Mat<f64>,
     factor: Option<Llt<f64>>,
@@ -40,7 +40,7 @@ pub struct OpenFactor {
 
 impl OpenFactor {
     /// Factorizes H_NN; `diagonal` is the diagonal of the matrix that H is condensed from, `open`
-    /// has a flag for every approach and one for each of `rows`.
+    /// has a flag for every normal jump and one for each of `rows`.
     pub fn new(
         h: MatRef<'_, f64>,
         diagonal: &[f64],
@@ -86,14 +86,14 @@ impl OpenFactor {
         }
     }
 
-    /// x ← H_NN⁻¹ x, `x` the entries of the open approaches; with equalities it is T (Tᵀ H_NN T)⁻¹ Tᵀ x
+    /// x ← H_NN⁻¹ x, `x` the entries of the open normal jumps; with equalities it is T (Tᵀ H_NN T)⁻¹ Tᵀ x
     /// for the T by which the independent ones move all.
     pub fn solve(&self, x: &mut [f64]) {
         if self.equalities.equalities.is_empty() {
             self.solve_independent(x);
             return;
         }
-        // The entries of `open` and `independent` are sorted, and every eliminated approach is open.
+        // The entries of `open` and `independent` are sorted, and every eliminated normal jump is open.
         let place = |j: usize| self.open.partition_point(|&i| i < j);
         for equality in &self.equalities.equalities {
             let held = x[place(equality.pivot)];
@@ -144,7 +144,7 @@ impl OpenFactor {
     }
 }
 
-/// The rows and columns of H of `open` approaches.
+/// The rows and columns of H of `open` normal jumps.
 fn gather(h: MatRef<'_, f64>, open: &[usize], h_nn: &mut Mat<f64>) {
     for (b, &j) in open.iter().enumerate() {
         for (a, &i) in open.iter().enumerate() {
@@ -153,7 +153,7 @@ fn gather(h: MatRef<'_, f64>, open: &[usize], h_nn: &mut Mat<f64>) {
     }
 }
 
-/// Tᵀ H_NN T on the `independent` approaches, and the `diagonal` of the open ones seen from there.
+/// Tᵀ H_NN T on the `independent` normal jumps, and the `diagonal` of the open ones seen from there.
 fn eliminated(
     h: MatRef<'_, f64>,
     diagonal: &[f64],

@@ -14,7 +14,7 @@ use super::open_factor::OpenFactor;
 use crate::schur::condensed::Condensed;
 use crate::schur::local::multiply_add;
 
-/// Subdomains in contact, with what else is merged with them, condensed onto their approaches t and
+/// Subdomains in contact, with what else is merged with them, condensed onto their normal jumps t and
 /// their traces U on Γ.
 #[derive(Debug)]
 pub struct ContactPair {
@@ -29,7 +29,7 @@ pub struct ContactPair {
 /// Where the last evaluation of a pair left it, and where the next one begins.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PairState {
-    /// Which approaches are open, then which linearly dependent constraints.
+    /// Which normal jumps are open, then which linearly dependent constraints.
     open: Vec<bool>,
     contact: GapSolution,
 }
@@ -43,7 +43,7 @@ pub struct PairResponse {
     /// Scale of the terms that each reaction is a sum of.
     #[serde(with = "crate::bytes")]
     pub scale: Vec<f64>,
-    /// g − t: what every approach has left, then d − D t (m); 0 where closed.
+    /// g − t: what every normal jump has left, then d − D t (m); 0 where closed.
     #[serde(with = "crate::bytes")]
     pub gaps: Vec<f64>,
     /// c − H t: what contact forces hold where closed, round-off where open (N/m).
@@ -52,7 +52,7 @@ pub struct PairResponse {
     /// Scale of the terms that each contact residual is a sum of.
     #[serde(with = "crate::bytes")]
     pub contact_residual_scale: Vec<f64>,
-    /// Which approaches are open, then which linearly dependent constraints.
+    /// Which normal jumps are open, then which linearly dependent constraints.
     pub open: Vec<bool>,
     /// Conditions that opened or closed, against what was expected or the last evaluation.
     pub changed: usize,
@@ -65,7 +65,7 @@ pub struct PairResponse {
 }
 
 impl ContactPair {
-    /// A pair under a condensed `load`, on approaches and traces, whose approaches lie within `limits`. It begins
+    /// A pair under a condensed `load`, on normal jumps and traces, whose normal jumps lie within `limits`. It begins
     /// where the load step `before` left it, else bilaterally; both triangles of S are filled.
     pub fn new(
         condensed: Rc<Condensed>,
@@ -77,7 +77,7 @@ impl ContactPair {
         Self {
             state: before.unwrap_or_else(|| PairState {
                 open: vec![false; bounds],
-                contact: GapSolution::bilateral(condensed.approaches, bounds),
+                contact: GapSolution::bilateral(condensed.jumps, bounds),
             }),
             condensed,
             limits,
@@ -95,9 +95,9 @@ impl ContactPair {
         &self.condensed
     }
 
-    /// Approaches of the last evaluation (m).
-    pub fn approaches(&self) -> &[f64] {
-        &self.state.contact.approaches
+    /// Normal jumps of the last evaluation (m).
+    pub fn jumps(&self) -> &[f64] {
+        &self.state.contact.jumps
     }
 
     /// Force of every condition in the last evaluation, and whether it was closed.
@@ -108,14 +108,14 @@ impl ContactPair {
         )
     }
 
-    /// Load on the interface dofs with every approach zero.
+    /// Load on the interface dofs with every normal jump zero.
     pub fn bilateral_load(&self) -> &[f64] {
-        &self.load[self.condensed.approaches..]
+        &self.load[self.condensed.jumps..]
     }
 
     /// The diagonal of the matrix that H is condensed from.
     pub fn diagonal(&self) -> &[f64] {
-        &self.condensed.diagonal[..self.condensed.approaches]
+        &self.condensed.diagonal[..self.condensed.jumps]
     }
 
     /// The bounds t ≤ g and D t ≤ d.
@@ -126,7 +126,7 @@ impl ContactPair {
     /// Evaluates S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ, where t(U) within the limits minimizes the pair's energy.
     /// The search begins at the conditions `expected` to be open, else at those of last time.
     pub fn evaluate(&mut self, u: &[f64], expected: Option<Vec<bool>>) -> PairResponse {
-        let m = self.condensed.approaches;
+        let m = self.condensed.jumps;
         let before = expected.unwrap_or_else(|| self.state.open.clone());
         let mut c = self.load[..m].to_vec();
         let mut c_scale: Vec<f64> = c.iter().map(|f| f.abs()).collect();
@@ -146,19 +146,19 @@ impl ContactPair {
             c_scale: &c_scale,
             rows: &self.limits.rows,
             bounds: &self.limits.bounds,
-            center: &self.state.contact.approaches,
+            center: &self.state.contact.jumps,
             scale: u.iter().fold(self.limits.scale, |m, u| m.max(u.abs())),
         }
         .solve(&mut open);
         let (mut contact_residual, mut contact_residual_scale) = (c, c_scale);
-        for (column, &t) in self.condensed.s_tt().col_iter().zip(&contact.approaches) {
+        for (column, &t) in self.condensed.s_tt().col_iter().zip(&contact.jumps) {
             for (i, h) in column.iter().enumerate() {
                 contact_residual[i] -= h * t;
                 contact_residual_scale[i] += (h * t).abs();
             }
         }
         let mut response = PairResponse {
-            gaps: self.limits.gaps(&contact.approaches, &open),
+            gaps: self.limits.gaps(&contact.jumps, &open),
             contact_residual,
             contact_residual_scale,
             changed: before.iter().zip(&open).filter(|(a, b)| a != b).count(),
@@ -178,8 +178,8 @@ impl ContactPair {
     fn reaction(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut reaction: Vec<f64> = self.bilateral_load().iter().map(|f| -f).collect();
         let mut scale: Vec<f64> = reaction.iter().map(|f| f.abs()).collect();
-        let m = self.condensed.approaches;
-        let unknowns = self.state.contact.approaches.iter().chain(u);
+        let m = self.condensed.jumps;
+        let unknowns = self.state.contact.jumps.iter().chain(u);
         for (j, &x) in unknowns.enumerate() {
             let column = &self.condensed.s.col_as_slice(j)[m..];
             for ((reaction, scale), s) in reaction.iter_mut().zip(&mut scale).zip(column) {
@@ -191,7 +191,7 @@ impl ContactPair {
         (reaction, scale)
     }
 
-    /// S_kl'(U) x = S_ΓΓ x − S_ΓN H_NN⁻¹ S_NΓ x with the open approaches N of the last evaluation.
+    /// S_kl'(U) x = S_ΓΓ x − S_ΓN H_NN⁻¹ S_NΓ x with the open normal jumps N of the last evaluation.
     pub fn derivative(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         multiply_add(self.condensed.bilateral(), x, &mut y);
@@ -201,11 +201,11 @@ impl ContactPair {
             &self.limits.rows,
             &self.state.open,
         );
-        let mut driven = vec![0.0; self.condensed.approaches];
+        let mut driven = vec![0.0; self.condensed.jumps];
         multiply_add(self.condensed.s_t_gamma(), x, &mut driven);
         let mut opened: Vec<f64> = factor.open.iter().map(|&j| -driven[j]).collect();
         factor.solve(&mut opened);
-        let mut t = vec![0.0; self.condensed.approaches];
+        let mut t = vec![0.0; self.condensed.jumps];
         for (&j, opened) in factor.open.iter().zip(opened) {
             t[j] = opened;
         }
@@ -218,10 +218,10 @@ impl ContactPair {
 /// that the root needs to solve for all pairs at once.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CondensedContact {
-    /// H, on the approaches (Pa).
+    /// H, on the normal jumps (Pa).
     #[serde(with = "crate::bytes::symmetric")]
     pub h: Mat<f64>,
-    /// S_tΓ, approaches against traces (Pa).
+    /// S_tΓ, normal jumps against traces (Pa).
     #[serde(with = "crate::bytes::matrix")]
     pub s_t_gamma: Mat<f64>,
     /// The diagonal of the matrix that H is condensed from (Pa).
@@ -229,12 +229,12 @@ pub struct CondensedContact {
     pub diagonal: Vec<f64>,
     /// D.
     pub rows: DependentConstraints,
-    /// The condition that each approach is the unknown of.
+    /// The condition that each normal jump is the unknown of.
     pub defining: Vec<usize>,
 }
 
 impl CondensedContact {
-    /// Number of approaches.
+    /// Number of normal jumps.
     pub fn len(&self) -> usize {
         self.diagonal.len()
     }
@@ -249,7 +249,7 @@ impl CondensedContact {
         Self {
             h: condensed.s_tt().to_owned(),
             s_t_gamma: condensed.s_t_gamma().to_owned(),
-            diagonal: condensed.diagonal[..condensed.approaches].to_vec(),
+            diagonal: condensed.diagonal[..condensed.jumps].to_vec(),
             rows: limits.rows.clone(),
             defining: limits.defining.clone(),
         }

@@ -1,4 +1,4 @@
-//! The contact points of a block, n·⟦u⟧ ≤ g, as bounds on approaches, t ≤ g.
+//! The contact points of a block, n·⟦u⟧ ≤ g, as bounds on normal jumps, t ≤ g.
 
 use std::collections::BTreeMap;
 
@@ -8,20 +8,20 @@ use contact_dd_partition::model::Material;
 
 use super::block::{Block, OwnedBlock};
 use super::frame::{Frame, NodeFrames};
-use crate::contact::approach::{ApproachRow, Approaches, OnInterface};
+use crate::contact::normal_jump::{NormalJumpRow, NormalJumps, OnInterface};
 
-/// The approaches of a block's contact points.
+/// The normal jumps of a block's contact points.
 ///
 /// # Errors
 /// A condition that lies on Γ.
-pub(super) fn approaches(
+pub(super) fn jumps(
     owned: &OwnedBlock,
     materials: &[Material],
     frames: &NodeFrames,
-) -> Result<Approaches, OnInterface> {
+) -> Result<NormalJumps, OnInterface> {
     let OwnedBlock { block, points } = owned;
     if points.is_empty() {
-        return Ok(Approaches::default());
+        return Ok(NormalJumps::default());
     }
     let dim = block.dim;
     let frame = |node: u32| frames.of(node).unwrap_or(&Frame::CARTESIAN);
@@ -32,7 +32,7 @@ pub(super) fn approaches(
     let may_go = |v: u32| !on_interface[v as usize / dim];
     let of_nodes = node_stiffness(block, materials);
     let stiffness = |v: u32| of_nodes[v as usize / dim];
-    Approaches::new(&rows, may_go, stiffness)
+    NormalJumps::new(&rows, may_go, stiffness)
 }
 
 /// The stiffest material around every node (Pa).
@@ -53,7 +53,7 @@ fn in_frames<'a>(
     point: &ContactPoint<u32>,
     frame: impl Fn(u32) -> &'a Frame,
     dim: usize,
-) -> ApproachRow {
+) -> NormalJumpRow {
     let mut constant = 0.0;
     let mut row: BTreeMap<u32, f64> = BTreeMap::new();
     for (node, push) in point.row() {
@@ -69,7 +69,7 @@ fn in_frames<'a>(
     // A frame along the point's own normal leaves round-off on its other axes.
     let sizes = point.row().map(|(_, push)| length(push));
     let scale = sizes.fold(0.0, f64::max);
-    ApproachRow {
+    NormalJumpRow {
         constant,
         terms: row
             .into_iter()

@@ -1,15 +1,15 @@
-//! The unknowns of a block: u = T x + c, with x ordered [I | approaches | Γ].
+//! The unknowns of a block: u = T x + c, with x ordered [I | normal jumps | Γ].
 
 use std::collections::BTreeMap;
 
 use contact_dd_partition::model::Material;
 
 use super::block::{Block, OwnedBlock};
-use super::bounds::approaches;
+use super::bounds::jumps;
 use super::frame::{Frame, NodeFrames};
 use super::load::BlockLoads;
 use super::sites::{Sites, elimination_order};
-use crate::contact::approach::{Approaches, OnInterface, Variable};
+use crate::contact::normal_jump::{NormalJumps, OnInterface, Variable};
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::pattern::Cliques;
 
@@ -33,8 +33,8 @@ pub struct Dofs {
     sites: Sites,
     /// Number of interior unknowns I.
     pub interior: usize,
-    /// Number of approaches; approach j is unknown `interior + j`.
-    pub approaches: usize,
+    /// Number of normal jumps; normal jump j is unknown `interior + j`.
+    pub jumps: usize,
     /// Its unknowns on Γ; they come last, in this order.
     pub interface_dofs: Vec<InterfaceDof>,
 }
@@ -43,7 +43,7 @@ const NOT_DIRECT: u32 = u32::MAX;
 
 impl Dofs {
     /// Numbers the unknowns of `block`: its interior in a fill-reducing order, then the
-    /// approach of each of its contact points, then the interface dofs on Γ. Of `loads` the directions of
+    /// normal jump of each of its contact points, then the interface dofs on Γ. Of `loads` the directions of
     /// supports count, not their values.
     ///
     /// # Errors
@@ -59,8 +59,8 @@ impl Dofs {
             return Err(DofError::Size);
         }
         let frames = NodeFrames::new(owned, loads);
-        let approaches = approaches(owned, materials, &frames)
-            .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
+        let jumps =
+            jumps(owned, materials, &frames).map_err(|OnInterface(j)| DofError::OnInterface(j))?;
         let on_interface = block.is_on_interface();
         let mut is_free = vec![true; block.nodes() * dim];
         for (node, frame) in frames.special() {
@@ -68,13 +68,13 @@ impl Dofs {
                 is_free[node as usize * dim + axis] = frame.prescribed[axis].is_none();
             }
         }
-        for &raw in approaches.replaced.keys() {
+        for &raw in jumps.replaced.keys() {
             is_free[raw as usize] = false;
         }
 
         let mut number = vec![u32::MAX; block.nodes() * dim];
         let mut sites = Sites::new(block.nodes());
-        for node in elimination_order(block, &approaches, |node| {
+        for node in elimination_order(block, &jumps, |node| {
             let axes = node as usize * dim..(node as usize + 1) * dim;
             !on_interface[node as usize] && is_free[axes].contains(&true)
         }) {
@@ -88,7 +88,7 @@ impl Dofs {
             sites.end();
         }
         let interior = sites.next as usize;
-        for _ in 0..approaches.len {
+        for _ in 0..jumps.len {
             sites.unknown();
             sites.end();
         }
@@ -114,12 +114,12 @@ impl Dofs {
             first: Vec::with_capacity(block.nodes()),
             sites,
             interior,
-            approaches: approaches.len,
+            jumps: jumps.len,
             interface_dofs,
         };
         dofs.offsets.push(0);
         let mut is_replaced = vec![false; block.nodes()];
-        for &raw in approaches.replaced.keys() {
+        for &raw in jumps.replaced.keys() {
             is_replaced[raw as usize / dim] = true;
         }
         for node in 0..block.nodes() as u32 {
@@ -127,7 +127,7 @@ impl Dofs {
                 None if !is_replaced[node as usize] => dofs.push_direct(node, &number),
                 frame => {
                     let frame = frame.unwrap_or(&Frame::CARTESIAN);
-                    dofs.push_node(node, frame, &number, &approaches);
+                    dofs.push_node(node, frame, &number, &jumps);
                 }
             }
         }
@@ -145,7 +145,7 @@ impl Dofs {
     }
 
     /// Appends the rows of T for `node`.
-    fn push_node(&mut self, node: u32, frame: &Frame, number: &[u32], approaches: &Approaches) {
+    fn push_node(&mut self, node: u32, frame: &Frame, number: &[u32], jumps: &NormalJumps) {
         let dim = self.dim;
         let start = self.offsets.len() - 1;
         for component in 0..dim {
@@ -159,11 +159,11 @@ impl Dofs {
                 if frame.prescribed[axis].is_some() {
                     continue;
                 }
-                if let Some(value) = approaches.replaced.get(&raw) {
+                if let Some(value) = jumps.replaced.get(&raw) {
                     for &(variable, c) in &value.terms {
                         let dof = match variable {
                             Variable::Displacement(v) => number[v as usize],
-                            Variable::Approach(j) => self.interior as u32 + j,
+                            Variable::NormalJump(j) => self.interior as u32 + j,
                         };
                         *row.entry(dof).or_default() += along * c;
                     }
@@ -178,7 +178,7 @@ impl Dofs {
     }
 
     /// The first of the unknowns that are the node's components, if they are and make a site: a last
-    /// interior unknown and a first approach may follow one another by chance.
+    /// interior unknown and a first normal jump may follow one another by chance.
     fn direct_from(&self, node: u32, start: usize) -> u32 {
         let base = &self.terms[self.offsets[start] as usize..];
         let direct = base.len() == self.dim
@@ -192,7 +192,7 @@ impl Dofs {
 
     /// Number of unknowns.
     pub fn len(&self) -> usize {
-        self.interior + self.approaches + self.interface_dofs.len()
+        self.interior + self.jumps + self.interface_dofs.len()
     }
 
     /// Whether there is no unknown.
@@ -235,7 +235,7 @@ impl Dofs {
     }
 
     /// Where the pattern's sites begin: runs of unknowns that the same cells have, those of a node
-    /// or an approach.
+    /// or a normal jump.
     pub fn site_starts(&self) -> &[u32] {
         &self.sites.starts
     }

@@ -80,7 +80,7 @@ fn once_each(supports: impl Iterator<Item = Support>) -> Vec<Support> {
     kept.into_values().flatten().collect()
 }
 
-/// Tᵀ (f − K c), with c what supports prescribe and approaches begin with, and `springs` in K.
+/// Tᵀ (f − K c), with c what supports prescribe and normal jumps begin with, and `springs` in K.
 pub fn load(
     block: &Block,
     loads: &BlockLoads,

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use contact_dd_partition::model::Material;
 
 use super::block::OwnedBlock;
-use super::bounds::approaches;
+use super::bounds::jumps;
 use super::dofs::{DofError, Dofs};
 use super::frame::{Frame, NodeFrames};
 use super::load::BlockLoads;
-use crate::contact::approach::{ApproachOf, Approaches, OnInterface};
+use crate::contact::normal_jump::{NormalJumpOf, NormalJumps, OnInterface};
 
 /// What supports prescribe in a load step.
 #[derive(Clone, Debug)]
@@ -17,8 +17,8 @@ pub struct Prescribed {
     dim: usize,
     /// c, node by node (m).
     constants: Vec<f64>,
-    /// Where the approach of each contact point is found.
-    pub approach_of: Vec<ApproachOf>,
+    /// Where the normal jump of each contact point is found.
+    pub jump_of: Vec<NormalJumpOf>,
 }
 
 impl Prescribed {
@@ -32,17 +32,17 @@ impl Prescribed {
         materials: &[Material],
     ) -> Result<Self, DofError> {
         let frames = NodeFrames::new(owned, loads);
-        let approaches = approaches(owned, materials, &frames)
-            .map_err(|OnInterface(j)| DofError::OnInterface(j))?;
+        let jumps =
+            jumps(owned, materials, &frames).map_err(|OnInterface(j)| DofError::OnInterface(j))?;
         let dim = owned.block.dim;
         let mut prescribed = Self {
             dim,
             constants: vec![0.0; dim * owned.block.nodes()],
-            approach_of: Vec::new(),
+            jump_of: Vec::new(),
         };
         prescribed.add_supports(&frames);
-        prescribed.add_replaced(&frames, &approaches);
-        prescribed.approach_of = approaches.of;
+        prescribed.add_replaced(&frames, &jumps);
+        prescribed.jump_of = jumps.of;
         Ok(prescribed)
     }
 
@@ -56,10 +56,10 @@ impl Prescribed {
         }
     }
 
-    /// Adds the constants of the displacements that approaches replace.
-    fn add_replaced(&mut self, frames: &NodeFrames, approaches: &Approaches) {
+    /// Adds the constants of the displacements that normal jumps replace.
+    fn add_replaced(&mut self, frames: &NodeFrames, jumps: &NormalJumps) {
         // In the order of the unknowns: a hash map has none.
-        let replaced: BTreeMap<u32, f64> = (approaches.replaced.iter())
+        let replaced: BTreeMap<u32, f64> = (jumps.replaced.iter())
             .map(|(&raw, value)| (raw, value.constant))
             .collect();
         for (raw, value) in replaced {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::block::Block;
-use crate::contact::approach::{Approaches, Variable};
+use crate::contact::normal_jump::{NormalJumps, Variable};
 use crate::schur::ordering::nested_dissection;
 use crate::schur::pattern::Cliques;
 
@@ -63,7 +63,7 @@ impl Sites {
 /// The order in which nodes with interior unknowns are eliminated.
 pub(super) fn elimination_order(
     block: &Block,
-    approaches: &Approaches,
+    jumps: &NormalJumps,
     is_interior: impl Fn(u32) -> bool,
 ) -> Vec<u32> {
     let dim = block.dim;
@@ -77,7 +77,7 @@ pub(super) fn elimination_order(
     }
     let mut partners: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     let mut has_partners = vec![false; block.nodes()];
-    for (&raw, value) in &approaches.replaced {
+    for (&raw, value) in &jumps.replaced {
         let node = raw / dim as u32;
         for &(variable, _) in &value.terms {
             if let Variable::Displacement(v) = variable {

@@ -6,9 +6,9 @@
 //! A δ + C τ = r,    λ = d − Cᵀ δ − H τ ≥ 0,    τ ≤ s,    λ (s − τ) = 0
 //! ```
 //!
-//! is what the interface problem (14) asks of a change δ of U and τ of the approaches: r is its
+//! is what the interface problem (14) asks of a change δ of U and τ of the normal jumps: r is its
 //! residual, d and s are the forces and gaps at U. Eliminating δ leaves a contact problem with
-//! H − Cᵀ A⁻¹ C in the approaches of all pairs and nothing else. Linearly dependent constraints of a pair,
+//! H − Cᵀ A⁻¹ C in the normal jumps of all pairs and nothing else. Linearly dependent constraints of a pair,
 //! D τ ≤ d − D t, stay what they are.
 
 use faer::{Mat, MatRef};
@@ -22,9 +22,9 @@ use crate::interface::s_con::ConState;
 use crate::rigid::energy::RigidBasis;
 use crate::schur::local::multiply_add;
 
-/// Most approaches of all pairs together for which their problem is solved at once: its matrix is
+/// Most normal jumps of all pairs together for which their problem is solved at once: its matrix is
 /// dense.
-pub const MAX_APPROACHES: usize = 6_000;
+pub const MAX_JUMPS: usize = 6_000;
 
 /// The coupled contact problem.
 #[derive(Clone, Debug)]
@@ -41,13 +41,13 @@ pub struct CoupledContact<'a> {
     scale: f64,
 }
 
-/// A change of U and of the approaches, pair by pair.
+/// A change of U and of the normal jumps, pair by pair.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoupledStep {
     /// δ.
     pub u: Vec<f64>,
     /// τ.
-    pub approaches: Vec<Vec<f64>>,
+    pub jumps: Vec<Vec<f64>>,
     /// λ, then the forces of linearly dependent constraints.
     pub forces: Vec<Vec<f64>>,
     /// Which of both are open then.
@@ -99,7 +99,7 @@ pub fn condense_laws(interface: &Interface, motions: &RigidBasis) -> Mat<f64> {
 }
 
 impl<'a> CoupledContact<'a> {
-    /// The contact problem of all pairs; `None` where they have too many approaches.
+    /// The contact problem of all pairs; `None` where they have too many normal jumps.
     pub fn new(problem: &'a InterfaceProblem<'_>) -> Option<Self> {
         let (interface, motions) = (problem.interface, &problem.motions);
         let laws = &interface.laws;
@@ -128,15 +128,15 @@ impl<'a> CoupledContact<'a> {
         let mut open = self.side_by_side(state.responses.iter().map(|p| &p.open[..]));
         let gaps = self.side_by_side(state.responses.iter().map(|p| &p.gaps[..]));
         let solution = self.problem(&condensed, &gaps, u).solve(&mut open);
-        let mut step = self.step(r, &condensed, &solution.approaches, solution.forces, &open);
+        let mut step = self.step(r, &condensed, &solution.jumps, solution.forces, &open);
         step.steps = solution.steps;
         step.fell_back = solution.fell_back;
         step.converged = solution.converged;
         step
     }
 
-    /// The change that balances `r` on Γ and `loads` on the approaches of every pair where the
-    /// conditions stay `open` or closed and the closed ones still have to approach by `missing`.
+    /// The change that balances `r` on Γ and `loads` on the normal jumps of every pair where the
+    /// conditions stay `open` or closed and the closed ones still have to close by `missing`.
     pub fn solve_fixed(
         &self,
         r: &[f64],
@@ -150,7 +150,7 @@ impl<'a> CoupledContact<'a> {
         let open = self.side_by_side(open.iter().map(Vec::as_slice));
         let missing = self.side_by_side(missing.iter().map(Vec::as_slice));
         let trial = self.problem(&condensed, &missing, &[]).linear(&open);
-        self.step(r, &condensed, &trial.approaches, trial.forces, &open)
+        self.step(r, &condensed, &trial.jumps, trial.forces, &open)
     }
 
     fn condense(&self, r: &[f64], mut c: Vec<f64>, mut c_scale: Vec<f64>) -> Condensed {
@@ -193,16 +193,16 @@ impl<'a> CoupledContact<'a> {
         &self,
         r: &[f64],
         condensed: &Condensed,
-        approaches: &[f64],
+        jumps: &[f64],
         forces: Vec<f64>,
         open: &[bool],
     ) -> CoupledStep {
         let mut u = condensed.z.clone();
-        if approaches.iter().any(|&t| t != 0.0) {
+        if jumps.iter().any(|&t| t != 0.0) {
             u.copy_from_slice(r);
             let mut first = 0;
             for (p, law) in self.interface.laws.iter().enumerate() {
-                let of_pair: Vec<f64> = (approaches[first..first + law.len()].iter())
+                let of_pair: Vec<f64> = (jumps[first..first + law.len()].iter())
                     .map(|t| -t)
                     .collect();
                 let mut held = vec![0.0; law.s_t_gamma.ncols()];
@@ -214,7 +214,7 @@ impl<'a> CoupledContact<'a> {
         }
         CoupledStep {
             u,
-            approaches: self.by_pair(approaches),
+            jumps: self.by_pair(jumps),
             forces: self.by_pair(&forces),
             open: self.by_pair(open),
             steps: 1,
@@ -223,32 +223,32 @@ impl<'a> CoupledContact<'a> {
         }
     }
 
-    /// What every pair has of approaches, then what every pair has of linearly dependent constraints.
+    /// What every pair has of normal jumps, then what every pair has of linearly dependent constraints.
     fn side_by_side<'b, T: Copy + 'b>(
         &self,
         of_pairs: impl Iterator<Item = &'b [T]> + Clone,
     ) -> Vec<T> {
         let laws = self.interface.laws.iter();
         let split = laws.zip(of_pairs).map(|(law, own)| own.split_at(law.len()));
-        let approaches = split.clone().flat_map(|(approaches, _)| approaches);
+        let jumps = split.clone().flat_map(|(jumps, _)| jumps);
         let dependent = split.flat_map(|(_, dependent)| dependent);
-        approaches.chain(dependent).copied().collect()
+        jumps.chain(dependent).copied().collect()
     }
 
-    /// What every pair has of all approaches, and of linearly dependent constraints if these follow.
+    /// What every pair has of all normal jumps, and of linearly dependent constraints if these follow.
     fn by_pair<T: Copy>(&self, all: &[T]) -> Vec<Vec<T>> {
-        let (mut approaches, mut dependent) = all.split_at(self.h.nrows());
+        let (mut jumps, mut dependent) = all.split_at(self.h.nrows());
         let mut take = |law: &CondensedContact| {
-            let (own, others) = approaches.split_at(law.len());
+            let (own, others) = jumps.split_at(law.len());
             let (own_rows, other_rows) = dependent.split_at(law.rows.len().min(dependent.len()));
-            (approaches, dependent) = (others, other_rows);
+            (jumps, dependent) = (others, other_rows);
             [own, own_rows].concat()
         };
         self.interface.laws.iter().map(&mut take).collect()
     }
 }
 
-/// D of all pairs, whose approaches are numbered one after the other.
+/// D of all pairs, whose normal jumps are numbered one after the other.
 fn all_rows(laws: &[CondensedContact]) -> DependentConstraints {
     let mut rows = DependentConstraints::default();
     let mut first = 0;

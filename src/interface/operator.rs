@@ -28,7 +28,7 @@ pub struct Contribution {
     /// The smallest pivot of its interior relative to its diagonal entry.
     pub smallest_pivot: f64,
     /// The law of a pair; `None` for a linear subdomain, and where all pairs have too many
-    /// approaches to be solved for at once.
+    /// normal jumps to be solved for at once.
     pub law: Option<CondensedContact>,
 }
 
@@ -42,7 +42,7 @@ pub struct Interface {
     pub linear: usize,
     /// The traces of every pair.
     pub pair_interface_dofs: Vec<Vec<u32>>,
-    /// The law of every pair; empty where they have too many approaches to be solved for at once.
+    /// The law of every pair; empty where they have too many normal jumps to be solved for at once.
     pub laws: Vec<CondensedContact>,
     /// S_0 = Σ R_iᵀ S_i R_i over the linear subdomains, (15).
     s_0: SparseSymmetric,
@@ -120,7 +120,7 @@ impl Interface {
         self.smallest_pivot
     }
 
-    /// The pairs' laws condensed onto their approaches, made when first asked for; the rigid `motions` of the
+    /// The pairs' laws condensed onto their normal jumps, made when first asked for; the rigid `motions` of the
     /// bodies have no energy in it.
     pub fn condensed_laws(&self, motions: &RigidBasis) -> MatRef<'_, f64> {
         self.condensed_laws

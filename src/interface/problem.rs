@@ -26,14 +26,14 @@ pub struct InterfaceProblem<'a> {
     f_scale: Vec<f64>,
     /// F of the pairs with every contact closed.
     f_bilateral: Vec<f64>,
-    /// The rigid motions of the bodies as their approaches see them, and the load along them.
+    /// The rigid motions of the bodies as their normal jumps see them, and the load along them.
     pub motions: RigidBasis,
     /// The largest displacement that is prescribed in a cluster in contact (m).
     pub scale: f64,
 }
 
 impl<'a> InterfaceProblem<'a> {
-    /// Assembles F of the `loads` of all clusters, in their order; `modes` has the pairs' approaches
+    /// Assembles F of the `loads` of all clusters, in their order; `modes` has the pairs' normal jumps
     /// against the rigid motions of the bodies, and the load along these.
     pub fn new(
         interface: &'a Interface,

@@ -30,7 +30,7 @@ pub struct ConState {
 /// Totals of one evaluation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ConTotals {
-    /// Closed approaches and linearly dependent constraints.
+    /// Closed normal jumps and linearly dependent constraints.
     pub active: usize,
     /// Those that opened or closed, against what was expected or the last evaluation.
     pub changed: usize,
@@ -228,7 +228,7 @@ impl ConState {
         }
     }
 
-    /// The sets of open approaches and linearly dependent constraints, pair by pair.
+    /// The sets of open normal jumps and linearly dependent constraints, pair by pair.
     pub fn open(&self) -> Vec<Vec<bool>> {
         self.responses.iter().map(|r| r.open.clone()).collect()
     }

@@ -49,11 +49,11 @@ pub struct FixedActiveSetRoot<'a> {
     pub converged: bool,
 }
 
-/// Which limits of a cluster are open, and what the others still have to approach (m).
+/// Which limits of a cluster are open, and what the others still have to close (m).
 type FixedLimits = (Vec<bool>, Vec<f64>);
 
 impl FixedActiveSetRoot<'_> {
-    /// Whether the pairs' approaches can be solved for at once.
+    /// Whether the pairs' normal jumps can be solved for at once.
     pub fn can_solve(&self) -> bool {
         CoupledContact::new(self.problem).is_some()
     }
@@ -66,7 +66,7 @@ pub struct BlockLoad {
     pub load: Vec<f64>,
     /// Which of its conditions are closed.
     pub closed: Vec<bool>,
-    /// What the sides of every condition still have to approach where it is closed (m).
+    /// What the sides of every condition still have to close where it is closed (m).
     pub missing: Vec<f64>,
 }
 
@@ -218,12 +218,12 @@ impl<'a> FixedActiveSet<'a> {
 struct ClusterQuestion {
     /// Its limits, where it is in contact.
     limits: Option<FixedLimits>,
-    /// Its load, on approaches and traces.
+    /// Its load, on normal jumps and traces.
     #[serde(with = "crate::bytes")]
     load: Vec<f64>,
 }
 
-/// Forces of the limits of a cluster, and its approaches and traces.
+/// Forces of the limits of a cluster, and its normal jumps and traces.
 type ClusterAnswer = (Reals, Reals);
 
 impl FixedActiveSetRoot<'_> {
@@ -234,12 +234,12 @@ impl FixedActiveSetRoot<'_> {
         let mut missing = Vec::new();
         let mut open: Vec<Vec<bool>> = Vec::new();
         for (question, interface_dofs) in gathered.into_iter().zip(&self.numbering.interface_dofs) {
-            let mut on_approaches = question.load;
-            let on_traces = on_approaches.split_off(on_approaches.len() - interface_dofs.len());
+            let mut on_jumps = question.load;
+            let on_traces = on_jumps.split_off(on_jumps.len() - interface_dofs.len());
             if let Some((of_cluster, lacking)) = question.limits {
                 open.push(of_cluster);
                 missing.push(lacking);
-                loads.push(on_approaches);
+                loads.push(on_jumps);
             }
             for (&i, part) in interface_dofs.iter().zip(on_traces) {
                 r[i as usize] += part;
@@ -249,7 +249,7 @@ impl FixedActiveSetRoot<'_> {
             return vec![ClusterAnswer::default(); self.numbering.interface_dofs.len()];
         };
         let step = coupled.solve_fixed(&r, &loads, &missing, &open);
-        let mut pairs = step.forces.into_iter().zip(step.approaches);
+        let mut pairs = step.forces.into_iter().zip(step.jumps);
         let answer = |c: usize| {
             let of_pair = match plan.contact_place(c) {
                 Some(_) => pairs.next(),

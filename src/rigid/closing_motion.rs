@@ -41,9 +41,9 @@ pub(super) fn closing_motions(
             .flatten()
             .fold(0.0, |m: f64, z| m.max(z.abs()));
     let part = (rows.iter())
-        .map(|row| (row.gap.max(0.0), approach(row, &motions)))
-        .filter(|&(_, approach)| approach > round_off)
-        .fold(1.0, |part: f64, (gap, approach)| part.min(gap / approach));
+        .map(|row| (row.gap.max(0.0), jump(row, &motions)))
+        .filter(|&(_, jump)| jump > round_off)
+        .fold(1.0, |part: f64, (gap, jump)| part.min(gap / jump));
     motions.iter_mut().flatten().for_each(|z| *z *= part);
     let kinematics = Kinematics::new(dim, bodies);
     if kinematics.len == 0 || rows.is_empty() {
@@ -54,7 +54,7 @@ pub(super) fn closing_motions(
     let load = kinematics.load(bodies).component_mul(&speed);
     let left = rows
         .iter()
-        .map(|row| (row.gap - approach(row, &motions)).max(0.0));
+        .map(|row| (row.gap - jump(row, &motions)).max(0.0));
     let left = left.collect();
     let size = bodies.iter().fold(0.0, |m: f64, b| m.max(b.frame.size));
     let y = fall(&b, &load, left, TOUCHING * size).component_mul(&speed);
@@ -85,7 +85,7 @@ fn prescribed(dim: usize, body: &BodyState) -> Vec<f64> {
 }
 
 /// How far motions close a gap.
-fn approach(row: &RigidRow, motions: &[Vec<f64>]) -> f64 {
+fn jump(row: &RigidRow, motions: &[Vec<f64>]) -> f64 {
     let of_body = |(body, action): &(usize, Vec<f64>)| -> f64 {
         let terms = action.iter().zip(&motions[*body]);
         terms.map(|(a, z)| a * z).sum()
@@ -257,7 +257,7 @@ mod tests {
         let rows = floor(&body, [0.1, 0.3]);
         let z = closing_motions(2, std::slice::from_ref(&body), &rows).remove(0);
         let motions = [z.clone()];
-        close(&[0, 1].map(|j| approach(&rows[j], &motions)), &[0.1, 0.3]);
+        close(&[0, 1].map(|j| jump(&rows[j], &motions)), &[0.1, 0.3]);
         // It sinks by the mean, and turns by the difference over its width.
         close(&z[1..], &[-0.2, -0.1 * body.frame.size]);
     }

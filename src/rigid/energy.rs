@@ -1,6 +1,6 @@
 //! Rigid motions cost no energy and carry the load's resultant, whatever round-off makes of it.
 //!
-//! A stiff body among soft ones leaves cancellation in what is condensed onto approaches: an energy
+//! A stiff body among soft ones leaves cancellation in what is condensed onto normal jumps: an energy
 //! H, of either sign, of motions that have none, and a load c that drives them otherwise than the
 //! load of the bodies does. Both are known exactly, from geometry.
 
@@ -12,7 +12,7 @@ use crate::vector::dot;
 /// Part of a motion, relative to all of it, that is new.
 const INDEPENDENT: f64 = 1e-8;
 
-/// Approaches against rigid motions: R, a row an approach and a column a motion, and the load Rᵀ c
+/// Normal jumps against rigid motions: R, a row a normal jump and a column a motion, and the load Rᵀ c
 /// along them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RigidModes {
@@ -44,7 +44,7 @@ pub struct RigidBasis {
 }
 
 impl RigidBasis {
-    /// The basis for approaches with this `diagonal` D, by Gram and Schmidt, twice; soft bodies first, so
+    /// The basis for normal jumps with this `diagonal` D, by Gram and Schmidt, twice; soft bodies first, so
     /// that what is left for stiff ones leaves theirs alone, to which it would be far more.
     pub fn new(drive: &RigidModes, diagonal: &[f64]) -> Self {
         let root: Vec<f64> = diagonal.iter().map(|k| k.max(0.0).sqrt()).collect();

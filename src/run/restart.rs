@@ -26,7 +26,7 @@ struct Kept {
     run: Identity,
     /// The finished load steps.
     steps: Vec<StepTotals>,
-    /// U, and which approaches of every cluster in contact are open.
+    /// U, and which normal jumps of every cluster in contact are open.
     interface: Option<(Vec<f64>, Vec<Vec<bool>>)>,
     /// The clusters in contact.
     pairs: Vec<PairState>,

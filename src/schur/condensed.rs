@@ -1,13 +1,13 @@
-//! A node of the hierarchy, condensed onto approaches and traces, the unknowns on Γ.
+//! A node of the hierarchy, condensed onto normal jumps and traces, the unknowns on Γ.
 
 use faer::{Mat, MatRef};
 use serde::{Deserialize, Serialize};
 
-/// The Schur complement of a node of the hierarchy on what it keeps: approaches, then traces on Γ.
+/// The Schur complement of a node of the hierarchy on what it keeps: normal jumps, then traces on Γ.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Condensed {
-    /// Number of approaches.
-    pub approaches: usize,
+    /// Number of normal jumps.
+    pub jumps: usize,
     /// Its unknowns on Γ, ascending.
     pub interface_dofs: Vec<InterfaceDof>,
     /// S (Pa); only the lower triangle counts.
@@ -21,15 +21,15 @@ pub struct Condensed {
 }
 
 impl Condensed {
-    /// S_tt, on the approaches.
+    /// S_tt, on the normal jumps.
     pub fn s_tt(&self) -> MatRef<'_, f64> {
-        let m = self.approaches;
+        let m = self.jumps;
         self.s.as_ref().submatrix(0, 0, m, m)
     }
 
-    /// S_tΓ, approaches against traces; in the upper triangle.
+    /// S_tΓ, normal jumps against traces; in the upper triangle.
     pub fn s_t_gamma(&self) -> MatRef<'_, f64> {
-        let m = self.approaches;
+        let m = self.jumps;
         self.s
             .as_ref()
             .submatrix(0, m, m, self.interface_dofs.len())
@@ -37,7 +37,7 @@ impl Condensed {
 
     /// S_ΓΓ: the Schur complement with every contact closed (16).
     pub fn bilateral(&self) -> MatRef<'_, f64> {
-        let (m, n) = (self.approaches, self.interface_dofs.len());
+        let (m, n) = (self.jumps, self.interface_dofs.len());
         self.s.as_ref().submatrix(m, m, n, n)
     }
 

@@ -8,7 +8,7 @@ use super::pattern::SparseSymmetric;
 
 /// S = K_BB − K_BI K_II⁻¹ K_IB with everything that condensing and recovering a load needs, (11).
 ///
-/// B holds the approaches first, then the interface dofs on Γ.
+/// B holds the normal jumps first, then the interface dofs on Γ.
 #[derive(Debug)]
 pub struct LocalSchur {
     factor: BoundaryLastCholesky,

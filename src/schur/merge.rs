@@ -83,24 +83,18 @@ impl Merge {
         par: Par,
     ) -> Result<(Self, Condensed), FreeInterfaceDof> {
         let (gone, interface_dofs) = union_of_interface_dofs(&children, eliminated);
-        let approaches = children.iter().map(|c| c.approaches).sum();
+        let jumps = children.iter().map(|c| c.jumps).sum();
         let e = gone.len();
-        let k = approaches + interface_dofs.len();
+        let k = jumps + interface_dofs.len();
         let mut columns = Mat::<f64>::zeros(e + k, e);
         let mut s = spare.zeros(k);
         let mut diagonal = vec![0.0; e + k];
         let mut places = Vec::with_capacity(children.len());
         let mut smallest_pivot = f64::INFINITY;
-        let mut first_approach = e;
+        let mut first_jump = e;
         for child in children {
-            let place = places_of(
-                &child,
-                first_approach,
-                &gone,
-                &interface_dofs,
-                e + approaches,
-            );
-            first_approach += child.approaches;
+            let place = places_of(&child, first_jump, &gone, &interface_dofs, e + jumps);
+            first_jump += child.jumps;
             for (&to, d) in place.iter().zip(&child.diagonal) {
                 diagonal[to as usize] += d;
             }
@@ -120,7 +114,7 @@ impl Merge {
             smallest_pivot = smallest_pivot.min(merge.columns[(j, j)].powi(2) / d);
         }
         let condensed = Condensed {
-            approaches,
+            jumps,
             interface_dofs,
             s,
             diagonal: diagonal[e..].to_vec(),
@@ -187,16 +181,16 @@ fn union_of_interface_dofs(
     })
 }
 
-/// Where the boundary of `child` is found: approaches from `first_approach` on, traces among those
+/// Where the boundary of `child` is found: normal jumps from `first_normal jump` on, traces among those
 /// that are `gone`, which come first, or those that are kept, from `first_kept` on.
 fn places_of(
     child: &Condensed,
-    first_approach: usize,
+    first_jump: usize,
     gone: &[InterfaceDof],
     kept: &[InterfaceDof],
     first_kept: usize,
 ) -> Vec<u32> {
-    let approaches = (0..child.approaches).map(|j| (first_approach + j) as u32);
+    let jumps = (0..child.jumps).map(|j| (first_jump + j) as u32);
     let (mut in_gone, mut in_kept) = (0, 0);
     let interface_dofs = child.interface_dofs.iter().map(|dof| {
         // All three lists ascend, and the trace is in one of the two.
@@ -211,7 +205,7 @@ fn places_of(
             false => (first_kept + in_kept) as u32,
         }
     });
-    approaches.chain(interface_dofs).collect()
+    jumps.chain(interface_dofs).collect()
 }
 
 /// Maximal runs of `place`, none of which reaches across the first `e` indices.

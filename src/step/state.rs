@@ -15,7 +15,7 @@ use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
 /// Where a load step leaves the scene: what the next one starts from.
 #[derive(Clone, Debug, Default)]
 pub struct StepState {
-    /// U, and which approaches of every cluster in contact are open; on the root.
+    /// U, and which normal jumps of every cluster in contact are open; on the root.
     pub interface: Option<(Vec<f64>, Vec<Vec<bool>>)>,
     /// The clusters in contact of this rank, by their place among those.
     pub pairs: BTreeMap<usize, PairState>,

@@ -58,7 +58,7 @@ pub struct SweepOutcome {
     pub residual: f64,
     /// Totals of the last evaluation of S_CON.
     pub totals: ConTotals,
-    /// Which approaches and linearly dependent constraints of every pair are open then.
+    /// Which normal jumps and linearly dependent constraints of every pair are open then.
     pub open: Vec<Vec<bool>>,
 }
 

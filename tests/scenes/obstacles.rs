@@ -307,7 +307,7 @@ fn a_body_between_a_wall_and_another_body_leans_on_both() {
     }
 }
 
-/// The last interior unknown and the first approach may be a node's two components: they belong
+/// The last interior unknown and the first normal jump may be a node's two components: they belong
 /// together no more than any others.
 #[test]
 fn a_strip_under_a_plane_is_balanced_whatever_its_length() {

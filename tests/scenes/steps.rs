@@ -113,9 +113,9 @@ fn prescribed_displacements_are_loads() {
     assert_eq!(closed, [9, 0, 9]);
 }
 
-/// The prescribed side of a contact is part of its approach, and the supports are inclined.
+/// The prescribed side of a contact is part of its normal jump, and the supports are inclined.
 #[test]
-fn constants_of_approaches_follow_the_steps() {
+fn constants_of_normal_jumps_follow_the_steps() {
     let text = format!(
         "{BODIES}
         [[displacement]]

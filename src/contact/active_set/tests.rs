@@ -51,7 +51,7 @@ fn assert_optimal_with(
 ) {
     assert!(solution.converged);
     let m = c.len();
-    let t = &solution.approaches;
+    let t = &solution.jumps;
     let scale: f64 = c.iter().chain(bounds).fold(1e-300, |m, c| m.max(c.abs()));
     let mut left = c.to_vec();
     rows.subtract_transposed(&solution.forces[m..], &mut left);
@@ -134,7 +134,7 @@ fn a_thin_cantilever_over_a_rough_floor_never_cycles() {
         let (solution, _) = solve(&h, &c, &bounds);
         assert!(solution.converged, "{seed}");
         fell_back += usize::from(solution.fell_back);
-        let t = &solution.approaches;
+        let t = &solution.jumps;
         for i in 0..m {
             let terms = (0..m).map(|j| h[(i, j)] * t[j]);
             let scale: f64 = terms.clone().map(f64::abs).sum();
@@ -164,13 +164,13 @@ fn the_interior_point_method_names_the_closed_conditions() {
         }
         .open_conditions();
         assert_eq!(named, open);
-        let t = solution.approaches;
+        let t = solution.jumps;
         assert!(gaps.iter().zip(&t).all(|(s, t)| (s + t).abs() < 1e-6));
         assert!(steps < 30);
     }
 }
 
-/// `count` rows of up to `most` of m approaches.
+/// `count` rows of up to `most` of m normal jumps.
 fn random_rows(seed: usize, m: usize, count: usize, most: usize) -> DependentConstraints {
     let mut rows = DependentConstraints::default();
     for j in 0..count {
@@ -221,7 +221,7 @@ fn a_vertex_of_more_conditions_than_directions_is_found() {
 }
 
 #[test]
-fn an_approach_may_be_bounded_from_both_sides() {
+fn a_normal_jump_may_be_bounded_from_both_sides() {
     let h = Mat::from_fn(3, 3, |i, j| if i == j { 2.0 } else { -0.5 });
     let mut rows = DependentConstraints::default();
     rows.push(vec![(0, -1.0)]);
@@ -238,7 +238,7 @@ fn an_approach_may_be_bounded_from_both_sides() {
 
 #[test]
 fn a_dependent_condition_alone_holds_what_nothing_resists() {
-    // H = 0 along moving both approaches at once, which only their sum's bound stops.
+    // H = 0 along moving both normal jumps at once, which only their sum's bound stops.
     let h = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 } else { -1.0 });
     let mut rows = DependentConstraints::default();
     rows.push(vec![(0, 0.6), (1, 0.8)]);
@@ -268,12 +268,12 @@ fn brick_row(
     let sides = 2 * points;
     let rights = (bricks - 1) * points;
     let all = rights + (bricks + 1) * points;
-    // Unknowns are the right sides' displacements but the last one's, then the approaches.
+    // Unknowns are the right sides' displacements but the last one's, then the normal jumps.
     let right = |brick: usize, i: usize| match brick + 1 < bricks {
         true => brick * points + i,
         false => rights + bricks * points + i,
     };
-    let approach = |joint: usize, i: usize| rights + joint * points + i;
+    let jump = |joint: usize, i: usize| rights + joint * points + i;
     let without_mean = |a: Mat<f64>| {
         let means: Vec<f64> = (a.col_iter())
             .map(|column| column.iter().sum::<f64>() / sides as f64)
@@ -288,7 +288,7 @@ fn brick_row(
         let load = without_mean(Mat::from_fn(sides, 1, |i, _| noise(at + 57 * i)));
         let mut of_unknowns = Mat::<f64>::zeros(sides, all);
         for i in 0..points {
-            of_unknowns[(i, approach(brick, i))] -= 1.0;
+            of_unknowns[(i, jump(brick, i))] -= 1.0;
             if brick > 0 {
                 of_unknowns[(i, right(brick - 1, i))] += 1.0;
             }

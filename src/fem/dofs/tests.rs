@@ -102,7 +102,7 @@ fn every_displacement_obeys_the_supports() {
 }
 
 #[test]
-fn the_approach_of_a_point_is_its_unknown() {
+fn the_normal_jump_of_a_point_is_its_unknown() {
     let owned = scene();
     let (dofs, prescribed) = dofs_of(&owned);
     let x = unknowns(&dofs);
@@ -125,7 +125,7 @@ fn traces_come_last_and_are_the_displacement_of_shared_nodes() {
         ]
     );
     assert_eq!(vector(&u, 6)[..2], x[dofs.len() - 2..]);
-    // 16 components less 4 that are prescribed; approaches replace displacements one by one.
+    // 16 components less 4 that are prescribed; normal jumps replace displacements one by one.
     assert_eq!(dofs.len(), 12);
 }
 

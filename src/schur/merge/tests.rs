@@ -16,11 +16,11 @@ fn spd(n: usize, seed: usize) -> Mat<f64> {
     })
 }
 
-fn child(approaches: usize, nodes: &[u32], seed: usize) -> Condensed {
-    let n = approaches + nodes.len();
+fn child(jumps: usize, nodes: &[u32], seed: usize) -> Condensed {
+    let n = jumps + nodes.len();
     let s = spd(n, seed);
     Condensed {
-        approaches,
+        jumps,
         interface_dofs: nodes.iter().map(|&node| trace(node)).collect(),
         diagonal: (0..n).map(|i| s[(i, i)]).collect(),
         s,
@@ -28,15 +28,15 @@ fn child(approaches: usize, nodes: &[u32], seed: usize) -> Condensed {
     }
 }
 
-/// Two children and their loads, and the sums of both over [0..9 | approaches of the first | of the second].
+/// Two children and their loads, and the sums of both over [0..9 | normal jumps of the first | of the second].
 fn example() -> (Vec<Condensed>, [Vec<f64>; 2], Mat<f64>, Vec<f64>) {
     let children = vec![
         child(2, &[0, 2, 3, 5, 7, 8], 1),
         child(1, &[1, 2, 4, 5, 6, 7], 2),
     ];
     let names = |c: &Condensed, first: usize| -> Vec<usize> {
-        let approaches = (0..c.approaches).map(move |j| 9 + first + j);
-        approaches
+        let jumps = (0..c.jumps).map(move |j| 9 + first + j);
+        jumps
             .chain(c.interface_dofs.iter().map(|t| t.node as usize))
             .collect()
     };
@@ -71,10 +71,7 @@ fn a_merge_is_the_schur_complement_of_the_sum() {
     let exact = part(&kept, &kept) - part(&kept, &gone) * solved.solve(part(&gone, &kept));
     let f_gone = Mat::from_fn(3, 1, |i, _| f[gone[i]]);
     let taken = part(&kept, &gone) * solved.solve(f_gone);
-    assert_eq!(
-        (condensed.approaches, condensed.interface_dofs.len()),
-        (3, 6)
-    );
+    assert_eq!((condensed.jumps, condensed.interface_dofs.len()), (3, 6));
     for i in 0..9 {
         assert!((load.boundary()[i] - (f[kept[i]] - taken[(i, 0)])).abs() < 1e-14);
         for j in 0..=i {

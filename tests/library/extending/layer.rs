@@ -2,8 +2,8 @@
 //!
 //! > λ = max(0, t − g) / e
 //!
-//! instead of λ ≥ 0, t ≤ g, λ (g − t) = 0, with a compliance e for each approach (m²/N). It is the
-//! unilateral law behind a spring: with τ = t − e λ, the approach without what the layer gives way,
+//! instead of λ ≥ 0, t ≤ g, λ (g − t) = 0, with a compliance e for each normal jump (m²/N). It is the
+//! unilateral law behind a spring: with τ = t − e λ, the normal jump without what the layer gives way,
 //!
 //! > λ = G (c − S_tΓ U − H τ) ≥ 0,  τ ≤ g,  λ (g − τ) = 0,  G = (1 + H E)⁻¹,
 //!
@@ -26,7 +26,7 @@ impl Layer {
     /// The layer of these `compliances` E between the sides of `pair`, of which both triangles are
     /// filled.
     pub fn new(pair: &Condensed, compliances: &[f64]) -> Self {
-        let m = pair.approaches;
+        let m = pair.jumps;
         let unit = |i, j| f64::from(u8::from(i == j));
         let one_plus_he = Mat::from_fn(m, m, |i, j| unit(i, j) + pair.s[(i, j)] * compliances[j]);
         let interface_dofs = pair.s.nrows() - m;
@@ -40,7 +40,7 @@ impl Layer {
 
     /// The Schur complement on [τ | U]: G H, G S_tΓ and S_ΓΓ − S_Γt E G S_tΓ.
     pub fn before(&self, pair: &Condensed) -> Condensed {
-        let (m, n) = (pair.approaches, pair.s.nrows());
+        let (m, n) = (pair.jumps, pair.s.nrows());
         let rows = &self.g * pair.s.submatrix(0, 0, m, n);
         let given = &self.give * &rows;
         let mut layered = pair.clone();

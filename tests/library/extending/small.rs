@@ -2,8 +2,8 @@
 
 use std::rc::Rc;
 
-use contact_dd_mpi::contact::approach::ApproachOf;
 use contact_dd_mpi::contact::limits::Limits;
+use contact_dd_mpi::contact::normal_jump::NormalJumpOf;
 use contact_dd_mpi::contact::pair::{CondensedContact, ContactPair};
 use contact_dd_mpi::interface::numbering::Numbering;
 use contact_dd_mpi::interface::operator::{Contribution, Interface};
@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 use super::layer::Layer;
 use crate::support::random::Random;
 
-/// Approaches of a pair.
+/// Normal jumps of a pair.
 pub const APPROACHES: usize = 3;
 
 /// A cluster, condensed by hand.
@@ -26,7 +26,7 @@ pub struct Cluster {
     pub condensed: Condensed,
     /// The load on both.
     pub load: Vec<f64>,
-    /// g of every approach.
+    /// g of every normal jump.
     pub gaps: Vec<f64>,
     /// What the layer between the sides gives way.
     pub compliances: Vec<f64>,
@@ -42,30 +42,30 @@ pub struct Exact {
 }
 
 impl Cluster {
-    /// Any symmetric positive definite S on `approaches` and two traces of each node.
-    fn random(random: &mut Random, nodes: &[u32], approaches: usize) -> Self {
-        let n = approaches + 2 * nodes.len();
+    /// Any symmetric positive definite S on `normal jumps` and two traces of each node.
+    fn random(random: &mut Random, nodes: &[u32], jumps: usize) -> Self {
+        let n = jumps + 2 * nodes.len();
         let root = DMatrix::from_fn(n, n, |_, _| random.signed());
         let s = &root * root.transpose() + DMatrix::identity(n, n);
         Self {
             nodes: nodes.to_vec(),
             condensed: Condensed {
-                approaches,
+                jumps,
                 interface_dofs: dofs(nodes),
                 s: Mat::from_fn(n, n, |i, j| s[(i, j)]),
                 diagonal: (0..n).map(|i| s[(i, i)]).collect(),
                 smallest_pivot: 1.0,
             },
             load: (0..n).map(|_| 3.0 * random.signed()).collect(),
-            gaps: (0..approaches).map(|_| 0.3 * random.signed()).collect(),
-            compliances: vec![0.0; approaches],
+            gaps: (0..jumps).map(|_| 0.3 * random.signed()).collect(),
+            compliances: vec![0.0; jumps],
         }
     }
 
     /// The pair that it is.
     pub fn pair(&self) -> ContactPair {
-        let of: Vec<ApproachOf> = (0..self.gaps.len())
-            .map(|number| ApproachOf::Unknown {
+        let of: Vec<NormalJumpOf> = (0..self.gaps.len())
+            .map(|number| NormalJumpOf::Unknown {
                 number,
                 factor: 1.0,
                 constant: 0.0,
@@ -145,12 +145,12 @@ impl Small {
 
     /// The solution of the whole.
     pub fn exact(&self) -> Exact {
-        let approaches = 2 * APPROACHES;
-        let n = approaches + self.linear.condensed.interface_dofs.len();
+        let jumps = 2 * APPROACHES;
+        let n = jumps + self.linear.condensed.interface_dofs.len();
         let (mut k, mut f) = (DMatrix::zeros(n, n), DVector::zeros(n));
         for (c, cluster) in self.clusters().into_iter().enumerate() {
             let own = (0..cluster.gaps.len()).map(|i| (c.max(1) - 1) * APPROACHES + i);
-            let dof = |dof: &InterfaceDof| approaches + (2 * dof.node + dof.axis) as usize;
+            let dof = |dof: &InterfaceDof| jumps + (2 * dof.node + dof.axis) as usize;
             let places: Vec<usize> = own
                 .chain(cluster.condensed.interface_dofs.iter().map(dof))
                 .collect();

@@ -27,13 +27,13 @@ pub fn manufacture(model: &mut Model, random: &mut Random) {
     let small = random.pick(&[0.0, -3.0, -6.0]);
     let conditions = model.contacts.iter_mut().flat_map(|c| &mut c.points);
     for (condition, (row, _)) in conditions.zip(&assembled.conditions) {
-        let approach: f64 = row.iter().map(|&(dof, c)| c * u[dof]).sum();
+        let jump: f64 = row.iter().map(|&(dof, c)| c * u[dof]).sum();
         let (mut left, mut pressed) = (0.0, 0.0);
         match random.chance(share_closed) {
             true => pressed = largest * random.magnitude(small, 0.0),
             false => left = size * random.magnitude(small, 0.0),
         }
-        condition.gap = approach + left;
+        condition.gap = jump + left;
         for &(dof, c) in row {
             force[dof] += c * pressed;
         }

@@ -1,9 +1,9 @@
-//! Approaches t = b·u: contact conditions B u ≤ g as bounds t ≤ g.
+//! Normal jumps t = b·u: contact conditions B u ≤ g as bounds t ≤ g.
 //!
-//! A condition `b·v ≤ g` bounds the approach t = b·v of the two sides. Solving that equation for
+//! A condition `b·v ≤ g` bounds the normal jump t = b·v of the two sides. Solving that equation for
 //! one of its unknowns makes t an unknown in that one's place, so that a pair's problem has nothing
 //! but bounds t ≤ g; t = 0 is the bilateral problem (16). Where more conditions meet than there are
-//! directions, what is left of a condition is a combination of approaches.
+//! directions, what is left of a condition is a combination of normal jumps.
 
 use std::collections::HashMap;
 
@@ -13,13 +13,13 @@ const ROUND_OFF: f64 = 1e-10;
 /// Share of its largest coefficient below which a condition is nearly parallel to others.
 const PARALLEL: f64 = 0.1;
 
-/// What a displacement is made of once the approaches are unknowns.
+/// What a displacement is made of once the normal jumps are unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Variable {
     /// A component of a node along an axis of its frame.
     Displacement(u32),
-    /// The approach of a condition's two sides.
-    Approach(u32),
+    /// The normal jump of a condition's two sides.
+    NormalJump(u32),
 }
 
 /// constant + Σ coefficient·variable.
@@ -31,9 +31,9 @@ pub struct Affine {
     pub terms: Vec<(Variable, f64)>,
 }
 
-/// The approach of two sides, b·v, in terms of a block's unknowns.
+/// The normal jump of two sides, b·v, in terms of a block's unknowns.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ApproachRow {
+pub struct NormalJumpRow {
     /// What supports contribute (m).
     pub constant: f64,
     /// Unknowns and coefficients.
@@ -52,29 +52,29 @@ impl Affine {
     fn largest_displacement(&self) -> f64 {
         let coefficient = |&(variable, c): &(Variable, f64)| match variable {
             Variable::Displacement(_) => c.abs(),
-            Variable::Approach(_) => 0.0,
+            Variable::NormalJump(_) => 0.0,
         };
         self.terms.iter().map(coefficient).fold(0.0, f64::max)
     }
 
-    /// This in terms of approaches alone, if it is so but for round-off.
-    fn of_approaches(&self) -> Option<ApproachOf> {
+    /// This in terms of normal jumps alone, if it is so but for round-off.
+    fn of_jumps(&self) -> Option<NormalJumpOf> {
         let mut terms = Vec::new();
         for &(variable, factor) in self.terms.iter().filter(|(_, c)| c.abs() > ROUND_OFF) {
-            let Variable::Approach(number) = variable else {
+            let Variable::NormalJump(number) = variable else {
                 return None;
             };
             terms.push((number as usize, factor));
         }
         let constant = self.constant;
         Some(match terms[..] {
-            [] => ApproachOf::Prescribed(constant),
-            [(number, factor)] if factor > 0.0 => ApproachOf::Unknown {
+            [] => NormalJumpOf::Prescribed(constant),
+            [(number, factor)] if factor > 0.0 => NormalJumpOf::Unknown {
                 number,
                 factor,
                 constant,
             },
-            _ => ApproachOf::Combination { terms, constant },
+            _ => NormalJumpOf::Combination { terms, constant },
         })
     }
 
@@ -91,22 +91,22 @@ impl Affine {
     }
 }
 
-/// Where the approach of a condition is found.
+/// Where the normal jump of a condition is found.
 #[derive(Clone, Debug, PartialEq)]
-pub enum ApproachOf {
-    /// It is `factor`·t + `constant` of an unknown approach t, factor > 0. The condition whose
+pub enum NormalJumpOf {
+    /// It is `factor`·t + `constant` of an unknown normal jump t, factor > 0. The condition whose
     /// unknown that is has 1 and 0; one that says the same again shares it.
     Unknown {
-        /// Number of the approach.
+        /// Number of the normal jump.
         number: usize,
         /// Factor.
         factor: f64,
         /// Constant (m).
         constant: f64,
     },
-    /// It is Σ factor·t + `constant` of several unknown approaches, or a negative multiple of one.
+    /// It is Σ factor·t + `constant` of several unknown normal jumps, or a negative multiple of one.
     Combination {
-        /// Numbers of the approaches and factors.
+        /// Numbers of the normal jumps and factors.
         terms: Vec<(usize, f64)>,
         /// Constant (m).
         constant: f64,
@@ -115,11 +115,11 @@ pub enum ApproachOf {
     Prescribed(f64),
 }
 
-/// For each of `approaches` the condition that it is the unknown of.
-pub fn defining_conditions(of: &[ApproachOf], approaches: usize) -> Vec<usize> {
-    let mut defining = vec![0; approaches];
+/// For each of `jumps` the condition that it is the unknown of.
+pub fn defining_conditions(of: &[NormalJumpOf], jumps: usize) -> Vec<usize> {
+    let mut defining = vec![0; jumps];
     for (j, of) in of.iter().enumerate().rev() {
-        if let ApproachOf::Unknown {
+        if let NormalJumpOf::Unknown {
             number,
             factor: 1.0,
             constant: 0.0,
@@ -135,18 +135,18 @@ pub fn defining_conditions(of: &[ApproachOf], approaches: usize) -> Vec<usize> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OnInterface(pub usize);
 
-/// Approaches solved for one unknown each.
+/// Normal jumps solved for one unknown each.
 #[derive(Clone, Debug, Default)]
-pub struct Approaches {
-    /// The unknowns that the approaches replace, by number, in terms of those that stay.
+pub struct NormalJumps {
+    /// The unknowns that the normal jumps replace, by number, in terms of those that stay.
     pub replaced: HashMap<u32, Affine>,
-    /// Where the approach of each condition is found.
-    pub of: Vec<ApproachOf>,
-    /// Number of unknown approaches.
+    /// Where the normal jump of each condition is found.
+    pub of: Vec<NormalJumpOf>,
+    /// Number of unknown normal jumps.
     pub len: usize,
 }
 
-impl Approaches {
+impl NormalJumps {
     /// Solves each of `rows`, t = b·v, in their order, for one of its unknowns.
     ///
     /// `may_go` tells which unknowns may be replaced (not those on Γ, which other blocks share),
@@ -158,12 +158,12 @@ impl Approaches {
     /// # Errors
     /// The first condition that lies on Γ.
     pub fn new(
-        rows: &[ApproachRow],
+        rows: &[NormalJumpRow],
         may_go: impl Fn(u32) -> bool,
         stiffness: impl Fn(u32) -> f64,
     ) -> Result<Self, OnInterface> {
         let as_given = Self::solve(rows, 0.0, &may_go, &stiffness)?;
-        let depends = |of: &ApproachOf| matches!(of, ApproachOf::Combination { .. });
+        let depends = |of: &NormalJumpOf| matches!(of, NormalJumpOf::Combination { .. });
         match as_given.of.iter().any(depends) {
             true => Self::solve(rows, PARALLEL, &may_go, &stiffness),
             false => Ok(as_given),
@@ -173,7 +173,7 @@ impl Approaches {
     /// Solves `rows`, those last of which elimination leaves less than a share `least` of their largest
     /// coefficient.
     fn solve(
-        rows: &[ApproachRow],
+        rows: &[NormalJumpRow],
         least: f64,
         may_go: &impl Fn(u32) -> bool,
         stiffness: &impl Fn(u32) -> f64,
@@ -184,8 +184,8 @@ impl Approaches {
                 *uses.entry(v).or_default() += 1;
             }
         }
-        let prescribed = |row: &ApproachRow| ApproachOf::Prescribed(row.constant);
-        let mut approaches = Self {
+        let prescribed = |row: &NormalJumpRow| NormalJumpOf::Prescribed(row.constant);
+        let mut jumps = Self {
             of: rows.iter().map(prescribed).collect(),
             ..Self::default()
         };
@@ -195,23 +195,23 @@ impl Approaches {
         for least in [least, 0.0] {
             for j in std::mem::take(&mut waiting) {
                 let terms = &rows[j].terms;
-                let rest = approaches.remainder(&rows[j]);
+                let rest = jumps.remainder(&rows[j]);
                 let largest = terms.iter().fold(0.0, |m: f64, (_, c)| m.max(c.abs()));
                 if rest.largest_displacement() < least * largest {
                     waiting.push(j);
                     continue;
                 }
                 let nowhere_else = |v: u32| uses[&v] == 1 && terms.iter().any(|&(own, _)| own == v);
-                approaches.of[j] = approaches
+                jumps.of[j] = jumps
                     .solve_for_one(rest, nowhere_else, may_go, stiffness)
                     .ok_or(OnInterface(j))?;
             }
         }
-        Ok(approaches)
+        Ok(jumps)
     }
 
-    /// A condition's approach in terms of what isn't replaced so far.
-    fn remainder(&self, row: &ApproachRow) -> Affine {
+    /// A condition's normal jump in terms of what isn't replaced so far.
+    fn remainder(&self, row: &NormalJumpRow) -> Affine {
         let mut rest = Affine {
             constant: row.constant,
             terms: Vec::with_capacity(row.terms.len() + 1),
@@ -227,7 +227,7 @@ impl Approaches {
         rest
     }
 
-    /// Solves t = `rest` for its best unknown, or finds that approaches which are unknowns already
+    /// Solves t = `rest` for its best unknown, or finds that normal jumps which are unknowns already
     /// make it; `nowhere_else` tells which unknowns no other condition has.
     fn solve_for_one(
         &mut self,
@@ -235,14 +235,14 @@ impl Approaches {
         nowhere_else: impl Fn(u32) -> bool,
         may_go: &impl Fn(u32) -> bool,
         stiffness: &impl Fn(u32) -> f64,
-    ) -> Option<ApproachOf> {
+    ) -> Option<NormalJumpOf> {
         let candidates = rest.terms.iter().filter_map(|&(v, c)| match v {
             Variable::Displacement(v) if may_go(v) => Some((v, c)),
             _ => None,
         });
         let largest = candidates.clone().map(|(_, c)| c.abs()).fold(0.0, f64::max);
         if largest < ROUND_OFF {
-            return rest.of_approaches();
+            return rest.of_jumps();
         }
         let (pivot, coefficient) = candidates
             .filter(|(_, c)| c.abs() >= 0.5 * largest)
@@ -254,7 +254,7 @@ impl Approaches {
             })?;
         let number = self.len;
         self.len += 1;
-        rest.add(Variable::Approach(number as u32), -1.0);
+        rest.add(Variable::NormalJump(number as u32), -1.0);
         let gone = Variable::Displacement(pivot);
         rest.terms.retain(|&(v, c)| v != gone && c.abs() > 1e-15);
         rest.constant /= -coefficient;
@@ -267,7 +267,7 @@ impl Approaches {
             }
         }
         self.replaced.insert(pivot, rest);
-        Some(ApproachOf::Unknown {
+        Some(NormalJumpOf::Unknown {
             number,
             factor: 1.0,
             constant: 0.0,
