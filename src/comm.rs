@@ -3,22 +3,23 @@
 //! Ranks agree on errors at the end of every phase: nobody leaves between matching calls, so no
 //! rank waits for one that is gone.
 
-mod environment;
+mod launcher;
 #[cfg(debug_assertions)]
 mod on_purpose;
-mod signal;
+mod start;
 
 use std::cell::Cell;
 
 use mpi::collective::SystemOperation;
-use mpi::topology::SimpleCommunicator;
+use mpi::topology::{Process, SimpleCommunicator};
 use mpi::traits::*;
+use rustix::system::uname;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use environment::current_phase;
-pub use environment::{World, is_launched, library, phase, start};
-pub use signal::is_asked_to_stop;
+pub use launcher::{is_first, is_launched};
+use start::current_phase;
+pub use start::{World, is_asked_to_stop, library, phase, start};
 
 use crate::error::Failure;
 
@@ -30,30 +31,38 @@ const PIECE: usize = 1 << 30;
 
 /// All ranks of a run.
 pub struct Comm {
-    world: SimpleCommunicator,
+    rank: usize,
+    size: usize,
     hosts: usize,
+    /// `None` for a single rank that runs without MPI.
+    world: Option<SimpleCommunicator>,
     bytes_sent: Cell<u64>,
 }
 
 impl Comm {
     /// This rank.
     pub fn rank(&self) -> usize {
-        self.world.rank() as usize
+        self.rank
     }
 
     /// Number of ranks.
     pub fn size(&self) -> usize {
-        self.world.size() as usize
+        self.size
     }
 
     /// The name of the host that this rank is on.
     pub fn host_name(&self) -> String {
-        mpi::environment::processor_name().unwrap_or_default()
+        uname().nodename().to_string_lossy().into_owned()
     }
 
     /// Whether this rank is the root.
     pub fn is_root(&self) -> bool {
         self.rank() == ROOT
+    }
+
+    /// Whether messages go through MPI, which a single rank doesn't need.
+    pub fn has_mpi(&self) -> bool {
+        self.world.is_some()
     }
 
     /// Number of hosts that they run on.
@@ -74,18 +83,11 @@ impl Comm {
             Ok(_) => self.size() as i32,
             Err(_) => self.rank() as i32,
         };
-        let mut lowest = 0i32;
-        self.world
-            .all_reduce_into(&mine, &mut lowest, SystemOperation::min());
+        let lowest = self.all_reduce(mine, SystemOperation::min());
         if lowest as usize == self.size() {
             return result;
         }
-        let mut failed = 0i32;
-        self.world.all_reduce_into(
-            &i32::from(result.is_err()),
-            &mut failed,
-            SystemOperation::sum(),
-        );
+        let failed = self.all_reduce(i32::from(result.is_err()), SystemOperation::sum());
         let mut failure = match result {
             Err(failure) => failure,
             Ok(_) => Failure::default(),
@@ -101,10 +103,23 @@ impl Comm {
     /// Whether any rank was asked to stop. Collective.
     pub fn is_any_asked_to_stop(&self) -> bool {
         let mine = i32::from(is_asked_to_stop());
-        let mut any = 0i32;
-        self.world
-            .all_reduce_into(&mine, &mut any, SystemOperation::max());
-        any != 0
+        self.all_reduce(mine, SystemOperation::max()) != 0
+    }
+
+    /// The least, the largest or the sum of `mine` over all ranks. Collective.
+    fn all_reduce(&self, mine: i32, by: SystemOperation) -> i32 {
+        let mut all = mine;
+        if let Some(world) = &self.world {
+            world.all_reduce_into(&mine, &mut all, by);
+        }
+        all
+    }
+
+    /// A rank to send to or to receive from.
+    #[expect(clippy::expect_used, reason = "a single rank sends itself nothing")]
+    fn process(&self, rank: usize) -> Process<'_> {
+        let world = self.world.as_ref();
+        world.expect("MPI runs").process_at_rank(rank as i32)
     }
 
     /// The root's `decision`, on all ranks. Collective.
@@ -127,7 +142,7 @@ impl Comm {
             true => self.encode(value),
             false => Vec::new(),
         };
-        let process = self.world.process_at_rank(from as i32);
+        let process = self.process(from);
         let mut length = bytes.len() as u64;
         process.broadcast_into(&mut length);
         bytes.resize(length as usize, 0);
@@ -169,7 +184,7 @@ impl Comm {
     /// Sends a value to another rank, which receives it from this one.
     pub fn send<T: Serialize>(&self, to: usize, value: &T) {
         let bytes = self.encode(value);
-        let process = self.world.process_at_rank(to as i32);
+        let process = self.process(to);
         process.send(&(bytes.len() as u64));
         for piece in bytes.chunks(PIECE) {
             process.send(piece);
@@ -178,7 +193,7 @@ impl Comm {
 
     /// Receives the next value of another rank.
     pub fn receive<T: DeserializeOwned>(&self, from: usize) -> T {
-        let process = self.world.process_at_rank(from as i32);
+        let process = self.process(from);
         let mut length = 0u64;
         process.receive_into(&mut length);
         let mut bytes = vec![0; length as usize];

@@ -1,4 +1,4 @@
-//! `contact-dd-mpi`: starts MPI, runs, and ends with the exit code that all ranks agree on.
+//! `contact-dd-mpi`: starts MPI where it is needed, runs, and ends with the exit code that all ranks agree on.
 
 use std::process::ExitCode;
 
@@ -10,22 +10,19 @@ use contact_dd_mpi::settings::command_line::{CommandLine, LogFormat};
 use contact_dd_partition::manual::{Answer, BAD_USAGE};
 
 fn main() -> ExitCode {
-    let command_line = CommandLine::of_this_program();
     if comm::is_launched() {
         // Launchers show ranks a terminal whatever their output goes to.
         message::without_colours();
-    } else if let Err(answer) = &command_line {
-        return tell(answer);
     }
-    let world = match comm::start() {
-        Ok(world) => world,
-        Err(failure) => return fail(LogFormat::of_this_program(), &failure),
+    let command_line = match CommandLine::of_this_program() {
+        Ok(command_line) => command_line,
+        Err(answer) if comm::is_first() => return tell(&answer),
+        // A launcher would end the first rank before it has told anything.
+        Err(_) => return ExitCode::SUCCESS,
     };
-    let comm = world.comm();
-    match command_line {
-        Ok(command_line) => solve(&comm, &command_line),
-        Err(answer) if comm.is_root() => tell(&answer),
-        Err(answer) => answer.exit_code(),
+    match comm::start() {
+        Ok(world) => solve(&world.comm(), &command_line),
+        Err(failure) => fail(LogFormat::of_this_program(), &failure),
     }
 }
 

@@ -137,7 +137,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         error_estimate: last.and_then(StepTotals::error_estimate),
         resultants: last.map_or_else(Resultants::default, |step| step.resultants.clone()),
         steps: totals.step_reports(),
-        skipped: skipped(totals),
+        skipped: skipped(comm, totals),
         warnings,
         settings: settings.clone(),
         settings_from: settings.from.clone(),
@@ -162,8 +162,11 @@ fn unknown_stress(catalog: &Catalog) -> Vec<String> {
 }
 
 /// What the scene didn't need.
-fn skipped(totals: &Totals<'_>) -> Vec<String> {
+fn skipped(comm: &Comm, totals: &Totals<'_>) -> Vec<String> {
     let mut skipped = Vec::new();
+    if !comm.has_mpi() {
+        skipped.push("MPI: a single rank has nobody to send messages to".into());
+    }
     if totals.plan.groups.is_empty() {
         skipped.push("sweeps: no contact, the interface problem is linear".into());
     }

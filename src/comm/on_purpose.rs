@@ -9,13 +9,13 @@ use std::{env, thread};
 use signal_hook::consts::{SIGKILL, SIGSTOP};
 use signal_hook::low_level::raise;
 
-use super::environment::current_phase;
+use super::start::current_phase;
 use crate::error::Failure;
 
-static RANK: OnceLock<i32> = OnceLock::new();
+static RANK: OnceLock<usize> = OnceLock::new();
 
 /// Makes known which rank this is.
-pub fn set_rank(rank: i32) {
+pub fn set_rank(rank: usize) {
     RANK.get_or_init(|| rank);
 }
 
@@ -45,7 +45,7 @@ pub fn failure() -> Option<Failure> {
 fn wish(phase: &str) -> Option<String> {
     let wish = env::var("CONTACT_DD_END").ok()?;
     let mut words = wish.splitn(3, ' ');
-    let rank: i32 = words.next()?.parse().ok()?;
+    let rank: usize = words.next()?.parse().ok()?;
     let kind = words.next()?;
     (RANK.get() == Some(&rank) && words.next() == Some(phase)).then(|| kind.to_owned())
 }

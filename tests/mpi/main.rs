@@ -13,6 +13,7 @@ mod bad_input;
 mod endings;
 mod outputs;
 mod resting;
+mod starting;
 mod steps;
 mod stopping;
 mod sudden_ends;
@@ -54,6 +55,8 @@ fn main() -> ExitCode {
     same_results(&mut trials);
     without_stresses(&mut trials);
     trials.once("memory_is_about_what_was_estimated", memory);
+    starting::only_where_needed(&mut trials);
+    starting::foreign_launchers(&mut trials);
     bad_input::bad_input(&mut trials);
     bad_input::bad_settings(&mut trials);
     bad_input::bad_usage(&mut trials);

@@ -26,7 +26,9 @@ pub fn sudden_ends(trials: &mut Trials) {
             if kind == "failure" && WITHOUT_FAILURES.contains(&phase) {
                 continue;
             }
-            for ranks in RANKS.into_iter().filter(|&ranks| ranks > 1) {
+            // The panic of a single rank, which runs without MPI, ends it in the same way.
+            let has_case = |&ranks: &usize| ranks > 1 || kind == "panic";
+            for ranks in RANKS.into_iter().filter(has_case) {
                 let name = format!("sudden_end::{kind}_while_{phase}::on_{ranks}_ranks");
                 trials.once(&name.replace(' ', "_"), move || {
                     let model = match phase == OF_LATER_STEPS {

@@ -119,6 +119,7 @@ pub fn launched(binary: &Path, ranks: usize) -> Command {
         .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
         .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
         .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
+        .env("OMPI_MCA_pml", "ob1")
         .env("OMPI_MCA_hwloc_base_binding_policy", "none");
     command
 }

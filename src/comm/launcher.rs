@@ -1,0 +1,152 @@
+//! What launchers tell a process in its environment: whether it is one of many, and which.
+
+use std::env;
+
+use crate::error::Failure;
+
+/// Where the launchers of MPIs tell of how many ranks a process is one.
+const SIZES: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE"];
+
+/// What srun counts: its tasks, or the daemons of an `mpirun` that starts them by srun.
+const SRUN_SIZE: &str = "SLURM_STEP_NUM_TASKS";
+
+/// Where launchers tell which rank a process is. Some tell no size, PMIx only to who asks.
+const RANKS: [&str; 8] = [
+    "OMPI_COMM_WORLD_RANK",
+    "PMI_RANK",
+    "PMIX_RANK",
+    "MV2_COMM_WORLD_RANK",
+    "PALS_RANKID",
+    "ALPS_APP_PE",
+    "JSM_NAMESPACE_RANK",
+    "FLUX_TASK_RANK",
+];
+
+/// Which of its tasks a process is, as srun tells it, and with 0 the script of a batch job.
+const SRUN_RANK: &str = "SLURM_PROCID";
+
+/// The value of an environment variable.
+fn variable(name: &str) -> Option<String> {
+    env::var(name).ok()
+}
+
+/// Whether the launcher of an MPI started this process, be it as the only rank.
+pub fn is_launched() -> bool {
+    let mut names = SIZES.iter().chain(&RANKS);
+    names.any(|name| variable(name).is_some())
+}
+
+/// Whether this process is the first that its launcher started, or has no launcher.
+pub fn is_first() -> bool {
+    is_first_by(variable)
+}
+
+fn is_first_by(variable: impl Fn(&str) -> Option<String>) -> bool {
+    let mut names = RANKS.into_iter().chain([SRUN_RANK]);
+    names.find_map(variable).is_none_or(|rank| rank == "0")
+}
+
+/// Whether this process may be one of several ranks, which only MPI can tell.
+pub(super) fn is_one_of_several() -> bool {
+    is_one_of_several_by(variable)
+}
+
+fn is_one_of_several_by(variable: impl Fn(&str) -> Option<String>) -> bool {
+    let mut sizes = SIZES
+        .into_iter()
+        .chain([SRUN_SIZE])
+        .filter_map(&variable)
+        .peekable();
+    match sizes.peek() {
+        Some(_) => sizes.any(|size| size != "1"),
+        None => RANKS.into_iter().any(|name| variable(name).is_some()),
+    }
+}
+
+/// The launcher's own count of ranks must be MPI's.
+///
+/// # Errors
+/// The launcher belongs to another MPI than the program: it started n programs of one rank each.
+pub(super) fn check(size: usize) -> Result<(), Failure> {
+    match launched(|name| variable(name)?.parse().ok()) {
+        Some((name, launched)) if launched != size => Err(Failure::input(format!(
+            "the launcher started {launched} ranks ({name}), but MPI counts {size}: {}",
+            match name {
+                SRUN_SIZE =>
+                    "srun doesn't know how this MPI's ranks find each other; expected \
+                     srun --mpi=pmix with OpenMPI, --mpi=pmi2 with MPICH, or mpirun",
+                _ => "mpirun belongs to another MPI than the one this program was built with",
+            }
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// How many ranks the launcher started, and the variable in which it says so.
+fn launched(number: impl Fn(&str) -> Option<usize>) -> Option<(&'static str, usize)> {
+    (SIZES.into_iter().chain([SRUN_SIZE])).find_map(|name| Some((name, number(name)?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An environment.
+    fn of<'a>(given: &'a [(&str, &str)]) -> impl Fn(&str) -> Option<String> + 'a {
+        |name| {
+            let (_, value) = given.iter().find(|(n, _)| *n == name)?;
+            Some((*value).to_owned())
+        }
+    }
+
+    #[test]
+    fn srun_is_believed_where_no_launcher_of_mpi_counts() {
+        let launched = |given: &[(&str, &str)]| launched(|name| of(given)(name)?.parse().ok());
+        assert_eq!(launched(&[]), None);
+        assert_eq!(launched(&[(SRUN_SIZE, "4")]), Some((SRUN_SIZE, 4)));
+        let daemons_of_two_nodes = [(SRUN_SIZE, "2"), ("PMI_SIZE", "16")];
+        assert_eq!(launched(&daemons_of_two_nodes), Some(("PMI_SIZE", 16)));
+    }
+
+    #[test]
+    fn only_who_is_certainly_alone_is_taken_to_be() {
+        let alone: [&[(&str, &str)]; 5] = [
+            &[],
+            &[
+                ("OMPI_COMM_WORLD_SIZE", "1"),
+                ("OMPI_COMM_WORLD_RANK", "0"),
+                ("PMIX_RANK", "0"),
+            ],
+            &[("PMI_SIZE", "1"), ("PMI_RANK", "0")],
+            // One task of srun, with PMIx or without; the script of a batch job.
+            &[(SRUN_SIZE, "1"), ("PMIX_RANK", "0")],
+            &[(SRUN_RANK, "0"), ("SLURM_NTASKS", "16")],
+        ];
+        for given in alone {
+            assert!(!is_one_of_several_by(of(given)), "{given:?}");
+            assert!(is_first_by(of(given)), "{given:?}");
+        }
+        let several: [&[(&str, &str)]; 6] = [
+            &[("OMPI_COMM_WORLD_SIZE", "2"), ("OMPI_COMM_WORLD_RANK", "1")],
+            &[("PMI_SIZE", "many"), ("PMI_RANK", "1")],
+            // One launcher within another, whichever is the inner one.
+            &[
+                ("OMPI_COMM_WORLD_SIZE", "1"),
+                ("PMI_SIZE", "4"),
+                ("PMI_RANK", "1"),
+            ],
+            &[
+                ("OMPI_COMM_WORLD_SIZE", "16"),
+                (SRUN_SIZE, "1"),
+                ("PMIX_RANK", "1"),
+            ],
+            &[(SRUN_SIZE, "4"), (SRUN_RANK, "1")],
+            // No size is told.
+            &[("PMIX_RANK", "1")],
+        ];
+        for given in several {
+            assert!(is_one_of_several_by(of(given)), "{given:?}");
+            assert!(!is_first_by(of(given)), "{given:?}");
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Starting MPI where there are several ranks, signals that ask a run to stop, and what happens when a
+//! rank fails without a word to the others.
+
+use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::{io, panic, process};
+
+use contact_dd_partition::message;
+use mpi::collective::SystemOperation;
+use mpi::environment::Universe;
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::*;
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
+use signal_hook::flag;
+
+#[cfg(debug_assertions)]
+use super::on_purpose;
+use super::{Comm, launcher};
+use crate::error::Failure;
+
+static PHASE: Mutex<&str> = Mutex::new("starting");
+
+/// Names what this rank is doing, for the messages of failures and panics.
+pub fn phase(name: &'static str) {
+    *PHASE.lock().unwrap_or_else(PoisonError::into_inner) = name;
+    #[cfg(debug_assertions)]
+    on_purpose::end(name);
+}
+
+/// What this rank is doing.
+pub(super) fn current_phase() -> &'static str {
+    *PHASE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// All ranks, and MPI where there are several; it ends when this is dropped.
+pub struct World {
+    /// `None` for a single rank, which has nobody to talk to.
+    universe: Option<Universe>,
+    hosts: usize,
+}
+
+impl World {
+    /// All ranks.
+    pub fn comm(&self) -> Comm {
+        let world = self.universe.as_ref().map(Universe::world);
+        Comm {
+            rank: world.as_ref().map_or(0, |world| world.rank() as usize),
+            size: world.as_ref().map_or(1, |world| world.size() as usize),
+            hosts: self.hosts,
+            world,
+            bytes_sent: Cell::new(0),
+        }
+    }
+}
+
+/// Starts MPI unless the environment says that this rank is the only one, and makes the panic of any
+/// rank the end of all. Collective.
+///
+/// A rank that is killed is the launcher's affair, which ends the others.
+///
+/// # Errors
+/// MPI was started already, or the launcher belongs to another MPI than the program: then it
+/// started n programs of one rank each.
+pub fn start() -> Result<World, Failure> {
+    let universe = match launcher::is_one_of_several() {
+        true => {
+            let twice = || Failure::internal("MPI was initialized twice");
+            Some(mpi::initialize().ok_or_else(twice)?)
+        }
+        false => None,
+    };
+    let mut world = World { universe, hosts: 1 };
+    let comm = world.comm();
+    end_all_at_a_panic(&comm);
+    launcher::check(comm.size)?;
+    listen()
+        .map_err(|error| Failure::internal(format!("signals can't be listened to: {error}")))?;
+    #[cfg(debug_assertions)]
+    on_purpose::set_rank(comm.rank);
+    if let Some(ranks) = &comm.world {
+        let is_first_of_host = ranks.split_shared(ranks.rank()).rank() == 0;
+        let hosts = comm.all_reduce(i32::from(is_first_of_host), SystemOperation::sum());
+        world.hosts = hosts as usize;
+    }
+    phase("starting");
+    Ok(world)
+}
+
+/// From now on a panic names the rank and its phase, and ends all ranks.
+fn end_all_at_a_panic(comm: &Comm) {
+    let (rank, size, has_mpi) = (comm.rank, comm.size, comm.has_mpi());
+    let report = panic::take_hook();
+    panic::set_hook(Box::new(move |panic| {
+        let phase = current_phase();
+        message::error(&format!("rank {rank} of {size} panicked while {phase}"));
+        report(panic);
+        match has_mpi {
+            true => SimpleCommunicator::world().abort(1),
+            false => process::exit(1),
+        }
+    }));
+}
+
+static ASKED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
+
+/// Whether this rank was asked to stop: by SIGTERM, SIGINT, or SIGUSR1, which Slurm sends ahead of the time
+/// limit where it is asked to.
+pub fn is_asked_to_stop() -> bool {
+    let asked = ASKED.get();
+    asked.is_some_and(|asked| asked.load(Ordering::Relaxed))
+}
+
+/// From now on the signals are remembered; the same one again ends the process as ever.
+fn listen() -> io::Result<()> {
+    let asked = ASKED.get_or_init(Arc::default);
+    for signal in [SIGTERM, SIGINT, SIGUSR1] {
+        // SIGUSR1 of a batch system is followed by its SIGTERM, which mustn't count as the second.
+        let came = Arc::new(AtomicBool::new(false));
+        flag::register_conditional_default(signal, Arc::clone(&came))?;
+        flag::register(signal, came)?;
+        flag::register(signal, Arc::clone(asked))?;
+    }
+    Ok(())
+}
+
+/// The MPI library and its version, as it calls itself.
+pub fn library() -> String {
+    let said = mpi::environment::library_version().unwrap_or_default();
+    // MPICH tells in further lines how it was configured.
+    let name = said.lines().next().unwrap_or_default();
+    // Open MPI counts the end of its string to it.
+    let name = name.trim_end_matches('\0');
+    name.split_whitespace().collect::<Vec<_>>().join(" ")
+}
