@@ -2,6 +2,7 @@
  * reference.py.
  *
  *   cholmod MATRIX SOLUTION
+ *   cholmod MATRIX             only the flops of METIS_NodeND's ordering
  *
  * MATRIX: two int64, n and the number of entries; of the lower triangle by columns, starts and rows
  * in int32, values; the right-hand side. Prints seconds and memory as JSON. */
@@ -32,9 +33,9 @@ static void take(void *to, size_t size, size_t count, FILE *file)
 
 int main(int argc, char **argv)
 {
-    FILE *file = argc == 3 ? fopen(argv[1], "rb") : NULL;
+    FILE *file = argc == 2 || argc == 3 ? fopen(argv[1], "rb") : NULL;
     if (!file) {
-        fprintf(stderr, "usage: cholmod MATRIX SOLUTION\n");
+        fprintf(stderr, "usage: cholmod MATRIX [SOLUTION]\n");
         return 2;
     }
     cholmod_common common;
@@ -52,6 +53,14 @@ int main(int argc, char **argv)
     take(K->x, sizeof(double), entries, file);
     take(f->x, sizeof(double), n, file);
     fclose(file);
+
+    if (argc == 2) {
+        common.nmethods = 1;
+        common.method[0].ordering = CHOLMOD_METIS;
+        cholmod_analyze(K, &common);
+        printf("%.0f\n", common.fl);
+        return common.status;
+    }
 
     double start = now();
     cholmod_factor *L = cholmod_analyze(K, &common);

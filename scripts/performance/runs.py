@@ -45,22 +45,43 @@ def call(command):
     return ran.stdout
 
 
-def problem(dofs, programs, subdomains=None):
-    """The granite block with about `dofs` dofs as a problem file. Mesh and file stay for the next
-    time; the file is written anew when contact-dd-partition is newer."""
-    mesh = FOLDER / "meshes" / f"granite-{dofs}.msh"
-    if not mesh.with_suffix(".toml").exists():
+def granite(dofs):
+    """The granite block with about `dofs` dofs, a scene that stays for the next time."""
+    scene = FOLDER / "meshes" / f"granite-{dofs}.toml"
+    if not scene.exists():
         say(f"meshing the granite block with {name_of(dofs)} dofs")
-        call([sys.executable, ROOT / "scripts" / "performance" / "granite.py", dofs, mesh.parent])
-    suffix = f"-n{subdomains}" if subdomains else ""
-    path = FOLDER / "problems" / f"granite-{dofs}{suffix}.h5"
-    partition = programs / "contact-dd-partition"
-    if not path.exists() or path.stat().st_mtime < partition.stat().st_mtime:
-        say(f"partitioning it into {subdomains or 'a number of'} subdomains")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        options = ["-n", subdomains] if subdomains else []
-        call([partition, mesh.with_suffix(".toml"), *options, "-o", path])
+        call([sys.executable, ROOT / "scripts" / "performance" / "granite.py", dofs, scene.parent])
+    return scene
+
+
+def problem(dofs, programs, subdomains=None):
+    """The granite block with about `dofs` dofs as a problem file."""
+    return partitioned(granite(dofs), programs, subdomains)
+
+
+def partitioned(scene, programs, subdomains=None):
+    """A scene as a problem file, which is written anew when contact-dd-partition is newer."""
+    path = FOLDER / "problems" / f"{scene.stem}{f'-n{subdomains}' if subdomains else ''}.h5"
+    tool = programs / "contact-dd-partition"
+    if not path.exists() or path.stat().st_mtime < tool.stat().st_mtime:
+        say(f"partitioning {scene.stem} into {subdomains or 'a number of'} subdomains")
+        partition(scene, path, programs, subdomains)
     return path
+
+
+def partition(scene, path, programs, subdomains=None):
+    """Writes a problem file; the seconds from the start of contact-dd-partition to its end."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    options = ["-n", subdomains] if subdomains else []
+    start = time.perf_counter()
+    call([programs / "contact-dd-partition", scene, *options, "-o", path])
+    return time.perf_counter() - start
+
+
+def flops(path, programs):
+    """What --check says a run takes, in flops."""
+    checked = call([programs / "contact-dd-mpi", "--check", path])
+    return 1e9 * float(checked.split("arithmetic")[1].split()[0])
 
 
 def solve(path, ranks, programs, result, options=()):

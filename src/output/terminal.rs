@@ -68,7 +68,7 @@ pub fn costs(
     )?;
     writeln!(
         out,
-        "  arithmetic   {:.1} Gflop, {:.1} Gflop on the busiest rank",
+        "  arithmetic   {:.3} Gflop, {:.3} Gflop on the busiest rank",
         all.flops / 1e9,
         most.flops / 1e9
     )
