@@ -3,6 +3,8 @@
 use contact_dd_partition::contact_point::ContactPoint;
 use serde::{Deserialize, Serialize};
 
+use super::vtkhdf::column::List;
+
 /// How much room a subdomain takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PartitionSize {
@@ -14,125 +16,126 @@ pub struct PartitionSize {
     pub connectivity: usize,
 }
 
-/// The solution on consecutive subdomains: each list holds what belongs to the first one, then
-/// what belongs to the next, in the types that the file has.
-///
-/// Stresses are (Pa) in the order XX, YY, ZZ, XY, YZ, XZ; their lists are empty where they are left
-/// out.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct SubdomainResults {
-    /// Number of the first subdomain.
-    pub first: usize,
-    /// Size of each.
-    pub sizes: Vec<PartitionSize>,
-    /// Undeformed coordinates of the nodes (m).
-    #[serde(with = "crate::bytes")]
-    pub points: Vec<[f64; 3]>,
-    /// The mesh file's tag of each node.
-    #[serde(with = "crate::bytes")]
-    pub node_tags: Vec<i64>,
-    /// Displacement of the nodes (m).
-    #[serde(with = "crate::bytes")]
-    pub displacement: Vec<[f64; 3]>,
-    /// Stress recovered at the nodes.
-    #[serde(with = "crate::bytes")]
-    pub nodal_stress: Vec<[f64; 6]>,
-    /// Nodes of the cells, numbered within their subdomain.
-    #[serde(with = "crate::bytes")]
-    pub connectivity: Vec<i64>,
-    /// For every subdomain the start of each of its cells in its part of `connectivity`, and the
-    /// end: one more than cells.
-    #[serde(with = "crate::bytes")]
-    pub offsets: Vec<i64>,
-    /// VTK's number of the type of every cell.
-    #[serde(with = "crate::bytes")]
-    pub types: Vec<u8>,
-    /// Index of its material for every cell.
-    #[serde(with = "crate::bytes")]
-    pub materials: Vec<i32>,
-    /// Stress of the cells.
-    #[serde(with = "crate::bytes")]
-    pub cell_stress: Vec<[f64; 6]>,
-    /// Principal stresses of the cells, descending (Pa).
-    #[serde(with = "crate::bytes")]
-    pub principal: Vec<[f64; 3]>,
-    /// Von Mises stress of the cells (Pa).
-    #[serde(with = "crate::bytes")]
-    pub von_mises: Vec<f64>,
-    /// Estimated error of the cells in the energy norm (√N, per metre of thickness).
-    #[serde(with = "crate::bytes")]
-    pub energy_error: Vec<f64>,
+impl PartitionSize {
+    /// Adds the size of another.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.points += other.points;
+        self.cells += other.cells;
+        self.connectivity += other.connectivity;
+    }
 }
 
-impl SubdomainResults {
-    /// Empties all lists for subdomains from `first` on. Their memory stays: fresh pages cost as
-    /// much as what is written into them.
-    pub fn restart(&mut self, first: usize) {
-        // Every list by its name, so that none can be forgotten.
-        let Self {
-            first: start,
-            sizes,
-            points,
-            node_tags,
-            displacement,
-            nodal_stress,
-            connectivity,
-            offsets,
-            types,
-            materials,
-            cell_stress,
-            principal,
-            von_mises,
-            energy_error,
-        } = self;
-        *start = first;
-        sizes.clear();
-        points.clear();
-        node_tags.clear();
-        displacement.clear();
-        nodal_stress.clear();
-        connectivity.clear();
-        offsets.clear();
-        types.clear();
-        materials.clear();
-        cell_stress.clear();
-        principal.clear();
-        von_mises.clear();
-        energy_error.clear();
-    }
+/// What a list has a row for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Per {
+    Node,
+    Cell,
+    NodeOfCell,
+    /// And one more in each subdomain.
+    StartOfCell,
+}
 
-    /// Appends those of the next subdomains.
-    pub fn append(&mut self, next: Self) {
-        let Self {
-            first: _,
-            sizes,
-            points,
-            node_tags,
-            displacement,
-            nodal_stress,
-            connectivity,
-            offsets,
-            types,
-            materials,
-            cell_stress,
-            principal,
-            von_mises,
-            energy_error,
-        } = next;
-        self.sizes.extend(sizes);
-        self.points.extend(points);
-        self.node_tags.extend(node_tags);
-        self.displacement.extend(displacement);
-        self.nodal_stress.extend(nodal_stress);
-        self.connectivity.extend(connectivity);
-        self.offsets.extend(offsets);
-        self.types.extend(types);
-        self.materials.extend(materials);
-        self.cell_stress.extend(cell_stress);
-        self.principal.extend(principal);
-        self.von_mises.extend(von_mises);
-        self.energy_error.extend(energy_error);
+impl Per {
+    /// Rows of so many subdomains of this `size` together.
+    pub(super) fn rows(self, size: &PartitionSize, subdomains: usize) -> usize {
+        match self {
+            Self::Node => size.points,
+            Self::Cell => size.cells,
+            Self::NodeOfCell => size.connectivity,
+            Self::StartOfCell => size.cells + subdomains,
+        }
     }
+}
+
+/// What a list tells of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Of {
+    /// The same in every load step.
+    Mesh,
+    Solution,
+    /// Left out where stresses are.
+    Stress,
+}
+
+/// A list as the file has it.
+pub(super) struct Field {
+    /// What messages call its rows.
+    pub(super) what: &'static str,
+    /// Where it stands below `/VTKHDF`.
+    pub(super) place: &'static str,
+    pub(super) per: Per,
+    pub(super) of: Of,
+}
+
+/// Defines the lists of [`SubdomainResults`], each with its [`Field`].
+macro_rules! lists {
+    ($($(#[$doc:meta])* $list:ident: $row:ty, $what:literal, $place:literal, $per:ident, $of:ident;)*) => {
+        /// The solution on consecutive subdomains: each list holds what belongs to the first one, then
+        /// what belongs to the next, in the types that the file has.
+        ///
+        /// Stresses are (Pa) in the order XX, YY, ZZ, XY, YZ, XZ; their lists are empty where they are
+        /// left out.
+        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+        pub struct SubdomainResults {
+            /// Number of the first subdomain.
+            pub first: usize,
+            /// Size of each.
+            pub sizes: Vec<PartitionSize>,
+            $($(#[$doc])* #[serde(with = "crate::bytes")] pub $list: Vec<$row>,)*
+        }
+
+        impl SubdomainResults {
+            /// Empties all lists for subdomains from `first` on. Their memory stays: fresh pages cost as
+            /// much as what is written into them.
+            pub fn restart(&mut self, first: usize) {
+                self.first = first;
+                self.sizes.clear();
+                $(self.$list.clear();)*
+            }
+
+            /// Appends those of the next subdomains.
+            pub fn append(&mut self, next: Self) {
+                self.sizes.extend(next.sizes);
+                $(self.$list.extend(next.$list);)*
+            }
+
+            /// All lists, always in the same order.
+            pub(super) fn lists(&self) -> Vec<(Field, &dyn List)> {
+                vec![$((
+                    Field { what: $what, place: $place, per: Per::$per, of: Of::$of },
+                    &self.$list,
+                ),)*]
+            }
+        }
+    };
+}
+
+lists! {
+    /// Undeformed coordinates of the nodes (m).
+    points: [f64; 3], "points", "Points", Node, Mesh;
+    /// The mesh file's tag of each node.
+    node_tags: i64, "node tags", "PointData/GlobalNodeId", Node, Mesh;
+    /// Displacement of the nodes (m).
+    displacement: [f64; 3], "displacements", "PointData/Displacement", Node, Solution;
+    /// Stress recovered at the nodes.
+    nodal_stress: [f64; 6], "nodal stresses", "PointData/Stress", Node, Stress;
+    /// Nodes of the cells, numbered within their subdomain.
+    connectivity: i64, "connectivity", "Connectivity", NodeOfCell, Mesh;
+    /// For every subdomain the start of each of its cells in its part of `connectivity`, and the
+    /// end: one more than cells.
+    offsets: i64, "offsets", "Offsets", StartOfCell, Mesh;
+    /// VTK's number of the type of every cell.
+    types: u8, "cell types", "Types", Cell, Mesh;
+    /// Index of its material for every cell.
+    materials: i32, "materials", "CellData/Material", Cell, Mesh;
+    /// Stress of the cells.
+    cell_stress: [f64; 6], "cell stresses", "CellData/Stress", Cell, Stress;
+    /// Principal stresses of the cells, descending (Pa).
+    principal: [f64; 3], "principal stresses", "CellData/PrincipalStress", Cell, Stress;
+    /// Von Mises stress of the cells (Pa).
+    von_mises: f64, "von Mises stresses", "CellData/VonMises", Cell, Stress;
+    /// Estimated error of the cells in the energy norm (√N, per metre of thickness).
+    energy_error: f64, "errors", "CellData/EnergyError", Cell, Stress;
 }
 
 /// The solution at a contact point.

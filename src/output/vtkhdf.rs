@@ -3,10 +3,9 @@
 //! Every subdomain and every contact condition has its place from the start, so each is written
 //! when it arrives, in any order; subdomains in slabs, so that one slab at a time is in memory.
 
-mod column;
+pub(super) mod column;
 mod contact_table;
 mod grid;
-mod time_series;
 
 use std::ops::Range;
 use std::path::Path;

@@ -1,7 +1,66 @@
 //! One dataset: an array with a row for each node, cell or condition.
 
+use bytemuck::Pod;
 use hdf5::{Dataset, Group, H5Type, Result};
 use ndarray::{ArrayView1, ArrayView2};
+
+/// A row of a dataset: a number, or some.
+pub(crate) trait Row: Pod {
+    /// The type of its numbers.
+    type Number: H5Type + Pod;
+    /// How many they are; `None` for a number that is alone.
+    const WIDTH: Option<usize> = None;
+}
+
+impl Row for f64 {
+    type Number = Self;
+}
+
+impl Row for i64 {
+    type Number = Self;
+}
+
+impl Row for i32 {
+    type Number = Self;
+}
+
+impl Row for u8 {
+    type Number = Self;
+}
+
+impl<T: Row + H5Type, const N: usize> Row for [T; N]
+where
+    [T; N]: Pod,
+{
+    type Number = T;
+    const WIDTH: Option<usize> = Some(N);
+}
+
+/// Rows for a dataset, whatever their type.
+pub(crate) trait List {
+    /// Number of rows.
+    fn rows(&self) -> usize;
+
+    /// Makes a dataset for `rows` rows of this type, see [`empty`].
+    fn empty(&self, group: &Group, name: &str, rows: usize) -> Result<Dataset>;
+
+    /// Fills a dataset from row `start` on.
+    fn fill(&self, dataset: &Dataset, start: usize) -> Result<()>;
+}
+
+impl<R: Row> List for Vec<R> {
+    fn rows(&self) -> usize {
+        self.len()
+    }
+
+    fn empty(&self, group: &Group, name: &str, rows: usize) -> Result<Dataset> {
+        empty::<R>(group, name, rows)
+    }
+
+    fn fill(&self, dataset: &Dataset, start: usize) -> Result<()> {
+        fill(dataset, start, self)
+    }
+}
 
 /// A group, which an earlier run may have made.
 pub(super) fn group(parent: &Group, name: &str) -> Result<Group> {
@@ -11,76 +70,68 @@ pub(super) fn group(parent: &Group, name: &str) -> Result<Group> {
     }
 }
 
-/// A column of `rows` rows to be filled later, or that of an earlier run.
-pub(super) fn empty<T: H5Type>(group: &Group, name: &str, rows: usize) -> Result<Dataset> {
-    match group.link_exists(name) {
-        true => group.dataset(name),
-        false => group.new_dataset::<T>().shape(rows).create(name),
-    }
-}
-
-/// A table of `rows` rows of `width` numbers to be filled later, or that of an earlier run.
-pub(super) fn empty_table<T: H5Type>(
-    group: &Group,
-    name: &str,
-    rows: usize,
-    width: usize,
-) -> Result<Dataset> {
-    match group.link_exists(name) {
-        true => group.dataset(name),
-        false => group.new_dataset::<T>().shape((rows, width)).create(name),
+/// A dataset of `rows` rows to be filled later, or that of an earlier run.
+pub(super) fn empty<R: Row>(group: &Group, name: &str, rows: usize) -> Result<Dataset> {
+    let new = || group.new_dataset::<R::Number>();
+    match R::WIDTH {
+        _ if group.link_exists(name) => group.dataset(name),
+        None => new().shape(rows).create(name),
+        Some(width) => new().shape((rows, width)).create(name),
     }
 }
 
 /// A column of `rows` rows for each of some load `steps`, (steps, rows); a plain one where there are none.
-pub(super) fn empty_by_step<T: H5Type>(
+pub(super) fn empty_by_step<R: Row>(
     group: &Group,
     name: &str,
     steps: usize,
     rows: usize,
 ) -> Result<Dataset> {
     match steps {
-        0 => empty::<T>(group, name, rows),
-        _ => empty_table::<T>(group, name, steps, rows),
+        0 => empty::<R>(group, name, rows),
+        _ if group.link_exists(name) => group.dataset(name),
+        _ => {
+            let new = group.new_dataset::<R::Number>();
+            new.shape((steps, rows)).create(name)
+        }
     }
 }
 
 /// A column that is filled at once.
-pub(super) fn whole<T: H5Type>(
+pub(super) fn whole<R: Row>(
     group: &Group,
     name: &str,
-    values: impl Iterator<Item = T>,
+    values: impl Iterator<Item = R>,
 ) -> Result<()> {
-    let values: Vec<T> = values.collect();
-    fill(&empty::<T>(group, name, values.len())?, 0, &values)
+    let values: Vec<R> = values.collect();
+    fill(&empty::<R>(group, name, values.len())?, 0, &values)
 }
 
-/// Fills a column from row `start` on.
-pub(super) fn fill<T: H5Type>(column: &Dataset, start: usize, values: &[T]) -> Result<()> {
-    column.write_slice(ArrayView1::from(values), start..start + values.len())
+/// Fills a dataset from row `start` on.
+pub(super) fn fill<R: Row>(dataset: &Dataset, start: usize, rows: &[R]) -> Result<()> {
+    let numbers: &[R::Number] = bytemuck::cast_slice(rows);
+    let range = start..start + rows.len();
+    match R::WIDTH {
+        None => dataset.write_slice(ArrayView1::from(numbers), range),
+        Some(width) => {
+            let table = ArrayView2::from_shape((rows.len(), width), numbers);
+            dataset.write_slice(table.map_err(|why| why.to_string())?, (range, ..))
+        }
+    }
 }
 
 /// Fills the column of a load step from row `start` on.
-pub(super) fn fill_by_step<T: H5Type>(
+pub(super) fn fill_by_step<R: Row>(
     columns: &Dataset,
     step: usize,
     start: usize,
-    values: &[T],
+    values: &[R],
 ) -> Result<()> {
     match columns.ndim() {
         1 => fill(columns, start, values),
         _ => columns.write_slice(
-            ArrayView1::from(values),
+            ArrayView1::from(bytemuck::cast_slice::<R, R::Number>(values)),
             (step, start..start + values.len()),
         ),
     }
-}
-
-/// Fills a table from row `start` on.
-pub(super) fn fill_table<T: H5Type, const N: usize>(
-    table: &Dataset,
-    start: usize,
-    rows: &[[T; N]],
-) -> Result<()> {
-    table.write_slice(ArrayView2::from(rows), (start..start + rows.len(), ..))
 }

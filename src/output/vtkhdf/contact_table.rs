@@ -73,7 +73,7 @@ impl Table {
         let group =
             column::group(parent, name).map_err(|error| format!("contact '{name}': {error}"))?;
         let tags = |name| column::empty::<i64>(&group, name, rows);
-        let vectors = |name| column::empty_table::<f64>(&group, name, rows, 3);
+        let vectors = |name| column::empty::<[f64; 3]>(&group, name, rows);
         let states = |name| column::empty_by_step::<f64>(&group, name, steps, rows);
         Ok(Self {
             name: name.clone(),
@@ -101,7 +101,7 @@ impl Table {
             column::fill(column, start, &run.iter().map(of).collect::<Vec<_>>())
         };
         let vectors = |table, of: fn(&ContactRow) -> [f64; 3]| {
-            column::fill_table(table, start, &run.iter().map(of).collect::<Vec<_>>())
+            column::fill(table, start, &run.iter().map(of).collect::<Vec<_>>())
         };
         let reals = |column, of: fn(&ContactRow) -> f64| {
             column::fill_by_step(column, step, start, &run.iter().map(of).collect::<Vec<_>>())

@@ -6,8 +6,9 @@ use std::ops::Range;
 use contact_dd_partition::problem::vtkhdf;
 use hdf5::{Dataset, File, Group, Result};
 
-use super::super::result::{PartitionSize, SubdomainResults};
-use super::{Layout, column, time_series};
+use super::super::result::{Field, Of, PartitionSize, SubdomainResults};
+use super::column::List;
+use super::{Layout, column};
 
 /// Most nodes of a slab of more than one subdomain. With its cells it is about 6 MB, which is still
 /// in the cache when it is written and doesn't count beside what the root holds anyway; yet its
@@ -17,42 +18,22 @@ const SLAB_POINTS: usize = 1 << 14;
 /// The grid, and which subdomains have been written.
 #[derive(Debug)]
 pub(super) struct Grid {
-    arrays: Arrays,
+    /// A dataset for each list that there is; to find one by its name costs as much as to write a small
+    /// subdomain.
+    datasets: Vec<Dataset>,
+    /// The number of its subdomain for each cell.
+    subdomains: Dataset,
+    stress: bool,
     total: PartitionSize,
     sizes: Vec<PartitionSize>,
     starts: Vec<PartitionSize>,
     written: Vec<bool>,
 }
 
-/// Every array that is filled slab by slab; to find one by its name costs as much as to write a
-/// small subdomain.
-#[derive(Debug)]
-struct Arrays {
-    points: Dataset,
-    node_tags: Dataset,
-    displacement: Dataset,
-    connectivity: Dataset,
-    offsets: Dataset,
-    types: Dataset,
-    subdomains: Dataset,
-    materials: Dataset,
-    stress: Option<StressArrays>,
-}
-
-/// The arrays of stresses.
-#[derive(Debug)]
-struct StressArrays {
-    at_nodes: Dataset,
-    of_cells: Dataset,
-    principal: Dataset,
-    von_mises: Dataset,
-    energy_error: Dataset,
-}
-
 impl Grid {
-    /// Makes all arrays in their final sizes, or takes those that an earlier run made.
+    /// Makes all datasets in their final sizes, or takes those that an earlier run made.
     pub(super) fn create(file: &File, layout: &Layout) -> Result<Self> {
-        let (sizes, times) = (&layout.partitions, &layout.times);
+        let sizes = &layout.partitions;
         let is_new = !file.link_exists("VTKHDF");
         let group = column::group(file, "VTKHDF")?;
         if is_new {
@@ -70,22 +51,37 @@ impl Grid {
         )?;
 
         let mut starts = Vec::with_capacity(sizes.len());
-        let mut end = PartitionSize::default();
+        let mut total = PartitionSize::default();
         for size in sizes {
-            starts.push(end);
-            end.points += size.points;
-            end.cells += size.cells;
-            end.connectivity += size.connectivity;
+            starts.push(total);
+            total.add(size);
         }
-        let steps = times.len().max(1);
-        let arrays = Arrays::create(&group, end, sizes.len(), steps, layout.stress)?;
-        if !times.is_empty() {
-            time_series::create(&group, layout, end)?;
+        column::group(&group, "PointData")?;
+        let subdomains = column::group(&group, "CellData")?;
+        let subdomains = column::empty::<i32>(&subdomains, "Subdomain", total.cells)?;
+        let steps = layout.times.len().max(1);
+        let none = SubdomainResults::default();
+        let create = |(field, list): (Field, &dyn List)| {
+            let rows = field.per.rows(&total, sizes.len());
+            let rows = if field.of == Of::Mesh {
+                rows
+            } else {
+                steps * rows
+            };
+            list.empty(&group, field.place, rows)
+        };
+        let datasets = written(&none, layout.stress)
+            .map(create)
+            .collect::<Result<_>>()?;
+        if !layout.times.is_empty() {
+            create_steps(&group, layout, &total)?;
         }
         Ok(Self {
-            arrays,
-            total: end,
-            sizes: sizes.to_vec(),
+            datasets,
+            subdomains,
+            stress: layout.stress,
+            total,
+            sizes: sizes.clone(),
             starts,
             written: vec![false; sizes.len()],
         })
@@ -116,17 +112,25 @@ impl Grid {
             let (count, index) = (self.sizes.len(), first.max(self.sizes.len()));
             return Err(format!("subdomain {index} of {count} has no place").into());
         };
-        check_sizes(results, sizes, self.arrays.stress.is_some())?;
-        if let Some(&start) = self.starts.get(first) {
-            if step == 0 {
-                self.arrays.fill_mesh(results, start)?;
+        check_sizes(results, sizes, self.stress)?;
+        let Some(size) = self.starts.get(first) else {
+            return Ok(());
+        };
+        for (dataset, (field, list)) in self.datasets.iter().zip(written(results, self.stress)) {
+            let start = field.per.rows(size, first);
+            let of_a_step = field.per.rows(&self.total, self.sizes.len());
+            match field.of {
+                Of::Mesh if step > 0 => {}
+                Of::Mesh => list.fill(dataset, start)?,
+                Of::Solution | Of::Stress => list.fill(dataset, step * of_a_step + start)?,
             }
-            let start = PartitionSize {
-                points: step * self.total.points + start.points,
-                cells: step * self.total.cells + start.cells,
-                ..start
-            };
-            self.arrays.fill_fields(results, start)?;
+        }
+        if step == 0 {
+            let numbers = (first as i32..).zip(sizes);
+            let numbers: Vec<i32> = numbers
+                .flat_map(|(s, size)| repeat_n(s, size.cells))
+                .collect();
+            column::fill(&self.subdomains, size.cells, &numbers)?;
         }
         self.written[first..end].fill(true);
         Ok(())
@@ -142,93 +146,49 @@ impl Grid {
     }
 }
 
-impl Arrays {
-    /// Makes them for `partitions` partitions of the size `total` together, fields for each of the `steps`.
-    fn create(
-        group: &Group,
-        total: PartitionSize,
-        partitions: usize,
-        steps: usize,
-        stress: bool,
-    ) -> Result<Self> {
-        let points = column::group(group, "PointData")?;
-        let cells = column::group(group, "CellData")?;
-        let stress = match stress {
-            true => Some(StressArrays::create(&points, &cells, total, steps)?),
-            false => None,
-        };
-        Ok(Self {
-            points: column::empty_table::<f64>(group, "Points", total.points, 3)?,
-            connectivity: column::empty::<i64>(group, "Connectivity", total.connectivity)?,
-            offsets: column::empty::<i64>(group, "Offsets", total.cells + partitions)?,
-            types: column::empty::<u8>(group, "Types", total.cells)?,
-
-            node_tags: column::empty::<i64>(&points, "GlobalNodeId", total.points)?,
-            displacement: column::empty_table::<f64>(
-                &points,
-                "Displacement",
-                steps * total.points,
-                3,
-            )?,
-
-            subdomains: column::empty::<i32>(&cells, "Subdomain", total.cells)?,
-            materials: column::empty::<i32>(&cells, "Material", total.cells)?,
-            stress,
-        })
-    }
-
-    /// Writes the mesh of partitions, the first of which starts at `start`.
-    fn fill_mesh(&self, results: &SubdomainResults, start: PartitionSize) -> Result<()> {
-        let (points, cells) = (start.points, start.cells);
-        column::fill_table(&self.points, points, &results.points)?;
-        column::fill(
-            &self.connectivity,
-            start.connectivity,
-            &results.connectivity,
-        )?;
-        // Each partition before has an offset more than cells.
-        column::fill(&self.offsets, cells + results.first, &results.offsets)?;
-        column::fill(&self.types, cells, &results.types)?;
-
-        column::fill(&self.node_tags, points, &results.node_tags)?;
-
-        let subdomains: Vec<i32> = (results.first as i32..)
-            .zip(&results.sizes)
-            .flat_map(|(index, size)| repeat_n(index, size.cells))
-            .collect();
-        column::fill(&self.subdomains, cells, &subdomains)?;
-        column::fill(&self.materials, cells, &results.materials)
-    }
-
-    /// Writes the fields on partitions, which stand from `start` on.
-    fn fill_fields(&self, results: &SubdomainResults, start: PartitionSize) -> Result<()> {
-        column::fill_table(&self.displacement, start.points, &results.displacement)?;
-        match &self.stress {
-            Some(stress) => stress.fill(results, start),
-            None => Ok(()),
-        }
-    }
+/// The lists that the file has.
+fn written(results: &SubdomainResults, stress: bool) -> impl Iterator<Item = (Field, &dyn List)> {
+    let lists = results.lists().into_iter();
+    lists.filter(move |(field, _)| stress || field.of != Of::Stress)
 }
 
-impl StressArrays {
-    fn create(points: &Group, cells: &Group, total: PartitionSize, steps: usize) -> Result<Self> {
-        let (nodes, of_cells) = (steps * total.points, steps * total.cells);
-        Ok(Self {
-            at_nodes: column::empty_table::<f64>(points, "Stress", nodes, 6)?,
-            of_cells: column::empty_table::<f64>(cells, "Stress", of_cells, 6)?,
-            principal: column::empty_table::<f64>(cells, "PrincipalStress", of_cells, 3)?,
-            von_mises: column::empty::<f64>(cells, "VonMises", of_cells)?,
-            energy_error: column::empty::<f64>(cells, "EnergyError", of_cells)?,
-        })
+/// Writes `/VTKHDF/Steps`: load steps as a time series of VTK's HDF format, on a mesh that stays the same.
+///
+/// Fields of step k follow those of step k − 1 in one array; for every step there is an offset into each
+/// array, always the same one into those of the mesh. `total` is the size of all partitions together.
+fn create_steps(grid: &Group, layout: &Layout, total: &PartitionSize) -> Result<()> {
+    let steps = layout.times.len();
+    let is_new = !grid.link_exists("Steps");
+    let group = column::group(grid, "Steps")?;
+    if is_new {
+        let count = group.new_attr::<i64>().create("NSteps")?;
+        count.write_scalar(&(steps as i64))?;
     }
-
-    fn fill(&self, results: &SubdomainResults, start: PartitionSize) -> Result<()> {
-        column::fill_table(&self.at_nodes, start.points, &results.nodal_stress)?;
-        column::fill_table(&self.of_cells, start.cells, &results.cell_stress)?;
-        column::fill_table(&self.principal, start.cells, &results.principal)?;
-        column::fill(&self.von_mises, start.cells, &results.von_mises)?;
-        column::fill(&self.energy_error, start.cells, &results.energy_error)
+    column::whole(&group, "Values", layout.times.iter().copied())?;
+    let parts = layout.partitions.len();
+    column::whole(&group, "NumberOfParts", repeat_n(parts as i64, steps))?;
+    for name in ["PartOffsets", "PointOffsets"] {
+        column::whole(&group, name, repeat_n(0_i64, steps))?;
     }
+    // A column for each type of cell that has an array of its own; unstructured grids have one.
+    for name in ["CellOffsets", "ConnectivityIdOffsets"] {
+        column::whole(&group, name, repeat_n([0_i64], steps))?;
+    }
+    let offsets = |place: &str, rows: usize| match place.split_once('/') {
+        Some((data, name)) => {
+            let group = column::group(&group, &format!("{data}Offsets"))?;
+            column::whole(&group, name, (0..steps).map(|k| (k * rows) as i64))
+        }
+        None => Ok(()),
+    };
+    for (field, _) in written(&SubdomainResults::default(), layout.stress) {
+        let of_a_step = field.per.rows(total, parts);
+        offsets(
+            field.place,
+            if field.of == Of::Mesh { 0 } else { of_a_step },
+        )?;
+    }
+    offsets("CellData/Subdomain", 0)
 }
 
 /// Checks that each partition has the size in `sizes`, and that the lists hold what these say.
@@ -252,10 +212,8 @@ fn check_sizes(results: &SubdomainResults, sizes: &[PartitionSize], stress: bool
             ],
         )?;
     }
-    let sum = |of: fn(&PartitionSize) -> usize| sizes.iter().map(of).sum();
-    let (points, cells) = (sum(|size| size.points), sum(|size| size.cells));
-    let connectivity = sum(|size| size.connectivity);
-    let stressed = |count| if stress { count } else { 0 };
+    let mut sum = PartitionSize::default();
+    sizes.iter().for_each(|size| sum.add(size));
     let whose = match sizes.len() {
         0 | 1 => format!("subdomain {} has", results.first),
         n => format!(
@@ -264,33 +222,14 @@ fn check_sizes(results: &SubdomainResults, sizes: &[PartitionSize], stress: bool
             results.first + n - 1
         ),
     };
-    check(
-        &whose,
-        &[
-            ("points", results.points.len(), points),
-            ("node tags", results.node_tags.len(), points),
-            ("displacements", results.displacement.len(), points),
-            (
-                "nodal stresses",
-                results.nodal_stress.len(),
-                stressed(points),
-            ),
-            ("connectivity", results.connectivity.len(), connectivity),
-            ("offsets", results.offsets.len(), cells + sizes.len()),
-            ("cell types", results.types.len(), cells),
-            ("materials", results.materials.len(), cells),
-            ("cell stresses", results.cell_stress.len(), stressed(cells)),
-            (
-                "principal stresses",
-                results.principal.len(),
-                stressed(cells),
-            ),
-            (
-                "von Mises stresses",
-                results.von_mises.len(),
-                stressed(cells),
-            ),
-            ("errors", results.energy_error.len(), stressed(cells)),
-        ],
-    )
+    let lists = results.lists().into_iter().map(|(field, list)| {
+        let is_left_out = field.of == Of::Stress && !stress;
+        let expected = if is_left_out {
+            0
+        } else {
+            field.per.rows(&sum, sizes.len())
+        };
+        (field.what, list.rows(), expected)
+    });
+    check(&whose, &lists.collect::<Vec<_>>())
 }
