@@ -61,9 +61,15 @@ impl Certificate {
     }
 }
 
-/// The certificate of the whole solution, where Γ has so many nodes of `dim` components.
-pub fn certificate(checks: &[BlockCheck], interface_nodes: usize, dim: usize) -> Certificate {
-    let mut most = Most::default();
+/// The certificate of the whole solution, of what was checked on blocks and at contact points, where Γ has so
+/// many nodes of `dim` components.
+pub fn certificate(
+    checks: &[BlockCheck],
+    at_points: Most,
+    interface_nodes: usize,
+    dim: usize,
+) -> Certificate {
+    let mut most = at_points;
     let mut external = External::default();
     let mut on_interface = vec![0.0; interface_nodes * dim];
     let mut interface_scale = vec![0.0; interface_nodes * dim];

@@ -13,17 +13,19 @@ use std::time::Instant;
 use contact_dd_partition::problem::Catalog;
 
 use crate::condense::blocks::{CondensedBlock, CondensedBlocks};
+use crate::contact::normal_jump::{NoUnknown, NormalJumps};
 use crate::context::Context;
 use crate::context::Loads;
 use crate::error::Failure;
 use crate::fem::assembly::assemble;
-use crate::fem::block::{Block, OwnedBlock};
-use crate::fem::dofs::{DofError, Dofs};
-use crate::plan::Plan;
+use crate::fem::block::Block;
+use crate::fem::contact_group::ContactGroup;
+use crate::fem::dofs::{Dofs, TooManyUnknowns};
 use crate::rigid::analysis::FixingDof;
 use crate::schur::condensed::Condensed;
 use crate::schur::factor::FactorError;
 use crate::schur::local::LocalSchur;
+use crate::schur::substitution::Replaced;
 
 /// What is needed to condense any block.
 #[derive(Clone, Copy)]
@@ -40,31 +42,28 @@ impl Condensation<'_> {
     /// Assembles, factorizes and condenses block `number`; what stays behind goes into `condensed`.
     ///
     /// # Errors
-    /// A block that can move although its boundary is held, or a contact point on Γ.
+    /// A block that can move although its boundary is held, or that is too large.
     pub fn condense(
         &self,
         number: usize,
-        owned: &OwnedBlock,
+        block: &Block,
         condensed: &mut CondensedBlocks,
     ) -> Result<Condensed, Failure> {
         let began = Instant::now();
-        let Context {
-            catalog, plan, par, ..
-        } = self.context;
-        let block = &owned.block;
-        let dofs = Dofs::new(owned, &self.loads[&number], &catalog.materials)
-            .map_err(|error| dof_failure(error, owned, catalog))?;
-        let fixing_dofs = pins_of(block, self.fixing_dofs);
+        let Context { catalog, par, .. } = self.context;
+        let dofs = Dofs::new(block, &self.loads.blocks[&number])
+            .map_err(|TooManyUnknowns| too_large(number))?;
+        let fixing_dofs = fixing_dofs_of(number, self.fixing_dofs);
         let (stiffness, springs) = assemble(block, &dofs, &catalog.materials, &fixing_dofs)
-            .ok_or_else(|| size(plan, number))?;
+            .ok_or_else(|| too_large(number))?;
         let assembled = Instant::now();
         let (factor, s) =
             LocalSchur::new(&stiffness, dofs.interior, par).map_err(|error| match error {
-                FactorError::Size => size(plan, number),
-                FactorError::Pivot(unknown) => moves(owned, &dofs, unknown, catalog),
+                FactorError::Size => too_large(number),
+                FactorError::Pivot(unknown) => moves(block, &dofs, unknown, catalog),
             })?;
         let of_block = Condensed {
-            jumps: dofs.jumps,
+            jumps: 0,
             interface_dofs: dofs.interface_dofs.clone(),
             s,
             diagonal: factor.diagonal.clone(),
@@ -81,43 +80,55 @@ impl Condensation<'_> {
         condensed.seconds[1] += assembled.elapsed().as_secs_f64();
         Ok(of_block)
     }
+
+    /// What the normal jumps of the contact group at node v replace; nothing where there is none.
+    ///
+    /// # Errors
+    /// A contact point that nothing can be replaced for.
+    fn replaced(&self, v: usize) -> Result<Vec<Replaced>, Failure> {
+        let Context { plan, groups, .. } = self.context;
+        let Some((g, group)) = plan.group_of(v).and_then(|g| Some((g, groups.get(&g)?))) else {
+            return Ok(Vec::new());
+        };
+        Ok(group.replaced(&normal_jumps(&self.context, g, group)?))
+    }
 }
 
-/// The pins that lie in a block: node and component.
-fn pins_of(block: &Block, fixing_dofs: &[FixingDof]) -> Vec<(u32, usize)> {
-    fixing_dofs
-        .iter()
-        .filter_map(|fixing_dof| {
-            let m = block.member(fixing_dof.subdomain as usize)?;
-            let node = block.node_of[m][fixing_dof.node as usize];
-            Some((node, fixing_dof.component as usize))
-        })
-        .collect()
+/// The normal jumps of contact group g of this rank.
+///
+/// # Errors
+/// A contact point that nothing can be replaced for.
+pub fn normal_jumps(
+    context: &Context<'_>,
+    g: usize,
+    group: &ContactGroup,
+) -> Result<NormalJumps, Failure> {
+    let node = &context.plan.tree.nodes[context.plan.groups[g].node];
+    group.normal_jumps(&node.eliminated).map_err(|NoUnknown(j)| {
+        let point = &group.points[j];
+        let contact = &context.catalog.contacts[point.contact as usize].name;
+        Failure::input(format!(
+            "contact '{contact}': the point of nodes {} and {} can't be told from others that share \
+             its nodes; expected points whose rows are independent, or multiples of each other",
+            point.tag_a, point.tag_b
+        ))
+    })
 }
 
-fn size(plan: &Plan, number: usize) -> Failure {
+/// The fixing dofs that lie in a block: node and component.
+fn fixing_dofs_of(number: usize, all: &[FixingDof]) -> Vec<(u32, usize)> {
+    let own = all.iter().filter(|dof| dof.subdomain as usize == number);
+    own.map(|dof| (dof.node, dof.component as usize)).collect()
+}
+
+fn too_large(subdomain: usize) -> Failure {
     Failure::internal(format!(
-        "subdomain {}: its factor needs more memory than there is; expected more, smaller \
-         subdomains",
-        plan.blocks[number].subdomains[0]
+        "subdomain {subdomain}: its factor needs more memory than there is; expected more, smaller \
+         subdomains"
     ))
 }
 
-pub(crate) fn dof_failure(error: DofError, owned: &OwnedBlock, catalog: &Catalog) -> Failure {
-    let DofError::OnInterface(j) = error else {
-        return Failure::internal("a subdomain has more than 2^32 unknowns");
-    };
-    let point = &owned.points[j];
-    let contact = &catalog.contacts[point.contact as usize].name;
-    Failure::input(format!(
-        "contact '{contact}': the condition between nodes {} and {} lies where subdomains are bonded; \
-         expected a partition whose interface doesn't meet contact",
-        point.tag_a, point.tag_b
-    ))
-}
-
-fn moves(owned: &OwnedBlock, dofs: &Dofs, unknown: usize, catalog: &Catalog) -> Failure {
-    let block = &owned.block;
+fn moves(block: &Block, dofs: &Dofs, unknown: usize, catalog: &Catalog) -> Failure {
     let node = (0..block.nodes() as u32).find(|&node| {
         (0..block.dim).any(|c| {
             dofs.terms(node, c)
@@ -125,11 +136,11 @@ fn moves(owned: &OwnedBlock, dofs: &Dofs, unknown: usize, catalog: &Catalog) -> 
                 .any(|&(dof, _)| dof as usize == unknown)
         })
     });
-    let body = &catalog.bodies[block.members[0].body].name;
-    let tag = node.map_or(-1, |node| block.tags[node as usize]);
+    let body = &catalog.bodies[block.subdomain.body].name;
+    let tag = node.map_or(-1, |node| block.subdomain.node_tags[node as usize]);
     Failure::ill_posed(format!(
         "body '{body}': subdomain {} can move although its boundary is held (found at node {tag}); \
          expected supports or contact that hold it",
-        block.members[0].index
+        block.subdomain.index
     ))
 }

@@ -7,7 +7,8 @@ use faer::Par;
 
 use crate::comm::Comm;
 use crate::error::Failure;
-use crate::fem::block::OwnedBlock;
+use crate::fem::block::Block;
+use crate::fem::contact_group::{ContactGroup, GroupLoads};
 use crate::fem::load::BlockLoads;
 use crate::plan::Plan;
 
@@ -21,21 +22,34 @@ pub struct Context<'a> {
     /// Who owns what.
     pub plan: &'a Plan,
     /// The blocks of this rank, by their number.
-    pub blocks: &'a BTreeMap<usize, OwnedBlock>,
+    pub blocks: &'a BTreeMap<usize, Block>,
+    /// The contact groups of this rank, by their number.
+    pub groups: &'a BTreeMap<usize, ContactGroup>,
     /// Threads.
     pub par: Par,
 }
 
-/// What acts on the blocks of this rank in a load step, by their number.
-pub type Loads = BTreeMap<usize, BlockLoads>;
+/// What acts in a load step on what this rank has.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Loads {
+    /// On its blocks, by their number.
+    pub blocks: BTreeMap<usize, BlockLoads>,
+    /// On its contact groups, by their number.
+    pub groups: BTreeMap<usize, GroupLoads>,
+}
 
 impl Context<'_> {
     /// What acts in load step k.
     pub fn loads(&self, k: usize) -> Loads {
-        let blocks = self.blocks.iter();
-        blocks
-            .map(|(&b, owned)| (b, BlockLoads::new(owned, k)))
-            .collect()
+        let (blocks, groups) = (self.blocks.iter(), self.groups.iter());
+        Loads {
+            blocks: blocks
+                .map(|(&b, block)| (b, BlockLoads::new(block, k)))
+                .collect(),
+            groups: groups
+                .map(|(&g, group)| (g, GroupLoads::new(group, k)))
+                .collect(),
+        }
     }
 
     /// A failure that says in which load step it was.

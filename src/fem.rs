@@ -5,7 +5,7 @@
 pub mod assembly;
 pub mod balance;
 pub mod block;
-mod bounds;
+pub mod contact_group;
 pub mod dofs;
 pub mod elasticity;
 pub mod estimate;

@@ -4,24 +4,23 @@ mod assign;
 pub mod cluster;
 pub mod cost;
 
+pub mod links;
+
 use contact_dd_partition::problem::Catalog;
-use contact_dd_partition::problem::tree::{Block, Tree};
+use contact_dd_partition::problem::tree::Tree;
 
 use self::assign::assign;
 use self::cluster::{ClusterPlan, Merging, cluster_nodes};
+use self::links::GroupPlan;
 
-/// The blocks in the order of their first subdomains and the clusters in that of the hierarchy; every
-/// sum runs in this order, whoever owns what.
+/// The blocks, which are the subdomains, and the clusters in the order of the hierarchy; every sum runs in this
+/// order, whoever owns what.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// Blocks.
-    pub blocks: Vec<Block>,
-    /// The block of every group in contact, ascending.
-    pub groups: Vec<usize>,
-    /// The block of every subdomain.
-    pub block_of: Vec<usize>,
     /// The hierarchy of the blocks.
     pub tree: Tree,
+    /// The contact groups, by ascending nodes of the hierarchy.
+    pub groups: Vec<GroupPlan>,
     /// The owner of every node of the hierarchy.
     pub node_owners: Vec<usize>,
     /// What the interface problem is assembled from.
@@ -34,15 +33,12 @@ impl Plan {
     /// Assigns the blocks of `catalog` and the merges of their Schur complements to `ranks` ranks
     /// by estimated cost.
     pub fn new(catalog: &Catalog, ranks: usize, merging: Merging) -> Self {
-        let (blocks, block_of) = Block::of(catalog);
-        let groups = (0..blocks.len())
-            .filter(|&b| blocks[b].group.is_some())
-            .collect();
-        let tree = Tree::new(catalog, &blocks, &block_of);
+        let tree = Tree::new(catalog);
+        let in_contact = (0..tree.nodes.len()).filter(|&v| !tree.nodes[v].points.is_empty());
         let mut plan = Self {
-            blocks,
-            groups,
-            block_of,
+            groups: in_contact
+                .map(|v| GroupPlan::new(catalog, &tree, v))
+                .collect(),
             tree,
             node_owners: Vec::new(),
             clusters: Vec::new(),
@@ -66,7 +62,7 @@ impl Plan {
             self.clusters.push(ClusterPlan {
                 node,
                 owner: self.node_owners[node],
-                groups: under.filter_map(|b| self.group_of(b)).collect(),
+                groups: under.filter_map(|v| self.group_of(v)).collect(),
             });
         }
         self.contact = (0..self.clusters.len())
@@ -74,34 +70,27 @@ impl Plan {
             .collect();
     }
 
-    /// Number of nodes of Γ, each counted once.
-    pub fn interface_nodes(&self) -> usize {
-        self.tree
-            .sharing
-            .iter()
-            .filter(|&&blocks| blocks > 1)
-            .count()
+    /// Number of blocks.
+    pub fn blocks(&self) -> usize {
+        self.tree.subdomains
     }
 
     /// The owner of every block.
-    pub fn owners(&self) -> Vec<usize> {
-        self.node_owners[..self.blocks.len()].to_vec()
-    }
-
-    /// The owner of every subdomain.
-    pub fn subdomain_owners(&self) -> Vec<usize> {
-        let blocks = self.block_of.iter();
-        blocks.map(|&b| self.node_owners[b]).collect()
+    pub fn owners(&self) -> &[usize] {
+        &self.node_owners[..self.blocks()]
     }
 
     /// The owner of every group.
     pub fn group_owners(&self) -> Vec<usize> {
-        self.groups.iter().map(|&b| self.node_owners[b]).collect()
+        let nodes = self.groups.iter().map(|group| group.node);
+        nodes.map(|v| self.node_owners[v]).collect()
     }
 
-    /// The place of block b among the groups.
-    pub fn group_of(&self, block: usize) -> Option<usize> {
-        self.groups.binary_search(&block).ok()
+    /// The group of node v of the hierarchy.
+    pub fn group_of(&self, v: usize) -> Option<usize> {
+        self.groups
+            .binary_search_by_key(&v, |group| group.node)
+            .ok()
     }
 
     /// The owner of every cluster.
@@ -124,7 +113,7 @@ impl Plan {
 
     /// The cluster of every block.
     pub fn clusters_of_blocks(&self) -> Vec<usize> {
-        let mut of = vec![0; self.blocks.len()];
+        let mut of = vec![0; self.blocks()];
         for (c, cluster) in self.clusters.iter().enumerate() {
             for v in self.tree.subtree(cluster.node) {
                 if let Some(of) = of.get_mut(v) {
@@ -145,23 +134,35 @@ impl Plan {
     pub fn ways_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.clusters.iter().flat_map(|cluster| {
             let groups = cluster.groups.iter();
-            groups.map(|&g| (self.node_owners[self.groups[g]], cluster.owner))
+            groups.map(|&g| (self.node_owners[self.groups[g].node], cluster.owner))
         })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use contact_dd_partition::contact_point::ContactPoint;
     use contact_dd_partition::model::PlaneState;
-    use contact_dd_partition::problem::{Body, Hierarchy, SubdomainSummary};
+    use contact_dd_partition::problem::{
+        Body, Hierarchy, PointNode, SubdomainNode, SubdomainSummary,
+    };
     use contact_dd_partition::scene::units::Units;
     use contact_dd_partition::solver::SolverSettings;
 
     use super::*;
 
-    /// Subdomains 1 and 3 in contact; 0, 2 and 4 linear, 4 the largest.
+    /// Two contact points between subdomains 1 and 3; 0, 2 and 4 linear, 4 the largest.
     fn catalog() -> Catalog {
         let sizes = [40, 30, 20, 30, 90];
+        let node = |subdomain, node| SubdomainNode { subdomain, node };
+        let point = |a, b| {
+            let entries = vec![(node(1, a), 1.0), (node(3, b), -1.0)];
+            ContactPoint::new(entries, [1.0, 0.0, 0.0], [0.0; 3], 0)
+        };
+        let free = |interface| PointNode {
+            interface,
+            is_free: true,
+        };
         Catalog {
             title: String::new(),
             dim: 2,
@@ -184,7 +185,9 @@ mod tests {
                 .collect(),
             interface: vec![vec![0, 1], vec![1, 2], vec![0, 3], vec![2, 3], vec![0]],
             interface_nodes: 4,
-            groups: vec![5],
+            groups: vec![2],
+            points: vec![point(5, 6), point(7, 8)],
+            point_nodes: vec![vec![free(None); 2], vec![free(Some(2)), free(None)]],
             hierarchy: Hierarchy {
                 parent: [6, 5, 6, 5, 5, 7, 7]
                     .map(Some)
@@ -197,43 +200,35 @@ mod tests {
         }
     }
 
+    /// The number in the tree of what is node v in the file: two subdomains have nodes that points alone name.
+    fn inner(v: usize) -> usize {
+        v + 2
+    }
+
     #[test]
-    fn every_subdomain_lies_in_one_block_and_groups_stay_together() {
+    fn contact_points_belong_where_all_that_have_their_nodes_come_together() {
         let plan = Plan::new(&catalog(), 3, Merging::All);
-        assert_eq!(plan.block_of, [0, 1, 2, 1, 3]);
-        assert_eq!(plan.blocks[1].subdomains, [1, 3]);
-        assert_eq!((&plan.groups[..], plan.group_of(1)), (&[1][..], Some(0)));
+        let [group] = &plan.groups[..] else {
+            panic!("{:?}", plan.groups);
+        };
+        assert_eq!((group.node, group.nodes.len()), (inner(5), 4));
+        let node = &plan.tree.nodes[inner(5)];
+        assert_eq!((&node.points[..], node.conditions), (&[0, 1][..], 2));
+        // Nodes that the points alone name go there, too.
+        assert_eq!(plan.tree.interface_nodes, 7);
+        assert_eq!(node.eliminated, [2, 4, 5, 6]);
+        assert_eq!(node.kept, [0, 1, 3]);
     }
 
     #[test]
-    fn a_node_that_only_members_of_a_group_share_is_not_on_the_interface() {
-        let catalog = catalog();
-        let plan = Plan::new(&catalog, 1, Merging::All);
-        assert_eq!(plan.tree.nodes[1].kept, [1, 3]);
-        assert_eq!(plan.tree.sharing, [3, 2, 1, 2]);
-    }
-
-    #[test]
-    fn blocks_and_their_order_do_not_depend_on_the_number_of_ranks() {
+    fn the_tree_does_not_depend_on_the_number_of_ranks() {
         let catalog = catalog();
         let one = Plan::new(&catalog, 1, Merging::All);
         for ranks in 2..8 {
             let plan = Plan::new(&catalog, ranks, Merging::All);
-            assert_eq!(one.blocks, plan.blocks);
+            assert_eq!(one.tree, plan.tree);
             assert!(plan.node_owners.iter().all(|&owner| owner < ranks));
         }
-    }
-
-    #[test]
-    fn a_node_of_the_hierarchy_eliminates_what_only_its_blocks_share() {
-        let plan = Plan::new(&catalog(), 1, Merging::All);
-        let eliminated: Vec<&[u32]> = (4..7).map(|v| &plan.tree.nodes[v].eliminated[..]).collect();
-        assert_eq!(eliminated, [&[][..], &[], &[0, 1, 3]]);
-        assert_eq!(plan.tree.nodes[5].kept, [0, 1, 3]);
-        assert_eq!(
-            (plan.tree.nodes[4].groups, plan.tree.nodes[6].conditions),
-            (1, 5)
-        );
     }
 
     #[test]
@@ -242,18 +237,22 @@ mod tests {
             let plan = Plan::new(&catalog(), 2, merging);
             plan.clusters.iter().map(|c| c.node).collect()
         };
-        assert_eq!(clusters(Merging::All), [4, 5]);
-        assert_eq!(clusters(Merging::Linear), [1, 3, 5]);
+        assert_eq!(clusters(Merging::All), [inner(5), inner(6)]);
+        let mut apart = catalog();
+        apart.points.clear();
+        apart.point_nodes.clear();
+        let plan = Plan::new(&apart, 2, Merging::Linear);
+        assert_eq!(plan.clusters.len(), 2);
     }
 
     #[test]
     fn subtrees_are_split_until_ranks_have_about_the_same_to_do() {
         let plan = Plan::new(&catalog(), 2, Merging::All);
-        let nodes = [40, 60, 20, 90];
+        let nodes = [40, 30, 20, 30, 90];
         let of_rank = |rank: usize| -> usize {
-            let own = (0..4).filter(|&b| plan.node_owners[b] == rank);
+            let own = (0..5).filter(|&b| plan.node_owners[b] == rank);
             own.map(|b| nodes[b]).sum()
         };
-        assert_eq!((of_rank(0), of_rank(1)), (110, 100));
+        assert_eq!((of_rank(0), of_rank(1)), (90, 120));
     }
 }

@@ -3,13 +3,17 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use contact_dd_partition::error::InputError;
+use contact_dd_partition::mesh::bounding_box::BoundingBox;
 use contact_dd_partition::problem::Subdomain;
+use contact_dd_partition::problem::consistency::Places;
 use contact_dd_partition::problem::copies::NodeCopies;
 use contact_dd_partition::problem::read::ProblemFile;
 
 use crate::comm::Comm;
 use crate::error::Failure;
-use crate::fem::block::{Block, OwnedBlock};
+use crate::fem::block::Block;
+use crate::fem::contact_group::{ContactGroup, ContactNode};
 use crate::plan::Plan;
 
 /// Most subdomains that are read at once: what HDF5 hands over is there twice for a while.
@@ -23,27 +27,67 @@ pub fn read_blocks(
     rank: usize,
     file: &ProblemFile,
     plan: &Plan,
-) -> Result<BTreeMap<usize, OwnedBlock>, Failure> {
+) -> Result<BTreeMap<usize, Block>, Failure> {
     let dim = file.catalog().dim;
-    let mut subdomains = read_subdomains(rank, file, plan)?;
-    let mut blocks = BTreeMap::new();
-    for (number, of_plan) in plan.blocks.iter().enumerate() {
-        if plan.node_owners[number] != rank {
-            continue;
-        }
-        let members = of_plan.subdomains.iter();
-        let members: Vec<Subdomain> = members
-            .filter_map(|index| subdomains.remove(index))
+    let subdomains = read_subdomains(rank, file, plan)?.into_iter();
+    Ok(subdomains
+        .map(|(s, subdomain)| (s, Block::new(subdomain, &plan.tree, dim)))
+        .collect())
+}
+
+/// The contact groups of this rank, by their number, whose nodes the owners of `blocks` describe. Collective.
+///
+/// # Errors
+/// A contact point that says something else than the mesh does.
+pub fn collect_groups(
+    comm: &Comm,
+    file: &ProblemFile,
+    plan: &Plan,
+    blocks: &BTreeMap<usize, Block>,
+) -> Result<BTreeMap<usize, ContactGroup>, Failure> {
+    let catalog = file.catalog();
+    let mut bounds = BoundingBox::EMPTY;
+    comm.gather(
+        plan.owners(),
+        |b| {
+            let points = blocks.get(&b).map_or(&[][..], Block::points);
+            let BoundingBox { low, high } = BoundingBox::around(points);
+            (low, high)
+        },
+        |_, (low, high)| bounds.include(&BoundingBox { low, high }),
+    );
+    let mut extent = bounds.extent();
+    comm.broadcast(&mut extent);
+    let described = plan.nodes_to_groups(comm, |b, nodes| {
+        let nodes: Vec<(u32, u32)> = nodes
+            .iter()
+            .map(|(at, number)| (at.node, *number))
             .collect();
-        let points = of_plan
-            .group
-            .map(|group| file.points(group, &members.iter().collect::<Vec<_>>()))
-            .transpose()?
-            .unwrap_or_default();
-        let block = Block::new(members, dim, |node| plan.tree.sharing[node as usize] > 1);
-        blocks.insert(number, OwnedBlock::new(block, &points));
-    }
-    Ok(blocks)
+        let block = blocks.get(&b);
+        block.map_or_else(Vec::new, |block| {
+            ContactNode::of(block, &catalog.materials, &nodes)
+        })
+    });
+    let group = |(g, nodes): (usize, Vec<ContactNode>)| -> Result<_, InputError> {
+        let of_plan = &plan.groups[g];
+        let numbers = of_plan.numbers.iter();
+        let places = Places {
+            nodes: numbers
+                .map(|(&at, &n)| (at, nodes[n as usize].place()))
+                .collect(),
+            extent,
+        };
+        let mut points = Vec::new();
+        for &j in &plan.tree.nodes[of_plan.node].points {
+            let point = &catalog.points[j as usize];
+            places.check(point, j as usize)?;
+            points.push(point.rename(|at| of_plan.numbers.get(&at).copied()));
+        }
+        let dim = catalog.dim;
+        Ok((g, ContactGroup { points, nodes, dim }))
+    };
+    let groups: Result<_, InputError> = described.into_iter().map(group).collect();
+    comm.agree(groups.map_err(|error| Failure::from(file.refuse(error))))
 }
 
 /// The subdomains of `rank`, those that follow one another in the file read at once.
@@ -52,7 +96,7 @@ fn read_subdomains(
     file: &ProblemFile,
     plan: &Plan,
 ) -> Result<BTreeMap<usize, Subdomain>, Failure> {
-    let owners = plan.subdomain_owners();
+    let owners = plan.owners();
     let own = (0..owners.len()).filter(|&s| owners[s] == rank);
     let mut runs: Vec<Range<usize>> = Vec::new();
     for s in own {
@@ -78,16 +122,14 @@ pub fn check_copies(
     comm: &Comm,
     file: &ProblemFile,
     plan: &Plan,
-    blocks: &BTreeMap<usize, OwnedBlock>,
+    blocks: &BTreeMap<usize, Block>,
 ) -> Result<(), Failure> {
     let mut copies = NodeCopies::new(file.catalog());
     comm.gather(
-        &plan.subdomain_owners(),
+        plan.owners(),
         |s| {
-            // Called on the owner of subdomain s, which has read its block.
-            let block = &blocks[&plan.block_of[s]].block;
-            let own = block.member(s).map(|m| block.members[m].own_nodes());
-            own.unwrap_or_default()
+            let block = blocks.get(&s);
+            block.map_or_else(Default::default, |block| block.subdomain.own_nodes())
         },
         |s, nodes| copies.add(s, nodes),
     );

@@ -11,10 +11,13 @@ pub mod stresses;
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::element::geometry::padded;
+use contact_dd_partition::problem::SubdomainNode;
+
 use crate::bytes::Reals;
 use crate::condense::substitute::Factors;
 use crate::contact::pair::ContactPair;
-use crate::context::Context;
+use crate::context::{Context, Loads};
 use crate::step::StepProblem;
 
 /// The solution on a block.
@@ -22,10 +25,59 @@ use crate::step::StepProblem;
 pub struct BlockSolution {
     /// Displacement, node by node (m).
     pub u: Vec<f64>,
-    /// Force of every condition (N/m).
+    /// Bᵀλ: what contact pushes its nodes with, less than nothing towards the other side (N/m).
+    pub pushes: Vec<(u32, [f64; 3])>,
+}
+
+/// The solution at the points of a contact group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupSolution {
+    /// Force of every point (N/m).
     pub forces: Vec<f64>,
-    /// Which conditions are closed.
+    /// Which points are closed.
     pub closed: Vec<bool>,
+    /// The gap that is left at every point, g − B u (m).
+    pub gaps: Vec<f64>,
+}
+
+/// u and λ on what this rank has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DiscreteSolution {
+    /// On its blocks, by their number.
+    pub blocks: BTreeMap<usize, BlockSolution>,
+    /// On its contact groups, by their number.
+    pub groups: BTreeMap<usize, GroupSolution>,
+}
+
+impl DiscreteSolution {
+    /// Tells contact groups what gaps the displacements leave, and blocks what their forces push. Collective.
+    pub fn share(&mut self, context: &Context<'_>, loads: &Loads) {
+        let &Context { comm, plan, .. } = context;
+        let dim = context.catalog.dim;
+        let u = plan.nodes_to_groups(comm, |b, nodes| {
+            let u = self.blocks.get(&b).map_or(&[][..], |solution| &solution.u);
+            let of_node =
+                |&(at, _): &(SubdomainNode, u32)| padded(&u[at.node as usize * dim..][..dim]);
+            nodes.iter().map(of_node).collect()
+        });
+        for (g, solution) in &mut self.groups {
+            let u: Vec<f64> = u[g]
+                .iter()
+                .flat_map(|u: &[f64; 3]| u[..dim].to_vec())
+                .collect();
+            solution.gaps = context.groups[g].gaps_left(&loads.groups[g], &u);
+        }
+        let pushes = self.groups.iter();
+        let pushes = pushes.map(|(&g, solution)| (g, context.groups[&g].pushes(&solution.forces)));
+        let mut arrived = plan.nodes_to_blocks(comm, &pushes.collect());
+        for (b, solution) in &mut self.blocks {
+            let of_block = arrived.remove(b).unwrap_or_default().into_iter();
+            let each = |(node, pushes): (u32, Vec<[f64; 3]>)| {
+                pushes.into_iter().map(move |push| (node, push))
+            };
+            solution.pushes = of_block.flat_map(each).collect();
+        }
+    }
 }
 
 /// The displacement of every block, node by node.
@@ -41,7 +93,7 @@ pub fn recover(
     factors: Factors<'_>,
     step: &StepProblem<'_>,
     root: Option<(&[f64], &[Vec<u32>])>,
-) -> BTreeMap<usize, BlockSolution> {
+) -> DiscreteSolution {
     let Context { comm, plan, .. } = factors.context;
     let mut boundaries: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     comm.scatter(
@@ -58,25 +110,35 @@ pub fn recover(
             boundaries.insert(plan.clusters[c].node, x);
         },
     );
-    let mut conditions = conditions(factors, &step.pairs);
-    factors
-        .recover(&step.condensed, boundaries)
-        .into_iter()
-        .filter_map(|(b, x)| {
-            let of_block = conditions.remove(&b).unwrap_or_default();
-            let (forces, closed) = of_block.into_iter().unzip();
-            let dofs = &factors.condensed.blocks.get(&b)?.dofs;
-            let solution = BlockSolution {
-                u: step.prescribed.get(&b)?.displacement(dofs, &x),
+    let groups = conditions(factors, &step.pairs).into_iter();
+    let of_group = |(g, conditions): (usize, Vec<(f64, bool)>)| {
+        let (forces, closed) = conditions.into_iter().unzip();
+        let gaps = Vec::new();
+        (
+            g,
+            GroupSolution {
                 forces,
                 closed,
-            };
-            Some((b, solution))
-        })
-        .collect()
+                gaps,
+            },
+        )
+    };
+    let blocks = factors.recover(&step.condensed, boundaries).into_iter();
+    let of_block = |(b, x): (usize, Vec<f64>)| {
+        let dofs = &factors.condensed.blocks.get(&b)?.dofs;
+        let u = step.prescribed.get(&b)?.displacement(dofs, &x);
+        let pushes = Vec::new();
+        Some((b, BlockSolution { u, pushes }))
+    };
+    let mut solution = DiscreteSolution {
+        blocks: blocks.filter_map(of_block).collect(),
+        groups: groups.map(of_group).collect(),
+    };
+    solution.share(&factors.context, &step.loads);
+    solution
 }
 
-/// Forces of the conditions of every block, and which are closed, from the clusters that know.
+/// Forces of the points of every contact group, and which are closed, from the clusters that know.
 /// Collective.
 fn conditions(
     factors: Factors<'_>,

@@ -24,8 +24,7 @@ use crate::output::report::ReportFile;
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
-use crate::read::check_copies;
-use crate::read::read_blocks;
+use crate::read::{check_copies, collect_groups, read_blocks};
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
 use crate::report::log::Narrator;
@@ -76,6 +75,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     let available = afford(comm, &costs)?;
     let blocks = comm.agree(read_blocks(comm.rank(), &file, &plan))?;
     check_copies(comm, &file, &plan, &blocks)?;
+    let groups = collect_groups(comm, &file, &plan, &blocks)?;
     narrator.problem(catalog, &plan);
 
     let context = Context {
@@ -83,6 +83,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         catalog,
         plan: &plan,
         blocks: &blocks,
+        groups: &groups,
         par,
     };
 
@@ -166,7 +167,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         let mut resultants = Resultants::new(catalog, solution.reactions.clone());
         let result = outputs.as_mut().map(|outputs| &mut outputs.result);
         let contacts = &mut resultants.contacts;
-        write_solution(&context, &problem, &solution, result, contacts)?;
+        write_solution(&context, &solution, result, contacts)?;
         seconds.write += lap.elapsed().as_secs_f64();
         state = StepState::after(problem.pairs, outcome.as_ref(), settings.method);
         let totals = outcome.map(|o| StepTotals::new(o, &solution, resultants, analysis));
@@ -227,13 +228,8 @@ fn create_outputs(
     } = context;
     let mut connectivity = Vec::new();
     comm.gather(
-        &plan.subdomain_owners(),
-        |s| {
-            // Called on the owner of subdomain s, which has read its block.
-            let block = &blocks[&plan.block_of[s]].block;
-            let cells = block.member(s).map(|m| &block.members[m].cells);
-            cells.map_or(0, |c| c.connectivity().len())
-        },
+        plan.owners(),
+        |s| (blocks.get(&s)).map_or(0, |block| block.subdomain.cells.connectivity().len()),
         |_, length| connectivity.push(length),
     );
     let create = || -> Result<Outputs, Failure> {

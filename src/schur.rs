@@ -14,4 +14,5 @@ pub mod merge;
 pub mod ordering;
 mod panel;
 pub mod pattern;
+pub mod substitution;
 mod supernodes;

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use crate::condense::blocks::{CondensedBlocks, ContactCluster};
 use crate::condense::clusters::make_load_exact;
-use crate::condense::limits::{limits_of_clusters, prescribe};
+use crate::condense::limits::limits_of_clusters;
 use crate::condense::substitute::Factors;
 use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
@@ -26,7 +26,7 @@ use crate::step::state::StepState;
 /// The problem of a load step, as this rank holds it.
 #[derive(Debug)]
 pub struct StepProblem<'a> {
-    /// What acts on its blocks.
+    /// What acts on its blocks and contact groups.
     pub loads: Loads,
     /// What supports prescribe in them.
     pub prescribed: BTreeMap<usize, Prescribed>,
@@ -58,8 +58,9 @@ impl<'a> Loading<'a> {
     /// Supports that make two sides penetrate.
     pub fn problem(&self, loads: Loads, before: StepState) -> Result<StepProblem<'a>, Failure> {
         let context = &self.context;
-        let prescribed = prescribe(context, self.factors, &loads)?;
-        let limits = limits_of_clusters(context, &loads, &prescribed, self.factors)?;
+        let prescribed = |(&b, loads)| Some((b, Prescribed::new(context.blocks.get(&b)?, loads)));
+        let prescribed = loads.blocks.iter().filter_map(prescribed).collect();
+        let limits = limits_of_clusters(context, &loads)?;
         let condensed = self.condense(&loads, &prescribed);
         let pairs = self.pairs(limits, &condensed, before);
         let interface = self.assemble(&pairs, &condensed);
@@ -83,20 +84,17 @@ impl<'a> Loading<'a> {
             catalog, blocks, ..
         } = self.context;
         let of_block = |(&b, loads)| {
-            let (owned, factors) = (blocks.get(&b)?, self.factors.blocks.get(&b)?);
+            let (block, factors) = (blocks.get(&b)?, self.factors.blocks.get(&b)?);
             let (dofs, springs) = (&factors.dofs, &factors.springs);
             let prescribed = prescribed.get(&b)?;
             let materials = &catalog.materials;
-            Some((
-                b,
-                load(&owned.block, loads, dofs, prescribed, materials, springs),
-            ))
+            Some((b, load(block, loads, dofs, prescribed, materials, springs)))
         };
         let factors = Factors {
             context: self.context,
             condensed: self.factors,
         };
-        factors.condense(loads.iter().filter_map(of_block).collect())
+        factors.condense(loads.blocks.iter().filter_map(of_block).collect())
     }
 
     /// The clusters in contact of this rank under their loads.

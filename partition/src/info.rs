@@ -109,7 +109,7 @@ impl Info {
         let unit = self.problem.catalog.units.length();
         let contacts = self.problem.catalog.contacts.iter().enumerate();
         let gaps = contacts.filter_map(|(index, contact)| {
-            let points = self.problem.points.iter().flatten();
+            let points = self.problem.catalog.points.iter();
             let gaps = points
                 .filter(|point| point.contact as usize == index)
                 .map(|point| point.gap);

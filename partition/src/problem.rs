@@ -3,6 +3,7 @@
 //! The writer and the reader of `problem.h5` share these types; docs/problem-file.md says the
 //! same for somebody who writes one with h5py.
 
+pub mod consistency;
 pub mod copies;
 pub mod read;
 pub mod schema;
@@ -11,8 +12,11 @@ pub mod tree;
 pub mod vtkhdf;
 pub mod write;
 
+use std::collections::HashMap;
+
 use crate::contact_point::ContactPoint;
 use crate::element::Elements;
+use crate::element::geometry::dot;
 use crate::model::{Material, PlaneState, Support};
 use crate::scene::units::Units;
 use crate::solver::SolverSettings;
@@ -22,6 +26,9 @@ pub const VERSION: i64 = 2;
 
 /// Attribute `format` of the file.
 pub const FORMAT: &str = "contact-dd-mpi problem";
+
+/// The square of a unit normal's part that supports leave free above which a node can move along it.
+const LEAST_FREE: f64 = 0.01;
 
 /// How far a unit vector's length may be from 1, and two orthogonal ones' product from 0.
 const UNIT_TOLERANCE: f64 = 1e-10;
@@ -70,6 +77,13 @@ pub struct StepLoads {
 }
 
 impl Subdomain {
+    /// The supports of a node.
+    fn supports_of(&self, node: u32) -> impl Iterator<Item = &Support> {
+        let first = self.supports.partition_point(|s| s.node < node);
+        let from = self.supports[first..].iter();
+        from.take_while(move |s| s.node == node)
+    }
+
     /// Its supports with the values that they have in a load step.
     pub fn supports_in(&self, step: usize) -> impl Iterator<Item = Support> + '_ {
         let loads = self.steps.get(step);
@@ -105,12 +119,36 @@ impl Subdomain {
 }
 
 /// A node of a subdomain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SubdomainNode {
     /// Subdomain.
     pub subdomain: u32,
     /// Node of that subdomain.
     pub node: u32,
+}
+
+/// What the catalog says of a node of a contact point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PointNode {
+    /// Its number on Γ, if several subdomains have it.
+    pub interface: Option<u32>,
+    /// Whether supports leave it free along the normal of the point, or nearly so.
+    pub is_free: bool,
+}
+
+impl PointNode {
+    /// A node that `supports` hold along these directions, in a point with this `normal`.
+    pub fn new(
+        interface: Option<u32>,
+        normal: [f64; 3],
+        supports: impl Iterator<Item = [f64; 3]>,
+    ) -> Self {
+        let held: f64 = supports.map(|d| dot(d, normal).powi(2)).sum();
+        Self {
+            interface,
+            is_free: 1.0 - held > LEAST_FREE,
+        }
+    }
 }
 
 /// What the catalog says of one subdomain.
@@ -153,10 +191,8 @@ pub struct Body {
 
 /// A tree over the subdomains, up which their Schur complements are merged.
 ///
-/// Nodes 0 to N − 1 are the N subdomains, those from N on are inner nodes. The members of a group
-/// in contact have the same parent and are one child of it: the leaves are *blocks*, linear
-/// subdomains or whole groups. Blocks that share a node of Γ are under one root, so that there is
-/// a lowest inner node above all blocks of a node, whose front eliminates it.
+/// Nodes 0 to N − 1 are the N subdomains, those from N on are inner nodes. Subdomains that share a
+/// node of Γ are under one root.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Hierarchy {
     /// The parent of every node, greater than its own number; `None` for a root.
@@ -190,8 +226,12 @@ pub struct Catalog {
     pub interface: Vec<Vec<u32>>,
     /// Number of nodes on Γ.
     pub interface_nodes: usize,
-    /// Number of conditions of each group in contact.
+    /// Number of contact points of each group in contact.
     pub groups: Vec<usize>,
+    /// The contact points, group by group.
+    pub points: Vec<ContactPoint<SubdomainNode>>,
+    /// What is known of the nodes of every contact point.
+    pub point_nodes: Vec<Vec<PointNode>>,
     /// The tree along which Schur complements are merged.
     pub hierarchy: Hierarchy,
     /// How the problem wants to be solved.
@@ -226,6 +266,28 @@ pub struct Problem {
     pub catalog: Catalog,
     /// Subdomains.
     pub subdomains: Vec<Subdomain>,
-    /// Contact points of every group.
-    pub points: Vec<Vec<ContactPoint<SubdomainNode>>>,
+}
+
+impl Problem {
+    /// Finds what the catalog says of the nodes of its contact points.
+    pub(crate) fn describe_points(&mut self) {
+        let numbers: Vec<HashMap<u32, u32>> = (self.subdomains.iter())
+            .map(|s| {
+                s.interface
+                    .iter()
+                    .map(|on| (on.node, on.interface))
+                    .collect()
+            })
+            .collect();
+        let of_point = |point: &ContactPoint<SubdomainNode>| {
+            let nodes = point.entries.iter().map(|&(at, _)| {
+                let subdomain = &self.subdomains[at.subdomain as usize];
+                let supports = subdomain.supports_of(at.node).map(|s| s.direction);
+                let interface = numbers[at.subdomain as usize].get(&at.node).copied();
+                PointNode::new(interface, point.normal(), supports)
+            });
+            nodes.collect()
+        };
+        self.catalog.point_nodes = self.catalog.points.iter().map(of_point).collect();
+    }
 }

@@ -7,7 +7,7 @@ use contact_dd_partition::element::geometry::{advance, cross, dot, padded};
 use serde::{Deserialize, Serialize};
 
 use crate::fem::balance::Balance;
-use crate::fem::block::{Block, OwnedBlock};
+use crate::fem::block::Block;
 use crate::fem::frame::{Frame, support_frames};
 use crate::fem::load::BlockLoads;
 use crate::schur::condensed::InterfaceDof;
@@ -40,7 +40,7 @@ pub struct Most {
 
 impl Most {
     /// Of everything the larger of two.
-    pub(super) fn include(&mut self, other: Self) {
+    pub fn include(&mut self, other: Self) {
         *self = Self {
             residual: larger(self.residual, other.residual),
             scale: larger(self.scale, other.scale),
@@ -110,19 +110,12 @@ pub struct BlockCheck {
 }
 
 impl BlockCheck {
-    /// Checks displacements `u`, node by node, and contact `forces`, one a point.
-    pub fn new(
-        owned: &OwnedBlock,
-        loads: &BlockLoads,
-        balance: &Balance,
-        u: &[f64],
-        forces: &[f64],
-    ) -> Self {
-        let (block, mut check) = (&owned.block, Self::default());
+    /// Checks displacements `u`, node by node.
+    pub fn new(block: &Block, loads: &BlockLoads, balance: &Balance, u: &[f64]) -> Self {
+        let mut check = Self::default();
         check.most.displacement = largest(u);
         check.most.load = balance.largest_load;
         check.equilibrium(block, loads, balance);
-        check.contact(&loads.gaps_left(owned, u), forces);
         for &(node, id) in &block.interface {
             check.shared_nodes.push(id);
             let start = node as usize * block.dim;
@@ -171,7 +164,7 @@ impl BlockCheck {
             if is_shared {
                 of_shared.insert(node, first..of_trace.len());
             }
-            self.external.add(block.points[node], force);
+            self.external.add(block.points()[node], force);
         }
         for &(node, id) in &block.interface {
             for &(axis, residual, scale) in &of_trace[of_shared[&(node as usize)].clone()] {
@@ -181,14 +174,18 @@ impl BlockCheck {
             }
         }
     }
+}
 
-    fn contact(&mut self, gaps: &[f64], forces: &[f64]) {
+impl Most {
+    /// What is largest at contact points with these gaps left and these forces.
+    pub fn at_points(gaps: &[f64], forces: &[f64]) -> Self {
+        let mut most = Self::default();
         for (&gap, &force) in gaps.iter().zip(forces) {
-            let most = &mut self.most;
             most.penetration = larger(most.penetration, gap.min(0.0));
             most.tension = larger(most.tension, force.min(0.0));
             most.contact_force = larger(most.contact_force, force);
             most.complementarity = larger(most.complementarity, gap * force);
         }
+        most
     }
 }

@@ -7,7 +7,7 @@ use crate::comm::is_asked_to_stop;
 use crate::condense::Condensation;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::clusters::take_clusters;
-use crate::condense::limits::{limits_of_clusters, prescribe};
+use crate::condense::limits::limits_of_clusters;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::numbering::check_agreement;
@@ -19,8 +19,7 @@ use crate::schur::merge::{FreeInterfaceDof, Merge, Spare};
 /// clusters. Collective.
 ///
 /// # Errors
-/// A part that can move although its boundary is held, a contact point on Γ, or supports that differ
-/// between subdomains.
+/// A part that can move although its boundary is held, or supports that differ between subdomains.
 pub fn condense_clusters(
     condensation: &Condensation<'_>,
     analysis: &RigidBodyAnalysis,
@@ -42,7 +41,7 @@ pub fn condense_clusters(
             ));
         }
         merging.own_node(v)?;
-        if v < plan.blocks.len() {
+        if v < plan.blocks() {
             condensed_one();
         }
         Ok(())
@@ -59,9 +58,8 @@ pub fn condense_clusters(
         ..
     } = merging;
     let (context, loads) = (&condensation.context, condensation.loads);
-    let limits = prescribe(context, &condensed, loads)
-        .and_then(|prescribed| limits_of_clusters(context, loads, &prescribed, &condensed))
-        .map_err(|failure| context.in_step(failure, 0))?;
+    let limits =
+        limits_of_clusters(context, loads).map_err(|failure| context.in_step(failure, 0))?;
     take_clusters(plan, analysis, limits, waiting, &mut condensed);
     Ok(condensed)
 }
@@ -101,8 +99,8 @@ impl Merging<'_> {
 
     /// Condenses a block or merges the children of an inner node, all of them this rank's.
     fn own_node(&mut self, v: usize) -> Result<(), Failure> {
-        if let Some(owned) = self.condensation.context.blocks.get(&v) {
-            let of_block = self.condensation.condense(v, owned, &mut self.condensed)?;
+        if let Some(block) = self.condensation.context.blocks.get(&v) {
+            let of_block = self.condensation.condense(v, block, &mut self.condensed)?;
             self.waiting.insert(v, of_block);
             return Ok(());
         }
@@ -155,6 +153,7 @@ impl Merging<'_> {
         let (merge, condensed) = Merge::new(
             children,
             &node.eliminated,
+            &self.condensation.replaced(v)?,
             &mut self.spare,
             self.condensation.context.par,
         )
@@ -167,14 +166,8 @@ impl Merging<'_> {
 
     fn moves(&self, v: usize, dof: InterfaceDof) -> Failure {
         let plan = self.condensation.context.plan;
-        let blocks = plan
-            .tree
-            .subtree(v)
-            .into_iter()
-            .filter(|&b| b < plan.blocks.len());
-        let subdomains: Vec<usize> = blocks
-            .flat_map(|b| plan.blocks[b].subdomains.clone())
-            .collect();
+        let under = plan.tree.subtree(v).into_iter();
+        let subdomains: Vec<usize> = under.filter(|&b| b < plan.blocks()).collect();
         let first = subdomains.iter().min().copied().unwrap_or_default();
         let body = self.condensation.context.catalog.subdomains[first].body;
         Failure::ill_posed(format!(

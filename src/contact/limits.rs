@@ -37,23 +37,19 @@ impl Limits {
         };
         for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
             match of {
-                &NormalJumpOf::Unknown {
-                    number,
-                    factor,
-                    constant,
-                } => {
-                    let bound = (gap - constant) / factor;
+                &NormalJumpOf::Unknown { number, factor } => {
+                    let bound = gap / factor;
                     if bound < limits.bounds[number] {
                         limits.bounds[number] = bound;
                         limits.tightest[number] = (j, factor);
                     }
                 }
-                NormalJumpOf::Combination { terms, constant } => {
+                NormalJumpOf::Combination(terms) => {
                     limits.rows.push(terms.clone());
-                    limits.bounds.push(gap - constant);
+                    limits.bounds.push(*gap);
                     limits.tightest.push((j, 1.0));
                 }
-                NormalJumpOf::Prescribed(_) => {}
+                NormalJumpOf::Prescribed => {}
             }
         }
         limits
@@ -134,25 +130,18 @@ mod tests {
     use super::*;
 
     fn unknown(number: usize, factor: f64) -> NormalJumpOf {
-        NormalJumpOf::Unknown {
-            number,
-            factor,
-            constant: 0.0,
-        }
+        NormalJumpOf::Unknown { number, factor }
     }
 
     fn limits(gap: f64) -> Limits {
-        let combination = NormalJumpOf::Combination {
-            terms: vec![(0, 1.0), (1, -2.0)],
-            constant: 0.5,
-        };
+        let combination = NormalJumpOf::Combination(vec![(0, 1.0), (1, -2.0)]);
         let of = [
             unknown(0, 1.0),
             combination,
             unknown(1, 1.0),
             unknown(1, 2.0),
         ];
-        Limits::new(2, &of, &[gap, 3.0, 8.0, 6.0], 0.1)
+        Limits::new(2, &of, &[gap, 2.5, 8.0, 6.0], 0.1)
     }
 
     #[test]

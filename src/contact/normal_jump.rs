@@ -1,11 +1,11 @@
 //! Normal jumps t = b·u: contact conditions B u ≤ g as bounds t ≤ g.
 //!
-//! A condition `b·v ≤ g` bounds the normal jump t = b·v of the two sides. Solving that equation for
-//! one of its unknowns makes t an unknown in that one's place, so that a pair's problem has nothing
-//! but bounds t ≤ g; t = 0 is the bilateral problem (16). Where more conditions meet than there are
+//! A condition `b·v ≤ g` bounds the normal jump t = b·v of the two sides, less what supports prescribe of it.
+//! Solving that equation for one of its unknowns makes t an unknown in that one's place, so that a pair's
+//! problem has nothing but bounds t ≤ g; t = 0 is the bilateral problem (16). Where more conditions meet than there are
 //! directions, what is left of a condition is a combination of normal jumps.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Coefficients of unit normals are of order one; what elimination leaves of a condition that
 /// depends on others is round-off.
@@ -22,25 +22,17 @@ pub enum Variable {
     NormalJump(u32),
 }
 
-/// constant + Σ coefficient·variable.
+/// Σ coefficient·variable.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Affine {
-    /// Constant (m): what supports prescribe.
-    pub constant: f64,
+pub struct Sum {
     /// Terms, a variable once.
     pub terms: Vec<(Variable, f64)>,
 }
 
-/// The normal jump of two sides, b·v, in terms of a block's unknowns.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct NormalJumpRow {
-    /// What supports contribute (m).
-    pub constant: f64,
-    /// Unknowns and coefficients.
-    pub terms: Vec<(u32, f64)>,
-}
+/// The normal jump of two sides, b·v: unknowns and coefficients.
+pub type NormalJumpRow = Vec<(u32, f64)>;
 
-impl Affine {
+impl Sum {
     fn add(&mut self, variable: Variable, coefficient: f64) {
         match self.terms.iter_mut().find(|(v, _)| *v == variable) {
             Some((_, c)) => *c += coefficient,
@@ -66,15 +58,10 @@ impl Affine {
             };
             terms.push((number as usize, factor));
         }
-        let constant = self.constant;
         Some(match terms[..] {
-            [] => NormalJumpOf::Prescribed(constant),
-            [(number, factor)] if factor > 0.0 => NormalJumpOf::Unknown {
-                number,
-                factor,
-                constant,
-            },
-            _ => NormalJumpOf::Combination { terms, constant },
+            [] => NormalJumpOf::Prescribed,
+            [(number, factor)] if factor > 0.0 => NormalJumpOf::Unknown { number, factor },
+            _ => NormalJumpOf::Combination(terms),
         })
     }
 
@@ -84,7 +71,6 @@ impl Affine {
             return;
         };
         let (_, factor) = self.terms.swap_remove(place);
-        self.constant += factor * value.constant;
         for &(v, c) in &value.terms {
             self.add(v, factor * c);
         }
@@ -94,25 +80,18 @@ impl Affine {
 /// Where the normal jump of a condition is found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NormalJumpOf {
-    /// It is `factor`·t + `constant` of an unknown normal jump t, factor > 0. The condition whose
-    /// unknown that is has 1 and 0; one that says the same again shares it.
+    /// It is `factor`·t of an unknown normal jump t, factor > 0. The condition whose unknown that is
+    /// has 1; one that says the same again shares it.
     Unknown {
         /// Number of the normal jump.
         number: usize,
         /// Factor.
         factor: f64,
-        /// Constant (m).
-        constant: f64,
     },
-    /// It is Σ factor·t + `constant` of several unknown normal jumps, or a negative multiple of one.
-    Combination {
-        /// Numbers of the normal jumps and factors.
-        terms: Vec<(usize, f64)>,
-        /// Constant (m).
-        constant: f64,
-    },
-    /// Supports prescribe it on both sides (m).
-    Prescribed(f64),
+    /// It is Σ factor·t of several unknown normal jumps, or a negative multiple of one: numbers and factors.
+    Combination(Vec<(usize, f64)>),
+    /// Supports prescribe it on both sides.
+    Prescribed,
 }
 
 /// For each of `jumps` the condition that it is the unknown of.
@@ -122,7 +101,6 @@ pub fn defining_conditions(of: &[NormalJumpOf], jumps: usize) -> Vec<usize> {
         if let NormalJumpOf::Unknown {
             number,
             factor: 1.0,
-            constant: 0.0,
         } = *of
         {
             defining[number] = j;
@@ -131,39 +109,38 @@ pub fn defining_conditions(of: &[NormalJumpOf], jumps: usize) -> Vec<usize> {
     defining
 }
 
-/// A condition that has unknowns on Γ alone, which can't be replaced: its number.
+/// A condition none of whose unknowns may be replaced: its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OnInterface(pub usize);
+pub struct NoUnknown(pub usize);
 
 /// Normal jumps solved for one unknown each.
 #[derive(Clone, Debug, Default)]
 pub struct NormalJumps {
-    /// The unknowns that the normal jumps replace, by number, in terms of those that stay.
-    pub replaced: HashMap<u32, Affine>,
+    /// The unknown that each normal jump replaces.
+    pub pivots: Vec<u32>,
+    /// These unknowns in terms of those that stay.
+    pub replaced: BTreeMap<u32, Sum>,
     /// Where the normal jump of each condition is found.
     pub of: Vec<NormalJumpOf>,
-    /// Number of unknown normal jumps.
-    pub len: usize,
 }
 
 impl NormalJumps {
     /// Solves each of `rows`, t = b·v, in their order, for one of its unknowns.
     ///
-    /// `may_go` tells which unknowns may be replaced (not those on Γ, which other blocks share),
-    /// `stiffness` how stiff the body is around them: the softer side follows the stiffer one, because
+    /// `may_go` tells which unknowns may be replaced (not those that others share), `stiffness` how stiff the body is around them: the softer side follows the stiffer one, because
     /// a stiff side in terms of a soft one is a small difference of large forces. Where some depend
     /// on others, those that are nearly parallel to others come last: a combination of these would
     /// have large factors.
     ///
     /// # Errors
-    /// The first condition that lies on Γ.
+    /// The first condition none of whose unknowns may be replaced.
     pub fn new(
         rows: &[NormalJumpRow],
         may_go: impl Fn(u32) -> bool,
         stiffness: impl Fn(u32) -> f64,
-    ) -> Result<Self, OnInterface> {
+    ) -> Result<Self, NoUnknown> {
         let as_given = Self::solve(rows, 0.0, &may_go, &stiffness)?;
-        let depends = |of: &NormalJumpOf| matches!(of, NormalJumpOf::Combination { .. });
+        let depends = |of: &NormalJumpOf| matches!(of, NormalJumpOf::Combination(_));
         match as_given.of.iter().any(depends) {
             true => Self::solve(rows, PARALLEL, &may_go, &stiffness),
             false => Ok(as_given),
@@ -177,24 +154,21 @@ impl NormalJumps {
         least: f64,
         may_go: &impl Fn(u32) -> bool,
         stiffness: &impl Fn(u32) -> f64,
-    ) -> Result<Self, OnInterface> {
+    ) -> Result<Self, NoUnknown> {
         let mut uses: HashMap<u32, usize> = HashMap::new();
         for row in rows {
-            for &(v, _) in &row.terms {
+            for &(v, _) in row {
                 *uses.entry(v).or_default() += 1;
             }
         }
-        let prescribed = |row: &NormalJumpRow| NormalJumpOf::Prescribed(row.constant);
         let mut jumps = Self {
-            of: rows.iter().map(prescribed).collect(),
+            of: vec![NormalJumpOf::Prescribed; rows.len()],
             ..Self::default()
         };
-        let mut waiting: Vec<usize> = (0..rows.len())
-            .filter(|&j| !rows[j].terms.is_empty())
-            .collect();
+        let mut waiting: Vec<usize> = (0..rows.len()).filter(|&j| !rows[j].is_empty()).collect();
         for least in [least, 0.0] {
             for j in std::mem::take(&mut waiting) {
-                let terms = &rows[j].terms;
+                let terms = &rows[j];
                 let rest = jumps.remainder(&rows[j]);
                 let largest = terms.iter().fold(0.0, |m: f64, (_, c)| m.max(c.abs()));
                 if rest.largest_displacement() < least * largest {
@@ -204,22 +178,21 @@ impl NormalJumps {
                 let nowhere_else = |v: u32| uses[&v] == 1 && terms.iter().any(|&(own, _)| own == v);
                 jumps.of[j] = jumps
                     .solve_for_one(rest, nowhere_else, may_go, stiffness)
-                    .ok_or(OnInterface(j))?;
+                    .ok_or(NoUnknown(j))?;
             }
         }
         Ok(jumps)
     }
 
     /// A condition's normal jump in terms of what isn't replaced so far.
-    fn remainder(&self, row: &NormalJumpRow) -> Affine {
-        let mut rest = Affine {
-            constant: row.constant,
-            terms: Vec::with_capacity(row.terms.len() + 1),
+    fn remainder(&self, row: &NormalJumpRow) -> Sum {
+        let mut rest = Sum {
+            terms: Vec::with_capacity(row.len() + 1),
         };
-        for &(v, c) in &row.terms {
+        for &(v, c) in row {
             rest.add(Variable::Displacement(v), c);
         }
-        for &(v, _) in &row.terms {
+        for &(v, _) in row {
             if let Some(value) = self.replaced.get(&v) {
                 rest.substitute(Variable::Displacement(v), value);
             }
@@ -231,7 +204,7 @@ impl NormalJumps {
     /// make it; `nowhere_else` tells which unknowns no other condition has.
     fn solve_for_one(
         &mut self,
-        mut rest: Affine,
+        mut rest: Sum,
         nowhere_else: impl Fn(u32) -> bool,
         may_go: &impl Fn(u32) -> bool,
         stiffness: &impl Fn(u32) -> f64,
@@ -252,12 +225,11 @@ impl NormalJumps {
                     .then(stiffness(v).total_cmp(&stiffness(w)))
                     .then(v.cmp(&w))
             })?;
-        let number = self.len;
-        self.len += 1;
+        let number = self.pivots.len();
+        self.pivots.push(pivot);
         rest.add(Variable::NormalJump(number as u32), -1.0);
         let gone = Variable::Displacement(pivot);
         rest.terms.retain(|&(v, c)| v != gone && c.abs() > 1e-15);
-        rest.constant /= -coefficient;
         for (_, c) in &mut rest.terms {
             *c /= -coefficient;
         }
@@ -270,7 +242,6 @@ impl NormalJumps {
         Some(NormalJumpOf::Unknown {
             number,
             factor: 1.0,
-            constant: 0.0,
         })
     }
 }

@@ -66,7 +66,7 @@ fn scatter(block: &Block, dofs: &Dofs, materials: &[Material], stiffness: &mut S
         nodes.clear();
         nodes.extend(cell.nodes());
         points.clear();
-        points.extend(nodes.iter().map(|&n| block.points[n as usize]));
+        points.extend(nodes.iter().map(|&n| block.points()[n as usize]));
         k.set(&cell.kind, &points, &materials[cell.material].stiffness);
         direct.clear();
         direct.extend(nodes.iter().filter_map(|&node| dofs.direct(node)));

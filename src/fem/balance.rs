@@ -2,7 +2,7 @@
 
 use contact_dd_partition::model::Material;
 
-use super::block::OwnedBlock;
+use super::block::Block;
 use super::elasticity::{ElementMatrix, MAX_NODES};
 use super::load::BlockLoads;
 
@@ -20,26 +20,22 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// The balance for displacements `u` and contact forces `forces`, one a point.
+    /// The balance for displacements `u` and what contact makes of it: `pushes` of Bᵀλ on nodes.
     pub fn new(
-        owned: &OwnedBlock,
+        block: &Block,
         loads: &BlockLoads,
         materials: &[Material],
         u: &[f64],
-        forces: &[f64],
+        pushes: &[(u32, [f64; 3])],
     ) -> Self {
-        let OwnedBlock { block, points } = owned;
         let dim = block.dim;
         let mut external = loads.nodal_forces(block);
         let mut scale: Vec<f64> = external.iter().map(|f| f.abs()).collect();
         let largest_load = scale.iter().fold(0.0, |m: f64, f| m.max(*f));
-        for (point, &force) in points.iter().zip(forces) {
-            for (node, row) in point.row() {
-                for component in 0..dim {
-                    let push = row[component] * force;
-                    external[node as usize * dim + component] -= push;
-                    scale[node as usize * dim + component] += push.abs();
-                }
+        for &(node, push) in pushes {
+            for component in 0..dim {
+                external[node as usize * dim + component] -= push[component];
+                scale[node as usize * dim + component] += push[component].abs();
             }
         }
         let mut residual = external.clone();
@@ -51,7 +47,7 @@ impl Balance {
             u_e.clear();
             for node in cell.nodes() {
                 let node = node as usize;
-                points.push(block.points[node]);
+                points.push(block.points()[node]);
                 u_e.extend_from_slice(&u[dim * node..dim * (node + 1)]);
             }
             k.set(&cell.kind, &points, &materials[cell.material].stiffness);

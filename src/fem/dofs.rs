@@ -1,26 +1,17 @@
-//! The unknowns of a block: u = T x + c, with x ordered [I | normal jumps | Γ].
+//! The unknowns of a block: u = T x + c, with x ordered [I | Γ].
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::model::Material;
-
-use super::block::{Block, OwnedBlock};
-use super::bounds::jumps;
+use super::block::Block;
 use super::frame::{Frame, NodeFrames};
 use super::load::BlockLoads;
 use super::sites::{Sites, elimination_order};
-use crate::contact::normal_jump::{NormalJumps, OnInterface, Variable};
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::pattern::Cliques;
 
-/// Why a block's unknowns can't be numbered.
+/// A block has too many unknowns for 32-bit indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DofError {
-    /// A condition lies on Γ.
-    OnInterface(usize),
-    /// Too many unknowns for 32-bit indices.
-    Size,
-}
+pub struct TooManyUnknowns;
 
 /// The unknowns x of a block and T of the displacement u = T x + c that they stand for; c is
 /// [`Prescribed`](super::prescribed::Prescribed) in each load step.
@@ -33,8 +24,6 @@ pub struct Dofs {
     sites: Sites,
     /// Number of interior unknowns I.
     pub interior: usize,
-    /// Number of normal jumps; normal jump j is unknown `interior + j`.
-    pub jumps: usize,
     /// Its unknowns on Γ; they come last, in this order.
     pub interface_dofs: Vec<InterfaceDof>,
 }
@@ -42,25 +31,17 @@ pub struct Dofs {
 const NOT_DIRECT: u32 = u32::MAX;
 
 impl Dofs {
-    /// Numbers the unknowns of `block`: its interior in a fill-reducing order, then the
-    /// normal jump of each of its contact points, then the interface dofs on Γ. Of `loads` the directions of
-    /// supports count, not their values.
+    /// Numbers the unknowns of `block`: its interior in a fill-reducing order, then the interface dofs on Γ.
+    /// Of `loads` the directions of supports count, not their values.
     ///
     /// # Errors
-    /// A condition that lies on Γ, or too many unknowns.
-    pub fn new(
-        owned: &OwnedBlock,
-        loads: &BlockLoads,
-        materials: &[Material],
-    ) -> Result<Self, DofError> {
-        let block = &owned.block;
+    /// Too many unknowns.
+    pub fn new(block: &Block, loads: &BlockLoads) -> Result<Self, TooManyUnknowns> {
         let dim = block.dim;
         if block.nodes() * dim >= u32::MAX as usize {
-            return Err(DofError::Size);
+            return Err(TooManyUnknowns);
         }
-        let frames = NodeFrames::new(owned, loads);
-        let jumps =
-            jumps(owned, materials, &frames).map_err(|OnInterface(j)| DofError::OnInterface(j))?;
+        let frames = NodeFrames::new(block, loads);
         let on_interface = block.is_on_interface();
         let mut is_free = vec![true; block.nodes() * dim];
         for (node, frame) in frames.special() {
@@ -68,13 +49,10 @@ impl Dofs {
                 is_free[node as usize * dim + axis] = frame.prescribed[axis].is_none();
             }
         }
-        for &raw in jumps.replaced.keys() {
-            is_free[raw as usize] = false;
-        }
 
         let mut number = vec![u32::MAX; block.nodes() * dim];
         let mut sites = Sites::new(block.nodes());
-        for node in elimination_order(block, &jumps, |node| {
+        for node in elimination_order(block, |node| {
             let axes = node as usize * dim..(node as usize + 1) * dim;
             !on_interface[node as usize] && is_free[axes].contains(&true)
         }) {
@@ -88,10 +66,6 @@ impl Dofs {
             sites.end();
         }
         let interior = sites.next as usize;
-        for _ in 0..jumps.len {
-            sites.unknown();
-            sites.end();
-        }
         let mut interface_dofs = Vec::new();
         for &(node, id) in &block.interface {
             sites.of_node[node as usize] = sites.len() as u32;
@@ -114,21 +88,13 @@ impl Dofs {
             first: Vec::with_capacity(block.nodes()),
             sites,
             interior,
-            jumps: jumps.len,
             interface_dofs,
         };
         dofs.offsets.push(0);
-        let mut is_replaced = vec![false; block.nodes()];
-        for &raw in jumps.replaced.keys() {
-            is_replaced[raw as usize / dim] = true;
-        }
         for node in 0..block.nodes() as u32 {
             match frames.of(node) {
-                None if !is_replaced[node as usize] => dofs.push_direct(node, &number),
-                frame => {
-                    let frame = frame.unwrap_or(&Frame::CARTESIAN);
-                    dofs.push_node(node, frame, &number, &jumps);
-                }
+                None => dofs.push_direct(node, &number),
+                Some(frame) => dofs.push_node(node, frame, &number),
             }
         }
         Ok(dofs)
@@ -144,55 +110,39 @@ impl Dofs {
         self.first.push(number[raw]);
     }
 
-    /// Appends the rows of T for `node`.
-    fn push_node(&mut self, node: u32, frame: &Frame, number: &[u32], jumps: &NormalJumps) {
+    /// Appends the rows of T for `node`, which supports hold.
+    fn push_node(&mut self, node: u32, frame: &Frame, number: &[u32]) {
         let dim = self.dim;
         let start = self.offsets.len() - 1;
         for component in 0..dim {
             let mut row: BTreeMap<u32, f64> = BTreeMap::new();
             for axis in 0..dim {
                 let along = frame.axes[axis][component];
-                if along == 0.0 {
-                    continue;
-                }
-                let raw = node * dim as u32 + axis as u32;
-                if frame.prescribed[axis].is_some() {
-                    continue;
-                }
-                if let Some(value) = jumps.replaced.get(&raw) {
-                    for &(variable, c) in &value.terms {
-                        let dof = match variable {
-                            Variable::Displacement(v) => number[v as usize],
-                            Variable::NormalJump(j) => self.interior as u32 + j,
-                        };
-                        *row.entry(dof).or_default() += along * c;
-                    }
-                } else {
-                    *row.entry(number[raw as usize]).or_default() += along;
+                if along != 0.0 && frame.prescribed[axis].is_none() {
+                    let raw = node as usize * dim + axis;
+                    *row.entry(number[raw]).or_default() += along;
                 }
             }
             self.terms.extend(row);
             self.offsets.push(self.terms.len() as u32);
         }
-        self.first.push(self.direct_from(node, start));
+        self.first.push(self.direct_from(start));
     }
 
-    /// The first of the unknowns that are the node's components, if they are and make a site: a last
-    /// interior unknown and a first normal jump may follow one another by chance.
-    fn direct_from(&self, node: u32, start: usize) -> u32 {
+    /// The first of the unknowns that are the node's components, if they are.
+    fn direct_from(&self, start: usize) -> u32 {
         let base = &self.terms[self.offsets[start] as usize..];
         let direct = base.len() == self.dim
             && base
                 .iter()
                 .enumerate()
-                .all(|(k, &(dof, c))| c == 1.0 && dof == base[0].0 + k as u32)
-            && self.sites.unknowns_of(node) == (base[0].0..base[0].0 + self.dim as u32);
+                .all(|(k, &(dof, c))| c == 1.0 && dof == base[0].0 + k as u32);
         if direct { base[0].0 } else { NOT_DIRECT }
     }
 
     /// Number of unknowns.
     pub fn len(&self) -> usize {
-        self.interior + self.jumps + self.interface_dofs.len()
+        self.interior + self.interface_dofs.len()
     }
 
     /// Whether there is no unknown.
@@ -234,8 +184,7 @@ impl Dofs {
         }
     }
 
-    /// Where the pattern's sites begin: runs of unknowns that the same cells have, those of a node
-    /// or a normal jump.
+    /// Where the pattern's sites begin: runs of unknowns that the same cells have, those of a node.
     pub fn site_starts(&self) -> &[u32] {
         &self.sites.starts
     }

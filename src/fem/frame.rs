@@ -1,11 +1,11 @@
-//! Node frames: the axes along which a node is held, pushed, or free.
+//! Node frames: the axes along which a node is held or free.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use contact_dd_partition::element::geometry::{dot, length};
 use contact_dd_partition::model::Support;
 
-use super::block::OwnedBlock;
+use super::block::Block;
 use super::load::BlockLoads;
 
 /// An orthonormal frame of a node. Its displacement is u = Σ v_k·axis_k.
@@ -92,25 +92,9 @@ pub struct NodeFrames {
 }
 
 impl NodeFrames {
-    /// Frames of supported nodes, and of nodes of contact points along the first one's normal.
-    pub fn new(owned: &OwnedBlock, loads: &BlockLoads) -> Self {
-        let OwnedBlock { block, points } = owned;
-        let mut frames = support_frames(&loads.supports, block.dim);
-        let shared: BTreeSet<u32> = match points[..] {
-            [] => Default::default(),
-            _ => block.interface.iter().map(|&(node, _)| node).collect(),
-        };
-        for point in points {
-            for (node, push) in point.row() {
-                let norm = length(push);
-                if norm > 0.0 && !shared.contains(&node) {
-                    let direction = push.map(|c| c / norm);
-                    frames
-                        .entry(node)
-                        .or_insert_with(|| Frame::along(&[direction], block.dim));
-                }
-            }
-        }
+    /// Frames of supported nodes.
+    pub fn new(block: &Block, loads: &BlockLoads) -> Self {
+        let frames = support_frames(&loads.supports, block.dim);
         let mut place = vec![u32::MAX; block.nodes()];
         for (k, &node) in frames.keys().enumerate() {
             place[node as usize] = k as u32;

@@ -1,11 +1,9 @@
 //! What acts on a block in a load step, and the load that it makes over the block's unknowns.
 
-use std::collections::BTreeMap;
-
 use contact_dd_partition::model::{Material, Support};
 
 use super::assembly::Spring;
-use super::block::{Block, OwnedBlock};
+use super::block::Block;
 use super::dofs::Dofs;
 use super::elasticity::{ElementMatrix, MAX_NODES};
 use super::prescribed::Prescribed;
@@ -13,47 +11,25 @@ use super::prescribed::Prescribed;
 /// What acts on a block in a load step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BlockLoads {
-    /// Prescribed displacements, in ascending order of the block's nodes, each once.
+    /// Prescribed displacements, in ascending order of the block's nodes.
     pub supports: Vec<Support>,
     /// Forces on the block's nodes, of which a node may have several (N per metre of thickness).
     pub forces: Vec<(u32, [f64; 3])>,
-    /// The gap at every contact point (m).
-    pub gaps: Vec<f64>,
 }
 
 impl BlockLoads {
     /// What acts on a block in load step `step`.
-    pub fn new(owned: &OwnedBlock, step: usize) -> Self {
-        let members = || owned.block.members.iter().zip(&owned.block.node_of);
-        let supports = members().flat_map(|(member, node_of)| {
-            member.supports_in(step).map(|support| Support {
-                node: node_of[support.node as usize],
-                ..support
-            })
-        });
-        let forces = members().flat_map(|(member, node_of)| {
-            let forces = member.forces_in(step);
-            forces.map(|(node, force)| (node_of[node as usize], force))
-        });
+    pub fn new(block: &Block, step: usize) -> Self {
         Self {
-            supports: once_each(supports),
-            forces: forces.collect(),
-            gaps: owned.points.iter().map(|point| point.gap).collect(),
+            supports: block.subdomain.supports_in(step).collect(),
+            forces: block.subdomain.forces_in(step).collect(),
         }
     }
 
-    /// The largest displacement that is prescribed, gaps among them (m).
+    /// The largest displacement that is prescribed (m).
     pub fn largest_prescribed(&self) -> f64 {
         let prescribed = self.supports.iter().map(|support| support.value.abs());
-        let gaps = self.gaps.iter().map(|gap| gap.abs());
-        prescribed.chain(gaps).fold(0.0, f64::max)
-    }
-
-    /// The gaps that displacements `u`, node by node, leave at the points of a block: g − n·⟦u⟧ (m).
-    pub fn gaps_left(&self, owned: &OwnedBlock, u: &[f64]) -> Vec<f64> {
-        let gaps = owned.points.iter().zip(&self.gaps);
-        gaps.map(|(point, gap)| gap - point.normal_jump(owned.block.dim, u))
-            .collect()
+        prescribed.fold(0.0, f64::max)
     }
 
     /// The forces, node by node.
@@ -68,19 +44,7 @@ impl BlockLoads {
     }
 }
 
-/// Supports in ascending order of nodes, those that several members of a block have once.
-fn once_each(supports: impl Iterator<Item = Support>) -> Vec<Support> {
-    let mut kept: BTreeMap<u32, Vec<Support>> = BTreeMap::new();
-    for support in supports {
-        let of_node = kept.entry(support.node).or_default();
-        if !of_node.contains(&support) {
-            of_node.push(support);
-        }
-    }
-    kept.into_values().flatten().collect()
-}
-
-/// Tᵀ (f − K c), with c what supports prescribe and normal jumps begin with, and `springs` in K.
+/// Tᵀ (f − K c), with c what supports prescribe, and `springs` in K.
 pub fn load(
     block: &Block,
     loads: &BlockLoads,
@@ -117,7 +81,7 @@ fn subtract_held(block: &Block, prescribed: &Prescribed, materials: &[Material],
             continue;
         }
         points.clear();
-        points.extend(cell.nodes().map(|node| block.points[node as usize]));
+        points.extend(cell.nodes().map(|node| block.points()[node as usize]));
         k.set(&cell.kind, &points, &materials[cell.material].stiffness);
         for (a, node) in cell.nodes().enumerate() {
             for component in 0..dim {

@@ -146,7 +146,7 @@ pub fn corners(cell: &BlockCell<'_>) -> impl Iterator<Item = usize> + Clone {
 
 /// From one node to another (m).
 fn way(block: &Block, from: usize, to: usize) -> [f64; 2] {
-    [0, 1].map(|k| block.points[to][k] - block.points[from][k])
+    [0, 1].map(|k| block.points()[to][k] - block.points()[from][k])
 }
 
 /// The corners that a local node on an edge or in the face lies between.

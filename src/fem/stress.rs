@@ -14,7 +14,7 @@ use super::recovery::{Recovery, corners};
 /// The stresses of a block.
 #[derive(Clone, Debug)]
 pub struct BlockStress {
-    /// Of every cell, member by member (Pa), order XX YY ZZ XY YZ XZ.
+    /// Of every cell (Pa), order XX YY ZZ XY YZ XZ.
     pub cells: Vec<[f64; 6]>,
     /// What is recovered in each material, ascending.
     pub recoveries: Vec<Recovery>,
@@ -27,7 +27,7 @@ pub struct RecoveredStress {
     materials: Vec<usize>,
     /// At every node in each of them (Pa).
     at_nodes: Vec<Vec<[f64; COMPONENTS]>>,
-    /// Estimated error of every cell, member by member.
+    /// Estimated error of every cell.
     pub errors: Vec<CellError>,
 }
 
@@ -40,16 +40,14 @@ impl BlockStress {
         u: &[f64],
         patches: &mut Vec<PatchSum>,
     ) -> Self {
-        let mut present: Vec<usize> = (block.members.iter())
-            .flat_map(|member| &member.cell_material)
+        let mut present: Vec<usize> = (block.subdomain.cell_material.iter())
             .map(|&material| material as usize)
             .collect();
         present.sort_unstable();
         present.dedup();
         patches.clear();
         patches.resize(block.nodes() * present.len(), PatchSum::default());
-        let count = block.members.iter().map(|m| m.cells.len()).sum();
-        let mut cells = Vec::with_capacity(count);
+        let mut cells = Vec::with_capacity(block.subdomain.cells.len());
         let mut local = LocalCell::empty();
         for cell in block.cells() {
             local.take(block, &cell, u);
@@ -65,7 +63,7 @@ impl BlockStress {
             for point in cell.kind.stress_points() {
                 let (at, sigma) = local.at(point, material, plane);
                 for node in corners(&cell) {
-                    let from = &block.points[node];
+                    let from = &block.points()[node];
                     around[node].add_sample([at[0] - from[0], at[1] - from[1]], sigma);
                 }
             }
@@ -99,7 +97,7 @@ impl BlockStress {
             if cell.kind == ElementKind::Triangle3 {
                 let mut nodes = cell.nodes().map(|node| node as usize);
                 let nodes: [usize; 3] = std::array::from_fn(|_| nodes.next().unwrap_or_default());
-                let area = cell.kind.measure(&nodes.map(|node| block.points[node]));
+                let area = cell.kind.measure(&nodes.map(|node| block.points()[node]));
                 let recovered = nodes.map(|node| &at_nodes[node]);
                 errors.push(compliance.triangle(area, stress, recovered));
                 continue;
@@ -119,25 +117,21 @@ impl BlockStress {
 }
 
 impl RecoveredStress {
-    /// The stress recovered at the nodes of member `m` (Pa); where two of its materials meet, that
-    /// of the first one.
-    pub fn of_member(&self, block: &Block, m: usize) -> Vec<[f64; 6]> {
-        let member = &block.members[m];
-        let mut material = vec![u32::MAX; member.points.len()];
-        for ((_, nodes), &cell_material) in member.cells.iter().zip(&member.cell_material) {
-            for &node in nodes {
+    /// The stress recovered at the nodes (Pa); where two materials meet, that of the first one.
+    pub fn at_nodes(&self, block: &Block) -> Vec<[f64; 6]> {
+        let mut material = vec![usize::MAX; block.nodes()];
+        for cell in block.cells() {
+            for node in cell.nodes() {
                 let material = &mut material[node as usize];
-                *material = cell_material.min(*material);
+                *material = cell.material.min(*material);
             }
         }
-        (block.node_of[m].iter().zip(&material))
-            .map(|(&node, &material)| {
-                let place = self.materials.binary_search(&(material as usize));
-                let [xx, yy, zz, xy] =
-                    place.map_or([0.0; 4], |place| self.at_nodes[place][node as usize]);
-                [xx, yy, zz, xy, 0.0, 0.0]
-            })
-            .collect()
+        let stress = |(node, material): (usize, &usize)| {
+            let place = self.materials.binary_search(material);
+            let [xx, yy, zz, xy] = place.map_or([0.0; 4], |place| self.at_nodes[place][node]);
+            [xx, yy, zz, xy, 0.0, 0.0]
+        };
+        material.iter().enumerate().map(stress).collect()
     }
 }
 
@@ -163,7 +157,7 @@ impl LocalCell {
         self.points.clear();
         self.u.clear();
         for node in cell.nodes().map(|node| node as usize) {
-            self.points.push(block.points[node]);
+            self.points.push(block.points()[node]);
             (self.u).extend_from_slice(&u[block.dim * node..block.dim * (node + 1)]);
         }
     }

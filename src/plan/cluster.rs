@@ -10,7 +10,7 @@ const MAX_CONDITIONS: usize = 2_000;
 pub enum Merging {
     /// A cluster may hold groups: S_CON is that of the groups with what is around them.
     All,
-    /// Only linear subdomains are merged: S_0 and S_CON are those of the paper, (15).
+    /// Only what has no contact is merged: S_0 and S_CON are those of the paper, (15).
     Linear,
 }
 
@@ -33,14 +33,15 @@ impl ClusterPlan {
     }
 }
 
-/// The nodes of `tree` that are clusters. Its roots are left to the interface problem.
+/// The nodes of `tree` that are clusters. Its roots are left to the interface problem, unless contact points
+/// belong to them; what is under a node with contact points is one cluster with it.
 pub(super) fn cluster_nodes(tree: &Tree, merging: Merging) -> Vec<usize> {
+    let most = match merging {
+        Merging::All => MAX_CONDITIONS,
+        Merging::Linear => 0,
+    };
     tree.highest(|v| {
         let node = &tree.nodes[v];
-        let may_hold_contact = match merging {
-            Merging::All => node.groups <= 1 || node.conditions <= MAX_CONDITIONS,
-            Merging::Linear => node.groups == 0,
-        };
-        node.parent.is_some() && may_hold_contact
+        !node.points.is_empty() || node.parent.is_some() && node.conditions <= most
     })
 }

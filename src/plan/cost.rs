@@ -33,7 +33,7 @@ const PER_PAIR_OF_CONDITIONS: f64 = 33.0;
 pub(super) fn weight(tree: &Tree, v: usize, dim: usize) -> f64 {
     let front = tree.front(v, dim);
     let (eliminated, kept) = (front.eliminated as f64, front.kept as f64);
-    let beside = match v < tree.blocks {
+    let beside = match v < tree.subdomains {
         true => PER_UNKNOWN * eliminated + PER_ENTRY_OF_BLOCK * kept * kept,
         false => PER_ENTRY_OF_FRONT * (eliminated + kept).powi(2),
     };
@@ -77,12 +77,10 @@ impl Plan {
             let front = self.tree.front(v, catalog.dim);
             let estimate = &mut estimates[owner];
             estimate.flops += self.tree.flops(v, catalog.dim);
-            if let Some(block) = self.blocks.get(v) {
-                let cells = block.subdomains.iter();
-                let cells: usize = cells.map(|&s| catalog.subdomains[s].cells).sum();
+            if let Some(subdomain) = catalog.subdomains.get(v) {
                 let (n, kept) = (front.eliminated.max(1) as f64, front.kept as f64);
                 let [least, more] = PER_NODE_OF_CELL;
-                let of_kind = least + more * block.nodes(catalog) as f64 / cells.max(1) as f64;
+                let of_kind = least + more * subdomain.nodes as f64 / subdomain.cells.max(1) as f64;
                 estimate.bytes += PER_DOF * of_kind * n * n.log2() + PER_BOUNDARY * kept * n.sqrt();
             } else {
                 let size = (front.eliminated + front.kept) as f64;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::recover::BlockSolution;
-use crate::recover::fixed_active_set::{BlockLoad, FixedActiveSet};
+use crate::recover::DiscreteSolution;
+use crate::recover::fixed_active_set::FixedActiveSet;
 
 /// Estimates κ = λ_max / λ_min of A = D^(−1/2) K D^(−1/2), K the stiffness of the whole scene with its
 /// contacts fixed as they are, D its diagonal: round-off makes a relative error of about
@@ -13,10 +13,7 @@ use crate::recover::fixed_active_set::{BlockLoad, FixedActiveSet};
 /// average: little less than 1 / λ_min² is improbable (Dixon, SIAM J. Numer. Anal. 20, 1983). λ_max is
 /// at most the number of unknowns of a cell. Collective; the root gets the estimate, `None` where it
 /// can't be made.
-pub fn condition_number(
-    fixed: &FixedActiveSet<'_>,
-    solutions: &BTreeMap<usize, BlockSolution>,
-) -> Option<f64> {
+pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Option<f64> {
     let able = fixed.root.is_some_and(|root| root.can_solve());
     if !fixed.context.comm.decide(able) {
         return None;
@@ -27,13 +24,13 @@ pub fn condition_number(
         (b, load.collect())
     };
     let loads = fixed.condensed.blocks.keys().map(start).collect();
-    let answer = solve(fixed, solutions, loads);
+    let answer = fixed.solve(loads, solution, &BTreeMap::new()).blocks;
 
     // xᵀ D x, summed block by block so that ranks make no difference.
     let mut largest = 0;
     let mut sum = 0.0;
     fixed.context.comm.gather(
-        &fixed.context.plan.owners(),
+        fixed.context.plan.owners(),
         |b| {
             let answer = answer.get(&b).into_iter().flatten();
             let terms = answer.zip(diagonal(fixed, b)).map(|(x, d)| d * x * x);
@@ -47,27 +44,6 @@ pub fn condition_number(
     (fixed.root.is_some() && sum > 0.0).then(|| largest as f64 * sum.sqrt())
 }
 
-/// K⁻¹ `loads`, the active set fixed. Collective.
-fn solve(
-    fixed: &FixedActiveSet<'_>,
-    solutions: &BTreeMap<usize, BlockSolution>,
-    loads: BTreeMap<usize, Vec<f64>>,
-) -> BTreeMap<usize, Vec<f64>> {
-    let load_of = |(b, load): (usize, Vec<f64>)| {
-        let closed = solutions
-            .get(&b)
-            .map_or_else(Vec::new, |s| s.closed.clone());
-        let load = BlockLoad {
-            load,
-            missing: vec![0.0; closed.len()],
-            closed,
-        };
-        (b, load)
-    };
-    let changes = fixed.solve(loads.into_iter().map(load_of).collect());
-    changes.into_iter().map(|(b, c)| (b, c.x)).collect()
-}
-
 fn diagonal<'a>(fixed: &FixedActiveSet<'a>, b: usize) -> &'a [f64] {
     let block = fixed.condensed.blocks.get(&b);
     block.map_or(&[], |block| &block.diagonal)
@@ -75,9 +51,9 @@ fn diagonal<'a>(fixed: &FixedActiveSet<'a>, b: usize) -> &'a [f64] {
 
 /// The most unknowns that a cell of block b has.
 fn largest_cell(fixed: &FixedActiveSet<'_>, b: usize) -> usize {
-    fixed.context.blocks.get(&b).map_or(0, |owned| {
-        let nodes = owned.block.cells().map(|cell| cell.kind.nodes()).max();
-        nodes.unwrap_or(0) * owned.block.dim
+    fixed.context.blocks.get(&b).map_or(0, |block| {
+        let nodes = block.cells().map(|cell| cell.kind.nodes()).max();
+        nodes.unwrap_or(0) * block.dim
     })
 }
 

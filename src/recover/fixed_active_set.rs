@@ -14,8 +14,8 @@ use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
 use crate::interface::problem::InterfaceProblem;
 use crate::plan::Plan;
-use crate::recover::BlockSolution;
 use crate::recover::motions::Motions;
+use crate::recover::{BlockSolution, DiscreteSolution};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::schur::local::CondensedLoad;
 use crate::step::StepProblem;
@@ -59,24 +59,13 @@ impl FixedActiveSetRoot<'_> {
     }
 }
 
-/// A load on a block.
+/// What a load does, on this rank.
 #[derive(Clone, Debug, Default)]
-pub struct BlockLoad {
-    /// Force on every unknown (N/m).
-    pub load: Vec<f64>,
-    /// Which of its conditions are closed.
-    pub closed: Vec<bool>,
-    /// What the sides of every condition still have to close where it is closed (m).
-    pub missing: Vec<f64>,
-}
-
-/// What a load does to a block.
-#[derive(Clone, Debug, Default)]
-pub struct BlockChange {
-    /// Change of every unknown.
-    pub x: Vec<f64>,
-    /// Change of the force of every condition, 0 where open.
-    pub forces: Vec<f64>,
+pub struct Change {
+    /// Change of the unknowns of every block.
+    pub blocks: BTreeMap<usize, Vec<f64>>,
+    /// Change of the forces of every contact group, 0 where open.
+    pub forces: BTreeMap<usize, Vec<f64>>,
 }
 
 impl<'a> FixedActiveSet<'a> {
@@ -117,38 +106,37 @@ impl<'a> FixedActiveSet<'a> {
 
     /// What balances at the nodes of block b of this rank; `None` for another rank's.
     pub fn balance(&self, b: usize, solution: &BlockSolution) -> Option<Balance> {
-        let owned = self.context.blocks.get(&b)?;
         Some(Balance::new(
-            owned,
-            self.step.loads.get(&b)?,
+            self.context.blocks.get(&b)?,
+            self.step.loads.blocks.get(&b)?,
             &self.context.catalog.materials,
             &solution.u,
-            &solution.forces,
+            &solution.pushes,
         ))
     }
 
-    /// The change that `loads` on the blocks of this rank, and those on the others', make to them.
-    /// Collective.
-    pub fn solve(&self, loads: BTreeMap<usize, BlockLoad>) -> BTreeMap<usize, BlockChange> {
+    /// The change that `loads` on the unknowns of the blocks of this rank, and those on the others', make where
+    /// the points of `solution` stay open or closed and the closed ones still have to close by `missing`, nothing
+    /// where a group isn't named. Collective.
+    pub fn solve(
+        &self,
+        loads: BTreeMap<usize, Vec<f64>>,
+        solution: &DiscreteSolution,
+        missing: &BTreeMap<usize, Vec<f64>>,
+    ) -> Change {
         let factors = self.factors();
-        let mut conditions: BTreeMap<usize, Vec<(bool, f64)>> = BTreeMap::new();
-        let mut on_blocks: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-        for (b, load) in loads {
-            on_blocks.insert(b, load.load);
-            let of_block = load.closed.into_iter().zip(load.missing);
-            conditions.insert(b, of_block.collect());
-        }
-        let limits = self.limits(factors.collect_conditions(conditions));
-        let condensed = factors.condense(on_blocks);
+        let conditions = solution.groups.iter().map(|(g, of_group)| {
+            let none = vec![0.0; of_group.closed.len()];
+            let missing = missing.get(g).unwrap_or(&none).iter().copied();
+            (*g, of_group.closed.iter().copied().zip(missing).collect())
+        });
+        let limits = self.limits(factors.collect_conditions(conditions.collect()));
+        let condensed = factors.condense(loads);
         let (forces, boundaries) = self.solve_interface(&limits, &condensed);
-        let mut forces = factors.spread_conditions(forces);
-        let recovered = factors.recover(&condensed, boundaries);
-        (recovered.into_iter())
-            .map(|(b, x)| {
-                let forces = forces.remove(&b).unwrap_or_default();
-                (b, BlockChange { x, forces })
-            })
-            .collect()
+        Change {
+            forces: factors.spread_conditions(forces),
+            blocks: factors.recover(&condensed, boundaries),
+        }
     }
 
     /// For every cluster in contact of this rank, which limits are open and what the others lack.

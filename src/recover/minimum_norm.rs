@@ -1,31 +1,32 @@
 //! Settling rigid motions that nothing resists: the solution's part along them is taken out.
 
-use std::collections::BTreeMap;
+use contact_dd_partition::contact_point::ContactPoint;
 
 use crate::certificate::Certificate;
+use crate::context::Context;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::motions::{Field, Motions};
 use crate::recover::refine::replace_if_as_good;
-use crate::recover::{BlockSolution, displacements};
+use crate::recover::{DiscreteSolution, GroupSolution, displacements};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::closing_motion::with_closing_motions;
 use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::released_modes::ReleasedModes;
+use crate::vector::largest as largest_entry;
 
 /// A contact force, relative to the terms of the equilibrium at its nodes, that is round-off.
 const ROUND_OFF: f64 = 1e-14;
-/// A gap, relative to the largest displacement of its block, that is open.
+/// A gap, relative to the largest displacement, that is open.
 const OPENED: f64 = 1e-13;
 
 /// Makes the displacement of all blocks, node by node, orthogonal to every motion that is free
 /// whatever the contacts do, in the Euclidean sense over the nodes of the bodies that take part.
 /// Collective.
-pub fn remove_free_modes(
-    fixed: &FixedActiveSet<'_>,
-    solutions: &mut BTreeMap<usize, BlockSolution>,
-) {
-    let displacement = solutions.iter_mut().map(|(&b, s)| (b, &mut s.u)).collect();
+pub fn remove_free_modes(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
+    let blocks = solution.blocks.iter_mut();
+    let displacement = blocks.map(|(&b, s)| (b, &mut s.u)).collect();
     fixed.free.project(fixed, Field::Shared, displacement);
+    solution.share(&fixed.context, &fixed.step.loads);
 }
 
 /// What settling released modes came to.
@@ -62,20 +63,20 @@ impl MinimumNorm {
 pub fn take_minimum_norm(
     fixed: &FixedActiveSet<'_>,
     analysis: &RigidBodyAnalysis,
-    solutions: &mut BTreeMap<usize, BlockSolution>,
+    solution: &mut DiscreteSolution,
     certificate: &mut Certificate,
 ) -> MinimumNorm {
     if !analysis.movable {
         return MinimumNorm::default();
     }
-    let mut nearer = solutions.clone();
+    let mut nearer = solution.clone();
     let mut minimum_norm = move_nearer(fixed, analysis, &mut nearer);
     if minimum_norm.has_released_modes {
-        let (after, taken) = replace_if_as_good(fixed, solutions, nearer, *certificate);
+        let (after, taken) = replace_if_as_good(fixed, solution, nearer, *certificate);
         *certificate = after;
         minimum_norm.conclude(taken);
     } else {
-        *solutions = nearer;
+        *solution = nearer;
     }
     minimum_norm
 }
@@ -84,10 +85,11 @@ pub fn take_minimum_norm(
 fn move_nearer(
     fixed: &FixedActiveSet<'_>,
     analysis: &RigidBodyAnalysis,
-    solutions: &mut BTreeMap<usize, BlockSolution>,
+    solution: &mut DiscreteSolution,
 ) -> MinimumNorm {
-    let mut displacement = with_closing_motions(&fixed.context, displacements(solutions), analysis);
-    let released = released_modes(fixed, analysis, solutions);
+    let blocks = displacements(&solution.blocks);
+    let mut displacement = with_closing_motions(&fixed.context, blocks, analysis);
+    let released = released_modes(fixed, analysis, solution);
     let mut list: Vec<FreeMotion> =
         (released.as_ref()).map_or_else(Vec::new, |l| l.motions.clone());
     fixed.context.comm.broadcast(&mut list);
@@ -108,37 +110,42 @@ fn move_nearer(
         .map(|released| released.coefficients(&products));
     let mut coefficients = found.unwrap_or_default();
     fixed.context.comm.broadcast(&mut coefficients);
-    let all = solutions.iter_mut().map(|(&b, s)| (b, &mut s.u)).collect();
+    let blocks = solution.blocks.iter_mut();
+    let all = blocks.map(|(&b, s)| (b, &mut s.u)).collect();
     motions.take_out(fixed, Field::Shared, &coefficients, all);
+    solution.share(&fixed.context, &fixed.step.loads);
     let mut minimum_norm = MinimumNorm {
         has_released_modes: list.len() > fixed.free.list.len(),
         ..MinimumNorm::default()
     };
-    fixed.context.comm.gather(
-        &fixed.context.plan.group_owners(),
+    let (comm, plan) = (fixed.context.comm, fixed.context.plan);
+    let mut largest: f64 = 0.0;
+    comm.gather(
+        plan.owners(),
+        |b| largest_entry(&solution.blocks[&b].u),
+        |_, of_block| largest = largest.max(of_block),
+    );
+    comm.broadcast(&mut largest);
+    comm.gather(
+        &plan.group_owners(),
         |g| {
-            let b = fixed.context.plan.groups[g];
-            let opened = solutions.get_mut(&b).map(|s| open(fixed, b, s));
-            opened.unwrap_or(0)
+            solution
+                .groups
+                .get_mut(&g)
+                .map_or(0, |of_group| open(of_group, OPENED * largest))
         },
         |_, opened| minimum_norm.opened += opened,
     );
+    solution.share(&fixed.context, &fixed.step.loads);
     minimum_norm.warnings = released.map_or_else(Vec::new, |released| released.warnings);
     minimum_norm
 }
 
-/// Opens the conditions of block b that have a gap, and counts them.
-fn open(fixed: &FixedActiveSet<'_>, b: usize, solution: &mut BlockSolution) -> usize {
-    let Some(owned) = fixed.context.blocks.get(&b) else {
-        return 0;
-    };
-    let largest = solution.u.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+/// Opens the points of a group that have a gap, and counts them.
+fn open(solution: &mut GroupSolution, closed_up_to: f64) -> usize {
     let mut opened = 0;
-    let Some(loads) = fixed.step.loads.get(&b) else {
-        return 0;
-    };
-    for (j, gap) in loads.gaps_left(owned, &solution.u).into_iter().enumerate() {
-        if solution.closed[j] && gap > OPENED * largest {
+    for (j, &gap) in solution.gaps.iter().enumerate() {
+        if solution.closed[j] && gap > closed_up_to {
             solution.closed[j] = false;
             solution.forces[j] = 0.0;
             opened += 1;
@@ -147,48 +154,41 @@ fn open(fixed: &FixedActiveSet<'_>, b: usize, solution: &mut BlockSolution) -> u
     opened
 }
 
-/// The released modes of `solutions`, on the root. Collective.
+/// The released modes of a `solution`, on the root. Collective.
 fn released_modes(
     fixed: &FixedActiveSet<'_>,
     analysis: &RigidBodyAnalysis,
-    solutions: &BTreeMap<usize, BlockSolution>,
+    solution: &DiscreteSolution,
 ) -> Option<ReleasedModes> {
+    let Context {
+        comm, plan, groups, ..
+    } = fixed.context;
+    let dim = fixed.context.catalog.dim;
+    let scales = plan.nodes_to_groups(comm, |b, nodes| {
+        let balance = fixed.balance(b, &solution.blocks[&b]);
+        let scale = balance.map_or_else(Vec::new, |balance| balance.scale);
+        let largest = |at: u32| largest_entry(&scale[at as usize * dim..][..dim]);
+        nodes.iter().map(|(at, _)| largest(at.node)).collect()
+    });
     let mut carrying = Vec::new();
     let mut gaps = Vec::new();
-    fixed.context.comm.gather(
-        &fixed.context.plan.group_owners(),
+    comm.gather(
+        &plan.group_owners(),
         |g| {
-            let b = fixed.context.plan.groups[g];
-            solutions
-                .get(&b)
-                .and_then(|solution| conditions(fixed, b, solution))
-                .unwrap_or_default()
+            let of_group = &solution.groups[&g];
+            let scale = |point: &ContactPoint<u32>| {
+                let nodes = point.entries.iter();
+                nodes.fold(0.0, |m: f64, (node, _)| m.max(scales[&g][*node as usize]))
+            };
+            let points = groups[&g].points.iter().zip(&of_group.forces);
+            let carrying = points.map(|(point, &force)| force > ROUND_OFF * scale(point));
+            (carrying.collect::<Vec<bool>>(), of_group.gaps.clone())
         },
-        |_, (of_block, left)| {
-            carrying.extend(of_block);
+        |_, (of_group, left)| {
+            carrying.extend(of_group);
             gaps.extend(left);
         },
     );
     let scene = analysis.scene.as_ref()?;
     Some(scene.released_modes(&analysis.motions.free, &carrying, &gaps))
-}
-
-/// For every condition of block b whether it carries force, and what gap it has left.
-fn conditions(
-    fixed: &FixedActiveSet<'_>,
-    b: usize,
-    solution: &BlockSolution,
-) -> Option<(Vec<bool>, Vec<f64>)> {
-    let owned = fixed.context.blocks.get(&b)?;
-    let dim = owned.block.dim;
-    let scale = fixed.balance(b, solution)?.scale;
-    let mut carrying = Vec::new();
-    for (point, &force) in owned.points.iter().zip(&solution.forces) {
-        let nodes = point.entries.iter();
-        let around = nodes.flat_map(|&(node, _)| &scale[node as usize * dim..][..dim]);
-        let largest = around.fold(0.0, |m: f64, s| m.max(*s));
-        carrying.push(force > ROUND_OFF * largest);
-    }
-    let gaps = fixed.step.loads.get(&b)?.gaps_left(owned, &solution.u);
-    Some((carrying, gaps))
 }

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 
-use crate::fem::block::OwnedBlock;
-use crate::plan::Plan;
+use crate::fem::block::Block;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::motion::BodyFrame;
@@ -57,10 +56,10 @@ impl<'a> Motions<'a> {
     ) -> MotionProducts {
         let dim = fixed.context.catalog.dim;
         let modes = BodyFrame::count(dim);
-        let first_of = first_blocks(fixed.context.catalog, fixed.context.plan);
+        let first_of = first_blocks(fixed.context.catalog);
         let mut of_bodies: BTreeMap<usize, MotionProducts> = BTreeMap::new();
         fixed.context.comm.gather(
-            &fixed.context.plan.owners(),
+            fixed.context.plan.owners(),
             |b| {
                 let mut of_block: BTreeMap<usize, MotionProducts> = BTreeMap::new();
                 if let (Some(owned), Some(field)) = (fixed.context.blocks.get(&b), fields.get(&b)) {
@@ -100,7 +99,7 @@ impl<'a> Motions<'a> {
         fields: BTreeMap<usize, &mut Vec<f64>>,
     ) {
         let dim = fixed.context.catalog.dim;
-        let first_of = first_blocks(fixed.context.catalog, fixed.context.plan);
+        let first_of = first_blocks(fixed.context.catalog);
         let taken: Vec<Vec<f64>> = (0..self.frames.len())
             .map(|body| {
                 let mut sum = vec![0.0; BodyFrame::count(dim)];
@@ -150,17 +149,16 @@ fn of_body(
 }
 
 /// Calls `at` with every node of a block, its body and its place.
-fn visit(owned: &OwnedBlock, mut at: impl FnMut(usize, usize, &[f64; 3])) {
-    let block = &owned.block;
-    for (node, (x, &body)) in block.points.iter().zip(&block.bodies).enumerate() {
-        at(node, body as usize, x);
+fn visit(block: &Block, mut at: impl FnMut(usize, usize, &[f64; 3])) {
+    for (node, x) in block.points().iter().enumerate() {
+        at(node, block.subdomain.body, x);
     }
 }
 
-/// The lowest block at every node of Γ.
-fn first_blocks(catalog: &Catalog, plan: &Plan) -> Vec<usize> {
+/// The lowest block at every node that several have.
+fn first_blocks(catalog: &Catalog) -> Vec<usize> {
     let mut first = vec![usize::MAX; catalog.interface_nodes];
-    for (nodes, &b) in catalog.interface.iter().zip(&plan.block_of) {
+    for (b, nodes) in catalog.interface.iter().enumerate() {
         for &node in nodes {
             let first = &mut first[node as usize];
             *first = b.min(*first);
@@ -170,10 +168,10 @@ fn first_blocks(catalog: &Catalog, plan: &Plan) -> Vec<usize> {
 }
 
 /// Which nodes of block b no lower one has.
-fn first_in(owned: &OwnedBlock, b: usize, first_of: &[usize]) -> Vec<bool> {
-    let mut is_first = vec![true; owned.block.nodes()];
-    for &(node, id) in &owned.block.interface {
-        is_first[node as usize] = first_of[id as usize] >= b;
+fn first_in(block: &Block, b: usize, first_of: &[usize]) -> Vec<bool> {
+    let mut is_first = vec![true; block.nodes()];
+    for on in &block.subdomain.interface {
+        is_first[on.node as usize] = first_of[on.interface as usize] >= b;
     }
     is_first
 }

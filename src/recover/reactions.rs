@@ -20,7 +20,7 @@ pub fn reactions(
         })
         .collect();
     fixed.context.comm.gather(
-        &fixed.context.plan.owners(),
+        fixed.context.plan.owners(),
         |b| match solutions.get(&b) {
             Some(solution) => of_block(fixed, b, solution),
             None => Vec::new(),
@@ -41,18 +41,19 @@ fn of_block(
     solution: &BlockSolution,
 ) -> Vec<(u32, [f64; 3], [f64; 3])> {
     let mut reactions = Vec::new();
-    let Some(owned) = fixed.context.blocks.get(&b) else {
+    let Some(block) = fixed.context.blocks.get(&b) else {
         return reactions;
     };
     let held = fixed
         .step
         .loads
+        .blocks
         .get(&b)
         .map_or(&[][..], |loads| &loads.supports);
     if held.is_empty() {
         return reactions;
     }
-    let dim = owned.block.dim;
+    let dim = block.dim;
     let residual = fixed
         .balance(b, solution)
         .map_or_else(Vec::new, |b| b.residual);
@@ -63,7 +64,7 @@ fn of_block(
         let along: f64 = (residual.iter().zip(&support.direction[..dim]))
             .map(|(r, d)| r * d)
             .sum();
-        let at = owned.block.points[support.node as usize];
+        let at = block.points()[support.node as usize];
         let force = support.direction.map(|d| -along * d);
         reactions.push((support.condition, at, force));
     }

@@ -3,10 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::certificate::check::BlockCheck;
+use crate::certificate::check::{BlockCheck, Most};
 use crate::certificate::{Certificate, certificate};
-use crate::recover::BlockSolution;
-use crate::recover::fixed_active_set::{BlockLoad, FixedActiveSet};
+use crate::recover::DiscreteSolution;
+use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::motions::Field;
 
 /// Equilibrium and penetration above which a solution is refined.
@@ -16,41 +16,37 @@ const GOOD: f64 = 1e-14;
 /// Most refinements.
 const MAX_REFINEMENTS: usize = 3;
 
-/// Refines `solutions` until the certificate holds or gets no better, and returns it; on the root
+/// Refines `solution` until the certificate holds or gets no better, and returns it; on the root
 /// it is that of the whole solution. Collective.
-pub fn refine(
-    fixed: &FixedActiveSet<'_>,
-    solutions: &mut BTreeMap<usize, BlockSolution>,
-) -> Certificate {
-    let mut best = check(fixed, solutions);
+pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Certificate {
+    let mut best = check(fixed, solution);
     for _ in 0..MAX_REFINEMENTS {
         if !decide(fixed, worst(&best) > LIMIT) {
             break;
         }
-        let mut refined = solutions.clone();
+        let mut refined = solution.clone();
         correct(fixed, &mut refined);
         let after = check(fixed, &refined);
         if !decide(fixed, worst(&after) < 0.5 * worst(&best)) {
             break;
         }
-        *solutions = refined;
+        *solution = refined;
         best = after;
     }
     best
 }
 
-/// Puts `nearer` solutions, refined, in the place of `solutions` unless their certificate is a worse one,
-/// and returns the certificate and whether it did. Collective.
+/// Puts a `nearer` solution, refined, in the place of `solution` unless its certificate is a worse one, and returns the certificate and whether it did. Collective.
 pub fn replace_if_as_good(
     fixed: &FixedActiveSet<'_>,
-    solutions: &mut BTreeMap<usize, BlockSolution>,
-    mut nearer: BTreeMap<usize, BlockSolution>,
+    solution: &mut DiscreteSolution,
+    mut nearer: DiscreteSolution,
     certificate: Certificate,
 ) -> (Certificate, bool) {
     let after = refine(fixed, &mut nearer);
     let as_good = worst(&after) <= worst(&certificate).max(GOOD);
     if decide(fixed, as_good) {
-        *solutions = nearer;
+        *solution = nearer;
         (after, true)
     } else {
         (certificate, false)
@@ -70,71 +66,77 @@ fn decide(fixed: &FixedActiveSet<'_>, decision: bool) -> bool {
 }
 
 /// The certificate, on the root. Collective.
-fn check(fixed: &FixedActiveSet<'_>, solutions: &BTreeMap<usize, BlockSolution>) -> Certificate {
+fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate {
+    let (comm, plan) = (fixed.context.comm, fixed.context.plan);
     let of_block = |b: usize| {
-        let (owned, solution) = (fixed.context.blocks.get(&b)?, solutions.get(&b)?);
-        let mut check = BlockCheck::new(
-            owned,
-            fixed.step.loads.get(&b)?,
-            &fixed.balance(b, solution)?,
-            &solution.u,
-            &solution.forces,
-        );
+        let (block, of_block) = (fixed.context.blocks.get(&b)?, solution.blocks.get(&b)?);
+        let balance = fixed.balance(b, of_block)?;
+        let loads = fixed.step.loads.blocks.get(&b)?;
+        let mut check = BlockCheck::new(block, loads, &balance, &of_block.u);
         let stiffness = fixed.condensed.blocks.get(&b)?.diagonal.iter().copied();
         check.most.rest = fixed.closing_motions * stiffness.fold(0.0, f64::max);
         Some(check)
     };
     let mut checks = Vec::new();
-    fixed.context.comm.gather(
-        &fixed.context.plan.owners(),
+    comm.gather(
+        plan.owners(),
         |b| of_block(b).unwrap_or_default(),
         |_, check| checks.push(check),
+    );
+    let mut at_points = Most::default();
+    comm.gather(
+        &plan.group_owners(),
+        |g| {
+            let of_group = &solution.groups[&g];
+            Most::at_points(&of_group.gaps, &of_group.forces)
+        },
+        |_, most| at_points.include(most),
     );
     match fixed.root {
         Some(_) => certificate(
             &checks,
-            fixed.context.catalog.interface_nodes,
+            at_points,
+            plan.tree.interface_nodes,
             fixed.context.catalog.dim,
         ),
         None => Certificate::default(),
     }
 }
 
-/// Adds the solution of the linear problem whose load is what `solutions` leave unbalanced. What of it
+/// Adds the solution of the linear problem whose load is what `solution` leaves unbalanced. What of it
 /// drives a free motion no displacement can balance: it is round-off, of loads and of stiffnesses that
 /// are 0 along the motion but for theirs. It is left on all nodes that move, where it is least; the
 /// springs at the motions' pins would bear it each at one node.
-fn correct(fixed: &FixedActiveSet<'_>, solutions: &mut BTreeMap<usize, BlockSolution>) {
-    let residual =
-        |(&b, solution): (&usize, &BlockSolution)| Some((b, fixed.balance(b, solution)?.residual));
-    let mut residuals: BTreeMap<usize, Vec<f64>> = solutions.iter().filter_map(residual).collect();
+fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
+    let residual = |(&b, of_block)| Some((b, fixed.balance(b, of_block)?.residual));
+    let mut residuals: BTreeMap<usize, Vec<f64>> =
+        solution.blocks.iter().filter_map(residual).collect();
     let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
     fixed.free.project(fixed, Field::Summed, fields);
-    let unbalanced = |(&b, solution): (&usize, &BlockSolution)| {
+    let on_unknowns = |(b, residual): (usize, Vec<f64>)| {
         let dofs = &fixed.condensed.blocks.get(&b)?.dofs;
-        let owned = fixed.context.blocks.get(&b)?;
         let mut load = vec![0.0; dofs.len()];
-        dofs.add_load(residuals.get(&b)?, &mut load);
-        let missing = fixed.step.loads.get(&b)?.gaps_left(owned, &solution.u);
-        let closed = solution.closed.clone();
-        Some((
-            b,
-            BlockLoad {
-                load,
-                closed,
-                missing,
-            },
-        ))
+        dofs.add_load(&residual, &mut load);
+        Some((b, load))
     };
-    let loads = solutions.iter().filter_map(unbalanced).collect();
-    for (b, change) in fixed.solve(loads) {
+    let loads = residuals.into_iter().filter_map(on_unknowns).collect();
+    let missing = solution.groups.iter();
+    let missing = missing.map(|(&g, of_group)| (g, of_group.gaps.clone()));
+    let change = fixed.solve(loads, solution, &missing.collect());
+    for (b, x) in change.blocks {
         let block = fixed.condensed.blocks.get(&b);
-        let (Some(solution), Some(block)) = (solutions.get_mut(&b), block) else {
-            continue;
-        };
-        block.dofs.add_change(&change.x, &mut solution.u);
-        for (force, change) in solution.forces.iter_mut().zip(change.forces) {
+        if let (Some(of_block), Some(block)) = (solution.blocks.get_mut(&b), block) {
+            block.dofs.add_change(&x, &mut of_block.u);
+        }
+    }
+    for (g, changes) in change.forces {
+        let forces = solution
+            .groups
+            .get_mut(&g)
+            .map(|of_group| &mut of_group.forces);
+        for (force, change) in forces.into_iter().flatten().zip(changes) {
             *force = (*force + change).max(0.0);
         }
     }
+    solution.share(&fixed.context, &fixed.step.loads);
 }

@@ -11,15 +11,15 @@ use crate::recover::minimum_norm::{MinimumNorm, remove_free_modes, take_minimum_
 use crate::recover::reactions::reactions;
 use crate::recover::refine::refine;
 use crate::recover::stresses::{Stress, error_estimate, stresses};
-use crate::recover::{BlockSolution, displacements, recover};
+use crate::recover::{DiscreteSolution, displacements, recover};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::closing_motion::with_closing_motions;
 
 /// What is known once U is.
 #[derive(Debug)]
 pub struct Solution {
-    /// Displacement without the bodies' closing motions, forces and closed conditions of every block.
-    pub blocks: BTreeMap<usize, BlockSolution>,
+    /// Displacement without the bodies' closing motions, contact forces and closed points.
+    pub discrete: DiscreteSolution,
     /// Displacement with it, node by node (m).
     pub displacement: BTreeMap<usize, Vec<f64>>,
     /// Stresses, unless they are left out.
@@ -51,22 +51,23 @@ impl Solution {
             fixed.context.catalog,
         );
         let numbers = fixed.root.map(|root| &root.numbering.interface_dofs[..]);
-        let mut blocks = recover(fixed.factors(), fixed.step, u.zip(numbers));
-        remove_free_modes(fixed, &mut blocks);
-        let mut certificate = refine(fixed, &mut blocks);
-        let minimum_norm = take_minimum_norm(fixed, analysis, &mut blocks, &mut certificate);
+        let mut discrete = recover(fixed.factors(), fixed.step, u.zip(numbers));
+        remove_free_modes(fixed, &mut discrete);
+        let mut certificate = refine(fixed, &mut discrete);
+        let minimum_norm = take_minimum_norm(fixed, analysis, &mut discrete, &mut certificate);
         // A released mode has no stiffness that could be compared.
         let condition = match minimum_norm.has_released_modes {
             true => None,
-            false => condition_number(fixed, &blocks),
+            false => condition_number(fixed, &discrete),
         };
+        let blocks = &discrete.blocks;
         let stress =
-            with_stress.then(|| stresses(comm, fixed.context.blocks, &blocks, catalog, plan));
+            with_stress.then(|| stresses(comm, fixed.context.blocks, blocks, catalog, plan));
         Self {
-            displacement: with_closing_motions(&fixed.context, displacements(&blocks), analysis),
-            reactions: reactions(fixed, &blocks),
+            displacement: with_closing_motions(&fixed.context, displacements(blocks), analysis),
+            reactions: reactions(fixed, blocks),
             estimate: (stress.as_ref()).map(|stress| error_estimate(comm, stress, plan)),
-            blocks,
+            discrete,
             stress,
             certificate,
             condition,

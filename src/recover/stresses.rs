@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::comm::Comm;
-use crate::fem::block::{Block, OwnedBlock};
+use crate::fem::block::Block;
 use crate::fem::estimate::CellError;
 use crate::fem::patch::{PatchSum, Polynomial};
 use crate::fem::recovery::Recovery;
@@ -19,7 +19,7 @@ use crate::recover::BlockSolution;
 /// The stresses of a block.
 #[derive(Clone, Debug)]
 pub struct Stress {
-    /// Of every cell, member by member (Pa).
+    /// Of every cell (Pa).
     pub cells: Vec<[f64; 6]>,
     /// At nodes, with the cells' error.
     pub recovered: RecoveredStress,
@@ -48,7 +48,7 @@ impl Part for (Polynomial, f64) {
 /// Stresses of this rank's blocks. Collective.
 pub fn stresses(
     comm: &Comm,
-    blocks: &BTreeMap<usize, OwnedBlock>,
+    blocks: &BTreeMap<usize, Block>,
     solutions: &BTreeMap<usize, BlockSolution>,
     catalog: &Catalog,
     plan: &Plan,
@@ -56,7 +56,7 @@ pub fn stresses(
     // Fresh memory for every block would cost more than what is done with it.
     let mut patches = Vec::new();
     let found = solutions.iter().filter_map(|(b, solution)| {
-        let block = &blocks.get(b)?.block;
+        let block = blocks.get(b)?;
         let (materials, u) = (&catalog.materials, &solution.u);
         let stress = BlockStress::new(block, materials, catalog.plane, u, &mut patches);
         Some((*b, (block, stress)))
@@ -106,9 +106,8 @@ type Place = (u32, usize, usize);
 
 impl<'a> Exchange<'a> {
     fn new(comm: &'a Comm, catalog: &Catalog, plan: &Plan) -> Self {
-        let mut ranks: Vec<Vec<usize>> = vec![Vec::new(); catalog.interface_nodes];
-        for (nodes, &block) in catalog.interface.iter().zip(&plan.block_of) {
-            let owner = plan.node_owners[block];
+        let mut ranks: Vec<Vec<usize>> = vec![Vec::new(); plan.tree.interface_nodes];
+        for (nodes, &owner) in catalog.interface.iter().zip(&plan.node_owners) {
             for &node in nodes {
                 let ranks = &mut ranks[node as usize];
                 if let Err(at) = ranks.binary_search(&owner) {

@@ -8,14 +8,12 @@ use self::parcel::Parcel;
 use crate::comm::ROOT;
 use crate::context::Context;
 use crate::error::Failure;
-use crate::fem::block::OwnedBlock;
-use crate::fem::load::BlockLoads;
+use crate::fem::contact_group::ContactGroup;
 use crate::output::result::{ContactRow, ContactState, SubdomainResults};
 use crate::output::resultants::ContactResultant;
 use crate::output::vtkhdf::ResultFile;
-use crate::recover::BlockSolution;
+use crate::recover::GroupSolution;
 use crate::recover::solution::Solution;
-use crate::step::StepProblem;
 
 /// Streams all subdomains and contact rows to the root, which writes a slab of subdomains as soon
 /// as it is complete. Collective; `file` is the root's.
@@ -28,7 +26,6 @@ use crate::step::StepProblem;
 /// The file can't be written.
 pub fn write_solution(
     context: &Context<'_>,
-    step: &StepProblem<'_>,
     solution: &Solution,
     mut file: Option<&mut ResultFile>,
     contacts: &mut [ContactResultant],
@@ -48,11 +45,11 @@ pub fn write_solution(
     for parcel in &parcels {
         match (parcel.owner, comm.is_root()) {
             // What is the root's own needs no message.
-            (ROOT, true) => parcel.append_to(&mut slab, blocks, solution, plan),
+            (ROOT, true) => parcel.append_to(&mut slab, blocks, solution),
             (owner, true) => slab.append(comm.receive(owner)),
             (owner, false) if owner == comm.rank() => {
                 sent.restart(parcel.subdomains.start);
-                parcel.append_to(&mut sent, blocks, solution, plan);
+                parcel.append_to(&mut sent, blocks, solution);
                 comm.send(ROOT, &sent);
             }
             _ => {}
@@ -64,14 +61,7 @@ pub fn write_solution(
     }
     comm.gather(
         &plan.group_owners(),
-        |g| {
-            let b = plan.groups[g];
-            let of_block = || {
-                let (owned, loads) = (blocks.get(&b)?, step.loads.get(&b)?);
-                Some(contact_rows(owned, loads, solution.blocks.get(&b)?))
-            };
-            of_block().unwrap_or_default()
-        },
+        |g| contact_rows(&context.groups[&g], &solution.discrete.groups[&g]),
         |_, rows| {
             for (point, state) in &rows {
                 contacts[point.contact as usize].add(point, state);
@@ -83,21 +73,17 @@ pub fn write_solution(
     comm.agree(failed.map_err(Failure::from))
 }
 
-/// The contact points of a block, and the solution there.
-fn contact_rows(
-    owned: &OwnedBlock,
-    loads: &BlockLoads,
-    solution: &BlockSolution,
-) -> Vec<ContactRow> {
-    let gaps = loads.gaps_left(owned, &solution.u).into_iter().enumerate();
-    let row = |(j, gap): (usize, f64)| {
+/// The points of a contact group, and the solution there.
+fn contact_rows(group: &ContactGroup, solution: &GroupSolution) -> Vec<ContactRow> {
+    let gaps = solution.gaps.iter().enumerate();
+    let row = |(j, gap): (usize, &f64)| {
         let closed = solution.closed[j];
         let state = ContactState {
             gap: if closed { 0.0 } else { gap.max(0.0) },
             force: solution.forces[j],
             closed,
         };
-        (owned.points[j].clone(), state)
+        (group.points[j].clone(), state)
     };
     gaps.map(row).collect()
 }

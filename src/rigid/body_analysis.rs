@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::problem::{Catalog, Subdomain};
+use contact_dd_partition::problem::Subdomain;
 use serde::{Deserialize, Serialize};
 
 use super::analysis::{RigidMotions, Scene};
@@ -12,10 +12,8 @@ use super::cluster_modes::cluster_modes;
 use super::energy::RigidModes;
 use super::motion::BodyFrame;
 use super::rows::rigid_rows;
-use crate::comm::Comm;
+use crate::context::Context;
 use crate::error::Failure;
-use crate::fem::block::OwnedBlock;
-use crate::plan::Plan;
 
 /// Free rigid motions, and the frames that they are written in.
 #[derive(Clone, Debug, Default)]
@@ -48,23 +46,23 @@ impl RigidBodyAnalysis {
 ///
 /// # Errors
 /// The load drives a motion that nothing holds.
-pub fn analyse_bodies(
-    comm: &Comm,
-    blocks: &BTreeMap<usize, OwnedBlock>,
-    catalog: &Catalog,
-    plan: &Plan,
-    step: usize,
-) -> Result<RigidBodyAnalysis, Failure> {
-    let subdomains: BTreeMap<usize, &Subdomain> = blocks
-        .values()
-        .flat_map(|owned| owned.block.members.iter().map(|m| (m.index, m)))
-        .collect();
-    let owners = plan.subdomain_owners();
-    let frames = body_frames(comm, &subdomains, catalog, &owners);
-    let (rows, conditions) = rigid_rows(comm, blocks, catalog, plan, &frames);
+pub fn analyse_bodies(context: &Context<'_>, step: usize) -> Result<RigidBodyAnalysis, Failure> {
+    let Context {
+        comm,
+        catalog,
+        plan,
+        blocks,
+        groups,
+        ..
+    } = *context;
+    let subdomains: BTreeMap<usize, &Subdomain> =
+        (blocks.iter().map(|(&b, block)| (b, &block.subdomain))).collect();
+    let owners = plan.owners();
+    let frames = body_frames(comm, &subdomains, catalog, owners);
+    let (rows, conditions) = rigid_rows(comm, groups, plan, &frames);
     let scene = Scene {
         dim: catalog.dim,
-        bodies: body_states(comm, &subdomains, catalog, &owners, &frames, step),
+        bodies: body_states(comm, &subdomains, catalog, owners, &frames, step),
         names: catalog.bodies.iter().map(|b| b.name.clone()).collect(),
         rows,
         conditions,

@@ -15,7 +15,6 @@ use super::kinematics::Kinematics;
 use super::motion::BodyFrame;
 use super::nonnegative;
 use crate::context::{Context, Loads};
-use crate::fem::block::OwnedBlock;
 
 /// Drive that is left, relative to all, that counts as none.
 const BALANCED: f64 = 1e-9;
@@ -154,26 +153,29 @@ pub fn without_closing_motions(
         return loads;
     }
     let dim = context.catalog.dim;
-    for (b, loads) in &mut loads {
-        let Some(OwnedBlock { block, points }) = context.blocks.get(b) else {
-            continue;
-        };
-        let moved = |node: u32| {
-            let node = node as usize;
-            moved(
-                analysis,
-                dim,
-                block.bodies[node] as usize,
-                &block.points[node],
-            )
-        };
-        for (point, gap) in points.iter().zip(&mut loads.gaps) {
+    for (b, loads) in &mut loads.blocks {
+        let block = &context.blocks[b];
+        for support in &mut loads.supports {
+            let at = &block.points()[support.node as usize];
+            let moved = moved(analysis, dim, block.subdomain.body, at);
+            reduce(&mut support.value, &support.direction, &moved);
+        }
+    }
+    for (g, loads) in &mut loads.groups {
+        let group = &context.groups[g];
+        let nodes = group.nodes.iter();
+        let moved: Vec<[f64; 3]> = nodes
+            .map(|node| moved(analysis, dim, node.body, &node.at))
+            .collect();
+        for (point, gap) in group.points.iter().zip(&mut loads.gaps) {
             for (node, row) in point.row() {
-                reduce(gap, &row, &moved(node));
+                reduce(gap, &row, &moved[node as usize]);
             }
         }
-        for support in &mut loads.supports {
-            reduce(&mut support.value, &support.direction, &moved(support.node));
+        for ((node, held), moved) in group.nodes.iter().zip(&mut loads.held).zip(&moved) {
+            for ((direction, _), value) in node.supports.iter().zip(held) {
+                reduce(value, direction, moved);
+            }
         }
     }
     loads
@@ -199,14 +201,13 @@ pub fn with_closing_motions<'a>(
         analysis.longest_closing_motion() == 0.0,
     );
     let of_block = |(b, u): (usize, &[f64])| {
-        let block = &context.blocks.get(&b)?.block;
+        let block = context.blocks.get(&b)?;
         let mut u = u.to_vec();
         if stays {
             return Some((b, u));
         }
-        let nodes = block.points.iter().zip(&block.bodies);
-        for ((x, &body), u) in nodes.zip(u.chunks_exact_mut(dim)) {
-            let moved = moved(analysis, dim, body as usize, x);
+        for (x, u) in block.points().iter().zip(u.chunks_exact_mut(dim)) {
+            let moved = moved(analysis, dim, block.subdomain.body, x);
             u.iter_mut().zip(moved).for_each(|(u, m)| *u += m);
         }
         Some((b, u))

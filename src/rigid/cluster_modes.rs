@@ -97,9 +97,9 @@ pub(super) fn cluster_modes(
     let mut home: Vec<Option<usize>> = vec![None; catalog.bodies.len()];
     let mut elsewhere = vec![false; catalog.bodies.len()];
     let clusters = plan.clusters_of_blocks();
-    for (subdomain, &block) in catalog.subdomains.iter().zip(&plan.block_of) {
-        let known = home[subdomain.body].get_or_insert(clusters[block]);
-        elsewhere[subdomain.body] |= *known != clusters[block];
+    for (subdomain, &cluster) in catalog.subdomains.iter().zip(&clusters) {
+        let known = home[subdomain.body].get_or_insert(cluster);
+        elsewhere[subdomain.body] |= *known != cluster;
     }
     let kinematics = Kinematics::new(scene.dim, &scene.bodies);
     let mut motions = BTreeMap::new();

@@ -6,8 +6,7 @@ use contact_dd_partition::problem::Catalog;
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Failure;
-use crate::fem::block::OwnedBlock;
-use crate::fem::load::BlockLoads;
+use crate::fem::contact_group::{ContactGroup, GroupLoads};
 use crate::rigid::nonnegative::residual;
 
 /// How far obstacles may overlap, relative to the gaps and displacements that they prescribe.
@@ -23,30 +22,23 @@ type HalfSpace = ([f64; 3], f64);
 ///
 /// # Errors
 /// The first node that can't, with its contacts.
-pub fn check(owned: &OwnedBlock, loads: &BlockLoads, catalog: &Catalog) -> Result<(), Failure> {
+pub fn check(group: &ContactGroup, loads: &GroupLoads, catalog: &Catalog) -> Result<(), Failure> {
     let mut at_node: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for (j, point) in owned.points.iter().enumerate() {
+    for (j, point) in group.points.iter().enumerate() {
         if let [(node, _)] = point.entries[..] {
             at_node.entry(node).or_default().push(j);
-        }
-    }
-    let block = &owned.block;
-    let mut supports: BTreeMap<u32, Vec<HalfSpace>> = BTreeMap::new();
-    for support in &loads.supports {
-        if at_node.contains_key(&support.node) {
-            let (d, value) = (support.direction, support.value);
-            let both = [(d, value), (d.map(|c| -c), -value)];
-            supports.entry(support.node).or_default().extend(both);
         }
     }
     for (node, at) in at_node {
         let of_points = at
             .iter()
-            .map(|&j| (owned.points[j].normal(), loads.gaps[j]));
-        let held = supports.remove(&node).unwrap_or_default();
+            .map(|&j| (group.points[j].normal(), loads.gaps[j]));
+        let contact_node = &group.nodes[node as usize];
+        let supports = contact_node.supports.iter().zip(&loads.held[node as usize]);
+        let held = supports.flat_map(|(&(d, _), &value)| [(d, value), (d.map(|c| -c), -value)]);
         let all: Vec<HalfSpace> = of_points.chain(held).collect();
         if at.len() > 1 && !leave_a_place(&all) {
-            let names = at.iter().map(|&j| owned.points[j].contact as usize);
+            let names = at.iter().map(|&j| group.points[j].contact as usize);
             let names: Vec<String> = names
                 .map(|contact| format!("'{}'", catalog.contacts[contact].name))
                 .collect();
@@ -54,7 +46,7 @@ pub fn check(owned: &OwnedBlock, loads: &BlockLoads, catalog: &Catalog) -> Resul
                 "contact {}: what is prescribed at node {} leaves no place for it; expected \
                  obstacles and displacements that don't contradict each other",
                 names.join(" and "),
-                block.tags[node as usize]
+                contact_node.tag
             )));
         }
     }

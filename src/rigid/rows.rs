@@ -2,20 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::problem::Catalog;
-
 use super::analysis::RigidRow;
 use super::motion::BodyFrame;
 use crate::comm::Comm;
-use crate::fem::block::OwnedBlock;
+use crate::fem::contact_group::ContactGroup;
 use crate::plan::Plan;
 
 /// The conditions against the rigid motions of the bodies, group by group, and how many each group has;
 /// on the root. Collective.
 pub(super) fn rigid_rows(
     comm: &Comm,
-    blocks: &BTreeMap<usize, OwnedBlock>,
-    catalog: &Catalog,
+    groups: &BTreeMap<usize, ContactGroup>,
     plan: &Plan,
     frames: &[BodyFrame],
 ) -> (Vec<RigidRow>, Vec<usize>) {
@@ -23,26 +20,24 @@ pub(super) fn rigid_rows(
     let mut conditions = Vec::new();
     comm.gather(
         &plan.group_owners(),
-        |g| match blocks.get(&plan.groups[g]) {
-            Some(owned) => of_block(owned, catalog.dim, frames),
-            None => Vec::new(),
-        },
-        |_, of_block| {
-            conditions.push(of_block.len());
-            rows.extend(of_block);
+        |g| of_group(&groups[&g], frames),
+        |_, of_group| {
+            conditions.push(of_group.len());
+            rows.extend(of_group);
         },
     );
     (rows, conditions)
 }
 
-fn of_block(owned: &OwnedBlock, dim: usize, frames: &[BodyFrame]) -> Vec<RigidRow> {
-    let block = &owned.block;
+fn of_group(group: &ContactGroup, frames: &[BodyFrame]) -> Vec<RigidRow> {
     let against = |(node, row): (u32, [f64; 3])| {
-        let body = block.bodies[node as usize] as usize;
-        let x = &block.points[node as usize];
-        (body, frames[body].action(dim, x, &row))
+        let node = &group.nodes[node as usize];
+        (
+            node.body,
+            frames[node.body].action(group.dim, &node.at, &row),
+        )
     };
-    let points = owned.points.iter();
+    let points = group.points.iter();
     points
         .map(|point| RigidRow {
             bodies: point.row().map(against).collect(),

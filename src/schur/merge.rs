@@ -8,6 +8,8 @@
 //!
 //! are dense: the multifrontal method of Duff and Reid, with the blocks as its leaves.
 
+use std::collections::BTreeMap;
+
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
@@ -17,6 +19,7 @@ use faer::{Accum, Mat, MatMut, Par};
 use super::condensed::Condensed;
 use super::front::partial_cholesky;
 use super::local::CondensedLoad;
+use super::substitution::{Front, Replaced, Substitution};
 use crate::schur::condensed::InterfaceDof;
 
 /// What a merge leaves behind for solving.
@@ -27,6 +30,8 @@ pub struct Merge {
     columns: Mat<f64>,
     /// Where the boundary of every child is found among [E | K].
     places: Vec<Vec<u32>>,
+    /// What normal jumps replace here.
+    substitution: Substitution,
 }
 
 /// Square matrices that were used: memory that is new costs a page fault every 4 KiB, more than all
@@ -71,19 +76,24 @@ struct Run {
 }
 
 impl Merge {
-    /// Merges `children`, in their order, and eliminates the unknowns at the nodes of Γ that are
-    /// `eliminated`, ascending; `spare` matrices lend their memory, and the children's S are left there.
+    /// Merges `children`, in their order, puts normal jumps in the place of what they `replaced`, and eliminates
+    /// the other unknowns at the nodes of Γ that are `eliminated`, ascending; `spare` matrices lend their memory, and the children's S are left there.
     ///
     /// # Errors
     /// A_EE isn't positive definite.
     pub fn new(
         children: Vec<Condensed>,
         eliminated: &[u32],
+        replaced: &[Replaced],
         spare: &mut Spare,
         par: Par,
     ) -> Result<(Self, Condensed), FreeInterfaceDof> {
-        let (gone, interface_dofs) = union_of_interface_dofs(&children, eliminated);
-        let jumps = children.iter().map(|c| c.jumps).sum();
+        let (mut gone, interface_dofs) = union_of_interface_dofs(&children, eliminated);
+        let of_children: usize = children.iter().map(|c| c.jumps).sum();
+        let jumps = of_children + replaced.len();
+        let pivots: BTreeMap<InterfaceDof, usize> =
+            replaced.iter().map(|r| r.dof).zip(0..).collect();
+        gone.retain(|dof| !pivots.contains_key(dof));
         let e = gone.len();
         let k = jumps + interface_dofs.len();
         let mut columns = Mat::<f64>::zeros(e + k, e);
@@ -93,7 +103,9 @@ impl Merge {
         let mut smallest_pivot = f64::INFINITY;
         let mut first_jump = e;
         for child in children {
-            let place = places_of(&child, first_jump, &gone, &interface_dofs, e + jumps);
+            let place = |dof| place_of(dof, &gone, &pivots, &interface_dofs, [e, of_children]);
+            let own = (0..child.jumps).map(|j| (first_jump + j) as u32);
+            let place: Vec<u32> = own.chain(child.interface_dofs.iter().map(place)).collect();
             first_jump += child.jumps;
             for (&to, d) in place.iter().zip(&child.diagonal) {
                 diagonal[to as usize] += d;
@@ -103,10 +115,18 @@ impl Merge {
             smallest_pivot = smallest_pivot.min(child.smallest_pivot);
             places.push(place);
         }
+        let place = |dof: &_| place_of(dof, &gone, &pivots, &interface_dofs, [e, of_children]);
+        let substitution = Substitution::new(replaced, |dof| place(dof) as usize);
+        substitution.transform(&mut Front {
+            columns: &mut columns,
+            s: &mut s,
+        });
+        substitution.transform_diagonal(&mut diagonal);
         let mut merge = Self {
             eliminated: e,
             columns,
             places,
+            substitution,
         };
         partial_cholesky(merge.columns.as_mut(), s.as_mut(), par)
             .map_err(|j| FreeInterfaceDof(gone[j]))?;
@@ -131,6 +151,7 @@ impl Merge {
                 load[to as usize] += f;
             }
         }
+        self.substitution.transform_load(&mut load);
         self.forward(&mut load);
         CondensedLoad::new(load, self.eliminated)
     }
@@ -145,6 +166,7 @@ impl Merge {
         let mut x_e = x_e;
         matmul(x_e.as_mut(), Accum::Add, p.transpose(), x_k, -1.0, Par::Seq);
         solve_upper_triangular_in_place(l_e.transpose(), x_e, Par::Seq);
+        self.substitution.resolve(&mut x);
         let of_child = |place: &Vec<u32>| place.iter().map(|&i| x[i as usize]).collect();
         self.places.iter().map(of_child).collect()
     }
@@ -181,31 +203,22 @@ fn union_of_interface_dofs(
     })
 }
 
-/// Where the boundary of `child` is found: normal jumps from `first_normal jump` on, traces among those
-/// that are `gone`, which come first, or those that are kept, from `first_kept` on.
-fn places_of(
-    child: &Condensed,
-    first_jump: usize,
+/// Where the front of [`Merge::new`] has an unknown on Γ: among those that are `gone`, which come first, among
+/// the `pivots` that normal jumps replace, behind those of the children, or among those that are `kept`.
+fn place_of(
+    dof: &InterfaceDof,
     gone: &[InterfaceDof],
+    pivots: &BTreeMap<InterfaceDof, usize>,
     kept: &[InterfaceDof],
-    first_kept: usize,
-) -> Vec<u32> {
-    let jumps = (0..child.jumps).map(|j| (first_jump + j) as u32);
-    let (mut in_gone, mut in_kept) = (0, 0);
-    let interface_dofs = child.interface_dofs.iter().map(|dof| {
-        // All three lists ascend, and the trace is in one of the two.
-        while gone.get(in_gone).is_some_and(|other| other < dof) {
-            in_gone += 1;
-        }
-        while kept.get(in_kept).is_some_and(|other| other < dof) {
-            in_kept += 1;
-        }
-        match gone.get(in_gone) == Some(dof) {
-            true => in_gone as u32,
-            false => (first_kept + in_kept) as u32,
-        }
-    });
-    jumps.chain(interface_dofs).collect()
+    [e, of_children]: [usize; 2],
+) -> u32 {
+    // An unknown is in one of the three lists.
+    let place = match (gone.binary_search(dof), kept.binary_search(dof)) {
+        (Ok(place), _) => place,
+        (_, Ok(place)) => e + of_children + pivots.len() + place,
+        _ => e + of_children + pivots.get(dof).copied().unwrap_or_default(),
+    };
+    place as u32
 }
 
 /// Maximal runs of `place`, none of which reaches across the first `e` indices.
@@ -232,10 +245,13 @@ fn add(of_child: &Mat<f64>, place: &[u32], e: usize, columns: &mut Mat<f64>, s: 
             let skipped = j.saturating_sub(run.from);
             let values = &from[run.from + skipped..run.from + run.len];
             let row = run.to + skipped;
-            if to >= e && row < e {
+            if row < to {
                 // Above the diagonal of A: it belongs to the other side.
-                for (i, value) in values.iter().enumerate() {
-                    columns[(to, row + i)] += value;
+                for (row, value) in (row..).zip(values) {
+                    match row < e {
+                        true => columns[(to, row)] += value,
+                        false => s[(to - e, row - e)] += value,
+                    }
                 }
                 continue;
             }

@@ -57,17 +57,16 @@ pub fn analyse_steps(context: &Context<'_>) -> Result<Vec<RigidBodyAnalysis>, Fa
     let Context {
         comm,
         catalog,
-        plan,
-        blocks,
+        groups,
         ..
     } = *context;
     (0..catalog.steps.len().max(1))
         .map(|k| {
             let loads = context.loads(k);
-            let all = blocks.values().zip(loads.values());
-            let checked = all.map(|(owned, loads)| infeasible_nodes::check(owned, loads, catalog));
+            let all = groups.values().zip(loads.groups.values());
+            let checked = all.map(|(group, loads)| infeasible_nodes::check(group, loads, catalog));
             comm.agree(checked.collect())
-                .and_then(|()| analyse_bodies(comm, blocks, catalog, plan, k))
+                .and_then(|()| analyse_bodies(context, k))
                 .map_err(|failure| context.in_step(failure, k))
         })
         .collect()

@@ -72,15 +72,18 @@ impl Problem {
                 .collect(),
             interface_nodes: owners.interface_nodes,
             groups: points.iter().map(Vec::len).collect(),
+            points: points.concat(),
+            point_nodes: Vec::new(),
             hierarchy: Hierarchy::default(),
             warnings,
         };
         catalog.hierarchy = Hierarchy::new(&catalog);
-        Ok(Self {
+        let mut problem = Self {
             catalog,
             subdomains,
-            points,
-        })
+        };
+        problem.describe_points();
+        Ok(problem)
     }
 }
 

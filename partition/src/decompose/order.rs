@@ -24,14 +24,24 @@ impl Problem {
                 }));
             }
         }
+        let ends = catalog.groups.iter().scan(0, |end, &count| {
+            *end += count;
+            Some(*end - count..*end)
+        });
+        let slices: Vec<_> = ends.collect();
+        let of_group = |&group: &u32| slices[group as usize].clone();
+        let all: Vec<u32> = (group_order.iter().flat_map(of_group))
+            .map(|j| j as u32)
+            .collect();
+        catalog.points = taken(&catalog.points, &all);
+        catalog.point_nodes = taken(&catalog.point_nodes, &all);
         catalog.groups = taken(&catalog.groups, &group_order);
-        self.points = taken(&self.points, &group_order);
 
         let mut number = vec![0; order.len()];
         for (new, &old) in (0..).zip(&order) {
             number[old as usize] = new;
         }
-        let points = self.points.iter_mut().flatten();
+        let points = catalog.points.iter_mut();
         for (node, _) in points.flat_map(|point| &mut point.entries) {
             node.subdomain = number[node.subdomain as usize];
         }

@@ -37,7 +37,7 @@ impl Summary<'_> {
     /// How the sides of each contact are paired, as its points show.
     fn pairings(&self) -> Vec<&'static str> {
         let mut pairings = vec![""; self.0.catalog.contacts.len()];
-        for point in self.0.points.iter().flatten() {
+        for point in &self.0.catalog.points {
             pairings[point.contact as usize] = match (point.entries.len(), point.tag_b) {
                 (1, _) => ", obstacle",
                 (_, -1) => ", mortar",

@@ -2,7 +2,6 @@
 
 mod attribute;
 mod catalog;
-mod consistency;
 mod contents;
 mod dataset;
 mod header;
@@ -18,10 +17,11 @@ use std::path::{Path, PathBuf};
 
 use self::contents::Contents;
 use self::header::Header;
+use super::consistency::{Place, Places};
 use super::copies::NodeCopies;
 use super::{Catalog, Problem, Subdomain, SubdomainNode};
-use crate::contact_point::ContactPoint;
 use crate::error::InputError;
+use crate::mesh::bounding_box::BoundingBox;
 use crate::source;
 
 /// An open problem file whose catalog was read and checked.
@@ -30,8 +30,6 @@ pub struct ProblemFile {
     path: PathBuf,
     contents: Contents,
     catalog: Catalog,
-    /// How many subdomains have each node of Γ.
-    sharing: Vec<u32>,
 }
 
 impl ProblemFile {
@@ -59,12 +57,7 @@ impl ProblemFile {
         let header = Header::read(&file)?;
         let contents = Contents::open(&file, header.dim)?;
         let catalog = catalog::read(&file, header, &contents)?;
-        let mut sharing = vec![0; catalog.interface_nodes];
-        for &number in catalog.interface.iter().flatten() {
-            sharing[number as usize] += 1;
-        }
         Ok(Self {
-            sharing,
             path: path.to_path_buf(),
             contents,
             catalog,
@@ -101,20 +94,6 @@ impl ProblemFile {
             .map_err(|error| error.in_file(&self.path))
     }
 
-    /// Reads and checks the contact points of one group, whose subdomains are `members`.
-    ///
-    /// # Errors
-    /// The dataset and the row that isn't what it should be, or that says something else than the
-    /// mesh of the members does.
-    pub fn points(
-        &self,
-        group: usize,
-        members: &[&Subdomain],
-    ) -> Result<Vec<ContactPoint<SubdomainNode>>, InputError> {
-        self.read_points(group, members)
-            .map_err(|error| error.in_file(&self.path))
-    }
-
     /// Reads everything and checks, beyond what the slices show, that subdomains agree on their
     /// nodes.
     ///
@@ -127,14 +106,26 @@ impl ProblemFile {
             copies.add(subdomain.index, subdomain.own_nodes());
         }
         (copies.check()).map_err(|error| error.in_file(&self.path))?;
-        let points = (0..self.catalog.groups.len()).map(|group| {
-            let of_group = |s: &&Subdomain| self.catalog.subdomains[s.index].group == Some(group);
-            let members: Vec<&Subdomain> = subdomains.iter().filter(of_group).collect();
-            self.points(group, &members)
-        });
+        let named = self.catalog.points.iter();
+        let named = named.flat_map(|point| point.entries.iter().map(|&(node, _)| node));
+        let place = |node: SubdomainNode| {
+            let subdomain = &subdomains[node.subdomain as usize];
+            let place = Place {
+                tag: subdomain.node_tags[node.node as usize],
+                body: subdomain.body,
+                at: subdomain.points[node.node as usize],
+            };
+            (node, place)
+        };
+        let places = Places {
+            nodes: named.map(place).collect(),
+            extent: BoundingBox::around(subdomains.iter().flat_map(|s| &s.points)).extent(),
+        };
+        for (row, point) in self.catalog.points.iter().enumerate() {
+            (places.check(point, row)).map_err(|error| self.refuse(error))?;
+        }
         Ok(Problem {
             catalog: self.catalog.clone(),
-            points: points.collect::<Result<_, _>>()?,
             subdomains,
         })
     }

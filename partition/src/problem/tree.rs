@@ -1,76 +1,32 @@
-//! The hierarchy of the blocks: a tree along which their Schur complements are merged.
+//! The hierarchy: a tree along which the Schur complements of the subdomains are merged.
 //!
-//! A node of the tree stands for the blocks under it. It eliminates the nodes of Γ that all blocks
-//! with them lie under it, but not under one of its children, and keeps those that blocks outside
-//! have, too. The tree stands in the problem file, so that merges are the same on any number of
-//! ranks.
+//! A node of the tree stands for the subdomains under it. It eliminates the nodes of Γ that all
+//! subdomains with them lie under it, but not under one of its children, and keeps those that
+//! subdomains outside have, too. Γ holds the nodes that several subdomains share and all nodes of
+//! contact points: a contact point belongs to the lowest node of the tree under which all that have
+//! one of its nodes lie. There its normal jump takes the place of a displacement.
+//!
+//! The tree follows from the problem file, so that merges are the same on any number of ranks.
 
-use super::Catalog;
+use std::collections::BTreeMap;
+
+use super::{Catalog, SubdomainNode};
+use crate::contact_point::ContactPoint;
+use crate::disjoint_sets::DisjointSets;
 use crate::flops::{Front, condensation};
-
-/// A block of the problem: a linear subdomain, or a group in contact.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Block {
-    /// Its subdomains, ascending.
-    pub subdomains: Vec<usize>,
-    /// Its group; `None` for a linear subdomain.
-    pub group: Option<usize>,
-}
-
-impl Block {
-    /// The blocks of a problem in the order of their first subdomains, and the block of every subdomain.
-    pub fn of(catalog: &Catalog) -> (Vec<Self>, Vec<usize>) {
-        let mut blocks: Vec<Self> = Vec::new();
-        let mut of_group = vec![None; catalog.groups.len()];
-        let mut of_subdomain = Vec::with_capacity(catalog.subdomains.len());
-        for (index, subdomain) in catalog.subdomains.iter().enumerate() {
-            let group = subdomain.group;
-            let block = group.and_then(|g| of_group[g]).unwrap_or(blocks.len());
-            if block == blocks.len() {
-                let subdomains = Vec::new();
-                blocks.push(Self { subdomains, group });
-            }
-            if let Some(g) = group {
-                of_group[g] = Some(block);
-            }
-            blocks[block].subdomains.push(index);
-            of_subdomain.push(block);
-        }
-        (blocks, of_subdomain)
-    }
-
-    /// Its number of nodes, those that several of its subdomains have counted in each.
-    pub fn nodes(&self, catalog: &Catalog) -> usize {
-        let subdomains = self.subdomains.iter();
-        subdomains.map(|&s| catalog.subdomains[s].nodes).sum()
-    }
-
-    /// Its number of contact conditions.
-    pub fn conditions(&self, catalog: &Catalog) -> usize {
-        self.group.map_or(0, |group| catalog.groups[group])
-    }
-
-    /// Its nodes of Γ, each once, ascending.
-    fn interface(&self, catalog: &Catalog) -> Vec<u32> {
-        let subdomains = self.subdomains.iter();
-        let mut nodes: Vec<u32> = subdomains
-            .flat_map(|&s| catalog.interface[s].iter().copied())
-            .collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes
-    }
-}
+use crate::lists::Lists;
 
 /// The tree.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tree {
-    /// Its nodes: the blocks in their order, then the inner ones, children before parents.
+    /// Its nodes: the subdomains, then the inner ones, children before parents.
     pub nodes: Vec<TreeNode>,
-    /// Number of blocks.
-    pub blocks: usize,
-    /// How many blocks have each node of Γ.
-    pub sharing: Vec<u32>,
+    /// Number of subdomains.
+    pub subdomains: usize,
+    /// Number of nodes of Γ: those that several subdomains share, then those that one has and contact points name.
+    pub interface_nodes: usize,
+    /// The second kind and their numbers on Γ, subdomain by subdomain.
+    pub unshared: Vec<(SubdomainNode, u32)>,
 }
 
 /// A node of the tree.
@@ -80,107 +36,185 @@ pub struct TreeNode {
     pub parent: Option<usize>,
     /// The nodes that are merged into it, ascending.
     pub children: Vec<usize>,
-    /// Nodes of a block, on Γ or not; none of an inner one.
-    pub of_block: usize,
+    /// Mesh nodes of a subdomain, on Γ or not; none of an inner one.
+    pub of_subdomain: usize,
     /// Nodes of Γ that are eliminated here, ascending.
     pub eliminated: Vec<u32>,
-    /// Nodes of Γ that blocks outside share, ascending.
+    /// Nodes of Γ that subdomains outside share, ascending.
     pub kept: Vec<u32>,
-    /// Contact conditions of the groups under it.
+    /// The contact points that belong to it, by their place in the catalog, ascending.
+    pub points: Vec<u32>,
+    /// Number of contact points that belong to it or to a node under it.
     pub conditions: usize,
-    /// Number of groups under it.
-    pub groups: usize,
 }
 
 impl Tree {
-    /// The hierarchy of `catalog` over its blocks; `block_of` has that of every subdomain.
-    pub fn new(catalog: &Catalog, blocks: &[Block], block_of: &[usize]) -> Self {
-        let subdomains = catalog.subdomains.len();
-        let parents = &catalog.hierarchy.parent;
-        // Members of a group hang under one parent: the group is one leaf.
-        let number = |node: usize| match block_of.get(node) {
-            Some(&block) => block,
-            None => blocks.len() + node - subdomains,
-        };
-        let mut nodes = vec![TreeNode::default(); blocks.len() + parents.len() - subdomains];
-        for (node, parent) in parents.iter().enumerate() {
-            nodes[number(node)].parent = parent.map(|p| number(p as usize));
-        }
-        for node in 0..nodes.len() {
-            if let Some(parent) = nodes[node].parent {
-                nodes[parent].children.push(node);
-            }
-        }
+    /// The hierarchy of `catalog`.
+    pub fn new(catalog: &Catalog) -> Self {
+        let interface = Interface::new(catalog);
         let mut tree = Self {
-            nodes,
-            blocks: blocks.len(),
-            sharing: vec![0; catalog.interface_nodes],
+            nodes: vec![TreeNode::default(); catalog.subdomains.len()],
+            subdomains: catalog.subdomains.len(),
+            interface_nodes: interface.subdomains.len(),
+            unshared: Vec::new(),
         };
-        tree.share_interface(catalog, blocks);
+        tree.grow(catalog, &interface);
+        tree.join_roots(&interface);
+        tree.place(catalog, &interface);
+        tree.unshared = interface.unshared;
         tree
     }
 
-    /// Finds what every node eliminates and keeps, from the leaves up.
-    fn share_interface(&mut self, catalog: &Catalog, blocks: &[Block]) {
-        let shared: Vec<Vec<u32>> = blocks.iter().map(|b| b.interface(catalog)).collect();
-        for &node in shared.iter().flatten() {
-            self.sharing[node as usize] += 1;
+    /// Adds the inner nodes. A subdomain that has contact points or nodes of Γ to itself gets one of its own.
+    fn grow(&mut self, catalog: &Catalog, interface: &Interface) {
+        let subdomains = self.subdomains;
+        for (node, summary) in self.nodes.iter_mut().zip(&catalog.subdomains) {
+            node.of_subdomain = summary.nodes;
         }
-        let sharing = &self.sharing;
-        // For every node of the tree, the nodes of Γ it keeps and how many blocks under it have each.
-        let mut under: Vec<Vec<(u32, u32)>> = Vec::with_capacity(self.nodes.len());
+        let mut above: Vec<usize> = (0..subdomains).collect();
+        for &(node, _) in &interface.unshared {
+            let subdomain = node.subdomain as usize;
+            if above[subdomain] == subdomain {
+                above[subdomain] = self.nodes.len();
+                self.nodes[subdomain].parent = Some(self.nodes.len());
+                self.nodes.push(TreeNode::default());
+            }
+        }
+        let shift = self.nodes.len() - subdomains;
+        let parents = &catalog.hierarchy.parent;
+        self.nodes
+            .resize(parents.len() + shift, TreeNode::default());
+        for (node, parent) in parents.iter().enumerate() {
+            let node = above.get(node).copied().unwrap_or(node + shift);
+            self.nodes[node].parent = parent.map(|p| p as usize + shift);
+        }
+    }
+
+    /// Puts a new root above all roots that a node of Γ or a contact point links.
+    fn join_roots(&mut self, interface: &Interface) {
+        let mut root: Vec<usize> = (0..self.nodes.len()).collect();
+        for v in (0..self.nodes.len()).rev() {
+            root[v] = self.nodes[v].parent.map_or(v, |parent| root[parent]);
+        }
+        let mut sets = DisjointSets::new(self.nodes.len());
+        for subdomains in interface.subdomains.iter() {
+            for pair in subdomains.windows(2) {
+                let [a, b] = [pair[0], pair[1]].map(|s| root[s as usize] as u32);
+                sets.unite(a, b);
+            }
+        }
+        for numbers in &interface.of_points {
+            for pair in numbers.windows(2) {
+                let first = |number: u32| interface.subdomains.of(number as usize)[0];
+                let [a, b] = [pair[0], pair[1]].map(|n| root[first(n) as usize] as u32);
+                sets.unite(a, b);
+            }
+        }
+        let mut joined: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for v in (0..self.nodes.len()).filter(|&v| root[v] == v) {
+            joined.entry(sets.find(v as u32)).or_default().push(v);
+        }
+        for roots in joined.into_values().filter(|roots| roots.len() > 1) {
+            for v in roots {
+                self.nodes[v].parent = Some(self.nodes.len());
+            }
+            self.nodes.push(TreeNode::default());
+        }
         for v in 0..self.nodes.len() {
-            if let Some((block, shared)) = blocks.get(v).zip(shared.get(v)) {
-                let kept: Vec<(u32, u32)> = (shared.iter())
-                    .filter(|&&id| sharing[id as usize] > 1)
-                    .map(|&id| (id, 1))
-                    .collect();
-                let node = &mut self.nodes[v];
-                node.kept = kept.iter().map(|&(id, _)| id).collect();
-                node.of_block = block.nodes(catalog);
-                node.groups = usize::from(block.group.is_some());
-                node.conditions = block.conditions(catalog);
-                under.push(kept);
-                continue;
+            if let Some(parent) = self.nodes[v].parent {
+                self.nodes[parent].children.push(v);
             }
-            let children = self.nodes[v].children.clone();
-            let mut all: Vec<(u32, u32)> = Vec::new();
-            for &child in &children {
-                all.append(&mut under[child]);
-                self.nodes[v].groups += self.nodes[child].groups;
-                self.nodes[v].conditions += self.nodes[child].conditions;
-            }
-            all.sort_unstable();
-            all.dedup_by(|next, first| {
-                let same = next.0 == first.0;
-                if same {
-                    first.1 += next.1;
-                }
-                same
-            });
-            let (eliminated, kept): (Vec<_>, Vec<_>) = (all.into_iter())
-                .partition(|&(id, blocks_under)| blocks_under == sharing[id as usize]);
-            self.nodes[v].eliminated = eliminated.into_iter().map(|(id, _)| id).collect();
-            self.nodes[v].kept = kept.iter().map(|&(id, _)| id).collect();
-            under.push(kept);
         }
+    }
+
+    /// Finds what every node eliminates and keeps, and its contact points.
+    fn place(&mut self, catalog: &Catalog, interface: &Interface) {
+        // The lowest node above all subdomains of a node of Γ, not a subdomain itself.
+        let mut ends: Vec<usize> = (interface.subdomains.iter())
+            .map(|list| {
+                let first = list[0] as usize;
+                let first = self.nodes[first].parent.unwrap_or(first);
+                let others = list[1..].iter().map(|&s| s as usize);
+                others.fold(first, |v, s| self.lowest_above(v, s))
+            })
+            .collect();
+        let systems = interface.systems(catalog);
+        let homes: Vec<usize> = systems
+            .iter()
+            .map(|points| {
+                let nodes = points
+                    .iter()
+                    .flat_map(|&j| &interface.of_points[j as usize]);
+                let mut ends = nodes.map(|&number| ends[number as usize]);
+                let first = ends.next().unwrap_or_default();
+                ends.fold(first, |v, w| self.lowest_above(v, w))
+            })
+            .collect();
+        for (points, &home) in systems.iter().zip(&homes) {
+            for &number in points
+                .iter()
+                .flat_map(|&j| &interface.of_points[j as usize])
+            {
+                let end = &mut ends[number as usize];
+                *end = self.lowest_above(*end, home);
+            }
+            self.nodes[home].points.extend(points);
+        }
+        for (number, &end) in (0..).zip(&ends) {
+            self.nodes[end].eliminated.push(number);
+        }
+        for (subdomain, number) in (0..).zip(interface.numbers.iter()) {
+            let mut kept = number.to_vec();
+            kept.sort_unstable();
+            let node: &mut TreeNode = &mut self.nodes[subdomain];
+            node.kept = kept;
+        }
+        for v in 0..self.nodes.len() {
+            let mut kept: Vec<u32> = Vec::new();
+            let mut conditions = self.nodes[v].points.len();
+            for child in self.nodes[v].children.clone() {
+                kept.extend(&self.nodes[child].kept);
+                conditions += self.nodes[child].conditions;
+            }
+            let node = &mut self.nodes[v];
+            node.points.sort_unstable();
+            node.conditions = conditions;
+            if v >= self.subdomains {
+                kept.sort_unstable();
+                kept.dedup();
+                kept.retain(|&number| ends[number as usize] != v);
+                node.kept = kept;
+            }
+        }
+    }
+
+    /// The lowest node above both, or one of them.
+    fn lowest_above(&self, mut v: usize, mut w: usize) -> usize {
+        while v != w {
+            let lower = if v < w { &mut v } else { &mut w };
+            match self.nodes[*lower].parent {
+                Some(parent) => *lower = parent,
+                None => return v.max(w),
+            }
+        }
+        v
     }
 
     /// The unknowns, `dim` at a node, that node v eliminates and keeps.
     pub fn front(&self, v: usize, dim: usize) -> Front {
         let node = &self.nodes[v];
         let kept = dim * node.kept.len() + node.conditions;
-        let eliminated = match v < self.blocks {
-            true => (dim * node.of_block).saturating_sub(kept),
-            false => dim * node.eliminated.len(),
+        let eliminated = match v < self.subdomains {
+            true => (dim * node.of_subdomain).saturating_sub(kept),
+            false => (dim * node.eliminated.len()).saturating_sub(node.points.len()),
         };
         Front { eliminated, kept }
     }
 
-    /// Estimated flops of condensing a block, or of merging what lies under an inner node.
+    /// Estimated flops of condensing a subdomain, or of merging what lies under an inner node.
     pub fn flops(&self, v: usize, dim: usize) -> f64 {
         let front = self.front(v, dim);
-        match v < self.blocks {
+        match v < self.subdomains {
             true => condensation(front.eliminated as f64, front.kept as f64),
             false => front.flops(),
         }
@@ -227,5 +261,78 @@ impl Tree {
             stack.extend(children.map(|&child| (child, false)));
         }
         nodes
+    }
+}
+
+/// The nodes of Γ, by number.
+struct Interface {
+    /// The subdomains of each, ascending.
+    subdomains: Lists<u32>,
+    /// Those of every subdomain.
+    numbers: Lists<u32>,
+    /// Those that one subdomain has, and contact points name.
+    unshared: Vec<(SubdomainNode, u32)>,
+    /// Those of every contact point, entry by entry.
+    of_points: Vec<Vec<u32>>,
+}
+
+impl Interface {
+    fn new(catalog: &Catalog) -> Self {
+        let mut number: BTreeMap<SubdomainNode, Option<u32>> = BTreeMap::new();
+        for (point, nodes) in catalog.points.iter().zip(&catalog.point_nodes) {
+            for (&(node, _), of_node) in point.entries.iter().zip(nodes) {
+                number.insert(node, of_node.interface);
+            }
+        }
+        let mut count = catalog.interface_nodes as u32;
+        let mut unshared = Vec::new();
+        for (&node, number) in number.iter_mut().filter(|(_, number)| number.is_none()) {
+            *number = Some(count);
+            unshared.push((node, count));
+            count += 1;
+        }
+        let shared = (0..).zip(&catalog.interface);
+        let shared = shared.flat_map(|(s, list)| list.iter().map(move |&number| (s, number)));
+        let own = unshared.iter().map(|&(node, n)| (node.subdomain, n));
+        let all = shared.chain(own);
+        let of_point = |point: &ContactPoint<SubdomainNode>| {
+            let nodes = point.entries.iter();
+            nodes.filter_map(|(node, _)| number[node]).collect()
+        };
+        Self {
+            subdomains: Lists::new(count as usize, all.clone().map(|(s, n)| (n, s))),
+            numbers: Lists::new(catalog.subdomains.len(), all.clone()),
+            of_points: catalog.points.iter().map(of_point).collect(),
+            unshared: unshared.clone(),
+        }
+    }
+
+    /// Sets of contact points whose normal jumps take the place of displacements at once, every point in one
+    /// of them: a point that has a node to itself which supports leave free along the normal is one, others
+    /// are together with all that share their nodes.
+    fn systems(&self, catalog: &Catalog) -> Vec<Vec<u32>> {
+        let on = (0..).zip(&self.of_points);
+        let on = on.flat_map(|(j, list)| list.iter().map(move |&number| (number, j)));
+        let mut points = Lists::new(self.subdomains.len(), on);
+        points.sort();
+        points.dedup();
+        let mut sets = DisjointSets::new(self.of_points.len());
+        for (j, numbers) in self.of_points.iter().enumerate() {
+            let mut nodes = numbers.iter().zip(&catalog.point_nodes[j]);
+            let is_own = |&number: &u32| points.of(number as usize).len() == 1;
+            if nodes.any(|(number, node)| node.is_free && is_own(number)) {
+                continue;
+            }
+            for &number in numbers {
+                for &other in points.of(number as usize) {
+                    sets.unite(j as u32, other);
+                }
+            }
+        }
+        let mut systems: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for j in 0..self.of_points.len() as u32 {
+            systems.entry(sets.find(j)).or_default().push(j);
+        }
+        systems.into_values().collect()
     }
 }

@@ -165,8 +165,8 @@ impl Problem {
     fn write_contacts(&self, datasets: &mut Datasets) -> hdf5::Result<()> {
         let names = self.catalog.contacts.iter().map(|c| c.name.as_str());
         datasets.strings("/contact/name", names)?;
-        datasets.offsets("/contact/group_offset", self.points.iter().map(Vec::len))?;
-        let points = || self.points.iter().flatten();
+        datasets.offsets("/contact/group_offset", self.catalog.groups.iter().copied())?;
+        let points = || self.catalog.points.iter();
         datasets.put("/contact/contact", points().map(|p| i64::from(p.contact)))?;
         datasets.put("/contact/place", points().map(|p| i64::from(p.place)))?;
         datasets.put("/contact/gap", points().map(|p| p.gap))?;

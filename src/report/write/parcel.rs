@@ -6,7 +6,7 @@ use std::ops::Range;
 use contact_dd_partition::element::geometry::padded;
 
 use crate::comm::Comm;
-use crate::fem::block::{Block, OwnedBlock};
+use crate::fem::block::Block;
 use crate::fem::elasticity::{principal_stresses, von_mises};
 use crate::output::result::{PartitionSize, SubdomainResults};
 use crate::plan::Plan;
@@ -29,7 +29,7 @@ impl Parcel {
     pub(super) fn cut(comm: &Comm, slabs: &[Range<usize>], plan: &Plan) -> Vec<Self> {
         let mut ends: Vec<usize> = slabs.iter().map(|slab| slab.end).collect();
         comm.broadcast(&mut ends);
-        let owners = plan.subdomain_owners();
+        let owners = plan.owners();
         cut(ends.into_iter(), |s| owners[s])
     }
 
@@ -37,20 +37,15 @@ impl Parcel {
     pub(super) fn append_to(
         &self,
         results: &mut SubdomainResults,
-        blocks: &BTreeMap<usize, OwnedBlock>,
+        blocks: &BTreeMap<usize, Block>,
         solution: &Solution,
-        plan: &Plan,
     ) {
         for index in self.subdomains.clone() {
-            let b = plan.block_of[index];
-            let block = blocks.get(&b).map(|owned| &owned.block);
-            let member = block.and_then(|block| Some((block, block.member(index)?)));
-            match member.zip(solution.displacement.get(&b)) {
-                Some(((block, m), displacement)) => {
-                    append_member(results, block, m, displacement);
-                    if let Some(stress) = solution.stress.as_ref().and_then(|stress| stress.get(&b))
-                    {
-                        append_stress(results, block, m, stress);
+            match blocks.get(&index).zip(solution.displacement.get(&index)) {
+                Some((block, displacement)) => {
+                    append_block(results, block, displacement);
+                    if let Some(stress) = solution.stress.as_ref().and_then(|all| all.get(&index)) {
+                        append_stress(results, block, stress);
                     }
                 }
                 // It takes its place without any content, so that the file names it.
@@ -80,45 +75,36 @@ fn cut(slab_ends: impl Iterator<Item = usize>, owner: impl Fn(usize) -> usize) -
     parcels
 }
 
-/// Appends member `m` of a block and its displacement.
-fn append_member(results: &mut SubdomainResults, block: &Block, m: usize, displacement: &[f64]) {
-    let member = &block.members[m];
-    let displacement_at = |&node: &u32| {
-        let start = node as usize * block.dim;
-        padded(&displacement[start..start + block.dim])
-    };
+/// Appends a block and its displacement.
+fn append_block(results: &mut SubdomainResults, block: &Block, displacement: &[f64]) {
+    let subdomain = &block.subdomain;
     results.sizes.push(PartitionSize {
-        points: member.points.len(),
-        cells: member.cells.len(),
-        connectivity: member.cells.connectivity().len(),
+        points: subdomain.points.len(),
+        cells: subdomain.cells.len(),
+        connectivity: subdomain.cells.connectivity().len(),
     });
-    results.points.extend_from_slice(&member.points);
-    results.node_tags.extend_from_slice(&member.node_tags);
-    results
-        .displacement
-        .extend(block.node_of[m].iter().map(displacement_at));
-    let connectivity = member.cells.connectivity().iter();
+    results.points.extend_from_slice(&subdomain.points);
+    results.node_tags.extend_from_slice(&subdomain.node_tags);
+    let at_nodes = displacement.chunks_exact(block.dim);
+    results.displacement.extend(at_nodes.map(padded));
+    let connectivity = subdomain.cells.connectivity().iter();
     results
         .connectivity
         .extend(connectivity.map(|&n| i64::from(n)));
-    let offsets = member.cells.offsets().iter();
+    let offsets = subdomain.cells.offsets().iter();
     results.offsets.extend(offsets.map(|&o| o as i64));
-    let types = member.cells.iter().map(|(kind, _)| kind.vtk());
+    let types = subdomain.cells.iter().map(|(kind, _)| kind.vtk());
     results.types.extend(types);
-    let materials = member.cell_material.iter();
+    let materials = subdomain.cell_material.iter();
     results.materials.extend(materials.map(|&m| m as i32));
 }
 
-/// Appends the stresses of member `m` of a block.
-fn append_stress(results: &mut SubdomainResults, block: &Block, m: usize, stress: &Stress) {
-    let first_cell: usize = block.members[..m].iter().map(|o| o.cells.len()).sum();
-    let of_member = first_cell..first_cell + block.members[m].cells.len();
-    let cells = &stress.cells[of_member.clone()];
-    let errors = &stress.recovered.errors[of_member];
-    let nodal = stress.recovered.of_member(block, m);
-    results.nodal_stress.extend(nodal);
+/// Appends the stresses of a block.
+fn append_stress(results: &mut SubdomainResults, block: &Block, stress: &Stress) {
+    let (cells, recovered) = (&stress.cells, &stress.recovered);
+    results.nodal_stress.extend(recovered.at_nodes(block));
     results.cell_stress.extend_from_slice(cells);
-    let norms = errors.iter().map(|e| e.error.sqrt());
+    let norms = recovered.errors.iter().map(|e| e.error.sqrt());
     results.energy_error.extend(norms);
     results
         .principal

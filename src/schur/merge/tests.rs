@@ -60,7 +60,7 @@ fn example() -> (Vec<Condensed>, [Vec<f64>; 2], Mat<f64>, Vec<f64>) {
 fn a_merge_is_the_schur_complement_of_the_sum() {
     let (children, loads, a, f) = example();
     let (merge, condensed) =
-        Merge::new(children, &[2, 5, 7], &mut Spare::default(), Par::Seq).unwrap();
+        Merge::new(children, &[2, 5, 7], &[], &mut Spare::default(), Par::Seq).unwrap();
     let load = merge.condense(&loads.each_ref().map(Vec::as_slice));
     let gone = [2, 5, 7];
     let kept = [9, 10, 11, 0, 1, 3, 4, 6, 8];
@@ -87,7 +87,8 @@ fn what_is_recovered_solves_the_sum() {
         .llt(Side::Lower)
         .unwrap()
         .solve(Mat::from_fn(12, 1, |i, _| f[i]));
-    let (merge, _) = Merge::new(children, &[2, 5, 7], &mut Spare::default(), Par::Seq).unwrap();
+    let (merge, _) =
+        Merge::new(children, &[2, 5, 7], &[], &mut Spare::default(), Par::Seq).unwrap();
     let load = merge.condense(&loads.each_ref().map(Vec::as_slice));
     let kept: Vec<f64> = [9, 10, 11, 0, 1, 3, 4, 6, 8]
         .map(|i| exact[(i, 0)])
@@ -95,6 +96,50 @@ fn what_is_recovered_solves_the_sum() {
     let x = merge.recover(&load, &kept);
     for (x, node) in x[1].iter().zip([11, 1, 2, 4, 5, 6, 7]) {
         assert!((x - exact[(node, 0)]).abs() < 1e-14);
+    }
+}
+
+/// A displacement in the middle of those that are kept gives way to a normal jump, u_5 = ½ u_6 + 2 t.
+#[test]
+fn a_normal_jump_takes_the_place_of_a_displacement() {
+    let (children, loads, a, f) = example();
+    let mut t = Mat::<f64>::identity(12, 12);
+    (t[(5, 5)], t[(5, 6)]) = (2.0, 0.5);
+    let (a, f) = (
+        t.transpose() * a * &t,
+        t.transpose() * Mat::from_fn(12, 1, |i, _| f[i]),
+    );
+    let exact = a.llt(Side::Lower).unwrap().solve(&f);
+    let replaced = Replaced {
+        dof: trace(5),
+        staying: vec![(trace(6), 0.5)],
+        jumps: vec![(0, 2.0)],
+    };
+    let (merge, condensed) = Merge::new(
+        children,
+        &[2, 5, 7],
+        &[replaced],
+        &mut Spare::default(),
+        Par::Seq,
+    )
+    .unwrap();
+    assert_eq!((condensed.jumps, condensed.interface_dofs.len()), (4, 6));
+    let (gone, kept) = ([2, 7], [9, 10, 11, 5, 0, 1, 3, 4, 6, 8]);
+    let part = |rows: &[usize], columns: &[usize]| {
+        Mat::from_fn(rows.len(), columns.len(), |i, j| a[(rows[i], columns[j])])
+    };
+    let solved = part(&gone, &gone).llt(Side::Lower).unwrap();
+    let s = part(&kept, &kept) - part(&kept, &gone) * solved.solve(part(&gone, &kept));
+    for i in 0..10 {
+        for j in 0..=i {
+            assert!((condensed.s[(i, j)] - s[(i, j)]).abs() < 1e-12);
+        }
+    }
+    let load = merge.condense(&loads.each_ref().map(Vec::as_slice));
+    let x = merge.recover(&load, &kept.map(|i| exact[(i, 0)]));
+    let u = &t * &exact;
+    for (x, node) in x[1].iter().zip([11, 1, 2, 4, 5, 6, 7]) {
+        assert!((x - u[(node, 0)]).abs() < 1e-14);
     }
 }
 
@@ -107,6 +152,6 @@ fn an_unknown_that_nothing_holds_is_named() {
             usize::from(c.interface_dofs[0] == trace(1)),
         )] = -50.0;
     }
-    let error = Merge::new(children, &[2], &mut Spare::default(), Par::Seq).unwrap_err();
+    let error = Merge::new(children, &[2], &[], &mut Spare::default(), Par::Seq).unwrap_err();
     assert_eq!(error, FreeInterfaceDof(trace(2)));
 }

@@ -5,7 +5,49 @@ use std::collections::BTreeMap;
 use crate::flops::condensation;
 use crate::lists::Lists;
 use crate::problem::Catalog;
-use crate::problem::tree::Block;
+
+/// A block of the problem: a linear subdomain, or a group in contact.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Block {
+    /// Its subdomains, ascending.
+    subdomains: Vec<usize>,
+    /// Its group; `None` for a linear subdomain.
+    group: Option<usize>,
+}
+
+impl Block {
+    /// The blocks of a problem in the order of their first subdomains, and the block of every subdomain.
+    fn of(catalog: &Catalog) -> (Vec<Self>, Vec<usize>) {
+        let mut blocks: Vec<Self> = Vec::new();
+        let mut of_group = vec![None; catalog.groups.len()];
+        let mut of_subdomain = Vec::with_capacity(catalog.subdomains.len());
+        for (index, subdomain) in catalog.subdomains.iter().enumerate() {
+            let group = subdomain.group;
+            let block = group.and_then(|g| of_group[g]).unwrap_or(blocks.len());
+            if block == blocks.len() {
+                let subdomains = Vec::new();
+                blocks.push(Self { subdomains, group });
+            }
+            if let Some(g) = group {
+                of_group[g] = Some(block);
+            }
+            blocks[block].subdomains.push(index);
+            of_subdomain.push(block);
+        }
+        (blocks, of_subdomain)
+    }
+
+    /// Its number of nodes, those that several of its subdomains have counted in each.
+    fn nodes(&self, catalog: &Catalog) -> usize {
+        let subdomains = self.subdomains.iter();
+        subdomains.map(|&s| catalog.subdomains[s].nodes).sum()
+    }
+
+    /// Its number of contact conditions.
+    fn conditions(&self, catalog: &Catalog) -> usize {
+        self.group.map_or(0, |group| catalog.groups[group])
+    }
+}
 
 /// The linear subdomains and the groups in contact, in the order of their first subdomains.
 ///

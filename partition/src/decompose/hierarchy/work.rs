@@ -2,7 +2,7 @@
 
 use crate::flops::Front;
 use crate::problem::Catalog;
-use crate::problem::tree::{Block, Tree};
+use crate::problem::tree::Tree;
 
 /// What the nodes of a problem's hierarchy cost.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,11 +17,10 @@ pub struct Work {
 impl Work {
     /// What the hierarchy of `catalog` costs.
     pub fn new(catalog: &Catalog) -> Self {
-        let (blocks, block_of) = Block::of(catalog);
-        let tree = Tree::new(catalog, &blocks, &block_of);
+        let tree = Tree::new(catalog);
         let nodes = 0..tree.nodes.len();
         let costs: Vec<f64> = nodes.map(|v| tree.flops(v, catalog.dim)).collect();
-        let inner = blocks.len()..tree.nodes.len();
+        let inner = tree.subdomains..tree.nodes.len();
         Self {
             fronts: inner.map(|v| tree.front(v, catalog.dim)).collect(),
             uneven_halves: uneven_halves(&tree, &tree.sums(&costs)),

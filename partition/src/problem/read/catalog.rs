@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::contents::Contents;
 use super::header::Header;
-use super::{hierarchy, materials, settings};
+use super::{hierarchy, materials, points, settings};
 use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::problem::{Body, Catalog, ContactSummary, Hierarchy, LoadStep, SubdomainSummary};
@@ -22,6 +22,7 @@ pub(super) fn read(
     let contacts = read_contacts(contents, &groups)?;
     let subdomains = read_subdomains(contents, bodies.len(), groups.len())?;
     let interface_nodes = check_interface(&interface, &subdomains)?;
+    let (points, point_nodes) = points::read(contents, &subdomains)?;
     let mut catalog = Catalog {
         title: header.title,
         dim: header.dim,
@@ -36,6 +37,8 @@ pub(super) fn read(
         interface,
         interface_nodes,
         groups,
+        points,
+        point_nodes,
         hierarchy: Hierarchy::default(),
         solver: settings::read(file)?,
         warnings: contents.strings("/warnings")?,

@@ -11,7 +11,6 @@ pub(super) fn read(contents: &Contents, catalog: &Catalog) -> Result<Hierarchy, 
     let hierarchy = Hierarchy {
         parent: read_parents(&rows, catalog.subdomains.len())?,
     };
-    check_groups(&rows, &hierarchy, catalog)?;
     check_roots(&hierarchy, catalog)?;
     Ok(hierarchy)
 }
@@ -48,34 +47,6 @@ fn read_parents(rows: &Slice<i64>, subdomains: usize) -> Result<Vec<Option<u32>>
         Some(node) => Err(rows.error(node, "the inner node has no child; expected one at least")),
         None => Ok(parents),
     }
-}
-
-/// All members of a group have one parent.
-fn check_groups(
-    rows: &Slice<i64>,
-    hierarchy: &Hierarchy,
-    catalog: &Catalog,
-) -> Result<(), InputError> {
-    let mut first = vec![None; catalog.groups.len()];
-    for (row, subdomain) in catalog.subdomains.iter().enumerate() {
-        let Some(group) = subdomain.group else {
-            continue;
-        };
-        let known = *first[group].get_or_insert(row);
-        let (parent, expected) = (hierarchy.parent[row], hierarchy.parent[known]);
-        if parent != expected {
-            let number = |parent: Option<u32>| parent.map_or(-1, i64::from);
-            return Err(rows.error(
-                row,
-                &format!(
-                    "{}; expected {}, the parent of subdomain {known} of the same group",
-                    number(parent),
-                    number(expected)
-                ),
-            ));
-        }
-    }
-    Ok(())
 }
 
 /// Blocks that share a node of Γ are under one root, or no front could eliminate it.

@@ -1,74 +1,64 @@
-//! The contact points of one group.
+//! The contact points.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
-use super::ProblemFile;
-use super::consistency::Members;
+use super::contents::Contents;
 use crate::contact_point::ContactPoint;
 use crate::error::InputError;
-use crate::problem::{Subdomain, SubdomainNode};
+use crate::problem::{PointNode, SubdomainNode, SubdomainSummary};
 
-impl ProblemFile {
-    pub(super) fn read_points(
-        &self,
-        group: usize,
-        members: &[&Subdomain],
-    ) -> Result<Vec<ContactPoint<SubdomainNode>>, InputError> {
-        if group >= self.catalog.groups.len() {
-            return Err(InputError::new(format!("there is no group {group}")));
-        }
-        let rows = self.contents.rows('R', group);
-        let integers = |path| self.contents.integers(path, rows.clone());
-        let numbers = |path| self.contents.numbers(path, rows.clone());
-        let contact = integers("/contact/contact")?;
-        let place = integers("/contact/place")?;
-        let gap = numbers("/contact/gap")?;
-        let area = numbers("/contact/area")?;
-        let position = numbers("/contact/position")?.vectors(rows.clone());
-        let force_point = numbers("/contact/force_point")?.vectors(rows.clone());
-        let normal = numbers("/contact/normal")?.vectors(rows.clone());
-        let tag_a = integers("/contact/node_a")?;
-        let tag_b = integers("/contact/node_b")?;
-        let entries = self.read_entries(group, members)?;
-        let first = rows.start;
-        let point = |(i, entries): (usize, _)| ContactPoint {
-            // Checked when the file was opened: an index of a contact, and one of its places.
-            contact: contact.all()[i] as u32,
-            place: place.all()[i] as u32,
-            gap: gap.all()[i],
-            area: area.all()[i],
-            force_point: force_point[i],
-            tag_b: tag_b.all()[i],
-            ..ContactPoint::new(entries, normal[i], position[i], tag_a.all()[i])
-        };
-        let list: Vec<_> = entries.into_iter().enumerate().map(point).collect();
-        let members = Members::new(members);
-        for (i, point) in list.iter().enumerate() {
-            members.check(point, first + i)?;
-        }
-        Ok(list)
-    }
+/// Reads all contact points, and what the file says of their nodes.
+#[allow(clippy::type_complexity)]
+pub(super) fn read(
+    contents: &Contents,
+    subdomains: &[SubdomainSummary],
+) -> Result<(Vec<ContactPoint<SubdomainNode>>, Vec<Vec<PointNode>>), InputError> {
+    let rows = 0..contents.count('R');
+    let integers = |path| contents.integers(path, rows.clone());
+    let numbers = |path| contents.numbers(path, rows.clone());
+    let contact = integers("/contact/contact")?;
+    let place = integers("/contact/place")?;
+    let gap = numbers("/contact/gap")?;
+    let area = numbers("/contact/area")?;
+    let position = numbers("/contact/position")?.vectors(rows.clone());
+    let force_point = numbers("/contact/force_point")?.vectors(rows.clone());
+    let normal = numbers("/contact/normal")?.vectors(rows.clone());
+    let tag_a = integers("/contact/node_a")?;
+    let tag_b = integers("/contact/node_b")?;
+    let entries = read_entries(contents, subdomains)?;
+    let point = |(i, entries): (usize, _)| ContactPoint {
+        // Checked when the file was opened: an index of a contact, and one of its places.
+        contact: contact.all()[i] as u32,
+        place: place.all()[i] as u32,
+        gap: gap.all()[i],
+        area: area.all()[i],
+        force_point: force_point[i],
+        tag_b: tag_b.all()[i],
+        ..ContactPoint::new(entries, normal[i], position[i], tag_a.all()[i])
+    };
+    let points: Vec<_> = entries.into_iter().enumerate().map(point).collect();
+    let nodes = read_nodes(contents, &points)?;
+    Ok((points, nodes))
+}
 
-    /// The nodes and weights of each point of a group.
-    fn read_entries(
-        &self,
-        group: usize,
-        members: &[&Subdomain],
-    ) -> Result<Vec<Vec<(SubdomainNode, f64)>>, InputError> {
-        let rows = self.contents.rows('R', group);
-        let span = self.contents.rows_of('E', rows.clone());
-        let subdomain = (self.contents).integers("/contact/entry_subdomain", span.clone())?;
-        let node = (self.contents).integers("/contact/entry_node", span.clone())?;
-        let weight = (self.contents).numbers("/contact/entry_weight", span.clone())?;
-        let foreign = self.foreign_nodes(members);
-        let mut entries = Vec::with_capacity(rows.len());
-        let mut named = HashSet::new();
-        for row in rows {
+/// The nodes and weights of every point.
+fn read_entries(
+    contents: &Contents,
+    subdomains: &[SubdomainSummary],
+) -> Result<Vec<Vec<(SubdomainNode, f64)>>, InputError> {
+    let span = 0..contents.count('E');
+    let subdomain = contents.integers("/contact/entry_subdomain", span.clone())?;
+    let node = contents.integers("/contact/entry_node", span.clone())?;
+    let weight = contents.numbers("/contact/entry_weight", span)?;
+    let mut entries = Vec::with_capacity(contents.count('R'));
+    let mut named = HashSet::new();
+    for group in 0..contents.count('G') {
+        for row in contents.rows('R', group) {
             let mut list = Vec::new();
             named.clear();
-            for at in self.contents.rows('E', row) {
+            for at in contents.rows('E', row) {
                 let owner = subdomain.of(at..at + 1)[0] as u32;
-                let summary = &self.catalog.subdomains[owner as usize];
+                let summary = &subdomains[owner as usize];
                 if summary.group != Some(group) {
                     let what = format!("subdomain {owner} isn't in group {group}");
                     return Err(subdomain.error(at, &what));
@@ -79,13 +69,6 @@ impl ProblemFile {
                     subdomain: owner,
                     node: number,
                 };
-                if foreign.contains(&named_node) {
-                    let what = format!(
-                        "a subdomain outside group {group} shares the node; expected all that \
-                         share it in one group"
-                    );
-                    return Err(node.error(at, &what));
-                }
                 if !named.insert(named_node) {
                     return Err(node.error(at, "the point named the node before"));
                 }
@@ -98,26 +81,39 @@ impl ProblemFile {
             }
             entries.push(list);
         }
-        Ok(entries)
     }
+    Ok(entries)
+}
 
-    /// Nodes of a group that a subdomain outside it shares.
-    fn foreign_nodes(&self, members: &[&Subdomain]) -> HashSet<SubdomainNode> {
-        let mut inside: HashMap<u32, u32> = HashMap::new();
-        for on in members.iter().flat_map(|member| &member.interface) {
-            *inside.entry(on.interface).or_default() += 1;
-        }
-        let mut foreign = HashSet::new();
-        for member in members {
-            for on in &member.interface {
-                if inside.get(&on.interface) != Some(&self.sharing[on.interface as usize]) {
-                    foreign.insert(SubdomainNode {
-                        subdomain: member.index as u32,
-                        node: on.node,
-                    });
-                }
-            }
-        }
-        foreign
+/// What the file says of the nodes of the points elsewhere. What is wrong there is found when subdomains are read.
+fn read_nodes(
+    contents: &Contents,
+    points: &[ContactPoint<SubdomainNode>],
+) -> Result<Vec<Vec<PointNode>>, InputError> {
+    if points.is_empty() {
+        return Ok(Vec::new());
     }
+    let shared = contents.all_integers("/interface/node")?;
+    let numbers = contents.all_integers("/interface/interface")?;
+    let supports = 0..contents.count('S');
+    let held = contents.integers("/support/node", supports.clone())?;
+    let directions = contents.numbers("/support/direction", supports)?;
+    let of_node = |at: SubdomainNode, normal| {
+        let (subdomain, node) = (at.subdomain as usize, i64::from(at.node));
+        let rows = contents.rows('I', subdomain);
+        let place = shared.of(rows.clone()).iter().position(|&n| n == node);
+        let interface = place.map(|place| numbers.all()[rows.start + place] as u32);
+        let rows = contents.rows('S', subdomain);
+        let rows = rows.filter(|&row| held.all()[row] == node);
+        PointNode::new(
+            interface,
+            normal,
+            rows.map(|row| directions.vectors(row..row + 1)[0]),
+        )
+    };
+    let of_point = |point: &ContactPoint<SubdomainNode>| {
+        let nodes = point.entries.iter();
+        nodes.map(|&(at, _)| of_node(at, point.normal())).collect()
+    };
+    Ok(points.iter().map(of_point).collect())
 }

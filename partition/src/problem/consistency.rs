@@ -1,41 +1,48 @@
-//! Whether what a contact point says twice is the same, and fits the mesh of its group.
+//! Whether what a contact point says twice is the same, and fits the mesh.
 
 use std::collections::BTreeMap;
 
 use crate::contact_point::ContactPoint;
 use crate::element::geometry::{advance, difference, length};
 use crate::error::InputError;
-use crate::mesh::bounding_box::BoundingBox;
-use crate::problem::{Subdomain, SubdomainNode};
+use crate::problem::SubdomainNode;
 
 /// How far the sum of weights may be from what it should be, relative to the largest of them.
 const WEIGHT: f64 = 1e-8;
 
-/// How far positions may be from the node that they belong to, relative to the group's extent.
+/// How far positions may be from the node that they belong to, relative to the extent of its subdomains.
 const PLACE: f64 = 1e-8;
 
-/// Largest area relative to the group's extent: no curved side around a node is longer.
+/// Largest area relative to the extent of its subdomains: no curved side around a node is longer.
 const LARGEST_AREA: f64 = 10.0;
 
 type Point = ContactPoint<SubdomainNode>;
 
-/// The subdomains of a group in contact.
-pub(super) struct Members<'a> {
-    by_index: BTreeMap<u32, &'a Subdomain>,
-    /// The largest extent of their bounding box (m).
-    extent: f64,
+/// A node as its subdomain describes it.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// The mesh file's tag.
+    pub tag: i64,
+    /// Its body.
+    pub body: usize,
+    /// Coordinates (m).
+    pub at: [f64; 3],
 }
 
-impl<'a> Members<'a> {
-    pub fn new(members: &[&'a Subdomain]) -> Self {
-        let points = members.iter().flat_map(|member| &member.points);
-        Self {
-            by_index: members.iter().map(|&m| (m.index as u32, m)).collect(),
-            extent: BoundingBox::around(points).extent(),
-        }
-    }
+/// The nodes that contact points name.
+#[derive(Debug)]
+pub struct Places {
+    /// Them.
+    pub nodes: BTreeMap<SubdomainNode, Place>,
+    /// The largest extent of the subdomains that they lie in (m).
+    pub extent: f64,
+}
 
+impl Places {
     /// Checks one point, which stands in row `at` of the datasets.
+    ///
+    /// # Errors
+    /// The dataset that says something else than the mesh does.
     pub fn check(&self, point: &Point, at: usize) -> Result<(), InputError> {
         self.fault(point).map_or(Ok(()), |(dataset, what)| {
             Err(InputError::new(format!(
@@ -49,7 +56,7 @@ impl<'a> Members<'a> {
         let extent = self.extent;
         if point.area > LARGEST_AREA * extent {
             let what = format!(
-                "{:e}; expected a part of a side of the group, whose extent is {extent:e}",
+                "{:e}; expected a part of a side of subdomains whose extent is {extent:e}",
                 point.area
             );
             return Some(("area", what));
@@ -78,8 +85,8 @@ impl<'a> Members<'a> {
                 continue;
             }
             let found = point.entries.iter().find(|(node, _)| {
-                let own = self.by_index.get(&node.subdomain);
-                own.is_some_and(|member| member.node_tags[node.node as usize] == tag)
+                let place = self.nodes.get(node);
+                place.is_some_and(|place| place.tag == tag)
             });
             let Some(&(node, _)) = found.filter(|(_, weight)| sign * weight > 0.0) else {
                 let what = format!(
@@ -89,7 +96,7 @@ impl<'a> Members<'a> {
                 return Some((dataset, what));
             };
             if sign > 0.0 {
-                let at = self.by_index[&node.subdomain].points[node.node as usize];
+                let at = self.nodes[&node].at;
                 let is_there =
                     |place: [f64; 3]| length(difference(place, at)) <= PLACE * self.extent;
                 if !is_there(point.position) {
@@ -109,7 +116,7 @@ impl<'a> Members<'a> {
 
     /// Whether the force of a point acts where its weights of side a, among them that of node `own`, say.
     fn acts_there(&self, point: &Point, own: SubdomainNode) -> bool {
-        let body = |node: SubdomainNode| self.by_index.get(&node.subdomain).map(|m| m.body);
+        let body = |node: SubdomainNode| self.nodes.get(&node).map(|place| place.body);
         let is_pair = point.entries.len() == 1 || point.tag_b != -1;
         // Where both sides belong to one body the nodes don't tell on which they are.
         if !is_pair && (point.entries.iter()).all(|&(node, _)| body(node) == body(own)) {
@@ -121,8 +128,7 @@ impl<'a> Members<'a> {
         };
         let (mut place, mut scale) = ([0.0; 3], 0.0);
         for &(node, weight) in point.entries.iter().filter(on_a) {
-            let member = self.by_index[&node.subdomain];
-            let way = difference(member.points[node.node as usize], point.position);
+            let way = difference(self.nodes[&node].at, point.position);
             place = advance(place, weight, way);
             scale += weight.abs();
         }
