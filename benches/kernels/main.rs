@@ -9,12 +9,9 @@
 mod scene;
 
 use std::hint::black_box;
-use std::rc::Rc;
 use std::time::Duration;
 
 use contact_dd_mpi::certificate::check::BlockCheck;
-use contact_dd_mpi::contact::limits::Limits;
-use contact_dd_mpi::contact::pair::ContactPair;
 use contact_dd_mpi::fem::assembly::assemble;
 use contact_dd_mpi::fem::balance::Balance;
 use contact_dd_mpi::fem::dofs::Dofs;
@@ -34,19 +31,18 @@ fn subdomain(c: &mut Criterion) {
     for (refine, count, size) in [(2, 40, "2k"), (3, 16, "20k")] {
         let scene = Scene::granite(refine, count);
         let b = scene.largest_linear();
-        let owned = &scene.blocks[b];
-        let (block, loads) = (&owned.block, scene.loads(b));
+        let (block, loads) = (&scene.blocks[b], scene.loads(b));
         let materials = scene.materials();
         let (dofs, stiffness) = scene.assembled(b);
         let (_, schur, _, load) = scene.condensed(b);
         let x_b = vec![1e-3; load.boundary().len()];
         let prescribed = scene.prescribed(b);
         let u = prescribed.displacement(&dofs, &schur.recover(&load, &x_b));
-        let balance = Balance::new(owned, &loads, materials, &u, &[]);
+        let balance = Balance::new(block, &loads, materials, &u, &[]);
 
         let mut group = c.benchmark_group(format!("subdomain {size}"));
         group.bench_function("number unknowns", |bench| {
-            bench.iter(|| Dofs::new(owned, &loads, materials).unwrap());
+            bench.iter(|| Dofs::new(block, &loads).unwrap());
         });
         group.bench_function("assemble", |bench| {
             bench.iter(|| assemble(block, &dofs, materials, &[]).unwrap());
@@ -58,10 +54,10 @@ fn subdomain(c: &mut Criterion) {
             bench.iter(|| prescribed.displacement(&dofs, &schur.recover(&load, black_box(&x_b))));
         });
         group.bench_function("certificate", |bench| {
-            bench.iter(|| Balance::new(owned, &loads, materials, black_box(&u), &[]));
+            bench.iter(|| Balance::new(block, &loads, materials, black_box(&u), &[]));
         });
         group.bench_function("certificate, check", |bench| {
-            bench.iter(|| BlockCheck::new(owned, &loads, &balance, black_box(&u), &[]));
+            bench.iter(|| BlockCheck::new(block, &loads, &balance, black_box(&u)));
         });
         let mut patches = Vec::new();
         group.bench_function("stresses", |bench| {
@@ -74,29 +70,15 @@ fn subdomain(c: &mut Criterion) {
     }
 }
 
-/// One evaluation of S_CON by a pair.
-fn pair(c: &mut Criterion) {
-    let scene = Scene::granite(1, 20);
-    let b = scene.plan.groups[0];
-    let (dofs, ..) = scene.condensed(b);
-    let (prescribed, gaps) = (scene.prescribed(b), scene.loads(b).gaps);
-    let limits = Limits::new(dofs.jumps, &prescribed.jump_of, &gaps, 0.0);
-    let mut condensed = scene.of_block(b);
-    condensed.fill_upper_triangle();
-    let u = vec![0.0; condensed.interface_dofs.len()];
-    let load = vec![0.0; condensed.s.nrows()];
-    let mut pair = ContactPair::new(Rc::new(condensed), limits, load, None);
-    c.bench_function("S_CON of a pair", |bench| {
-        bench.iter(|| pair.evaluate(black_box(&u), None));
-    });
-}
-
 /// The merge with most unknowns of a hierarchy of 40 subdomains.
 fn merge(c: &mut Criterion) {
     let scene = Scene::granite(2, 40);
     let blocks = scene.blocks.len();
     let nodes = &scene.plan.tree.nodes;
-    let of_blocks = |v: &usize| nodes[*v].children.iter().all(|&child| child < blocks);
+    let of_blocks = |v: &usize| {
+        let node = &nodes[*v];
+        node.points.is_empty() && node.children.iter().all(|&child| child < blocks)
+    };
     let inner = (blocks..nodes.len()).filter(of_blocks);
     let v = inner.max_by_key(|&v| nodes[v].kept.len()).unwrap();
     let children = || -> Vec<Condensed> {
@@ -107,7 +89,10 @@ fn merge(c: &mut Criterion) {
     c.bench_function("merge", |bench| {
         bench.iter_batched(
             children,
-            |children| Merge::new(children, &nodes[v].eliminated, &mut spare, Par::Seq).unwrap(),
+            |children| {
+                let eliminated = &nodes[v].eliminated;
+                Merge::new(children, eliminated, &[], &mut spare, Par::Seq).unwrap()
+            },
             BatchSize::LargeInput,
         );
     });
@@ -117,9 +102,7 @@ fn merge(c: &mut Criterion) {
 fn interface(c: &mut Criterion) {
     let scene = Scene::granite(1, 20);
     let blocks = scene.blocks.len();
-    let in_contact: Vec<bool> = (0..blocks)
-        .map(|b| scene.plan.group_of(b).is_some())
-        .collect();
+    let in_contact = vec![false; blocks];
     let condensed: Vec<Condensed> = (0..blocks).map(|b| scene.of_block(b)).collect();
     let interface_dofs: Vec<_> = condensed.iter().map(|c| &c.interface_dofs[..]).collect();
     let nodes: Vec<_> = (0..blocks)
@@ -135,13 +118,12 @@ fn interface(c: &mut Criterion) {
     });
 }
 
-/// What a block brings to Γ with its normal jumps, which come first on its boundary, at 0.
+/// What a block brings to Γ.
 fn contribution(condensed: &Condensed) -> Contribution {
-    let (m, n) = (condensed.jumps, condensed.interface_dofs.len());
     let mut condensed = condensed.clone();
     condensed.fill_upper_triangle();
     Contribution {
-        s: condensed.s.submatrix(m, m, n, n).to_owned(),
+        s: condensed.s,
         smallest_pivot: condensed.smallest_pivot,
         law: None,
     }
@@ -153,6 +135,6 @@ criterion_group! {
         .sample_size(20)
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(1));
-    targets = subdomain, merge, pair, interface
+    targets = subdomain, merge, interface
 }
 criterion_main!(kernels);

@@ -1,7 +1,7 @@
 //! The blocks of a built-in scene, as one rank would have them.
 
 use contact_dd_mpi::fem::assembly::assemble;
-use contact_dd_mpi::fem::block::{Block, OwnedBlock};
+use contact_dd_mpi::fem::block::Block;
 use contact_dd_mpi::fem::dofs::Dofs;
 use contact_dd_mpi::fem::load::{BlockLoads, load};
 use contact_dd_mpi::fem::prescribed::Prescribed;
@@ -20,7 +20,7 @@ use faer::{Mat, Par};
 pub struct Scene {
     pub catalog: Catalog,
     pub plan: Plan,
-    pub blocks: Vec<OwnedBlock>,
+    pub blocks: Vec<Block>,
 }
 
 impl Scene {
@@ -31,16 +31,9 @@ impl Scene {
         let decomposition = Decomposition::new(&model, Some(count)).unwrap();
         let problem = Problem::new(&model, &decomposition).unwrap();
         let plan = Plan::new(&problem.catalog, 1, Merging::All);
-        let blocks = (plan.blocks.iter())
-            .map(|of_plan| {
-                let members = of_plan.subdomains.iter();
-                let members = members.map(|&s| problem.subdomains[s].clone()).collect();
-                let shared = |node: u32| plan.tree.sharing[node as usize] > 1;
-                let block = Block::new(members, problem.catalog.dim, shared);
-                let points = of_plan.group.map_or(&[][..], |g| &problem.points[g]);
-                OwnedBlock::new(block, points)
-            })
-            .collect();
+        let dim = problem.catalog.dim;
+        let block = |subdomain| Block::new(subdomain, &plan.tree, dim);
+        let blocks = problem.subdomains.into_iter().map(block).collect();
         Self {
             catalog: problem.catalog,
             plan,
@@ -52,12 +45,11 @@ impl Scene {
         &self.catalog.materials
     }
 
-    /// The largest linear subdomain.
+    /// The largest subdomain without contact.
     pub fn largest_linear(&self) -> usize {
-        let linear = (0..self.blocks.len()).filter(|&b| self.plan.blocks[b].group.is_none());
-        linear
-            .max_by_key(|&b| self.blocks[b].block.nodes())
-            .unwrap()
+        let subdomains = &self.catalog.subdomains;
+        let linear = (0..self.blocks.len()).filter(|&b| subdomains[b].group.is_none());
+        linear.max_by_key(|&b| self.blocks[b].nodes()).unwrap()
     }
 
     /// What acts on a block.
@@ -67,14 +59,14 @@ impl Scene {
 
     /// What supports prescribe in it.
     pub fn prescribed(&self, b: usize) -> Prescribed {
-        Prescribed::new(&self.blocks[b], &self.loads(b), self.materials()).unwrap()
+        Prescribed::new(&self.blocks[b], &self.loads(b))
     }
 
     /// A block's unknowns and stiffness.
     pub fn assembled(&self, b: usize) -> (Dofs, SparseSymmetric) {
-        let owned = &self.blocks[b];
-        let dofs = Dofs::new(owned, &self.loads(b), self.materials()).unwrap();
-        let (stiffness, _) = assemble(&owned.block, &dofs, self.materials(), &[]).unwrap();
+        let block = &self.blocks[b];
+        let dofs = Dofs::new(block, &self.loads(b)).unwrap();
+        let (stiffness, _) = assemble(block, &dofs, self.materials(), &[]).unwrap();
         (dofs, stiffness)
     }
 
@@ -82,7 +74,7 @@ impl Scene {
     pub fn condensed(&self, b: usize) -> (Dofs, LocalSchur, Mat<f64>, CondensedLoad) {
         let (dofs, stiffness) = self.assembled(b);
         let (schur, s) = LocalSchur::new(&stiffness, dofs.interior, Par::Seq).unwrap();
-        let (block, loads) = (&self.blocks[b].block, self.loads(b));
+        let (block, loads) = (&self.blocks[b], self.loads(b));
         let prescribed = self.prescribed(b);
         let load = load(block, &loads, &dofs, &prescribed, self.materials(), &[]);
         let load = schur.condense(load);
@@ -93,7 +85,7 @@ impl Scene {
     pub fn of_block(&self, b: usize) -> Condensed {
         let (dofs, schur, s, _) = self.condensed(b);
         Condensed {
-            jumps: dofs.jumps,
+            jumps: 0,
             interface_dofs: dofs.interface_dofs.clone(),
             smallest_pivot: schur.smallest_pivot(),
             diagonal: schur.diagonal,

@@ -43,14 +43,6 @@ impl Sites {
         }
     }
 
-    /// A node's own unknowns.
-    pub fn unknowns_of(&self, node: u32) -> std::ops::Range<u32> {
-        match self.of_node[node as usize] as usize {
-            site if site < self.len() => self.starts[site]..self.starts[site + 1],
-            _ => 0..0,
-        }
-    }
-
     /// The site of an unknown.
     pub fn of(&self, dof: u32) -> u32 {
         self.starts.partition_point(|&start| start <= dof) as u32 - 1

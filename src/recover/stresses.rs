@@ -193,7 +193,7 @@ impl<'a> Exchange<'a> {
 pub fn error_estimate(comm: &Comm, stresses: &BTreeMap<usize, Stress>, plan: &Plan) -> CellError {
     let mut total = CellError::default();
     comm.gather(
-        &plan.owners(),
+        plan.owners(),
         |b| {
             let mut sum = CellError::default();
             for &error in stresses.get(&b).iter().flat_map(|s| &s.recovered.errors) {

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use clap::ValueEnum;
 use contact_dd_mpi::fem::assembly::assemble;
-use contact_dd_mpi::fem::block::{Block, OwnedBlock};
+use contact_dd_mpi::fem::block::Block;
 use contact_dd_mpi::fem::dofs::Dofs;
 use contact_dd_mpi::fem::load::BlockLoads;
 use contact_dd_mpi::schur::local::LocalSchur;
 use contact_dd_mpi::sweep::Method;
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
+use contact_dd_partition::problem::tree::Tree;
 use faer::{Mat, Par, Side};
 
 use crate::support::blocks::{Blocks, jittered, joined, moved, shuffled};
@@ -309,11 +310,9 @@ fn a_schur_complement_is_positive_and_rigid_motions_cost_nothing() {
             continue;
         }
         let is_held = !subdomain.supports.is_empty();
-        let block = Block::new(vec![subdomain.clone()], 2, |_| true);
-        let owned = OwnedBlock::new(block, &[]);
-        let loads = BlockLoads::new(&owned, 0);
-        let dofs = Dofs::new(&owned, &loads, &model.materials).unwrap();
-        let (stiffness, _) = assemble(&owned.block, &dofs, &model.materials, &[]).unwrap();
+        let block = Block::new(subdomain.clone(), &Tree::default(), 2);
+        let dofs = Dofs::new(&block, &BlockLoads::new(&block, 0)).unwrap();
+        let (stiffness, _) = assemble(&block, &dofs, &model.materials, &[]).unwrap();
         let (_, lower) = LocalSchur::new(&stiffness, dofs.interior, Par::Seq).unwrap();
         let s = Mat::from_fn(lower.nrows(), lower.nrows(), |i, j| {
             lower[(i.max(j), i.min(j))]

@@ -225,7 +225,7 @@ fn on_interface_is_what_is_shared(model: &Model, decomposition: &Decomposition, 
 fn points_name_the_nodes_of_the_scene() {
     let model = shuffled(&stacked(3, 6, 3), 3);
     let problem = Problem::new(&model, &halves(&model, 3.0)).unwrap();
-    for point in problem.points.iter().flatten() {
+    for point in &problem.catalog.points {
         let of_model = &model.contacts[point.contact as usize].points[point.place as usize];
         for ((at, weight), &(node, expected)) in point.entries.iter().zip(&of_model.entries) {
             let subdomain = &problem.subdomains[at.subdomain as usize];

@@ -68,7 +68,6 @@ impl Cluster {
             .map(|number| NormalJumpOf::Unknown {
                 number,
                 factor: 1.0,
-                constant: 0.0,
             })
             .collect();
         let limits = Limits::new(of.len(), &of, &self.gaps, 0.0);
