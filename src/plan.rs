@@ -93,6 +93,29 @@ impl Plan {
             .ok()
     }
 
+    /// Whether node v is a cluster at a root, whose nodes of Γ are left to the interface problem: its contact
+    /// points lie between several parts of the scene.
+    pub fn leaves_its_nodes(&self, v: usize) -> bool {
+        let node = &self.tree.nodes[v];
+        node.parent.is_none() && node.children.len() > 1
+    }
+
+    /// The nodes of Γ that the merge at node v eliminates.
+    pub fn eliminated(&self, v: usize) -> &[u32] {
+        match self.leaves_its_nodes(v) {
+            true => &[],
+            false => &self.tree.nodes[v].eliminated,
+        }
+    }
+
+    /// The nodes of Γ that the merge at node v keeps.
+    pub fn kept(&self, v: usize) -> &[u32] {
+        match self.leaves_its_nodes(v) {
+            true => &self.tree.nodes[v].eliminated,
+            false => &self.tree.nodes[v].kept,
+        }
+    }
+
     /// The owner of every cluster.
     pub fn cluster_owners(&self) -> Vec<usize> {
         self.clusters.iter().map(|c| c.owner).collect()

@@ -43,6 +43,27 @@ impl<T: Copy> Lists<T> {
         }
     }
 
+    /// No lists yet, with room for so many of them and for so many items.
+    pub fn with_capacity(lists: usize, items: usize) -> Self {
+        let mut offsets = Vec::with_capacity(lists + 1);
+        offsets.push(0);
+        Self {
+            offsets,
+            items: Vec::with_capacity(items),
+        }
+    }
+
+    /// Appends a list.
+    pub fn push(&mut self, list: impl Iterator<Item = T>) {
+        self.items.extend(list);
+        self.offsets.push(self.items.len());
+    }
+
+    /// Number of items of all lists.
+    pub fn items(&self) -> usize {
+        self.items.len()
+    }
+
     /// Number of lists.
     pub fn len(&self) -> usize {
         self.offsets.len() - 1

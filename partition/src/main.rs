@@ -89,12 +89,7 @@ fn run(args: &CommandLine) -> Result<(), Failure> {
 /// Splits a model into subdomains.
 fn split(model: &Model, subdomains: Option<usize>) -> Result<Problem, InputError> {
     let decomposition = Decomposition::new(model, subdomains)?;
-    let problem = Problem::new(model, &decomposition)?;
-    // The user's own partition keeps its numbers.
-    Ok(match model.prescribed_subdomains {
-        Some(_) => problem,
-        None => problem.in_order_of_hierarchy(),
-    })
+    Problem::new(model, &decomposition)
 }
 
 /// Does `work` while what C libraries print goes nowhere: METIS writes its remarks to stdout.

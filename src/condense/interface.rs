@@ -55,10 +55,7 @@ fn assemble(
     contributions: Vec<Contribution>,
     par: Par,
 ) -> Result<(Numbering, Interface), Failure> {
-    let nodes = plan
-        .clusters
-        .iter()
-        .map(|c| &plan.tree.nodes[c.node].kept[..]);
+    let nodes = plan.clusters.iter().map(|c| plan.kept(c.node));
     let in_contact: Vec<bool> = plan.clusters.iter().map(|c| c.is_in_contact()).collect();
     let interface_dofs: Vec<&[InterfaceDof]> = interface_dofs.iter().map(Vec::as_slice).collect();
     let numbering = Numbering::new(&interface_dofs, &nodes.collect::<Vec<_>>(), &in_contact)?;

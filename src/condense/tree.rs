@@ -152,7 +152,7 @@ impl Merging<'_> {
         check_agreement(&interface_dofs, &kept.collect::<Vec<_>>())?;
         let (merge, condensed) = Merge::new(
             children,
-            &node.eliminated,
+            plan.eliminated(v),
             &self.condensation.replaced(v)?,
             &mut self.spare,
             self.condensation.context.par,

@@ -11,6 +11,9 @@ use crate::recover::motions::Field;
 
 /// Equilibrium and penetration above which a solution is refined.
 const LIMIT: f64 = 4e-15;
+/// Equilibrium relative to the load above which a solution is refined: bodies that move much farther than they
+/// deform have forces that are less than their displacements promise.
+const LIMIT_OF_LOAD: f64 = 1e-11;
 /// Equilibrium and penetration that are good enough.
 const GOOD: f64 = 1e-14;
 /// Most refinements.
@@ -21,13 +24,16 @@ const MAX_REFINEMENTS: usize = 3;
 pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Certificate {
     let mut best = check(fixed, solution);
     for _ in 0..MAX_REFINEMENTS {
-        if !decide(fixed, worst(&best) > LIMIT) {
+        let falls_short = worst(&best) > LIMIT || best.equilibrium_of_load > LIMIT_OF_LOAD;
+        if !decide(fixed, falls_short) {
             break;
         }
         let mut refined = solution.clone();
         correct(fixed, &mut refined);
         let after = check(fixed, &refined);
-        if !decide(fixed, worst(&after) < 0.5 * worst(&best)) {
+        let is_nearer = worst(&after) < 0.5 * worst(&best)
+            || worst(&after) < LIMIT && after.equilibrium_of_load < 0.5 * best.equilibrium_of_load;
+        if !decide(fixed, is_nearer) {
             break;
         }
         *solution = refined;

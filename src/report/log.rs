@@ -81,7 +81,7 @@ impl<'a> Narrator<'a> {
             problem: shown(&self.settings.problem),
             title: &catalog.title,
             dofs: catalog.dofs(),
-            interface_dofs: catalog.dim * catalog.interface_nodes,
+            interface_dofs: catalog.dim * plan.tree.interface_nodes,
             subdomains: catalog.subdomains.len(),
             contact_pairs: plan.groups.len(),
             contact_conditions: catalog.conditions(),

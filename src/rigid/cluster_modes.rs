@@ -108,7 +108,9 @@ pub(super) fn cluster_modes(
         |p| {
             let cluster = plan.contact[p];
             let conditions = scene.conditions_of(&plan.clusters[cluster].groups);
-            let within = |body: usize| !elsewhere[body] && home[body] == Some(cluster);
+            // Where the cluster leaves its nodes to the interface problem, bodies move these.
+            let inside = !plan.leaves_its_nodes(plan.clusters[cluster].node);
+            let within = |body: usize| inside && !elsewhere[body] && home[body] == Some(cluster);
             scene.drive(&kinematics, &conditions, fixing_dofs, within)
         },
         |p, drive| {

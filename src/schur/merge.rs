@@ -88,12 +88,13 @@ impl Merge {
         spare: &mut Spare,
         par: Par,
     ) -> Result<(Self, Condensed), FreeInterfaceDof> {
-        let (mut gone, interface_dofs) = union_of_interface_dofs(&children, eliminated);
+        let (mut gone, mut interface_dofs) = union_of_interface_dofs(&children, eliminated);
         let of_children: usize = children.iter().map(|c| c.jumps).sum();
         let jumps = of_children + replaced.len();
         let pivots: BTreeMap<InterfaceDof, usize> =
             replaced.iter().map(|r| r.dof).zip(0..).collect();
         gone.retain(|dof| !pivots.contains_key(dof));
+        interface_dofs.retain(|dof| !pivots.contains_key(dof));
         let e = gone.len();
         let k = jumps + interface_dofs.len();
         let mut columns = Mat::<f64>::zeros(e + k, e);

@@ -12,8 +12,8 @@ use crate::error::InputError;
 use crate::lists::Lists;
 use crate::model::Model;
 use crate::problem::{
-    Body, Catalog, ContactSummary, Hierarchy, InterfaceNode, LoadStep, Problem, StepLoads,
-    Subdomain, SubdomainNode, SubdomainSummary,
+    Body, Catalog, ContactSummary, InterfaceNode, LoadStep, Problem, StepLoads, Subdomain,
+    SubdomainNode, SubdomainSummary,
 };
 
 impl Problem {
@@ -32,9 +32,8 @@ impl Problem {
         let subdomains = cut(model, decomposition, &owners, &bodies)?;
         let points = gather_points(model, &owners, &groups);
         let mut warnings = model.warnings.clone();
-        warnings.extend(groups.warning.clone());
         warnings.extend(bodies::scattered(model, decomposition));
-        let mut catalog = Catalog {
+        let catalog = Catalog {
             supports: model.support_names.clone(),
             title: model.title.clone(),
             solver: model.solver,
@@ -74,10 +73,9 @@ impl Problem {
             groups: points.iter().map(Vec::len).collect(),
             points: points.concat(),
             point_nodes: Vec::new(),
-            hierarchy: Hierarchy::default(),
+            hierarchy: decomposition.hierarchy.clone(),
             warnings,
         };
-        catalog.hierarchy = Hierarchy::new(&catalog);
         let mut problem = Self {
             catalog,
             subdomains,
@@ -99,7 +97,9 @@ struct Owners {
 
 impl Owners {
     fn new(model: &Model, decomposition: &Decomposition) -> Result<Self, InputError> {
-        let Decomposition { count, subdomain } = decomposition;
+        let Decomposition {
+            count, subdomain, ..
+        } = decomposition;
         if subdomain.len() != model.mesh.cells.len() {
             return Err(InputError::new(format!(
                 "the partition names a subdomain for {} cells; expected {}",

@@ -1,114 +1,328 @@
-//! The graph of a mesh: its vertices are cells or contact patches, its edges the facets between them.
+//! The graph that is dissected: its vertices are cells, or the subdomains that a scene prescribes; its edges
+//! are facets, and contact points that tie the cells on both sides to each other.
 
+use crate::disjoint_sets::DisjointSets;
 use crate::lists::Lists;
+use crate::mesh::topology::Topology;
+use crate::model::Model;
 
-/// A graph of cells and contact patches.
-pub(super) struct Graph {
-    /// Number of cells of every vertex.
-    pub cells: Vec<u32>,
-    /// Material of every vertex, that of most of its cells.
-    pub material: Vec<u32>,
-    /// The contacts of every vertex, ascending; empty unless it is a contact patch.
-    pub contacts: Vec<Vec<u32>>,
-    /// The neighbours of every vertex with the weight of the facets between them.
-    pub edges: Lists<(u32, u32)>,
+/// Weight of a node that a cut lets both sides share.
+const NODE: u32 = 8;
+
+/// Nodes that a contact point adds to the front that merges its sides: one of each side.
+const NODES_OF_POINT: u32 = 2;
+
+/// An edge as one of its ends sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Edge {
+    /// The vertex at its other end.
+    pub to: u32,
+    /// What cutting it costs, and whether it is a facet in the lowest bit.
+    packed: u32,
 }
 
-impl Graph {
-    /// Makes a graph of directed edges (from, (to, weight)), both directions of each given; those
-    /// that occur more than once add up.
-    pub fn new(
-        cells: Vec<u32>,
-        material: Vec<u32>,
-        contacts: Vec<Vec<u32>>,
-        directed: impl Iterator<Item = (u32, (u32, u32))> + Clone,
-    ) -> Self {
-        let mut all = Lists::new(cells.len(), directed);
-        all.sort();
-        let added_up = all.iter().map(|list| {
-            let same = list.chunk_by(|a, b| a.0 == b.0);
-            same.map(|same| (same[0].0, same.iter().map(|&(_, weight)| weight).sum()))
-        });
+impl Edge {
+    fn new(to: u32, weight: u32, is_facet: bool) -> Self {
         Self {
-            cells,
-            material,
-            contacts,
-            edges: added_up.collect(),
+            to,
+            packed: weight << 1 | u32::from(is_facet),
         }
     }
 
-    /// The graph of some of the vertices for each of several lists, none of which have a vertex in
-    /// common; a vertex's number there is its place in the list.
-    pub fn split(&self, lists: &[Vec<u32>]) -> Vec<Self> {
-        let mut place = vec![(u32::MAX, 0); self.len()];
-        for (list, vertices) in lists.iter().enumerate() {
-            for (number, &vertex) in vertices.iter().enumerate() {
-                place[vertex as usize] = (list as u32, number as u32);
-            }
+    /// What cutting it costs: [`NODE`] for every node that both sides share then.
+    pub fn weight(self) -> u32 {
+        self.packed >> 1
+    }
+
+    /// Whether it is a facet, and no contact.
+    pub fn is_facet(self) -> bool {
+        self.packed & 1 == 1
+    }
+}
+
+/// Cells or subdomains, and how they hang together.
+#[derive(Clone, Debug)]
+pub(super) struct Graph {
+    /// Dimension of space, and the number of dofs of a node.
+    pub dim: usize,
+    /// What is a vertex here: the number of a cell, or of a subdomain.
+    pub ids: Vec<u32>,
+    /// Dofs of every vertex; nodes are shared out among the cells around them.
+    pub dofs: Vec<f32>,
+    /// Centre of every vertex, from the middle of the mesh.
+    pub centres: Vec<[f32; 3]>,
+    /// Weight of the edges from every vertex to vertices that are not in this graph.
+    pub outside: Vec<u32>,
+    /// The edges of every vertex, ascending.
+    pub edges: Lists<Edge>,
+}
+
+impl Graph {
+    /// The graph of the cells of a model.
+    pub fn new(model: &Model, topology: &Topology) -> Self {
+        let mesh = &model.mesh;
+        let mut valence = vec![0u32; mesh.points.len()];
+        for &node in mesh.cells.connectivity() {
+            valence[node as usize] += 1;
         }
-        let part = |(list, vertices): (usize, &Vec<u32>)| {
-            let place = &place;
-            let within = |&vertex: &u32| {
-                let edges = self.edges(vertex).iter();
-                edges.filter_map(move |&(next, weight)| {
-                    let (of, number) = place[next as usize];
-                    (of as usize == list).then_some((number, weight))
-                })
-            };
-            let of_vertices =
-                |values: &[u32]| vertices.iter().map(|&a| values[a as usize]).collect();
-            Self {
-                cells: of_vertices(&self.cells),
-                material: of_vertices(&self.material),
-                contacts: (vertices.iter())
-                    .map(|&vertex| self.contacts[vertex as usize].clone())
-                    .collect(),
-                edges: vertices.iter().map(within).collect(),
+        let share: Vec<f32> = valence
+            .iter()
+            .map(|&n| mesh.dim as f32 / n as f32)
+            .collect();
+        let count = mesh.points.len().max(1) as f64;
+        let middle = [0, 1, 2].map(|k| mesh.points.iter().map(|p| p[k]).sum::<f64>() / count);
+        let points: Vec<[f32; 3]> = (mesh.points.iter())
+            .map(|p| [0, 1, 2].map(|k| (p[k] - middle[k]) as f32))
+            .collect();
+        let mut dofs = Vec::with_capacity(mesh.cells.len());
+        let mut centres = Vec::with_capacity(mesh.cells.len());
+        for (kind, nodes) in mesh.cells.iter() {
+            dofs.push(nodes.iter().map(|&node| share[node as usize]).sum());
+            let corners = &nodes[..kind.corners()];
+            let mut centre = [0.0; 3];
+            for &node in corners {
+                let point = points[node as usize];
+                centre = [0, 1, 2].map(|k| centre[k] + point[k] / corners.len() as f32);
             }
-        };
-        lists.iter().enumerate().map(part).collect()
+            centres.push(centre);
+        }
+        let mut ties = ties(model);
+        ties.extend(hinges(model, topology));
+        let facets = (0..mesh.cells.len()).flat_map(|cell| {
+            let weight = facet_weight(model, cell);
+            let others = topology.neighbours(cell).iter();
+            others.map(move |&next| (cell as u32, Edge::new(next, weight, true)))
+        });
+        let ties = ties.iter().flat_map(|&(a, b, weight)| {
+            [(a, b), (b, a)].map(|(from, to)| (from, Edge::new(to, weight, false)))
+        });
+        let mut edges = Lists::new(mesh.cells.len(), facets.chain(ties));
+        edges.sort();
+        Self {
+            dim: mesh.dim,
+            ids: (0..mesh.cells.len() as u32).collect(),
+            outside: vec![0; dofs.len()],
+            dofs,
+            centres,
+            edges,
+        }
     }
 
     /// Number of vertices.
     pub fn len(&self) -> usize {
-        self.cells.len()
+        self.ids.len()
     }
 
-    /// The neighbours of a vertex with the weight of the facets between them.
-    pub fn edges(&self, vertex: u32) -> &[(u32, u32)] {
-        self.edges.of(vertex as usize)
+    /// Dofs of all vertices.
+    pub fn size(&self) -> f64 {
+        self.dofs.iter().map(|&dofs| f64::from(dofs)).sum()
     }
 
-    /// The vertices that a breadth-first search from `start` reaches, `start` first; `enters` tells
-    /// whether it goes on to a vertex, and remembers where it was.
-    pub fn reach(&self, start: u32, mut enters: impl FnMut(u32) -> bool) -> Vec<u32> {
-        let mut reached = vec![start];
-        let mut at = 0;
-        while at < reached.len() {
-            let edges = self.edges(reached[at]).iter().map(|&(next, _)| next);
-            reached.extend(edges.filter(|&next| enters(next)));
-            at += 1;
+    /// The edges of a vertex.
+    pub fn edges(&self, vertex: usize) -> &[Edge] {
+        self.edges.of(vertex)
+    }
+
+    /// Dofs of nodes that edges of so much weight stand for.
+    pub fn dofs_of(&self, weight: u64) -> f64 {
+        (self.dim as u64 * weight) as f64 / f64::from(NODE)
+    }
+
+    /// The graphs of the vertices that are on the left and of those that aren't.
+    pub fn halves(self, left: &[bool]) -> [Self; 2] {
+        let mut counts = [0; 2];
+        let mut place = Vec::with_capacity(self.len());
+        for &left in left {
+            let count = &mut counts[usize::from(!left)];
+            place.push(*count);
+            *count += 1;
         }
-        reached
+        [true, false].map(|side| {
+            let count = counts[usize::from(!side)] as usize;
+            let mut half = Self {
+                dim: self.dim,
+                ids: Vec::with_capacity(count),
+                dofs: Vec::with_capacity(count),
+                centres: Vec::with_capacity(count),
+                outside: Vec::with_capacity(count),
+                edges: Lists::with_capacity(count, self.edges.items() / self.len().max(1) * count),
+            };
+            for vertex in (0..self.len()).filter(|&vertex| left[vertex] == side) {
+                let mut outside = self.outside[vertex];
+                let edges = self.edges(vertex).iter();
+                half.edges.push(edges.filter_map(|edge| {
+                    if left[edge.to as usize] != side {
+                        outside += edge.weight();
+                        return None;
+                    }
+                    let to = place[edge.to as usize];
+                    Some(Edge { to, ..*edge })
+                }));
+                half.ids.push(self.ids[vertex]);
+                half.dofs.push(self.dofs[vertex]);
+                half.centres.push(self.centres[vertex]);
+                half.outside.push(outside);
+            }
+            half
+        })
     }
 
-    /// The numbers of cells as weights.
-    pub fn cell_weights(&self) -> Vec<u64> {
-        self.cells.iter().map(|&n| u64::from(n)).collect()
+    /// The graph that has one vertex for all vertices of the same label, and the label as its id; labels
+    /// are `0..count`.
+    pub fn contracted(&self, labels: &[u32], count: usize) -> Self {
+        let mut dofs = vec![0.0; count];
+        let mut centres = vec![[0.0; 3]; count];
+        let mut outside = vec![0; count];
+        for (vertex, &label) in labels.iter().enumerate() {
+            let label = label as usize;
+            dofs[label] += self.dofs[vertex];
+            outside[label] += self.outside[vertex];
+            let centre = self.centres[vertex];
+            for k in 0..3 {
+                centres[label][k] += centre[k] * self.dofs[vertex];
+            }
+        }
+        for (centre, &dofs) in centres.iter_mut().zip(&dofs) {
+            *centre = centre.map(|c: f32| c / dofs);
+        }
+        let across = (0..self.len()).flat_map(|vertex| {
+            let label = labels[vertex];
+            let edges = self.edges(vertex).iter();
+            let edges = edges.map(move |edge| {
+                let to = labels[edge.to as usize];
+                (label, Edge { to, ..*edge })
+            });
+            edges.filter(|&(label, edge)| edge.to != label)
+        });
+        let mut all = Lists::new(count, across);
+        all.sort();
+        let alike = |a: &Edge, b: &Edge| (a.to, a.is_facet()) == (b.to, b.is_facet());
+        let mut edges = Lists::with_capacity(count, 0);
+        for list in all.iter() {
+            let mut list = list.to_vec();
+            list.sort_unstable_by_key(|edge| (edge.to, edge.is_facet()));
+            let added_up = list.chunk_by(alike).map(|same| {
+                let weight = same.iter().map(|edge| edge.weight()).sum();
+                Edge::new(same[0].to, weight, same[0].is_facet())
+            });
+            edges.push(added_up);
+        }
+        Self {
+            dim: self.dim,
+            ids: (0..count as u32).collect(),
+            dofs,
+            centres,
+            outside,
+            edges,
+        }
     }
 
-    /// Number of cells.
-    pub fn size(&self) -> u64 {
-        self.cell_weights().iter().sum()
+    /// For every vertex the part of the graph that it hangs together with by edges that `holds`; parts are
+    /// numbered in the order of their first vertex. And their number.
+    pub fn parts(&self, holds: impl Fn(usize, &Edge) -> bool) -> (Vec<u32>, usize) {
+        let mut sets = DisjointSets::new(self.len());
+        for vertex in 0..self.len() {
+            for edge in self.edges(vertex) {
+                if (edge.to as usize) < vertex && holds(vertex, edge) {
+                    sets.unite(vertex as u32, edge.to);
+                }
+            }
+        }
+        let mut of = Vec::with_capacity(self.len());
+        let mut count = 0;
+        for vertex in 0..self.len() {
+            // A set is known by its smallest member, which was there before.
+            let root = sets.find(vertex as u32) as usize;
+            of.push(match root == vertex {
+                true => count,
+                false => of[root],
+            });
+            count += u32::from(root == vertex);
+        }
+        (of, count as usize)
     }
 
-    /// Whether a vertex holds nodes with contact conditions.
-    pub fn is_contact_patch(&self, vertex: u32) -> bool {
-        !self.contacts[vertex as usize].is_empty()
+    /// The parts that hang together across facets.
+    pub fn pieces(&self) -> (Vec<u32>, usize) {
+        self.parts(|_, edge| edge.is_facet())
     }
+}
 
-    /// Number of contact patches.
-    pub fn contact_patches(&self) -> usize {
-        self.contacts.iter().filter(|list| !list.is_empty()).count()
+/// What it costs to cut a facet of a cell: its nodes but one, as facets in a row share their ends.
+fn facet_weight(model: &Model, cell: usize) -> u32 {
+    let facets = model.mesh.cells.kind(cell).facets();
+    let nodes = facets.first().map_or(1, |(facet, _)| facet.nodes());
+    NODE * (nodes - 1).max(1) as u32
+}
+
+/// Pairs of cells of two pieces of the mesh that share a node but no facet, and the weight of that.
+fn hinges(model: &Model, topology: &Topology) -> Vec<(u32, u32, u32)> {
+    let piece = topology.pieces();
+    let mut ties = Vec::new();
+    if piece.iter().all(|&piece| piece == 0) {
+        return ties;
     }
+    let mut first = vec![u32::MAX; model.mesh.points.len()];
+    for (cell, (_, nodes)) in (0..).zip(model.mesh.cells.iter()) {
+        for &node in nodes {
+            let first = &mut first[node as usize];
+            if *first == u32::MAX {
+                *first = cell;
+            } else if piece[*first as usize] != piece[cell as usize] {
+                ties.push((*first, cell, NODE));
+            }
+        }
+    }
+    ties
+}
+
+/// The pairs of cells that contact points tie to each other, and the weights of these ties.
+///
+/// A point ties each cell that has a facet at its nodes on side a to each that has one at those on side b.
+fn ties(model: &Model) -> Vec<(u32, u32, u32)> {
+    let mesh = &model.mesh;
+    let points = || model.contacts.iter().flat_map(|contact| &contact.points);
+    let mut in_contact = vec![false; mesh.points.len()];
+    for &(node, _) in points().flat_map(|point| &point.entries) {
+        in_contact[node as usize] = true;
+    }
+    let cells = mesh
+        .cells
+        .iter()
+        .enumerate()
+        .flat_map(|(cell, (_, nodes))| {
+            let on_surface = nodes.iter().filter(|&&node| in_contact[node as usize]);
+            let has_facet = on_surface.clone().count() >= mesh.dim;
+            on_surface.map(move |&node| (node, (cell as u32, has_facet)))
+        });
+    let around = Lists::new(mesh.points.len(), cells);
+    let at = |nodes: Vec<u32>| -> Vec<u32> {
+        let all = || nodes.iter().flat_map(|&node| around.of(node as usize));
+        let with_facet = all().filter(|(_, has_facet)| *has_facet);
+        let mut cells: Vec<u32> = with_facet.map(|&(cell, _)| cell).collect();
+        if cells.is_empty() {
+            cells.extend(all().map(|&(cell, _)| cell));
+        }
+        cells.sort_unstable();
+        cells.dedup();
+        cells
+    };
+    let mut ties = Vec::new();
+    for point in points() {
+        let side = |sign: f64| {
+            let entries = point
+                .entries
+                .iter()
+                .filter(|(_, weight)| sign * weight > 0.0);
+            at(entries.map(|&(node, _)| node).collect())
+        };
+        let (side_a, side_b) = (side(1.0), side(-1.0));
+        let pairs = side_a.len() * side_b.len();
+        let weight = (NODE * NODES_OF_POINT / pairs.max(1) as u32).max(1);
+        for &a in &side_a {
+            let others = side_b.iter().filter(|&&b| a != b);
+            ties.extend(others.map(|&b| (a, b, weight)));
+        }
+    }
+    ties
 }

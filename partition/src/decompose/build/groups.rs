@@ -5,17 +5,12 @@ use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::model::Model;
 
-/// How many node tags a warning names.
-const NAMED: usize = 5;
-
 /// The groups in contact, numbered by their lowest subdomain.
 pub(super) struct Groups {
     /// Number of groups.
     pub count: usize,
     /// Group of every subdomain; `None` for a linear one.
     pub of: Vec<Option<usize>>,
-    /// Names the nodes at which Γ meets Γ_c, if there are any.
-    pub warning: Option<String>,
 }
 
 impl Groups {
@@ -27,12 +22,10 @@ impl Groups {
     pub fn new(model: &Model, owners: &Owners) -> Result<Self, InputError> {
         let mut sets = DisjointSets::new(owners.count);
         let mut in_contact = vec![false; owners.count];
-        let mut meeting = Vec::new();
         for contact in &model.contacts {
             for (place, point) in contact.points.iter().enumerate() {
                 let nodes = point.entries.iter().map(|&(node, _)| node);
                 let linked: Vec<u32> = nodes
-                    .clone()
                     .flat_map(|node| owners.of.of(node as usize))
                     .map(|&(owner, _)| owner)
                     .collect();
@@ -47,7 +40,6 @@ impl Groups {
                     sets.unite(first, other);
                     in_contact[other as usize] = true;
                 }
-                meeting.extend(nodes.filter(|&n| owners.of.of(n as usize).len() > 1));
             }
         }
         let mut group_of_root = vec![None; owners.count];
@@ -63,30 +55,6 @@ impl Groups {
                 })
             })
             .collect();
-        meeting.sort_unstable();
-        meeting.dedup();
-        Ok(Self {
-            count,
-            of,
-            warning: warning(model, &meeting),
-        })
+        Ok(Self { count, of })
     }
-}
-
-fn warning(model: &Model, meeting: &[u32]) -> Option<String> {
-    let tags: Vec<String> = meeting
-        .iter()
-        .take(NAMED)
-        .map(|&node| model.mesh.node_tags[node as usize].to_string())
-        .collect();
-    let more = match meeting.len().saturating_sub(NAMED) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    (!meeting.is_empty()).then(|| {
-        format!(
-            "the partition's boundaries meet contact surfaces at the nodes {}{more}; all subdomains around them are in one group",
-            tags.join(", ")
-        )
-    })
 }

@@ -1,0 +1,184 @@
+//! One cut of a graph in two.
+
+use super::flow::{Place, cheapest_cuts};
+use super::graph::Graph;
+use super::metis;
+use crate::flops::{Front, condensation};
+
+/// Graphs of up to so many vertices are cut in all ways, and the best is taken.
+const EXHAUSTIVE: usize = 8;
+
+/// How far a side may be from its share of the dofs, as a part of all.
+const SLACK: f64 = 0.06;
+
+/// Vertices by which a direction is judged, at most; some more where strides don't come out even.
+const SAMPLE: usize = 1024;
+
+/// How many of the directions in which a set may be cut are tried.
+const TRIED: usize = 2;
+
+/// What an uneven cut costs, as a part of the flops under it.
+const PRICE: f64 = 0.1;
+
+/// A cut, the better the lower its score.
+struct Cut {
+    left: Vec<bool>,
+    score: f64,
+}
+
+/// Cuts a connected graph of two vertices at least so that the front that merges both sides, and what is
+/// under it, cost little; on the left there will be about `share` of the dofs. METIS is asked, too, where
+/// `with_metis`. Returns whether each vertex is on the left.
+pub(super) fn bisect(graph: &Graph, share: f64, with_metis: bool) -> Vec<bool> {
+    let count = graph.len();
+    let mut candidates: Vec<Vec<bool>> = Vec::new();
+    if count <= EXHAUSTIVE {
+        // Without a share other than one half the sides of a cut may change places.
+        candidates.extend(
+            (1..(1usize << count) - 1).map(|way| (0..count).map(|i| way >> i & 1 == 1).collect()),
+        );
+    } else {
+        candidates.extend(geometric(graph, share));
+        candidates.extend(with_metis.then(|| metis::bisection(graph, share)).flatten());
+    }
+    let cuts = candidates
+        .into_iter()
+        .filter_map(|left| Cut::new(graph, left, share));
+    let best = cuts.min_by(|a, b| a.score.total_cmp(&b.score));
+    best.map_or_else(
+        || (0..count).map(|i| i < count.div_ceil(2)).collect(),
+        |cut| cut.left,
+    )
+}
+
+impl Cut {
+    /// Judges a cut; `None` where a side is empty.
+    fn new(graph: &Graph, left: Vec<bool>, share: f64) -> Option<Self> {
+        let mut dofs = [0.0; 2];
+        let mut outside = [0; 2];
+        let mut cut = 0;
+        for (vertex, &on_left) in left.iter().enumerate() {
+            let side = usize::from(!on_left);
+            dofs[side] += f64::from(graph.dofs[vertex]);
+            outside[side] += u64::from(graph.outside[vertex]);
+            if on_left {
+                let across = graph
+                    .edges(vertex)
+                    .iter()
+                    .filter(|edge| !left[edge.to as usize]);
+                cut += across.map(|edge| u64::from(edge.weight())).sum::<u64>();
+            }
+        }
+        let front = Front {
+            eliminated: graph.dofs_of(cut) as usize,
+            kept: graph.dofs_of(outside[0] + outside[1]) as usize,
+        };
+        let below: f64 = [0, 1]
+            .map(|side| {
+                let kept = graph.dofs_of(outside[side] + cut);
+                condensation((dofs[side] - kept).max(0.0), kept)
+            })
+            .iter()
+            .sum();
+        let uneven = (dofs[0] / (dofs[0] + dofs[1]) - share).abs() / share.min(1.0 - share);
+        let score = front.flops() + below * (1.0 + PRICE * uneven);
+        (dofs[0] > 0.0 && dofs[1] > 0.0).then_some(Self { left, score })
+    }
+}
+
+/// The cheapest cuts across the best of several directions.
+fn geometric(graph: &Graph, share: f64) -> Vec<Vec<bool>> {
+    let stride = graph.len().div_ceil(SAMPLE);
+    let sample: Vec<usize> = (0..graph.len()).step_by(stride).collect();
+    let mut slabs: Vec<(u64, Slab)> = directions(graph, &sample)
+        .into_iter()
+        .map(|direction| Slab::new(graph, &sample, direction, share))
+        .map(|slab| (slab.price(graph, &sample), slab))
+        .collect();
+    slabs.sort_by_key(|&(price, _)| price);
+    let tried = slabs.iter().take(TRIED);
+    tried.flat_map(|(_, slab)| slab.cuts(graph)).collect()
+}
+
+/// The axes, the diagonals between two of them, and the principal axes of a sample of the vertices.
+fn directions(graph: &Graph, sample: &[usize]) -> Vec<[f32; 3]> {
+    let dim = graph.dim;
+    let axis = |k: usize| [0, 1, 2].map(|i| if i == k { 1.0 } else { 0.0 });
+    let mut directions: Vec<[f32; 3]> = (0..dim).map(axis).collect();
+    for i in 0..dim {
+        for j in 0..i {
+            for sign in [1.0, -1.0] {
+                let mut diagonal = axis(i);
+                diagonal[j] = sign;
+                directions.push(diagonal);
+            }
+        }
+    }
+    let count = sample.len() as f32;
+    let centres = || sample.iter().map(|&vertex| graph.centres[vertex]);
+    let mean = centres().fold([0.0; 3], |sum, c| [0, 1, 2].map(|k| sum[k] + c[k] / count));
+    let mut spread = nalgebra::Matrix3::<f32>::zeros();
+    for centre in centres() {
+        let way = nalgebra::Vector3::from_fn(|k, _| centre[k] - mean[k]);
+        spread += way * way.transpose();
+    }
+    let axes = spread.symmetric_eigen().eigenvectors;
+    let in_space = axes.column_iter().map(|axis| [axis[0], axis[1], axis[2]]);
+    // In the plane one of them points out of it.
+    directions.extend(in_space.filter(|axis| dim == 3 || axis[2].abs() < 0.5));
+    directions
+}
+
+/// What lies between two lines, or planes, across a direction.
+struct Slab {
+    direction: [f32; 3],
+    /// Where it starts, where both sides have their share, and where it ends.
+    bounds: [f32; 3],
+}
+
+impl Slab {
+    fn new(graph: &Graph, sample: &[usize], direction: [f32; 3], share: f64) -> Self {
+        let along = |&vertex: &usize| (along(direction, graph.centres[vertex]), graph.dofs[vertex]);
+        let mut places: Vec<(f32, f32)> = sample.iter().map(along).collect();
+        places.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let all: f64 = places.iter().map(|&(_, dofs)| f64::from(dofs)).sum();
+        let slack = SLACK.min(share).min(1.0 - share);
+        let mut sums = [share - slack, share, share + slack].map(|share| share * all);
+        let mut bounds = [f32::INFINITY; 3];
+        for (place, dofs) in places {
+            for (sum, bound) in sums.iter_mut().zip(&mut bounds) {
+                *sum -= f64::from(dofs);
+                if *sum <= 0.0 && *bound == f32::INFINITY {
+                    *bound = place;
+                }
+            }
+        }
+        Self { direction, bounds }
+    }
+
+    /// What the straight cut through its middle costs, as a sample of the vertices tells.
+    fn price(&self, graph: &Graph, sample: &[usize]) -> u64 {
+        let is_left = |vertex| along(self.direction, graph.centres[vertex]) < self.bounds[1];
+        let across = sample.iter().flat_map(|&vertex| {
+            let edges = graph.edges(vertex).iter();
+            let side = is_left(vertex);
+            edges.filter(move |edge| is_left(edge.to as usize) != side)
+        });
+        across.map(|edge| u64::from(edge.weight())).sum()
+    }
+
+    /// The cheapest cuts within it.
+    fn cuts(&self, graph: &Graph) -> [Vec<bool>; 2] {
+        let place = |&centre: &[f32; 3]| match along(self.direction, centre) {
+            place if place < self.bounds[0] => Place::Left,
+            place if place > self.bounds[2] => Place::Right,
+            _ => Place::Between,
+        };
+        let places: Vec<Place> = graph.centres.iter().map(place).collect();
+        cheapest_cuts(graph, &places)
+    }
+}
+
+fn along(direction: [f32; 3], centre: [f32; 3]) -> f32 {
+    direction[0] * centre[0] + direction[1] * centre[1] + direction[2] * centre[2]
+}

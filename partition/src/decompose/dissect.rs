@@ -1,0 +1,196 @@
+//! Recursive bisection: the tree of the cuts.
+
+use super::bisect::bisect;
+use super::graph::Graph;
+use crate::problem::Hierarchy;
+
+/// Vertices of all graphs that METIS is asked to cut, together; it takes some microseconds for each.
+const METIS_VERTICES: usize = 150_000;
+
+/// Vertices from which on both sides of a cut are dissected at the same time.
+const PARALLEL: usize = 50_000;
+
+/// Where a dissection ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Wanted {
+    /// With sets of at most so many dofs, or single vertices.
+    Dofs(f64),
+    /// With exactly so many sets that hang together across facets.
+    Sets(usize),
+}
+
+/// A set of vertices with all cuts through it.
+#[derive(Clone, Debug)]
+pub(super) enum Branch {
+    /// A set that isn't cut any more, by the ids of its vertices.
+    Leaf(Vec<u32>),
+    /// The sides of a cut, and whether anything lies across it; or the pieces of a set.
+    Inner(Vec<Branch>, bool),
+}
+
+impl Branch {
+    /// Number of its leaves.
+    pub fn leaves(&self) -> usize {
+        match self {
+            Self::Leaf(_) => 1,
+            Self::Inner(sides, _) => sides.iter().map(Self::leaves).sum(),
+        }
+    }
+
+    /// The same tree by numbers; `number` tells that of a leaf, and is asked depth first. What nothing ties
+    /// to each other has roots of its own.
+    pub fn hierarchy(&self, mut number: impl FnMut(&[u32]) -> u32) -> Hierarchy {
+        let mut parent = vec![None; self.leaves()];
+        self.hang(true, &mut number, &mut parent);
+        Hierarchy { parent }
+    }
+
+    /// Numbers what is under it, and returns the nodes that hang next to each other: itself, or its sides.
+    fn hang(
+        &self,
+        is_top: bool,
+        number: &mut impl FnMut(&[u32]) -> u32,
+        parent: &mut Vec<Option<u32>>,
+    ) -> Vec<u32> {
+        let (sides, is_joined) = match self {
+            Self::Leaf(ids) => return vec![number(ids)],
+            Self::Inner(sides, is_joined) => (sides, *is_joined),
+        };
+        let is_left_out = is_top && !is_joined;
+        let under = sides
+            .iter()
+            .map(|side| side.hang(is_left_out, number, parent));
+        let under: Vec<u32> = under.collect::<Vec<_>>().concat();
+        if is_left_out {
+            return under;
+        }
+        let own = parent.len() as u32;
+        parent.push(None);
+        for node in under {
+            parent[node as usize] = Some(own);
+        }
+        vec![own]
+    }
+}
+
+/// Dissects a graph of one vertex at least. Of [`Wanted::Sets`] there are at least as many as pieces, and at most
+/// as many as vertices.
+pub(super) fn dissect(graph: Graph, wanted: Wanted) -> Branch {
+    branch(graph, wanted, METIS_VERTICES)
+}
+
+fn branch(graph: Graph, wanted: Wanted, for_metis: usize) -> Branch {
+    let is_leaf = match wanted {
+        Wanted::Dofs(most) => graph.len() == 1 || graph.size() <= most,
+        Wanted::Sets(count) => count == 1,
+    };
+    if is_leaf {
+        return leaf(&graph);
+    }
+    let with_metis = graph.len() <= for_metis;
+    let share = match wanted {
+        Wanted::Sets(count) => (count / 2) as f64 / count as f64,
+        Wanted::Dofs(_) => 0.5,
+    };
+    let left = sides(&graph, share, wanted, with_metis);
+    let rest = if with_metis {
+        for_metis - graph.len()
+    } else {
+        for_metis
+    } / 2;
+    let is_large = graph.len() >= PARALLEL;
+    let all = graph.size();
+    let [a, b] = graph.halves(&left);
+    let is_joined = a.outside.iter().chain(&b.outside).any(|&weight| weight > 0);
+    let wanted = match wanted {
+        Wanted::Sets(count) => {
+            let share = (count as f64 * a.size() / all).round() as usize;
+            let least = a.pieces().1.max(count.saturating_sub(b.len()));
+            let most = a.len().min(count - b.pieces().1);
+            let of_a = share.clamp(least, most);
+            [Wanted::Sets(of_a), Wanted::Sets(count - of_a)]
+        }
+        dofs => [dofs; 2],
+    };
+    let sides = match is_large {
+        false => vec![branch(a, wanted[0], rest), branch(b, wanted[1], rest)],
+        true => std::thread::scope(|scope| {
+            let other = scope.spawn(|| branch(b, wanted[1], rest));
+            let one = branch(a, wanted[0], rest);
+            match other.join() {
+                Ok(other) => vec![one, other],
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }),
+    };
+    Branch::Inner(sides, is_joined)
+}
+
+/// The pieces of a set that isn't cut any more.
+fn leaf(graph: &Graph) -> Branch {
+    let (piece, count) = graph.pieces();
+    let mut members = vec![Vec::new(); count];
+    for (vertex, &piece) in piece.iter().enumerate() {
+        members[piece as usize].push(graph.ids[vertex]);
+    }
+    let mut leaves: Vec<Branch> = members.into_iter().map(Branch::Leaf).collect();
+    if leaves.len() == 1 {
+        return leaves.swap_remove(0);
+    }
+    let is_tied = graph.outside.iter().any(|&weight| weight > 0);
+    let (_, parts) = graph.parts(|_, _| true);
+    Branch::Inner(leaves, is_tied || parts < count)
+}
+
+/// The sides of a cut: parts of the graph that nothing ties to each other, pieces that are tied only by
+/// contacts, or what [`bisect`] finds.
+fn sides(graph: &Graph, share: f64, wanted: Wanted, with_metis: bool) -> Vec<bool> {
+    let (part, count) = graph.parts(|_, _| true);
+    if count > 1 {
+        return whole(graph, &part, count, share);
+    }
+    let left = tidied(graph, bisect(graph, share, with_metis));
+    let Wanted::Sets(sets) = wanted else {
+        return left;
+    };
+    let (_, pieces) =
+        graph.parts(|vertex, edge| edge.is_facet() && left[vertex] == left[edge.to as usize]);
+    if pieces <= sets {
+        return left;
+    }
+    let (piece, count) = graph.pieces();
+    whole(graph, &piece, count, share)
+}
+
+/// The sides of a cut that leaves the parts with equal labels whole.
+fn whole(graph: &Graph, labels: &[u32], count: usize, share: f64) -> Vec<bool> {
+    let left = bisect(&graph.contracted(labels, count), share, true);
+    labels.iter().map(|&label| left[label as usize]).collect()
+}
+
+/// The same cut, but such that what is left of a piece of the graph on either side is one piece itself.
+fn tidied(graph: &Graph, mut left: Vec<bool>) -> Vec<bool> {
+    let (piece, count) = graph.pieces();
+    for side in [true, false] {
+        let together = |vertex: usize, to: u32| left[vertex] == left[to as usize];
+        let (part, parts) = graph.parts(|v, edge| edge.is_facet() && together(v, edge.to));
+        let mut dofs = vec![0.0f64; parts];
+        for (vertex, &part) in part.iter().enumerate() {
+            dofs[part as usize] += f64::from(graph.dofs[vertex]);
+        }
+        let mut largest = vec![(0.0, u32::MAX); count];
+        for vertex in (0..graph.len()).filter(|&vertex| left[vertex] == side) {
+            let largest = &mut largest[piece[vertex] as usize];
+            let dofs = dofs[part[vertex] as usize];
+            if dofs > largest.0 {
+                *largest = (dofs, part[vertex]);
+            }
+        }
+        for vertex in 0..graph.len() {
+            if left[vertex] == side && part[vertex] != largest[piece[vertex] as usize].1 {
+                left[vertex] = !side;
+            }
+        }
+    }
+    left
+}

@@ -1,0 +1,222 @@
+//! The cheapest cut between two sides of a graph: a maximal flow from one to the other (Dinic 1970).
+
+use super::graph::Graph;
+
+/// Where a vertex has to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    Left,
+    Between,
+    Right,
+}
+
+/// An edge of the network as one of its ends sees it.
+#[derive(Clone, Copy)]
+struct Arc {
+    to: u32,
+    /// The same edge as its other end sees it.
+    reverse: u32,
+    /// What may flow yet.
+    capacity: u32,
+}
+
+/// The vertices between the sides.
+struct Network {
+    /// Where the arcs of every vertex start, and where the last one's end.
+    starts: Vec<u32>,
+    arcs: Vec<Arc>,
+    /// What may flow yet from the left side to every vertex, and from there to the right side.
+    supply: Vec<u32>,
+    demand: Vec<u32>,
+}
+
+/// Not reached by the search.
+const FAR: u32 = u32::MAX;
+
+/// The cheapest cuts of the edges between what is `Left` and what is `Right`: whether each vertex is on the
+/// left, for the cut that lies next to the left side, and for the one next to the right side.
+pub(super) fn cheapest_cuts(graph: &Graph, places: &[Place]) -> [Vec<bool>; 2] {
+    let between: Vec<u32> = (0..graph.len() as u32)
+        .filter(|&vertex| places[vertex as usize] == Place::Between)
+        .collect();
+    let mut network = Network::new(graph, places, &between);
+    while network.augment() {}
+    let from_left = network.reached(|network, vertex| network.supply[vertex] > 0, false);
+    let from_right = network.reached(|network, vertex| network.demand[vertex] > 0, true);
+    let fixed: Vec<bool> = places.iter().map(|&place| place == Place::Left).collect();
+    let mut cuts = [fixed.clone(), fixed];
+    for (at, &vertex) in between.iter().enumerate() {
+        cuts[0][vertex as usize] = from_left[at];
+        cuts[1][vertex as usize] = !from_right[at];
+    }
+    cuts
+}
+
+impl Network {
+    fn new(graph: &Graph, places: &[Place], between: &[u32]) -> Self {
+        let mut number = vec![FAR; graph.len()];
+        for (at, &vertex) in (0..).zip(between) {
+            number[vertex as usize] = at;
+        }
+        let mut network = Self {
+            starts: vec![0],
+            arcs: Vec::with_capacity(4 * between.len()),
+            supply: vec![0; between.len()],
+            demand: vec![0; between.len()],
+        };
+        // The lists of edges ascend, so that the arcs to smaller vertices come in the order in which these
+        // are looked at here.
+        let mut next = Vec::with_capacity(between.len());
+        for (at, &vertex) in between.iter().enumerate() {
+            next.push(network.arcs.len() as u32);
+            for edge in graph.edges(vertex as usize) {
+                match places[edge.to as usize] {
+                    Place::Left => network.supply[at] += edge.weight(),
+                    Place::Right => network.demand[at] += edge.weight(),
+                    Place::Between => {
+                        let to = number[edge.to as usize];
+                        let own = network.arcs.len() as u32;
+                        let mut reverse = 0;
+                        if (to as usize) < at {
+                            reverse = next[to as usize];
+                            while network.arcs[reverse as usize].to != at as u32 {
+                                reverse += 1;
+                            }
+                            next[to as usize] = reverse + 1;
+                            network.arcs[reverse as usize].reverse = own;
+                        }
+                        network.arcs.push(Arc {
+                            to,
+                            reverse,
+                            capacity: edge.weight(),
+                        });
+                    }
+                }
+            }
+            let through = network.supply[at].min(network.demand[at]);
+            network.supply[at] -= through;
+            network.demand[at] -= through;
+            network.starts.push(network.arcs.len() as u32);
+        }
+        network
+    }
+
+    fn arcs_of(&self, vertex: usize) -> std::ops::Range<usize> {
+        self.starts[vertex] as usize..self.starts[vertex + 1] as usize
+    }
+
+    /// What can be reached from the vertices that `starts`, along arcs or, `backwards`, against them.
+    fn reached(&self, starts: impl Fn(&Self, usize) -> bool, backwards: bool) -> Vec<bool> {
+        let mut reached: Vec<bool> = (0..self.supply.len()).map(|v| starts(self, v)).collect();
+        let mut stack: Vec<usize> = (0..reached.len()).filter(|&v| reached[v]).collect();
+        while let Some(vertex) = stack.pop() {
+            for arc in &self.arcs[self.arcs_of(vertex)] {
+                let capacity = match backwards {
+                    true => self.arcs[arc.reverse as usize].capacity,
+                    false => arc.capacity,
+                };
+                let to = arc.to as usize;
+                if capacity > 0 && !reached[to] {
+                    reached[to] = true;
+                    stack.push(to);
+                }
+            }
+        }
+        reached
+    }
+
+    /// Lets flow what can along shortest ways; whether anything did.
+    fn augment(&mut self) -> bool {
+        let mut level = vec![FAR; self.supply.len()];
+        let mut queue: Vec<u32> = (0..level.len() as u32)
+            .filter(|&v| self.supply[v as usize] > 0)
+            .collect();
+        for &vertex in &queue {
+            level[vertex as usize] = 0;
+        }
+        let sources = queue.len();
+        let mut last = FAR;
+        let mut at = 0;
+        while at < queue.len() {
+            let vertex = queue[at] as usize;
+            at += 1;
+            if level[vertex] >= last {
+                break;
+            }
+            if self.demand[vertex] > 0 {
+                last = level[vertex];
+                continue;
+            }
+            for arc in &self.arcs[self.arcs_of(vertex)] {
+                if arc.capacity > 0 && level[arc.to as usize] == FAR {
+                    level[arc.to as usize] = level[vertex] + 1;
+                    queue.push(arc.to);
+                }
+            }
+        }
+        if last == FAR {
+            return false;
+        }
+        let mut next: Vec<u32> = self.starts[..level.len()].to_vec();
+        let mut way: Vec<u32> = Vec::new();
+        for &source in &queue[..sources] {
+            self.push_from(source as usize, &mut level, &mut next, &mut way);
+        }
+        true
+    }
+
+    /// Lets flow what can from one source along levels; `next` has the first arc of every vertex that may
+    /// still lead on.
+    fn push_from(
+        &mut self,
+        source: usize,
+        level: &mut [u32],
+        next: &mut [u32],
+        way: &mut Vec<u32>,
+    ) {
+        way.clear();
+        let mut vertex = source;
+        while self.supply[source] > 0 {
+            if self.demand[vertex] > 0 {
+                let least = way.iter().map(|&a| self.arcs[a as usize].capacity);
+                let flow = least.fold(self.supply[source].min(self.demand[vertex]), u32::min);
+                self.supply[source] -= flow;
+                self.demand[vertex] -= flow;
+                let mut full = way.len();
+                for (place, &a) in way.iter().enumerate().rev() {
+                    let reverse = self.arcs[a as usize].reverse as usize;
+                    self.arcs[reverse].capacity += flow;
+                    self.arcs[a as usize].capacity -= flow;
+                    if self.arcs[a as usize].capacity == 0 {
+                        full = place;
+                    }
+                }
+                if let Some(&a) = way.get(full) {
+                    let reverse = self.arcs[a as usize].reverse as usize;
+                    vertex = self.arcs[reverse].to as usize;
+                    way.truncate(full);
+                }
+                continue;
+            }
+            let end = self.starts[vertex + 1];
+            let leads_on = (next[vertex]..end).find(|&a| {
+                let arc = self.arcs[a as usize];
+                arc.capacity > 0 && level[arc.to as usize] == level[vertex].saturating_add(1)
+            });
+            match leads_on {
+                Some(a) => {
+                    next[vertex] = a;
+                    way.push(a);
+                    vertex = self.arcs[a as usize].to as usize;
+                }
+                None => {
+                    next[vertex] = end;
+                    level[vertex] = FAR;
+                    let Some(a) = way.pop() else { return };
+                    let reverse = self.arcs[a as usize].reverse as usize;
+                    vertex = self.arcs[reverse].to as usize;
+                }
+            }
+        }
+    }
+}
