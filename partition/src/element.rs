@@ -4,14 +4,12 @@
 //! has nodes, shape functions, facets and rules. To add one is to write its
 //! [`Definition`](reference::Definition) and to name it here.
 
-pub mod domain;
 pub mod geometry;
 pub mod jacobian;
 pub mod lines;
 pub mod quadrature;
 pub mod quadrilaterals;
 pub mod reference;
-pub mod tabulation;
 pub mod triangles;
 
 use std::ops::Deref;

@@ -19,6 +19,11 @@ impl InputError {
         }
     }
 
+    /// What makes an error of a reason: it begins with `what` is wrong.
+    pub fn about(what: &str) -> impl Fn(String) -> Self {
+        move |reason| Self::new(format!("{what}: {reason}"))
+    }
+
     /// The same error with the file it was found in, unless it names one already.
     #[must_use]
     pub fn in_file(mut self, path: &Path) -> Self {

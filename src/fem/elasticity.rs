@@ -2,8 +2,8 @@
 //!
 //! ε = B u holds ε_xx, ε_yy and γ_xy = 2 ε_xy, from the gradients of the shape functions; σ = C ε.
 
+use contact_dd_partition::element::quadrature::TabulatedPoint;
 use contact_dd_partition::element::reference::ReferenceElement;
-use contact_dd_partition::element::tabulation::TabulatedPoint;
 use contact_dd_partition::model::{Material, PlaneState};
 use contact_dd_partition::stiffness::Stiffness;
 
@@ -260,8 +260,7 @@ mod tests {
             let mut exact = vec![0.0; u.len()];
             for (facet, local) in kind.facets() {
                 let on: Vec<_> = local.iter().map(|&i| at[i]).collect();
-                let rule = facet.quadrature(7);
-                for (&xi, weight) in rule.points.iter().zip(&rule.weights) {
+                for (xi, weight) in facet.quadrature(7) {
                     let n = facet.area_vector(&on, xi);
                     let traction = [s[0] * n[0] + s[3] * n[1], s[3] * n[0] + s[1] * n[1]];
                     for (&i, shape) in local.iter().zip(facet.shape(xi)) {

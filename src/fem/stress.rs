@@ -2,7 +2,7 @@
 //! tells of.
 
 use contact_dd_partition::element::ElementKind;
-use contact_dd_partition::element::tabulation::TabulatedPoint;
+use contact_dd_partition::element::quadrature::TabulatedPoint;
 use contact_dd_partition::model::{Material, PlaneState};
 
 use super::block::{Block, BlockCell};

@@ -2,9 +2,8 @@
 
 use std::array::from_fn;
 
-use super::domain::Domain;
 use super::geometry::{difference, length};
-use super::reference::ReferenceElement;
+use super::reference::{Domain, ReferenceElement};
 
 /// Degree in each direction of the Jacobian's polynomial on the unit square.
 const DEGREE: usize = 3;

@@ -1,8 +1,7 @@
 //! Points and lines, the facets of the plane: N and ∂N/∂ξ on −1 ≤ ξ ≤ 1.
 
 use super::ElementKind::Point1;
-use super::domain::Domain;
-use super::reference::{Definition, ReferenceElement};
+use super::reference::{Definition, Domain, ReferenceElement};
 
 /// A single node.
 pub static POINT1: ReferenceElement = ReferenceElement::new(Definition {

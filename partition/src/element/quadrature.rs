@@ -2,36 +2,55 @@
 
 use std::f64::consts::PI;
 
-use super::domain::Domain;
-use super::reference::ReferenceElement;
+use super::reference::{Domain, ReferenceElement};
 
-/// A quadrature rule: ∫ f dξ ≈ Σ weights·f(points) over a reference element.
+/// Reference coordinates and weights of a rule, ∫ f dξ ≈ Σ w_q f(ξ_q). All weights are positive; their sum
+/// is the measure of the reference element.
+pub type Quadrature = Vec<([f64; 3], f64)>;
+
+/// Shape functions of a reference element at a point of a rule.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Quadrature {
+pub struct TabulatedPoint {
     /// Reference coordinates.
-    pub points: Vec<[f64; 3]>,
-    /// Weights, all positive; their sum is the measure of the reference element.
-    pub weights: Vec<f64>,
+    pub xi: [f64; 3],
+    /// Weight of the point.
+    pub weight: f64,
+    /// N_i.
+    pub shape: Vec<f64>,
+    /// ∂N_i/∂ξ_j.
+    pub gradients: Vec<[f64; 3]>,
 }
 
 impl ReferenceElement {
     /// A rule that is exact for polynomials up to `degree`, on the square in each direction.
     pub fn quadrature(&self, degree: usize) -> Quadrature {
+        // On the line and in each direction of the square.
+        let line = || gauss_legendre(degree / 2 + 1);
         match self.domain() {
-            Domain::Point => Quadrature {
-                points: vec![[0.0; 3]],
-                weights: vec![1.0],
-            },
-            Domain::Line => {
-                let (points, weights) = gauss_legendre(degree / 2 + 1);
-                Quadrature {
-                    points: points.into_iter().map(|x| [x, 0.0, 0.0]).collect(),
-                    weights,
-                }
-            }
+            Domain::Point => vec![([0.0; 3], 1.0)],
+            Domain::Line => line()
+                .into_iter()
+                .map(|(x, w)| ([x, 0.0, 0.0], w))
+                .collect(),
             Domain::Triangle => triangle(degree),
-            Domain::Square => square(degree),
+            Domain::Square => products(&line())
+                .map(|(s, t, w)| ([s, t, 0.0], w))
+                .collect(),
         }
+    }
+
+    /// The shape functions at the points of the rule of [`quadrature`](Self::quadrature) for
+    /// `degree`.
+    pub fn tabulate(&self, degree: usize) -> Vec<TabulatedPoint> {
+        let points = self.quadrature(degree).into_iter();
+        points
+            .map(|(xi, weight)| TabulatedPoint {
+                xi,
+                weight,
+                shape: self.shape(xi),
+                gradients: self.gradients(xi),
+            })
+            .collect()
     }
 }
 
@@ -42,67 +61,51 @@ impl ReferenceElement {
 /// form of Felippa, A compendium of FEM integration formulas, Eng. Comput. 21 (2004); seven:
 /// Radon, Zur mechanischen Kubatur, Monatsh. Math. 52 (1948).
 fn triangle(degree: usize) -> Quadrature {
-    let mut rule = Quadrature {
-        points: Vec::new(),
-        weights: Vec::new(),
-    };
-    let mut orbit = |a: f64, weight: f64| {
+    let orbit = |a: f64, weight: f64| {
         let b = 1.0 - 2.0 * a;
-        for point in [[a, a, 0.0], [b, a, 0.0], [a, b, 0.0]] {
-            rule.points.push(point);
-            rule.weights.push(weight);
-        }
+        [[a, a, 0.0], [b, a, 0.0], [a, b, 0.0]].map(|point| (point, weight))
     };
+    let middle = |weight: f64| ([1.0 / 3.0, 1.0 / 3.0, 0.0], weight);
     match degree {
-        0 | 1 => {
-            rule.points.push([1.0 / 3.0, 1.0 / 3.0, 0.0]);
-            rule.weights.push(0.5);
-        }
-        2 => orbit(1.0 / 6.0, 1.0 / 6.0),
+        0 | 1 => vec![middle(0.5)],
+        2 => orbit(1.0 / 6.0, 1.0 / 6.0).to_vec(),
         3 | 4 => {
             let root = 10_f64.sqrt();
             let place = (38.0 - 44.0 * 0.4_f64.sqrt()).sqrt();
             let weight = (213_125.0 - 53_320.0 * root).sqrt();
-            orbit((8.0 - root + place) / 18.0, (620.0 + weight) / 7440.0);
-            orbit((8.0 - root - place) / 18.0, (620.0 - weight) / 7440.0);
+            let first = orbit((8.0 - root + place) / 18.0, (620.0 + weight) / 7440.0);
+            let second = orbit((8.0 - root - place) / 18.0, (620.0 - weight) / 7440.0);
+            [first, second].concat()
         }
         5 => {
             let root = 15_f64.sqrt();
-            orbit((6.0 - root) / 21.0, (155.0 - root) / 2400.0);
-            orbit((6.0 + root) / 21.0, (155.0 + root) / 2400.0);
-            rule.points.push([1.0 / 3.0, 1.0 / 3.0, 0.0]);
-            rule.weights.push(9.0 / 80.0);
+            let first = orbit((6.0 - root) / 21.0, (155.0 - root) / 2400.0);
+            let second = orbit((6.0 + root) / 21.0, (155.0 + root) / 2400.0);
+            [&first[..], &second, &[middle(9.0 / 80.0)]].concat()
         }
         _ => {
             // The Jacobian of the collapse raises the degree in one direction by one.
-            let (points, weights) = gauss_legendre(degree.div_ceil(2) + 1);
-            for (&s, &weight_s) in points.iter().zip(&weights) {
-                for (&t, &weight_t) in points.iter().zip(&weights) {
-                    let (s, t) = (0.5 * (1.0 + s), 0.5 * (1.0 + t));
-                    rule.points.push([s, t * (1.0 - s), 0.0]);
-                    rule.weights.push(0.25 * weight_s * weight_t * (1.0 - s));
-                }
-            }
+            let line = gauss_legendre(degree.div_ceil(2) + 1);
+            let collapsed = products(&line).map(|(s, t, weight)| {
+                let (s, t) = (0.5 * (1.0 + s), 0.5 * (1.0 + t));
+                ([s, t * (1.0 - s), 0.0], 0.25 * weight * (1.0 - s))
+            });
+            collapsed.collect()
         }
     }
-    rule
 }
 
-/// Products of Gauss-Legendre, exact for polynomials up to `degree` in each direction.
-fn square(degree: usize) -> Quadrature {
-    let (points, weights) = gauss_legendre(degree / 2 + 1);
-    let pairs = || (0..points.len()).flat_map(|i| (0..points.len()).map(move |j| (i, j)));
-    Quadrature {
-        points: pairs().map(|(i, j)| [points[i], points[j], 0.0]).collect(),
-        weights: pairs().map(|(i, j)| weights[i] * weights[j]).collect(),
-    }
+/// Pairs of the points of a rule on the line, with the products of their weights.
+fn products(line: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64, f64)> {
+    let with =
+        |&(s, weight): &(f64, f64)| line.iter().map(move |&(t, other)| (s, t, weight * other));
+    line.iter().flat_map(with)
 }
 
 /// Points and weights of Gauss and Legendre on [−1, 1], exact to degree 2·`count` − 1: the roots
 /// of the Legendre polynomial by Newton's method.
-fn gauss_legendre(count: usize) -> (Vec<f64>, Vec<f64>) {
-    let mut points = vec![0.0; count];
-    let mut weights = vec![0.0; count];
+fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
+    let mut points = vec![(0.0, 0.0); count];
     for i in 0..count.div_ceil(2) {
         let mut x = (PI * (i as f64 + 0.75) / (count as f64 + 0.5)).cos();
         let mut slope = 1.0;
@@ -122,10 +125,9 @@ fn gauss_legendre(count: usize) -> (Vec<f64>, Vec<f64>) {
             x = 0.0;
         }
         let weight = 2.0 / ((1.0 - x * x) * slope * slope);
-        (points[i], points[count - 1 - i]) = (-x, x);
-        (weights[i], weights[count - 1 - i]) = (weight, weight);
+        (points[i], points[count - 1 - i]) = ((-x, weight), (x, weight));
     }
-    (points, weights)
+    points
 }
 
 #[cfg(test)]
@@ -158,15 +160,14 @@ mod tests {
         {
             for degree in 0..=most {
                 let rule = kind.quadrature(degree);
-                assert!(rule.weights.iter().all(|&w| w > 0.0));
+                assert!(rule.iter().all(|&(_, w)| w > 0.0));
                 let powers = (0..=degree).flat_map(|p| (0..=degree).map(move |q| (p, q)));
                 for (p, q) in powers.filter(|&(p, q)| match kind.domain() {
                     Domain::Square => true,
                     Domain::Triangle => p + q <= degree,
                     _ => q == 0,
                 }) {
-                    let points = rule.points.iter().zip(&rule.weights);
-                    let sum: f64 = points
+                    let sum: f64 = (rule.iter())
                         .map(|(x, w)| w * x[0].powi(p as i32) * x[1].powi(q as i32))
                         .sum();
                     let error = (sum - exact(kind.domain(), p, q)).abs();

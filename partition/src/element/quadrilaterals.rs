@@ -1,9 +1,8 @@
 //! Quadrilaterals: N and ∂N/∂ξ on −1 ≤ ξ, η ≤ 1.
 
 use super::ElementKind::{self, Line2, Line3};
-use super::domain::Domain;
 use super::lines::{lagrange, lagrange_slope};
-use super::reference::{CellRules, Definition, ReferenceElement};
+use super::reference::{CellRules, Definition, Domain, ReferenceElement};
 
 /// Corners, the middles of the edges, the center.
 const NODES: &[[f64; 3]; 9] = &[
@@ -25,22 +24,22 @@ const CURVED_EDGES: &[(ElementKind, &[usize])] = &[
     (Line3, &[3, 0, 7]),
 ];
 
+/// A value for each of the first `count` nodes, from where it is.
+fn each<T>(count: usize, value: impl Fn([f64; 2]) -> T) -> Vec<T> {
+    let nodes = NODES[..count].iter();
+    nodes.map(|&[a, b, _]| value([a, b])).collect()
+}
+
 /// A bilinear quadrilateral of four nodes: N_i = ¼ (1 + ξ_i ξ)(1 + η_i η).
 pub static QUAD4: ReferenceElement = ReferenceElement::new(Definition {
     name: "quadrilateral of 4 nodes",
     domain: Domain::Square,
     node_coordinates: NODES.split_at(4).0,
-    shape: |[s, t, _]| {
-        let nodes = NODES[..4].iter();
-        nodes
-            .map(|[a, b, _]| 0.25 * (1.0 + a * s) * (1.0 + b * t))
-            .collect()
-    },
+    shape: |[s, t, _]| each(4, |[a, b]| 0.25 * (1.0 + a * s) * (1.0 + b * t)),
     gradients: |[s, t, _]| {
-        let nodes = NODES[..4].iter();
-        nodes
-            .map(|[a, b, _]| [0.25 * a * (1.0 + b * t), 0.25 * b * (1.0 + a * s), 0.0])
-            .collect()
+        each(4, |[a, b]| {
+            [0.25 * a * (1.0 + b * t), 0.25 * b * (1.0 + a * s), 0.0]
+        })
     },
     facets: &[
         (Line2, &[0, 1]),
@@ -63,18 +62,8 @@ pub static QUAD8: ReferenceElement = ReferenceElement::new(Definition {
     name: "quadrilateral of 8 nodes",
     domain: Domain::Square,
     node_coordinates: NODES.split_at(8).0,
-    shape: |[s, t, _]| {
-        let nodes = NODES[..8].iter();
-        nodes
-            .map(|&[a, b, _]| serendipity([a, b], [s, t]))
-            .collect()
-    },
-    gradients: |[s, t, _]| {
-        let nodes = NODES[..8].iter();
-        nodes
-            .map(|&[a, b, _]| serendipity_gradient([a, b], [s, t]))
-            .collect()
-    },
+    shape: |[s, t, _]| each(8, |node| serendipity(node, [s, t])),
+    gradients: |[s, t, _]| each(8, |node| serendipity_gradient(node, [s, t])),
     facets: CURVED_EDGES,
     reversed: &[0, 3, 2, 1, 7, 6, 5, 4],
     vtk: 23,
@@ -86,23 +75,12 @@ pub static QUAD9: ReferenceElement = ReferenceElement::new(Definition {
     name: "quadrilateral of 9 nodes",
     domain: Domain::Square,
     node_coordinates: NODES,
-    shape: |[s, t, _]| {
-        let nodes = NODES.iter();
-        nodes
-            .map(|&[a, b, _]| lagrange(a, s) * lagrange(b, t))
-            .collect()
-    },
+    shape: |[s, t, _]| each(9, |[a, b]| lagrange(a, s) * lagrange(b, t)),
     gradients: |[s, t, _]| {
-        let nodes = NODES.iter();
-        nodes
-            .map(|&[a, b, _]| {
-                [
-                    lagrange_slope(a, s) * lagrange(b, t),
-                    lagrange(a, s) * lagrange_slope(b, t),
-                    0.0,
-                ]
-            })
-            .collect()
+        each(9, |[a, b]| {
+            let (n_s, n_t) = (lagrange(a, s), lagrange(b, t));
+            [lagrange_slope(a, s) * n_t, n_s * lagrange_slope(b, t), 0.0]
+        })
     },
     facets: CURVED_EDGES,
     reversed: &[0, 3, 2, 1, 7, 6, 5, 4, 8],

@@ -1,8 +1,7 @@
 //! Triangles: N and ∂N/∂ξ on 0 ≤ ξ, η, ξ + η ≤ 1.
 
 use super::ElementKind::{Line2, Line3};
-use super::domain::Domain;
-use super::reference::{CellRules, Definition, ReferenceElement};
+use super::reference::{CellRules, Definition, Domain, ReferenceElement};
 
 /// Corners, then the middles of the edges.
 const NODES: &[[f64; 3]; 6] = &[

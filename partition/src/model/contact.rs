@@ -80,7 +80,7 @@ impl<'a> Contacts<'a> {
             Partner::Obstacle(obstacle) => {
                 let nodes = side_nodes(self.mesh, &side_a, &what, &HashSet::new())?;
                 obstacle::points(self.mesh, obstacle, &side_a, nodes)
-                    .map_err(|reason| InputError::new(format!("{what}: {reason}")))?
+                    .map_err(InputError::about(&what))?
             }
             Partner::Side(names) => {
                 let (facets_b, side_b) = self.side(names, &what)?;
@@ -209,7 +209,7 @@ impl<'a> Contacts<'a> {
         pairing: Option<Pairing>,
         what: &str,
     ) -> Result<Vec<ContactPoint<u32>>, InputError> {
-        let refused = |reason: String| InputError::new(format!("{what}: {reason}"));
+        let refused = InputError::about(what);
         let sides = Sides::new(self.mesh, side_a, side_b, what)?;
         let matched = match pairing {
             Some(Pairing::Mortar) => return mortar::points(&sides).map_err(refused),

@@ -31,7 +31,7 @@ pub(super) fn forces(
         let Some(force) = force else { continue };
         let what = loading.body_force_label(name);
         body_force(bodies, body as u32, force, scale.body_force, &mut forces)
-            .map_err(|reason| InputError::new(format!("{what}: {reason}")))?;
+            .map_err(InputError::about(&what))?;
     }
     for (index, traction) in loading.traction.iter().enumerate() {
         let what = loading.traction_label(index, &traction.on);
@@ -41,7 +41,7 @@ pub(super) fn forces(
             let traction = traction.value.at(x)?;
             Ok(traction.map(|c| scale.traction * c * length(area)))
         })
-        .map_err(|reason| InputError::new(format!("{what}: {reason}")))?;
+        .map_err(InputError::about(&what))?;
     }
     for (index, pressure) in loading.pressure.iter().enumerate() {
         let what = loading.pressure_label(index, &pressure.on);
@@ -51,7 +51,7 @@ pub(super) fn forces(
             let pressure = scale.pressure * pressure.value.at(x)?;
             Ok(area.map(|c| -pressure * c))
         })
-        .map_err(|reason| InputError::new(format!("{what}: {reason}")))?;
+        .map_err(InputError::about(&what))?;
     }
     for (force, tag) in forces.iter().zip(&mesh.node_tags) {
         for &component in force {
@@ -108,8 +108,7 @@ fn surface_load(
     load: impl Fn([f64; 3], [f64; 3]) -> Result<[f64; 3], String>,
 ) -> Result<(), String> {
     for facet in &surface.facets {
-        let rule = facet.kind.quadrature(FACET_DEGREE);
-        for (&xi, &weight) in rule.points.iter().zip(&rule.weights) {
+        for (xi, weight) in facet.kind.quadrature(FACET_DEGREE) {
             let x = facet.kind.position(&facet.at, xi);
             let load = load(x, facet.kind.area_vector(&facet.at, xi))?;
             for (&node, value) in facet.nodes.iter().zip(facet.kind.shape(xi)) {

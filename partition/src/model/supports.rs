@@ -60,7 +60,7 @@ pub(super) fn supports(
                 let Some(number) = number else { continue };
                 let value = number
                     .at(mesh.points[node as usize])
-                    .map_err(|reason| InputError::new(format!("{label}: {reason}")))?
+                    .map_err(InputError::about(label))?
                     * loading.scale.displacement;
                 let mut direction = [0.0; 3];
                 direction[axis] = 1.0;

@@ -276,8 +276,8 @@ impl Surface {
 fn integrate(kind: ElementKind, integrand: impl Fn([f64; 3]) -> [f64; 3]) -> [f64; 3] {
     // The length of a curved facet isn't a polynomial.
     let rule = kind.quadrature(if kind.is_linear() { 2 } else { CURVED_DEGREE });
-    (rule.points.iter().zip(&rule.weights))
-        .fold([0.0; 3], |sum, (&xi, &w)| advance(sum, w, integrand(xi)))
+    let points = rule.into_iter();
+    points.fold([0.0; 3], |sum, (xi, w)| advance(sum, w, integrand(xi)))
 }
 
 fn compare(a: [f64; 3], b: [f64; 3]) -> std::cmp::Ordering {

@@ -281,27 +281,20 @@ impl TryFrom<ObstacleKeys> for Obstacle {
     type Error = &'static str;
 
     fn try_from(keys: ObstacleKeys) -> Result<Self, Self::Error> {
-        match keys {
-            ObstacleKeys {
-                point: Some(point),
-                normal: Some(normal),
-                center: None,
-                radius: None,
-                inside: None,
-            } => {
-                if point.dim == normal.dim {
-                    Ok(Self::HalfPlane { point, normal })
-                } else {
-                    Err("'point' and 'normal' have different numbers of components")
-                }
+        match (
+            keys.point,
+            keys.normal,
+            keys.center,
+            keys.radius,
+            keys.inside,
+        ) {
+            (Some(point), Some(normal), None, None, None) if point.dim == normal.dim => {
+                Ok(Self::HalfPlane { point, normal })
             }
-            ObstacleKeys {
-                point: None,
-                normal: None,
-                center: Some(center),
-                radius: Some(radius),
-                inside,
-            } => Ok(Self::Circle {
+            (Some(_), Some(_), None, None, None) => {
+                Err("'point' and 'normal' have different numbers of components")
+            }
+            (None, None, Some(center), Some(radius), inside) => Ok(Self::Circle {
                 center,
                 radius,
                 inside: inside.unwrap_or(false),
@@ -334,11 +327,11 @@ where
 }
 
 fn radius<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-    let Constant(value) = Constant::deserialize(deserializer)?;
-    match value > 0.0 {
-        true => Ok(Some(value)),
-        false => Err(D::Error::custom(format!(
-            "the radius is {value}; expected more than 0"
-        ))),
-    }
+    Constant::checked(
+        deserializer,
+        |value| value > 0.0,
+        "the radius",
+        "more than 0",
+    )
+    .map(Some)
 }

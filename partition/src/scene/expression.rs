@@ -181,33 +181,25 @@ impl Parser<'_> {
     }
 
     fn sum(&mut self) -> Result<(), String> {
-        self.product()?;
-        loop {
-            if self.take("+") {
-                self.product()?;
-                self.push(Step::Binary(|a, b| a + b));
-            } else if self.take("-") {
-                self.product()?;
-                self.push(Step::Binary(|a, b| a - b));
-            } else {
-                return Ok(());
-            }
-        }
+        self.chain(Self::product, [("+", |a, b| a + b), ("-", |a, b| a - b)])
     }
 
     fn product(&mut self) -> Result<(), String> {
-        self.signed()?;
-        loop {
-            if self.take("*") {
-                self.signed()?;
-                self.push(Step::Binary(|a, b| a * b));
-            } else if self.take("/") {
-                self.signed()?;
-                self.push(Step::Binary(|a, b| a / b));
-            } else {
-                return Ok(());
-            }
+        self.chain(Self::signed, [("*", |a, b| a * b), ("/", |a, b| a / b)])
+    }
+
+    /// Operands between operators of the same precedence, applied from left to right.
+    fn chain(
+        &mut self,
+        operand: fn(&mut Self) -> Result<(), String>,
+        operators: [(&str, Binary); 2],
+    ) -> Result<(), String> {
+        operand(self)?;
+        while let Some((_, apply)) = operators.into_iter().find(|(sign, _)| self.take(sign)) {
+            operand(self)?;
+            self.push(Step::Binary(apply));
         }
+        Ok(())
     }
 
     fn signed(&mut self) -> Result<(), String> {

@@ -7,14 +7,27 @@ use super::place::Step;
 use super::{Scene, suggest};
 use crate::name;
 
+/// The key at which something is wrong, and what.
+type Fault = (Vec<Step>, String);
+
+/// The key to which these names of tables lead.
+fn at<const N: usize>(keys: [&str; N]) -> Vec<Step> {
+    keys.map(Step::from).to_vec()
+}
+
+/// The key of the entry `index` of a list.
+fn entry(list: &str, index: usize, key: &str) -> Vec<Step> {
+    vec![list.into(), index.into(), key.into()]
+}
+
 impl Scene {
     /// The first thing wrong between keys, and the key at which to say so.
-    pub(super) fn fault(&self) -> Option<(Vec<Step>, String)> {
+    pub(super) fn fault(&self) -> Option<Fault> {
         if self.mesh.as_os_str().is_empty() {
-            return Some((vec!["mesh".into()], "expected the name of a file".into()));
+            return Some((at(["mesh"]), "expected the name of a file".into()));
         }
         if self.bodies.is_empty() {
-            return Some((vec!["bodies".into()], "expected at least one body".into()));
+            return Some((at(["bodies"]), "expected at least one body".into()));
         }
         self.wrong_name()
             .or_else(|| self.unknown_material())
@@ -23,61 +36,53 @@ impl Scene {
             .or_else(|| self.wrong_step())
     }
 
-    fn wrong_name(&self) -> Option<(Vec<Step>, String)> {
+    fn wrong_name(&self) -> Option<Fault> {
         let wrong = |path: Vec<Step>, name: &str, reason| {
             Some((path, format!("'{}' {reason}", name::shown(name))))
         };
         if let Err(reason) = name::check_text(&self.title) {
-            return wrong(vec!["title".into()], &self.title, reason);
+            return wrong(at(["title"]), &self.title, reason);
         }
         let materials = self.materials.keys().map(|name| ("materials", name));
         let bodies = self.bodies.keys().map(|name| ("bodies", name));
         for (table, name) in materials.chain(bodies) {
             if let Err(reason) = name::check(name) {
-                return wrong(vec![table.into(), name.as_str().into()], name, reason);
+                return wrong(at([table, name]), name, reason);
             }
         }
         None
     }
 
-    fn unknown_material(&self) -> Option<(Vec<Step>, String)> {
+    fn unknown_material(&self) -> Option<Fault> {
         let known = || self.materials.keys().map(String::as_str);
         for (name, body) in &self.bodies {
             if !self.materials.contains_key(&body.material) {
                 let hint = suggest::hint(&body.material, known());
-                return Some((
-                    vec!["bodies".into(), name.as_str().into(), "material".into()],
-                    format!("there is no material '{}'{hint}", body.material),
-                ));
+                let message = format!("there is no material '{}'{hint}", body.material);
+                return Some((at(["bodies", name, "material"]), message));
             }
         }
         None
     }
 
-    fn repeated_contact(&self) -> Option<(Vec<Step>, String)> {
+    fn repeated_contact(&self) -> Option<Fault> {
         let mut seen = HashMap::new();
         for (index, contact) in self.contact.iter().enumerate() {
             if let Some(first) = seen.insert(contact.name.as_str(), index) {
-                return Some((
-                    vec!["contact".into(), index.into(), "name".into()],
-                    format!(
-                        "contact[{}] has the name '{}' already",
-                        first + 1,
-                        contact.name
-                    ),
-                ));
+                let (first, name) = (first + 1, &contact.name);
+                let message = format!("contact[{first}] has the name '{name}' already");
+                return Some((entry("contact", index, "name"), message));
             }
         }
         None
     }
 
     /// A vector that isn't of the plane, where the scene says that it has one.
-    fn wrong_dimension(&self) -> Option<(Vec<Step>, String)> {
+    fn wrong_dimension(&self) -> Option<Fault> {
         self.plane?;
         for (name, body) in &self.bodies {
             if body.body_force.as_ref().is_some_and(|v| v.dim() != 2) {
-                let path = ["bodies", name, "body_force"].map(Step::from);
-                return Some((path.to_vec(), TWO.into()));
+                return Some((at(["bodies", name, "body_force"]), TWO.into()));
             }
         }
         if let Some(wrong) = not_plane(&self.displacement, &self.traction) {
@@ -87,8 +92,7 @@ impl Scene {
             let within = |path: Vec<Step>| [vec!["step".into(), index.into()], path].concat();
             for (name, force) in &step.body_force {
                 if force.dim() != 2 {
-                    let path = ["body_force", name].map(Step::from).to_vec();
-                    return Some((within(path), TWO.into()));
+                    return Some((within(at(["body_force", name])), TWO.into()));
                 }
             }
             let displacement = step.displacement.as_deref().unwrap_or_default();
@@ -99,28 +103,27 @@ impl Scene {
         }
         for (index, contact) in self.contact.iter().enumerate() {
             if matches!(&contact.partner, Partner::Obstacle(o) if o.dim() != 2) {
-                let path = vec!["contact".into(), index.into(), "obstacle".into()];
-                return Some((path, TWO.into()));
+                return Some((entry("contact", index, "obstacle"), TWO.into()));
             }
         }
         None
     }
 
     /// A step with a wrong name, a time before that of the step before, or a body that isn't there.
-    fn wrong_step(&self) -> Option<(Vec<Step>, String)> {
-        let at = |index: usize, key: &str| vec!["step".into(), index.into(), key.into()];
+    fn wrong_step(&self) -> Option<Fault> {
+        let of_step = |index: usize, key: &str| entry("step", index, key);
         let mut before = None;
         for (index, step) in self.step.iter().enumerate() {
             if let Some(name) = &step.name
                 && let Err(reason) = name::check(name)
             {
                 let message = format!("'{}' {reason}", name::shown(name));
-                return Some((at(index, "name"), message));
+                return Some((of_step(index, "name"), message));
             }
             if step.time.is_some() != self.step[0].time.is_some() {
                 let wrong = match step.time {
-                    Some(_) => at(index, "time"),
-                    None => at(index, "time")[..2].to_vec(),
+                    Some(_) => of_step(index, "time"),
+                    None => of_step(index, "time")[..2].to_vec(),
                 };
                 return Some((wrong, "expected a 'time' in every step or in none".into()));
             }
@@ -128,14 +131,14 @@ impl Scene {
                 && time <= before
             {
                 let message = format!("{time} comes after {before}; expected times that ascend");
-                return Some((at(index, "time"), message));
+                return Some((of_step(index, "time"), message));
             }
             before = step.time;
             let known = || self.bodies.keys().map(String::as_str);
             for body in step.body_force.keys() {
                 if !self.bodies.contains_key(body) {
                     let hint = suggest::hint(body, known());
-                    let path = [at(index, "body_force"), vec![body.as_str().into()]].concat();
+                    let path = [of_step(index, "body_force"), vec![body.as_str().into()]].concat();
                     let message = format!("there is no body '{body}'{hint}");
                     return Some((path, message));
                 }
@@ -149,13 +152,12 @@ impl Scene {
 const TWO: &str = "a plane scene has vectors of two components";
 
 /// The first vector that isn't of the plane.
-fn not_plane(displacement: &[Displacement], traction: &[Traction]) -> Option<(Vec<Step>, String)> {
+fn not_plane(displacement: &[Displacement], traction: &[Traction]) -> Option<Fault> {
     let mut displacement = displacement.iter();
     if let Some(index) = displacement.position(|d| d.components[2].is_some()) {
-        let path = vec!["displacement".into(), index.into(), "z".into()];
+        let path = entry("displacement", index, "z");
         return Some((path, "a plane scene has no 'z'".into()));
     }
     let index = traction.iter().position(|t| t.value.dim() != 2)?;
-    let path = vec!["traction".into(), index.into(), "value".into()];
-    Some((path, TWO.into()))
+    Some((entry("traction", index, "value"), TWO.into()))
 }

@@ -92,23 +92,15 @@ impl TryFrom<MaterialKeys> for Elasticity {
 }
 
 fn young<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-    let Constant(value) = Constant::deserialize(deserializer)?;
-    match value >= SMALLEST_STIFFNESS {
-        true => Ok(Some(value)),
-        false => Err(D::Error::custom(format!(
-            "Young's modulus is {value}; expected more than 0 (at least {SMALLEST_STIFFNESS:e})"
-        ))),
-    }
+    let expected = format!("more than 0 (at least {SMALLEST_STIFFNESS:e})");
+    let holds = |value| value >= SMALLEST_STIFFNESS;
+    Constant::checked(deserializer, holds, "Young's modulus", &expected).map(Some)
 }
 
 fn poisson<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-    let Constant(value) = Constant::deserialize(deserializer)?;
-    match -1.0 < value && value < 0.5 {
-        true => Ok(Some(value)),
-        false => Err(D::Error::custom(format!(
-            "Poisson's ratio is {value}; expected more than -1 and less than 0.5"
-        ))),
-    }
+    let expected = "more than -1 and less than 0.5";
+    let holds = |value| -1.0 < value && value < 0.5;
+    Constant::checked(deserializer, holds, "Poisson's ratio", expected).map(Some)
 }
 
 /// A symmetric positive definite matrix, its symmetric part.

@@ -49,10 +49,6 @@ impl<'de> Deserialize<'de> for Number {
                 Ok(Number::Constant(value as f64))
             }
 
-            fn visit_u64<E: Error>(self, value: u64) -> Result<Number, E> {
-                Ok(Number::Constant(value as f64))
-            }
-
             fn visit_f64<E: Error>(self, value: f64) -> Result<Number, E> {
                 match magnitude::check(value) {
                     Ok(value) => Ok(Number::Constant(value)),
@@ -88,6 +84,25 @@ impl TryFrom<Number> for Constant {
                 "'{}' depends on the place; expected a constant",
                 expression.text()
             )),
+        }
+    }
+}
+
+impl Constant {
+    /// Reads a number for which `holds`; `what` begins the message about any other, which ends with what was
+    /// `expected`.
+    pub(super) fn checked<'de, D: Deserializer<'de>>(
+        deserializer: D,
+        holds: impl Fn(f64) -> bool,
+        what: &str,
+        expected: &str,
+    ) -> Result<f64, D::Error> {
+        let Self(value) = Self::deserialize(deserializer)?;
+        match holds(value) {
+            true => Ok(value),
+            false => Err(D::Error::custom(format!(
+                "{what} is {value}; expected {expected}"
+            ))),
         }
     }
 }

@@ -39,16 +39,21 @@ pub struct LoadStep {
     pub displacement: Option<Vec<Displacement>>,
 }
 
-/// Factors of loads.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Factors of loads: one for all, or a table.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(remote = "Self", deny_unknown_fields, default)]
 pub struct Scale {
     /// Of body forces.
+    #[serde(deserialize_with = "number")]
     pub body_force: f64,
     /// Of tractions.
+    #[serde(deserialize_with = "number")]
     pub traction: f64,
     /// Of pressures.
+    #[serde(deserialize_with = "number")]
     pub pressure: f64,
     /// Of prescribed displacements.
+    #[serde(deserialize_with = "number")]
     pub displacement: f64,
 }
 
@@ -69,15 +74,6 @@ impl Default for Scale {
     }
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ScaleKeys {
-    body_force: Option<Constant>,
-    traction: Option<Constant>,
-    pressure: Option<Constant>,
-    displacement: Option<Constant>,
-}
-
 impl<'de> Deserialize<'de> for Scale {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct ScaleVisitor;
@@ -95,30 +91,28 @@ impl<'de> Deserialize<'de> for Scale {
             }
 
             fn visit_f64<E: Error>(self, factor: f64) -> Result<Scale, E> {
-                Constant::deserialize(factor.into_deserializer()).map(|Constant(f)| Scale::all(f))
+                number(factor.into_deserializer()).map(Scale::all)
             }
 
             fn visit_str<E: Error>(self, factor: &str) -> Result<Scale, E> {
-                Constant::deserialize(factor.into_deserializer()).map(|Constant(f)| Scale::all(f))
+                number(factor.into_deserializer()).map(Scale::all)
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Scale, A::Error> {
-                let keys = ScaleKeys::deserialize(MapAccessDeserializer::new(map))?;
-                let or_one = |factor: Option<Constant>| factor.map_or(1.0, |Constant(f)| f);
-                Ok(Scale {
-                    body_force: or_one(keys.body_force),
-                    traction: or_one(keys.traction),
-                    pressure: or_one(keys.pressure),
-                    displacement: or_one(keys.displacement),
-                })
+                // The table, as derived above.
+                Scale::deserialize(MapAccessDeserializer::new(map))
             }
         }
         deserializer.deserialize_any(ScaleVisitor)
     }
 }
 
+fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Constant::deserialize(deserializer).map(|Constant(value)| value)
+}
+
 fn time<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-    Constant::deserialize(deserializer).map(|Constant(time)| Some(time))
+    number(deserializer).map(Some)
 }
 
 fn list<'de, D, T>(deserializer: D) -> Result<Option<Vec<T>>, D::Error>
@@ -158,26 +152,21 @@ impl Scene {
     }
 
     fn loading<'a>(&'a self, step: Option<(usize, &'a LoadStep)>) -> Loading<'a> {
-        let of_step = step.map(|(_, step)| step);
-        let bodies = self.bodies.iter();
+        let own = step.map(|(_, step)| step);
+        let body_force = self.bodies.iter().map(|(name, body)| {
+            let replaced = own.and_then(|step| step.body_force.get(name));
+            replaced.or(body.body_force.as_ref())
+        });
+        let traction = own.and_then(|step| step.traction.as_deref());
+        let pressure = own.and_then(|step| step.pressure.as_deref());
+        let displacement = own.and_then(|step| step.displacement.as_deref());
         Loading {
             step,
-            body_force: bodies
-                .map(|(name, body)| {
-                    let replaced = of_step.and_then(|step| step.body_force.get(name));
-                    replaced.or(body.body_force.as_ref())
-                })
-                .collect(),
-            traction: of_step
-                .and_then(|step| step.traction.as_deref())
-                .unwrap_or(&self.traction),
-            pressure: of_step
-                .and_then(|step| step.pressure.as_deref())
-                .unwrap_or(&self.pressure),
-            displacement: of_step
-                .and_then(|step| step.displacement.as_deref())
-                .unwrap_or(&self.displacement),
-            scale: of_step.map_or_else(Scale::default, |step| step.scale),
+            body_force: body_force.collect(),
+            traction: traction.unwrap_or(&self.traction),
+            pressure: pressure.unwrap_or(&self.pressure),
+            displacement: displacement.unwrap_or(&self.displacement),
+            scale: own.map_or_else(Scale::default, |step| step.scale),
         }
     }
 }
@@ -205,17 +194,15 @@ impl Loading<'_> {
 
     /// What entry `index` of its displacements is called in messages.
     pub fn displacement_label(&self, index: usize, on: &Names) -> String {
-        let is_own = |step: &LoadStep| step.displacement.is_some();
-        self.label("displacement", is_own, index, on)
+        self.label(
+            "displacement",
+            |step| step.displacement.is_some(),
+            index,
+            on,
+        )
     }
 
-    fn label(
-        &self,
-        kind: &str,
-        is_own: impl Fn(&LoadStep) -> bool,
-        index: usize,
-        on: &Names,
-    ) -> String {
+    fn label(&self, kind: &str, is_own: fn(&LoadStep) -> bool, index: usize, on: &Names) -> String {
         let entry = format!("{kind}[{}] on {on}", index + 1);
         match self.step {
             Some((k, step)) if is_own(step) => format!("step[{}].{entry}", k + 1),

@@ -1,32 +1,24 @@
 //! The known word that an unknown one was probably meant to be.
 
 /// What other programs call what a scene has another word for, or doesn't have.
-const ELSEWHERE: [(&[&str], &str); 7] = [
-    (&["e", "modulus", "youngs"], "Young's modulus is 'young'"),
-    (&["nu", "ν"], "Poisson's ratio is 'poisson'"),
+const ELSEWHERE: [(&str, &str); 7] = [
+    ("e modulus youngs", "Young's modulus is 'young'"),
+    ("nu ν", "Poisson's ratio is 'poisson'"),
     (
-        &["density", "rho", "gravity", "weight", "acceleration"],
+        "density rho gravity weight acceleration",
         "weight is a body's body_force = [0.0, -density*gravity]",
     ),
     (
-        &["load", "loads", "force", "forces"],
+        "load loads force forces",
         "loads are 'pressure', 'traction' and a body's 'body_force'",
     ),
     (
-        &[
-            "support",
-            "supports",
-            "fixed",
-            "fix",
-            "boundary",
-            "constraint",
-            "dirichlet",
-        ],
+        "support supports fixed fix boundary constraint dirichlet",
         "supports are 'displacement' and 'bilateral'",
     ),
-    (&["friction", "mu", "μ"], "contacts are without friction"),
+    ("friction mu μ", "contacts are without friction"),
     (
-        &["thickness"],
+        "thickness",
         "forces are those of a thickness of 1, and all is in proportion to it",
     ),
 ];
@@ -56,7 +48,7 @@ pub fn hint<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> St
         return format!("; did you mean '{near}'?");
     }
     (ELSEWHERE.iter())
-        .find(|(words, _)| words.contains(&lower.as_str()))
+        .find(|(words, _)| words.split(' ').any(|word| word == lower))
         .map(|(_, advice)| format!("; {advice}."))
         .unwrap_or_default()
 }

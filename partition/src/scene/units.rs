@@ -18,25 +18,23 @@ impl Units {
 
     /// That of lengths, its name in scenes and files.
     pub fn length(self) -> &'static str {
-        match self {
-            Self::Metre => "m",
-            Self::Millimetre => "mm",
-        }
+        self.pick("m", "mm")
     }
 
     /// That of forces per thickness, of which moments per thickness are in N.
     pub fn force(self) -> &'static str {
-        match self {
-            Self::Metre => "N/m",
-            Self::Millimetre => "N/mm",
-        }
+        self.pick("N/m", "N/mm")
     }
 
     /// That of stresses.
     pub fn stress(self) -> &'static str {
+        self.pick("Pa", "MPa")
+    }
+
+    fn pick(self, metre: &'static str, millimetre: &'static str) -> &'static str {
         match self {
-            Self::Metre => "Pa",
-            Self::Millimetre => "MPa",
+            Self::Metre => metre,
+            Self::Millimetre => millimetre,
         }
     }
 }

@@ -2,8 +2,8 @@
 //! along η, to lead from quadratic cells to linear ones.
 
 use contact_dd_partition::element::ElementKind::{Line2, Line3};
-use contact_dd_partition::element::domain::Domain;
 use contact_dd_partition::element::lines::{lagrange, lagrange_slope};
+use contact_dd_partition::element::reference::Domain;
 use contact_dd_partition::element::reference::{CellRules, Definition, ReferenceElement};
 
 /// Corners, then the middles of the edges η = −1 and η = 1.

@@ -130,8 +130,7 @@ impl<'a> Opposite<'a> {
             let (_, gap) = project(field, b, end);
             cover.least_gap = cover.least_gap.min(gap);
         }
-        let rule = a.kind.quadrature(DEGREE);
-        for (point, weight) in rule.points.iter().zip(&rule.weights) {
+        for (point, weight) in a.kind.quadrature(DEGREE) {
             let xi = middle + half * point[0];
             let (eta, gap) = project(field, b, xi);
             let xi = [xi, 0.0, 0.0];

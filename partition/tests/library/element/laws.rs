@@ -1,7 +1,7 @@
 //! What every reference element keeps, whoever defined it.
 
-use contact_dd_partition::element::domain::Domain;
 use contact_dd_partition::element::geometry::{advance, difference, dot, length};
+use contact_dd_partition::element::reference::Domain;
 use contact_dd_partition::element::reference::{CellRules, ReferenceElement};
 
 /// Dimension, corners and nodes of the cells that VTK numbers so, from `vtkCellType.h` and the
@@ -150,8 +150,7 @@ fn normals_close(element: &ReferenceElement) {
     let (mut sum, mut moment) = ([0.0; 3], 0.0);
     for (facet, local) in element.facets() {
         let on: Vec<_> = local.iter().map(|&i| at[i]).collect();
-        let rule = facet.quadrature(7);
-        for (&xi, &weight) in rule.points.iter().zip(&rule.weights) {
+        for (xi, weight) in facet.quadrature(7) {
             let normal = facet.area_vector(&on, xi);
             sum = advance(sum, weight, normal);
             moment += weight * dot(normal, facet.position(&on, xi));
