@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use contact_dd_mpi::comm::{self, Comm};
 use contact_dd_mpi::error::Failure;
-use contact_dd_mpi::output::message;
+use contact_dd_mpi::output::event;
 use contact_dd_mpi::run::{Ending, run};
 use contact_dd_mpi::settings::command_line::{CommandLine, LogFormat};
 use contact_dd_partition::manual::{Answer, BAD_USAGE};
@@ -12,7 +12,7 @@ use contact_dd_partition::manual::{Answer, BAD_USAGE};
 fn main() -> ExitCode {
     if comm::is_launched() {
         // Launchers show ranks a terminal whatever their output goes to.
-        message::without_colours();
+        event::without_colours();
     }
     let command_line = match CommandLine::of_this_program() {
         Ok(command_line) => command_line,
@@ -39,7 +39,7 @@ fn solve(comm: &Comm, command_line: &CommandLine) -> ExitCode {
 /// Answers a command line that asks for no run.
 fn tell(answer: &Answer) -> ExitCode {
     match answer {
-        Answer::Refusal(why) => message::error(LogFormat::of_this_program(), BAD_USAGE, why),
+        Answer::Refusal(why) => event::error(LogFormat::of_this_program(), BAD_USAGE, why),
         Answer::Text(_) => answer.print(),
     }
     answer.exit_code()
@@ -47,6 +47,6 @@ fn tell(answer: &Answer) -> ExitCode {
 
 /// Says why the program ends.
 fn fail(log: LogFormat, failure: &Failure) -> ExitCode {
-    message::error(log, failure.kind as u8, &failure.message);
+    event::error(log, failure.kind as u8, &failure.message);
     failure.exit_code()
 }

@@ -9,10 +9,9 @@ use contact_dd_partition::problem::Catalog;
 
 use crate::comm::{self, Comm};
 use crate::error::Failure;
-use crate::output::build::Build;
 use crate::output::memory::peak_memory_bytes;
 use crate::output::ranks::{PhaseSeconds, RankReport};
-use crate::output::report::{Report, ReportFile};
+use crate::output::report::{Build, Report, ReportFile};
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;

@@ -18,7 +18,7 @@ use crate::condense::interface::assemble_interface;
 use crate::condense::tree::condense_clusters;
 use crate::context::Context;
 use crate::error::Failure;
-use crate::output::memory_check::afford;
+use crate::output::memory::afford;
 use crate::output::ranks::PhaseSeconds;
 use crate::output::report::ReportFile;
 use crate::output::resultants::Resultants;
@@ -27,7 +27,7 @@ use crate::plan::Plan;
 use crate::read::{check_copies, collect_groups, read_blocks};
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
-use crate::report::log::Narrator;
+use crate::report::log::RunLog;
 use crate::report::totals::{StepTotals, Totals};
 use crate::report::write::write_solution;
 use crate::report::{Outputs, collect};
@@ -66,7 +66,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     };
     // Where faer's dense algebra takes no `par`, it would use all cores.
     faer::set_global_parallelism(par);
-    let narrator = Narrator::new(comm, settings, began);
+    let log = RunLog::new(comm, settings, began);
 
     // Every rank reads its own subdomains and pairs.
     let catalog = file.catalog();
@@ -76,7 +76,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     let blocks = comm.agree(read_blocks(comm.rank(), &file, &plan))?;
     check_copies(comm, &file, &plan, &blocks)?;
     let groups = collect_groups(comm, &file, &plan, &blocks)?;
-    narrator.problem(catalog, &plan);
+    log.problem(catalog, &plan);
 
     let context = Context {
         comm,
@@ -88,30 +88,30 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     };
 
     // Rigid-body modes that neither supports nor contact restrain, and the bodies' closing motions.
-    narrator.phase("looking for free rigid motions", None);
+    log.phase("looking for free rigid motions", None);
     let analyses = analyse_steps(&context)?;
     if settings.check {
-        narrator.check(&analyses, &costs, available);
+        log.check(&analyses, &costs, available);
         return Ok(Ending::Converged);
     }
-    narrator.phase("creating the outputs", None);
+    log.phase("creating the outputs", None);
     let finished = finished_steps(&context, settings)?;
     let mut outputs = create_outputs(&context, settings, finished.count)?;
     let loads = |k: usize| without_closing_motions(&context, context.loads(k), &analyses[k]);
     seconds.read = began.elapsed().as_secs_f64();
 
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy.
-    narrator.phase("factorizing", Some(blocks.len()));
+    log.phase("factorizing", Some(blocks.len()));
     let condensation = Condensation {
         context,
         loads: &loads(0),
         fixing_dofs: &analyses[0].motions.fixing_dofs,
     };
-    let condensed = condense_clusters(&condensation, &analyses[0], &|| narrator.bar.advance())?;
+    let condensed = condense_clusters(&condensation, &analyses[0], &|| log.bar.advance())?;
     [seconds.assemble, seconds.factorize] = condensed.seconds;
 
     // The root assembles S_0, (15), and the bilateral operator.
-    narrator.phase("assembling the interface problem", None);
+    log.phase("assembling the interface problem", None);
     let lap = Instant::now();
     let interface = assemble_interface(&context, &condensed)?;
     seconds.interface = lap.elapsed().as_secs_f64();
@@ -122,7 +122,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         stop_if_asked(&context, settings, k)?;
 
         // F, condensed like the blocks, and the bounds on normal jumps.
-        narrator.phase("condensing the load", None);
+        log.phase("condensing the load", None);
         let lap = Instant::now();
         let start = state.start();
         let loading = Loading {
@@ -136,15 +136,15 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         seconds.interface += lap.elapsed().as_secs_f64();
 
         // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the step before.
-        narrator.phase("sweeping", None);
+        log.phase("sweeping", None);
         let lap = Instant::now();
-        narrator.step(catalog, k);
+        log.step(catalog, k);
         let (on_gamma, pairs) = (problem.interface.as_ref(), &mut problem.pairs);
-        let mut outcome = sweep(&context, settings, &narrator, on_gamma, pairs, start)?;
+        let mut outcome = sweep(&context, settings, &log, on_gamma, pairs, start)?;
         seconds.sweeps += lap.elapsed().as_secs_f64();
 
         // Back-substitution, and the check of the full discrete problem.
-        narrator.phase("recovering", None);
+        log.phase("recovering", None);
         let lap = Instant::now();
         let fixed = FixedActiveSet::new(
             context,
@@ -162,7 +162,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         seconds.recover += lap.elapsed().as_secs_f64();
 
         // Results travel to the root in slabs of subdomains and are written as they arrive.
-        narrator.phase("writing", None);
+        log.phase("writing", None);
         let lap = Instant::now();
         let mut resultants = Resultants::new(catalog, solution.reactions.clone());
         let result = outputs.as_mut().map(|outputs| &mut outputs.result);
@@ -197,7 +197,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
                     .chain(finished.warning)
                     .collect(),
             };
-            narrator.finish(&totals, outputs)
+            log.finish(&totals, outputs)
         }
         _ => Ok(()),
     };

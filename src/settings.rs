@@ -1,11 +1,12 @@
 //! The settings of a run, resolved.
 //!
-//! [`command_line`] parses options, the problem file may hold some, and the former take precedence; [`origin`]
+//! [`command_line`] parses options, the problem file may hold some, and the former take precedence; [`Origins`]
 //! remembers which it was.
 
 pub mod command_line;
-pub mod origin;
 
+use std::collections::BTreeMap;
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 use contact_dd_partition::solver::{Positive, SolverSettings};
@@ -13,10 +14,9 @@ use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use self::command_line::{CommandLine, LogFormat};
-use self::origin::{Origin, Origins};
 use crate::error::Failure;
 use crate::plan::cluster::Merging;
-use crate::sweep::{Method, SweepSettings, merging};
+use crate::sweep::{Method, SweepSettings};
 
 /// Relative residual of the interface problem at which sweeps end.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -103,22 +103,19 @@ impl Settings {
     /// # Errors
     /// One of the outputs is the problem file or the other output.
     pub fn check_paths(&self) -> Result<(), Failure> {
-        let outputs = [
-            ("--output", Some(&self.output)),
-            ("--report", self.report.as_ref()),
-        ];
         let refuse = |option: &str, path: &Path, what: &str| {
             let path = path.display();
             let message =
                 format!("{option} {path}: that is the {what} file; expected another name");
             Err(Failure::input(message))
         };
-        for (option, output) in outputs {
-            if output.is_some_and(|output| same_file(output, &self.problem)) {
-                return refuse(option, &self.problem, "problem");
-            }
+        if same_file(&self.output, &self.problem) {
+            return refuse("--output", &self.problem, "problem");
         }
         match &self.report {
+            Some(report) if same_file(report, &self.problem) => {
+                refuse("--report", &self.problem, "problem")
+            }
             Some(report) if same_file(report, &self.output) => refuse("--report", report, "result"),
             _ => Ok(()),
         }
@@ -145,42 +142,91 @@ impl Settings {
         })
     }
 
-    /// What becomes of contact when Schur complements are merged.
+    /// What becomes of contact when Schur complements are merged: picard inverts S_0 alone, which has to
+    /// be that of all linear subdomains.
     pub fn merging(&self) -> Merging {
-        merging(self.method)
+        match self.method {
+            Method::Picard => Merging::Linear,
+            Method::Newton | Method::Anderson => Merging::All,
+        }
     }
 
     /// The settings by name, for people: those that aren't the default with what settled them.
     pub fn in_words(&self) -> Vec<(&'static str, String)> {
-        let minimum_norm = |name: &str, value: String| match self.from.of(name) {
-            Origin::Default => value,
-            origin => format!("{value} ({origin})"),
+        let said = |title, name: &str, value: String| match self.from.of(name) {
+            Origin::Default => (title, value),
+            origin => (title, format!("{value} ({origin})")),
         };
         let mut list = vec![
-            (
-                "method",
-                minimum_norm("method", self.method.name().to_string()),
-            ),
-            (
-                "tolerance",
-                minimum_norm("tolerance", format!("{:e}", self.tolerance)),
-            ),
+            said("method", "method", self.method.name().to_owned()),
+            said("tolerance", "tolerance", format!("{:e}", self.tolerance)),
         ];
         if let Some(n) = self.max_sweeps {
-            list.push(("sweeps", minimum_norm("max_sweeps", format!("at most {n}"))));
+            list.push(said("sweeps", "max_sweeps", format!("at most {n}")));
         }
         if let Some(theta) = self.relaxation {
-            list.push(("relaxation", minimum_norm("relaxation", theta.to_string())));
+            list.push(said("relaxation", "relaxation", theta.to_string()));
         }
         if self.no_stress {
-            list.push(("stress", minimum_norm("no_stress", "left out".to_string())));
+            list.push(said("stress", "no_stress", "left out".to_owned()));
         }
-        let path = |name: &str, path: &Path| minimum_norm(name, path.display().to_string());
         if let Some(report) = &self.report {
-            list.push(("report", path("report", report)));
+            list.push(said("report", "report", report.display().to_string()));
         }
-        list.push(("result", path("output", &self.output)));
+        list.push(said("result", "output", self.output.display().to_string()));
         list
+    }
+}
+
+/// What settled a setting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub enum Origin {
+    /// The command line.
+    #[serde(rename = "command line")]
+    CommandLine,
+    /// `/settings` of the problem file.
+    #[serde(rename = "problem file")]
+    ProblemFile,
+    /// Neither.
+    #[serde(rename = "default")]
+    Default,
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::CommandLine => "command line",
+            Self::ProblemFile => "problem file",
+            Self::Default => "default",
+        })
+    }
+}
+
+/// Where each setting came from, by its name in the report.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Origins(BTreeMap<&'static str, Origin>);
+
+impl Origins {
+    /// What the command line says of a setting, else what the problem file does.
+    fn choose<T: Clone>(
+        &mut self,
+        name: &'static str,
+        command_line: &Option<T>,
+        problem_file: &Option<T>,
+    ) -> Option<T> {
+        let origin = match (command_line, problem_file) {
+            (Some(_), _) => Origin::CommandLine,
+            (None, Some(_)) => Origin::ProblemFile,
+            (None, None) => Origin::Default,
+        };
+        self.0.insert(name, origin);
+        command_line.clone().or_else(|| problem_file.clone())
+    }
+
+    /// Where the setting called `name` came from.
+    pub fn of(&self, name: &str) -> Origin {
+        self.0.get(name).copied().unwrap_or(Origin::Default)
     }
 }
 

@@ -20,7 +20,6 @@ pub use self::outcome::{SweepOutcome, SweepRecord, SweepStatus};
 use crate::error::Failure;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::{ConState, ConTotals, SCon};
-use crate::plan::cluster::Merging;
 use crate::vector::largest;
 
 /// Residual that is round-off and nothing else.
@@ -28,15 +27,6 @@ const ROUND_OFF: f64 = 1e-15;
 
 /// Residual to which a method goes that took over: there may be nothing to refine with afterwards.
 const FALL_BACK_TOLERANCE: f64 = 1e-13;
-
-/// What becomes of contact when Schur complements are merged: picard inverts S_0 alone, which has to
-/// be that of all linear subdomains.
-pub fn merging(method: Method) -> Merging {
-    match method {
-        Method::Picard => Merging::Linear,
-        Method::Newton | Method::Anderson => Merging::All,
-    }
-}
 
 /// What a user sets.
 #[derive(Clone, Copy, Debug, PartialEq)]

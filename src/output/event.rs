@@ -1,14 +1,16 @@
-//! What `--log json` prints: one JSON object in each line.
+//! What `--log json` prints, one JSON object in each line; errors and warnings in whichever format the log has.
 
-use std::io::{self, Write};
-use std::path::Path;
+use std::env;
+use std::io::{self, Write, stderr};
 
+use anstream::ColorChoice;
+use contact_dd_partition::message;
 use serde::Serialize;
 
 use super::report::Report;
 use super::terminal::Summary;
-use crate::settings::Settings;
-use crate::settings::origin::Origins;
+use crate::settings::command_line::LogFormat;
+use crate::settings::{Origins, Settings};
 use crate::sweep::SweepRecord;
 
 /// One line of the log; `event` names its kind. Numbers that aren't finite are `null`.
@@ -97,7 +99,31 @@ impl Event<'_> {
     }
 }
 
-/// A path as text, whatever its bytes.
-pub fn shown(path: &Path) -> String {
-    path.display().to_string()
+/// Prints why the program ends with `exit_code`.
+pub fn error(log: LogFormat, exit_code: u8, message: &str) {
+    match log {
+        LogFormat::Text => message::error(message),
+        // Where it can't be printed there is nobody to tell.
+        LogFormat::Json => {
+            let _ = Event::Error { exit_code, message }.write(stderr());
+        }
+    }
+}
+
+/// Prints what the user should know.
+pub fn warning(log: LogFormat, message: &str) {
+    match log {
+        LogFormat::Text => message::warning(message),
+        LogFormat::Json => {
+            let _ = Event::Warning { message }.write(stderr());
+        }
+    }
+}
+
+/// Leaves colours out of everything that is printed, unless the environment insists on them.
+pub fn without_colours() {
+    let forced = env::var_os("CLICOLOR_FORCE").is_some_and(|value| value != "0");
+    if !forced {
+        ColorChoice::Never.write_global();
+    }
 }

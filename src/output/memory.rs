@@ -1,13 +1,18 @@
-//! How much memory this process has needed, and how much it may have.
+//! How much memory this process has needed, how much it may have, and whether that will do.
 
+use std::collections::BTreeMap;
 use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
+
+use crate::comm::Comm;
+use crate::error::Failure;
+use crate::plan::cost::CostEstimate;
 
 /// Peak resident memory of this process (bytes); 0 where the system doesn't tell.
 pub fn peak_memory_bytes() -> u64 {
     read_to_string("/proc/self/status")
         .ok()
-        .and_then(|status| high_water_mark(&status))
+        .and_then(|status| kibibytes(&status, "VmHWM:"))
         .unwrap_or(0)
 }
 
@@ -49,16 +54,60 @@ fn limit_files(groups: &str) -> Vec<PathBuf> {
     files
 }
 
-/// The high-water mark in Linux' `/proc/self/status` (bytes).
-fn high_water_mark(status: &str) -> Option<u64> {
-    kibibytes(status, "VmHWM:")
-}
-
 /// The entry `name` of a list of Linux' (bytes).
 fn kibibytes(list: &str, name: &str) -> Option<u64> {
     let line = list.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes * 1024)
+}
+
+/// Share of the estimate that is needed for certain.
+const CERTAIN: f64 = 0.7;
+
+/// What a host has, and what its ranks need.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Host {
+    available: f64,
+    needed: f64,
+    ranks: usize,
+}
+
+/// Refuses a run for which a host has too little memory, limits of control groups among it; each of
+/// its ranks has one of `costs`. Returns what the hosts have together, on the root (bytes).
+/// Collective.
+///
+/// # Errors
+/// The first host with too little.
+pub fn afford(comm: &Comm, costs: &[CostEstimate]) -> Result<f64, Failure> {
+    // Where the system doesn't tell, nothing is refused.
+    let available = available_memory_bytes().map_or(f64::INFINITY, |bytes| bytes as f64);
+    let mut hosts: BTreeMap<String, Host> = BTreeMap::new();
+    let ranks = comm.collect(&(comm.host_name(), available));
+    for ((name, available), cost) in ranks.into_iter().zip(costs) {
+        let host = hosts.entry(name).or_default();
+        host.available = available;
+        host.needed += cost.bytes;
+        host.ranks += 1;
+    }
+    comm.agree(check(&hosts))?;
+    Ok(hosts.values().map(|host| host.available).sum())
+}
+
+fn check(hosts: &BTreeMap<String, Host>) -> Result<(), Failure> {
+    let gigabytes = |bytes: f64| bytes / 1e9;
+    match hosts
+        .iter()
+        .find(|(_, host)| CERTAIN * host.needed > host.available)
+    {
+        None => Ok(()),
+        Some((name, host)) => Err(Failure::internal(format!(
+            "the {} ranks on '{name}' need about {:.1} GB of memory, and {:.1} GB are available there; \
+             expected more memory or more machines",
+            host.ranks,
+            gigabytes(host.needed),
+            gigabytes(host.available)
+        ))),
+    }
 }
 
 #[cfg(test)]
@@ -68,8 +117,8 @@ mod tests {
     #[test]
     fn the_high_water_mark_counts_kibibytes() {
         let status = "Name:\tsolver\nVmPeak:\t  9000 kB\nVmHWM:\t    1234 kB\nVmRSS:\t 7 kB\n";
-        assert_eq!(high_water_mark(status), Some(1234 * 1024));
-        assert_eq!(high_water_mark("VmHWM:\tmany kB\n"), None);
+        assert_eq!(kibibytes(status, "VmHWM:"), Some(1234 * 1024));
+        assert_eq!(kibibytes("VmHWM:\tmany kB\n", "VmHWM:"), None);
     }
 
     #[test]
@@ -105,5 +154,24 @@ mod tests {
         std::hint::black_box(&used);
         drop(used);
         assert!(peak_memory_bytes() >= 64 << 20);
+    }
+
+    #[test]
+    fn a_host_with_too_little_memory_is_named() {
+        let host = |available: f64, needed: f64| Host {
+            available,
+            needed,
+            ranks: 4,
+        };
+        let of = |second: Host| {
+            let all = [("first", host(8e9, 6e9)), ("second", second)];
+            check(&all.map(|(name, host)| (name.to_string(), host)).into())
+        };
+        assert!(of(host(8e9, 9e9)).is_ok());
+        assert!(of(host(f64::INFINITY, 9e12)).is_ok());
+        let refused = of(host(8e9, 16e9)).unwrap_err().message;
+        for words in ["4 ranks on 'second'", "16.0 GB", "8.0 GB"] {
+            assert!(refused.contains(words), "{refused}");
+        }
     }
 }

@@ -8,12 +8,10 @@ use contact_dd_partition::error::OutputError;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::build::Build;
 use super::ranks::{PhaseSeconds, RankReport};
 use super::resultants::Resultants;
 use crate::certificate::Certificate;
-use crate::settings::Settings;
-use crate::settings::origin::Origins;
+use crate::settings::{Origins, Settings};
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -135,6 +133,39 @@ impl Report {
     pub fn to_json(&self) -> String {
         // It holds neither maps nor anything else that JSON couldn't.
         serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+}
+
+/// The build of this program.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Build {
+    /// Commit of its source, with `-dirty` behind it where files were changed; `null` in a debug
+    /// build and where the source was no repository.
+    pub commit: Option<String>,
+    /// `release` or `debug`.
+    pub profile: String,
+    /// The compiler.
+    pub compiler: String,
+    /// What it was compiled for.
+    pub target: String,
+    /// The MPI library that it runs with.
+    pub mpi: String,
+    /// The version of the HDF5 library that it runs with.
+    pub hdf5: String,
+}
+
+impl Build {
+    /// This program's, with `mpi` for the MPI library.
+    pub fn of_this_program(mpi: String) -> Self {
+        let (major, minor, release) = hdf5::library_version();
+        Self {
+            commit: option_env!("BUILD_COMMIT").map(str::to_owned),
+            profile: env!("BUILD_PROFILE").into(),
+            compiler: env!("BUILD_COMPILER").into(),
+            target: env!("BUILD_TARGET").into(),
+            mpi,
+            hdf5: format!("{major}.{minor}.{release}"),
+        }
     }
 }
 

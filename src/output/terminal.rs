@@ -1,12 +1,12 @@
 //! What the root rank prints: plain lines of fixed columns, the same on a terminal and in a log.
 //!
-//! Every function writes whole lines to `out`; whether to print at all, and whether to show colours, is
-//! the caller's business.
+//! Every function gives whole lines, without the end of the last; whether to print them at all, and whether to
+//! show colours, is the caller's business.
 
 mod resultants;
 mod timing;
 
-use std::io::{Result, Write};
+use std::fmt::Display;
 use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
@@ -21,6 +21,9 @@ use crate::sweep::SweepRecord;
 
 /// How the reason is shown for which sweeps ended well.
 const CONVERGED: Style = AnsiColor::Green.on_default();
+
+/// The head of the table of sweeps.
+pub const SWEEP_HEADER: &str = "\nsweep    residual    active   changed     seconds";
 
 /// What is to be solved, and on what.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -47,183 +50,124 @@ pub struct Summary<'a> {
     pub threads: usize,
 }
 
-/// Prints what solving would cost `all` ranks together and one of them at `most`, against the memory that is
+/// What solving would cost `all` ranks together and one of them at `most`, against the memory that is
 /// `available` on the hosts together (bytes).
-///
-/// # Errors
-/// `out` can't be written.
-pub fn costs(
-    out: &mut dyn Write,
-    all: CostEstimate,
-    most: CostEstimate,
-    available: f64,
-) -> Result<()> {
-    writeln!(out, "\nsolving it would take about")?;
-    writeln!(
-        out,
-        "  memory       {:.2} GB, {:.2} GB on the largest rank; {:.1} GB are available",
-        all.bytes / 1e9,
-        most.bytes / 1e9,
-        available / 1e9
-    )?;
-    writeln!(
-        out,
-        "  arithmetic   {:.3} Gflop, {:.3} Gflop on the busiest rank",
-        all.flops / 1e9,
-        most.flops / 1e9
+pub fn costs(all: CostEstimate, most: CostEstimate, available: f64) -> String {
+    let giga = |number: f64| number / 1e9;
+    format!(
+        "\nsolving it would take about\n  \
+         memory       {:.2} GB, {:.2} GB on the largest rank; {:.1} GB are available\n  \
+         arithmetic   {:.3} Gflop, {:.3} Gflop on the busiest rank",
+        giga(all.bytes),
+        giga(most.bytes),
+        giga(available),
+        giga(all.flops),
+        giga(most.flops)
     )
 }
 
-/// Prints the problem.
-///
-/// # Errors
-/// `out` can't be written.
-pub fn summary(out: &mut dyn Write, summary: &Summary) -> Result<()> {
-    let Summary {
-        version,
-        problem,
-        title,
-        dofs,
-        interface_dofs,
-        subdomains,
-        contact_pairs,
-        contact_conditions,
-        ranks,
-        threads,
-    } = summary;
-    writeln!(out, "contact-dd-mpi {version}")?;
-    writeln!(out)?;
-    if !title.is_empty() {
-        writeln!(out, "{title}")?;
+/// The problem.
+pub fn summary(of: &Summary) -> String {
+    let mut lines = vec![format!("contact-dd-mpi {}\n", of.version)];
+    if !of.title.is_empty() {
+        lines.push(of.title.to_owned());
     }
-    entry(out, "problem", problem)?;
-    entry(
-        out,
-        "dofs",
-        format!("{dofs}, {interface_dofs} of them on the interface"),
-    )?;
-    entry(out, "subdomains", subdomains)?;
-    if *contact_conditions == 0 {
-        entry(out, "contact", "none")?;
-    } else {
-        let pairs = counted(*contact_pairs, "pair");
-        let conditions = counted(*contact_conditions, "condition");
-        entry(out, "contact", format!("{conditions} in {pairs}"))?;
-    }
-    let threads = counted(*threads, "thread");
-    entry(out, "ranks", format!("{ranks} with {threads} each"))
+    let pairs = counted(of.contact_pairs, "pair");
+    let contact = match of.contact_conditions {
+        0 => "none".to_owned(),
+        count => format!("{} in {pairs}", counted(count, "condition")),
+    };
+    let threads = counted(of.threads, "thread");
+    lines.extend([
+        entry("problem", &of.problem),
+        entry(
+            "dofs",
+            format!(
+                "{}, {} of them on the interface",
+                of.dofs, of.interface_dofs
+            ),
+        ),
+        entry("subdomains", of.subdomains),
+        entry("contact", contact),
+        entry("ranks", format!("{} with {threads} each", of.ranks)),
+    ]);
+    lines.join("\n")
 }
 
-/// Prints the settings as they were resolved, by name.
-///
-/// # Errors
-/// `out` can't be written.
-pub fn settings(out: &mut dyn Write, settings: &[(&str, String)]) -> Result<()> {
-    writeln!(out)?;
-    for (name, value) in settings {
-        entry(out, name, value)?;
-    }
-    Ok(())
+/// The settings as they were resolved, by name.
+pub fn settings(settings: &[(&str, String)]) -> String {
+    let entries = settings
+        .iter()
+        .map(|(name, value)| format!("\n{}", entry(name, value)));
+    entries.collect()
 }
 
-/// Prints which load step comes, number k of `count`.
-///
-/// # Errors
-/// `out` can't be written.
-pub fn step(out: &mut dyn Write, step: &LoadStep, k: usize, count: usize) -> Result<()> {
-    writeln!(out)?;
-    writeln!(
-        out,
-        "step {} of {count}: '{}' at {}",
-        k + 1,
-        step.name,
-        step.time
-    )
+/// Which load step comes, number k of `count`.
+pub fn step(step: &LoadStep, k: usize, count: usize) -> String {
+    let LoadStep { name, time, .. } = step;
+    format!("\nstep {} of {count}: '{name}' at {time}", k + 1)
 }
 
-/// Prints the head of the table of sweeps.
-///
-/// # Errors
-/// `out` can't be written.
-pub fn sweep_header(out: &mut dyn Write) -> Result<()> {
-    writeln!(out)?;
-    writeln!(
-        out,
-        "{:>5}  {:>10}  {:>8}  {:>8}  {:>10}",
-        "sweep", "residual", "active", "changed", "seconds"
-    )
-}
-
-/// Prints one line of the table of sweeps.
-///
-/// # Errors
-/// `out` can't be written.
-pub fn sweep(out: &mut dyn Write, line: &SweepRecord) -> Result<()> {
+/// One line of the table of sweeps.
+pub fn sweep(line: &SweepRecord) -> String {
     let changed = line.changed.map_or("-".into(), |count| count.to_string());
-    writeln!(
-        out,
+    format!(
         "{:>5}  {:>10.3e}  {:>8}  {:>8}  {:>10.4}",
         line.sweep, line.residual, line.active, changed, line.seconds
     )
 }
 
-/// Prints all that follows the sweeps: why they ended (`reason`, in words), the certificate, the
-/// timing table, what was skipped, warnings, and where the results are.
-///
-/// # Errors
-/// `out` can't be written.
-pub fn closing(out: &mut dyn Write, reason: &str, report: &Report, result: &Path) -> Result<()> {
+/// All that follows the sweeps: why they ended (`reason`, in words), the certificate, the timing table, what
+/// was skipped, warnings, and where the results are.
+pub fn closing(reason: &str, report: &Report, result: &Path) -> String {
     let style = match report.status {
         Status::Converged => CONVERGED,
         Status::NotConverged => ERROR,
     };
-    writeln!(out)?;
-    writeln!(out, "{style}{reason}{style:#}")?;
-    writeln!(out)?;
-    certificate(out, &report.certificate)?;
+    let mut lines = vec![
+        format!("\n{style}{reason}{style:#}\n"),
+        certificate(&report.certificate),
+    ];
     if let Some(condition) = report.condition_number {
-        writeln!(out, "             condition number about {condition:.0e}")?;
+        lines.push(format!(
+            "             condition number about {condition:.0e}"
+        ));
     }
     if let Some(estimate) = report.error_estimate {
-        writeln!(
-            out,
-            "mesh         stresses are off by about {:.1} % in the energy norm",
-            100.0 * estimate.relative
-        )?;
+        let percent = 100.0 * estimate.relative;
+        lines.push(format!(
+            "mesh         stresses are off by about {percent:.1} % in the energy norm"
+        ));
     }
-    writeln!(out)?;
-    steps(out, &report.steps)?;
-    resultants::print(out, &report.resultants)?;
-    writeln!(out)?;
-    timing::print(out, &report.per_rank)?;
-    writeln!(out)?;
-    for skipped in &report.skipped {
-        writeln!(out, "skipped: {skipped}")?;
-    }
-    for fallback in &report.fallbacks {
-        writeln!(out, "fall-back: {fallback}")?;
-    }
-    for warning in &report.warnings {
-        writeln!(out, "{WARNING}warning:{WARNING:#} {warning}")?;
-    }
-    writeln!(out, "results: {}", result.display())
+    lines.push(String::new());
+    lines.extend(steps(&report.steps));
+    lines.extend(resultants::lines(&report.resultants));
+    lines.push(String::new());
+    lines.extend(timing::lines(&report.per_rank));
+    lines.push(String::new());
+    lines.extend(report.skipped.iter().map(|what| format!("skipped: {what}")));
+    lines.extend(
+        report
+            .fallbacks
+            .iter()
+            .map(|what| format!("fall-back: {what}")),
+    );
+    let warnings = report.warnings.iter();
+    lines.extend(warnings.map(|what| format!("{WARNING}warning:{WARNING:#} {what}")));
+    lines.push(format!("results: {}", result.display()));
+    lines.join("\n")
 }
 
-/// Prints a line a load step; nothing where there is none.
-fn steps(out: &mut dyn Write, steps: &[StepReport]) -> Result<()> {
+/// A line a load step; nothing where there is none.
+fn steps(steps: &[StepReport]) -> Vec<String> {
     if steps.is_empty() {
-        return Ok(());
+        return Vec::new();
     }
-    writeln!(
-        out,
-        "{:>5}  {:>10}  {:>8}  {:>8}  {:>12}  {:>12}  name",
-        "step", "time", "sweeps", "active", "pressure", "equilibrium"
-    )?;
-    for (k, step) in steps.iter().enumerate() {
+    let head = " step        time    sweeps    active      pressure   equilibrium  name";
+    let line = |(k, step): (usize, &StepReport)| {
         let contacts = step.resultants.contacts.iter();
         let pressure = contacts.fold(0.0, |most: f64, contact| most.max(contact.largest_pressure));
-        writeln!(
-            out,
+        format!(
             "{:>5}  {:>10}  {:>8}  {:>8}  {pressure:>12.4e}  {:>12.1e}  {}",
             k + 1,
             step.time,
@@ -231,38 +175,32 @@ fn steps(out: &mut dyn Write, steps: &[StepReport]) -> Result<()> {
             step.active_contacts,
             step.certificate.equilibrium,
             step.name
-        )?;
-    }
-    writeln!(out, "\nin the last step:")
+        )
+    };
+    let mut lines = vec![head.to_owned()];
+    lines.extend(steps.iter().enumerate().map(line));
+    lines.push("\nin the last step:".to_owned());
+    lines
 }
 
-/// Prints the certificate.
-fn certificate(out: &mut dyn Write, certificate: &Certificate) -> Result<()> {
-    let Certificate {
-        equilibrium,
-        equilibrium_of_load,
-        load_share: _,
-        penetration,
-        tension,
-        complementarity,
-        force_balance,
-        moment_balance,
-        interface_jump,
-    } = certificate;
-    writeln!(
-        out,
-        "certificate  equilibrium {equilibrium:.1e} ({equilibrium_of_load:.1e} of the load)  \
-         penetration {penetration:.1e}  tension {tension:.1e}  complementarity {complementarity:.1e}"
-    )?;
-    writeln!(
-        out,
-        "             force balance {force_balance:.1e}  moment balance {moment_balance:.1e}  \
-         interface jump {interface_jump:.1e}"
+fn certificate(of: &Certificate) -> String {
+    format!(
+        "certificate  equilibrium {:.1e} ({:.1e} of the load)  penetration {:.1e}  tension {:.1e}  \
+         complementarity {:.1e}\n             \
+         force balance {:.1e}  moment balance {:.1e}  interface jump {:.1e}",
+        of.equilibrium,
+        of.equilibrium_of_load,
+        of.penetration,
+        of.tension,
+        of.complementarity,
+        of.force_balance,
+        of.moment_balance,
+        of.interface_jump
     )
 }
 
-fn entry(out: &mut dyn Write, name: &str, value: impl std::fmt::Display) -> Result<()> {
-    writeln!(out, "  {name:<12} {value}")
+fn entry(name: &str, value: impl Display) -> String {
+    format!("  {name:<12} {value}")
 }
 
 fn counted(count: usize, noun: &str) -> String {
@@ -273,12 +211,6 @@ fn counted(count: usize, noun: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn printed(print: impl FnOnce(&mut dyn Write) -> Result<()>) -> String {
-        let mut out = Vec::new();
-        print(&mut out).unwrap();
-        String::from_utf8(out).unwrap()
-    }
 
     #[test]
     fn sweeps_stand_in_the_columns_of_their_header() {
@@ -292,28 +224,20 @@ mod tests {
             }
             ends
         };
-        let header = printed(sweep_header);
-        let header = ends(header.trim_end_matches('\n').lines().last().unwrap());
+        let header = ends(SWEEP_HEADER.trim_start());
         for (sweep_number, residual, active, changed) in [
             (0, 1.0, 48, None),
             (12, 3.2e-117, 1_234_567, Some(7)),
             (99_999, f64::NAN, 0, Some(12_345_678)),
         ] {
-            let line = SweepRecord {
+            let line = sweep(&SweepRecord {
                 sweep: sweep_number,
                 residual,
                 active,
                 changed,
                 seconds: 1234.56789,
-            };
-            let line = printed(|out| sweep(out, &line));
-            assert_eq!(ends(line.trim_end_matches('\n')), header, "{line}");
+            });
+            assert_eq!(ends(&line), header, "{line}");
         }
-    }
-
-    #[test]
-    fn one_of_a_thing_is_singular() {
-        assert_eq!(counted(1, "pair"), "1 pair");
-        assert_eq!(counted(2, "pair"), "2 pairs");
     }
 }

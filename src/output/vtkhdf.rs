@@ -12,7 +12,7 @@ use std::path::Path;
 
 use contact_dd_partition::destination::{self, Destination};
 use contact_dd_partition::error::OutputError;
-use contact_dd_partition::problem::{Catalog, ContactSummary, SubdomainSummary};
+use contact_dd_partition::problem::{Catalog, ContactSummary};
 use contact_dd_partition::scene::units::Units;
 use hdf5::types::VarLenUnicode;
 use hdf5::{File, FileBuilder};
@@ -41,18 +41,14 @@ impl Layout {
     /// The layout for `catalog`; `connectivity` has, for every subdomain, the sum of the number of
     /// nodes over its cells.
     pub fn new(catalog: &Catalog, connectivity: &[usize], stress: bool) -> Self {
-        let size = |(subdomain, &connectivity): (&SubdomainSummary, &usize)| PartitionSize {
+        let sizes = catalog.subdomains.iter().zip(connectivity);
+        let partitions = sizes.map(|(subdomain, &connectivity)| PartitionSize {
             points: subdomain.nodes,
             cells: subdomain.cells,
             connectivity,
-        };
+        });
         Self {
-            partitions: catalog
-                .subdomains
-                .iter()
-                .zip(connectivity)
-                .map(size)
-                .collect(),
+            partitions: partitions.collect(),
             contacts: catalog.contacts.clone(),
             times: catalog.steps.iter().map(|step| step.time).collect(),
             stress,
@@ -117,11 +113,10 @@ impl ResultFile {
             let file = without_locks().open(&kept)?;
             file.dataset(STATE)?.read_raw::<u8>()
         };
-        let why =
-            |_: hdf5::Error| "isn't what a run that was stopped leaves; expected its load steps";
+        let why = "isn't what a run that was stopped leaves; expected its load steps";
         read()
             .map(Some)
-            .map_err(|error| destination::failure(&kept, why(error)))
+            .map_err(|_| destination::failure(&kept, why))
     }
 
     fn open(
@@ -161,9 +156,8 @@ impl ResultFile {
     /// # Errors
     /// The file can't be written, or `results` doesn't have the sizes of the layout.
     pub fn write_subdomains(&mut self, results: &SubdomainResults) -> Result<(), OutputError> {
-        self.grid
-            .write(results, self.step)
-            .map_err(|error| failure(&self.destination, &error))
+        let written = self.grid.write(results, self.step);
+        written.map_err(|error| failure(&self.destination, &error))
     }
 
     /// Writes contact conditions, each at its place in the table of its contact.
@@ -171,9 +165,8 @@ impl ResultFile {
     /// # Errors
     /// The file can't be written, or a row has no place in the layout.
     pub fn write_contacts(&mut self, rows: &[ContactRow]) -> Result<(), OutputError> {
-        self.contacts
-            .write(rows, self.step)
-            .map_err(|error| failure(&self.destination, &error))
+        let written = self.contacts.write(rows, self.step);
+        written.map_err(|error| failure(&self.destination, &error))
     }
 
     /// Ends a load step: what is written from now on belongs to the next one.
@@ -196,12 +189,8 @@ impl ResultFile {
     pub fn keep(&mut self, state: &[u8]) -> Result<(), OutputError> {
         let write = || {
             self.forget_state()?;
-            let dataset = self
-                .file
-                .new_dataset::<u8>()
-                .shape(state.len())
-                .create(STATE)?;
-            dataset.write_raw(state)?;
+            let new = self.file.new_dataset::<u8>().shape(state.len());
+            new.create(STATE)?.write_raw(state)?;
             self.file.flush()
         };
         write().map_err(|error: hdf5::Error| failure(&self.destination, &error))?;

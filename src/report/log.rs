@@ -10,8 +10,7 @@ use crate::comm::{self, Comm};
 use crate::error::Failure;
 use crate::interface::operator::Interface;
 use crate::output::bar::Bar;
-use crate::output::event::{Event, shown};
-use crate::output::message;
+use crate::output::event::{self, Event};
 use crate::output::terminal::{self, Summary};
 use crate::plan::Plan;
 use crate::plan::cost::CostEstimate;
@@ -26,7 +25,7 @@ use crate::sweep::SweepRecord;
 const NOT_CONVERGED: u8 = 3;
 
 /// Prints on the root what a user wants to follow, and nothing elsewhere.
-pub struct Narrator<'a> {
+pub struct RunLog<'a> {
     comm: &'a Comm,
     settings: &'a Settings,
     voice: Option<LogFormat>,
@@ -35,7 +34,7 @@ pub struct Narrator<'a> {
     pub bar: Bar,
 }
 
-impl<'a> Narrator<'a> {
+impl<'a> RunLog<'a> {
     /// Speaks on the root unless `settings` ask for quiet, of a run that `began` then.
     pub fn new(comm: &'a Comm, settings: &'a Settings, began: Instant) -> Self {
         let voice = (comm.is_root() && !settings.quiet).then_some(settings.log);
@@ -48,11 +47,12 @@ impl<'a> Narrator<'a> {
         }
     }
 
-    /// Prints text, where that is what is printed.
-    fn say(&self, print: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) {
+    /// Prints lines, where text is what is printed.
+    fn say(&self, text: impl FnOnce() -> String) {
         if self.voice == Some(LogFormat::Text) {
+            let text = text();
             // A closed pipe is no reason to stop a run that writes its results to a file.
-            self.bar.aside(|| drop(print(&mut anstream::stdout())));
+            (self.bar).aside(|| drop(writeln!(anstream::stdout(), "{text}")));
         }
     }
 
@@ -78,7 +78,7 @@ impl<'a> Narrator<'a> {
     pub fn problem(&self, catalog: &Catalog, plan: &Plan) {
         let summary = Summary {
             version: env!("CARGO_PKG_VERSION"),
-            problem: shown(&self.settings.problem),
+            problem: self.settings.problem.display().to_string(),
             title: &catalog.title,
             dofs: catalog.dofs(),
             interface_dofs: catalog.dim * plan.tree.interface_nodes,
@@ -88,10 +88,10 @@ impl<'a> Narrator<'a> {
             ranks: self.comm.size(),
             threads: usize::from(self.settings.threads),
         };
-        self.say(|out| terminal::summary(out, &summary));
+        self.say(|| terminal::summary(&summary));
         self.log(&Event::Problem(&summary));
         if !self.settings.check {
-            self.say(|out| terminal::settings(out, &self.settings.in_words()));
+            self.say(|| terminal::settings(&self.settings.in_words()));
             self.log(&Event::Settings {
                 settings: self.settings,
                 settings_from: &self.settings.from,
@@ -102,18 +102,15 @@ impl<'a> Narrator<'a> {
     /// What validating found, and what solving would cost.
     pub fn check(&self, analyses: &[RigidBodyAnalysis], costs: &[CostEstimate], available: f64) {
         self.bar.finish();
-        let all = analyses
-            .iter()
-            .flat_map(|analysis| &analysis.motions.warnings);
-        let warnings: BTreeSet<&String> = all.collect();
+        let all = analyses.iter().map(|analysis| &analysis.motions.warnings);
         if self.comm.is_root() {
-            for warning in warnings {
-                message::warning(self.settings.log, warning);
+            for warning in all.flatten().collect::<BTreeSet<_>>() {
+                event::warning(self.settings.log, warning);
             }
         }
         let (all, most) = (CostEstimate::sum(costs), CostEstimate::largest(costs));
-        self.say(|out| terminal::costs(out, all, most, available));
-        self.say(|out| writeln!(out, "\nthe problem file is valid"));
+        self.say(|| terminal::costs(all, most, available));
+        self.say(|| "\nthe problem file is valid".into());
         self.log(&Event::Check {
             memory_bytes: all.bytes,
             largest_rank_memory_bytes: most.bytes,
@@ -128,7 +125,7 @@ impl<'a> Narrator<'a> {
         let Some(step) = catalog.steps.get(k) else {
             return;
         };
-        self.say(|out| terminal::step(out, step, k, catalog.steps.len()));
+        self.say(|| terminal::step(step, k, catalog.steps.len()));
         self.log(&Event::Step {
             step: k + 1,
             steps: catalog.steps.len(),
@@ -140,7 +137,7 @@ impl<'a> Narrator<'a> {
     /// The head of the table of sweeps, if there are going to be any.
     pub fn sweeps(&self, interface: &Interface) {
         if !interface.pair_interface_dofs.is_empty() {
-            self.say(|out| terminal::sweep_header(out));
+            self.say(|| terminal::SWEEP_HEADER.into());
         }
     }
 
@@ -149,7 +146,7 @@ impl<'a> Narrator<'a> {
         if interface.pair_interface_dofs.is_empty() {
             return;
         }
-        self.say(|out| terminal::sweep(out, record));
+        self.say(|| terminal::sweep(record));
         self.log(&Event::Sweep(record));
     }
 
@@ -162,12 +159,12 @@ impl<'a> Narrator<'a> {
         outputs.finish(totals, &report)?;
         self.bar.finish();
         let reason = reason(totals);
-        self.say(|out| terminal::closing(out, &reason, &report, &self.settings.output));
+        self.say(|| terminal::closing(&reason, &report, &self.settings.output));
         for warning in &report.warnings {
             match self.voice {
                 Some(LogFormat::Text) => {}
                 Some(LogFormat::Json) => self.log(&Event::Warning { message: warning }),
-                None => message::warning(self.settings.log, warning),
+                None => event::warning(self.settings.log, warning),
             }
         }
         let mut exit_code = 0;
@@ -175,11 +172,11 @@ impl<'a> Narrator<'a> {
         if !failures.is_empty() {
             exit_code = NOT_CONVERGED;
             let why = format!("not converged: {}", failures.join("; "));
-            message::error(self.settings.log, exit_code, &why);
+            event::error(self.settings.log, exit_code, &why);
         }
         self.log(&Event::Finished {
             exit_code,
-            result: shown(&self.settings.output),
+            result: self.settings.output.display().to_string(),
             reason: &reason,
             report: &report,
         });

@@ -7,7 +7,7 @@ use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::SCon;
-use crate::report::log::Narrator;
+use crate::report::log::RunLog;
 use crate::settings::Settings;
 use crate::sweep::{Start, SweepOutcome, SweepRecord, Sweeps};
 
@@ -19,7 +19,7 @@ use crate::sweep::{Start, SweepOutcome, SweepRecord, Sweeps};
 pub fn sweep(
     context: &Context<'_>,
     settings: &Settings,
-    narrator: &Narrator<'_>,
+    log: &RunLog<'_>,
     problem: Option<&InterfaceProblem<'_>>,
     pairs: &mut BTreeMap<usize, ContactPair>,
     start: Start,
@@ -30,8 +30,8 @@ pub fn sweep(
         s_con.serve();
         return context.comm.agree(Ok(None));
     };
-    narrator.sweeps(problem.interface);
-    let mut observer = |record: &SweepRecord| narrator.sweep(problem.interface, record);
+    log.sweeps(problem.interface);
+    let mut observer = |record: &SweepRecord| log.sweep(problem.interface, record);
     let solved = Sweeps::solve(problem, &mut s_con, settings.sweeps(), start, &mut observer);
     s_con.stop();
     context.comm.agree(solved.map(Some))

@@ -1,77 +1,62 @@
 //! The tables of what contacts and supports carry.
 
-use std::io::{Result, Write};
+use crate::output::resultants::{ContactResultant, Reaction, Resultant, Resultants};
 
-use crate::output::resultants::{Resultant, Resultants};
-
-/// Most lines that are printed; the report has all.
+/// Most lines that are printed of a table; the report has all.
 const LINES: usize = 12;
 
-/// Prints contacts and reactions.
-///
-/// # Errors
-/// `out` can't be written.
-pub(super) fn print(out: &mut dyn Write, resultants: &Resultants) -> Result<()> {
+/// Contacts and reactions.
+pub(super) fn lines(resultants: &Resultants) -> Vec<String> {
     let Resultants {
         contacts,
         reactions,
     } = resultants;
+    let title = "contact, on side a";
     let names = (contacts.iter().map(|c| c.name.as_str()))
-        .chain(reactions.iter().map(|r| r.support.as_str()));
+        .chain(reactions.iter().map(|r| r.support.as_str()))
+        .chain([title]);
     let width = names.map(|name| name.chars().count()).max().unwrap_or(0);
-    if !contacts.is_empty() {
-        let title = pad("contact, on side a", width);
-        writeln!(
-            out,
-            "{title}       closed      force x      force y     moment z     pressure"
-        )?;
-    }
-    for contact in contacts.iter().take(LINES) {
+    let columns = "force x      force y     moment z";
+    let contact = |contact: &ContactResultant| {
         let closed = format!("{} of {}", contact.closed, contact.conditions);
-        let name = pad(&contact.name, width);
-        write!(out, "{name} {closed:>12}")?;
-        forces(out, &contact.resultant)?;
-        writeln!(out, " {:>12.4e}", contact.largest_pressure)?;
-    }
-    more(out, contacts.len())?;
-    if !reactions.is_empty() {
-        let title = pad("support", width);
-        writeln!(
-            out,
-            "{title}                   force x      force y     moment z"
-        )?;
-    }
-    for reaction in reactions.iter().take(LINES) {
-        let name = pad(&reaction.support, width);
-        write!(out, "{name} {:>12}", "")?;
-        forces(out, &reaction.resultant)?;
-        writeln!(out)?;
-    }
-    more(out, reactions.len())
+        let (name, pressure) = (&contact.name, contact.largest_pressure);
+        format!(
+            "{name:<width$} {closed:>12}{} {pressure:>12.4e}",
+            forces(&contact.resultant)
+        )
+    };
+    let support = |Reaction { support, resultant }: &Reaction| {
+        format!("{support:<width$} {:>12}{}", "", forces(resultant))
+    };
+    let head = format!("{title:<width$}       closed      {columns}     pressure");
+    let mut lines = table(head, contacts, contact);
+    let head = format!("{:<width$}                   {columns}", "support");
+    lines.extend(table(head, reactions, support));
+    lines
 }
 
-fn pad(name: &str, width: usize) -> String {
-    let width = width.max("contact, on side a".len());
-    format!("{name:<width$}")
+/// The head and a line for each of `all`; nothing where there is none.
+fn table<T>(head: String, all: &[T], line: impl Fn(&T) -> String) -> Vec<String> {
+    if all.is_empty() {
+        return Vec::new();
+    }
+    let mut lines = vec![head];
+    lines.extend(all.iter().take(LINES).map(line));
+    if let Some(rest @ 1..) = all.len().checked_sub(LINES) {
+        lines.push(format!("… and {rest} more in the report"));
+    }
+    lines
 }
 
-fn forces(out: &mut dyn Write, resultant: &Resultant) -> Result<()> {
+fn forces(resultant: &Resultant) -> String {
     let [x, y, _] = resultant.force;
     let [.., z] = resultant.moment;
-    write!(out, " {x:>12.4e} {y:>12.4e} {z:>12.4e}")
-}
-
-fn more(out: &mut dyn Write, count: usize) -> Result<()> {
-    match count.checked_sub(LINES) {
-        Some(rest @ 1..) => writeln!(out, "… and {rest} more in the report"),
-        _ => Ok(()),
-    }
+    format!(" {x:>12.4e} {y:>12.4e} {z:>12.4e}")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::resultants::{ContactResultant, Reaction};
 
     #[test]
     fn long_lists_are_cut() {
@@ -79,10 +64,8 @@ mod tests {
             contacts: vec![ContactResultant::default(); 15],
             reactions: vec![Reaction::default(); 2],
         };
-        let mut out = Vec::new();
-        print(&mut out, &resultants).unwrap_or_default();
-        let text = String::from_utf8_lossy(&out).into_owned();
-        assert_eq!(text.lines().count(), 1 + 12 + 1 + 1 + 2);
-        assert!(text.contains("… and 3 more"));
+        let lines = lines(&resultants);
+        assert_eq!(lines.len(), 1 + 12 + 1 + 1 + 2);
+        assert!(lines[13].contains("… and 3 more"));
     }
 }

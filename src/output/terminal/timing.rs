@@ -1,35 +1,26 @@
 //! The table of times over the ranks.
 
-use std::io::{Result, Write};
-
 use crate::output::ranks::{PhaseSeconds, RankReport};
 
-/// Prints the time that each phase took over the ranks, and its share of the mean total.
-///
-/// # Errors
-/// `out` can't be written.
-pub(super) fn print(out: &mut dyn Write, ranks: &[RankReport]) -> Result<()> {
+/// The time that each phase took over the ranks, and its share of the mean total.
+pub(super) fn lines(ranks: &[RankReport]) -> Vec<String> {
     let seconds: Vec<PhaseSeconds> = ranks.iter().map(|rank| rank.seconds).collect();
     let totals: Vec<f64> = seconds.iter().map(|rank| rank.total).collect();
     let total = Spread::of(&totals);
-    writeln!(
-        out,
-        "{:<10}  {:>10}  {:>10}  {:>10}  {:>7}",
-        "seconds", "min", "mean", "max", "share"
-    )?;
+    let mut lines = vec!["seconds            min        mean         max    share".to_owned()];
     for (p, (name, _)) in PhaseSeconds::default().phases().into_iter().enumerate() {
         let phase: Vec<f64> = seconds.iter().map(|rank| rank.phases()[p].1).collect();
-        Spread::of(&phase).print(out, name, total.mean)?;
+        lines.push(Spread::of(&phase).line(name, total.mean));
     }
-    total.print(out, "total", total.mean)?;
+    lines.push(total.line("total", total.mean));
     let memory = ranks.iter().map(|rank| rank.peak_memory_bytes);
     let mebibytes = |bytes: u64| bytes as f64 / f64::from(1 << 20);
-    writeln!(
-        out,
+    lines.push(format!(
         "memory      {:.0} MiB on all ranks, {:.0} MiB on the largest",
         mebibytes(memory.clone().sum()),
         mebibytes(memory.max().unwrap_or(0)),
-    )
+    ));
+    lines
 }
 
 /// Least, mean and largest of a time over the ranks.
@@ -50,29 +41,19 @@ impl Spread {
         }
     }
 
-    fn print(&self, out: &mut dyn Write, name: &str, whole: f64) -> Result<()> {
+    fn line(&self, name: &str, whole: f64) -> String {
         let Self { min, mean, max } = self;
-        let share = if whole > 0.0 {
-            100.0 * mean / whole
-        } else {
-            0.0
+        let share = match whole > 0.0 {
+            true => 100.0 * mean / whole,
+            false => 0.0,
         };
-        writeln!(
-            out,
-            "{name:<10}  {min:>10.4}  {mean:>10.4}  {max:>10.4}  {share:>5.1} %"
-        )
+        format!("{name:<10}  {min:>10.4}  {mean:>10.4}  {max:>10.4}  {share:>5.1} %")
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn printed(ranks: &[RankReport]) -> String {
-        let mut out = Vec::new();
-        print(&mut out, ranks).unwrap();
-        String::from_utf8(out).unwrap()
-    }
 
     #[test]
     fn the_timing_table_spans_from_the_fastest_to_the_slowest_rank() {
@@ -86,9 +67,9 @@ mod tests {
             bytes_sent: 0,
             subdomains: 1,
         };
-        let table = printed(&[rank(1.0), rank(2.0), rank(6.0)]);
+        let table = lines(&[rank(1.0), rank(2.0), rank(6.0)]);
         let row = |name| {
-            let row = table.lines().find(|line| line.starts_with(name)).unwrap();
+            let row = table.iter().find(|line| line.starts_with(name)).unwrap();
             row.split_whitespace().skip(1).collect::<Vec<_>>().join(" ")
         };
         assert_eq!(row("factorize"), "1.0000 3.0000 6.0000 37.5 %");
@@ -98,7 +79,9 @@ mod tests {
 
     #[test]
     fn no_rank_and_no_time_print_no_nonsense() {
-        let table = printed(&[]) + &printed(&[RankReport::default()]);
+        let table = [lines(&[]), lines(&[RankReport::default()])]
+            .concat()
+            .concat();
         assert!(!table.contains("NaN") && !table.contains("inf"), "{table}");
     }
 }
