@@ -21,8 +21,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         code += &format!("#[path = {mesh:?}]\nmod {name};\n");
     }
     code += "/// The built-in scenes.\npub const EXAMPLES: &[Example] = &[\n";
-    for (name, _) in &meshes {
-        code += &format!("    {name}::EXAMPLE,\n");
+    for (name, mesh) in &meshes {
+        code += &format!(
+            "Example {{ name: {name:?}, about: {name}::ABOUT, subdomains: {name}::SUBDOMAINS, \
+             scene: include_str!({:?}), shape: {name}::SHAPE }},\n",
+            mesh.with_file_name("scene.toml")
+        );
     }
     code += "];\n";
     fs::write(Path::new(&env::var("OUT_DIR")?).join("scenes.rs"), code)?;

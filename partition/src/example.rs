@@ -1,8 +1,8 @@
 //! The built-in scenes.
 //!
-//! Each has a folder `example/NAME` with its mesh (`mesh.rs`), its `scene.toml`, its page of the gallery
-//! with the numbers that the tests look for (`README.md`), and that page's picture. `build.rs` lists the
-//! folders.
+//! Each has a folder `example/NAME` with its `scene.toml`, its page of the gallery with the numbers that the
+//! tests look for (`README.md`), that page's picture, and `mesh.rs`: `SHAPE` is what its mesh is made from,
+//! `ABOUT` and `SUBDOMAINS` are as in [`Example`]. `build.rs` lists the folders.
 
 mod pattern;
 mod squares;

@@ -3,17 +3,13 @@
 //! The plate is turned so that the crack lies along x. Of the far load σ at the angle ψ to the crack
 //! the crack transmits the pressure σ sin²ψ and none of the shear σ sinψ cosψ.
 
+use super::Shape;
 use super::pattern::Pattern;
 use super::squares::Square;
-use super::{Example, Shape};
 
-pub(super) const EXAMPLE: Example = Example {
-    name: "crack",
-    about: "a closed inclined crack in a wide plate, exact answer known",
-    subdomains: 6,
-    scene: include_str!("scene.toml"),
-    shape: Shape::Squares(squares),
-};
+pub(super) const ABOUT: &str = "a closed inclined crack in a wide plate, exact answer known";
+pub(super) const SUBDOMAINS: usize = 6;
+pub(super) const SHAPE: Shape = Shape::Squares(squares);
 
 /// Half the side of the plate (m); half the length of the crack is 1 m.
 const HALF: f64 = 20.0;

@@ -4,17 +4,13 @@
 //! from the left and 7-8 from the right, whose tips 6 and 7 both sides share. The horizontal line
 //! of the mesh at mid-height follows 5-6-7-8, and cells are half as large on both sides of it.
 
+use super::Shape;
 use super::pattern::Pattern;
 use super::squares::{Square, quadrilateral};
-use super::{Example, Shape};
 
-pub(super) const EXAMPLE: Example = Example {
-    name: "granite",
-    about: "a loaded granite block with two edge cracks, the paper's problem",
-    subdomains: 8,
-    scene: include_str!("scene.toml"),
-    shape: Shape::Squares(squares),
-};
+pub(super) const ABOUT: &str = "a loaded granite block with two edge cracks, the paper's problem";
+pub(super) const SUBDOMAINS: usize = 8;
+pub(super) const SHAPE: Shape = Shape::Squares(squares);
 
 /// Side of the block (m).
 const SIDE: f64 = 10.0;

@@ -7,17 +7,13 @@
 
 use std::f64::consts::PI;
 
+use super::Shape;
 use super::pattern::Pattern;
 use super::squares::Square;
-use super::{Example, Shape};
 
-pub(super) const EXAMPLE: Example = Example {
-    name: "hertz",
-    about: "line contact of two cylinders, graded mesh, exact answer known",
-    subdomains: 4,
-    scene: include_str!("scene.toml"),
-    shape: Shape::Squares(squares),
-};
+pub(super) const ABOUT: &str = "line contact of two cylinders, graded mesh, exact answer known";
+pub(super) const SUBDOMAINS: usize = 4;
+pub(super) const SHAPE: Shape = Shape::Squares(squares);
 
 /// Side of the square (m).
 const SIDE: f64 = 2.0;

@@ -5,17 +5,14 @@
 //! Under 1 MPa from the right and from above the pressure is 1 MPa on every contact, and nothing
 //! jumps: u = −p (1+ν)(1−2ν)/E · (x+5, y+5).
 
+use super::Shape;
 use super::pattern::Pattern;
 use super::squares::{Square, quadrilateral};
-use super::{Example, Shape};
 
-pub(super) const EXAMPLE: Example = Example {
-    name: "junction",
-    about: "four blocks and three contacts that meet in one point, exact answer known",
-    subdomains: 4,
-    scene: include_str!("scene.toml"),
-    shape: Shape::Squares(squares),
-};
+pub(super) const ABOUT: &str =
+    "four blocks and three contacts that meet in one point, exact answer known";
+pub(super) const SUBDOMAINS: usize = 4;
+pub(super) const SHAPE: Shape = Shape::Squares(squares);
 
 /// Half of the square's side (m).
 const HALF: f64 = 5.0;

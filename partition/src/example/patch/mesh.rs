@@ -3,17 +3,14 @@
 //! Under the same pressure p from above and from the right the stress is −p I in the plane
 //! whatever the inclination, and u = −p (1+ν)(1−2ν)/E · (x, y).
 
+use super::Shape;
 use super::pattern::Pattern;
 use super::squares::{Square, quadrilateral};
-use super::{Example, Shape};
 
-pub(super) const EXAMPLE: Example = Example {
-    name: "patch",
-    about: "two blocks in uniform compression through an inclined contact, exact answer known",
-    subdomains: 4,
-    scene: include_str!("scene.toml"),
-    shape: Shape::Squares(squares),
-};
+pub(super) const ABOUT: &str =
+    "two blocks in uniform compression through an inclined contact, exact answer known";
+pub(super) const SUBDOMAINS: usize = 4;
+pub(super) const SHAPE: Shape = Shape::Squares(squares);
 
 fn squares() -> Vec<Square> {
     let (left, right) = ([0.0, 0.8], [2.0, 1.2]);

@@ -4,17 +4,13 @@
 
 use std::f64::consts::FRAC_PI_4;
 
+use super::Shape;
 use super::pattern::Pattern;
 use super::squares::Square;
-use super::{Example, Shape};
 
-pub(super) const EXAMPLE: Example = Example {
-    name: "plain",
-    about: "a quarter of a plate with a hole under tension, without contact",
-    subdomains: 4,
-    scene: include_str!("scene.toml"),
-    shape: Shape::Squares(squares),
-};
+pub(super) const ABOUT: &str = "a quarter of a plate with a hole under tension, without contact";
+pub(super) const SUBDOMAINS: usize = 4;
+pub(super) const SHAPE: Shape = Shape::Squares(squares);
 
 /// Radius of the hole and half the side of the plate (m).
 const RADIUS: f64 = 0.01;

@@ -6,17 +6,14 @@
 
 use std::f64::consts::FRAC_PI_4;
 
+use super::Shape;
 use super::pattern::Pattern;
 use super::squares::Square;
-use super::{Example, Shape};
 
-pub(super) const EXAMPLE: Example = Example {
-    name: "rollers",
-    about: "three rollers between two plates, curved contact of meshes that don't match",
-    subdomains: 8,
-    scene: include_str!("scene.toml"),
-    shape: Shape::Squares(squares),
-};
+pub(super) const ABOUT: &str =
+    "three rollers between two plates, curved contact of meshes that don't match";
+pub(super) const SUBDOMAINS: usize = 8;
+pub(super) const SHAPE: Shape = Shape::Squares(squares);
 
 /// Radius of the rollers (m).
 const RADIUS: f64 = 0.05;

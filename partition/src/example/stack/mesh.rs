@@ -2,17 +2,14 @@
 //!
 //! All loads are vertical, so the two upper blocks are free to slide without load along it.
 
+use super::Shape;
 use super::pattern::Pattern;
 use super::squares::{Square, quadrilateral};
-use super::{Example, Shape};
 
-pub(super) const EXAMPLE: Example = Example {
-    name: "stack",
-    about: "three blocks held by contact alone under gravity and an eccentric pressure",
-    subdomains: 6,
-    scene: include_str!("scene.toml"),
-    shape: Shape::Squares(squares),
-};
+pub(super) const ABOUT: &str =
+    "three blocks held by contact alone under gravity and an eccentric pressure";
+pub(super) const SUBDOMAINS: usize = 6;
+pub(super) const SHAPE: Shape = Shape::Squares(squares);
 
 /// Half of the blocks' widths, from below (m).
 const HALF_WIDTHS: [f64; 3] = [2.0, 1.5, 1.0];

@@ -2,17 +2,13 @@
 //!
 //! No two bricks share a node. A course of five bricks alternates with one of four between two halves.
 
+use super::Shape;
 use super::pattern::Pattern;
 use super::squares::{Square, quadrilateral};
-use super::{Example, Shape};
 
-pub(super) const EXAMPLE: Example = Example {
-    name: "wall",
-    about: "a wall of 33 bricks on ground that sank, every joint a contact",
-    subdomains: 33,
-    scene: include_str!("scene.toml"),
-    shape: Shape::Squares(squares),
-};
+pub(super) const ABOUT: &str = "a wall of 33 bricks on ground that sank, every joint a contact";
+pub(super) const SUBDOMAINS: usize = 33;
+pub(super) const SHAPE: Shape = Shape::Squares(squares);
 
 /// Length and height of a brick (m).
 const LENGTH: f64 = 0.25;
