@@ -47,14 +47,12 @@ pub(super) fn nodes(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>, 
     let mut nodes = BTreeSet::new();
     for name in names.iter() {
         let group = find(mesh, name, Members::Any, what)?;
-        for &member in &group.members {
-            if group.dim == mesh.dim {
-                nodes.extend(mesh.cells.nodes_of(member as usize));
-            } else if group.dim + 1 == mesh.dim {
-                nodes.extend(mesh.facets.nodes_of(member as usize));
-            } else {
-                nodes.insert(member);
-            }
+        for member in &group.members {
+            nodes.extend(match mesh.dim.checked_sub(group.dim) {
+                Some(0) => mesh.cells.nodes_of(*member as usize),
+                Some(1) => mesh.facets.nodes_of(*member as usize),
+                _ => std::slice::from_ref(member),
+            });
         }
     }
     Ok(nodes.into_iter().collect())
@@ -91,16 +89,14 @@ fn find<'a>(
     what: &str,
 ) -> Result<&'a Group, InputError> {
     let word = members.word();
-    let fitting: Vec<&str> = mesh
+    let fitting = mesh
         .groups
         .iter()
-        .filter(|(_, group)| members.fit(group, mesh))
-        .map(|(name, _)| name.as_str())
-        .collect();
-    let list = if fitting.is_empty() {
-        format!("the mesh has no group of {word}")
-    } else {
-        format!("groups of {word}: {}", fitting.join(", "))
+        .filter(|(_, group)| members.fit(group, mesh));
+    let fitting: Vec<&str> = fitting.map(|(name, _)| name.as_str()).collect();
+    let list = match fitting.is_empty() {
+        true => format!("the mesh has no group of {word}"),
+        false => format!("groups of {word}: {}", fitting.join(", ")),
     };
     match mesh.groups.get(name) {
         Some(group) if !members.fit(group, mesh) => Err(InputError::new(format!(
