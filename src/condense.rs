@@ -85,7 +85,7 @@ impl Condensation<'_> {
     ///
     /// # Errors
     /// A contact point that nothing can be replaced for.
-    fn replaced(&self, v: usize) -> Result<Vec<Replaced>, Failure> {
+    pub fn replaced(&self, v: usize) -> Result<Vec<Replaced>, Failure> {
         let Context { plan, groups, .. } = self.context;
         let Some((g, group)) = plan.group_of(v).and_then(|g| Some((g, groups.get(&g)?))) else {
             return Ok(Vec::new());

@@ -64,6 +64,7 @@ pub mod contact;
 pub mod context;
 pub mod error;
 pub mod fem;
+pub mod frozen;
 pub mod interface;
 pub mod output;
 pub mod plan;

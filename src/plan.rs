@@ -27,6 +27,8 @@ pub struct Plan {
     pub clusters: Vec<ClusterPlan>,
     /// The clusters in contact.
     pub contact: Vec<usize>,
+    /// What becomes of contact on the way.
+    pub merging: Merging,
 }
 
 impl Plan {
@@ -43,21 +45,47 @@ impl Plan {
             node_owners: Vec::new(),
             clusters: Vec::new(),
             contact: Vec::new(),
+            merging,
         };
-        plan.hand_out(catalog, ranks, merging);
+        plan.node_owners = plan.hand_out(catalog, ranks);
+        plan.form_clusters(merging);
         plan
     }
 
-    fn hand_out(&mut self, catalog: &Catalog, ranks: usize, merging: Merging) {
-        let clusters = cluster_nodes(&self.tree, merging);
+    /// The merging that takes least for this scene, where newton may choose.
+    pub fn cheapest(catalog: &Catalog) -> Merging {
+        if std::env::var_os("FROZEN").is_some() {
+            return Merging::Frozen;
+        } // TEMPORARY
+        match cost::freezing_pays(&Tree::new(catalog), catalog.dim) {
+            true => Merging::Frozen,
+            false => Merging::All,
+        }
+    }
+
+    /// The owner of every node of the hierarchy.
+    fn hand_out(&self, catalog: &Catalog, ranks: usize) -> Vec<usize> {
+        let all = 0..self.tree.nodes.len();
+        let top = match self.merging {
+            Merging::Frozen => all
+                .filter(|&v| self.tree.nodes[v].parent.is_none())
+                .collect(),
+            _ => cluster_nodes(&self.tree, self.merging),
+        };
         let mut costs = vec![0.0; self.tree.nodes.len()];
-        for &cluster in &clusters {
-            for v in self.tree.subtree(cluster) {
-                costs[v] = cost::weight(&self.tree, v, catalog.dim);
+        for &v in &top {
+            for v in self.tree.subtree(v) {
+                costs[v] = cost::weight(&self.tree, v, catalog.dim, self.merging);
             }
         }
-        self.node_owners = assign(&self.tree, &clusters, &costs, ranks);
-        for node in clusters {
+        assign(&self.tree, &top, &costs, ranks)
+    }
+
+    /// Forms the clusters, whatever the owners were chosen for.
+    pub fn form_clusters(&mut self, merging: Merging) {
+        self.merging = merging;
+        self.clusters.clear();
+        for node in cluster_nodes(&self.tree, merging) {
             let under = self.tree.subtree(node).into_iter();
             self.clusters.push(ClusterPlan {
                 node,
@@ -97,7 +125,8 @@ impl Plan {
     /// points lie between several parts of the scene.
     pub fn leaves_its_nodes(&self, v: usize) -> bool {
         let node = &self.tree.nodes[v];
-        node.parent.is_none() && node.children.len() > 1
+        let is_root = node.parent.is_none() && node.children.len() > 1;
+        is_root && self.merging != Merging::Frozen
     }
 
     /// The nodes of Γ that the merge at node v eliminates.

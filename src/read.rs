@@ -11,6 +11,7 @@ use contact_dd_partition::problem::copies::NodeCopies;
 use contact_dd_partition::problem::read::ProblemFile;
 
 use crate::comm::Comm;
+use crate::contact::normal_jump::NormalJumpOf;
 use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::contact_group::{ContactGroup, ContactNode};
@@ -88,6 +89,21 @@ pub fn collect_groups(
     };
     let groups: Result<_, InputError> = described.into_iter().map(group).collect();
     comm.agree(groups.map_err(|error| Failure::from(file.refuse(error))))
+}
+
+/// Whether some contact points bound combinations of the others' normal jumps. Collective.
+pub fn depend_on_each_other(
+    comm: &Comm,
+    plan: &Plan,
+    groups: &BTreeMap<usize, ContactGroup>,
+) -> bool {
+    let depends = groups.iter().any(|(&g, group)| {
+        let node = &plan.tree.nodes[plan.groups[g].node];
+        let jumps = group.normal_jumps(&node.eliminated);
+        let is_other = |of: &NormalJumpOf| matches!(of, NormalJumpOf::Combination(_));
+        jumps.is_err() || jumps.is_ok_and(|jumps| jumps.of.iter().any(is_other))
+    });
+    comm.decide(comm.collect(&depends).contains(&true))
 }
 
 /// The subdomains of `rank`, those that follow one another in the file read at once.

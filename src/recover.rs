@@ -110,7 +110,19 @@ pub fn recover(
             boundaries.insert(plan.clusters[c].node, x);
         },
     );
-    let groups = conditions(factors, &step.pairs).into_iter();
+    let conditions = conditions(factors, &step.pairs);
+    substitute_back(factors, step, boundaries, conditions)
+}
+
+/// The solution for the unknowns on the `boundaries` of all clusters and the force of every point, and whether it
+/// is closed. Collective.
+pub fn substitute_back(
+    factors: Factors<'_>,
+    step: &StepProblem<'_>,
+    boundaries: BTreeMap<usize, Vec<f64>>,
+    conditions: BTreeMap<usize, Vec<(f64, bool)>>,
+) -> DiscreteSolution {
+    let groups = conditions.into_iter();
     let of_group = |(g, conditions): (usize, Vec<(f64, bool)>)| {
         let (forces, closed) = conditions.into_iter().unzip();
         let gaps = Vec::new();

@@ -120,7 +120,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         interface_residual: (totals.steps.iter())
             .fold(0.0, |worst: f64, step| worst.max(step.outcome.residual)),
         dofs: catalog.dofs(),
-        interface_dofs: catalog.dim * plan.tree.interface_nodes,
+        interface_dofs: catalog.dim * catalog.interface_nodes,
         contact_conditions: catalog.conditions(),
         active_contacts: last.map_or(0, |step| step.active),
         subdomains: catalog.subdomains.len(),
@@ -169,7 +169,7 @@ fn skipped(comm: &Comm, totals: &Totals<'_>) -> Vec<String> {
     if totals.plan.groups.is_empty() {
         skipped.push("sweeps: no contact, the interface problem is linear".into());
     }
-    if totals.plan.tree.interface_nodes == 0 {
+    if totals.catalog.interface_nodes == 0 {
         skipped.push("interface solve: no subdomain shares a node with another".into());
     }
     let idle = totals.ranks.iter().filter(|r| r.subdomains == 0).count();

@@ -5,28 +5,34 @@
 mod restart;
 mod sweeping;
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use contact_dd_partition::problem::read::ProblemFile;
 use faer::Par;
 
 use self::restart::{finished_steps, keep};
-use self::sweeping::sweep;
+use self::sweeping::{sweep, sweep_frozen};
 use crate::comm::{Comm, phase};
 use crate::condense::Condensation;
 use crate::condense::interface::assemble_interface;
+use crate::condense::limits::limits_of_groups;
 use crate::condense::tree::condense_clusters;
 use crate::context::Context;
 use crate::error::Failure;
+use crate::frozen::fronts::FrozenFronts;
 use crate::output::memory::afford;
 use crate::output::ranks::PhaseSeconds;
 use crate::output::report::ReportFile;
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
-use crate::read::{check_copies, collect_groups, read_blocks};
+use crate::plan::cluster::Merging;
+use crate::read::{check_copies, collect_groups, depend_on_each_other, read_blocks};
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
+use crate::recover::{recover, substitute_back};
 use crate::report::log::RunLog;
 use crate::report::totals::{StepTotals, Totals};
 use crate::report::write::write_solution;
@@ -70,12 +76,18 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
 
     // Every rank reads its own subdomains and pairs.
     let catalog = file.catalog();
-    let plan = Plan::new(catalog, comm.size(), settings.merging());
+    let merging = settings
+        .merging()
+        .unwrap_or_else(|| Plan::cheapest(catalog));
+    let mut plan = Plan::new(catalog, comm.size(), merging);
     let costs = plan.cost_estimates(catalog, comm.size());
     let available = afford(comm, &costs)?;
     let blocks = comm.agree(read_blocks(comm.rank(), &file, &plan))?;
     check_copies(comm, &file, &plan, &blocks)?;
     let groups = collect_groups(comm, &file, &plan, &blocks)?;
+    if merging == Merging::Frozen && depend_on_each_other(comm, &plan, &groups) {
+        plan.form_clusters(Merging::All);
+    }
     log.problem(catalog, &plan);
 
     let context = Context {
@@ -113,7 +125,17 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     // The root assembles S_0, (15), and the bilateral operator.
     log.phase("assembling the interface problem", None);
     let lap = Instant::now();
-    let interface = assemble_interface(&context, &condensed)?;
+    let frozen = match plan.merging {
+        Merging::Frozen => Some(RefCell::new(FrozenFronts::new(
+            &condensation,
+            &condensed.linear,
+        )?)),
+        _ => None,
+    };
+    let interface = match frozen {
+        Some(_) => None,
+        None => assemble_interface(&context, &condensed)?,
+    };
     seconds.interface = lap.elapsed().as_secs_f64();
 
     // Load step by load step: each starts from the state that the one before it left.
@@ -133,14 +155,30 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         };
         let problem = loading.problem(loads(k), state);
         let mut problem = problem.map_err(|failure| context.in_step(failure, k))?;
+        let limits = match &frozen {
+            Some(_) => limits_of_groups(&context, &problem.loads)?,
+            None => BTreeMap::new(),
+        };
         seconds.interface += lap.elapsed().as_secs_f64();
 
         // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the step before.
         log.phase("sweeping", None);
         let lap = Instant::now();
         log.step(catalog, k);
-        let (on_gamma, pairs) = (problem.interface.as_ref(), &mut problem.pairs);
-        let mut outcome = sweep(&context, settings, &log, on_gamma, pairs, start)?;
+        let mut found = None;
+        let mut outcome = match &frozen {
+            Some(fronts) => {
+                let (fronts, loads) = (&mut fronts.borrow_mut(), &problem.condensed);
+                let contact = sweep_frozen(&context, settings, &log, fronts, loads, &limits)?;
+                let outcome = contact.outcome.clone();
+                found = Some(contact);
+                comm.is_root().then_some(outcome)
+            }
+            None => {
+                let (on_gamma, pairs) = (problem.interface.as_ref(), &mut problem.pairs);
+                sweep(&context, settings, &log, on_gamma, pairs, start)?
+            }
+        };
         seconds.sweeps += lap.elapsed().as_secs_f64();
 
         // Back-substitution, and the check of the full discrete problem.
@@ -152,10 +190,21 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
             &problem,
             analysis,
             interface.as_ref(),
+            frozen.as_ref().map(|fronts| (fronts, &limits)),
             outcome.as_ref(),
         );
-        let u = outcome.as_ref().map(|outcome| &outcome.u[..]);
-        let solution = Solution::new(&fixed, analysis, u, !settings.no_stress);
+        let discrete = match found {
+            Some(contact) => {
+                let (boundaries, conditions) = (contact.boundaries, contact.conditions);
+                substitute_back(fixed.factors(), &problem, boundaries, conditions)
+            }
+            None => {
+                let u = outcome.as_ref().map(|outcome| &outcome.u[..]);
+                let numbers = interface.as_ref().map(|(n, _)| &n.interface_dofs[..]);
+                recover(fixed.factors(), &problem, u.zip(numbers))
+            }
+        };
+        let solution = Solution::new(&fixed, analysis, discrete, !settings.no_stress);
         if let Some(outcome) = &mut outcome {
             outcome.accept(&solution.certificate);
         }
@@ -183,13 +232,19 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     let converged = steps
         .iter()
         .all(|step| step.outcome.status == SweepStatus::Converged);
-    let finished = match (&interface, outputs) {
-        (Some((_, interface)), Some(outputs)) => {
+    let smallest_pivot = match (&interface, &frozen) {
+        (Some((_, interface)), _) => interface.smallest_pivot(),
+        (None, fronts) => fronts
+            .as_ref()
+            .map_or(1.0, |fronts| fronts.borrow().smallest_pivot),
+    };
+    let finished = match outputs {
+        Some(outputs) => {
             let totals = Totals {
                 catalog,
                 plan: &plan,
                 steps,
-                smallest_pivot: interface.smallest_pivot(),
+                smallest_pivot,
                 ranks,
                 warnings: settings
                     .unused()

@@ -12,8 +12,6 @@ pub mod tree;
 pub mod vtkhdf;
 pub mod write;
 
-use std::collections::HashMap;
-
 use crate::contact_point::ContactPoint;
 use crate::element::Elements;
 use crate::element::geometry::dot;
@@ -77,13 +75,6 @@ pub struct StepLoads {
 }
 
 impl Subdomain {
-    /// The supports of a node.
-    fn supports_of(&self, node: u32) -> impl Iterator<Item = &Support> {
-        let first = self.supports.partition_point(|s| s.node < node);
-        let from = self.supports[first..].iter();
-        from.take_while(move |s| s.node == node)
-    }
-
     /// Its supports with the values that they have in a load step.
     pub fn supports_in(&self, step: usize) -> impl Iterator<Item = Support> + '_ {
         let loads = self.steps.get(step);
@@ -266,28 +257,4 @@ pub struct Problem {
     pub catalog: Catalog,
     /// Subdomains.
     pub subdomains: Vec<Subdomain>,
-}
-
-impl Problem {
-    /// Finds what the catalog says of the nodes of its contact points.
-    pub(crate) fn describe_points(&mut self) {
-        let numbers: Vec<HashMap<u32, u32>> = (self.subdomains.iter())
-            .map(|s| {
-                s.interface
-                    .iter()
-                    .map(|on| (on.node, on.interface))
-                    .collect()
-            })
-            .collect();
-        let of_point = |point: &ContactPoint<SubdomainNode>| {
-            let nodes = point.entries.iter().map(|&(at, _)| {
-                let subdomain = &self.subdomains[at.subdomain as usize];
-                let supports = subdomain.supports_of(at.node).map(|s| s.direction);
-                let interface = numbers[at.subdomain as usize].get(&at.node).copied();
-                PointNode::new(interface, point.normal(), supports)
-            });
-            nodes.collect()
-        };
-        self.catalog.point_nodes = self.catalog.points.iter().map(of_point).collect();
-    }
 }

@@ -19,11 +19,7 @@ pub fn limits_of_clusters(
     loads: &Loads,
 ) -> Result<BTreeMap<usize, Limits>, Failure> {
     let Context { comm, plan, .. } = context;
-    let made = context.groups.iter().map(|(&g, group)| {
-        let limits = of_group(context, g, group, &loads.groups[&g])?;
-        Ok((g, limits))
-    });
-    let made: BTreeMap<usize, Limits> = comm.agree(made.collect())?;
+    let made = limits_of_groups(context, loads)?;
     let groups = plan.groups_by_cluster();
     let mut arrived: BTreeMap<usize, Limits> = BTreeMap::new();
     comm.route(
@@ -42,6 +38,21 @@ pub fn limits_of_clusters(
             (p, Limits::join(&limits))
         })
         .collect())
+}
+
+/// The bounds on the normal jumps of every contact group of this rank in a load step, by its number. Collective.
+///
+/// # Errors
+/// Supports that make two sides penetrate.
+pub fn limits_of_groups(
+    context: &Context<'_>,
+    loads: &Loads,
+) -> Result<BTreeMap<usize, Limits>, Failure> {
+    let made = context.groups.iter().map(|(&g, group)| {
+        let limits = of_group(context, g, group, &loads.groups[&g])?;
+        Ok((g, limits))
+    });
+    context.comm.agree(made.collect())
 }
 
 /// The bounds on the normal jumps of group g.

@@ -78,7 +78,7 @@ impl Factors<'_> {
                 (condensed.merges.get(&v), &own, loads.get(&v))
             {
                 let children = plan.tree.nodes[v].children.iter().copied();
-                of_children.extend(children.zip(merge.recover(load, x)));
+                of_children.extend(children.zip(merge.recover(load, x).0));
             }
             let mut arrived = Vec::new();
             self.exchange(

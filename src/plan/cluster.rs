@@ -12,6 +12,8 @@ pub enum Merging {
     All,
     /// Only what has no contact is merged: S_0 and S_CON are those of the paper, (15).
     Linear,
+    /// What has no contact is merged once, the rest for every active set anew.
+    Frozen,
 }
 
 /// The blocks under one node of the hierarchy, condensed onto what other clusters share and onto
@@ -36,12 +38,13 @@ impl ClusterPlan {
 /// The nodes of `tree` that are clusters. Its roots are left to the interface problem, unless contact points
 /// belong to them; what is under a node with contact points is one cluster with it.
 pub(super) fn cluster_nodes(tree: &Tree, merging: Merging) -> Vec<usize> {
-    let most = match merging {
-        Merging::All => MAX_CONDITIONS,
-        Merging::Linear => 0,
-    };
     tree.highest(|v| {
         let node = &tree.nodes[v];
-        !node.points.is_empty() || node.parent.is_some() && node.conditions <= most
+        let below_root = |most| node.parent.is_some() && node.conditions <= most;
+        match merging {
+            Merging::All => !node.points.is_empty() || below_root(MAX_CONDITIONS),
+            Merging::Linear => !node.points.is_empty() || below_root(0),
+            Merging::Frozen => node.conditions == 0,
+        }
     })
 }

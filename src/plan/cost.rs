@@ -3,10 +3,12 @@
 //! The constants of memory are measured: on 45 peaks of 1 and 2 ranks, from 20 thousand to 2 million dofs, in 8
 //! to 1000 subdomains, with up to 5000 contact conditions, the estimate is within a quarter of each.
 
+use contact_dd_partition::flops::{Front, condensation};
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::tree::Tree;
 
 use super::Plan;
+use super::cluster::Merging;
 
 /// Cost of an unknown of a block beside its elimination, in flops.
 const PER_UNKNOWN: f64 = 3e4;
@@ -15,6 +17,9 @@ const PER_UNKNOWN: f64 = 3e4;
 const PER_ENTRY_OF_BLOCK: f64 = 900.0;
 /// Cost of an entry of a front beside its elimination, in flops.
 const PER_ENTRY_OF_FRONT: f64 = 40.0;
+
+/// Active sets that it takes, about.
+const ACTIVE_SETS: f64 = 8.0;
 
 /// What a program needs that does nothing yet (bytes).
 const AT_REST: f64 = 2.8e7;
@@ -30,14 +35,44 @@ const PER_ENTRY: f64 = 16.0;
 const PER_PAIR_OF_CONDITIONS: f64 = 33.0;
 
 /// Estimated time of node v of the tree, in flops: its arithmetic, and what goes with it.
-pub(super) fn weight(tree: &Tree, v: usize, dim: usize) -> f64 {
-    let front = tree.front(v, dim);
+pub(super) fn weight(tree: &Tree, v: usize, dim: usize, merging: Merging) -> f64 {
+    let front = front(tree, v, dim, merging);
     let (eliminated, kept) = (front.eliminated as f64, front.kept as f64);
     let beside = match v < tree.subdomains {
         true => PER_UNKNOWN * eliminated + PER_ENTRY_OF_BLOCK * kept * kept,
         false => PER_ENTRY_OF_FRONT * (eliminated + kept).powi(2),
     };
-    beside + tree.flops(v, dim)
+    let flops = match v < tree.subdomains {
+        true => condensation(eliminated, kept),
+        false => front.flops(),
+    };
+    beside + flops
+}
+
+/// The front of node v, which keeps all normal jumps under it unless active sets are frozen.
+fn front(tree: &Tree, v: usize, dim: usize, merging: Merging) -> Front {
+    let (front, node) = (tree.front(v, dim), &tree.nodes[v]);
+    match merging {
+        Merging::Frozen => Front {
+            eliminated: front.eliminated,
+            kept: front.kept - node.conditions + node.points.len(),
+        },
+        _ => front,
+    }
+}
+
+/// Whether it takes fewer flops to eliminate what is above contacts for one active set after the other than to keep
+/// all normal jumps and solve for them at once.
+pub(super) fn freezing_pays(tree: &Tree, dim: usize) -> bool {
+    let inner = tree.subdomains..tree.nodes.len();
+    let above = inner.filter(|&v| tree.nodes[v].conditions > 0);
+    let flops = |merging| -> f64 {
+        let fronts = above.clone().map(|v| front(tree, v, dim, merging).flops());
+        fronts.sum()
+    };
+    let roots = tree.nodes.iter().filter(|node| node.parent.is_none());
+    let at_once: f64 = roots.map(|root| (root.conditions as f64).powi(3)).sum();
+    ACTIVE_SETS * flops(Merging::Frozen) < flops(Merging::All) + at_once
 }
 
 /// What a rank needs.
@@ -74,9 +109,12 @@ impl Plan {
         let mut estimates = vec![CostEstimate::default(); ranks];
         let mut largest = vec![0.0f64; ranks];
         for (v, &owner) in self.node_owners.iter().enumerate() {
-            let front = self.tree.front(v, catalog.dim);
+            let front = front(&self.tree, v, catalog.dim, self.merging);
             let estimate = &mut estimates[owner];
-            estimate.flops += self.tree.flops(v, catalog.dim);
+            estimate.flops += match v < self.blocks() {
+                true => condensation(front.eliminated as f64, front.kept as f64),
+                false => front.flops(),
+            };
             if let Some(subdomain) = catalog.subdomains.get(v) {
                 let (n, kept) = (front.eliminated.max(1) as f64, front.kept as f64);
                 let [least, more] = PER_NODE_OF_CELL;
@@ -90,7 +128,7 @@ impl Plan {
         for (estimate, largest) in estimates.iter_mut().zip(largest) {
             estimate.bytes += AT_REST + PER_ENTRY * largest * largest;
         }
-        if let Some(root) = estimates.first_mut() {
+        if let (Some(root), true) = (estimates.first_mut(), self.merging != Merging::Frozen) {
             root.bytes += PER_PAIR_OF_CONDITIONS * (catalog.conditions() as f64).powi(2);
         }
         estimates

@@ -1,5 +1,6 @@
 //! The linear problem of the whole scene with the active set fixed as it is, open or closed.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
@@ -7,8 +8,10 @@ use serde::{Deserialize, Serialize};
 use crate::bytes::Reals;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::substitute::Factors;
+use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::fem::balance::Balance;
+use crate::frozen::fronts::FrozenFronts;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
@@ -36,15 +39,18 @@ pub struct FixedActiveSet<'a> {
     pub free: Motions<'a>,
     /// What the root holds besides.
     pub root: Option<FixedActiveSetRoot<'a>>,
+    /// The fronts above all contact, where they are eliminated for every active set anew.
+    pub frozen: Option<Frozen<'a>>,
 }
+
+/// The fronts of the active set that was found last, and the limits of every contact group of this rank.
+pub type Frozen<'a> = (&'a RefCell<FrozenFronts>, &'a BTreeMap<usize, Limits>);
 
 /// What the root holds besides.
 #[derive(Clone, Copy)]
 pub struct FixedActiveSetRoot<'a> {
-    /// Numbering of Γ.
-    pub numbering: &'a Numbering,
-    /// The interface problem.
-    pub problem: &'a InterfaceProblem<'a>,
+    /// Numbering of Γ and the interface problem, where there is one.
+    pub interface: Option<(&'a Numbering, &'a InterfaceProblem<'a>)>,
     /// Whether the active sets are right.
     pub converged: bool,
 }
@@ -53,9 +59,10 @@ pub struct FixedActiveSetRoot<'a> {
 type FixedLimits = (Vec<bool>, Vec<f64>);
 
 impl FixedActiveSetRoot<'_> {
-    /// Whether the pairs' normal jumps can be solved for at once.
+    /// Whether loads can be solved for: without an interface problem, or where the pairs' normal jumps can be
+    /// solved for at once.
     pub fn can_solve(&self) -> bool {
-        CoupledContact::new(self.problem).is_some()
+        (self.interface).is_none_or(|(_, problem)| CoupledContact::new(problem).is_some())
     }
 }
 
@@ -76,9 +83,12 @@ impl<'a> FixedActiveSet<'a> {
         step: &'a StepProblem<'a>,
         analysis: &'a RigidBodyAnalysis,
         interface: Option<&'a (Numbering, Interface)>,
+        frozen: Option<Frozen<'a>>,
         outcome: Option<&SweepOutcome>,
     ) -> Self {
-        let on_root = interface.zip(step.interface.as_ref()).zip(outcome);
+        let interface = interface.zip(step.interface.as_ref());
+        let interface = interface.map(|((numbering, _), problem)| (numbering, problem));
+        let on_root = outcome.filter(|_| context.comm.is_root());
         Self {
             context,
             condensed,
@@ -88,11 +98,11 @@ impl<'a> FixedActiveSet<'a> {
                 list: &analysis.motions.free,
                 frames: &analysis.frames,
             },
-            root: on_root.map(|(((numbering, _), problem), outcome)| FixedActiveSetRoot {
-                numbering,
-                problem,
+            root: on_root.map(|outcome| FixedActiveSetRoot {
+                interface,
                 converged: outcome.status == SweepStatus::Converged,
             }),
+            frozen,
         }
     }
 
@@ -130,12 +140,49 @@ impl<'a> FixedActiveSet<'a> {
             let missing = missing.get(g).unwrap_or(&none).iter().copied();
             (*g, of_group.closed.iter().copied().zip(missing).collect())
         });
+        if let Some(frozen) = self.frozen {
+            return self.solve_frozen(frozen, loads, conditions.collect());
+        }
         let limits = self.limits(factors.collect_conditions(conditions.collect()));
         let condensed = factors.condense(loads);
         let (forces, boundaries) = self.solve_interface(&limits, &condensed);
         Change {
             forces: factors.spread_conditions(forces),
             blocks: factors.recover(&condensed, boundaries),
+        }
+    }
+
+    /// The same by the fronts of a frozen active set. Collective.
+    fn solve_frozen(
+        &self,
+        (fronts, limits): Frozen<'_>,
+        loads: BTreeMap<usize, Vec<f64>>,
+        conditions: BTreeMap<usize, Vec<(bool, f64)>>,
+    ) -> Change {
+        let factors = self.factors();
+        let (mut open, mut missing) = (BTreeMap::new(), BTreeMap::new());
+        for (g, of_group) in conditions {
+            let (closed, lacking): (Vec<bool>, Vec<f64>) = of_group.into_iter().unzip();
+            let (of_group, lacking) = limits[&g].fixed(&closed, &lacking);
+            open.insert(g, of_group);
+            missing.insert(g, lacking);
+        }
+        let mut fronts = fronts.borrow_mut();
+        if fronts.freeze(&self.context, &open).is_err() {
+            // The contacts that are left hold nothing: no change is better than any.
+            return Change::default();
+        }
+        let condensed = factors.condense(loads);
+        let on_clusters = condensed
+            .iter()
+            .map(|(&v, load)| (v, load.boundary().to_vec()));
+        let solution = fronts.solve(&self.context, on_clusters.collect(), &missing);
+        let forces = solution.forces.iter();
+        Change {
+            forces: forces
+                .map(|(&g, of_limits)| (g, limits[&g].forces(of_limits)))
+                .collect(),
+            blocks: factors.recover(&condensed, solution.boundaries),
         }
     }
 
@@ -217,11 +264,14 @@ type ClusterAnswer = (Reals, Reals);
 impl FixedActiveSetRoot<'_> {
     /// What each cluster is answered.
     fn solve(&self, plan: &Plan, gathered: Vec<ClusterQuestion>) -> Vec<ClusterAnswer> {
-        let mut r = vec![0.0; self.problem.interface.len];
+        let Some((numbering, problem)) = self.interface else {
+            return Vec::new();
+        };
+        let mut r = vec![0.0; problem.interface.len];
         let mut loads = Vec::new();
         let mut missing = Vec::new();
         let mut open: Vec<Vec<bool>> = Vec::new();
-        for (question, interface_dofs) in gathered.into_iter().zip(&self.numbering.interface_dofs) {
+        for (question, interface_dofs) in gathered.into_iter().zip(&numbering.interface_dofs) {
             let mut on_jumps = question.load;
             let on_traces = on_jumps.split_off(on_jumps.len() - interface_dofs.len());
             if let Some((of_cluster, lacking)) = question.limits {
@@ -233,8 +283,8 @@ impl FixedActiveSetRoot<'_> {
                 r[i as usize] += part;
             }
         }
-        let Some(coupled) = CoupledContact::new(self.problem) else {
-            return vec![ClusterAnswer::default(); self.numbering.interface_dofs.len()];
+        let Some(coupled) = CoupledContact::new(problem) else {
+            return vec![ClusterAnswer::default(); numbering.interface_dofs.len()];
         };
         let step = coupled.solve_fixed(&r, &loads, &missing, &open);
         let mut pairs = step.forces.into_iter().zip(step.jumps);
@@ -244,12 +294,10 @@ impl FixedActiveSetRoot<'_> {
                 None => None,
             };
             let (forces, mut x) = of_pair.unwrap_or_default();
-            let interface_dofs = self.numbering.interface_dofs[c].iter();
+            let interface_dofs = numbering.interface_dofs[c].iter();
             x.extend(interface_dofs.map(|&i| step.u[i as usize]));
             (Reals(forces), Reals(x))
         };
-        (0..self.numbering.interface_dofs.len())
-            .map(answer)
-            .collect()
+        (0..numbering.interface_dofs.len()).map(answer).collect()
     }
 }

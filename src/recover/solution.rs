@@ -11,7 +11,7 @@ use crate::recover::minimum_norm::{MinimumNorm, remove_free_modes, take_minimum_
 use crate::recover::reactions::reactions;
 use crate::recover::refine::refine;
 use crate::recover::stresses::{Stress, error_estimate, stresses};
-use crate::recover::{DiscreteSolution, displacements, recover};
+use crate::recover::{DiscreteSolution, displacements};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::closing_motion::with_closing_motions;
 
@@ -37,12 +37,12 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// Substitutes U back, of which the root has `u`, refines what comes of it against the full discrete problem, and recovers stresses if they are asked for.
-    /// Collective.
+    /// Refines a `discrete` solution against the full discrete problem, and recovers stresses if they are asked
+    /// for. Collective.
     pub fn new(
         fixed: &FixedActiveSet<'_>,
         analysis: &RigidBodyAnalysis,
-        u: Option<&[f64]>,
+        mut discrete: DiscreteSolution,
         with_stress: bool,
     ) -> Self {
         let (comm, plan, catalog) = (
@@ -50,8 +50,6 @@ impl Solution {
             fixed.context.plan,
             fixed.context.catalog,
         );
-        let numbers = fixed.root.map(|root| &root.numbering.interface_dofs[..]);
-        let mut discrete = recover(fixed.factors(), fixed.step, u.zip(numbers));
         remove_free_modes(fixed, &mut discrete);
         let mut certificate = refine(fixed, &mut discrete);
         let minimum_norm = take_minimum_norm(fixed, analysis, &mut discrete, &mut certificate);

@@ -8,7 +8,6 @@ use contact_dd_partition::problem::Catalog;
 
 use crate::comm::{self, Comm};
 use crate::error::Failure;
-use crate::interface::operator::Interface;
 use crate::output::bar::Bar;
 use crate::output::event::{self, Event};
 use crate::output::terminal::{self, Summary};
@@ -81,7 +80,7 @@ impl<'a> RunLog<'a> {
             problem: self.settings.problem.display().to_string(),
             title: &catalog.title,
             dofs: catalog.dofs(),
-            interface_dofs: catalog.dim * plan.tree.interface_nodes,
+            interface_dofs: catalog.dim * catalog.interface_nodes,
             subdomains: catalog.subdomains.len(),
             contact_pairs: plan.groups.len(),
             contact_conditions: catalog.conditions(),
@@ -135,17 +134,14 @@ impl<'a> RunLog<'a> {
     }
 
     /// The head of the table of sweeps, if there are going to be any.
-    pub fn sweeps(&self, interface: &Interface) {
-        if !interface.pair_interface_dofs.is_empty() {
+    pub fn sweeps(&self, in_contact: bool) {
+        if in_contact {
             self.say(|| terminal::SWEEP_HEADER.into());
         }
     }
 
     /// One sweep.
-    pub fn sweep(&self, interface: &Interface, record: &SweepRecord) {
-        if interface.pair_interface_dofs.is_empty() {
-            return;
-        }
+    pub fn sweep(&self, record: &SweepRecord) {
         self.say(|| terminal::sweep(record));
         self.log(&Event::Sweep(record));
     }

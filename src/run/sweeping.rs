@@ -1,18 +1,22 @@
-//! The sweeps of a load step: the root solves for U, the other ranks serve S_CON.
+//! The sweeps of a load step.
 
 use std::collections::BTreeMap;
 
+use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
 use crate::context::Context;
 use crate::error::Failure;
+use crate::frozen::active_set::{self, FrozenContact};
+use crate::frozen::fronts::FrozenFronts;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::SCon;
 use crate::report::log::RunLog;
+use crate::schur::local::CondensedLoad;
 use crate::settings::Settings;
 use crate::sweep::{Start, SweepOutcome, SweepRecord, Sweeps};
 
-/// Solves S_0 U + S_CON(U) = F, (14), from the `start` and tells of every sweep. Collective; problem and
-/// outcome are the root's.
+/// Solves S_0 U + S_CON(U) = F, (14), from the `start` and tells of every sweep: the root solves for U, the other
+/// ranks serve S_CON. Collective; problem and outcome are the root's.
 ///
 /// # Errors
 /// A signal stopped the sweeps.
@@ -30,9 +34,43 @@ pub fn sweep(
         s_con.serve();
         return context.comm.agree(Ok(None));
     };
-    log.sweeps(problem.interface);
-    let mut observer = |record: &SweepRecord| log.sweep(problem.interface, record);
+    let in_contact = !problem.interface.pair_interface_dofs.is_empty();
+    log.sweeps(in_contact);
+    let mut observer = |record: &SweepRecord| {
+        if in_contact {
+            log.sweep(record);
+        }
+    };
     let solved = Sweeps::solve(problem, &mut s_con, settings.sweeps(), start, &mut observer);
     s_con.stop();
     context.comm.agree(solved.map(Some))
+}
+
+/// Finds which of many conditions are closed in a load step, one frozen active set after the other, and tells of
+/// every one. Collective.
+///
+/// # Errors
+/// Some part of the scene moves freely.
+pub fn sweep_frozen(
+    context: &Context<'_>,
+    settings: &Settings,
+    log: &RunLog<'_>,
+    fronts: &mut FrozenFronts,
+    condensed: &BTreeMap<usize, CondensedLoad>,
+    limits: &BTreeMap<usize, Limits>,
+) -> Result<FrozenContact, Failure> {
+    log.sweeps(true);
+    let loads = condensed
+        .iter()
+        .map(|(&v, load)| (v, load.boundary().to_vec()));
+    let mut observer = |record: &SweepRecord| log.sweep(record);
+    let loads = loads.collect();
+    active_set::solve(
+        context,
+        fronts,
+        limits,
+        &loads,
+        settings.max_sweeps,
+        &mut observer,
+    )
 }

@@ -75,9 +75,28 @@ struct Run {
     len: usize,
 }
 
+/// The normal jumps of a front's own contact points.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OwnJumps<'a> {
+    /// What they replace.
+    pub replaced: &'a [Replaced],
+    /// Which of them are open and eliminated like a displacement; the others are kept. None of them where it is
+    /// empty.
+    pub open: &'a [bool],
+    /// A spring on every open one, relative to the diagonal, that holds what its contact has let go.
+    pub spring: f64,
+}
+
+impl OwnJumps<'_> {
+    fn is_open(&self, jump: usize) -> bool {
+        self.open.get(jump).copied().unwrap_or(false)
+    }
+}
+
 impl Merge {
     /// Merges `children`, in their order, puts normal jumps in the place of what they `replaced`, and eliminates
-    /// the other unknowns at the nodes of Γ that are `eliminated`, ascending; `spare` matrices lend their memory, and the children's S are left there.
+    /// the other unknowns at the nodes of Γ that are `eliminated`, ascending; `spare` matrices lend their memory,
+    /// and the children's S are left there.
     ///
     /// # Errors
     /// A_EE isn't positive definite.
@@ -88,14 +107,48 @@ impl Merge {
         spare: &mut Spare,
         par: Par,
     ) -> Result<(Self, Condensed), FreeInterfaceDof> {
-        let (mut gone, mut interface_dofs) = union_of_interface_dofs(&children, eliminated);
-        let of_children: usize = children.iter().map(|c| c.jumps).sum();
-        let jumps = of_children + replaced.len();
-        let pivots: BTreeMap<InterfaceDof, usize> =
-            replaced.iter().map(|r| r.dof).zip(0..).collect();
+        let own = OwnJumps {
+            replaced,
+            ..OwnJumps::default()
+        };
+        let merged = Self::of(
+            &children.iter().collect::<Vec<_>>(),
+            eliminated,
+            own,
+            spare,
+            par,
+        );
+        children.into_iter().for_each(|child| spare.keep(child.s));
+        merged
+    }
+
+    /// The same with some of the front's `own` normal jumps eliminated: those that are kept come behind those of
+    /// the children.
+    ///
+    /// # Errors
+    /// A_EE isn't positive definite.
+    pub fn of(
+        children: &[&Condensed],
+        eliminated: &[u32],
+        own: OwnJumps<'_>,
+        spare: &mut Spare,
+        par: Par,
+    ) -> Result<(Self, Condensed), FreeInterfaceDof> {
+        let (mut gone, mut interface_dofs) = union_of_interface_dofs(children, eliminated);
+        let numbers = 0..own.replaced.len();
+        let (open, closed): (Vec<usize>, Vec<usize>) = numbers.partition(|&j| own.is_open(j));
+        let mut pivots: BTreeMap<InterfaceDof, usize> =
+            own.replaced.iter().map(|r| (r.dof, 0)).collect();
         gone.retain(|dof| !pivots.contains_key(dof));
         interface_dofs.retain(|dof| !pivots.contains_key(dof));
-        let e = gone.len();
+        let e = gone.len() + open.len();
+        let of_children: usize = children.iter().map(|c| c.jumps).sum();
+        let jumps = of_children + closed.len();
+        let places_of_own =
+            (open.iter().zip(gone.len()..)).chain(closed.iter().zip(e + of_children..));
+        for (&j, place) in places_of_own {
+            pivots.insert(own.replaced[j].dof, place);
+        }
         let k = jumps + interface_dofs.len();
         let mut columns = Mat::<f64>::zeros(e + k, e);
         let mut s = spare.zeros(k);
@@ -103,34 +156,40 @@ impl Merge {
         let mut places = Vec::with_capacity(children.len());
         let mut smallest_pivot = f64::INFINITY;
         let mut first_jump = e;
+        let place = |dof: &InterfaceDof| place_of(dof, &gone, &pivots, &interface_dofs, e + jumps);
         for child in children {
-            let place = |dof| place_of(dof, &gone, &pivots, &interface_dofs, [e, of_children]);
-            let own = (0..child.jumps).map(|j| (first_jump + j) as u32);
-            let place: Vec<u32> = own.chain(child.interface_dofs.iter().map(place)).collect();
+            let of_child = (0..child.jumps).map(|j| (first_jump + j) as u32);
+            let dofs = child.interface_dofs.iter().map(|dof| place(dof) as u32);
+            let place: Vec<u32> = of_child.chain(dofs).collect();
             first_jump += child.jumps;
             for (&to, d) in place.iter().zip(&child.diagonal) {
                 diagonal[to as usize] += d;
             }
             add(&child.s, &place, e, &mut columns, &mut s);
-            spare.keep(child.s);
             smallest_pivot = smallest_pivot.min(child.smallest_pivot);
             places.push(place);
         }
-        let place = |dof: &_| place_of(dof, &gone, &pivots, &interface_dofs, [e, of_children]);
-        let substitution = Substitution::new(replaced, |dof| place(dof) as usize);
+        let substitution = Substitution::new(own.replaced, place);
         substitution.transform(&mut Front {
             columns: &mut columns,
             s: &mut s,
         });
         substitution.transform_diagonal(&mut diagonal);
+        for j in gone.len()..e {
+            columns[(j, j)] += own.spring * diagonal[j];
+        }
         let mut merge = Self {
             eliminated: e,
             columns,
             places,
             substitution,
         };
-        partial_cholesky(merge.columns.as_mut(), s.as_mut(), par)
-            .map_err(|j| FreeInterfaceDof(gone[j]))?;
+        partial_cholesky(merge.columns.as_mut(), s.as_mut(), par).map_err(|j| {
+            FreeInterfaceDof(match gone.get(j) {
+                Some(dof) => *dof,
+                None => own.replaced[open[j - gone.len()]].dof,
+            })
+        })?;
         for (j, d) in diagonal[..e].iter().enumerate() {
             smallest_pivot = smallest_pivot.min(merge.columns[(j, j)].powi(2) / d);
         }
@@ -157,8 +216,9 @@ impl Merge {
         CondensedLoad::new(load, self.eliminated)
     }
 
-    /// The unknowns on the children's boundaries for the unknowns `x_k` that are kept.
-    pub fn recover(&self, load: &CondensedLoad, x_k: &[f64]) -> Vec<Vec<f64>> {
+    /// The unknowns on the children's boundaries for the unknowns `x_k` that are kept, and the front's own normal
+    /// jumps.
+    pub fn recover(&self, load: &CondensedLoad, x_k: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
         let e = self.eliminated;
         let mut x = load.interior().to_vec();
         x.extend_from_slice(x_k);
@@ -167,9 +227,10 @@ impl Merge {
         let mut x_e = x_e;
         matmul(x_e.as_mut(), Accum::Add, p.transpose(), x_k, -1.0, Par::Seq);
         solve_upper_triangular_in_place(l_e.transpose(), x_e, Par::Seq);
+        let jumps = self.substitution.jumps(&x);
         self.substitution.resolve(&mut x);
         let of_child = |place: &Vec<u32>| place.iter().map(|&i| x[i as usize]).collect();
-        self.places.iter().map(of_child).collect()
+        (self.places.iter().map(of_child).collect(), jumps)
     }
 
     /// x_E ← L_E⁻¹ x_E and x_K ← x_K − P x_E.
@@ -188,7 +249,7 @@ fn column_of(x: &mut [f64]) -> MatMut<'_, f64> {
 
 /// The traces of all children, each once, ascending: those at `eliminated` nodes, and the others.
 fn union_of_interface_dofs(
-    children: &[Condensed],
+    children: &[&Condensed],
     eliminated: &[u32],
 ) -> (Vec<InterfaceDof>, Vec<InterfaceDof>) {
     let mut all: Vec<InterfaceDof> = children
@@ -204,22 +265,21 @@ fn union_of_interface_dofs(
     })
 }
 
-/// Where the front of [`Merge::new`] has an unknown on Γ: among those that are `gone`, which come first, among
-/// the `pivots` that normal jumps replace, behind those of the children, or among those that are `kept`.
+/// Where a front has an unknown on Γ: among those that are `gone`, which come first, where one of the `pivots` that
+/// normal jumps replace is, or among those that are `kept`, from `first_kept` on.
 fn place_of(
     dof: &InterfaceDof,
     gone: &[InterfaceDof],
     pivots: &BTreeMap<InterfaceDof, usize>,
     kept: &[InterfaceDof],
-    [e, of_children]: [usize; 2],
-) -> u32 {
+    first_kept: usize,
+) -> usize {
     // An unknown is in one of the three lists.
-    let place = match (gone.binary_search(dof), kept.binary_search(dof)) {
+    match (gone.binary_search(dof), kept.binary_search(dof)) {
         (Ok(place), _) => place,
-        (_, Ok(place)) => e + of_children + pivots.len() + place,
-        _ => e + of_children + pivots.get(dof).copied().unwrap_or_default(),
-    };
-    place as u32
+        (_, Ok(place)) => first_kept + place,
+        _ => pivots.get(dof).copied().unwrap_or_default(),
+    }
 }
 
 /// Maximal runs of `place`, none of which reaches across the first `e` indices.

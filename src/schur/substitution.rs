@@ -112,9 +112,14 @@ impl Substitution {
         }
     }
 
+    /// The normal jumps of y.
+    pub fn jumps(&self, y: &[f64]) -> Vec<f64> {
+        self.places.iter().map(|&p| y[p]).collect()
+    }
+
     /// x = T y.
     pub fn resolve(&self, y: &mut [f64]) {
-        let jumps: Vec<f64> = self.places.iter().map(|&p| y[p]).collect();
+        let jumps = self.jumps(y);
         for (k, &p) in self.places.iter().enumerate() {
             let staying = self.staying[k].iter().map(|&(s, beta)| beta * y[s]);
             let of_jumps = self.jumps[k].iter().map(|&(l, gamma)| gamma * jumps[l]);

@@ -64,7 +64,7 @@ pub struct SweepOutcome {
 
 impl SweepOutcome {
     /// What is known at U before the first sweep.
-    pub(super) fn before(u: Vec<f64>) -> Self {
+    pub fn before(u: Vec<f64>) -> Self {
         Self {
             u,
             status: SweepStatus::NotConverged("the sweeps haven't ended".into()),

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod groups;
+mod points;
 
 use self::bodies::Bodies;
 use self::groups::Groups;

@@ -1,0 +1,27 @@
+//! What the catalog says of the nodes of contact points.
+
+use std::collections::HashMap;
+
+use crate::contact_point::ContactPoint;
+use crate::problem::{PointNode, Problem, Subdomain, SubdomainNode};
+
+impl Problem {
+    /// Finds what the catalog says of the nodes of its contact points.
+    pub(super) fn describe_points(&mut self) {
+        let on_interface = |s: &Subdomain| {
+            let nodes = s.interface.iter();
+            nodes.map(|on| (on.node, on.interface)).collect()
+        };
+        let numbers: Vec<HashMap<u32, u32>> = self.subdomains.iter().map(on_interface).collect();
+        let of_point = |point: &ContactPoint<SubdomainNode>| {
+            let nodes = point.entries.iter().map(|&(at, _)| {
+                let subdomain = &self.subdomains[at.subdomain as usize];
+                let supports = subdomain.supports.iter().filter(|s| s.node == at.node);
+                let interface = numbers[at.subdomain as usize].get(&at.node).copied();
+                PointNode::new(interface, point.normal(), supports.map(|s| s.direction))
+            });
+            nodes.collect()
+        };
+        self.catalog.point_nodes = self.catalog.points.iter().map(of_point).collect();
+    }
+}

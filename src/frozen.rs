@@ -1,0 +1,8 @@
+//! Many contact conditions: an active-set (semismooth Newton) step freezes which of them are open, makes every
+//! unknown linear with that, and eliminates again only the branches of the hierarchy above what changed.
+//!
+//! No matrix holds all conditions: an open normal jump is eliminated in the front where it appears, like a
+//! displacement, a closed one is known there.
+
+pub mod active_set;
+pub mod fronts;

@@ -1,0 +1,205 @@
+//! The active set: which conditions are closed, found by steps that freeze it.
+//!
+//! λ ≥ 0 where closed, t ≤ g where open. A step that finds conditions that say otherwise exchanges all of them, as
+//! semismooth Newton does; where these don't become fewer, one at a time until they do (Júdice and Pires, Computers
+//! Ops. Res. 21, 1994): that ends.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use crate::contact::limits::Limits;
+use crate::context::Context;
+use crate::error::Failure;
+use crate::frozen::fronts::{FrozenFronts, FrozenSolution};
+use crate::interface::s_con::ConTotals;
+use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
+
+/// Steps without fewer conditions that say otherwise until these are exchanged one at a time.
+const PATIENCE: usize = 8;
+/// Most steps.
+const MAX_STEPS: usize = 400;
+/// What is none beside the largest force or displacement.
+const ROUND_OFF: f64 = 1e-12;
+
+/// What the steps found, on this rank.
+#[derive(Clone, Debug)]
+pub struct FrozenContact {
+    /// Forces and closed conditions of every contact group.
+    pub conditions: BTreeMap<usize, Vec<(f64, bool)>>,
+    /// The unknowns on the boundary of every cluster.
+    pub boundaries: BTreeMap<usize, Vec<f64>>,
+    /// How they got there; the same on all ranks but for times.
+    pub outcome: SweepOutcome,
+}
+
+/// What is wrong with the active set.
+#[derive(Clone, Debug, Default)]
+struct Faults {
+    /// Normal jumps by group that should be open and are closed, or the other way round.
+    wrong: BTreeMap<usize, Vec<usize>>,
+    /// How many there are on all ranks.
+    count: usize,
+    /// The last group of all ranks that has one.
+    last: usize,
+    /// Closed ones on all ranks.
+    active: usize,
+    /// The largest tension or penetration, relative to the largest force or jump.
+    largest: f64,
+}
+
+/// Finds the active set under `loads` on the boundaries of the clusters, within the `limits` of every contact group
+/// of this rank, from the bilateral problem. Collective.
+///
+/// # Errors
+/// Some part of the scene moves freely.
+pub fn solve(
+    context: &Context<'_>,
+    fronts: &mut FrozenFronts,
+    limits: &BTreeMap<usize, Limits>,
+    loads: &BTreeMap<usize, Vec<f64>>,
+    max_steps: Option<usize>,
+    observer: &mut dyn FnMut(&SweepRecord),
+) -> Result<FrozenContact, Failure> {
+    let began = Instant::now();
+    let mut open: BTreeMap<usize, Vec<bool>> = (limits.iter())
+        .map(|(&g, limits)| (g, vec![false; limits.bounds.len()]))
+        .collect();
+    let bounds: BTreeMap<usize, Vec<f64>> = (limits.iter())
+        .map(|(&g, limits)| (g, limits.bounds.clone()))
+        .collect();
+    let mut outcome = SweepOutcome::before(Vec::new());
+    let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
+    let mut changed = None;
+    loop {
+        fronts.freeze(context, &open)?;
+        let solution = fronts.solve(context, loads.clone(), &bounds);
+        let faults = Faults::of(context, &solution, &bounds, &open);
+        let sweep = outcome.records.len();
+        let record = SweepRecord {
+            sweep,
+            residual: faults.largest,
+            active: faults.active,
+            changed,
+            seconds: began.elapsed().as_secs_f64(),
+        };
+        outcome.records.push(record);
+        observer(&record);
+        let gave_up = sweep >= max_steps.unwrap_or(MAX_STEPS);
+        if faults.count == 0 || gave_up {
+            outcome.status = match faults.count {
+                0 => SweepStatus::Converged,
+                n => SweepStatus::NotConverged(format!(
+                    "newton stopped after {sweep} sweeps: {n} conditions aren't settled"
+                )),
+            };
+            outcome.residual = faults.largest;
+            outcome.active_set_iterations = sweep + 1;
+            outcome.totals = ConTotals {
+                active: faults.active,
+                changed: changed.unwrap_or(0),
+                steps: sweep + 1,
+                ..ConTotals::default()
+            };
+            let conditions = limits.iter().map(|(g, limits)| {
+                let forces = solution.forces[g]
+                    .iter()
+                    .map(|f| f.max(0.0))
+                    .collect::<Vec<_>>();
+                let both = limits
+                    .forces(&forces)
+                    .into_iter()
+                    .zip(limits.closed(&open[g]));
+                (*g, both.collect())
+            });
+            return Ok(FrozenContact {
+                conditions: conditions.collect(),
+                boundaries: solution.boundaries,
+                outcome,
+            });
+        }
+        let all = faults.count < fewest || patience > 0;
+        match faults.count < fewest {
+            true => (fewest, patience) = (faults.count, PATIENCE),
+            false => patience = patience.saturating_sub(1),
+        }
+        for (g, wrong) in &faults.wrong {
+            let of_group = open.get_mut(g).into_iter();
+            let exchanged = match all {
+                true => &wrong[..],
+                false if *g == faults.last => &wrong[wrong.len() - 1..],
+                false => &[],
+            };
+            for of_group in of_group {
+                exchanged.iter().for_each(|&j| of_group[j] = !of_group[j]);
+            }
+        }
+        changed = Some(if all { faults.count } else { 1 });
+    }
+}
+
+impl Faults {
+    /// What is wrong where the conditions that are `open` led to this solution. Collective.
+    fn of(
+        context: &Context<'_>,
+        solution: &FrozenSolution,
+        bounds: &BTreeMap<usize, Vec<f64>>,
+        open: &BTreeMap<usize, Vec<bool>>,
+    ) -> Self {
+        let Context { comm, plan, .. } = *context;
+        let largest = |all: &BTreeMap<usize, Vec<f64>>| {
+            let all = all.values().flatten().filter(|x| x.is_finite());
+            all.fold(0.0, |m: f64, x| m.max(x.abs()))
+        };
+        let own = [
+            largest(&solution.forces),
+            largest(&solution.jumps).max(largest(bounds)),
+        ];
+        let mut scales = [0.0_f64; 2];
+        for of_rank in comm.collect(&own) {
+            scales = [0, 1].map(|k| f64::max(scales[k], of_rank[k]));
+        }
+        comm.broadcast(&mut scales);
+        let mut faults = Self::default();
+        let of_group = |g: usize| {
+            let (mut wrong, mut largest, mut active) = (Vec::new(), 0.0_f64, 0);
+            for (j, &is_open) in open[&g].iter().enumerate() {
+                let excess = match is_open {
+                    true => {
+                        (solution.jumps[&g][j] - bounds[&g][j]) / scales[1].max(f64::MIN_POSITIVE)
+                    }
+                    false => -solution.forces[&g][j] / scales[0].max(f64::MIN_POSITIVE),
+                };
+                active += usize::from(!is_open);
+                largest = largest.max(excess);
+                if excess > ROUND_OFF {
+                    wrong.push(j);
+                }
+            }
+            (wrong, largest, active)
+        };
+        let mut wrong = BTreeMap::new();
+        comm.gather(
+            &plan.group_owners(),
+            |g| {
+                let (of_group, largest, active) = of_group(g);
+                let count = of_group.len();
+                wrong.insert(g, of_group);
+                (count, largest, active)
+            },
+            |g, (count, largest, active)| {
+                faults.count += count;
+                faults.active += active;
+                faults.largest = faults.largest.max(largest);
+                if count > 0 {
+                    faults.last = g;
+                }
+            },
+        );
+        let mut totals = (faults.count, faults.last, faults.active, faults.largest);
+        comm.broadcast(&mut totals);
+        (faults.count, faults.last, faults.active, faults.largest) = totals;
+        wrong.retain(|_, of_group| !of_group.is_empty());
+        faults.wrong = wrong;
+        faults
+    }
+}

@@ -1,0 +1,381 @@
+//! The fronts above all contact, for an active set that is frozen.
+
+use std::collections::BTreeMap;
+
+use faer::Mat;
+
+use crate::bytes::Reals;
+use crate::condense::Condensation;
+use crate::context::Context;
+use crate::error::Failure;
+use crate::schur::condensed::Condensed;
+use crate::schur::local::CondensedLoad;
+use crate::schur::merge::{Merge, OwnJumps, Spare};
+use crate::schur::substitution::Replaced;
+
+/// The spring on an open normal jump, relative to its diagonal, where some part of the scene moves freely without
+/// the contacts that are open: the next active set closes what stops it.
+const SPRING: f64 = 1e-9;
+
+/// A front whose own normal jumps are open or closed.
+#[derive(Debug)]
+struct FrozenFront {
+    merge: Merge,
+    /// S of the closed ones against them and what is kept, a column each.
+    held: Mat<f64>,
+    /// Which are open.
+    open: Vec<bool>,
+}
+
+/// The fronts of this rank above all contact, and what they are merged from.
+#[derive(Debug)]
+pub struct FrozenFronts {
+    /// The nodes of the hierarchy above all clusters, children before parents, on all ranks the same.
+    nodes: Vec<usize>,
+    fronts: BTreeMap<usize, FrozenFront>,
+    /// S of clusters and fronts, at the owner of the node that they are merged into.
+    merged: BTreeMap<usize, Condensed>,
+    replaced: BTreeMap<usize, Vec<Replaced>>,
+    spring: f64,
+    spare: Spare,
+    /// The smallest pivot of the last factorization, relative to its diagonal entry.
+    pub smallest_pivot: f64,
+}
+
+/// What a load does where the active set is frozen, on this rank.
+#[derive(Clone, Debug, Default)]
+pub struct FrozenSolution {
+    /// The normal jumps of every contact group (m).
+    pub jumps: BTreeMap<usize, Vec<f64>>,
+    /// The forces on them, 0 where open (N/m).
+    pub forces: BTreeMap<usize, Vec<f64>>,
+    /// The unknowns on the boundary of every cluster.
+    pub boundaries: BTreeMap<usize, Vec<f64>>,
+}
+
+impl FrozenFronts {
+    /// Fronts over the `clusters` of this rank, by their place among all; none is factorized yet. Collective.
+    ///
+    /// # Errors
+    /// A contact point that nothing can be replaced for.
+    pub fn new(
+        condensation: &Condensation<'_>,
+        clusters: &BTreeMap<usize, Condensed>,
+    ) -> Result<Self, Failure> {
+        let context = &condensation.context;
+        let plan = context.plan;
+        let mut is_below = vec![false; plan.tree.nodes.len()];
+        for cluster in &plan.clusters {
+            for v in plan.tree.subtree(cluster.node) {
+                is_below[v] = true;
+            }
+        }
+        let nodes: Vec<usize> = (0..is_below.len()).filter(|&v| !is_below[v]).collect();
+        let own = plan
+            .groups
+            .iter()
+            .filter(|group| plan.node_owners[group.node] == context.comm.rank());
+        let replaced = own.map(|group| Ok((group.node, condensation.replaced(group.node)?)));
+        let replaced = context.comm.agree(replaced.collect())?;
+        let mut fronts = Self {
+            nodes,
+            fronts: BTreeMap::new(),
+            merged: BTreeMap::new(),
+            replaced,
+            spring: 0.0,
+            spare: Spare::default(),
+            smallest_pivot: f64::INFINITY,
+        };
+        for (c, cluster) in plan.clusters.iter().enumerate() {
+            fronts.pass_up(context, cluster.node, clusters.get(&c));
+        }
+        Ok(fronts)
+    }
+
+    /// Brings S of a node to the owner of the one that it is merged into. Collective.
+    fn pass_up(&mut self, context: &Context<'_>, v: usize, condensed: Option<&Condensed>) {
+        let Context { comm, plan, .. } = *context;
+        let Some(parent) = plan.tree.nodes[v].parent else {
+            return;
+        };
+        let way = (plan.node_owners[v], plan.node_owners[parent]);
+        comm.route(
+            [way],
+            |_| condensed.cloned(),
+            |_, arrived| {
+                self.merged.extend(arrived.map(|condensed| (v, condensed)));
+            },
+        );
+    }
+
+    /// Eliminates again whatever is above a contact group that isn't `open` as it was; all at first. Collective;
+    /// `open` says it of the groups of this rank.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely even where open contacts have springs.
+    pub fn freeze(
+        &mut self,
+        context: &Context<'_>,
+        open: &BTreeMap<usize, Vec<bool>>,
+    ) -> Result<(), Failure> {
+        let comm = context.comm;
+        let result = self.eliminate(context, open, self.fronts_known(context));
+        let failed = comm.collect(&result.is_err()).contains(&true);
+        if !comm.decide(failed) {
+            return Ok(());
+        }
+        self.spring = SPRING;
+        let result = self.eliminate(context, open, false);
+        comm.agree(result)
+    }
+
+    /// Whether all fronts were factorized before. Collective.
+    fn fronts_known(&self, context: &Context<'_>) -> bool {
+        let Context { comm, plan, .. } = *context;
+        let own = self
+            .nodes
+            .iter()
+            .filter(|&&v| plan.node_owners[v] == comm.rank());
+        let mine = own.count() == self.fronts.len();
+        let all = !comm.collect(&mine).contains(&false);
+        comm.decide(all)
+    }
+
+    /// The nodes that a change of the active set touches, on all ranks. Collective.
+    fn touched(
+        &self,
+        context: &Context<'_>,
+        open: &BTreeMap<usize, Vec<bool>>,
+        is_known: bool,
+    ) -> Vec<bool> {
+        let Context { comm, plan, .. } = *context;
+        let changed = |g: usize| {
+            let front = self.fronts.get(&plan.groups[g].node);
+            front.is_none_or(|front| front.open != open[&g])
+        };
+        let mut touched = vec![!is_known; plan.tree.nodes.len()];
+        comm.gather(&plan.group_owners(), changed, |g, changed| {
+            touched[plan.groups[g].node] |= changed;
+        });
+        comm.broadcast(&mut touched);
+        for v in 0..touched.len() {
+            if let (true, Some(parent)) = (touched[v], plan.tree.nodes[v].parent) {
+                touched[parent] = true;
+            }
+        }
+        touched
+    }
+
+    /// Eliminates what is touched. Collective; what failed on this rank is said at the end.
+    fn eliminate(
+        &mut self,
+        context: &Context<'_>,
+        open: &BTreeMap<usize, Vec<bool>>,
+        is_known: bool,
+    ) -> Result<(), Failure> {
+        let touched = self.touched(context, open, is_known);
+        let mut result = Ok(());
+        self.smallest_pivot = f64::INFINITY;
+        for v in self.nodes.clone() {
+            if !touched[v] {
+                continue;
+            }
+            let mine = context.plan.node_owners[v] == context.comm.rank();
+            let merged = match mine && result.is_ok() {
+                true => self.merge(context, v, open),
+                false => Ok(None),
+            };
+            let condensed = merged.unwrap_or_else(|failure| {
+                self.fronts.remove(&v);
+                result = Err(failure);
+                None
+            });
+            self.pass_up(context, v, condensed.as_ref());
+        }
+        result
+    }
+
+    /// Merges the children of node v of this rank; nothing where one of them failed.
+    fn merge(
+        &mut self,
+        context: &Context<'_>,
+        v: usize,
+        open: &BTreeMap<usize, Vec<bool>>,
+    ) -> Result<Option<Condensed>, Failure> {
+        let Context { plan, par, .. } = *context;
+        let node = &plan.tree.nodes[v];
+        let children = node.children.iter().map(|child| self.merged.get(child));
+        let Some(children) = children.collect::<Option<Vec<&Condensed>>>() else {
+            return Ok(None);
+        };
+        let none = Vec::new();
+        let replaced = self.replaced.get(&v).unwrap_or(&none);
+        let open = plan.group_of(v).map_or_else(Vec::new, |g| open[&g].clone());
+        let own = OwnJumps {
+            replaced,
+            open: &open,
+            spring: self.spring,
+        };
+        let (merge, whole) = Merge::of(&children, &node.eliminated, own, &mut self.spare, par)
+            .map_err(|free| {
+                Failure::ill_posed(format!(
+                    "a part of the scene can move although every contact that presses is held (found \
+                     at node {} of /interface/interface); expected supports or contact that hold it",
+                    free.0.node
+                ))
+            })?;
+        let (closed, n) = (whole.jumps, whole.s.nrows());
+        let mut held = whole.s.submatrix(0, 0, n, closed).to_owned();
+        for j in 0..closed {
+            for i in 0..j {
+                held[(i, j)] = held[(j, i)];
+            }
+        }
+        let kept = n - closed;
+        let condensed = Condensed {
+            jumps: 0,
+            s: match closed {
+                0 => whole.s,
+                _ => whole.s.submatrix(closed, closed, kept, kept).to_owned(),
+            },
+            diagonal: whole.diagonal[closed..].to_vec(),
+            interface_dofs: whole.interface_dofs,
+            smallest_pivot: whole.smallest_pivot,
+        };
+        self.smallest_pivot = self.smallest_pivot.min(whole.smallest_pivot);
+        self.fronts.insert(v, FrozenFront { merge, held, open });
+        Ok(Some(condensed))
+    }
+
+    /// Solves for `loads` on the boundaries of the clusters of this rank, by node, where the closed normal jumps of
+    /// every group have the values `prescribed`. Collective.
+    pub fn solve(
+        &self,
+        context: &Context<'_>,
+        mut loads: BTreeMap<usize, Vec<f64>>,
+        prescribed: &BTreeMap<usize, Vec<f64>>,
+    ) -> FrozenSolution {
+        let plan = context.plan;
+        let mut condensed: BTreeMap<usize, (CondensedLoad, Vec<f64>)> = BTreeMap::new();
+        // What arrives at the owner of the node above.
+        let mut arrived: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        for cluster in &plan.clusters {
+            let load = loads.remove(&cluster.node);
+            carry(context, cluster.node, load, &mut arrived, Direction::Up);
+        }
+        for &v in &self.nodes {
+            let passed = self.fronts.get(&v).map(|front| {
+                let children = plan.tree.nodes[v].children.iter();
+                let of_children: Vec<&[f64]> = children.map(|child| &arrived[child][..]).collect();
+                let load = front.merge.condense(&of_children);
+                let values = front.closed_values(plan.group_of(v).map(|g| &prescribed[&g][..]));
+                let closed = values.len();
+                let mut kept = load.boundary()[closed..].to_vec();
+                for (column, value) in front.held.col_iter().zip(&values) {
+                    for (kept, s) in kept.iter_mut().zip(column.iter().skip(closed)) {
+                        *kept -= s * value;
+                    }
+                }
+                condensed.insert(v, (load, values));
+                kept
+            });
+            carry(context, v, passed, &mut arrived, Direction::Up);
+        }
+        let mut solution = FrozenSolution::default();
+        let mut below: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        for &v in self.nodes.iter().rev() {
+            if plan.tree.nodes[v].parent.is_none() {
+                below.insert(v, Vec::new());
+            }
+            let mut of_children: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+            if let (Some(front), Some((load, values)), Some(x)) =
+                (self.fronts.get(&v), condensed.get(&v), below.remove(&v))
+            {
+                let mut boundary = values.clone();
+                boundary.extend(x);
+                if let Some(g) = plan.group_of(v) {
+                    solution.forces.insert(g, front.forces(load, &boundary));
+                }
+                let (x, jumps) = front.merge.recover(load, &boundary);
+                of_children.extend(plan.tree.nodes[v].children.iter().copied().zip(x));
+                if let Some(g) = plan.group_of(v) {
+                    solution.jumps.insert(g, jumps);
+                }
+            }
+            for &child in &plan.tree.nodes[v].children {
+                let x = of_children.remove(&child);
+                carry(context, child, x, &mut below, Direction::Down);
+            }
+        }
+        // Clusters that nothing is above keep nothing.
+        let own = plan
+            .clusters
+            .iter()
+            .filter(|c| c.owner == context.comm.rank());
+        let alone = own.filter(|c| plan.tree.nodes[c.node].parent.is_none());
+        below.extend(alone.map(|c| (c.node, Vec::new())));
+        solution.boundaries = below;
+        solution
+    }
+}
+
+/// Carries a vector of node v between its owner and that of the node above. Collective.
+fn carry(
+    context: &Context<'_>,
+    v: usize,
+    mut vector: Option<Vec<f64>>,
+    into: &mut BTreeMap<usize, Vec<f64>>,
+    direction: Direction,
+) {
+    let Context { comm, plan, .. } = *context;
+    let Some(parent) = plan.tree.nodes[v].parent else {
+        return;
+    };
+    let (here, above) = (plan.node_owners[v], plan.node_owners[parent]);
+    let way = match direction {
+        Direction::Up => (here, above),
+        Direction::Down => (above, here),
+    };
+    comm.route(
+        [way],
+        |_| Reals(vector.take().unwrap_or_default()),
+        |_, Reals(arrived)| {
+            into.insert(v, arrived);
+        },
+    );
+}
+
+impl FrozenFront {
+    /// The values of its closed normal jumps, of those that all of its own would have.
+    fn closed_values(&self, prescribed: Option<&[f64]>) -> Vec<f64> {
+        let all = prescribed.unwrap_or_default().iter().zip(&self.open);
+        all.filter(|(_, open)| !**open)
+            .map(|(value, _)| *value)
+            .collect()
+    }
+
+    /// The forces on its own normal jumps, 0 where open: what the load leaves of them at the unknowns `boundary`,
+    /// closed normal jumps and what is kept.
+    fn forces(&self, load: &CondensedLoad, boundary: &[f64]) -> Vec<f64> {
+        let mut of_closed = self
+            .held
+            .col_iter()
+            .zip(load.boundary())
+            .map(|(column, load)| {
+                let terms = column.iter().zip(boundary).map(|(s, x)| s * x);
+                load - terms.sum::<f64>()
+            });
+        let of_jump = |open: &bool| match open {
+            true => 0.0,
+            false => of_closed.next().unwrap_or_default(),
+        };
+        self.open.iter().map(of_jump).collect()
+    }
+}
+
+/// Along the hierarchy.
+#[derive(Clone, Copy)]
+enum Direction {
+    Up,
+    Down,
+}
