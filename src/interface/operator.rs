@@ -16,6 +16,9 @@ use crate::rigid::energy::RigidBasis;
 use crate::schur::factor::BoundaryLastCholesky;
 use crate::schur::pattern::{LowerPattern, SparseSymmetric};
 
+/// The share of the pairs' bilateral Schur complements that picard counts to S_0 where this is singular: as much as
+/// leaves (18) what it is, an iteration that diverges where both sides are equally stiff.
+const SHARE: f64 = 0.05;
 /// Pivot relative to its diagonal entry below which an operator is singular.
 const SINGULAR_PIVOT: f64 = 1e-13;
 
@@ -46,6 +49,8 @@ pub struct Interface {
     pub laws: Vec<CondensedContact>,
     /// S_0 = Σ R_iᵀ S_i R_i over the linear subdomains, (15).
     s_0: SparseSymmetric,
+    /// S_0 + S_CON' of the bilateral problem.
+    bilateral: SparseSymmetric,
     /// Which clusters are in contact.
     pub in_contact: Vec<bool>,
     /// What solves the bilateral problem.
@@ -106,6 +111,7 @@ impl Interface {
             pair_interface_dofs,
             laws,
             s_0,
+            bilateral: sum,
             in_contact: in_contact.to_vec(),
             smallest_pivot: smallest_pivot.min(factor.smallest_pivot()),
             solver: Box::new(DirectSolver::new(factor, par)),
@@ -133,10 +139,30 @@ impl Interface {
         &self.s_0
     }
 
-    /// The factor of S_0 alone; `None` where S_0 is singular.
-    pub fn factor_s_0(&self) -> Option<BoundaryLastCholesky> {
-        let factor = BoundaryLastCholesky::new(&self.s_0, self.len, self.par).ok()?;
-        (factor.smallest_pivot() > SINGULAR_PIVOT).then_some(factor)
+    /// The factor of S_0 and of as little of the pairs' bilateral Schur complements as makes it regular: none, or
+    /// [`SHARE`]; how much that is. `None` where it is singular even so.
+    pub fn factor_s_0(&self) -> Option<(BoundaryLastCholesky, f64)> {
+        let regular = |matrix: &SparseSymmetric| {
+            let factor = BoundaryLastCholesky::new(matrix, self.len, self.par).ok()?;
+            (factor.smallest_pivot() > SINGULAR_PIVOT).then_some(factor)
+        };
+        if let Some(factor) = regular(&self.s_0) {
+            return Some((factor, 0.0));
+        }
+        let mut shared = self.bilateral.clone();
+        shared.values.iter_mut().for_each(|value| *value *= SHARE);
+        let mut linear = self.s_0.clone();
+        (linear.values.iter_mut()).for_each(|value| *value *= 1.0 - SHARE);
+        shared.add_sparse(&linear);
+        Some((regular(&shared)?, SHARE))
+    }
+
+    /// y ← y + a S_CON' x, S_CON' that of the bilateral problem.
+    pub fn add_bilateral_con(&self, a: f64, x: &[f64], y: &mut [f64]) {
+        let scaled: Vec<f64> = x.iter().map(|x| a * x).collect();
+        self.bilateral.multiply_add(&scaled, y);
+        let opposite: Vec<f64> = scaled.iter().map(|x| -x).collect();
+        self.s_0.multiply_add(&opposite, y);
     }
 
     /// The entries of `u` on the interface dofs of pair p.

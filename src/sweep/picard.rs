@@ -2,7 +2,8 @@
 //!
 //! They converge where ρ(S_0⁻¹ S_CON') < 1, which the paper leaves open and which equal
 //! stiffness on both sides of Γ doesn't give; relaxed, U ← U + θ S_0⁻¹ r converges for
-//! θ < 2 / (1 + λ), λ the largest eigenvalue of S_0⁻¹ S_CON', wherever S_0 is regular.
+//! θ < 2 / (1 + λ), λ the largest eigenvalue of S_0⁻¹ S_CON'. Where S_0 is singular, a share of the pairs' bilateral
+//! Schur complements is moved from S_CON to it: U^k stays what it solves for.
 
 use super::{Residual, SweepStatus, Sweeps, axpy};
 use crate::error::Failure;
@@ -21,15 +22,20 @@ impl Sweeps<'_, '_> {
         if !self.goes_on(&residual)? {
             return Ok(SweepStatus::Converged);
         }
-        let Some(s_0) = self.problem.interface.factor_s_0() else {
+        let Some((s_0, share)) = self.problem.interface.factor_s_0() else {
             return Ok(SweepStatus::NotConverged(
-                "S_0 is singular: a part of the interface belongs to contact subdomains alone, or \
-                 a linear subdomain floats, so that (18) isn't defined for this partition; use \
-                 --method newton or --method anderson"
+                "S_0 is singular, so that (18) isn't defined for this partition; use --method \
+                 newton or --method anderson"
                     .into(),
             ));
         };
-        let rho = self.spectral_radius(&s_0);
+        if share > 0.0 {
+            self.outcome.notes.push(format!(
+                "picard: S_0 is singular, a part of the interface belongs to contact alone: \
+                 {share} of the pairs' bilateral Schur complements is counted to it"
+            ));
+        }
+        let rho = self.spectral_radius(&s_0, share);
         let theta = self.relaxation(rho);
         let first_residual = residual.relative;
         let start = largest(&self.outcome.u).max(f64::MIN_POSITIVE);
@@ -73,9 +79,9 @@ impl Sweeps<'_, '_> {
         theta
     }
 
-    /// ρ(S_0⁻¹ S_CON') at the active sets of the last evaluation, by power iteration from a vector
+    /// ρ(S_0⁻¹ S_CON'), with the `share` of S_CON' that counts to S_0 on the other side, at the active sets of the last evaluation, by power iteration from a vector
     /// that no symmetry of a scene can be orthogonal to.
-    fn spectral_radius(&mut self, s_0: &BoundaryLastCholesky) -> f64 {
+    fn spectral_radius(&mut self, s_0: &BoundaryLastCholesky, share: f64) -> f64 {
         let n = self.problem.interface.len;
         let mut x: Vec<f64> = (0..n)
             .map(|i| 1.0 + (i as f64 * 0.754_877_666).fract())
@@ -92,6 +98,9 @@ impl Sweeps<'_, '_> {
             let mut y = vec![0.0; n];
             self.s_con
                 .add_derivative(self.problem.interface, &x, &mut y);
+            if share > 0.0 {
+                (self.problem.interface).add_bilateral_con(-share, &x, &mut y);
+            }
             s_0.solve(&mut y);
             rho = dot(&y, &y).sqrt();
             x = y;
