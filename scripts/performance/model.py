@@ -62,52 +62,45 @@ def read_tree(path):
         points = grid["NumberOfPoints"][:].astype(np.int64)
         dofs = 2 * len(np.unique(grid["PointData/GlobalNodeId"][:]))
         cells = int(grid["NumberOfCells"][:].sum())
-        group = file["subdomains/group"][:]
         offset = file["interface/offset"][:] if "interface" in file else np.zeros(len(points) + 1, int)
         numbers = file["interface/interface"][:] if "interface" in file else np.zeros(0, int)
-        rows = np.diff(file["contact/group_offset"][:]) if "contact" in file else np.zeros(0, int)
+        nodes = file["interface/node"][:] if "interface" in file else np.zeros(0, int)
+        contact = {key: dataset[:] for key, dataset in file["contact"].items()} if "contact" in file else None
         parent = file["hierarchy/parent"][:]
 
-    # A unit is a group, or a subdomain without contact.
-    alone = group < 0
-    unit = np.where(alone, len(rows) + np.cumsum(alone) - 1, group)
-    units = len(rows) + int(alone.sum())
-    conditions = np.zeros(units, dtype=np.int64)
-    conditions[: len(rows)] = rows
-    weight = np.bincount(unit, points, units).astype(np.int64)
-    pairs = np.unique(np.stack([np.repeat(unit, np.diff(offset)), numbers], 1), axis=0)
-    parents = contracted(parent, unit, units)
-    tree = fronts(parents, units, pairs, 2 * weight, conditions, int(points.sum()), cells)
-    return tree, {"dofs": dofs, "subdomains": len(points), "contact_conditions": int(rows.sum())}
+    units = len(points)
+    of_unit = np.repeat(np.arange(units), np.diff(offset))
+    pairs, conditions = np.stack([of_unit, numbers], 1), np.zeros(units, dtype=np.int64)
+    if contact is not None:
+        first = contact["entry_offset"][:-1]
+        conditions = np.bincount(contact["entry_subdomain"][first], minlength=units)
+        pairs = np.concatenate([pairs, of_points(contact, of_unit, nodes, numbers)])
+    pairs = np.unique(pairs, axis=0)
+    parents = with_one_root(parent)
+    tree = fronts(parents, units, pairs, 2 * points, conditions, int(points.sum()), cells)
+    return tree, {"dofs": dofs, "subdomains": units, "contact_conditions": int(conditions.sum())}
 
 
-def contracted(parent, unit, units):
-    """The file's tree with every group as one leaf and one root above all."""
-    count, total = len(unit), len(parent)
-    members = [set() for _ in range(total)]
-    for subdomain in range(count):
-        node = subdomain
-        while node >= 0:
-            members[node].add(int(unit[subdomain]))
-            node = parent[node]
-    # Inner nodes with two or more units below are the fronts; the others are parts of a leaf.
-    inner = [node for node in range(count, total) if len(members[node]) > 1]
-    new = {node: units + i for i, node in enumerate(inner)}
-    root = units + len(inner)
+def of_points(contact, of_unit, nodes, numbers):
+    """The nodes of contact points as nodes of Γ, those of a point in all subdomains that it names."""
+    known = dict(zip(zip(of_unit.tolist(), nodes.tolist()), numbers.tolist()))
+    entries = list(zip(contact["entry_subdomain"].tolist(), contact["entry_node"].tolist()))
+    fresh = int(numbers.max(initial=-1)) + 1
+    for entry in entries:
+        fresh += known.setdefault(entry, fresh) == fresh
+    pairs = []
+    for begin, end in zip(contact["entry_offset"][:-1], contact["entry_offset"][1:]):
+        point = entries[begin:end]
+        pairs += [(subdomain, known[entry]) for subdomain, _ in point for entry in point]
+    return np.array(pairs, dtype=np.int64)
 
-    def above(node):
-        node = parent[node]
-        while node >= 0 and node not in new:
-            node = parent[node]
-        return new[node] if node >= 0 else root
 
-    parents = [root] * units + [above(node) for node in inner]
-    for subdomain in range(count):
-        parents[unit[subdomain]] = above(subdomain)
-    if parents.count(root) == 1:
-        # There is one root already.
-        return [-1 if node == root else node for node in parents]
-    return [*parents, -1]
+def with_one_root(parent):
+    """The file's tree with one root above all."""
+    roots = int((parent < 0).sum())
+    if roots == 1:
+        return parent.tolist()
+    return [*np.where(parent < 0, len(parent), parent).tolist(), -1]
 
 
 def fronts(parents, units, pairs, dofs, conditions, points, cells):
