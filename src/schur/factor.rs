@@ -101,7 +101,7 @@ impl BoundaryLastCholesky {
         for panel in self.panels() {
             for j in 0..panel.columns_before(count) {
                 let diagonal = matrix.pattern.column(panel.start + j).start;
-                let pivot = panel.column(j)[j].powi(2) / matrix.values[diagonal];
+                let pivot = panel.column(j)[0].powi(2) / matrix.values[diagonal];
                 smallest = smallest.min(pivot);
             }
         }

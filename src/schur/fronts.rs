@@ -70,7 +70,9 @@ impl<'a> Fronts<'a> {
             }
             front::factorize(&mut panel, rows, columns.len(), &mut update, par)
                 .map_err(|column| FactorError::Pivot(columns.start + column))?;
-            values.extend_from_slice(&panel);
+            for (j, column) in panel.chunks_exact(rows).enumerate() {
+                values.extend_from_slice(&column[j..]);
+            }
             if self.supernodes.parents[s] == NO_PARENT {
                 self.leave(s, &update, rest.as_mut());
                 self.free.push(update);

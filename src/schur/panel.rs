@@ -1,10 +1,11 @@
 //! The columns of one supernode of a Cholesky factor, and solving with them.
 
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{MatMut, MatRef, Par};
+use faer::{Mat, MatMut, Par};
 use pulp::{Arch, Simd, WithSimd};
 
-/// The columns of one supernode: a dense lower trapezoid over its own rows and those `below`.
+/// The columns of one supernode: a dense lower trapezoid over its own rows and those `below`, column
+/// after column, each from the diagonal on.
 pub(super) struct Panel<'a> {
     pub start: usize,
     pub columns: usize,
@@ -12,14 +13,25 @@ pub(super) struct Panel<'a> {
     pub values: &'a [f64],
 }
 
+/// Number of values of a panel with so many rows and columns.
+pub(super) fn packed_len(rows: usize, columns: usize) -> usize {
+    columns * rows - columns * columns.saturating_sub(1) / 2
+}
+
 impl<'a> Panel<'a> {
     fn rows(&self) -> usize {
         self.columns + self.below.len()
     }
 
-    /// Column `j`, from the first row of the supernode on.
+    /// Column `j`, from the diagonal on.
     pub fn column(&self, j: usize) -> &'a [f64] {
-        &self.values[j * self.rows()..(j + 1) * self.rows()]
+        let begin = packed_len(self.rows(), j);
+        &self.values[begin..begin + self.rows() - j]
+    }
+
+    /// Column `j` in the rows below the supernode's own.
+    fn column_below(&self, j: usize) -> &'a [f64] {
+        &self.column(j)[self.columns - j..]
     }
 
     /// How many of its columns are among the first `count`; a supernode may reach from I into B.
@@ -32,9 +44,9 @@ impl<'a> Panel<'a> {
         let own = &mut x[self.start..self.start + self.columns];
         for j in 0..count {
             let column = self.column(j);
-            let xj = own[j] / column[j];
+            let xj = own[j] / column[0];
             own[j] = xj;
-            for (x, l) in own[j + 1..].iter_mut().zip(&column[j + 1..]) {
+            for (x, l) in own[j + 1..].iter_mut().zip(&column[1..]) {
                 *x -= l * xj;
             }
         }
@@ -64,10 +76,10 @@ impl<'a> Panel<'a> {
             let column = self.column(j);
             let (before, after) = own.split_at_mut(j + 1);
             let mut sum = before[j];
-            for (x, l) in after.iter().zip(&column[j + 1..]) {
+            for (x, l) in after.iter().zip(&column[1..]) {
                 sum -= l * x;
             }
-            before[j] = sum / column[j];
+            before[j] = sum / column[0];
         }
     }
 
@@ -79,11 +91,13 @@ impl<'a> Panel<'a> {
         if count == 0 {
             return;
         }
-        let values = MatRef::from_column_major_slice(self.values, self.rows(), self.columns);
-        let own = values.submatrix(skipped, skipped, count, count);
+        let mut values = Mat::zeros(self.rows() - skipped, count);
+        for j in 0..count {
+            values.col_as_slice_mut(j)[j..].copy_from_slice(self.column(skipped + j));
+        }
+        let (own, below) = values.as_ref().split_at_row(count);
         let mut top = x.as_mut().subrows_mut(first - interior, count);
         solve_lower_triangular_in_place(own, top.as_mut(), par);
-        let below = values.submatrix(self.columns, skipped, self.below.len(), count);
         let product = below * top.as_ref();
         for (&i, row) in self.below.iter().zip(product.row_iter()) {
             let to = x.as_mut().row_mut(i as usize - interior);
@@ -109,7 +123,7 @@ impl WithSimd for Product<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let below = |j: usize| &self.panel.column(j)[self.panel.columns..];
+        let below = |j: usize| self.panel.column_below(j);
         let whole = self.x.len() / WIDTH * WIDTH;
         for j in (0..whole).step_by(WIDTH) {
             add_columns::<S, WIDTH>(simd, self.y, |p| (self.x[j + p], below(j + p)));
@@ -132,7 +146,7 @@ impl WithSimd for TransposedProduct<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let below = |j: usize| &self.panel.column(j)[self.panel.columns..];
+        let below = |j: usize| self.panel.column_below(j);
         let whole = self.y.len() / WIDTH * WIDTH;
         for j in (0..whole).step_by(WIDTH) {
             let sums = dot_columns::<S, WIDTH>(simd, self.x, |p| below(j + p));

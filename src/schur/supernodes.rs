@@ -5,6 +5,7 @@
 //! tree become one supernode where few zeros come of it.
 
 use super::children::{Children, NO_PARENT};
+use super::panel::packed_len;
 use super::pattern::LowerPattern;
 
 /// Two supernodes become one where the number of columns and the share of zeros among the entries
@@ -29,7 +30,7 @@ pub(super) struct Supernodes {
     pub row_offsets: Vec<usize>,
     /// Rows below, ascending.
     pub rows: Vec<u32>,
-    /// Where each one's values begin, column by column, and the end of the last.
+    /// Where each one's values begin, and the end of the last.
     pub value_offsets: Vec<usize>,
     /// The supernode that holds the first row below; [`NO_PARENT`] where that row isn't eliminated, or
     /// there is none.
@@ -107,7 +108,8 @@ impl Supernodes {
                 let unknowns = groups.starts[i as usize]..groups.starts[i as usize + 1];
                 supernodes.rows.extend(unknowns);
             }
-            let values = supernodes.values() + merged.columns * (merged.columns + merged.below);
+            let values =
+                supernodes.values() + packed_len(merged.columns + merged.below, merged.columns);
             supernodes.begin.push(groups.starts[merged.last + 1]);
             supernodes.row_offsets.push(supernodes.rows.len());
             supernodes.value_offsets.push(values);
