@@ -114,23 +114,35 @@ impl ElementMatrix {
     /// Becomes K_e = ∫ Bᵀ C B over an element of unit thickness (Pa), dofs node by node.
     pub fn set(&mut self, element: &ReferenceElement, points: &[[f64; 3]], c: &Stiffness) {
         let c = &c.rows::<3>();
-        self.order = 2 * element.nodes();
-        self.values[..self.order * self.order].fill(0.0);
-        for point in stiffness_points(element, points) {
-            // The compiler unrolls what it knows the size of.
-            match element.nodes() {
-                3 => self.add_lower(3, &point, c),
-                4 => self.add_lower(4, &point, c),
-                6 => self.add_lower(6, &point, c),
-                8 => self.add_lower(8, &point, c),
-                9 => self.add_lower(9, &point, c),
-                nodes => self.add_lower(nodes, &point, c),
-            }
+        // The compiler unrolls what it knows the size of.
+        match element.nodes() {
+            3 => self.integrate(3, element, points, c),
+            4 => self.integrate(4, element, points, c),
+            6 => self.integrate(6, element, points, c),
+            8 => self.integrate(8, element, points, c),
+            9 => self.integrate(9, element, points, c),
+            nodes => self.integrate(nodes, element, points, c),
+        }
+    }
+
+    #[inline(always)]
+    fn integrate(
+        &mut self,
+        nodes: usize,
+        element: &ReferenceElement,
+        points: &[[f64; 3]],
+        c: &[[f64; 3]; 3],
+    ) {
+        let order = 2 * nodes;
+        self.order = order;
+        self.values[..order * order].fill(0.0);
+        for point in stiffness_points(element, &points[..nodes]) {
+            self.add_lower(nodes, &point, c);
         }
         // Symmetric to the last bit, so that assembling one triangle is assembling both.
-        for i in 0..self.order {
+        for i in 0..order {
             for j in 0..i {
-                self.values[j * self.order + i] = self.values[i * self.order + j];
+                self.values[j * order + i] = self.values[i * order + j];
             }
         }
     }

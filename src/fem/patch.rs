@@ -3,8 +3,6 @@
 //! Zienkiewicz and Zhu, The superconvergent patch recovery and a posteriori error estimates, part 1,
 //! Int. J. Numer. Meth. Eng. 33 (1992).
 
-use std::f64::consts::TAU;
-
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -17,7 +15,7 @@ const LINEAR: usize = 3;
 /// Entries of the lower triangle of the normal equations.
 const GRAM: usize = TERMS * (TERMS + 1) / 2;
 
-/// How near to a full turn the angles around a vertex within a body add up.
+/// How near to a full turn the angles around a vertex within a body add up (rad).
 const FULL_TURN: f64 = 1e-6;
 /// Pivot, relative to a unit diagonal, below which samples don't determine a polynomial.
 const DETERMINED: f64 = 1e-6;
@@ -26,7 +24,8 @@ const DETERMINED: f64 = 1e-6;
 /// Those of several blocks add up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PatchSum {
-    angle: f64,
+    /// The rotation by the angles of all cells, cosine and sine; 0 where there are none.
+    turn: [f64; 2],
     /// Whether any of its cells is linear, and any quadratic.
     has_linear: bool,
     has_quadratic: bool,
@@ -35,44 +34,51 @@ pub struct PatchSum {
 }
 
 impl PatchSum {
-    /// Adds a cell that fills an `angle` at the vertex (rad).
-    pub fn add_cell(&mut self, angle: f64, is_quadratic: bool) {
-        self.angle += angle;
+    /// Adds a cell with an angle at the vertex, given by its cosine and sine.
+    pub fn add_cell(&mut self, turn: [f64; 2], is_quadratic: bool) {
+        self.add_turn(turn);
         self.has_linear |= !is_quadratic;
         self.has_quadratic |= is_quadratic;
     }
 
     /// Adds the stress (Pa) at a point, given from the vertex on (m).
     pub fn add_sample(&mut self, at: [f64; 2], stress: [f64; COMPONENTS]) {
+        match self.has_quadratic {
+            true => self.add_terms::<TERMS>(at, stress),
+            false => self.add_terms::<LINEAR>(at, stress),
+        }
+    }
+
+    fn add_terms<const N: usize>(&mut self, at: [f64; 2], stress: [f64; COMPONENTS]) {
         let terms = monomials(at);
-        let count = self.terms();
         let mut entry = 0;
-        for (i, a) in terms[..count].iter().enumerate() {
+        for i in 0..N {
             for b in &terms[..=i] {
-                self.gram[entry] += a * b;
+                self.gram[entry] += terms[i] * b;
                 entry += 1;
             }
             for (sum, s) in self.load[i].iter_mut().zip(stress) {
-                *sum += a * s;
+                *sum += terms[i] * s;
             }
         }
     }
 
-    fn terms(&self) -> usize {
-        match self.has_quadratic {
-            true => TERMS,
-            false => LINEAR,
-        }
+    /// Rotations take no arctangent.
+    fn add_turn(&mut self, [cos, sin]: [f64; 2]) {
+        self.turn = match (self.is_empty(), self.turn) {
+            (true, _) => [cos, sin],
+            (false, [c, s]) => [c * cos - s * sin, c * sin + s * cos],
+        };
     }
 
     /// Whether cells surround the vertex.
     pub fn is_inner(&self) -> bool {
-        (self.angle - TAU).abs() < FULL_TURN
+        self.turn[0] > 0.0 && self.turn[1].abs() < FULL_TURN
     }
 
     /// Whether there are any cells.
     pub fn is_empty(&self) -> bool {
-        self.angle == 0.0
+        self.turn == [0.0; 2]
     }
 
     /// The polynomial: quadratic where all cells are, else linear; where the samples
@@ -128,7 +134,9 @@ impl PatchSum {
 
     /// Adds what another block has of the patch.
     pub fn add(&mut self, other: &Self) {
-        self.angle += other.angle;
+        if !other.is_empty() {
+            self.add_turn(other.turn);
+        }
         self.has_linear |= other.has_linear;
         self.has_quadratic |= other.has_quadratic;
         for (a, b) in self.gram.iter_mut().zip(&other.gram) {
@@ -236,7 +244,7 @@ mod tests {
 
     fn patch(degree: usize, points: &[[f64; 2]]) -> PatchSum {
         let mut sum = PatchSum::default();
-        sum.add_cell(TAU, degree > 1);
+        sum.add_cell([1.0, 0.0], degree > 1);
         for &at in points {
             sum.add_sample(at, field(at, degree));
         }
@@ -297,9 +305,7 @@ mod tests {
         for degree in [1, 2] {
             let whole = patch(degree, &POINTS);
             let mut parts = patch(degree, &POINTS[..3]);
-            let mut other = patch(degree, &POINTS[3..]);
-            other.angle = 0.0;
-            parts.add(&other);
+            parts.add(&patch(degree, &POINTS[3..]));
             assert!(parts.is_inner());
             let [a, b] = [whole.fit(), parts.fit()].map(|p| p.at([1e-3, 1e-3]));
             assert!(is_near(a, b));

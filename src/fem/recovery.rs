@@ -138,7 +138,7 @@ impl Recovery {
 }
 
 /// The nodes of a cell's corners.
-pub fn corners(cell: &BlockCell<'_>) -> impl Iterator<Item = usize> + Clone {
+fn corners(cell: &BlockCell<'_>) -> impl Iterator<Item = usize> + Clone {
     cell.nodes()
         .take(cell.kind.corners())
         .map(|node| node as usize)

@@ -9,7 +9,7 @@ use super::block::{Block, BlockCell};
 use super::elasticity::{MAX_DOFS, MAX_NODES, gradients, stiffness_points, strain, stress};
 use super::estimate::{CellError, Compliance};
 use super::patch::{COMPONENTS, PatchSum};
-use super::recovery::{Recovery, corners};
+use super::recovery::Recovery;
 
 /// The stresses of a block.
 #[derive(Clone, Debug)]
@@ -46,25 +46,32 @@ impl BlockStress {
         present.sort_unstable();
         present.dedup();
         patches.clear();
-        patches.resize(block.nodes() * present.len(), PatchSum::default());
+        patches.resize_with(block.nodes() * present.len(), PatchSum::default);
         let mut cells = Vec::with_capacity(block.subdomain.cells.len());
         let mut local = LocalCell::empty();
         for cell in block.cells() {
             local.take(block, &cell, u);
             let material = &materials[cell.material];
-            cells.push(local.mean(material, plane));
+            let mean = local.mean(material, plane);
+            cells.push(mean);
             let Ok(place) = present.binary_search(&cell.material) else {
                 continue;
             };
             let around = &mut patches[place * block.nodes()..][..block.nodes()];
-            for (corner, node) in corners(&cell).enumerate() {
-                around[node].add_cell(local.angle(corner), !cell.kind.is_linear());
+            let corners = &local.nodes[..cell.kind.corners()];
+            for (corner, &node) in corners.iter().enumerate() {
+                around[node].add_cell(local.turn(corner), !cell.kind.is_linear());
             }
             for point in cell.kind.stress_points() {
-                let (at, sigma) = local.at(point, material, plane);
-                for node in corners(&cell) {
-                    let from = &block.points()[node];
-                    around[node].add_sample([at[0] - from[0], at[1] - from[1]], sigma);
+                let at = local.place(point);
+                let sigma = match cell.kind {
+                    // It is the same everywhere.
+                    ElementKind::Triangle3 => mean,
+                    _ => local.stress(point, material, plane),
+                };
+                let [xx, yy, zz, xy, ..] = sigma;
+                for (&node, from) in corners.iter().zip(&local.points) {
+                    around[node].add_sample([at[0] - from[0], at[1] - from[1]], [xx, yy, zz, xy]);
                 }
             }
         }
@@ -135,9 +142,10 @@ impl RecoveredStress {
     }
 }
 
-/// A cell with its coordinates and displacements.
+/// A cell with its nodes, their coordinates and displacements.
 struct LocalCell {
     kind: ElementKind,
+    nodes: Vec<usize>,
     points: Vec<[f64; 3]>,
     u: Vec<f64>,
 }
@@ -147,6 +155,7 @@ impl LocalCell {
     fn empty() -> Self {
         Self {
             kind: ElementKind::Triangle3,
+            nodes: Vec::with_capacity(MAX_NODES),
             points: Vec::with_capacity(MAX_NODES),
             u: Vec::with_capacity(MAX_DOFS),
         }
@@ -154,9 +163,11 @@ impl LocalCell {
 
     fn take(&mut self, block: &Block, cell: &BlockCell<'_>, u: &[f64]) {
         self.kind = cell.kind;
+        self.nodes.clear();
         self.points.clear();
         self.u.clear();
         for node in cell.nodes().map(|node| node as usize) {
+            self.nodes.push(node);
             self.points.push(block.points()[node]);
             (self.u).extend_from_slice(&u[block.dim * node..block.dim * (node + 1)]);
         }
@@ -175,25 +186,24 @@ impl LocalCell {
         sum.map(|s| s / area)
     }
 
-    /// Place and stress at a point.
-    fn at(
-        &self,
-        point: &TabulatedPoint,
-        material: &Material,
-        plane: PlaneState,
-    ) -> ([f64; 2], [f64; COMPONENTS]) {
+    /// Where a point is (m).
+    fn place(&self, point: &TabulatedPoint) -> [f64; 2] {
         let mut at = [0.0; 2];
         for (n, x) in point.shape.iter().zip(&self.points) {
             at[0] += n * x[0];
             at[1] += n * x[1];
         }
-        let strain = strain(&gradients(point, &self.points), &self.u);
-        let [xx, yy, zz, xy, ..] = stress(material, plane, &strain);
-        (at, [xx, yy, zz, xy])
+        at
     }
 
-    /// The angle between the edges at a corner (rad).
-    fn angle(&self, corner: usize) -> f64 {
+    /// The stress at a point.
+    fn stress(&self, point: &TabulatedPoint, material: &Material, plane: PlaneState) -> [f64; 6] {
+        let strain = strain(&gradients(point, &self.points), &self.u);
+        stress(material, plane, &strain)
+    }
+
+    /// Cosine and sine of the angle between the edges at a corner.
+    fn turn(&self, corner: usize) -> [f64; 2] {
         let edges = self.kind.facets();
         let vertex = self.points[corner];
         let tangent = |other: usize, edge: &[usize]| {
@@ -213,6 +223,9 @@ impl LocalCell {
         );
         let out = tangent(after[1], after);
         let back = tangent(before[0], before);
-        (out[0] * back[1] - out[1] * back[0]).atan2(out[0] * back[0] + out[1] * back[1])
+        let cos = out[0] * back[0] + out[1] * back[1];
+        let sin = out[0] * back[1] - out[1] * back[0];
+        let length = (cos * cos + sin * sin).sqrt();
+        [cos / length, sin / length]
     }
 }
