@@ -69,10 +69,9 @@ pub struct CommandLine {
           required_unless_present_any = ["example", "list_examples", "info", "generate"])]
     pub scene: Option<PathBuf>,
 
-    /// Number of subdomains, those in contact among them [default: by size and contacts]
+    /// Number of subdomains [default: by size]
     ///
-    /// Without it there are as few as contacts and materials ask for up to 20 000 dofs; beyond, one for 2000
-    /// dofs of the cells away from contacts, and one for each contact patch.
+    /// Without it each has about 2000 dofs.
     #[arg(
         short = 'n',
         long,

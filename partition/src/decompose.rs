@@ -53,7 +53,8 @@ impl Decomposition {
                 _ => Ok(Self::of_cells(model, subdomain.clone(), found)),
             };
         }
-        let graph = Graph::new(model, &Topology::new(&model.mesh));
+        let topology = Topology::new(&model.mesh);
+        let graph = Graph::new(model, &topology);
         let wanted = match count {
             // Halves of halves of a mesh come out between this and half of it.
             None => Wanted::Dofs(std::f64::consts::SQRT_2 * DOFS),

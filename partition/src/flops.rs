@@ -1,5 +1,13 @@
 //! Flops: what factorizations cost, estimated before they are made.
 
+/// Cost of an unknown of a subdomain beside its elimination, in flops.
+const PER_UNKNOWN: f64 = 3e4;
+/// Cost of an entry of a subdomain's S beside its elimination, in flops: its fronts are small, and what is kept
+/// goes through many of them.
+const PER_ENTRY_OF_SUBDOMAIN: f64 = 900.0;
+/// Cost of an entry of a front beside its elimination, in flops.
+const PER_ENTRY_OF_FRONT: f64 = 40.0;
+
 /// The dense matrix of an inner node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Front {
@@ -14,6 +22,18 @@ impl Front {
     pub fn flops(&self) -> f64 {
         let (e, b) = (self.eliminated as f64, self.kept as f64);
         e * e * e / 3.0 + e * e * b + e * b * b
+    }
+
+    /// Estimated time of its factorization, in flops: its arithmetic, and what goes with it.
+    pub fn time(&self) -> f64 {
+        PER_ENTRY_OF_FRONT * ((self.eliminated + self.kept) as f64).powi(2) + self.flops()
+    }
+
+    /// The same where it stands for a subdomain that is condensed.
+    pub fn time_to_condense(&self) -> f64 {
+        let (eliminated, kept) = (self.eliminated as f64, self.kept as f64);
+        let beside = PER_UNKNOWN * eliminated + PER_ENTRY_OF_SUBDOMAIN * kept * kept;
+        beside + condensation(eliminated, kept)
     }
 }
 

@@ -10,6 +10,7 @@ use std::ptr::null_mut;
 use clap::{CommandFactory, Parser};
 use contact_dd_partition::command_line::{CommandLine, MANUAL};
 use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::decompose::hierarchy::Work;
 use contact_dd_partition::error::{InputError, OutputError};
 use contact_dd_partition::example::{self, EXAMPLES};
 use contact_dd_partition::info::Info;
@@ -157,7 +158,7 @@ fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
     Ok(Some(Source {
         scene: Scene::parse(example.scene)?,
         mesh,
-        subdomains: args.subdomains.or(Some(example.subdomains)),
+        subdomains: (args.subdomains).or((args.refine == 0).then_some(example.subdomains)),
         output: output(args, Path::new(example.name)),
     }))
 }
@@ -195,9 +196,12 @@ fn report(problem: &Problem, output: &Path) {
     }
     let output = output.display();
     say(&format!("written       {output}"));
-    say(&format!(
-        "next          mpirun -n 2 contact-dd-mpi {output}"
-    ));
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let launcher = match Work::new(&problem.catalog).useful_ranks().min(cores) {
+        1 => String::new(),
+        ranks => format!("mpirun -n {ranks} "),
+    };
+    say(&format!("next          {launcher}contact-dd-mpi {output}"));
 }
 
 /// Prints a line. Where nobody reads any more, as behind `| head`, there is nobody to tell.

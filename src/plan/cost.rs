@@ -10,14 +10,6 @@ use contact_dd_partition::problem::tree::Tree;
 use super::Plan;
 use super::cluster::Merging;
 
-/// Cost of an unknown of a block beside its elimination, in flops.
-const PER_UNKNOWN: f64 = 3e4;
-/// Cost of an entry of a block's S beside its elimination, in flops: a block's fronts are small, and
-/// what is kept goes through many of them.
-const PER_ENTRY_OF_BLOCK: f64 = 900.0;
-/// Cost of an entry of a front beside its elimination, in flops.
-const PER_ENTRY_OF_FRONT: f64 = 40.0;
-
 /// Active sets that it takes, about.
 const ACTIVE_SETS: f64 = 8.0;
 
@@ -37,16 +29,10 @@ const PER_PAIR_OF_CONDITIONS: f64 = 33.0;
 /// Estimated time of node v of the tree, in flops: its arithmetic, and what goes with it.
 pub(super) fn weight(tree: &Tree, v: usize, dim: usize, merging: Merging) -> f64 {
     let front = front(tree, v, dim, merging);
-    let (eliminated, kept) = (front.eliminated as f64, front.kept as f64);
-    let beside = match v < tree.subdomains {
-        true => PER_UNKNOWN * eliminated + PER_ENTRY_OF_BLOCK * kept * kept,
-        false => PER_ENTRY_OF_FRONT * (eliminated + kept).powi(2),
-    };
-    let flops = match v < tree.subdomains {
-        true => condensation(eliminated, kept),
-        false => front.flops(),
-    };
-    beside + flops
+    match v < tree.subdomains {
+        true => front.time_to_condense(),
+        false => front.time(),
+    }
 }
 
 /// The front of node v, which keeps all normal jumps under it unless active sets are frozen.

@@ -8,17 +8,33 @@ use crate::flops::{Front, condensation};
 /// Graphs of up to so many vertices are cut in all ways, and the best is taken.
 const EXHAUSTIVE: usize = 8;
 
-/// How far a side may be from its share of the dofs, as a part of all.
-const SLACK: f64 = 0.06;
+/// Graphs of more vertices are cut by clumps of them first.
+pub(super) const LARGE: usize = 8000;
+
+/// Vertices of a clump.
+const CLUMP: usize = 8;
+
+/// Layers of clumps on each side of a cut among which it is made shorter.
+const LAYERS: u32 = 2;
 
 /// Vertices by which a direction is judged, at most; some more where strides don't come out even.
 const SAMPLE: usize = 1024;
 
 /// How many of the directions in which a set may be cut are tried.
-const TRIED: usize = 2;
+const TRIED: usize = 4;
 
-/// What an uneven cut costs, as a part of the flops under it.
-const PRICE: f64 = 0.1;
+/// What is asked of a cut.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Aim {
+    /// The part of the dofs that should be on the left.
+    pub share: f64,
+    /// How far from it it may be.
+    pub slack: f64,
+    /// What being that far costs, as a part of the flops under the cut.
+    pub price: f64,
+    /// Whether METIS is asked, too.
+    pub with_metis: bool,
+}
 
 /// A cut, the better the lower its score.
 struct Cut {
@@ -27,33 +43,77 @@ struct Cut {
 }
 
 /// Cuts a connected graph of two vertices at least so that the front that merges both sides, and what is
-/// under it, cost little; on the left there will be about `share` of the dofs. METIS is asked, too, where
-/// `with_metis`. Returns whether each vertex is on the left.
-pub(super) fn bisect(graph: &Graph, share: f64, with_metis: bool) -> Vec<bool> {
+/// under it, cost little. Returns whether each vertex is on the left.
+///
+/// A large graph is cut by clumps of its vertices first, and the cut is made shorter among those around it.
+pub(super) fn bisect(graph: &Graph, aim: Aim) -> Vec<bool> {
     let count = graph.len();
-    let mut candidates: Vec<Vec<bool>> = Vec::new();
-    if count <= EXHAUSTIVE {
-        // Without a share other than one half the sides of a cut may change places.
+    let in_halves = || (0..count).map(|i| i < count.div_ceil(2)).collect();
+    let candidates: Vec<Vec<bool>> = if count > LARGE {
+        let (clump, clumps) = graph.clumps(CLUMP);
+        let coarse = graph.contracted(&clump, clumps);
+        let left = bisect(&coarse, aim);
+        refined(graph, &coarse, &clump, &left).into()
+    } else if count > EXHAUSTIVE {
+        let mut candidates = geometric(graph, aim);
         candidates.extend(
-            (1..(1usize << count) - 1).map(|way| (0..count).map(|i| way >> i & 1 == 1).collect()),
+            aim.with_metis
+                .then(|| metis::bisection(graph, aim.share))
+                .flatten(),
         );
+        candidates
     } else {
-        candidates.extend(geometric(graph, share));
-        candidates.extend(with_metis.then(|| metis::bisection(graph, share)).flatten());
-    }
+        let ways = 1..(1usize << count) - 1;
+        ways.map(|way| (0..count).map(|i| way >> i & 1 == 1).collect())
+            .collect()
+    };
     let cuts = candidates
         .into_iter()
-        .filter_map(|left| Cut::new(graph, left, share));
+        .filter_map(|left| Cut::new(graph, left, aim));
     let best = cuts.min_by(|a, b| a.score.total_cmp(&b.score));
-    best.map_or_else(
-        || (0..count).map(|i| i < count.div_ceil(2)).collect(),
-        |cut| cut.left,
-    )
+    best.map_or_else(in_halves, |cut| cut.left)
+}
+
+/// The cheapest cuts near one between clumps.
+fn refined(graph: &Graph, coarse: &Graph, clump: &[u32], left: &[bool]) -> [Vec<bool>; 2] {
+    let mut distance = vec![u32::MAX; coarse.len()];
+    let is_at_cut = |vertex: usize| {
+        let edges = coarse.edges(vertex).iter();
+        edges
+            .clone()
+            .any(|edge| left[edge.to as usize] != left[vertex])
+    };
+    let mut near: Vec<usize> = (0..coarse.len())
+        .filter(|&vertex| is_at_cut(vertex))
+        .collect();
+    near.iter().for_each(|&vertex| distance[vertex] = 1);
+    let mut at = 0;
+    while at < near.len() {
+        let vertex = near[at];
+        at += 1;
+        if distance[vertex] >= LAYERS {
+            continue;
+        }
+        for edge in coarse.edges(vertex) {
+            let to = edge.to as usize;
+            if distance[to] == u32::MAX {
+                distance[to] = distance[vertex] + 1;
+                near.push(to);
+            }
+        }
+    }
+    let place = |&clump: &u32| match (distance[clump as usize], left[clump as usize]) {
+        (u32::MAX, true) => Place::Left,
+        (u32::MAX, false) => Place::Right,
+        _ => Place::Between,
+    };
+    let places: Vec<Place> = clump.iter().map(place).collect();
+    cheapest_cuts(graph, &places)
 }
 
 impl Cut {
     /// Judges a cut; `None` where a side is empty.
-    fn new(graph: &Graph, left: Vec<bool>, share: f64) -> Option<Self> {
+    fn new(graph: &Graph, left: Vec<bool>, aim: Aim) -> Option<Self> {
         let mut dofs = [0.0; 2];
         let mut outside = [0; 2];
         let mut cut = 0;
@@ -80,19 +140,19 @@ impl Cut {
             })
             .iter()
             .sum();
-        let uneven = (dofs[0] / (dofs[0] + dofs[1]) - share).abs() / share.min(1.0 - share);
-        let score = front.flops() + below * (1.0 + PRICE * uneven);
+        let uneven = (dofs[0] / (dofs[0] + dofs[1]) - aim.share).abs() / aim.slack;
+        let score = front.flops() + below * (1.0 + aim.price * uneven);
         (dofs[0] > 0.0 && dofs[1] > 0.0).then_some(Self { left, score })
     }
 }
 
 /// The cheapest cuts across the best of several directions.
-fn geometric(graph: &Graph, share: f64) -> Vec<Vec<bool>> {
+fn geometric(graph: &Graph, aim: Aim) -> Vec<Vec<bool>> {
     let stride = graph.len().div_ceil(SAMPLE);
     let sample: Vec<usize> = (0..graph.len()).step_by(stride).collect();
     let mut slabs: Vec<(u64, Slab)> = directions(graph, &sample)
         .into_iter()
-        .map(|direction| Slab::new(graph, &sample, direction, share))
+        .map(|direction| Slab::new(graph, &sample, direction, aim))
         .map(|slab| (slab.price(graph, &sample), slab))
         .collect();
     slabs.sort_by_key(|&(price, _)| price);
@@ -137,12 +197,12 @@ struct Slab {
 }
 
 impl Slab {
-    fn new(graph: &Graph, sample: &[usize], direction: [f32; 3], share: f64) -> Self {
+    fn new(graph: &Graph, sample: &[usize], direction: [f32; 3], aim: Aim) -> Self {
         let along = |&vertex: &usize| (along(direction, graph.centres[vertex]), graph.dofs[vertex]);
         let mut places: Vec<(f32, f32)> = sample.iter().map(along).collect();
         places.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         let all: f64 = places.iter().map(|&(_, dofs)| f64::from(dofs)).sum();
-        let slack = SLACK.min(share).min(1.0 - share);
+        let Aim { share, slack, .. } = aim;
         let mut sums = [share - slack, share, share + slack].map(|share| share * all);
         let mut bounds = [f32::INFINITY; 3];
         for (place, dofs) in places {

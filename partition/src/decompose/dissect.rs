@@ -1,14 +1,30 @@
 //! Recursive bisection: the tree of the cuts.
 
-use super::bisect::bisect;
+use super::bisect::{Aim, LARGE, bisect};
 use super::graph::Graph;
 use crate::problem::Hierarchy;
 
-/// Vertices of all graphs that METIS is asked to cut, together; it takes some microseconds for each.
-const METIS_VERTICES: usize = 150_000;
+/// Vertices, or clumps of them, of all graphs that METIS is asked to cut; it takes some microseconds for each.
+const METIS_VERTICES: usize = 300_000;
+
+/// How much larger than with pieces left whole the largest of a number of sets may become by a cut through them.
+const CROOKED: f64 = 1.2;
+
+/// Levels that many ranks can work on side by side.
+const PARALLEL_LEVELS: usize = 4;
+
+/// How far from its share of the dofs a side may be, and what being that far costs as a part of the flops under a
+/// cut: where the user says how many subdomains there should be, on levels with work for many ranks, and below.
+const EXACT: (f64, f64) = (0.03, 1.0);
+const ABOVE: (f64, f64) = (0.08, 0.1);
+const BELOW: (f64, f64) = (0.15, 0.02);
 
 /// Vertices from which on both sides of a cut are dissected at the same time.
 const PARALLEL: usize = 50_000;
+
+/// Vertices below which what a cut leaves apart from the rest of a side goes to the other one; in larger sets
+/// later cuts see to it.
+const TIDIED: usize = 50_000;
 
 /// Where a dissection ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,10 +92,10 @@ impl Branch {
 /// Dissects a graph of one vertex at least. Of [`Wanted::Sets`] there are at least as many as pieces, and at most
 /// as many as vertices.
 pub(super) fn dissect(graph: Graph, wanted: Wanted) -> Branch {
-    branch(graph, wanted, METIS_VERTICES)
+    branch(graph, wanted, 0, METIS_VERTICES)
 }
 
-fn branch(graph: Graph, wanted: Wanted, for_metis: usize) -> Branch {
+fn branch(graph: Graph, wanted: Wanted, level: usize, for_metis: usize) -> Branch {
     let is_leaf = match wanted {
         Wanted::Dofs(most) => graph.len() == 1 || graph.size() <= most,
         Wanted::Sets(count) => count == 1,
@@ -87,36 +103,47 @@ fn branch(graph: Graph, wanted: Wanted, for_metis: usize) -> Branch {
     if is_leaf {
         return leaf(&graph);
     }
-    let with_metis = graph.len() <= for_metis;
-    let share = match wanted {
-        Wanted::Sets(count) => (count / 2) as f64 / count as f64,
-        Wanted::Dofs(_) => 0.5,
+    let asked = graph.len().min(LARGE);
+    let with_metis = asked <= for_metis;
+    let (share, slack, price) = match wanted {
+        Wanted::Sets(count) => {
+            let share = (count / 2) as f64 / count as f64;
+            (share, EXACT.0.min(share / 2.0), EXACT.1)
+        }
+        Wanted::Dofs(_) if level < PARALLEL_LEVELS => (0.5, ABOVE.0, ABOVE.1),
+        Wanted::Dofs(_) => (0.5, BELOW.0, BELOW.1),
     };
-    let left = sides(&graph, share, wanted, with_metis);
-    let rest = if with_metis {
-        for_metis - graph.len()
-    } else {
-        for_metis
-    } / 2;
+    let aim = Aim {
+        share,
+        slack,
+        price,
+        with_metis,
+    };
+    let left = sides(&graph, aim, wanted);
+    let rest = (for_metis - if with_metis { asked } else { 0 }) / 2;
     let is_large = graph.len() >= PARALLEL;
-    let all = graph.size();
     let [a, b] = graph.halves(&left);
     let is_joined = a.outside.iter().chain(&b.outside).any(|&weight| weight > 0);
     let wanted = match wanted {
         Wanted::Sets(count) => {
-            let share = (count as f64 * a.size() / all).round() as usize;
-            let least = a.pieces().1.max(count.saturating_sub(b.len()));
-            let most = a.len().min(count - b.pieces().1);
+            let (of_a, of_b) = (a.sizes_of_pieces(), b.sizes_of_pieces());
+            let shares = allotted(&[&of_a[..], &of_b].concat(), count);
+            let share = shares[..of_a.len()].iter().sum::<usize>();
+            let least = of_a.len().max(count.saturating_sub(b.len()));
+            let most = a.len().min(count - of_b.len());
             let of_a = share.clamp(least, most);
             [Wanted::Sets(of_a), Wanted::Sets(count - of_a)]
         }
         dofs => [dofs; 2],
     };
     let sides = match is_large {
-        false => vec![branch(a, wanted[0], rest), branch(b, wanted[1], rest)],
+        false => vec![
+            branch(a, wanted[0], level + 1, rest),
+            branch(b, wanted[1], level + 1, rest),
+        ],
         true => std::thread::scope(|scope| {
-            let other = scope.spawn(|| branch(b, wanted[1], rest));
-            let one = branch(a, wanted[0], rest);
+            let other = scope.spawn(|| branch(b, wanted[1], level + 1, rest));
+            let one = branch(a, wanted[0], level + 1, rest);
             match other.join() {
                 Ok(other) => vec![one, other],
                 Err(panic) => std::panic::resume_unwind(panic),
@@ -144,27 +171,56 @@ fn leaf(graph: &Graph) -> Branch {
 
 /// The sides of a cut: parts of the graph that nothing ties to each other, pieces that are tied only by
 /// contacts, or what [`bisect`] finds.
-fn sides(graph: &Graph, share: f64, wanted: Wanted, with_metis: bool) -> Vec<bool> {
+fn sides(graph: &Graph, aim: Aim, wanted: Wanted) -> Vec<bool> {
     let (part, count) = graph.parts(|_, _| true);
     if count > 1 {
-        return whole(graph, &part, count, share);
+        return whole(graph, &part, count, aim);
     }
-    let left = tidied(graph, bisect(graph, share, with_metis));
+    let mut left = bisect(graph, aim);
     let Wanted::Sets(sets) = wanted else {
-        return left;
+        return match graph.len() < TIDIED {
+            true => tidied(graph, left),
+            false => left,
+        };
     };
-    let (_, pieces) =
-        graph.parts(|vertex, edge| edge.is_facet() && left[vertex] == left[edge.to as usize]);
-    if pieces <= sets {
+    left = tidied(graph, left);
+    let (piece, count) = graph.pieces();
+    if count == 1 {
         return left;
     }
-    let (piece, count) = graph.pieces();
-    whole(graph, &piece, count, share)
+    let together = |vertex: usize, to: u32| left[vertex] == left[to as usize];
+    let (part, parts) = graph.parts(|vertex, edge| edge.is_facet() && together(vertex, edge.to));
+    let largest = |labels: &[u32], count: usize| {
+        let sizes = graph.sizes_of(labels, count);
+        let shares = allotted(&sizes, sets);
+        let means = sizes.iter().zip(shares);
+        means.fold(0.0, |most: f64, (size, share)| {
+            most.max(size / share as f64)
+        })
+    };
+    match parts > sets || largest(&part, parts) > CROOKED * largest(&piece, count) {
+        true => whole(graph, &piece, count, aim),
+        false => left,
+    }
+}
+
+/// How many of `count` sets each of several pieces gets: one, and then always one more the piece whose sets are
+/// the largest.
+fn allotted(sizes: &[f64], count: usize) -> Vec<usize> {
+    let mut shares = vec![1; sizes.len()];
+    for _ in sizes.len()..count {
+        let size = |i: usize| sizes[i] / shares[i] as f64;
+        let next = (0..sizes.len()).max_by(|&a, &b| size(a).total_cmp(&size(b)).then(b.cmp(&a)));
+        if let Some(next) = next {
+            shares[next] += 1;
+        }
+    }
+    shares
 }
 
 /// The sides of a cut that leaves the parts with equal labels whole.
-fn whole(graph: &Graph, labels: &[u32], count: usize, share: f64) -> Vec<bool> {
-    let left = bisect(&graph.contracted(labels, count), share, true);
+fn whole(graph: &Graph, labels: &[u32], count: usize, aim: Aim) -> Vec<bool> {
+    let left = bisect(&graph.contracted(labels, count), aim);
     labels.iter().map(|&label| left[label as usize]).collect()
 }
 

@@ -1,7 +1,6 @@
 //! The graph that is dissected: its vertices are cells, or the subdomains that a scene prescribes; its edges
 //! are facets, and contact points that tie the cells on both sides to each other.
 
-use crate::disjoint_sets::DisjointSets;
 use crate::lists::Lists;
 use crate::mesh::topology::Topology;
 use crate::model::Model;
@@ -88,16 +87,22 @@ impl Graph {
         }
         let mut ties = ties(model);
         ties.extend(hinges(model, topology));
-        let facets = (0..mesh.cells.len()).flat_map(|cell| {
-            let weight = facet_weight(model, cell);
-            let others = topology.neighbours(cell).iter();
-            others.map(move |&next| (cell as u32, Edge::new(next, weight, true)))
-        });
         let ties = ties.iter().flat_map(|&(a, b, weight)| {
             [(a, b), (b, a)].map(|(from, to)| (from, Edge::new(to, weight, false)))
         });
-        let mut edges = Lists::new(mesh.cells.len(), facets.chain(ties));
-        edges.sort();
+        let ties = Lists::new(mesh.cells.len(), ties);
+        let mut edges = Lists::with_capacity(mesh.cells.len(), topology.pairs() + ties.items());
+        let mut list = Vec::new();
+        for cell in 0..mesh.cells.len() {
+            let weight = facet_weight(model, cell);
+            let facets = topology.neighbours(cell).iter();
+            list.extend(facets.map(|&next| Edge::new(next, weight, true)));
+            if !ties.of(cell).is_empty() {
+                list.extend(ties.of(cell));
+                list.sort_unstable();
+            }
+            edges.push(list.drain(..));
+        }
         Self {
             dim: mesh.dim,
             ids: (0..mesh.cells.len() as u32).collect(),
@@ -116,6 +121,21 @@ impl Graph {
     /// Dofs of all vertices.
     pub fn size(&self) -> f64 {
         self.dofs.iter().map(|&dofs| f64::from(dofs)).sum()
+    }
+
+    /// Dofs of all vertices of each of `count` labels.
+    pub fn sizes_of(&self, labels: &[u32], count: usize) -> Vec<f64> {
+        let mut sizes = vec![0.0; count];
+        for (&label, &dofs) in labels.iter().zip(&self.dofs) {
+            sizes[label as usize] += f64::from(dofs);
+        }
+        sizes
+    }
+
+    /// Dofs of every piece.
+    pub fn sizes_of_pieces(&self) -> Vec<f64> {
+        let (piece, count) = self.pieces();
+        self.sizes_of(&piece, count)
     }
 
     /// The edges of a vertex.
@@ -185,27 +205,33 @@ impl Graph {
         for (centre, &dofs) in centres.iter_mut().zip(&dofs) {
             *centre = centre.map(|c: f32| c / dofs);
         }
-        let across = (0..self.len()).flat_map(|vertex| {
-            let label = labels[vertex];
-            let edges = self.edges(vertex).iter();
-            let edges = edges.map(move |edge| {
+        let members = Lists::new(count, labels.iter().copied().zip(0u32..));
+        let mut edges = Lists::with_capacity(count, 6 * count);
+        let mut list: Vec<Edge> = Vec::new();
+        let mut place = vec![u32::MAX; count];
+        for (own, members) in (0..).zip(members.iter()) {
+            for edge in members
+                .iter()
+                .flat_map(|&vertex| self.edges(vertex as usize))
+            {
                 let to = labels[edge.to as usize];
-                (label, Edge { to, ..*edge })
-            });
-            edges.filter(|&(label, edge)| edge.to != label)
-        });
-        let mut all = Lists::new(count, across);
-        all.sort();
-        let alike = |a: &Edge, b: &Edge| (a.to, a.is_facet()) == (b.to, b.is_facet());
-        let mut edges = Lists::with_capacity(count, 0);
-        for list in all.iter() {
-            let mut list = list.to_vec();
-            list.sort_unstable_by_key(|edge| (edge.to, edge.is_facet()));
-            let added_up = list.chunk_by(alike).map(|same| {
-                let weight = same.iter().map(|edge| edge.weight()).sum();
-                Edge::new(same[0].to, weight, same[0].is_facet())
-            });
-            edges.push(added_up);
+                let known = place[to as usize];
+                if to == own {
+                    continue;
+                }
+                match list.get_mut(known as usize).filter(|known| known.to == to) {
+                    Some(known) => {
+                        let is_facet = known.is_facet() || edge.is_facet();
+                        *known = Edge::new(to, known.weight() + edge.weight(), is_facet);
+                    }
+                    None => {
+                        place[to as usize] = list.len() as u32;
+                        list.push(Edge { to, ..*edge });
+                    }
+                }
+            }
+            list.sort_unstable();
+            edges.push(list.drain(..));
         }
         Self {
             dim: self.dim,
@@ -217,27 +243,67 @@ impl Graph {
         }
     }
 
+    /// Clumps of about `size` neighbouring vertices each: that of every vertex, and their number.
+    pub fn clumps(&self, size: usize) -> (Vec<u32>, usize) {
+        let mut of = vec![u32::MAX; self.len()];
+        let mut count = 0;
+        let mut members = Vec::with_capacity(size);
+        for first in 0..self.len() {
+            if of[first] != u32::MAX {
+                continue;
+            }
+            members.clear();
+            members.push(first);
+            of[first] = count;
+            let mut at = 0;
+            while at < members.len() && members.len() < size {
+                for edge in self.edges(members[at]) {
+                    let to = edge.to as usize;
+                    if of[to] == u32::MAX && members.len() < size {
+                        of[to] = count;
+                        members.push(to);
+                    }
+                }
+                at += 1;
+            }
+            // What is left between others joins one of them.
+            if members.len() < size / 2 {
+                let others = members.iter().flat_map(|&vertex| self.edges(vertex));
+                let other = others
+                    .map(|edge| of[edge.to as usize])
+                    .find(|&other| other != count && other != u32::MAX);
+                if let Some(other) = other {
+                    members.iter().for_each(|&vertex| of[vertex] = other);
+                    continue;
+                }
+            }
+            count += 1;
+        }
+        (of, count as usize)
+    }
+
     /// For every vertex the part of the graph that it hangs together with by edges that `holds`; parts are
     /// numbered in the order of their first vertex. And their number.
     pub fn parts(&self, holds: impl Fn(usize, &Edge) -> bool) -> (Vec<u32>, usize) {
-        let mut sets = DisjointSets::new(self.len());
-        for vertex in 0..self.len() {
-            for edge in self.edges(vertex) {
-                if (edge.to as usize) < vertex && holds(vertex, edge) {
-                    sets.unite(vertex as u32, edge.to);
+        let mut of = vec![u32::MAX; self.len()];
+        let mut count = 0;
+        let mut stack = Vec::new();
+        for first in 0..self.len() {
+            if of[first] != u32::MAX {
+                continue;
+            }
+            of[first] = count;
+            stack.push(first);
+            while let Some(vertex) = stack.pop() {
+                for edge in self.edges(vertex) {
+                    let to = edge.to as usize;
+                    if of[to] == u32::MAX && holds(vertex, edge) {
+                        of[to] = count;
+                        stack.push(to);
+                    }
                 }
             }
-        }
-        let mut of = Vec::with_capacity(self.len());
-        let mut count = 0;
-        for vertex in 0..self.len() {
-            // A set is known by its smallest member, which was there before.
-            let root = sets.find(vertex as u32) as usize;
-            of.push(match root == vertex {
-                true => count,
-                false => of[root],
-            });
-            count += u32::from(root == vertex);
+            count += 1;
         }
         (of, count as usize)
     }

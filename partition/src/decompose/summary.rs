@@ -94,6 +94,12 @@ impl fmt::Display for Summary<'_> {
             fronts.max().unwrap_or(0),
             work.uneven_halves
         )?;
+        writeln!(
+            f,
+            "ranks         {} are useful, best possible speed-up {:.1}",
+            work.useful_ranks(),
+            work.speed_up
+        )?;
         writeln!(f, "contact       {} conditions", catalog.conditions())?;
         for (contact, pairing) in catalog.contacts.iter().zip(self.pairings()) {
             let (points, name) = (contact.conditions, &contact.name);

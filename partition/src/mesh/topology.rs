@@ -5,11 +5,14 @@ use crate::element::Elements;
 use crate::error::InputError;
 use crate::lists::Lists;
 
-/// Nodes that tell facets apart: those beyond lie between them.
-const CORNERS: usize = 4;
+/// Nodes that tell facets apart: one of four corners has no others with three of them.
+const CORNERS: usize = 3;
 
 /// The smallest nodes of a facet, ascending.
 type Key = [u32; CORNERS];
+
+/// A key without the smallest node.
+type Rest = [u32; CORNERS - 1];
 
 /// A facet of a cell: the cell and the facet's place in [`crate::element::reference::ReferenceElement::facets`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -33,8 +36,8 @@ impl CellFacet {
 /// The facets of cells, those of the same nodes beside each other.
 #[derive(Clone, Debug)]
 pub struct Facets {
-    /// By their smallest node.
-    by_node: Lists<(Key, CellFacet)>,
+    /// By their smallest node, with the other nodes of their keys.
+    by_node: Lists<(Rest, CellFacet)>,
 }
 
 impl Facets {
@@ -43,10 +46,10 @@ impl Facets {
         let all = cells.iter().enumerate().flat_map(|(cell, (kind, nodes))| {
             let facets = kind.facets().iter().enumerate();
             facets.map(move |(facet, (_, local))| {
-                let key = key(local.iter().map(|&i| nodes[i]));
+                let [first, rest @ ..] = key(local.iter().map(|&i| nodes[i]));
                 let cell = cell as u32;
                 let facet = facet as u8;
-                (key[0], (key, CellFacet { cell, facet }))
+                (first, (rest, CellFacet { cell, facet }))
             })
         });
         let mut by_node = Lists::new(nodes, all);
@@ -55,7 +58,7 @@ impl Facets {
     }
 
     /// The facets of the same nodes, those of a place after the other.
-    fn places(&self) -> impl Iterator<Item = &[(Key, CellFacet)]> + Clone {
+    fn places(&self) -> impl Iterator<Item = &[(Rest, CellFacet)]> + Clone {
         let lists = self.by_node.iter();
         lists.flat_map(|list| list.chunk_by(|a, b| a.0 == b.0))
     }
@@ -76,7 +79,11 @@ impl Facets {
     /// Two cells on the same side of an edge that they share, if there are any: one of them is
     /// turned over, or they overlap.
     pub fn overlap(&self, cells: &Elements) -> Option<[CellFacet; 2]> {
-        let start = |of: &CellFacet| of.nodes(cells)[0];
+        let start = |of: &CellFacet| {
+            let cell = of.cell as usize;
+            let (_, local) = cells.kind(cell).facets()[of.facet as usize];
+            cells.nodes_of(cell)[local[0]]
+        };
         self.places().find_map(|same| {
             // Of three cells two are on one side.
             let count = same.len().min(3);
@@ -175,14 +182,14 @@ impl Topology {
 
     /// The facets of cells that have exactly these nodes, in any order.
     pub fn cells_at(&self, facet_nodes: &[u32]) -> Vec<CellFacet> {
-        let key = key(facet_nodes.iter().copied());
+        let [first, rest @ ..] = key(facet_nodes.iter().copied());
         let by_node = &self.facets.by_node;
-        let list = match key[0] as usize {
+        let list = match first as usize {
             node if node < by_node.len() => by_node.of(node),
             _ => &[],
         };
-        let start = list.partition_point(|(other, _)| *other < key);
-        let same = list[start..].partition_point(|(other, _)| *other == key);
+        let start = list.partition_point(|(other, _)| *other < rest);
+        let same = list[start..].partition_point(|(other, _)| *other == rest);
         let found = list[start..start + same].iter();
         found.map(|&(_, facet)| facet).collect()
     }
@@ -198,6 +205,11 @@ impl Topology {
     /// The cells that share a facet with `cell`, ascending.
     pub fn neighbours(&self, cell: usize) -> &[u32] {
         self.neighbours.of(cell)
+    }
+
+    /// Number of cells that share a facet with another, counted for every facet.
+    pub fn pairs(&self) -> usize {
+        self.neighbours.items()
     }
 
     /// For every cell the piece of the mesh that it hangs together with across facets; pieces are

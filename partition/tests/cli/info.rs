@@ -90,7 +90,7 @@ fn the_program_tells_what_is_in_the_file() {
     for line in [
         "title         Loaded granite block with cracks",
         "plane         strain",
-        "subdomains    8, 4 in contact",
+        "subdomains    8, 6 in contact",
         "contact       48 conditions",
         "                  24 on left crack, node by node",
         "gap           0 m on left crack",

@@ -26,17 +26,19 @@ impl Bodies {
                 sets.unite(pair[0], pair[1]);
             }
         }
-        let mut body_of_root = BTreeMap::new();
+        let mut body_of_root = vec![usize::MAX; model.mesh.points.len()];
         let mut of_cell = Vec::with_capacity(cells.len());
         let mut scene_bodies: Vec<BTreeSet<u32>> = Vec::new();
         for (cell, (_, nodes)) in cells.iter().enumerate() {
-            let next = body_of_root.len();
-            let body = *body_of_root.entry(sets.find(nodes[0])).or_insert(next);
-            if body == next {
+            let body = &mut body_of_root[sets.find(nodes[0]) as usize];
+            if *body == usize::MAX {
+                *body = scene_bodies.len();
                 scene_bodies.push(BTreeSet::new());
             }
-            scene_bodies[body].insert(model.cell_body[cell]);
-            of_cell.push(body);
+            if !scene_bodies[*body].contains(&model.cell_body[cell]) {
+                scene_bodies[*body].insert(model.cell_body[cell]);
+            }
+            of_cell.push(*body);
         }
         Self {
             names: numbered(scene_bodies.iter().map(|set| {

@@ -12,7 +12,12 @@ pub struct Work {
     /// Estimated work under the heaviest child of the heaviest root, over the mean of all its
     /// children; 1 where there is none.
     pub uneven_halves: f64,
+    /// Best possible speed-up: estimated time of all nodes over that of the costliest way from a leaf to a root.
+    pub speed_up: f64,
 }
+
+/// What doubling the number of ranks must gain.
+const GAIN: f64 = 0.2;
 
 impl Work {
     /// What the hierarchy of `catalog` costs.
@@ -24,7 +29,21 @@ impl Work {
         Self {
             fronts: inner.map(|v| tree.front(v, catalog.dim)).collect(),
             uneven_halves: uneven_halves(&tree, &tree.sums(&costs)),
+            speed_up: speed_up(&tree, catalog.dim),
         }
+    }
+
+    /// The largest useful number of ranks: the next power of 2 would save less than a fifth of the time.
+    ///
+    /// With r ranks that don't wait for each other more than the tree makes them, the work outside of the
+    /// costliest way takes 1/r of its time (Brent 1974).
+    pub fn useful_ranks(&self) -> usize {
+        let time = |ranks: usize| 1.0 + (self.speed_up - 1.0) / ranks as f64;
+        let powers = (0..usize::BITS - 1).map(|power| 1 << power);
+        let last = powers
+            .clone()
+            .find(|&r| time(2 * r) > (1.0 - GAIN) * time(r));
+        last.unwrap_or(1)
     }
 
     /// Flops of all fronts.
@@ -32,6 +51,22 @@ impl Work {
         // The empty sum of floats is −0.
         self.fronts.iter().map(Front::flops).fold(0.0, |a, b| a + b)
     }
+}
+
+fn speed_up(tree: &Tree, dim: usize) -> f64 {
+    let mut all = 0.0;
+    let mut ways = vec![0.0f64; tree.nodes.len()];
+    for v in 0..tree.nodes.len() {
+        let front = tree.front(v, dim);
+        let own = match v < tree.subdomains {
+            true => front.time_to_condense(),
+            false => front.time(),
+        };
+        let children = tree.nodes[v].children.iter().map(|&child| ways[child]);
+        ways[v] = own + children.fold(0.0, f64::max);
+        all += own;
+    }
+    all / ways.into_iter().fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// `below` has the work of every node with all that is under it.
