@@ -49,8 +49,8 @@ value = 1e6
 /// supports, forces in two load steps, a hierarchy, settings and a warning.
 pub fn everything() -> Problem {
     let mesh = Blocks::new()
-        .rectangle("base", [0.0, 2.0], [0.0, 1.0], [6, 3])
-        .rectangle("middle", [0.0, 2.0], [1.0, 2.0], [6, 3])
+        .rectangle("base", [0.0, 2.0], [0.0, 1.0], [7, 3])
+        .rectangle("middle", [0.0, 2.0], [1.0, 2.0], [7, 3])
         .rectangle("top", [0.0, 1.5], [2.0, 3.0], [5, 3])
         .mesh;
     let problem = problem(
