@@ -35,7 +35,10 @@ impl Plan {
     /// Assigns the blocks of `catalog` and the merges of their Schur complements to `ranks` ranks
     /// by estimated cost.
     pub fn new(catalog: &Catalog, ranks: usize, merging: Merging) -> Self {
-        let tree = Tree::new(catalog);
+        let tree = match merging {
+            Merging::All | Merging::Frozen => Tree::new(catalog),
+            Merging::Linear | Merging::Groups => Tree::by_group(catalog),
+        };
         let in_contact = (0..tree.nodes.len()).filter(|&v| !tree.nodes[v].points.is_empty());
         let mut plan = Self {
             groups: in_contact

@@ -143,12 +143,12 @@ impl Settings {
     }
 
     /// What becomes of contact when Schur complements are merged: picard inverts S_0 alone, which has to be that of
-    /// all linear subdomains; anderson needs the contact problems of clusters; `None` for newton, which takes what
+    /// all linear subdomains; anderson needs the contact problems of groups; `None` for newton, which takes what
     /// costs least.
     pub fn merging(&self) -> Option<Merging> {
         match self.method {
             Method::Picard => Some(Merging::Linear),
-            Method::Anderson => Some(Merging::All),
+            Method::Anderson => Some(Merging::Groups),
             Method::Newton => None,
         }
     }

@@ -12,6 +12,8 @@ pub enum Merging {
     All,
     /// Only what has no contact is merged: S_0 and S_CON are those of the paper, (15).
     Linear,
+    /// Contact groups are merged each by itself, so that Γ is away from contact: S_CON is as smooth as it can be.
+    Groups,
     /// What has no contact is merged once, the rest for every active set anew.
     Frozen,
 }
@@ -42,7 +44,7 @@ pub(super) fn cluster_nodes(tree: &Tree, merging: Merging) -> Vec<usize> {
         let node = &tree.nodes[v];
         let below_root = |most| node.parent.is_some() && node.conditions <= most;
         match merging {
-            Merging::All => !node.points.is_empty() || below_root(MAX_CONDITIONS),
+            Merging::All | Merging::Groups => !node.points.is_empty() || below_root(MAX_CONDITIONS),
             Merging::Linear => !node.points.is_empty() || below_root(0),
             Merging::Frozen => node.conditions == 0,
         }

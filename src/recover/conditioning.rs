@@ -9,39 +9,48 @@ use crate::recover::fixed_active_set::FixedActiveSet;
 /// contacts fixed as they are, D its diagonal: round-off makes a relative error of about
 /// κ · 10⁻¹⁶ in displacements.
 ///
-/// For s of entries ±1 at random ‖A⁻¹ s‖² is Σ c² / λ² over the eigenvalues λ of A, where c² is 1 on the
-/// average: little less than 1 / λ_min² is improbable (Dixon, SIAM J. Numer. Anal. 20, 1983). λ_max is
-/// at most the number of unknowns of a cell. Collective; the root gets the estimate, `None` where it
-/// can't be made.
+/// By one step of inverse iteration: the Rayleigh quotient of x = A⁻¹ s is at least λ_min, and little more unless s
+/// has next to nothing of its mode. s is random, a part of it the same all over a block, of which the smooth
+/// modes that are softest have most. λ_max is at most the number of unknowns of a cell. Collective; the root gets the
+/// estimate, `None` where it can't be made.
 pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Option<f64> {
     let able = fixed.root.is_some_and(|root| root.can_solve());
     if !fixed.context.comm.decide(able) {
         return None;
     }
+    let dim = fixed.context.catalog.dim;
     let start = |&b: &usize| {
         let diagonal = diagonal(fixed, b).iter().enumerate();
-        let load = diagonal.map(|(i, d)| d.max(0.0).sqrt() * sign(b, i));
+        let value = |i: usize| sign(b, i) + sign(b, usize::MAX - i % dim);
+        let load = diagonal.map(|(i, d)| d.max(0.0).sqrt() * value(i));
         (b, load.collect())
     };
-    let loads = fixed.condensed.blocks.keys().map(start).collect();
-    let answer = fixed.solve(loads, solution, &BTreeMap::new()).blocks;
+    let loads: BTreeMap<usize, Vec<f64>> = fixed.condensed.blocks.keys().map(start).collect();
+    let answer = fixed.solve(loads.clone(), solution, &BTreeMap::new());
+    let answer = answer.blocks;
 
-    // xᵀ D x, summed block by block so that ranks make no difference.
+    // xᵀ D x and xᵀ K x, summed block by block so that ranks make no difference.
     let mut largest = 0;
-    let mut sum = 0.0;
+    let (mut sum, mut energy) = (0.0, 0.0);
     fixed.context.comm.gather(
         fixed.context.plan.owners(),
         |b| {
             let answer = answer.get(&b).into_iter().flatten();
-            let terms = answer.zip(diagonal(fixed, b)).map(|(x, d)| d * x * x);
-            (largest_cell(fixed, b), terms.sum::<f64>())
+            let terms = answer.clone().zip(diagonal(fixed, b));
+            let work = answer.zip(loads.get(&b).into_iter().flatten());
+            (
+                largest_cell(fixed, b),
+                terms.map(|(x, d)| d * x * x).sum::<f64>(),
+                work.map(|(x, f)| x * f).sum::<f64>(),
+            )
         },
-        |_, (cell, part)| {
+        |_, (cell, part, of_energy)| {
             largest = largest.max(cell);
             sum += part;
+            energy += of_energy;
         },
     );
-    (fixed.root.is_some() && sum > 0.0).then(|| largest as f64 * sum.sqrt())
+    (fixed.root.is_some() && energy > 0.0).then(|| largest as f64 * sum / energy)
 }
 
 fn diagonal<'a>(fixed: &FixedActiveSet<'a>, b: usize) -> &'a [f64] {

@@ -16,7 +16,7 @@ use crate::vector::largest as largest_entry;
 
 /// A contact force, relative to the terms of the equilibrium at its nodes, that is round-off.
 const ROUND_OFF: f64 = 1e-14;
-/// A gap, relative to the largest displacement, that is open.
+/// A gap, relative to the largest displacement before and after bodies were moved, that is open.
 const OPENED: f64 = 1e-13;
 
 /// Makes the displacement of all blocks, node by node, orthogonal to every motion that is free
@@ -110,6 +110,7 @@ fn move_nearer(
         .map(|released| released.coefficients(&products));
     let mut coefficients = found.unwrap_or_default();
     fixed.context.comm.broadcast(&mut coefficients);
+    let before = largest_displacement(fixed, solution);
     let blocks = solution.blocks.iter_mut();
     let all = blocks.map(|(&b, s)| (b, &mut s.u)).collect();
     motions.take_out(fixed, Field::Shared, &coefficients, all);
@@ -118,14 +119,8 @@ fn move_nearer(
         has_released_modes: list.len() > fixed.free.list.len(),
         ..MinimumNorm::default()
     };
+    let largest = before.max(largest_displacement(fixed, solution));
     let (comm, plan) = (fixed.context.comm, fixed.context.plan);
-    let mut largest: f64 = 0.0;
-    comm.gather(
-        plan.owners(),
-        |b| largest_entry(&solution.blocks[&b].u),
-        |_, of_block| largest = largest.max(of_block),
-    );
-    comm.broadcast(&mut largest);
     comm.gather(
         &plan.group_owners(),
         |g| {
@@ -139,6 +134,19 @@ fn move_nearer(
     solution.share(&fixed.context, &fixed.step.loads);
     minimum_norm.warnings = released.map_or_else(Vec::new, |released| released.warnings);
     minimum_norm
+}
+
+/// The largest displacement on all ranks (m). Collective.
+fn largest_displacement(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> f64 {
+    let (comm, plan) = (fixed.context.comm, fixed.context.plan);
+    let mut largest: f64 = 0.0;
+    comm.gather(
+        plan.owners(),
+        |b| largest_entry(&solution.blocks[&b].u),
+        |_, of_block| largest = largest.max(of_block),
+    );
+    comm.broadcast(&mut largest);
+    largest
 }
 
 /// Opens the points of a group that have a gap, and counts them.

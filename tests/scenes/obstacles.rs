@@ -204,9 +204,13 @@ fn bodies_that_may_roll_are_as_accurate_in_several_subdomains() {
 
 #[test]
 fn a_block_on_three_circles_rests_on_them() {
-    let solution = solve(&on_circles(&[-1.0, 0.0, 1.0], [0.0, -WEIGHT]), 1);
-    let total = reaction(solution.points());
-    balanced(total, [0.0, 4.0 * WEIGHT, 0.0], 4e-10 * WEIGHT);
+    // Nothing holds the block sideways. In one subdomain it ends up some 10⁴ times as far away as it deforms, and
+    // forces are as good as such displacements make them.
+    for (count, slack) in [(1, 1e-9), (4, 1e-12)] {
+        let solution = solve(&on_circles(&[-1.0, 0.0, 1.0], [0.0, -WEIGHT]), count);
+        let total = reaction(solution.points());
+        balanced(total, [0.0, 4.0 * WEIGHT, 0.0], slack * WEIGHT);
+    }
 }
 
 /// Fails unless a solution of a model whose conditions depend on each other is the reference's with

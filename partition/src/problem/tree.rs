@@ -8,9 +8,9 @@
 //!
 //! The tree follows from the problem file, so that merges are the same on any number of ranks.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Catalog, SubdomainNode};
+use super::{Catalog, Hierarchy, SubdomainNode};
 use crate::contact_point::ContactPoint;
 use crate::disjoint_sets::DisjointSets;
 use crate::flops::{Front, condensation};
@@ -51,6 +51,16 @@ pub struct TreeNode {
 impl Tree {
     /// The hierarchy of `catalog`.
     pub fn new(catalog: &Catalog) -> Self {
+        Self::along(catalog, &catalog.hierarchy)
+    }
+
+    /// The tree in which contact groups and what has no contact come together last: each is merged by itself,
+    /// along what the hierarchy of `catalog` is for it.
+    pub fn by_group(catalog: &Catalog) -> Self {
+        Self::along(catalog, &catalog.hierarchy.by_group(catalog))
+    }
+
+    fn along(catalog: &Catalog, hierarchy: &Hierarchy) -> Self {
         let interface = Interface::new(catalog);
         let mut tree = Self {
             nodes: vec![TreeNode::default(); catalog.subdomains.len()],
@@ -58,7 +68,7 @@ impl Tree {
             interface_nodes: interface.subdomains.len(),
             unshared: Vec::new(),
         };
-        tree.grow(catalog, &interface);
+        tree.grow(catalog, hierarchy, &interface);
         tree.join_roots(&interface);
         tree.place(catalog, &interface);
         tree.unshared = interface.unshared;
@@ -66,7 +76,7 @@ impl Tree {
     }
 
     /// Adds the inner nodes. A subdomain that has contact points or nodes of Γ to itself gets one of its own.
-    fn grow(&mut self, catalog: &Catalog, interface: &Interface) {
+    fn grow(&mut self, catalog: &Catalog, hierarchy: &Hierarchy, interface: &Interface) {
         let subdomains = self.subdomains;
         for (node, summary) in self.nodes.iter_mut().zip(&catalog.subdomains) {
             node.of_subdomain = summary.nodes;
@@ -81,7 +91,7 @@ impl Tree {
             }
         }
         let shift = self.nodes.len() - subdomains;
-        let parents = &catalog.hierarchy.parent;
+        let parents = &hierarchy.parent;
         self.nodes
             .resize(parents.len() + shift, TreeNode::default());
         for (node, parent) in parents.iter().enumerate() {
@@ -261,6 +271,38 @@ impl Tree {
             stack.extend(children.map(|&child| (child, false)));
         }
         nodes
+    }
+}
+
+impl Hierarchy {
+    /// This tree once for every contact group and once for what has no contact, and one root above all.
+    fn by_group(&self, catalog: &Catalog) -> Self {
+        let linear = catalog.groups.len();
+        let mut classes: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); self.parent.len()];
+        for (classes, subdomain) in classes.iter_mut().zip(&catalog.subdomains) {
+            classes.insert(subdomain.group.unwrap_or(linear));
+        }
+        for v in 0..self.parent.len() {
+            if let Some(parent) = self.parent[v] {
+                let below = classes[v].clone();
+                classes[parent as usize].extend(below);
+            }
+        }
+        let mut number = BTreeMap::new();
+        for (v, classes) in classes.iter().enumerate() {
+            for &class in classes {
+                let next = number.len() as u32;
+                number.insert((v, class), next);
+            }
+        }
+        let root = number.len() as u32;
+        let above = |&(v, class): &(usize, usize)| match self.parent[v] {
+            Some(parent) => Some(number[&(parent as usize, class)]),
+            None => Some(root),
+        };
+        Self {
+            parent: number.keys().map(above).chain([None]).collect(),
+        }
     }
 }
 
