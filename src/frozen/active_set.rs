@@ -51,7 +51,7 @@ struct Faults {
 /// of this rank, from the bilateral problem. Collective.
 ///
 /// # Errors
-/// Some part of the scene moves freely.
+/// Some part of the scene moves freely, or a signal has asked the run to stop.
 pub fn solve(
     context: &Context<'_>,
     fronts: &mut FrozenFronts,
@@ -116,6 +116,11 @@ pub fn solve(
                 boundaries: solution.boundaries,
                 outcome,
             });
+        }
+        if context.comm.is_any_asked_to_stop() {
+            return Err(Failure::interrupted(format!(
+                "interrupted after {sweep} sweeps, before a result was written"
+            )));
         }
         let all = faults.count < fewest || patience > 0;
         match faults.count < fewest {

@@ -121,7 +121,7 @@ type Solved = OnceLock<(Case, BTreeMap<String, Vec<u64>>)>;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 16] = [
+    let cases: [(&str, MakeCase); 17] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
@@ -146,6 +146,7 @@ fn same_results(trials: &mut Trials) {
         ("junction", || Case::of(&built_in_model("junction", 0), 6)),
         ("rollers", || Case::of(&built_in_model("rollers", 0), 8)),
         ("stack", || Case::of(&built_in_model("stack", 0), 6)),
+        ("wall", || Case::of(&built_in_model("wall", 0), 33)),
         ("stack_without_interface", || {
             Case::of(&built_in_model("stack", 0), 3)
         }),

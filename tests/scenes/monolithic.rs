@@ -31,6 +31,22 @@ fn granite_is_the_monolithic_solution() {
     assert_eq!(closed, 31);
 }
 
+/// So many conditions that the active set is frozen and corrected step by step.
+#[test]
+fn a_wall_of_bricks_is_the_monolithic_solution() {
+    let model = built_in_model("wall", 0);
+    let solution = solve(&model, 33);
+    assert!(
+        (3..=12).contains(&solution.sweeps()),
+        "{}",
+        solution.sweeps()
+    );
+    let closed = solution.closed();
+    assert!(0 < closed && closed < solution.points().count());
+    compare(&model, &Monolithic::new(&model), &solution);
+    solution.check_certificate();
+}
+
 #[test]
 fn pairs_are_not_evaluated_again_where_nothing_changed() {
     let report = solve(&built_in_model("granite", 0), 8).report;
