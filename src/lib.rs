@@ -11,16 +11,16 @@
 //! surface Γ_c. Motions that neither supports nor contact hold are found before anything is factorized
 //! ([`rigid`]).
 //!
-//! **The split.** Bodies are cut into subdomains that are bonded on Γ; Γ never meets Γ_c. T are those
-//! without contact, ϑ the pairs [k, l] in contact. Every rank [owns](plan) some of them; what is left to
+//! **The split.** Bodies are cut into subdomains that are bonded on Γ, to which all nodes of Γ_c belong, too. T are
+//! those without contact, ϑ the pairs [k, l] in contact. Every rank [owns](plan) some of them; what is left to
 //! find is the trace U of the displacement on Γ.
 //!
 //! **Schur complements.** Without contact the interior is eliminated ([`schur::local`]),
 //!
 //! > S_i = K_ΓΓ − K_ΓI K_II⁻¹ K_IΓ,   i ∈ T;   (11)
 //!
-//! a pair keeps [normal jumps](contact::normal jump) t = b·u besides, and has one common, nonlinear one
-//! ([`contact::pair`]),
+//! a pair has [normal jumps](contact::normal_jump) t = b·u in the place of displacements ([`schur::substitution`])
+//! besides, and one common, nonlinear one ([`contact::pair`]),
 //!
 //! > S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ,   t(U) = arg min ½ tᵀ H t − (c − S_tΓ U)ᵀ t   over   t ≤ g.   (12)
 //!
