@@ -67,7 +67,10 @@ pub fn solve(
     let bounds: BTreeMap<usize, Vec<f64>> = (limits.iter())
         .map(|(&g, limits)| (g, limits.bounds.clone()))
         .collect();
-    let mut outcome = SweepOutcome::before(Vec::new());
+    let mut outcome = SweepOutcome {
+        frozen: true,
+        ..SweepOutcome::before(Vec::new())
+    };
     let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
     let mut changed = None;
     loop {

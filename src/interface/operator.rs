@@ -140,7 +140,7 @@ impl Interface {
     }
 
     /// The factor of S_0 and of as little of the pairs' bilateral Schur complements as makes it regular: none, or
-    /// [`SHARE`]; how much that is. `None` where it is singular even so.
+    /// `SHARE`; how much that is. `None` where it is singular even so.
     pub fn factor_s_0(&self) -> Option<(BoundaryLastCholesky, f64)> {
         let regular = |matrix: &SparseSymmetric| {
             let factor = BoundaryLastCholesky::new(matrix, self.len, self.par).ok()?;

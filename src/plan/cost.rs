@@ -12,6 +12,9 @@ use super::cluster::Merging;
 
 /// Active sets that it takes, about.
 const ACTIVE_SETS: f64 = 8.0;
+/// Contact conditions up to which they are solved for at once, whatever that takes: that is more robust where bodies
+/// are held by next to nothing.
+const FEW_CONDITIONS: usize = 1_000;
 
 /// What a program needs that does nothing yet (bytes).
 const AT_REST: f64 = 2.8e7;
@@ -57,8 +60,13 @@ pub(super) fn freezing_pays(tree: &Tree, dim: usize) -> bool {
         fronts.sum()
     };
     let roots = tree.nodes.iter().filter(|node| node.parent.is_none());
-    let at_once: f64 = roots.map(|root| (root.conditions as f64).powi(3)).sum();
-    ACTIVE_SETS * flops(Merging::Frozen) < flops(Merging::All) + at_once
+    let at_once: f64 = roots
+        .clone()
+        .map(|root| (root.conditions as f64).powi(3))
+        .sum();
+    let conditions: usize = roots.map(|root| root.conditions).sum();
+    conditions > FEW_CONDITIONS
+        && ACTIVE_SETS * flops(Merging::Frozen) < flops(Merging::All) + at_once
 }
 
 /// What a rank needs.

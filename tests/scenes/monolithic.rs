@@ -12,6 +12,7 @@ use crate::support::comparison::compare;
 use crate::support::monolithic::Monolithic;
 use crate::support::scenes::{
     BODIES, JOINT, LOAD, SUPPORTS, built_in, built_in_model, model, two_block_scene, two_blocks,
+    two_strips,
 };
 use crate::support::solver::solve;
 use crate::support::sorts::SORTS;
@@ -33,18 +34,17 @@ fn granite_is_the_monolithic_solution() {
 
 /// So many conditions that the active set is frozen and corrected step by step.
 #[test]
-fn a_wall_of_bricks_is_the_monolithic_solution() {
-    let model = built_in_model("wall", 0);
-    let solution = solve(&model, 33);
-    assert!(
-        (3..=12).contains(&solution.sweeps()),
-        "{}",
-        solution.sweeps()
-    );
-    let closed = solution.closed();
-    assert!(0 < closed && closed < solution.points().count());
-    compare(&model, &Monolithic::new(&model), &solution);
-    solution.check_certificate();
+fn many_conditions_have_the_monolithic_solution() {
+    let model = two_strips();
+    for count in [1, 12] {
+        let solution = solve(&model, count);
+        let sweeps = solution.sweeps();
+        assert!((3..=12).contains(&sweeps), "{sweeps}");
+        let closed = solution.closed();
+        assert!(0 < closed && closed < solution.points().count());
+        compare(&model, &Monolithic::new(&model), &solution);
+        solution.check_certificate();
+    }
 }
 
 #[test]
