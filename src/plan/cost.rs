@@ -12,6 +12,8 @@ use super::cluster::Merging;
 
 /// Active sets that it takes, about.
 const ACTIVE_SETS: f64 = 8.0;
+/// Flops that the dense contact problem takes, over the cube of its size: its active sets need some 30 factors.
+const AT_ONCE: f64 = 10.0;
 /// Contact conditions up to which they are solved for at once, whatever that takes: that is more robust where bodies
 /// are held by next to nothing.
 const FEW_CONDITIONS: usize = 1_000;
@@ -60,10 +62,8 @@ pub(super) fn freezing_pays(tree: &Tree, dim: usize) -> bool {
         fronts.sum()
     };
     let roots = tree.nodes.iter().filter(|node| node.parent.is_none());
-    let at_once: f64 = roots
-        .clone()
-        .map(|root| (root.conditions as f64).powi(3))
-        .sum();
+    let cubed = roots.clone().map(|root| (root.conditions as f64).powi(3));
+    let at_once = AT_ONCE * cubed.sum::<f64>();
     let conditions: usize = roots.map(|root| root.conditions).sum();
     conditions > FEW_CONDITIONS
         && ACTIVE_SETS * flops(Merging::Frozen) < flops(Merging::All) + at_once

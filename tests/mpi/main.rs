@@ -34,7 +34,7 @@ use contact_dd_partition::model::Model;
 use support::blocks::jittered;
 use support::process::{Ended, Running, send};
 use support::scenes::{
-    BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks, two_strips,
+    BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks,
 };
 use support::solution::{Solution, datasets};
 use support::solver::{Case, LIMIT, program};
@@ -146,7 +146,9 @@ fn same_results(trials: &mut Trials) {
         ("junction", || Case::of(&built_in_model("junction", 0), 6)),
         ("rollers", || Case::of(&built_in_model("rollers", 0), 8)),
         ("stack", || Case::of(&built_in_model("stack", 0), 6)),
-        ("two_strips", || Case::of(&two_strips(), 12)),
+        ("many_conditions", || {
+            Case::of(&built_in_model("wall", 2), 33)
+        }),
         ("stack_without_interface", || {
             Case::of(&built_in_model("stack", 0), 3)
         }),

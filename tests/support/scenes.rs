@@ -53,29 +53,6 @@ pub fn two_block_scene() -> String {
     format!("{BODIES}{SUPPORTS}{LOAD}{JOINT}")
 }
 
-/// Two strips with 1101 conditions between them, pressed together here and pulled apart there.
-pub fn two_strips() -> Model {
-    let blocks = Blocks::new()
-        .rectangle("lower", [0.0, 110.0], [0.0, 1.0], [1100, 1])
-        .rectangle("upper", [0.0, 110.0], [1.0, 2.0], [1100, 1]);
-    let text = "
-        plane = 'strain'
-        materials.rock = {young = 20e9, poisson = 0.22}
-        bodies.lower.material = 'rock'
-        bodies.upper.material = 'rock'
-        [[displacement]]
-        on = ['lower bottom', 'upper left']
-        x = 0.0
-        y = 0.0
-        [[traction]]
-        on = 'upper top'
-        value = [0.0, '-1e5*cos(0.4*x)']
-        [[contact]]
-        name = 'joint'
-        sides = ['upper bottom', 'lower top']";
-    model(text, blocks.mesh)
-}
-
 /// The model of a scene in TOML, which may leave out `mesh`, on a mesh.
 #[track_caller]
 pub fn model(text: &str, mesh: Mesh) -> Model {
