@@ -10,7 +10,6 @@ use contact_dd_mpi::settings::command_line::{CommandLine, LogFormat};
 use contact_dd_partition::manual::{Answer, BAD_USAGE};
 
 fn main() -> ExitCode {
-    keep_freed_memory();
     if comm::is_launched() {
         // Launchers show ranks a terminal whatever their output goes to.
         event::without_colours();
@@ -26,24 +25,6 @@ fn main() -> ExitCode {
         Err(failure) => fail(LogFormat::of_this_program(), &failure),
     }
 }
-
-/// Lets malloc keep what is freed, for what is asked for next: a page that is new costs more than what is
-/// done with it.
-#[cfg(target_env = "gnu")]
-fn keep_freed_memory() {
-    /// Taken from the system at a time.
-    const AT_A_TIME: libc::c_int = 64 << 20;
-    // SAFETY: it sets numbers of glibc's malloc, before there is another thread.
-    unsafe {
-        libc::mallopt(libc::M_MMAP_MAX, 0);
-        libc::mallopt(libc::M_TRIM_THRESHOLD, -1);
-        libc::mallopt(libc::M_TOP_PAD, AT_A_TIME);
-    }
-}
-
-/// Other allocators keep it themselves.
-#[cfg(not(target_env = "gnu"))]
-fn keep_freed_memory() {}
 
 /// Runs on all ranks. Collective.
 fn solve(comm: &Comm, command_line: &CommandLine) -> ExitCode {
