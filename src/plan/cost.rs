@@ -16,7 +16,7 @@ const ACTIVE_SETS: f64 = 8.0;
 const AT_ONCE: f64 = 10.0;
 /// Contact conditions up to which they are solved for at once, whatever that takes: that is more robust where bodies
 /// are held by next to nothing.
-const FEW_CONDITIONS: usize = 1_000;
+const FEW_CONDITIONS: usize = 600;
 
 /// What a program needs that does nothing yet (bytes).
 const AT_REST: f64 = 2.8e7;

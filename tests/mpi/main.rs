@@ -147,7 +147,7 @@ fn same_results(trials: &mut Trials) {
         ("rollers", || Case::of(&built_in_model("rollers", 0), 8)),
         ("stack", || Case::of(&built_in_model("stack", 0), 6)),
         ("many_conditions", || {
-            Case::of(&built_in_model("wall", 2), 33)
+            Case::of(&built_in_model("wall", 1), 33)
         }),
         ("stack_without_interface", || {
             Case::of(&built_in_model("stack", 0), 3)

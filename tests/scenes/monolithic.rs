@@ -35,7 +35,7 @@ fn granite_is_the_monolithic_solution() {
 /// problem.
 #[test]
 fn many_conditions_are_solved_for_by_frozen_active_sets() {
-    let solution = solve(&built_in_model("wall", 2), 33);
+    let solution = solve(&built_in_model("wall", 1), 33);
     let sweeps = solution.sweeps();
     assert!((3..=12).contains(&sweeps), "{sweeps}");
     let closed = solution.closed();
