@@ -39,12 +39,33 @@ pub struct ContactPoint<N> {
     pub law: Law,
 }
 
-/// What bounds the contact force at a point beside λ ≥ 0.
+/// What bounds the tangential force λ_t at a point, beside λ ≥ 0 for the normal one. Below the bound the sides
+/// stick; at it they slip, and λ_t opposes the increment of the tangential jump.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Law {
     /// No tangential force.
     #[default]
     Frictionless,
+    /// Given friction, after Tresca: |λ_t| ≤ bound·area, whether the contact is closed or not.
+    Given {
+        /// The bound (Pa).
+        bound: f64,
+    },
+    /// Coulomb's friction, with cohesion Mohr and Coulomb's: |λ_t| ≤ coefficient·λ + cohesion·area where the contact
+    /// is closed, 0 where it is open.
+    Coulomb {
+        /// Coefficient of friction.
+        coefficient: f64,
+        /// Cohesion (Pa).
+        cohesion: f64,
+    },
+}
+
+impl Law {
+    /// Whether there are tangential forces.
+    pub fn has_friction(&self) -> bool {
+        *self != Self::Frictionless
+    }
 }
 
 /// A right-handed orthonormal frame (n, t₁, t₂).
@@ -102,9 +123,13 @@ impl<N: Copy> ContactPoint<N> {
 
     /// Its row of B: every node with weight·n.
     pub fn row(&self) -> impl Iterator<Item = (N, [f64; 3])> + Clone {
-        let normal = self.frame.normal;
+        self.row_along(self.frame.normal)
+    }
+
+    /// The row of its jump along a `direction`: every node with weight·direction.
+    pub fn row_along(&self, direction: [f64; 3]) -> impl Iterator<Item = (N, [f64; 3])> + Clone {
         let entries = self.entries.iter();
-        entries.map(move |&(node, weight)| (node, normal.map(|n| n * weight)))
+        entries.map(move |&(node, weight)| (node, direction.map(|n| n * weight)))
     }
 
     /// The same point with its nodes named otherwise; those that have no other name drop out.
