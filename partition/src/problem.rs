@@ -162,6 +162,8 @@ pub struct ContactSummary {
     pub name: String,
     /// Number of its conditions.
     pub conditions: usize,
+    /// Whether one of its points has friction.
+    pub has_friction: bool,
 }
 
 /// A load step: quasi-static and without friction its solution depends on its own loads alone.

@@ -147,6 +147,25 @@ pub struct ContactState {
     pub force: f64,
     /// Whether the contact is closed.
     pub closed: bool,
+    /// Tangential force on side a, −λ_t t₁ (N, per metre of thickness in the plane).
+    pub tangential_force: [f64; 3],
+    /// Tangential jump since the unloaded state, w t₁ (m).
+    pub slip: [f64; 3],
+    /// Whether it slips in this load step.
+    pub slipping: bool,
+    /// What friction dissipates in this load step, λ_t Δw (J, per metre of thickness in the plane).
+    pub dissipated: f64,
+}
+
+impl ContactState {
+    /// What `status` says of it in the result file: 0 open, 1 closed (with friction: sticking), 2 slipping.
+    pub fn status(&self) -> u8 {
+        match (self.closed, self.slipping) {
+            (false, _) => 0,
+            (true, false) => 1,
+            (true, true) => 2,
+        }
+    }
 }
 
 /// A contact point and the solution there.

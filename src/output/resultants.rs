@@ -34,6 +34,12 @@ pub struct ContactResultant {
     pub conditions: usize,
     /// Number of those that are closed.
     pub closed: usize,
+    /// Number of closed ones with friction that stick.
+    pub sticking: usize,
+    /// Number of those that slip.
+    pub slipping: usize,
+    /// What friction dissipates in this load step (J, per metre of thickness in the plane).
+    pub dissipated_work: f64,
     /// What acts on side a.
     #[serde(flatten)]
     pub resultant: Resultant,
@@ -45,7 +51,12 @@ impl ContactResultant {
     /// Adds what a point carries.
     pub fn add(&mut self, point: &ContactPoint<u32>, state: &ContactState) {
         self.closed += usize::from(state.closed);
-        let force = point.normal().map(|n| -state.force * n);
+        if point.law.has_friction() {
+            self.sticking += usize::from(state.status() == 1);
+            self.slipping += usize::from(state.status() == 2);
+            self.dissipated_work += state.dissipated;
+        }
+        let force = advance(state.tangential_force, -state.force, point.normal());
         self.resultant.add(point.force_point, force);
         self.largest_pressure = self.largest_pressure.max(state.force / point.area);
     }

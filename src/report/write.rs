@@ -82,6 +82,7 @@ fn contact_rows(group: &ContactGroup, solution: &GroupSolution) -> Vec<ContactRo
             gap: if closed { 0.0 } else { gap.max(0.0) },
             force: solution.forces[j],
             closed,
+            ..ContactState::default()
         };
         (group.points[j].clone(), state)
     };

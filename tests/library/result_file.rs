@@ -67,6 +67,10 @@ fn row(contact: usize, place: usize) -> ContactRow {
         gap: place as f64,
         force: 2.0,
         closed: place % 2 == 1,
+        tangential_force: [0.25, place as f64, 0.0],
+        slip: [place as f64, 0.5, 0.0],
+        slipping: place == 3,
+        ..ContactState::default()
     };
     (point, state)
 }
@@ -75,6 +79,7 @@ fn layout(cells: &[usize], conditions: &[usize]) -> Layout {
     let contact = |(c, &conditions): (usize, &usize)| ContactSummary {
         name: format!("crack {c}"),
         conditions,
+        has_friction: c == 0,
     };
     Layout {
         partitions: cells.iter().map(|&cells| size(cells)).collect(),
@@ -242,13 +247,44 @@ fn contact_rows_find_their_places() {
     );
     assert_eq!(
         column::<u8>(&file, "contact/crack 0/status"),
-        [0, 1, 0, 1, 0]
+        [0, 1, 0, 2, 0]
     );
     assert_eq!(
         file.dataset("contact/crack 1/normal").unwrap().shape(),
         [0, 3]
     );
     assert_eq!(column::<i64>(&file, "convergence/active"), [7]);
+}
+
+#[test]
+fn contacts_with_friction_have_tangential_forces_and_slip_in_every_load_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("result.vtkhdf");
+    let mut in_steps = layout(&[], &[2, 1]);
+    in_steps.times = vec![0.5, 0.75];
+    let mut file = ResultFile::create(&path, &in_steps).unwrap();
+    for step in 0..2 {
+        let moved = |(point, mut state): ContactRow| {
+            state.slip[1] += f64::from(step);
+            (point, state)
+        };
+        file.write_contacts(&[row(0, 0), row(1, 0), row(0, 1)].map(moved))
+            .unwrap();
+        file.finish_step().unwrap();
+    }
+    file.finish("{}").unwrap();
+    let file = File::open(&path).unwrap();
+    let frictionless = file.group("contact/crack 1").unwrap();
+    assert!(!frictionless.link_exists("slip") && !frictionless.link_exists("tangential_force"));
+    let slip = file.dataset("contact/crack 0/slip").unwrap();
+    assert_eq!(slip.shape(), [2, 2, 3]);
+    let of_step = |y: f64| [0.0, y, 0.0, 1.0, y, 0.0];
+    assert_eq!(
+        slip.read_raw::<f64>().unwrap(),
+        [of_step(0.5), of_step(1.5)].concat()
+    );
+    let forces = column::<f64>(&file, "contact/crack 0/tangential_force");
+    assert_eq!(forces[..6], [0.25, 0.0, 0.0, 0.25, 1.0, 0.0]);
 }
 
 #[test]

@@ -49,6 +49,7 @@ impl Problem {
                 .map(|contact| ContactSummary {
                     name: contact.name.clone(),
                     conditions: contact.points.len(),
+                    has_friction: contact.points.iter().any(|point| point.law.has_friction()),
                 })
                 .collect(),
             steps: (model.steps.iter())

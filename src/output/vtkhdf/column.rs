@@ -80,7 +80,8 @@ pub(super) fn empty<R: Row>(group: &Group, name: &str, rows: usize) -> Result<Da
     }
 }
 
-/// A column of `rows` rows for each of some load `steps`, (steps, rows); a plain one where there are none.
+/// A dataset of `rows` rows for each of some load `steps`, (steps, rows) or (steps, rows, width); a plain one
+/// where there are none.
 pub(super) fn empty_by_step<R: Row>(
     group: &Group,
     name: &str,
@@ -92,7 +93,10 @@ pub(super) fn empty_by_step<R: Row>(
         _ if group.link_exists(name) => group.dataset(name),
         _ => {
             let new = group.new_dataset::<R::Number>();
-            new.shape((steps, rows)).create(name)
+            match R::WIDTH {
+                None => new.shape((steps, rows)).create(name),
+                Some(width) => new.shape((steps, rows, width)).create(name),
+            }
         }
     }
 }
@@ -120,18 +124,24 @@ pub(super) fn fill<R: Row>(dataset: &Dataset, start: usize, rows: &[R]) -> Resul
     }
 }
 
-/// Fills the column of a load step from row `start` on.
+/// Fills what a dataset has of a load step from row `start` on; all of it where there are no steps.
 pub(super) fn fill_by_step<R: Row>(
-    columns: &Dataset,
+    dataset: &Dataset,
     step: usize,
     start: usize,
-    values: &[R],
+    rows: &[R],
 ) -> Result<()> {
-    match columns.ndim() {
-        1 => fill(columns, start, values),
-        _ => columns.write_slice(
-            ArrayView1::from(bytemuck::cast_slice::<R, R::Number>(values)),
-            (step, start..start + values.len()),
-        ),
+    let plain = 1 + usize::from(R::WIDTH.is_some());
+    if dataset.ndim() == plain {
+        return fill(dataset, start, rows);
+    }
+    let numbers: &[R::Number] = bytemuck::cast_slice(rows);
+    let range = start..start + rows.len();
+    match R::WIDTH {
+        None => dataset.write_slice(ArrayView1::from(numbers), (step, range)),
+        Some(width) => {
+            let table = ArrayView2::from_shape((rows.len(), width), numbers);
+            dataset.write_slice(table.map_err(|why| why.to_string())?, (step, range, ..))
+        }
     }
 }

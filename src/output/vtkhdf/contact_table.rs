@@ -23,7 +23,15 @@ struct Table {
     force: Dataset,
     pressure: Dataset,
     status: Dataset,
+    /// Where the contact has friction.
+    friction: Option<FrictionColumns>,
     written: Vec<bool>,
+}
+
+#[derive(Debug)]
+struct FrictionColumns {
+    tangential_force: Dataset,
+    slip: Dataset,
 }
 
 impl ContactTables {
@@ -75,6 +83,13 @@ impl Table {
         let tags = |name| column::empty::<i64>(&group, name, rows);
         let vectors = |name| column::empty::<[f64; 3]>(&group, name, rows);
         let states = |name| column::empty_by_step::<f64>(&group, name, steps, rows);
+        let jumps = |name| column::empty_by_step::<[f64; 3]>(&group, name, steps, rows);
+        let friction = || -> Result<FrictionColumns> {
+            Ok(FrictionColumns {
+                tangential_force: jumps("tangential_force")?,
+                slip: jumps("slip")?,
+            })
+        };
         Ok(Self {
             name: name.clone(),
             node_a: tags("node_a")?,
@@ -85,6 +100,7 @@ impl Table {
             force: states("force")?,
             pressure: states("pressure")?,
             status: column::empty_by_step::<u8>(&group, "status", steps, rows)?,
+            friction: contact.has_friction.then(friction).transpose()?,
             written: vec![false; rows],
         })
     }
@@ -115,8 +131,14 @@ impl Table {
         reals(&self.gap, |(_, state)| state.gap)?;
         reals(&self.force, |(_, state)| state.force)?;
         reals(&self.pressure, |(point, state)| state.force / point.area)?;
-        let status: Vec<u8> = run.iter().map(|row| u8::from(row.1.closed)).collect();
+        let status: Vec<u8> = run.iter().map(|(_, state)| state.status()).collect();
         column::fill_by_step(&self.status, step, start, &status)?;
+        if let Some(friction) = &self.friction {
+            let forces: Vec<_> = run.iter().map(|row| row.1.tangential_force).collect();
+            column::fill_by_step(&friction.tangential_force, step, start, &forces)?;
+            let slip: Vec<_> = run.iter().map(|row| row.1.slip).collect();
+            column::fill_by_step(&friction.slip, step, start, &slip)?;
+        }
         written.fill(true);
         Ok(())
     }

@@ -221,6 +221,10 @@ fn read_contacts(contents: &Contents, groups: &[usize]) -> Result<Vec<ContactSum
     }
     let contacts = names.into_iter().zip(conditions);
     Ok(contacts
-        .map(|(name, conditions)| ContactSummary { name, conditions })
+        .map(|(name, conditions)| ContactSummary {
+            name,
+            conditions,
+            has_friction: false,
+        })
         .collect())
 }
