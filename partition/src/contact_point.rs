@@ -62,6 +62,25 @@ pub enum Law {
 }
 
 impl Law {
+    /// Given friction with a `bound` (Pa) of at least 0, which at 0 is none.
+    pub fn given(bound: f64) -> Self {
+        match bound > 0.0 {
+            true => Self::Given { bound },
+            false => Self::Frictionless,
+        }
+    }
+
+    /// Coulomb's friction with a `coefficient` and a `cohesion` (Pa) of at least 0, which without both is none.
+    pub fn coulomb(coefficient: f64, cohesion: f64) -> Self {
+        match coefficient > 0.0 || cohesion > 0.0 {
+            true => Self::Coulomb {
+                coefficient,
+                cohesion,
+            },
+            false => Self::Frictionless,
+        }
+    }
+
     /// Whether there are tangential forces.
     pub fn has_friction(&self) -> bool {
         *self != Self::Frictionless

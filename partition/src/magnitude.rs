@@ -1,4 +1,4 @@
-//! How large and how small a number may be so that what is calculated with it stays a number.
+//! How large and how small a number may be so that what is calculated with it stays a number, and how it is shown.
 
 /// The largest number, by its absolute value: its square is still far from overflow.
 pub const LARGEST: f64 = 1e120;
@@ -23,6 +23,16 @@ pub fn check(value: f64) -> Result<f64, String> {
     }
 }
 
+/// A number in four digits at most.
+pub fn short(number: f64) -> String {
+    // What was written as a number can be read as one.
+    let rounded = format!("{number:.3e}").parse().unwrap_or(number);
+    match rounded.abs() {
+        size if size != 0.0 && !(1e-3..1e5).contains(&size) => format!("{rounded:e}"),
+        _ => format!("{rounded}"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -34,6 +44,20 @@ mod tests {
         }
         for value in [f64::NAN, f64::INFINITY, 1.1e120, -1e300] {
             assert!(check(value).is_err(), "{value}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_any_size_are_short() {
+        for (number, expected) in [
+            (0.0, "0"),
+            (-0.00123456, "-0.001235"),
+            (0.000123456, "1.235e-4"),
+            (99999.0, "1e5"),
+            (12345.6, "12350"),
+            (5.646e9, "5.646e9"),
+        ] {
+            assert_eq!(short(number), expected);
         }
     }
 }

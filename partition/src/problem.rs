@@ -5,6 +5,8 @@
 
 pub mod consistency;
 pub mod copies;
+mod friction;
+mod law;
 pub mod read;
 pub mod schema;
 mod strings;

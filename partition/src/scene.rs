@@ -3,6 +3,7 @@
 pub mod condition;
 pub mod expression;
 mod fault;
+pub mod friction;
 pub mod material;
 pub mod number;
 pub mod place;

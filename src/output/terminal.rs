@@ -44,6 +44,8 @@ pub struct Summary<'a> {
     pub contact_pairs: usize,
     /// Number of contact conditions.
     pub contact_conditions: usize,
+    /// Number of those with friction.
+    pub conditions_with_friction: usize,
     /// Number of ranks.
     pub ranks: usize,
     /// Number of threads of each rank.
@@ -73,9 +75,13 @@ pub fn summary(of: &Summary) -> String {
         lines.push(of.title.to_owned());
     }
     let pairs = counted(of.contact_pairs, "pair");
-    let contact = match of.contact_conditions {
-        0 => "none".to_owned(),
-        count => format!("{} in {pairs}", counted(count, "condition")),
+    let contact = match (of.contact_conditions, of.conditions_with_friction) {
+        (0, _) => "none".to_owned(),
+        (count, 0) => format!("{} in {pairs}", counted(count, "condition")),
+        (count, rough) => format!(
+            "{} in {pairs}, {rough} with friction",
+            counted(count, "condition")
+        ),
     };
     let threads = counted(of.threads, "thread");
     lines.extend([

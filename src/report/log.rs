@@ -84,6 +84,7 @@ impl<'a> RunLog<'a> {
             subdomains: catalog.subdomains.len(),
             contact_pairs: plan.groups.len(),
             contact_conditions: catalog.conditions(),
+            conditions_with_friction: catalog.conditions_with_friction(),
             ranks: self.comm.size(),
             threads: usize::from(self.settings.threads),
         };

@@ -29,12 +29,15 @@ value = '1e6*(2-x)'
 name = 'matching'
 sides = ['middle bottom', 'base top']
 gap = -1e-4
+friction = 0.4
+cohesion = '1e4*x'
 [[contact]]
 name = 'mortar'
 sides = ['top bottom', 'middle top']
 [[contact]]
 name = 'table'
 sides = ['base bottom']
+tresca = 1e5
 obstacle = { point = [0.0, -1e-4], normal = [0.0, 1.0] }
 [[step]]
 name = 'half'
@@ -45,8 +48,8 @@ on = 'top top'
 value = 1e6
 ";
 
-/// Three blocks of quadratic cells of all kinds on a table, in matching and mortar contact, with
-/// supports, forces in two load steps, a hierarchy, settings and a warning.
+/// Three blocks of quadratic cells of all kinds on a table, in matching and mortar contact, two of
+/// three with friction, with supports, forces in two load steps, a hierarchy, settings and a warning.
 pub fn everything() -> Problem {
     let mesh = Blocks::new()
         .rectangle("base", [0.0, 2.0], [0.0, 1.0], [7, 3])

@@ -101,9 +101,12 @@ impl fmt::Display for Summary<'_> {
             work.speed_up
         )?;
         writeln!(f, "contact       {} conditions", catalog.conditions())?;
-        for (contact, pairing) in catalog.contacts.iter().zip(self.pairings()) {
+        for (index, (contact, pairing)) in catalog.contacts.iter().zip(self.pairings()).enumerate()
+        {
             let (points, name) = (contact.conditions, &contact.name);
-            writeln!(f, "              {points:>6} on {name}{pairing}")?;
+            let friction = catalog.friction(index).map(|words| format!(", {words}"));
+            let friction = friction.unwrap_or_default();
+            writeln!(f, "              {points:>6} on {name}{pairing}{friction}")?;
         }
         write!(f, "groups        {}", self.sizes_of_groups())
     }

@@ -2,7 +2,6 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::diagnostics::short;
 use super::node_pairs::Unpaired;
 use super::sides::{Sides, side_nodes};
 use super::steps::Loads;
@@ -12,6 +11,7 @@ use super::{Contact, groups, mortar, node_pairs, obstacle};
 use crate::contact_point::ContactPoint;
 use crate::element::geometry::{advance, dot, length};
 use crate::error::InputError;
+use crate::magnitude::short;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::condition::{self, Names, Pairing, Partner};
@@ -121,6 +121,13 @@ impl<'a> Contacts<'a> {
                     short(given),
                     short(measured)
                 ));
+            }
+        }
+        if let Some(friction) = &keys.friction {
+            for point in &mut points {
+                point.law = (friction.at(point.position)).map_err(|reason| {
+                    InputError::new(format!("{what}.{reason} (node {})", point.tag_a))
+                })?;
             }
         }
         let slack = ROUNDING * self.size;

@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::bodies::Bodies;
 use super::steps::Loads;
 use super::{Contact, Material, groups};
+use crate::magnitude::short;
 use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
@@ -93,34 +94,5 @@ impl Diagnostics<'_> {
             })
         });
         again.collect()
-    }
-}
-
-/// A number in four digits at most.
-pub(super) fn short(number: f64) -> String {
-    // What was written as a number can be read as one.
-    let rounded = format!("{number:.3e}").parse().unwrap_or(number);
-    match rounded.abs() {
-        size if size != 0.0 && !(1e-3..1e5).contains(&size) => format!("{rounded:e}"),
-        _ => format!("{rounded}"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_of_any_size_are_short() {
-        for (number, expected) in [
-            (0.0, "0"),
-            (-0.00123456, "-0.001235"),
-            (0.000123456, "1.235e-4"),
-            (99999.0, "1e5"),
-            (12345.6, "12350"),
-            (5.646e9, "5.646e9"),
-        ] {
-            assert_eq!(short(number), expected);
-        }
     }
 }

@@ -5,8 +5,8 @@
 use std::collections::BTreeMap;
 
 use self::Kind::{
-    GroupNames, Indices, Integers, Lines, Names, Numbers, NumbersOrNan, Offsets, Positive, Sizes,
-    UnitVectors,
+    Codes, GroupNames, Indices, Integers, Lines, Names, NotNegative, Numbers, NumbersOrNan,
+    Offsets, Positive, Sizes, UnitVectors,
 };
 use crate::stiffness::components;
 
@@ -17,6 +17,8 @@ pub enum Kind {
     Integers,
     /// Numbers from 0 on of what a letter counts; the word says what in messages.
     Indices(&'static str, char),
+    /// Numbers from 0 on of so many things, which the meaning lists; the word says what in messages.
+    Codes(&'static str, usize),
     /// Positive integers whose sum is what a letter counts.
     Sizes(char),
     /// Integers that rise from 0 to what a letter counts.
@@ -25,6 +27,8 @@ pub enum Kind {
     Numbers,
     /// Finite numbers above 0.
     Positive,
+    /// Finite numbers from 0 on.
+    NotNegative,
     /// Finite numbers, or NaN where one isn't known.
     NumbersOrNan,
     /// Finite numbers, of which each row is a unit vector.
@@ -41,8 +45,16 @@ impl Kind {
     /// What its values are, in a word.
     pub fn word(self) -> &'static str {
         match self {
-            Self::Integers | Self::Indices(..) | Self::Sizes(_) | Self::Offsets(_) => "integers",
-            Self::Numbers | Self::Positive | Self::NumbersOrNan | Self::UnitVectors => "numbers",
+            Self::Integers
+            | Self::Indices(..)
+            | Self::Codes(..)
+            | Self::Sizes(_)
+            | Self::Offsets(_) => "integers",
+            Self::Numbers
+            | Self::Positive
+            | Self::NotNegative
+            | Self::NumbersOrNan
+            | Self::UnitVectors => "numbers",
             Self::Lines | Self::Names | Self::GroupNames => "strings",
         }
     }
@@ -212,6 +224,13 @@ pub const FIELDS: &[Field] = &[
     field("/contact/entry_node", "E", Integers, "node, counted within that subdomain"),
     field("/contact/entry_weight", "E", Numbers,
         "weight w of the node's displacement: w n is its coefficient"),
+    optional("/contact/law", "R", Codes("law of friction", 3),
+        "what bounds the tangential force: 0 nothing, there is none; 1 given friction, `shear_bound` wherever the \
+         point is; 2 Coulomb's, `friction` times the normal force, and `shear_bound` as cohesion, where it is closed"),
+    optional("/contact/friction", "R", NotNegative,
+        "coefficient of friction; 0 but for Coulomb's; with `law` and `shear_bound` or not at all"),
+    optional("/contact/shear_bound", "R", NotNegative,
+        "bound of the tangential force over `area` [Pa]; 0 where there is no friction"),
     optional("/warnings", "W", Lines, "repeated in the solver's report"),
 ];
 

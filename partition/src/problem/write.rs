@@ -6,6 +6,7 @@ use hdf5::H5Type;
 use hdf5::types::VarLenUnicode;
 use toml::Value;
 
+use super::law::LawRow;
 use super::schema::{Counts, FIELDS};
 use super::{FORMAT, Problem, Subdomain, VERSION, vtkhdf};
 use crate::destination::Destination;
@@ -184,7 +185,14 @@ impl Problem {
         )?;
         datasets.put("/contact/entry_node", nodes().map(|n| i64::from(n.node)))?;
         let weights = points().flat_map(|p| p.entries.iter().map(|&(_, weight)| weight));
-        datasets.put("/contact/entry_weight", weights)
+        datasets.put("/contact/entry_weight", weights)?;
+        if !points().any(|p| p.law.has_friction()) {
+            return Ok(());
+        }
+        let rows = || points().map(|p| LawRow::from(p.law));
+        datasets.put("/contact/law", rows().map(|row| row.law))?;
+        datasets.put("/contact/friction", rows().map(|row| row.friction))?;
+        datasets.put("/contact/shear_bound", rows().map(|row| row.shear_bound))
     }
 }
 

@@ -3,6 +3,7 @@
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
+use super::friction::{self, Friction};
 use super::number::{Constant, ConstantVector, Number, Vector};
 use crate::name;
 
@@ -146,6 +147,8 @@ pub struct Contact {
     pub gap: Option<Number>,
     /// Whether negative gaps are intended.
     pub interference: bool,
+    /// Its law of friction; `None` without.
+    pub friction: Option<Friction>,
 }
 
 impl Contact {
@@ -182,7 +185,7 @@ pub enum Pairing {
 #[derive(Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "a table of name, sides, pairing, gap, interference and obstacle"
+    expecting = "a table of name, sides, pairing, gap, interference, obstacle, friction, cohesion and tresca"
 )]
 struct ContactKeys {
     #[serde(deserialize_with = "contact_name")]
@@ -193,6 +196,12 @@ struct ContactKeys {
     #[serde(default)]
     interference: bool,
     obstacle: Option<Obstacle>,
+    #[serde(default, deserialize_with = "friction::bound")]
+    friction: Option<Number>,
+    #[serde(default, deserialize_with = "friction::bound")]
+    cohesion: Option<Number>,
+    #[serde(default, deserialize_with = "friction::bound")]
+    tresca: Option<Number>,
 }
 
 impl TryFrom<ContactKeys> for Contact {
@@ -225,6 +234,7 @@ impl TryFrom<ContactKeys> for Contact {
             pairing: keys.pairing,
             gap: keys.gap,
             interference: keys.interference,
+            friction: Friction::new(keys.friction, keys.cohesion, keys.tresca)?,
         })
     }
 }

@@ -25,11 +25,19 @@ impl Number {
             Self::Constant(value) => Ok(*value),
             Self::Varying(expression) => {
                 let value = expression.value(point);
-                magnitude::check(value).map_err(|expected| {
-                    let [x, y, _] = point;
-                    let text = expression.text();
-                    format!("'{text}' is {value:e} at x = {x}, y = {y}; expected {expected}")
-                })
+                magnitude::check(value).map_err(|expected| self.unexpected(value, point, &expected))
+            }
+        }
+    }
+
+    /// The message that its `value` at a point isn't what was `expected`.
+    pub(super) fn unexpected(&self, value: f64, point: [f64; 3], expected: &str) -> String {
+        let [x, y, _] = point;
+        match self {
+            Self::Constant(_) => format!("{value:e}; expected {expected}"),
+            Self::Varying(expression) => {
+                let text = expression.text();
+                format!("'{text}' is {value:e} at x = {x}, y = {y}; expected {expected}")
             }
         }
     }

@@ -103,6 +103,39 @@ fn the_program_tells_what_is_in_the_file() {
 }
 
 #[test]
+fn friction_is_told_of_contact_by_contact() {
+    let dir = tempfile::tempdir().unwrap();
+    let written = program(&["--example", "granite", "--write-scene", "."], dir.path());
+    assert!(written.status.success(), "{written:?}");
+    let path = dir.path().join("scene.toml");
+    let scene = fs::read_to_string(&path).unwrap();
+    for (name, keys) in [
+        ("left crack", "tresca = '1e6*max(0, x-2)'"),
+        ("right crack", "friction = 0.6\ncohesion = 1e5"),
+    ] {
+        let scene = fs::read_to_string(&path).unwrap();
+        let start = scene.find(&format!("\"{name}\"")).unwrap();
+        let (before, after) = scene.split_at(start + name.len() + 2);
+        fs::write(&path, format!("{before}\n{keys}{after}")).unwrap();
+    }
+    assert_ne!(fs::read_to_string(&path).unwrap(), scene);
+    let made = program(&["scene.toml", "-n", "8"], dir.path());
+    assert!(made.status.success(), "{made:?}");
+    let told = program(&["--info", "scene.h5"], dir.path());
+    for said in [made, told].map(|output| String::from_utf8(output.stdout).unwrap()) {
+        for line in [
+            "24 on left crack, node by node, shear bound 1.25e5 to 8.75e5 Pa, on 7 of 24",
+            "24 on right crack, node by node, friction 0.6, cohesion 1e5 Pa",
+        ] {
+            assert!(
+                said.lines().any(|said| said.trim() == line),
+                "{line} in\n{said}"
+            );
+        }
+    }
+}
+
+#[test]
 fn nothing_but_a_problem_file_is_told_of() {
     let dir = tempfile::tempdir().unwrap();
     let written = program(&["--example", "patch", "--write-scene", "."], dir.path());

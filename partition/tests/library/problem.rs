@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::problem_scenes::{cracked, shuffled, stacked};
+use contact_dd_partition::contact_point::Law;
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::element::ElementKind::{Quad4, Quad8, Quad9, Triangle6};
 use contact_dd_partition::example;
@@ -34,6 +35,21 @@ fn written(problem: &Problem, folder: &Path) -> ProblemFile {
     let path = folder.join("problem.h5");
     problem.write(&path).unwrap();
     ProblemFile::open(&path).unwrap()
+}
+
+/// The model with a law of every kind, and points without.
+fn with_friction(model: &Model) -> Model {
+    let mut model = model.clone();
+    let points = model.contacts.iter_mut().flat_map(|c| &mut c.points);
+    for (k, point) in points.enumerate() {
+        let size = k as f64;
+        point.law = match k % 3 {
+            0 => Law::Frictionless,
+            1 => Law::given(1e5 * size),
+            _ => Law::coulomb(0.1 * size, 1e3 * (size - 2.0)),
+        };
+    }
+    model
 }
 
 /// The model with its loads in three steps, the second of which has none.
@@ -87,14 +103,31 @@ fn what_is_written_is_read() {
     let upright = Decomposition::of_cells(&crack, halves(&crack, 4.0).subdomain, 2);
     let stack = shuffled(&stacked(3, 6, 3), 5);
     let in_steps = with_steps(&stack);
+    let rough = with_friction(&stack);
     for (model, decomposition) in [
         (&bare, &whole),
         (&crack, &upright),
         (&stack, &halves(&stack, 3.0)),
         (&in_steps, &halves(&stack, 3.0)),
+        (&rough, &halves(&stack, 3.0)),
     ] {
         let problem = Problem::new(model, decomposition).unwrap();
         assert_eq!(written(&problem, folder.path()).problem().unwrap(), problem);
+    }
+}
+
+#[test]
+fn a_file_says_nothing_of_friction_where_there_is_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let names = ["law", "friction", "shear_bound"];
+    let stack = stacked(3, 6, 3);
+    for (model, expected) in [(&stack, false), (&with_friction(&stack), true)] {
+        let problem = Problem::new(model, &halves(model, 3.0)).unwrap();
+        let catalog = written(&problem, folder.path()).catalog().clone();
+        assert_eq!(catalog.contacts[0].has_friction, expected);
+        let file = hdf5::File::open(folder.path().join("problem.h5")).unwrap();
+        let contact = file.group("contact").unwrap();
+        assert!((names.iter()).all(|name| contact.link_exists(name) == expected));
     }
 }
 

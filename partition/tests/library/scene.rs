@@ -6,6 +6,7 @@ mod refused;
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::scene::Scene;
 use contact_dd_partition::scene::condition::{Obstacle, Partner};
+use contact_dd_partition::scene::friction::Friction;
 use contact_dd_partition::scene::material::Elasticity;
 use contact_dd_partition::scene::number::Number;
 use contact_dd_partition::scene::step::Scale;
@@ -44,9 +45,12 @@ value = 0.6e7
 name = "left crack"
 sides = ["left crack lower", ["left crack upper", "more"]]
 gap = 0.0
+friction = 0.6
+cohesion = "1e5*y"
 [[contact]]
 name = "table"
 sides = ["base"]
+tresca = "2e5"
 obstacle = { point = [0.0, 0.0], normal = [0.0, 2.0] }
 [[contact]]
 name = "ring"
@@ -115,6 +119,13 @@ fn every_key_is_read() {
     assert_eq!(crack.gap, Some(Number::Constant(0.0)));
     assert!(matches!(&crack.partner, Partner::Side(b)
         if b.to_string() == "'left crack upper', 'more'"));
+    assert!(
+        matches!(&crack.friction, Some(Friction::Coulomb { coefficient, cohesion: Some(cohesion) })
+        if *coefficient == Number::Constant(0.6) && cohesion.at([0.0, 2.0, 0.0]) == Ok(2e5))
+    );
+    let bound = Number::Constant(2e5);
+    assert_eq!(table.friction, Some(Friction::Given { bound }));
+    assert_eq!(ring.friction, None);
     assert_eq!(table.gap, None);
     assert!(matches!(&table.partner,
         Partner::Obstacle(Obstacle::HalfPlane { point, normal })

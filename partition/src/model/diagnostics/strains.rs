@@ -1,8 +1,9 @@
 //! Loads that can't go with the stiffness, and displacements that can't go with the bodies' size:
 //! their units are likely to differ.
 
-use super::{Diagnostics, short};
+use super::Diagnostics;
 use crate::element::geometry::length;
+use crate::magnitude::short;
 use crate::mesh::topology::CellFacet;
 use crate::model::groups;
 use crate::scene::condition::Names;

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, HashSet};
 use rstar::primitives::{GeomWithData, Line};
 use rstar::{AABB, RTree};
 
-use super::{Diagnostics, short};
+use super::Diagnostics;
+use crate::magnitude::short;
 use crate::mesh::topology::CellFacet;
 use crate::model::groups;
 use crate::scene::condition::Contact;

@@ -19,10 +19,13 @@ pub(super) fn read(
     let bodies = contents.strings("/bodies/name")?;
     let interface = read_interface(contents)?;
     let groups = contents.sizes('R');
-    let contacts = read_contacts(contents, &groups)?;
+    let mut contacts = read_contacts(contents, &groups)?;
     let subdomains = read_subdomains(contents, bodies.len(), groups.len())?;
     let interface_nodes = check_interface(&interface, &subdomains)?;
     let (points, point_nodes) = points::read(contents, &subdomains)?;
+    for point in &points {
+        contacts[point.contact as usize].has_friction |= point.law.has_friction();
+    }
     let mut catalog = Catalog {
         title: header.title,
         dim: header.dim,

@@ -106,9 +106,12 @@ impl Contents {
             return Ok(Slice::new("", 0, 1, Vec::new()));
         };
         let slice = dataset.slice(rows.clone())?;
-        if let Kind::Indices(what, letter) = dataset.field.kind {
-            slice.indices(rows, what, self.count(letter))?;
-        }
+        let (what, count) = match dataset.field.kind {
+            Kind::Indices(what, letter) => (what, self.count(letter)),
+            Kind::Codes(what, count) => (what, count),
+            _ => return Ok(slice),
+        };
+        slice.indices(rows, what, count)?;
         Ok(slice)
     }
 

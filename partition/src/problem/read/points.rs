@@ -3,8 +3,9 @@
 use std::collections::HashSet;
 
 use super::contents::Contents;
-use crate::contact_point::ContactPoint;
+use crate::contact_point::{ContactPoint, Law};
 use crate::error::InputError;
+use crate::problem::law::LawRow;
 use crate::problem::{PointNode, SubdomainNode, SubdomainSummary};
 
 /// Reads all contact points, and what the file says of their nodes.
@@ -25,6 +26,7 @@ pub(super) fn read(
     let normal = numbers("/contact/normal")?.vectors(rows.clone());
     let tag_a = integers("/contact/node_a")?;
     let tag_b = integers("/contact/node_b")?;
+    let laws = read_laws(contents)?;
     let entries = read_entries(contents, subdomains)?;
     let point = |(i, entries): (usize, _)| ContactPoint {
         // Checked when the file was opened: an index of a contact, and one of its places.
@@ -34,11 +36,43 @@ pub(super) fn read(
         area: area.all()[i],
         force_point: force_point[i],
         tag_b: tag_b.all()[i],
+        law: laws[i],
         ..ContactPoint::new(entries, normal[i], position[i], tag_a.all()[i])
     };
     let points: Vec<_> = entries.into_iter().enumerate().map(point).collect();
     let nodes = read_nodes(contents, &points)?;
     Ok((points, nodes))
+}
+
+/// The law of every point; none has friction where the file says nothing of it.
+fn read_laws(contents: &Contents) -> Result<Vec<Law>, InputError> {
+    let rows = 0..contents.count('R');
+    let all = ["/contact/law", "/contact/friction", "/contact/shear_bound"];
+    let missing = all.iter().find(|path| !contents.has(path));
+    match (missing, all.iter().any(|path| contents.has(path))) {
+        (Some(_), false) => return Ok(vec![Law::Frictionless; rows.len()]),
+        (Some(missing), true) => {
+            let [law, friction, bound] = all;
+            return Err(InputError::new(format!(
+                "dataset {missing} is missing; expected {law}, {friction} and {bound}, or none of them"
+            )));
+        }
+        (None, _) => {}
+    }
+    let [_, friction, bound] = all;
+    let law = contents.integers(all[0], rows.clone())?;
+    let friction = contents.numbers(friction, rows.clone())?;
+    let bound = contents.numbers(bound, rows.clone())?;
+    let of_row = |row: usize| {
+        let values = LawRow {
+            law: law.all()[row],
+            friction: friction.all()[row],
+            shear_bound: bound.all()[row],
+        };
+        let wrong = |(path, what)| InputError::new(format!("dataset {path}, row {row}: {what}"));
+        values.law().map_err(wrong)
+    };
+    rows.map(of_row).collect()
 }
 
 /// The nodes and weights of every point.

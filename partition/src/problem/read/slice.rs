@@ -126,6 +126,7 @@ impl Slice<f64> {
         self.check(|&value| match kind {
             Kind::NumbersOrNan if value.is_nan() => Ok(()),
             Kind::Positive if value <= 0.0 => Err(format!("{value}; expected a positive number")),
+            Kind::NotNegative if value < 0.0 => Err(format!("{value}; expected 0 or more")),
             _ => magnitude::check(value)
                 .map(|_| ())
                 .map_err(|expected| format!("{value:e}; expected {expected}")),

@@ -2,7 +2,7 @@
 
 use crate::blocks::Blocks;
 use crate::close::close;
-use contact_dd_partition::contact_point::ContactPoint;
+use contact_dd_partition::contact_point::{ContactPoint, Law};
 use contact_dd_partition::mesh::Mesh;
 
 const CONTACT: &str = "[[contact]]\nname = 'c'\nsides = ['lower top', 'upper bottom']\n";
@@ -50,6 +50,63 @@ fn a_given_gap_replaces_the_geometric_one() {
     }
     let rows = conditions(&stack(0.25), &format!("{CONTACT}gap = 0")).unwrap();
     assert!(rows.iter().all(|row| row.gap == 0.0));
+}
+
+#[test]
+fn friction_is_that_of_the_place() {
+    let law = |keys: &str| {
+        let rows = conditions(&stack(0.25), &format!("{CONTACT}{keys}")).unwrap();
+        move |k: usize| (rows[k].position[0], rows[k].law)
+    };
+    for k in 0..5 {
+        let (x, given) = law("tresca = '1e5*x'")(k);
+        assert_eq!(given, Law::given(1e5 * x));
+        let (x, coulomb) = law("friction = '0.25*x'\ncohesion = 2e5")(k);
+        let expected = Law::Coulomb {
+            coefficient: 0.25 * x,
+            cohesion: 2e5,
+        };
+        assert_eq!(coulomb, expected);
+    }
+    // The last point is at x = 0.
+    for none in [
+        "",
+        "tresca = '1e5*x'",
+        "friction = '0.5*x'",
+        "friction = 0\ncohesion = 0",
+    ] {
+        assert_eq!(law(none)(4).1, Law::Frictionless, "{none}");
+    }
+    let upright = stack(0.25).model(
+        "[[contact]]\nname = 'floor'\nsides = ['lower bottom']\nfriction = '1-y'\n\
+         obstacle = {point = [0, 0], normal = [0, 1]}",
+    );
+    let floor = &upright.unwrap().contacts[0];
+    assert!((floor.points.iter()).all(|point| point.law == Law::coulomb(1.0, 0.0)));
+}
+
+#[test]
+fn friction_below_zero_is_named_with_its_node() {
+    for (keys, expected) in [
+        (
+            "friction = '1-x'",
+            "contact 'c'.friction: '1-x' is -1e0 at x = 2, y = 1; expected 0 or more (node ",
+        ),
+        (
+            "tresca = '1/x'",
+            "contact 'c'.tresca: '1/x' is inf at x = 0, y = 1; expected a finite number (node ",
+        ),
+        (
+            "friction = 1\ncohesion = 'y-2'",
+            "contact 'c'.cohesion: 'y-2' is -1e0 at x = 2, y = 1; expected 0 or more (node ",
+        ),
+    ] {
+        for pairing in ["nodes", "mortar"] {
+            let text = format!("{CONTACT}pairing = '{pairing}'\n{keys}");
+            let message = conditions(&stack(0.25), &text).unwrap_err();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
 }
 
 #[test]

@@ -36,7 +36,7 @@ fn unknown_keys_are_named_with_line_and_nearest_known_key() {
         (
             "normal",
             "norml",
-            "line 38: contact[2] 'table'.obstacle",
+            "line 41: contact[2] 'table'.obstacle",
             "'normal'",
         ),
         ("\"strain\"", "\"strian\"", "line 3: plane", "'strain'"),
@@ -197,7 +197,7 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
         (
             "name = \"table\"",
             "name = \"left crack\"",
-            "line 36: contact[2].name: contact[1] has the name 'left crack' already",
+            "line 38: contact[2].name: contact[1] has the name 'left crack' already",
         ),
         (
             "[\"base\"]",
@@ -235,9 +235,39 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
             "line 34: contact[1] 'left crack'.gap: NaN",
         ),
         (
+            "friction = 0.6",
+            "friction = -0.6",
+            "line 35: contact[1] 'left crack'.friction: it is -0.6; expected 0 or more",
+        ),
+        (
+            "friction = 0.6",
+            "friction = inf",
+            "line 35: contact[1] 'left crack'.friction: inf isn't a finite number",
+        ),
+        (
+            "\"1e5*y\"",
+            "\"-1e5\"",
+            "line 36: contact[1] 'left crack'.cohesion: it is -100000; expected 0 or more",
+        ),
+        (
+            "\"2e5\"",
+            "nan",
+            "line 40: contact[2] 'table'.tresca: NaN isn't a finite number",
+        ),
+        (
+            "tresca = \"2e5\"",
+            "tresca = 2e5\nfriction = 0.5",
+            "contact[2] 'table': 'friction' (Coulomb's) and 'tresca' (a given bound) are both there",
+        ),
+        (
+            "tresca = \"2e5\"",
+            "cohesion = 0",
+            "contact[2] 'table': 'cohesion' stands beside 'friction', which is missing",
+        ),
+        (
             "normal = [0.0, 2.0]",
             "normal = [0.0, 0]",
-            "line 38: contact[2] 'table'.obstacle.normal: the zero vector",
+            "line 41: contact[2] 'table'.obstacle.normal: the zero vector",
         ),
         (
             "name = \"table\"",
@@ -247,12 +277,12 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
         (
             ", normal = [0.0, 2.0]",
             "",
-            "line 38: contact[2] 'table'.obstacle: expected 'point' and 'normal'",
+            "line 41: contact[2] 'table'.obstacle: expected 'point' and 'normal'",
         ),
         (
             "\"2*pi\"",
             "0",
-            "line 42: contact[3] 'ring'.obstacle.radius: the radius is 0",
+            "line 45: contact[3] 'ring'.obstacle.radius: the radius is 0",
         ),
         ("mesh  = \"block.msh\"", "", "missing field `mesh`"),
         (
@@ -278,48 +308,48 @@ fn steps_that_cannot_be_are_refused_at_their_line_and_key() {
         (
             "time = \"pi\"",
             "time = 0.5",
-            "line 49: step[2].time: 0.5 comes after 0.5; expected times that ascend",
+            "line 52: step[2].time: 0.5 comes after 0.5; expected times that ascend",
         ),
         (
             "time = \"pi\"\n",
             "",
-            "line 48: step[2]: expected a 'time' in every step or in none",
+            "line 51: step[2]: expected a 'time' in every step or in none",
         ),
         (
             "time = 0.5\n",
             "",
-            "line 48: step[2].time: expected a 'time' in every step or in none",
+            "line 51: step[2].time: expected a 'time' in every step or in none",
         ),
         (
             "time = 0.5",
             "time = \"x\"",
-            "line 45: step[1] 'first'.time: 'x' depends on the place",
+            "line 48: step[1] 'first'.time: 'x' depends on the place",
         ),
         (
             "\"first\"",
             "\"a\\tb\"",
-            "line 44: step[1].name: 'a\\tb' holds a control character",
+            "line 47: step[1].name: 'a\\tb' holds a control character",
         ),
-        ("scale = 2\n", "scale = [2]\n", "line 50: step[2].scale"),
+        ("scale = 2\n", "scale = [2]\n", "line 53: step[2].scale"),
         (
             "scale = 2\n",
             "scale = inf\n",
-            "line 50: step[2].scale: inf isn't a finite number",
+            "line 53: step[2].scale: inf isn't a finite number",
         ),
         (
             "pressure = 0.25",
             "presure = 0.25",
-            "line 46: step[1] 'first'.scale.presure: unknown key 'presure'; did you mean 'pressure'?",
+            "line 49: step[1] 'first'.scale.presure: unknown key 'presure'; did you mean 'pressure'?",
         ),
         (
             "\"left block\" = [1",
             "\"lft block\" = [1",
-            "line 47: step[1] 'first'.body_force.\"lft block\": there is no body 'lft block'; did you mean 'left block'?",
+            "line 50: step[1] 'first'.body_force.\"lft block\": there is no body 'lft block'; did you mean 'left block'?",
         ),
         (
             "\"left block\" = [1, ",
             "\"left block\" = [1, 2, ",
-            "line 47: step[1] 'first'.body_force.\"left block\": a plane scene",
+            "line 50: step[1] 'first'.body_force.\"left block\": a plane scene",
         ),
         (
             "value = [0, 1]",

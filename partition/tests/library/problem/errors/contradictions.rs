@@ -1,5 +1,8 @@
 //! Problem files whose parts contradict each other, or that hold what nothing reads.
 
+use std::path::Path;
+
+use contact_dd_partition::contact_point::Law;
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::example;
@@ -8,7 +11,7 @@ use contact_dd_partition::problem::Problem;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::scene::Scene;
 
-use super::{Defect, refuse, refuses, replace, set, write, write_two_joints};
+use super::{Defect, problem, refuse, refuses, replace, set, write, write_two_joints};
 
 fn integers(file: &hdf5::File, name: &str) -> Vec<i64> {
     file.dataset(name).unwrap().read_raw().unwrap()
@@ -131,6 +134,71 @@ fn every_contradiction_is_named() {
         ),
     ];
     refuses(write, defects);
+}
+
+/// Writes the stack of blocks with Coulomb's friction at its first contact point, given friction at its second.
+fn write_rough(path: &Path) {
+    let mut problem = problem();
+    problem.catalog.points[0].law = Law::coulomb(0.5, 1e5);
+    problem.catalog.points[1].law = Law::given(2e5);
+    problem.write(path).unwrap();
+}
+
+#[test]
+fn friction_that_cannot_be_is_named() {
+    let defects: &[Defect] = &[
+        (
+            "law that isn't known",
+            |f| set(f, "/contact/law", 1, 3i64),
+            &["/contact/law, row 1: 3 is no law of friction; expected 0 to 2"],
+        ),
+        (
+            "law below zero",
+            |f| set(f, "/contact/law", 1, -1i64),
+            &["/contact/law, row 1: -1 is no law of friction"],
+        ),
+        (
+            "coefficient below zero",
+            |f| set(f, "/contact/friction", 0, -0.5),
+            &["/contact/friction, row 0: -0.5; expected 0 or more"],
+        ),
+        (
+            "coefficient that isn't finite",
+            |f| set(f, "/contact/friction", 0, f64::NAN),
+            &["/contact/friction, row 0", "expected a finite number"],
+        ),
+        (
+            "bound below zero",
+            |f| set(f, "/contact/shear_bound", 1, -1.0),
+            &["/contact/shear_bound, row 1: -1; expected 0 or more"],
+        ),
+        (
+            "bound that isn't finite",
+            |f| set(f, "/contact/shear_bound", 1, f64::INFINITY),
+            &["/contact/shear_bound, row 1: inf; expected a finite number"],
+        ),
+        (
+            "coefficient of given friction",
+            |f| set(f, "/contact/friction", 1, 0.5),
+            &["/contact/friction, row 1: 0.5 at a point of law 1; expected 0"],
+        ),
+        (
+            "bound without friction",
+            |f| set(f, "/contact/shear_bound", 2, 1e5),
+            &["/contact/shear_bound, row 2: 100000 at a point of law 0; expected 0"],
+        ),
+        (
+            "law without its numbers",
+            |f| f.unlink("/contact/friction").unwrap(),
+            &["/contact/friction is missing", "or none of them"],
+        ),
+        (
+            "numbers without law",
+            |f| f.unlink("/contact/law").unwrap(),
+            &["/contact/law is missing", "or none of them"],
+        ),
+    ];
+    refuses(write_rough, defects);
 }
 
 #[test]

@@ -1,0 +1,52 @@
+//! Friction of a contact in words.
+
+use super::Catalog;
+use super::law::LawRow;
+use crate::magnitude::short;
+
+impl Catalog {
+    /// Number of contact conditions with friction.
+    pub fn conditions_with_friction(&self) -> usize {
+        let points = self.points.iter();
+        points.filter(|point| point.law.has_friction()).count()
+    }
+
+    /// What friction a contact has, and on how many of its conditions where not on all; `None` without.
+    pub fn friction(&self, contact: usize) -> Option<String> {
+        let points = self.points.iter();
+        let laws: Vec<LawRow> = points
+            .filter(|point| point.contact as usize == contact && point.law.has_friction())
+            .map(|point| LawRow::from(point.law))
+            .collect();
+        let of = |law: i64| laws.iter().filter(move |row| row.law == law);
+        let unit = self.units.stress();
+        let mut words = Vec::new();
+        if let Some(range) = range(of(2).map(|row| row.friction)) {
+            words.push(format!("friction {range}"));
+        }
+        let cohesion = of(2).map(|row| row.shear_bound);
+        if cohesion.clone().any(|cohesion| cohesion > 0.0)
+            && let Some(range) = range(cohesion)
+        {
+            words.push(format!("cohesion {range} {unit}"));
+        }
+        if let Some(range) = range(of(1).map(|row| row.shear_bound)) {
+            words.push(format!("shear bound {range} {unit}"));
+        }
+        let all = self.contacts[contact].conditions;
+        if (1..all).contains(&laws.len()) {
+            words.push(format!("on {} of {all}", laws.len()));
+        }
+        (!words.is_empty()).then(|| words.join(", "))
+    }
+}
+
+/// The least and the largest of some numbers; one number where they are the same, `None` of none.
+pub(crate) fn range(values: impl Iterator<Item = f64> + Clone) -> Option<String> {
+    let least = values.clone().reduce(f64::min).map(short)?;
+    let most = values.reduce(f64::max).map(short)?;
+    Some(match least == most {
+        true => least,
+        false => format!("{least} to {most}"),
+    })
+}

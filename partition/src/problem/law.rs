@@ -1,0 +1,64 @@
+//! Laws of friction in the datasets `law`, `friction` and `shear_bound` of `/contact`.
+
+use crate::contact_point::Law;
+
+/// A row of the three.
+pub(super) struct LawRow {
+    /// 0 without friction, 1 given friction, 2 Coulomb's.
+    pub law: i64,
+    /// Coefficient of friction.
+    pub friction: f64,
+    /// Given bound or cohesion (Pa).
+    pub shear_bound: f64,
+}
+
+impl From<Law> for LawRow {
+    fn from(law: Law) -> Self {
+        let (law, friction, shear_bound) = match law {
+            Law::Frictionless => (0, 0.0, 0.0),
+            Law::Given { bound } => (1, 0.0, bound),
+            Law::Coulomb {
+                coefficient,
+                cohesion,
+            } => (2, coefficient, cohesion),
+        };
+        Self {
+            law,
+            friction,
+            shear_bound,
+        }
+    }
+}
+
+impl LawRow {
+    /// The law of a row whose values are each as the schema says.
+    ///
+    /// # Errors
+    /// A value that its law doesn't have: the dataset, and what was expected there.
+    pub fn law(&self) -> Result<Law, (&'static str, String)> {
+        let &Self {
+            law,
+            friction,
+            shear_bound,
+        } = self;
+        let zero = |dataset, value: f64| match value == 0.0 {
+            true => Ok(()),
+            false => Err((
+                dataset,
+                format!("{value} at a point of law {law}; expected 0"),
+            )),
+        };
+        match law {
+            0 => {
+                zero("/contact/friction", friction)?;
+                zero("/contact/shear_bound", shear_bound)?;
+                Ok(Law::Frictionless)
+            }
+            1 => {
+                zero("/contact/friction", friction)?;
+                Ok(Law::given(shear_bound))
+            }
+            _ => Ok(Law::coulomb(friction, shear_bound)),
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! The law of friction of a contact, as a scene gives it.
+
+use serde::Deserialize;
+use serde::de::{Deserializer, Error};
+
+use super::number::Number;
+use crate::contact_point::Law;
+
+/// What bounds tangential forces; numbers of at least 0, or expressions of position.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Friction {
+    /// `tresca`: a given bound (Pa).
+    Given {
+        /// The bound (Pa).
+        bound: Number,
+    },
+    /// `friction` and perhaps `cohesion`: Coulomb's bound, or Mohr and Coulomb's.
+    Coulomb {
+        /// Coefficient of friction.
+        coefficient: Number,
+        /// Cohesion (Pa).
+        cohesion: Option<Number>,
+    },
+}
+
+impl Friction {
+    /// The law of these keys of a contact; `None` where it has none of them.
+    ///
+    /// # Errors
+    /// Keys that don't go together.
+    pub fn new(
+        coefficient: Option<Number>,
+        cohesion: Option<Number>,
+        bound: Option<Number>,
+    ) -> Result<Option<Self>, String> {
+        match (coefficient, cohesion, bound) {
+            (None, None, None) => Ok(None),
+            (Some(_), _, Some(_)) => Err(
+                "'friction' (Coulomb's) and 'tresca' (a given bound) are both there; expected one of them"
+                    .into(),
+            ),
+            (None, Some(_), _) => Err(
+                "'cohesion' stands beside 'friction', which is missing; 'tresca' is a bound by itself"
+                    .into(),
+            ),
+            (None, None, Some(bound)) => Ok(Some(Self::Given { bound })),
+            (Some(coefficient), cohesion, None) => Ok(Some(Self::Coulomb {
+                coefficient,
+                cohesion,
+            })),
+        }
+    }
+
+    /// The law at a point (m).
+    ///
+    /// # Errors
+    /// The key and what it is there, which isn't a finite number of at least 0.
+    pub fn at(&self, point: [f64; 3]) -> Result<Law, String> {
+        let value = |key: &str, number: &Number| {
+            let value = number.at(point).and_then(|value| match value >= 0.0 {
+                true => Ok(value),
+                false => Err(number.unexpected(value, point, LEAST)),
+            });
+            value.map_err(|reason| format!("{key}: {reason}"))
+        };
+        Ok(match self {
+            Self::Given { bound } => Law::given(value("tresca", bound)?),
+            Self::Coulomb {
+                coefficient,
+                cohesion,
+            } => Law::coulomb(
+                value("friction", coefficient)?,
+                (cohesion.as_ref()).map_or(Ok(0.0), |cohesion| value("cohesion", cohesion))?,
+            ),
+        })
+    }
+}
+
+/// What is expected of all its numbers.
+const LEAST: &str = "0 or more";
+
+/// Reads a number of at least 0, of which an expression is checked where it is evaluated.
+pub(super) fn bound<'de, D>(deserializer: D) -> Result<Option<Number>, D::Error>
+where
+    D: Deserializer<'de>,
+{
+    match Number::deserialize(deserializer)? {
+        Number::Constant(value) if value < 0.0 => {
+            Err(D::Error::custom(format!("it is {value}; expected {LEAST}")))
+        }
+        number => Ok(Some(number)),
+    }
+}
