@@ -27,10 +27,18 @@ CERTIFICATE = {
     "equilibrium_of_load": (1e-6, "the same, relative to the largest load"),
     "penetration": (1e-14, "bodies don't overlap, relative to the largest displacement"),
     "tension": (1e-12, "contacts don't pull, relative to the load"),
+    "friction": (1e-9, "tangential forces are within their bounds and oppose slip"),
     "complementarity": (None, "where there is a gap there is no force"),
     "force_balance": (None, "loads and reactions sum to zero"),
     "moment_balance": (None, "so do their moments"),
     "interface_jump": (None, "the displacement is one across Γ"),
+}
+# How the conditions of a contact are drawn, by their status: open, closed (with friction: sticking), slipping.
+SLIPPING, SHEAR = "#e8590c", "#7a3e9d"
+STATES = {
+    0: {"mfc": "white", "mec": "#8795a3", "mew": 0.8},
+    1: {"color": "#1f5fa8"},
+    2: {"color": SLIPPING},
 }
 # More of them are on the page in words only: one has to be able to look at it.
 MOST_CURVES = 12
@@ -143,6 +151,8 @@ def certificate(report):
     rows = []
     for name, (limit, meaning) in CERTIFICATE.items():
         value = report["certificate"].get(name)
+        if name == "friction" and not report.get("friction"):
+            continue
         mark = ""
         if limit is not None:
             holds = value is not None and value <= limit
@@ -197,12 +207,13 @@ def steps(report, units):
         axes.set_xlabel("time")
     rows = [
         [escape(step["name"]), f"{step['time']:g}", escape(step["status"].replace("_", " ")), step["sweeps"],
-         step["active_contacts"], si(pressure, units.stress), short(step["certificate"]["equilibrium"])]
+         step["active_contacts"], si(pressure, units.stress), short(step["certificate"]["equilibrium"]),
+         *friction_of(step, report)]
         for step, pressure in zip(found[:MOST_ROWS], pressures)
     ]
-    head = ["step", "time", "", "sweeps", "closed", "largest pressure", "equilibrium"]
+    head = ["step", "time", "", "sweeps", "closed", "largest pressure", "equilibrium", *friction_head(report)]
     text = "<p><small>What follows on contacts and reactions is that of the last step.</small></p>"
-    return section("Load steps", svg(figure), table(head, rows, numbers=(1, 3, 4, 5, 6)), more(found, ""), text)
+    return section("Load steps", svg(figure), table(head, rows, numbers=(1, *range(3, len(head)))), more(found, ""), text)
 
 
 def ranks(report):
@@ -238,18 +249,22 @@ def ranks(report):
 
 
 def curve(axes, name, contact, units):
-    pressure, closed = contact["pressure"], contact["status"] == 1
+    pressure, shear, status = contact["pressure"], contact["shear"], contact["status"]
     for rows, way in contact["pieces"]:
         axes.fill_between(way, pressure[rows], color="#5b8ff9", alpha=0.25, lw=0)
         axes.plot(way, pressure[rows], color="#1f5fa8", lw=1.3)
         if len(pressure) <= 60:
             # On the axis they would be half of a circle.
             style = {"ls": "", "marker": "o", "ms": 2.6, "clip_on": False, "zorder": 3}
-            is_closed = closed[rows]
-            axes.plot(way[is_closed], pressure[rows][is_closed], color="#1f5fa8", **style)
-            axes.plot(way[~is_closed], pressure[rows][~is_closed], mfc="white", mec="#8795a3", mew=0.8, **style)
+            for state, look in STATES.items():
+                of_state = status[rows] == state
+                axes.plot(way[of_state], pressure[rows][of_state], **look, **style)
+        if shear is not None:
+            axes.plot(way, shear[rows], color=SHEAR, lw=1.1)
+    least = 0 if shear is None else min(0, shear.min())
+    most = max(pressure.max(), 0 if shear is None else shear.max())
     axes.set_title(name if len(name) < 32 else name[:30] + "…", fontsize=9, loc="left")
-    axes.set_ylim(0, 1.1 * pressure.max() if pressure.max() > 0 else 1)
+    axes.set_ylim(1.1 * least, 1.1 * most if most > 0 else 1)
     axes.xaxis.set_major_formatter(formatter(units.length))
     axes.yaxis.set_major_formatter(formatter(units.stress))
     axes.xaxis.set_major_locator(MaxNLocator(4))
@@ -273,17 +288,36 @@ def contacts(report, tables, units):
     for axes in panels.flat[len(shown) :]:
         axes.set_visible(False)
     rows = [
-        [escape(c["name"]), f"{c['closed']} of {c['conditions']}", si(c["largest_pressure"], units.stress), *force]
+        [escape(c["name"]), f"{c['closed']} of {c['conditions']}", si(c["largest_pressure"], units.stress), *force,
+         *friction_of(c, report)]
         for c, force in zip(found[:MOST_ROWS], forces(found, units.force))
     ]
+    head = ["contact", "closed", "largest pressure", "force on side a, x", "y", *friction_head(report)]
     text = f"Pressure over the arc length of side a, undeformed, {DIRECTION}; hollow where it is open. "
+    if report.get("friction"):
+        text += (
+            f'<span style="color:{SLIPPING}">Orange</span> where it slips; the <span style="color:{SHEAR}">thin line'
+            "</span> is the shear stress on side a, positive along its outward normal turned counter-clockwise. "
+        )
     if len(found) > len(shown):
         text += f"The {len(shown)} of {len(found)} contacts with the largest pressures. "
     return section(
         "Contacts", f"<p><small>{text}</small></p>", svg(figure),
-        table(["contact", "closed", "largest pressure", "force on side a, x", "y"], rows, numbers=(1, 2, 3, 4)),
+        table(head, rows, numbers=range(1, len(head))),
         more(found, " with lower pressures"),
     )
+
+
+def friction_head(report):
+    return ["slipping", "work of friction"] if report.get("friction") else []
+
+
+def friction_of(part, report):
+    """How many conditions of a contact or a step slip, and friction's work, where any contact has friction."""
+    friction = part.get("friction")
+    if friction:
+        return [friction["slipping"], si(friction["dissipated_work"], "J/m")]
+    return ["–", "–"] if report.get("friction") else []
 
 
 def reactions(report, units):

@@ -135,6 +135,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         per_rank: totals.ranks.clone(),
         error_estimate: last.and_then(StepTotals::error_estimate),
         resultants: last.map_or_else(Resultants::default, |step| step.resultants.clone()),
+        friction: totals.friction(),
         steps: totals.step_reports(),
         skipped: skipped(comm, totals),
         warnings,

@@ -13,6 +13,8 @@ class PressedSide:
     normal: np.ndarray
     pressure: np.ndarray
     segments: np.ndarray
+    status: np.ndarray
+    has_friction: bool
 
     def tips(self, length):
         """Where ordinates along the normals end that are as long as the pressure times `length`."""
@@ -42,7 +44,14 @@ def pressed_sides(result, moved):
         known = (result.tags[found] == tags)[:, None]
         foot = np.where(known, moved[found], table["position"][:, :2])
         sides.append(
-            PressedSide(foot, table["normal"][:, :2], table["pressure"], along(edges, tags))
+            PressedSide(
+                foot,
+                table["normal"][:, :2],
+                table["pressure"],
+                along(edges, tags),
+                table["status"],
+                "slip" in table,
+            )
         )
     return sides
 

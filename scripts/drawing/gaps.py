@@ -27,7 +27,7 @@ def typical_gaps(result):
     ends = result.outline[:, [0, 2]]
     lines = result.points[ends]
     for table in result.contacts.values():
-        closed = np.flatnonzero(table["status"] == 1)
+        closed = np.flatnonzero(table["status"] > 0)
         found = []
         for k in closed[:: 1 + len(closed) // MOST_LOOKED_AT]:
             at, normal = table["position"][k, :2], table["normal"][k, :2]

@@ -15,6 +15,8 @@ from drawing.result import von_mises
 from drawing.units import in_units
 
 RED = "#d6202c"
+# Where a contact with friction is closed, by its status.
+FRICTION = {1: ("#1746a2", "sticks"), 2: ("#ff9f1c", "slips")}
 DASHES = (0, (5, 3))
 
 # Where contacts press within so small a part of the size, a second panel shows that part.
@@ -62,6 +64,7 @@ def overview(result, scale, path):
     largest = max((side.pressure.max() for side in sides), default=0.0)
     if largest > 0:
         pressures(all_axes[-1], sides, longest / largest)
+        stick_and_slip(all_axes[-1], sides)
         labels(all_axes[-1], sides, longest / largest, result.units.stress)
     exceeded = "max" if values.max() > 1.001 * shown else "neither"
     figure.colorbar(colours, cax=of_colours, extend=exceeded, label=f"von Mises stress [{unit}]")
@@ -154,6 +157,20 @@ def pressures(axes, sides, length):
             strokes(axes, [side.foot[a], side.foot[b]], colors=color, linewidths=width)
 
 
+def stick_and_slip(axes, sides):
+    """Lines along what sticks and what slips, up to the middle between neighbours."""
+    for side in sides:
+        if not side.has_friction:
+            continue
+        ends = np.concatenate([side.segments, side.segments[:, ::-1]])
+        own, middle = side.foot[ends[:, 0]], side.foot[ends].mean(axis=1)
+        closed = side.status[ends[:, 0]] > 0
+        strokes(axes, [own[closed], middle[closed]], colors="k", linewidths=4.2)
+        for status, (color, _) in FRICTION.items():
+            of_status = side.status[ends[:, 0]] == status
+            strokes(axes, [own[of_status], middle[of_status]], colors=color, linewidths=2.8, zorder=3)
+
+
 def strokes(axes, ends, **style):
     axes.add_collection(LineCollection(np.stack(ends, axis=1), capstyle="round", **style))
 
@@ -198,7 +215,11 @@ def key(figure, sides, largest, has_moved, unit):
     if largest > 0:
         (shown,), unit = in_units(np.array([largest]), unit)
         entries.append(Patch(fc=RED, alpha=0.6, label=f"contact pressure, at most {shown:.3g} {unit}"))
+    for status, (color, word) in FRICTION.items():
+        if any(side.has_friction and (side.status == status).any() for side in sides):
+            halo = [withStroke(linewidth=4.2, foreground="k")]
+            entries.append(Line2D([], [], color=color, lw=2.8, path_effects=halo, label=word))
     if any((side.pressure <= 0).any() for side in sides):
         halo = [withStroke(linewidth=2.6, foreground="k")]
         entries.append(Line2D([], [], color="w", lw=1.2, path_effects=halo, label="open contact"))
-    figure.legend(handles=entries, loc="lower center", ncol=3, frameon=False, fontsize=9)
+    figure.legend(handles=entries, loc="lower center", ncol=3, frameon=False, fontsize=9, columnspacing=1.4)

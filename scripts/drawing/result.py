@@ -10,7 +10,7 @@ from drawing.cells import cells_of
 from drawing.units import units_of
 
 # What of a contact table changes from step to step.
-STATES = ("gap", "force", "pressure", "status")
+STATES = ("gap", "force", "pressure", "status", "tangential_force", "slip")
 
 
 class Result:
@@ -36,7 +36,7 @@ class Result:
             subdomain = grid["CellData/Subdomain"][:]
             self.cells = list(cells_of(grid))
             self.contacts = {
-                name: {key: self.state(table[key]) for key in table}
+                name: {key: self.state(table, key) for key in table}
                 for name, table in file.get("contact", {}).items()
             }
         if not self.cells:
@@ -56,10 +56,10 @@ class Result:
         rows = len(field) // self.steps
         return field[(self.step - 1) * rows : self.step * rows]
 
-    def state(self, column):
+    def state(self, table, key):
         """What a contact table has in this step: of what changes there is a row for every step."""
-        changes = column.ndim == 2 and column.name.rsplit("/", 1)[-1] in STATES
-        return column[self.step - 1] if changes else column[:]
+        changes = table["status"].ndim == 2 and key in STATES
+        return table[key][self.step - 1] if changes else table[key][:]
 
     def all_facets(self, subdomain):
         """Facets of all cells from corner to corner, three nodes each, and the subdomain of each.

@@ -15,8 +15,22 @@ def last(column):
     return column[-1] if column.ndim > 1 else column[:]
 
 
+def shear(table):
+    """The tangential force over area along the normal turned by 90°; nothing where there is no friction.
+
+    The area is that of force and pressure, so that open conditions have none."""
+    if "tangential_force" not in table:
+        return None
+    force, pressure = last(table["force"]), last(table["pressure"])
+    forces = table["tangential_force"]
+    forces = forces[-1] if forces.ndim > 2 else forces[:]
+    normal = table["normal"][:]
+    along = normal[:, 0] * forces[:, 1] - normal[:, 1] * forces[:, 0]
+    return np.divide(along * pressure, force, out=np.zeros(len(force)), where=force > 0)
+
+
 def read(path):
-    """The units, the report, the rows of the sweeps, and of each contact pressure and status along its side."""
+    """The units, the report, the rows of the sweeps, and of each contact pressure, shear and status along its side."""
     try:
         with h5py.File(path) as file:
             units = units_of(file)
@@ -31,6 +45,7 @@ def read(path):
                 name: {
                     "pieces": curves_along(table["position"][:, :2], table["node_a"][:], edges),
                     **{key: last(table[key]) for key in ("pressure", "status")},
+                    "shear": shear(table),
                 }
                 for name, table in tables.items()
             }

@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::ranks::{PhaseSeconds, RankReport};
-use super::resultants::Resultants;
+use super::resultants::{Friction, Resultants};
 use crate::certificate::Certificate;
 use crate::settings::{Origins, Settings};
 
@@ -60,6 +60,8 @@ pub struct StepReport {
     /// What contacts and supports carry.
     #[serde(flatten)]
     pub resultants: Resultants,
+    /// What friction does in it, in all contacts; `null` where there is none.
+    pub friction: Option<Friction>,
 }
 
 /// The report. A number that isn't finite is `null` in its JSON.
@@ -111,8 +113,10 @@ pub struct Report {
     /// What contacts and supports carry.
     #[serde(flatten)]
     pub resultants: Resultants,
-    /// The load steps, where the problem has any. Above, sweeps and inner steps are those of all,
-    /// residual, certificate and condition those of the worst, and all else is that of the last one.
+    /// What friction does in all contacts; `null` where there is none.
+    pub friction: Option<Friction>,
+    /// The load steps, where the problem has any. Above, sweeps, inner steps and friction's work are those of
+    /// all, residual, certificate and condition those of the worst, and all else is that of the last one.
     pub steps: Vec<StepReport>,
     /// What the scene didn't need, in words.
     pub skipped: Vec<String>,

@@ -34,27 +34,45 @@ pub struct ContactResultant {
     pub conditions: usize,
     /// Number of those that are closed.
     pub closed: usize,
-    /// Number of closed ones with friction that stick.
-    pub sticking: usize,
-    /// Number of those that slip.
-    pub slipping: usize,
-    /// What friction dissipates in this load step (J, per metre of thickness in the plane).
-    pub dissipated_work: f64,
     /// What acts on side a.
     #[serde(flatten)]
     pub resultant: Resultant,
     /// Largest contact pressure (Pa).
     pub largest_pressure: f64,
+    /// What its friction does; `null` where it has none.
+    pub friction: Option<Friction>,
+}
+
+/// What friction does in a load step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Friction {
+    /// Number of closed conditions with friction that stick.
+    pub sticking: usize,
+    /// Number of those that slip.
+    pub slipping: usize,
+    /// Work that becomes heat (J, per metre of thickness in the plane).
+    pub dissipated_work: f64,
+}
+
+impl Friction {
+    /// Adds what friction does elsewhere.
+    fn add(&mut self, other: Self) {
+        self.sticking += other.sticking;
+        self.slipping += other.slipping;
+        self.dissipated_work += other.dissipated_work;
+    }
 }
 
 impl ContactResultant {
     /// Adds what a point carries.
     pub fn add(&mut self, point: &ContactPoint<u32>, state: &ContactState) {
         self.closed += usize::from(state.closed);
-        if point.law.has_friction() {
-            self.sticking += usize::from(state.status() == 1);
-            self.slipping += usize::from(state.status() == 2);
-            self.dissipated_work += state.dissipated;
+        if let (Some(friction), true) = (&mut self.friction, point.law.has_friction()) {
+            friction.add(Friction {
+                sticking: usize::from(state.status() == 1),
+                slipping: usize::from(state.status() == 2),
+                dissipated_work: state.dissipated,
+            });
         }
         let force = advance(state.tangential_force, -state.force, point.normal());
         self.resultant.add(point.force_point, force);
@@ -87,6 +105,7 @@ impl Resultants {
         let contacts = catalog.contacts.iter().map(|contact| ContactResultant {
             name: contact.name.clone(),
             conditions: contact.conditions,
+            friction: contact.has_friction.then(Friction::default),
             ..ContactResultant::default()
         });
         Self {
@@ -94,10 +113,21 @@ impl Resultants {
             reactions,
         }
     }
+
+    /// What friction does in all contacts; `None` where there is none.
+    pub fn friction(&self) -> Option<Friction> {
+        let all = self.contacts.iter().filter_map(|contact| contact.friction);
+        all.reduce(|mut sum, friction| {
+            sum.add(friction);
+            sum
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use contact_dd_partition::contact_point::Law;
+
     use super::*;
 
     #[test]
@@ -107,5 +137,55 @@ mod tests {
         sum.add([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]);
         assert_eq!(sum.force, [4.0, 5.0, 0.0]);
         assert_eq!(sum.moment, [0.0, 0.0, 2.0 * 5.0 - 3.0 - 1.0]);
+    }
+
+    #[test]
+    fn friction_pulls_side_a_and_is_counted_where_there_is_some() {
+        let mut contact = ContactResultant {
+            friction: Some(Friction::default()),
+            ..ContactResultant::default()
+        };
+        let at = |x: f64, law: Law| ContactPoint {
+            area: 0.5,
+            law,
+            ..ContactPoint::new(Vec::new(), [0.0, -1.0, 0.0], [x, 2.0, 0.0], 1)
+        };
+        let rough = Law::coulomb(0.5, 0.0);
+        let sticks = ContactState {
+            force: 10.0,
+            closed: true,
+            tangential_force: [3.0, 0.0, 0.0],
+            ..ContactState::default()
+        };
+        let slips = ContactState {
+            tangential_force: [-5.0, 0.0, 0.0],
+            slipping: true,
+            dissipated: 0.25,
+            ..sticks
+        };
+        contact.add(&at(0.0, rough), &sticks);
+        contact.add(&at(1.0, rough), &slips);
+        contact.add(&at(2.0, rough), &ContactState::default());
+        contact.add(
+            &at(3.0, Law::Frictionless),
+            &ContactState {
+                tangential_force: [0.0; 3],
+                ..sticks
+            },
+        );
+        let Resultant { force, moment } = contact.resultant;
+        assert_eq!(force, [3.0 - 5.0, 30.0, 0.0]);
+        assert_eq!(moment, [0.0, 0.0, -2.0 * (3.0 - 5.0) + 10.0 + 30.0]);
+        assert_eq!((contact.closed, contact.largest_pressure), (3, 20.0));
+        let sum = Friction {
+            sticking: 1,
+            slipping: 1,
+            dissipated_work: 0.25,
+        };
+        assert_eq!(contact.friction, Some(sum));
+        let mut all = Resultants::default();
+        assert_eq!(all.friction(), None);
+        all.contacts = vec![contact.clone(), ContactResultant::default(), contact];
+        assert_eq!(all.friction().map(|sum| sum.slipping), Some(2));
     }
 }

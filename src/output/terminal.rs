@@ -145,6 +145,12 @@ pub fn closing(reason: &str, report: &Report, result: &Path) -> String {
             "mesh         stresses are off by about {percent:.1} % in the energy norm"
         ));
     }
+    if let Some(friction) = report.friction {
+        lines.push(format!(
+            "friction     {} conditions stick, {} slip; work {:.4e} J/m",
+            friction.sticking, friction.slipping, friction.dissipated_work
+        ));
+    }
     lines.push(String::new());
     lines.extend(steps(&report.steps));
     lines.extend(resultants::lines(&report.resultants));
@@ -169,12 +175,18 @@ fn steps(steps: &[StepReport]) -> Vec<String> {
     if steps.is_empty() {
         return Vec::new();
     }
-    let head = " step        time    sweeps    active      pressure   equilibrium  name";
+    let has_friction = steps[0].friction.is_some();
+    let slipping = if has_friction { "  slipping" } else { "" };
+    let head = format!(
+        " step        time    sweeps    active{slipping}      pressure   equilibrium  name"
+    );
     let line = |(k, step): (usize, &StepReport)| {
         let contacts = step.resultants.contacts.iter();
         let pressure = contacts.fold(0.0, |most: f64, contact| most.max(contact.largest_pressure));
+        let slipping = step.friction.map(|sum| format!("  {:>8}", sum.slipping));
+        let slipping = slipping.unwrap_or_default();
         format!(
-            "{:>5}  {:>10}  {:>8}  {:>8}  {pressure:>12.4e}  {:>12.1e}  {}",
+            "{:>5}  {:>10}  {:>8}  {:>8}{slipping}  {pressure:>12.4e}  {:>12.1e}  {}",
             k + 1,
             step.time,
             step.sweeps,
@@ -183,7 +195,7 @@ fn steps(steps: &[StepReport]) -> Vec<String> {
             step.name
         )
     };
-    let mut lines = vec![head.to_owned()];
+    let mut lines = vec![head];
     lines.extend(steps.iter().enumerate().map(line));
     lines.push("\nin the last step:".to_owned());
     lines

@@ -9,7 +9,7 @@ use crate::certificate::Certificate;
 use crate::fem::estimate::CellError;
 use crate::output::ranks::RankReport;
 use crate::output::report::{ErrorEstimate, Status, StepReport};
-use crate::output::resultants::Resultants;
+use crate::output::resultants::{Friction, Resultants};
 use crate::plan::Plan;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::sweep::{SweepOutcome, SweepStatus};
@@ -123,6 +123,16 @@ impl Totals<'_> {
         conditions.try_fold(0.0, |worst: f64, condition| Some(worst.max(condition?)))
     }
 
+    /// What friction does: the state in the end, the work of all steps.
+    pub fn friction(&self) -> Option<Friction> {
+        let steps = self.steps.iter();
+        let all = steps.filter_map(|step| step.resultants.friction());
+        all.reduce(|before, last| Friction {
+            dissipated_work: before.dissipated_work + last.dissipated_work,
+            ..last
+        })
+    }
+
     /// Which other methods had to help, in words.
     pub fn fallbacks(&self) -> Vec<String> {
         let all = self.steps.iter().flat_map(|step| &step.outcome.fallbacks);
@@ -159,6 +169,7 @@ impl Totals<'_> {
                 condition_number: totals.condition,
                 error_estimate: totals.error_estimate(),
                 resultants: totals.resultants.clone(),
+                friction: totals.resultants.friction(),
             })
             .collect()
     }

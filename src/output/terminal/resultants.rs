@@ -17,18 +17,25 @@ pub(super) fn lines(resultants: &Resultants) -> Vec<String> {
         .chain([title]);
     let width = names.map(|name| name.chars().count()).max().unwrap_or(0);
     let columns = "force x      force y     moment z";
+    let has_friction = resultants.friction().is_some();
     let contact = |contact: &ContactResultant| {
         let closed = format!("{} of {}", contact.closed, contact.conditions);
         let (name, pressure) = (&contact.name, contact.largest_pressure);
+        let slipping = match contact.friction {
+            Some(friction) => format!(" {:>10}", friction.slipping),
+            None if has_friction => format!(" {:>10}", "-"),
+            None => String::new(),
+        };
         format!(
-            "{name:<width$} {closed:>12}{} {pressure:>12.4e}",
+            "{name:<width$} {closed:>12}{} {pressure:>12.4e}{slipping}",
             forces(&contact.resultant)
         )
     };
     let support = |Reaction { support, resultant }: &Reaction| {
         format!("{support:<width$} {:>12}{}", "", forces(resultant))
     };
-    let head = format!("{title:<width$}       closed      {columns}     pressure");
+    let slipping = if has_friction { "   slipping" } else { "" };
+    let head = format!("{title:<width$}       closed      {columns}     pressure{slipping}");
     let mut lines = table(head, contacts, contact);
     let head = format!("{:<width$}                   {columns}", "support");
     lines.extend(table(head, reactions, support));
@@ -57,6 +64,7 @@ fn forces(resultant: &Resultant) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::resultants::Friction;
 
     #[test]
     fn long_lists_are_cut() {
@@ -67,5 +75,24 @@ mod tests {
         let lines = lines(&resultants);
         assert_eq!(lines.len(), 1 + 12 + 1 + 1 + 2);
         assert!(lines[13].contains("… and 3 more"));
+    }
+
+    #[test]
+    fn contacts_that_slip_are_told_where_there_is_friction() {
+        let mut resultants = Resultants {
+            contacts: vec![ContactResultant::default(); 2],
+            reactions: Vec::new(),
+        };
+        assert!(lines(&resultants)[0].ends_with("pressure"));
+        let slips = Friction {
+            slipping: 7,
+            ..Friction::default()
+        };
+        resultants.contacts[1].friction = Some(slips);
+        let [head, without, with] = &lines(&resultants)[..] else {
+            panic!("three lines");
+        };
+        assert!(head.ends_with("slipping") && without.ends_with('-') && with.ends_with(" 7"));
+        assert!([without, with].iter().all(|line| line.len() == head.len()));
     }
 }
