@@ -11,11 +11,12 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use crate::support::stress::trial::Verdict;
+use crate::support::stress::{draw, draw_frictional};
 
 /// Runs scenes that are hard on the solver and says what became of each.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Number of random scenes.
+    /// Number of random scenes, without friction and with it.
     #[arg(short = 'n', long, default_value_t = 1008)]
     scenes: u64,
     /// The first of their seeds.
@@ -27,6 +28,9 @@ pub struct Arguments {
     /// Copies problem and scene files of `--only` into this folder.
     #[arg(long, value_name = "DIR")]
     keep: Option<PathBuf>,
+    /// Runs scenes with friction alone; their seeds count anew.
+    #[arg(long, conflicts_with = "markdown")]
+    friction: bool,
     /// Most cells along a side of a block.
     #[arg(long, default_value_t = 12)]
     cells: usize,
@@ -59,13 +63,24 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         true => arguments.only.clone(),
         false => (arguments.first..arguments.first + arguments.scenes).collect(),
     };
-    let ran = runs.all(&seeds, told);
+    let without = match arguments.friction {
+        true => Vec::new(),
+        false => runs.all(draw, &seeds, told),
+    };
+    let with = match told && !arguments.friction {
+        true => Vec::new(),
+        false => runs.all(draw_frictional, &seeds, told),
+    };
     if let Some(path) = &arguments.markdown {
-        let text = document::document(arguments.first, &ran, &axes::table(&runs));
+        let rows = axes::table(&runs);
+        let text = document::document(arguments.first, &without, &with, &rows);
         std::fs::write(path, text).unwrap();
     }
-    random::summary(&ran);
-    match ran.iter().all(|one| one.trial.verdict == Verdict::Right) {
+    for ran in [&without, &with] {
+        random::summary(ran);
+    }
+    let mut all = without.iter().chain(&with);
+    match all.all(|one| one.trial.verdict == Verdict::Right) {
         true => ExitCode::SUCCESS,
         false => ExitCode::FAILURE,
     }

@@ -189,6 +189,8 @@ impl Table<'_> {
             equilibrium: Some(true),
             subdomains,
             ranks,
+            friction: None,
+            determined: false,
         };
         let trial = Trial::of(&drawn, &self.runs.binary, self.runs.limit, None);
         let ran = Ran::new(&drawn, trial, began);

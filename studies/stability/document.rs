@@ -1,5 +1,7 @@
 //! docs/stability.md: what was run, and what became of it.
 
+mod friction;
+
 use std::fmt::Write as _;
 
 use super::axes::Row;
@@ -52,7 +54,7 @@ with the condition number.
 ";
 
 /// The whole document.
-pub fn document(first: u64, ran: &[Ran], rows: &[Row]) -> String {
+pub fn document(first: u64, ran: &[Ran], frictional: &[Ran], rows: &[Row]) -> String {
     let without = ran
         .iter()
         .filter(|one| one.trial.equilibrium == Some(false))
@@ -79,28 +81,37 @@ usual, up to 30 subdomains.
     distributions(&mut text, ran);
     worst(&mut text, ran);
     axes(&mut text, rows);
-    text
+    text + &friction::chapter(first, frictional)
 }
 
-fn verdicts(text: &mut String, ran: &[Ran]) {
-    text.push_str("## Verdicts\n\n| scenes | number |");
+/// The head of a table of verdicts.
+fn verdict_columns(text: &mut String) {
+    text.push_str("| scenes | number |");
     for verdict in Verdict::ALL {
         let _ = write!(text, " {} |", verdict.name());
     }
     text.push_str("\n|---|--:|");
     text.push_str(&"--:|".repeat(Verdict::ALL.len()));
     text.push('\n');
-    let mut line = |name: &str, of: &dyn Fn(&Ran) -> bool| {
-        let members: Vec<&Ran> = ran.iter().filter(|one| of(one)).collect();
-        let _ = write!(text, "| {name} | {} |", members.len());
-        for verdict in Verdict::ALL {
-            let count = (members.iter())
-                .filter(|one| one.trial.verdict == verdict)
-                .count();
-            let _ = write!(text, " {count} |");
-        }
-        text.push('\n');
-    };
+}
+
+/// How many scenes of a kind have which verdict.
+fn verdict_line(text: &mut String, ran: &[Ran], name: &str, of: &dyn Fn(&Ran) -> bool) {
+    let members: Vec<&Ran> = ran.iter().filter(|one| of(one)).collect();
+    let _ = write!(text, "| {name} | {} |", members.len());
+    for verdict in Verdict::ALL {
+        let count = (members.iter())
+            .filter(|one| one.trial.verdict == verdict)
+            .count();
+        let _ = write!(text, " {count} |");
+    }
+    text.push('\n');
+}
+
+fn verdicts(text: &mut String, ran: &[Ran]) {
+    text.push_str("## Verdicts\n\n");
+    verdict_columns(text);
+    let mut line = |name: &str, of: &dyn Fn(&Ran) -> bool| verdict_line(text, ran, name, of);
     for family in FAMILIES {
         let of = |one: &Ran| one.family == family.name;
         // Families without a fault are in the sums below.
@@ -124,12 +135,17 @@ fn verdicts(text: &mut String, ran: &[Ran]) {
 }
 
 fn distributions(text: &mut String, ran: &[Ran]) {
+    text.push_str("## Figures of the random scenes\n\n");
+    figures(text, ran, &FIGURES);
+}
+
+/// Median and largest of every figure.
+fn figures(text: &mut String, ran: &[Ran], figures: &[Figure]) {
     text.push_str(
-        "## Figures of the random scenes\n\n\
-         | figure | promised | median | 99 % | largest | seed of the largest |\n\
+        "| figure | promised | median | 99 % | largest | seed of the largest |\n\
          |---|--:|--:|--:|--:|--:|\n",
     );
-    for (name, promised, figure) in FIGURES {
+    for &(name, promised, figure) in figures {
         let mut values: Vec<(f64, u64)> = (ran.iter())
             .filter_map(|one| Some((figure(one)?, one.seed)))
             .collect();

@@ -5,8 +5,12 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use crate::support::stress::Drawn;
+use crate::support::stress::friction::Law;
 use crate::support::stress::trial::{Trial, Verdict};
-use crate::support::stress::{Drawn, draw};
+
+/// Makes the scene of a seed, with blocks of so many cells.
+pub type Draw = fn(u64, usize) -> Drawn;
 
 /// How scenes are run.
 pub struct Runs {
@@ -27,20 +31,24 @@ pub struct Ran {
     pub manufactured: bool,
     /// On how many ranks it ran besides, 0 for none.
     pub ranks: usize,
+    /// Its laws of friction, if it has any.
+    pub friction: Option<Law>,
+    /// Number of load steps, 0 where it has none.
+    pub steps: usize,
     pub trial: Trial,
     pub seconds: f64,
 }
 
 impl Runs {
-    /// Runs the scenes of `seeds`; tells each, or those only that aren't right.
-    pub fn all(&self, seeds: &[u64], told: bool) -> Vec<Ran> {
+    /// Runs the scenes that are drawn with `seeds`; tells each, or those only that aren't right.
+    pub fn all(&self, draw: Draw, seeds: &[u64], told: bool) -> Vec<Ran> {
         let next = AtomicUsize::new(0);
         let ran = Mutex::new(Vec::new());
         std::thread::scope(|scope| {
             for _ in 0..self.jobs {
                 scope.spawn(|| {
                     while let Some(&seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed)) {
-                        let one = self.one(seed, told);
+                        let one = self.one(draw, seed, told);
                         ran.lock().unwrap().push(one);
                     }
                 });
@@ -51,12 +59,9 @@ impl Runs {
         ran
     }
 
-    fn one(&self, seed: u64, told: bool) -> Ran {
+    fn one(&self, draw: Draw, seed: u64, told: bool) -> Ran {
         let began = Instant::now();
-        let drawn = std::panic::catch_unwind(|| match std::env::var("UNEVEN").is_ok() {
-            true => crate::support::stress::draw_uneven(seed, self.cells),
-            false => draw(seed, self.cells),
-        });
+        let drawn = std::panic::catch_unwind(|| draw(seed, self.cells));
         let drawn = drawn.unwrap_or_else(|_| panic!("the scene of seed {seed} can't be"));
         let trial = Trial::of(&drawn, &self.binary, self.limit, self.keep.as_deref());
         let ran = Ran::new(&drawn, trial, began);
@@ -86,6 +91,8 @@ impl Ran {
             cells: drawn.sort.name,
             manufactured: drawn.manufactured,
             ranks: drawn.ranks,
+            friction: drawn.friction,
+            steps: drawn.model.steps.len(),
             trial,
             seconds: began.elapsed().as_secs_f64(),
         }
@@ -97,7 +104,7 @@ impl Ran {
             let value = self.trial.reported(keys);
             value.is_some_and(|value| value > limit)
         };
-        over(&["sweeps"], 12.0)
+        (self.steps == 0 && over(&["sweeps"], 12.0))
             || over(&["certificate", "equilibrium"], 1e-14)
             || over(&["certificate", "penetration"], 1e-14)
             || over(&["certificate", "tension"], 1e-12)
@@ -125,6 +132,12 @@ impl Ran {
                 line += &format!("  {key} {value:.1e}");
             }
         }
+        if let Some(law) = self.friction {
+            line += &format!("  {law:.2?}, {} load steps", self.steps);
+            if let Some(steps) = trial.newton_steps() {
+                line += &format!(" of {steps} steps at most");
+            }
+        }
         if let Some(findings) = &trial.findings {
             line += &format!(
                 "  difference {:.1e} ({:.1e}) signs {:.1e}",
@@ -142,6 +155,9 @@ impl Ran {
 
 /// Prints how many there are of each verdict.
 pub fn summary(ran: &[Ran]) {
+    if ran.is_empty() {
+        return;
+    }
     for verdict in Verdict::ALL {
         let count = (ran.iter())
             .filter(|one| one.trial.verdict == verdict)

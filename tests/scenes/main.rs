@@ -11,6 +11,7 @@ mod convergence;
 mod elements;
 mod exact;
 mod floating;
+mod friction;
 mod groups;
 mod laws;
 mod monolithic;

@@ -5,7 +5,9 @@ use contact_dd_partition::model::Model;
 use crate::support::blocks::Blocks;
 use crate::support::comparison::compare;
 use crate::support::monolithic::Monolithic;
-use crate::support::scenes::{BODIES, JOINT, LOAD, SUPPORTS, model, two_block_scene, two_blocks};
+use crate::support::scenes::{
+    BODIES, JOINT, LOAD, SUPPORTS, at_step, model, two_block_scene, two_blocks,
+};
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, solve};
 
@@ -31,21 +33,6 @@ upper = [-3e4, -8e4]
 name = 'a little again'
 scale = 0.1
 ";
-
-/// The model with the loads of step k and no steps.
-fn at_step(model: &Model, k: usize) -> Model {
-    let mut at_step = model.clone();
-    let step = &model.steps[k];
-    for (support, &value) in at_step.supports.iter_mut().zip(&step.supports) {
-        support.value = value;
-    }
-    for ((_, force), &value) in at_step.forces.iter_mut().zip(&step.forces) {
-        *force = value;
-    }
-    at_step.forces.retain(|(_, force)| *force != [0.0; 3]);
-    at_step.steps.clear();
-    at_step
-}
 
 /// Solves all steps of `model` in `count` subdomains.
 #[track_caller]

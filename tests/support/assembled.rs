@@ -1,16 +1,21 @@
 //! The discrete problem of a whole model, assembled without any code of the program under test.
 //!
 //! ```text
-//! K u + Dᵀ μ + Bᵀ λ = f,   D u = v,   B u ≤ g
+//! K u + Dᵀ μ + Bᵀ λ + Tᵀ λ_t = f,   D u = v,   B u ≤ g
 //! ```
+//!
+//! with a row of T for each condition that has friction.
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::contact_point::Law;
 use contact_dd_partition::model::Model;
 use faer::Mat;
 use faer::Par;
 use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::solvers::Lu;
 use faer::sparse::{SparseColMat, Triplet};
+use nalgebra::{DMatrix, DVector};
 
 use super::isoparametric::{Cell, Reference};
 use super::random::Random;
@@ -26,6 +31,35 @@ const REFINEMENTS: usize = 12;
 /// A row of a condition: dofs and coefficients.
 pub type Row = Vec<(usize, f64)>;
 
+/// A tangential row and its law.
+pub struct Tangent {
+    /// Which condition has it.
+    pub condition: usize,
+    pub row: Row,
+    /// Its direction.
+    pub direction: [f64; 3],
+    law: Law,
+    area: f64,
+}
+
+/// What holds along a tangent while a linear system is solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Along {
+    /// No force.
+    Free,
+    /// The tangential jump has this value.
+    Stuck(f64),
+    /// The force is the bound with this sign.
+    Slips(f64),
+}
+
+/// u, λ and λ_t.
+pub struct Solved {
+    pub u: Vec<f64>,
+    pub forces: Vec<f64>,
+    pub tangential: Vec<f64>,
+}
+
 /// K, f, D, v, B and g.
 pub struct Assembled {
     pub dofs: usize,
@@ -37,12 +71,45 @@ pub struct Assembled {
     pub load: Vec<f64>,
     pub supports: Vec<(Row, f64)>,
     pub conditions: Vec<(Row, f64)>,
+    pub tangents: Vec<Tangent>,
 }
 
-/// K u − f + Bᵀ λ, and the sum of the absolute values of its terms.
+/// K u − f + Bᵀ λ + Tᵀ λ_t, and the sum of the absolute values of its terms.
 pub struct Residual {
     pub value: Vec<f64>,
     pub terms: Vec<f64>,
+}
+
+impl Tangent {
+    /// Coefficient and constant of its bound in terms of the normal force λ: how the bound grows, and what it
+    /// is without λ.
+    pub fn bound(&self, closed: bool) -> (f64, f64) {
+        match self.law {
+            Law::Given { bound } => (0.0, bound * self.area),
+            Law::Coulomb {
+                coefficient,
+                cohesion,
+            } if closed => (coefficient, cohesion * self.area),
+            _ => (0.0, 0.0),
+        }
+    }
+
+    /// Whether the bound is there without contact.
+    pub fn is_given(&self) -> bool {
+        matches!(self.law, Law::Given { .. })
+    }
+
+    /// The tangential jump of displacements u.
+    pub fn jump(&self, u: &[f64]) -> f64 {
+        product(&self.row, u)
+    }
+}
+
+/// Σ c u(dof), with the digits of twice the precision.
+fn product(row: &Row, u: &[f64]) -> f64 {
+    let mut sum = Twofold::default();
+    row.iter().for_each(|&(i, c)| sum.add_product(c, u[i]));
+    sum.value()
 }
 
 impl Assembled {
@@ -63,7 +130,20 @@ impl Assembled {
             }
         }
         let conditions = model.contacts.iter().flat_map(|c| &c.points);
+        let tangents =
+            (conditions.clone().enumerate()).filter(|(_, point)| point.law.has_friction());
+        let tangents = tangents.map(|(condition, point)| {
+            let direction = point.frame.tangents[0];
+            Tangent {
+                condition,
+                row: row(&point.row_along(direction).collect::<Vec<_>>()),
+                direction,
+                law: point.law,
+                area: point.area,
+            }
+        });
         Self {
+            tangents: tangents.collect(),
             dofs: load.len(),
             scale: stiffness.iter().fold(0.0, |m, t| t.val.abs().max(m)),
             cells,
@@ -118,8 +198,8 @@ impl Assembled {
         }
     }
 
-    /// K u − f + Bᵀ λ with the digits of twice the precision.
-    pub fn residual(&self, u: &[f64], forces: &[f64]) -> Residual {
+    /// K u − f + Bᵀ λ + Tᵀ λ_t with the digits of twice the precision.
+    pub fn residual(&self, u: &[f64], forces: &[f64], tangential: &[f64]) -> Residual {
         let mut sums = vec![Twofold::default(); self.dofs];
         let mut terms = vec![0.0; self.dofs];
         let mut add = |row: usize, a: f64, b: f64| {
@@ -134,6 +214,9 @@ impl Assembled {
         }
         for ((row, _), force) in self.conditions.iter().zip(forces) {
             row.iter().for_each(|&(dof, c)| add(dof, c, *force));
+        }
+        for (tangent, force) in self.tangents.iter().zip(tangential) {
+            (tangent.row.iter()).for_each(|&(dof, c)| add(dof, c, *force));
         }
         Residual {
             value: sums.iter().map(Twofold::value).collect(),
@@ -151,10 +234,30 @@ impl Assembled {
         equations: &[(Row, f64)],
         disturbed: Option<f64>,
     ) -> (Vec<f64>, Vec<f64>) {
+        let free = vec![Along::Free; self.tangents.len()];
+        let solved = self.solve_along(closed, &free, equations, disturbed);
+        (solved.u, solved.forces)
+    }
+
+    /// The same with what holds along the tangents.
+    pub fn solve_along(
+        &self,
+        closed: &[bool],
+        along: &[Along],
+        equations: &[(Row, f64)],
+        disturbed: Option<f64>,
+    ) -> Solved {
         let active: Vec<usize> = (0..closed.len()).filter(|&j| closed[j]).collect();
-        let rows: Vec<&(Row, f64)> = (self.supports.iter())
-            .chain(equations)
-            .chain(active.iter().map(|&j| &self.conditions[j]))
+        let stuck: Vec<(usize, f64)> = (along.iter().enumerate())
+            .filter_map(|(k, along)| match along {
+                Along::Stuck(jump) => Some((k, *jump)),
+                _ => None,
+            })
+            .collect();
+        let fixed = self.supports.iter().chain(equations);
+        let rows: Vec<(&Row, f64)> = (fixed.chain(active.iter().map(|&j| &self.conditions[j])))
+            .map(|(row, value)| (row, *value))
+            .chain(stuck.iter().map(|&(k, jump)| (&self.tangents[k].row, jump)))
             .collect();
         let n = self.dofs + rows.len();
         let mut entries = self.stiffness.clone();
@@ -169,62 +272,133 @@ impl Assembled {
             }
         }
         for (k, (row, value)) in rows.iter().enumerate() {
-            for &(dof, c) in row {
+            for &(dof, c) in *row {
                 entries.push(Triplet::new(self.dofs + k, dof, c * self.scale));
                 entries.push(Triplet::new(dof, self.dofs + k, c * self.scale));
             }
             rhs.push(value * self.scale);
         }
-        let x = refined(n, entries, self.dofs, SLACK * self.scale, &rhs);
-        let mut forces = vec![0.0; closed.len()];
-        let first = n - active.len();
+        let first = n - active.len() - stuck.len();
+        let mut column = vec![None; closed.len()];
         for (k, &j) in active.iter().enumerate() {
-            forces[j] = x[first + k] * self.scale;
+            column[j] = Some(first + k);
         }
-        (x[..self.dofs].to_vec(), forces)
+        for (tangent, along) in self.tangents.iter().zip(along) {
+            let &Along::Slips(sign) = along else { continue };
+            let (grows, constant) = tangent.bound(closed[tangent.condition]);
+            for &(dof, c) in &tangent.row {
+                rhs[dof] -= sign * constant * c;
+                if let Some(column) = column[tangent.condition] {
+                    entries.push(Triplet::new(dof, column, sign * grows * c * self.scale));
+                }
+            }
+        }
+        let x = System::new(n, entries, self.dofs, SLACK * self.scale).solve(&rhs);
+        let mut forces = vec![0.0; closed.len()];
+        for (j, column) in column.iter().enumerate() {
+            forces[j] = column.map_or(0.0, |column| x[column] * self.scale);
+        }
+        let mut tangential = vec![0.0; along.len()];
+        for (i, &(k, _)) in stuck.iter().enumerate() {
+            tangential[k] = x[first + active.len() + i] * self.scale;
+        }
+        for (k, tangent) in self.tangents.iter().enumerate() {
+            if let Along::Slips(sign) = along[k] {
+                let (grows, constant) = tangent.bound(closed[tangent.condition]);
+                tangential[k] = sign * (grows * forces[tangent.condition] + constant);
+            }
+        }
+        Solved {
+            u: x[..self.dofs].to_vec(),
+            forces,
+            tangential,
+        }
+    }
+
+    /// The forces r of all conditions and then of all tangents while the former are closed and the latter have the
+    /// jumps `w`, and S: displacements in which the jumps are larger by d have the forces r − S d.
+    pub fn condensed(&self, w: &[f64]) -> (DVector<f64>, DMatrix<f64>) {
+        let conditions = self.conditions.iter().map(|(row, gap)| (row, *gap));
+        let tangents = self.tangents.iter().zip(w).map(|(t, w)| (&t.row, *w));
+        let jumps: Vec<(&Row, f64)> = conditions.chain(tangents).collect();
+        let fixed = self.supports.iter().map(|(row, value)| (row, *value));
+        let rows: Vec<(&Row, f64)> = fixed.chain(jumps.iter().copied()).collect();
+        let n = self.dofs + rows.len();
+        let mut entries = self.stiffness.clone();
+        for (k, (row, _)) in rows.iter().enumerate() {
+            for &(dof, c) in *row {
+                entries.push(Triplet::new(self.dofs + k, dof, c * self.scale));
+                entries.push(Triplet::new(dof, self.dofs + k, c * self.scale));
+            }
+        }
+        let system = System::new(n, entries, self.dofs, SLACK * self.scale);
+        let first = n - jumps.len();
+        let forces = |rhs: &[f64]| {
+            let x = system.solve(rhs);
+            DVector::from_iterator(jumps.len(), x[first..].iter().map(|x| x * self.scale))
+        };
+        let values = rows.iter().map(|(_, value)| value * self.scale);
+        let rhs: Vec<f64> = self.load.iter().copied().chain(values).collect();
+        let columns: Vec<_> = (0..jumps.len())
+            .map(|i| {
+                let mut unit = vec![0.0; n];
+                unit[first + i] = self.scale;
+                -forces(&unit)
+            })
+            .collect();
+        (forces(&rhs), DMatrix::from_columns(&columns))
     }
 }
 
-/// The solution of a system of `n` equations, those from `first` on with `slack` in the factor.
-fn refined(
-    n: usize,
+/// A sparse matrix with its factor.
+struct System {
     entries: Vec<Triplet<usize, usize, f64>>,
-    first: usize,
-    slack: f64,
-    rhs: &[f64],
-) -> Vec<f64> {
-    faer::set_global_parallelism(Par::Seq);
-    let mut factorized = entries.clone();
-    factorized.extend((first..n).map(|row| Triplet::new(row, row, -slack)));
-    let matrix = SparseColMat::try_new_from_triplets(n, n, &factorized).unwrap();
-    let lu = matrix.sp_lu().unwrap();
-    let mut x = vec![0.0; n];
-    let mut last = f64::INFINITY;
-    for _ in 0..REFINEMENTS {
-        let mut sums = vec![Twofold::default(); n];
-        for (sum, b) in sums.iter_mut().zip(rhs) {
-            sum.add(*b);
-        }
-        for t in &entries {
-            sums[t.row].add_product(-t.val, x[t.col]);
-        }
-        let residual = Mat::from_fn(n, 1, |i, _| sums[i].value());
-        let correction = lu.solve(&residual);
-        let largest = |m: f64, x: &f64| m.max(x.abs());
-        let change = (0..n).fold(0.0, |m, i| largest(m, &correction[(i, 0)]));
-        // Where it grows, the matrix is singular to rounding.
-        if !change.is_finite() || change > last {
-            break;
-        }
-        for (i, x) in x.iter_mut().enumerate() {
-            *x += correction[(i, 0)];
-        }
-        if change <= f64::EPSILON * x.iter().fold(0.0, largest) {
-            break;
-        }
-        last = change;
+    lu: Lu<usize, f64>,
+    n: usize,
+}
+
+impl System {
+    /// Of `n` equations, those from `first` on with `slack` in the factor.
+    fn new(n: usize, entries: Vec<Triplet<usize, usize, f64>>, first: usize, slack: f64) -> Self {
+        faer::set_global_parallelism(Par::Seq);
+        let mut factorized = entries.clone();
+        factorized.extend((first..n).map(|row| Triplet::new(row, row, -slack)));
+        let matrix = SparseColMat::try_new_from_triplets(n, n, &factorized).unwrap();
+        let lu = matrix.sp_lu().unwrap();
+        Self { entries, lu, n }
     }
-    x
+
+    /// The solution, refined.
+    fn solve(&self, rhs: &[f64]) -> Vec<f64> {
+        let n = self.n;
+        let mut x = vec![0.0; n];
+        let mut last = f64::INFINITY;
+        for _ in 0..REFINEMENTS {
+            let mut sums = vec![Twofold::default(); n];
+            for (sum, b) in sums.iter_mut().zip(rhs) {
+                sum.add(*b);
+            }
+            for t in &self.entries {
+                sums[t.row].add_product(-t.val, x[t.col]);
+            }
+            let residual = Mat::from_fn(n, 1, |i, _| sums[i].value());
+            let correction = self.lu.solve(&residual);
+            let largest = |m: f64, x: &f64| m.max(x.abs());
+            let change = (0..n).fold(0.0, |m, i| largest(m, &correction[(i, 0)]));
+            // Where it grows, the matrix is singular to rounding.
+            if !change.is_finite() || change > last {
+                break;
+            }
+            for (i, x) in x.iter_mut().enumerate() {
+                *x += correction[(i, 0)];
+            }
+            if change <= f64::EPSILON * x.iter().fold(0.0, largest) {
+                break;
+            }
+            last = change;
+        }
+        x
+    }
 }
 
 fn cells(model: &Model) -> Vec<Cell> {

@@ -2,8 +2,10 @@
 
 use contact_dd_partition::model::Model;
 
+use super::assembled::Along;
+use super::frictional::Frictional;
 use super::monolithic::Monolithic;
-use super::solution::Solution;
+use super::solution::{ContactPoint, Solution};
 
 /// Fails unless displacement, forces, pressures, gaps and status are those of the reference.
 #[track_caller]
@@ -34,6 +36,47 @@ pub fn compare(model: &Model, reference: &Monolithic, solution: &Solution) {
                 assert_eq!(point.closed, force_ref > 0.0, "{at}: {point:?}");
             }
             row += 1;
+        }
+    }
+}
+
+/// Fails unless every increment is that of the reference with friction.
+#[track_caller]
+pub fn compare_friction(model: &Model, reference: &[Frictional], solutions: &[Solution]) {
+    assert_eq!(reference.len(), solutions.len());
+    for (k, (expected, solution)) in reference.iter().zip(solutions).enumerate() {
+        let (assembled, solved) = (&expected.assembled, &expected.solved);
+        let u = solution.dofs(model);
+        let difference = assembled.energy_difference(&solved.u, &u);
+        assert!(difference <= 1e-11, "{k}: energy difference {difference:e}");
+        let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let (size, force) = (largest(&solved.u), largest(&solved.forces));
+        let points = model
+            .contacts
+            .iter()
+            .flat_map(|c| &solution.contacts[&c.name]);
+        let points: Vec<&ContactPoint> = points.collect();
+        for (point, expected) in points.iter().zip(&solved.forces) {
+            let at = format!("{k}, normal, {:?}", point.position);
+            close(point.force, *expected, 1e-10 * force, &at);
+        }
+        for (t, tangent) in assembled.tangents.iter().enumerate() {
+            let point = points[tangent.condition];
+            let at = format!("{k}, tangential, {:?}", point.position);
+            for axis in 0..2 {
+                let along = tangent.direction[axis];
+                let [expected, slip] = [-solved.tangential[t], tangent.jump(&solved.u)];
+                close(
+                    point.tangential_force[axis],
+                    expected * along,
+                    1e-10 * force,
+                    &at,
+                );
+                close(point.slip[axis], slip * along, 1e-11 * size, &at);
+            }
+            assert_eq!(point.closed, expected.closed[tangent.condition], "{at}");
+            let slips = matches!(expected.along[t], Along::Slips(_));
+            assert_eq!(point.slipping, slips && point.closed, "{at}: {point:?}");
         }
     }
 }

@@ -75,3 +75,18 @@ pub fn built_in_model(name: &str, refine: u32) -> Model {
     let (text, mesh) = built_in(name, refine);
     model(text, mesh)
 }
+
+/// The model with the loads of step k and no steps.
+pub fn at_step(model: &Model, k: usize) -> Model {
+    let mut at_step = model.clone();
+    let step = &model.steps[k];
+    for (support, &value) in at_step.supports.iter_mut().zip(&step.supports) {
+        support.value = value;
+    }
+    for ((_, force), &value) in at_step.forces.iter_mut().zip(&step.forces) {
+        *force = value;
+    }
+    at_step.forces.retain(|(_, force)| *force != [0.0; 3]);
+    at_step.steps.clear();
+    at_step
+}

@@ -35,6 +35,11 @@ pub struct ContactPoint {
     pub force: f64,
     pub pressure: f64,
     pub closed: bool,
+    /// With friction at its bound.
+    pub slipping: bool,
+    /// On side a; 0 without friction, as the slip is.
+    pub tangential_force: [f64; 3],
+    pub slip: [f64; 3],
 }
 
 fn column<T: H5Type>(file: &File, name: &str) -> Vec<T> {
@@ -56,6 +61,14 @@ impl Solution {
         let file = File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         let report: VarLenUnicode = file.attr("report").unwrap().read_scalar().unwrap();
         serde_json::from_str(report.as_str()).unwrap()
+    }
+
+    /// All increments: those of the load steps, or the only one.
+    pub fn increments(path: &Path, has_steps: bool) -> Vec<Self> {
+        match has_steps {
+            true => Self::steps(path),
+            false => vec![Self::read(path)],
+        }
     }
 
     /// The solutions of all load steps, each with the report's entry as its report.
@@ -120,6 +133,10 @@ impl Solution {
         self.points().filter(|point| point.closed).count()
     }
 
+    pub fn slipping(&self) -> usize {
+        self.points().filter(|point| point.slipping).count()
+    }
+
     pub fn sweeps(&self) -> u64 {
         self.report["sweeps"].as_u64().unwrap()
     }
@@ -144,6 +161,9 @@ impl Solution {
                 "{name} is {value:?}; expected at most {limit:e}\n{certificate:#}"
             );
         }
+        // Only with friction.
+        let friction = certificate["friction"].as_f64().unwrap_or(0.0);
+        assert!(friction <= 1e-9, "friction is {friction:e}");
     }
 }
 
@@ -195,6 +215,12 @@ fn points(file: &File, group: &str, step: Option<(usize, usize)>) -> Vec<Contact
     let (position, normal) = (vectors("position"), vectors("normal"));
     let (gap, force, pressure) = (reals("gap"), reals("force"), reals("pressure"));
     let status = part(column::<u8>(file, &format!("{group}/status")), step);
+    // Only with friction.
+    let of_friction = |name: &str| match file.dataset(&format!("{group}/{name}")) {
+        Ok(_) => part(vectors(name), step),
+        Err(_) => vec![[0.0; 3]; gap.len()],
+    };
+    let (tangential_force, slip) = (of_friction("tangential_force"), of_friction("slip"));
     let all = [position.len(), normal.len(), gap.len(), force.len()];
     assert!(all.iter().all(|&n| n == a.len()), "{group}: {all:?} rows");
     (0..a.len())
@@ -205,7 +231,10 @@ fn points(file: &File, group: &str, step: Option<(usize, usize)>) -> Vec<Contact
             gap: gap[i],
             force: force[i],
             pressure: pressure[i],
-            closed: status[i] == 1,
+            closed: status[i] != 0,
+            slipping: status[i] == 2,
+            tangential_force: tangential_force[i],
+            slip: slip[i],
         })
         .collect()
 }

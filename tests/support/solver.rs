@@ -79,6 +79,17 @@ impl Case {
     }
 }
 
+/// Solves all increments of a model in `count` subdomains; each has to keep its certificate.
+#[track_caller]
+pub fn solve_steps(model: &Model, count: usize) -> Vec<Solution> {
+    let case = Case::of(model, count);
+    let ended = case.run(&[]);
+    assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+    let all = Solution::increments(&case.result(), !model.steps.is_empty());
+    all.iter().for_each(Solution::check_certificate);
+    all
+}
+
 /// A model cut into `count` subdomains.
 #[track_caller]
 pub fn problem(model: &Model, count: Option<usize>) -> Problem {

@@ -3,11 +3,15 @@
 //! There is an equilibrium if λ ≥ 0 and support forces μ exist with Rᵀ (f − Bᵀ λ − Dᵀ μ) = 0 for the
 //! rigid motions R of all bodies. Either they do, or a motion z exists that supports and contact
 //! allow, D R z = 0 and B R z ≤ 0, and that the load drives, fᵀ R z > 0; both are checked.
+//!
+//! With friction there are tangential forces, too: |λ_t| ≤ μ λ + b, with b > 0 for a given bound and for cohesion,
+//! for which all is taken to be closed. What rigid bodies can't balance no elastic ones can; what they can, elastic
+//! ones may still not, as their normal forces aren't free to choose.
 
 use contact_dd_partition::model::Model;
 use nalgebra::{DMatrix, DVector};
 
-use super::super::assembled::Assembled;
+use super::super::assembled::{Assembled, Row, Tangent};
 use super::rigid::Bodies;
 
 /// What is left of the load, relative to it, up to which it is balanced, and from which not.
@@ -24,7 +28,16 @@ pub enum Balance {
 }
 
 impl Balance {
+    /// With the friction that the scene has.
     pub fn new(model: &Model, assembled: &Assembled) -> Self {
+        Self::with(model, assembled, &assembled.tangents)
+    }
+
+    pub fn without_friction(model: &Model, assembled: &Assembled) -> Self {
+        Self::with(model, assembled, &[])
+    }
+
+    fn with(model: &Model, assembled: &Assembled, tangents: &[Tangent]) -> Self {
         let bodies = Bodies::new(model);
         let load: Vec<(usize, f64)> = assembled.load.iter().copied().enumerate().collect();
         let load = bodies.act(&load);
@@ -39,11 +52,65 @@ impl Balance {
         if allowed.is_empty() {
             return Self::Holds;
         }
-        let allowed = DMatrix::from_columns(&allowed);
-        let columns: Vec<DVector<f64>> = (assembled.conditions.iter())
-            .map(|(row, _)| allowed.transpose() * bodies.act(row))
-            .collect();
-        Self::of(&columns, &(allowed.transpose() * load))
+        let allowed = DMatrix::from_columns(&allowed).transpose();
+        let act = |row: &Row| -> DVector<f64> { &allowed * bodies.act(row) };
+        let mut columns = Vec::new();
+        let mut slopes = vec![0.0; assembled.conditions.len()];
+        let mut bounded = Vec::new();
+        let mut along = vec![None; assembled.conditions.len()];
+        for tangent in tangents {
+            let (grows, constant) = tangent.bound(true);
+            let row = act(&tangent.row);
+            slopes[tangent.condition] = grows;
+            if constant > 0.0 {
+                bounded.push((row.clone(), constant / scale));
+            }
+            along[tangent.condition] = Some(row);
+        }
+        for (j, (row, _)) in assembled.conditions.iter().enumerate() {
+            let normal = act(row);
+            match &along[j] {
+                // The edges of the cone.
+                Some(along) if slopes[j] > 0.0 => {
+                    columns.push(&normal + along * slopes[j]);
+                    columns.push(normal - along * slopes[j]);
+                }
+                _ => columns.push(normal),
+            }
+        }
+        Self::bounded(columns, &bounded, &allowed * load)
+    }
+
+    /// Whether `load` is a combination of `columns` with coefficients ≥ 0 and of `bounded` ones with coefficients
+    /// between −bound and bound.
+    fn bounded(
+        columns: Vec<DVector<f64>>,
+        bounded: &[(DVector<f64>, f64)],
+        load: DVector<f64>,
+    ) -> Self {
+        // More than all the load together needs no bound.
+        let most = 10.0 * (1.0 + load.norm());
+        let (rows, extra) = (load.len(), bounded.len());
+        let lifted = |top: &DVector<f64>, at: Option<usize>| {
+            let mut lifted = DVector::zeros(rows + extra);
+            lifted.rows_mut(0, rows).copy_from(top);
+            if let Some(at) = at {
+                lifted[rows + at] = 1.0;
+            }
+            lifted
+        };
+        let mut all: Vec<DVector<f64>> = columns.iter().map(|c| lifted(c, None)).collect();
+        let mut rhs = lifted(&load, None);
+        for (i, (row, bound)) in bounded.iter().enumerate() {
+            // λ_t = b (2 s − 1) with s + r = 1.
+            let bound = bound.min(most);
+            let mut shifted = rhs.rows_mut(0, rows);
+            shifted += row * bound;
+            rhs[rows + i] = 1.0;
+            all.push(lifted(&(row * (2.0 * bound)), Some(i)));
+            all.push(lifted(&DVector::zeros(rows), Some(i)));
+        }
+        Self::of(&all, &rhs)
     }
 
     /// Whether `load` is a combination of `columns` with coefficients ≥ 0.

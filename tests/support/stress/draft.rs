@@ -2,6 +2,7 @@
 
 use super::super::blocks::Blocks;
 use super::super::random::Random;
+use super::friction::Friction;
 
 /// Poisson's ratios between which the hard ones are drawn.
 const HARD_POISSON: [f64; 5] = [0.49, 0.499, 0.4999, 0.499_999, 0.499_999_9];
@@ -26,6 +27,10 @@ pub struct Draft {
     /// Whether nodes of blocks in contact lie opposite each other.
     pub matching: bool,
     contacts: usize,
+    /// The friction of its contacts; none without.
+    pub friction: Option<Friction>,
+    /// Whether the resultants of all contacts follow from statics.
+    pub determined: bool,
 }
 
 impl Draft {
@@ -46,8 +51,15 @@ impl Draft {
             cells,
             matching: true,
             contacts: 0,
+            friction: None,
+            determined: false,
             random,
         }
+    }
+
+    /// A load step, its keys as a scene has them.
+    pub fn step(&mut self, keys: &str) {
+        self.tables += &format!("[[step]]\n{keys}\n");
     }
 
     /// A number of cells along a side.
@@ -170,6 +182,9 @@ impl Draft {
         self.contacts += 1;
         if let Some(gap) = gap {
             self.tables += &format!("gap = '{gap}'\n");
+        }
+        if let Some(friction) = &mut self.friction {
+            self.tables += &friction.drawn();
         }
     }
 

@@ -1,13 +1,15 @@
-//! Is an answer the solution? The problem is convex: what fulfils all its conditions is.
+//! Is an answer the solution? Without friction the problem is convex: what fulfils all its conditions is. With
+//! Coulomb's friction it is one, though there may be others.
 //!
-//! The conditions are checked with matrices that the program never saw, in twice the precision;
-//! and the linear problem with the conditions closed that the program says are closed is solved by
-//! one sparse factorization, so that the distance to the solution is known, too.
+//! The conditions are checked with matrices that the program never saw, in twice the precision; and the linear
+//! problem in which is closed, sticks and slips what the program says is solved by one sparse factorization, so
+//! that the distance to the solution is known, too. Friction opposes the tangential jump since the load step
+//! before.
 
 use contact_dd_partition::model::Model;
 
-use super::super::assembled::{Assembled, Row};
-use super::super::solution::Solution;
+use super::super::assembled::{Along, Assembled, Row, Solved, Tangent};
+use super::super::solution::{ContactPoint, Solution};
 use super::rigid::Bodies;
 
 /// Limits of an answer that is right; the first three stand ten times above what is promised.
@@ -15,6 +17,11 @@ const BACKWARD_ERROR: f64 = 1e-13;
 const PENETRATION: f64 = 1e-13;
 const TENSION: f64 = 1e-11;
 const COMPLEMENTARITY: f64 = 1e-10;
+/// Of the law of friction: relative to the largest bound, or to this part of the loads where that is more.
+const FRICTION: f64 = 1e-9;
+const LEAST_BOUND: f64 = 1e-3;
+/// Tangential jumps that differ by no more are the same, relative to the largest displacement.
+const STUCK: f64 = 1e-10;
 /// Difference to the reference that is always round-off, and how many times that which last
 /// digits make.
 const DIFFERENCE: f64 = 1e-10;
@@ -39,6 +46,17 @@ pub struct Findings {
     pub complementarity: f64,
     /// What prescribed displacements are missed by.
     pub supports: f64,
+    /// By how much tangential forces exceed their bound.
+    pub bound: f64,
+    /// The largest of the lesser of slip since the step before and what the force that opposes it lacks.
+    pub direction: f64,
+    /// Difference of the slip to that of the displacements.
+    pub slip: f64,
+    /// Force or slip out of the tangential direction, or without friction.
+    pub off_tangent: f64,
+    /// By how much a point is not what its status says: open with a force, closed with a gap, stuck with a slip,
+    /// slipping with less force than the bound.
+    pub status: f64,
     /// Distance to the reference in the norm of the energy.
     pub difference: Option<f64>,
     /// The same of a reference with stiffness and balance of forces changed in the last digits;
@@ -48,28 +66,119 @@ pub struct Findings {
     pub reference_signs: Option<f64>,
 }
 
-impl Findings {
-    /// Judges `solution`, against a reference if `compare`.
-    pub fn new(model: &Model, assembled: &Assembled, solution: &Solution, compare: bool) -> Self {
-        let u = solution.dofs(model);
+/// What the result says of contact, by condition and by tangent.
+struct State<'a> {
+    points: Vec<&'a ContactPoint>,
+    forces: Vec<f64>,
+    tangential: Vec<f64>,
+    /// Tangential jumps now, and since the step before.
+    jumps: Vec<f64>,
+    since: Vec<f64>,
+}
+
+impl<'a> State<'a> {
+    fn new(
+        model: &Model,
+        assembled: &Assembled,
+        solution: &'a Solution,
+        before: Option<&Solution>,
+    ) -> Self {
         let points = model.contacts.iter().flat_map(|contact| {
             let points = &solution.contacts[&contact.name];
             assert_eq!(points.len(), contact.points.len(), "{}", contact.name);
             points
         });
-        let (forces, closed): (Vec<f64>, Vec<bool>) =
-            points.map(|point| (point.force, point.closed)).unzip();
+        let points: Vec<&ContactPoint> = points.collect();
+        let jumps = |solution: &Solution| -> Vec<f64> {
+            let u = solution.dofs(model);
+            assembled.tangents.iter().map(|t| t.jump(&u)).collect()
+        };
+        let now = jumps(solution);
+        let past = before.map_or(vec![0.0; now.len()], jumps);
+        let tangents = assembled.tangents.iter();
+        Self {
+            forces: points.iter().map(|point| point.force).collect(),
+            tangential: (tangents)
+                .map(|t| -dot(points[t.condition].tangential_force, t.direction))
+                .collect(),
+            since: now
+                .iter()
+                .zip(&past)
+                .map(|(now, past)| now - past)
+                .collect(),
+            jumps: now,
+            points,
+        }
+    }
+
+    /// The bound of every tangent.
+    fn bounds(&self, assembled: &Assembled) -> Vec<f64> {
+        let bound = |tangent: &Tangent| {
+            let (grows, constant) = tangent.bound(self.points[tangent.condition].closed);
+            grows * self.forces[tangent.condition] + constant
+        };
+        assembled.tangents.iter().map(bound).collect()
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|k| a[k] * b[k]).sum()
+}
+
+impl Findings {
+    /// Judges `solution`, against a reference if `compare`; without friction, or of a first load step.
+    pub fn new(model: &Model, assembled: &Assembled, solution: &Solution, compare: bool) -> Self {
+        Self::after(None, model, assembled, solution, compare)
+    }
+
+    /// Judges `solution`, which comes after the one `before`; `assembled` has its loads.
+    pub fn after(
+        before: Option<&Solution>,
+        model: &Model,
+        assembled: &Assembled,
+        solution: &Solution,
+        compare: bool,
+    ) -> Self {
+        let u = solution.dofs(model);
+        let state = State::new(model, assembled, solution, before);
         let mut findings = Self::default();
-        findings.equilibrium(assembled, &u, &forces);
-        findings.balance(model, assembled, &forces);
+        let before = before.map_or(0.0, Solution::largest_displacement);
+        findings.equilibrium(assembled, &u, &state, before);
+        findings.balance(model, assembled, &state);
         if compare {
-            findings.compare(model, assembled, &u, &closed);
+            findings.compare(model, assembled, &u, &state);
         }
         findings
     }
 
-    fn equilibrium(&mut self, assembled: &Assembled, u: &[f64], forces: &[f64]) {
-        let mut residual = assembled.residual(u, forces);
+    /// The worse of both in everything.
+    pub fn or(self, other: Self) -> Self {
+        let either = |a: Option<f64>, b: Option<f64>| match (a, b) {
+            (Some(a), Some(b)) => Some(worse(a, b)),
+            _ => a.or(b),
+        };
+        Self {
+            backward_error: worse(self.backward_error, other.backward_error),
+            penetration: worse(self.penetration, other.penetration),
+            tension: worse(self.tension, other.tension),
+            balance: worse(self.balance, other.balance),
+            balance_round_off: worse(self.balance_round_off, other.balance_round_off),
+            complementarity: worse(self.complementarity, other.complementarity),
+            supports: worse(self.supports, other.supports),
+            bound: worse(self.bound, other.bound),
+            direction: worse(self.direction, other.direction),
+            slip: worse(self.slip, other.slip),
+            off_tangent: worse(self.off_tangent, other.off_tangent),
+            status: worse(self.status, other.status),
+            difference: either(self.difference, other.difference),
+            disturbance: either(self.disturbance, other.disturbance),
+            reference_signs: either(self.reference_signs, other.reference_signs),
+        }
+    }
+
+    fn equilibrium(&mut self, assembled: &Assembled, u: &[f64], state: &State, before: f64) {
+        let forces = &state.forces;
+        let mut residual = assembled.residual(u, forces, &state.tangential);
         let mut load_scale = largest(&assembled.load).max(largest(forces));
         for (row, _) in &assembled.supports {
             let reaction: f64 = row.iter().map(|&(dof, c)| c * residual.value[dof]).sum();
@@ -94,12 +203,65 @@ impl Findings {
             let there: f64 = row.iter().map(|&(dof, c)| c * u[dof]).sum();
             self.supports = worse(self.supports, ratio((there - value).abs(), size));
         }
+        for (point, gap) in state.points.iter().zip(&gaps) {
+            let wrong = match point.closed {
+                true => ratio(gap.abs(), size),
+                false => ratio(point.force.abs(), load_scale),
+            };
+            self.status = worse(self.status, wrong / STUCK);
+        }
+        self.friction(assembled, state, size.max(before), load_scale);
     }
 
-    fn balance(&mut self, model: &Model, assembled: &Assembled, forces: &[f64]) {
+    /// The law of friction, with displacements of this size and loads of this scale.
+    fn friction(&mut self, assembled: &Assembled, state: &State, size: f64, load_scale: f64) {
+        let bounds = state.bounds(assembled);
+        let scale = largest(&bounds).max(LEAST_BOUND * load_scale);
+        let mut has_friction = vec![false; state.points.len()];
+        for (k, tangent) in assembled.tangents.iter().enumerate() {
+            let (point, force, since) = (
+                state.points[tangent.condition],
+                state.tangential[k],
+                state.since[k],
+            );
+            has_friction[tangent.condition] = true;
+            self.bound = worse(self.bound, ratio(force.abs() - bounds[k], scale));
+            let lacks = ratio(bounds[k] - force * since.signum(), scale) / FRICTION;
+            let slipped = ratio(since.abs(), size) / STUCK;
+            self.direction = worse(self.direction, lacks.min(slipped));
+            let slip = dot(point.slip, tangent.direction);
+            self.slip = worse(self.slip, ratio((slip - state.jumps[k]).abs(), size));
+            for (vector, scale) in [(point.tangential_force, scale), (point.slip, size)] {
+                let along = dot(vector, tangent.direction);
+                let off = (0..3).map(|i| vector[i] - along * tangent.direction[i]);
+                let off = off.fold(0.0, |m: f64, x| worse(m, x.abs()));
+                self.off_tangent = worse(self.off_tangent, ratio(off, scale));
+            }
+            let wrong = match (point.closed, point.slipping) {
+                (false, _) => 0.0,
+                (true, false) => slipped,
+                (true, true) => ratio(bounds[k] - force.abs(), scale) / FRICTION,
+            };
+            self.status = worse(self.status, wrong);
+        }
+        for (point, has_friction) in state.points.iter().zip(has_friction) {
+            let there = |vector: [f64; 3]| vector.iter().any(|x| *x != 0.0);
+            if !has_friction && (point.slipping || there(point.tangential_force)) {
+                self.off_tangent = f64::INFINITY;
+            }
+            if point.slipping && !point.closed {
+                self.status = f64::INFINITY;
+            }
+        }
+    }
+
+    fn balance(&mut self, model: &Model, assembled: &Assembled, state: &State) {
         let mut left = assembled.load.clone();
-        for ((row, _), force) in assembled.conditions.iter().zip(forces) {
+        for ((row, _), force) in assembled.conditions.iter().zip(&state.forces) {
             row.iter().for_each(|&(dof, c)| left[dof] -= c * force);
+        }
+        for (tangent, force) in assembled.tangents.iter().zip(&state.tangential) {
+            (tangent.row.iter()).for_each(|&(dof, c)| left[dof] -= c * force);
         }
         let bodies = Bodies::new(model);
         let resultant = bodies.act(&left.into_iter().enumerate().collect::<Row>());
@@ -109,12 +271,18 @@ impl Findings {
         self.balance = ratio(along.fold(0.0, worse), load);
     }
 
-    /// Solves with the closed conditions as equations; free motions as the program has them.
-    fn compare(&mut self, model: &Model, assembled: &Assembled, u: &[f64], closed: &[bool]) {
+    /// Solves with the closed conditions as equations and friction as it is said to be; free motions as the
+    /// program has them.
+    fn compare(&mut self, model: &Model, assembled: &Assembled, u: &[f64], state: &State) {
+        let closed: Vec<bool> = state.points.iter().map(|point| point.closed).collect();
+        let along = self.along(assembled, state);
         let bodies = Bodies::new(model);
-        let rows = (assembled.conditions.iter().zip(closed))
+        let stuck = assembled.tangents.iter().zip(&along);
+        let stuck = stuck.filter(|(_, along)| matches!(along, Along::Stuck(_)));
+        let rows = (assembled.conditions.iter().zip(&closed))
             .filter(|(_, closed)| **closed)
             .map(|((row, _), _)| row)
+            .chain(stuck.map(|(tangent, _)| &tangent.row))
             .chain(assembled.supports.iter().map(|(row, _)| row));
         let free: Vec<(Row, f64)> = (bodies.unseen(rows).iter())
             .map(|motion| {
@@ -125,7 +293,12 @@ impl Findings {
                 (row, value)
             })
             .collect();
-        let (reference, forces) = assembled.solve(closed, &free, None);
+        let solve = |disturbed| assembled.solve_along(&closed, &along, &free, disturbed);
+        let Solved {
+            u: reference,
+            forces,
+            tangential,
+        } = solve(None);
         let difference = assembled.energy_difference(&reference, u);
         self.difference = Some(difference);
         let given = assembled.conditions.iter().map(|(_, gap)| gap.abs());
@@ -135,17 +308,37 @@ impl Findings {
         let signs = gaps
             .iter()
             .zip(&forces)
-            .zip(closed)
+            .zip(&closed)
             .map(|((gap, f), closed)| match closed {
                 true => ratio(-f, force),
                 false => ratio(-gap, size),
             });
         self.reference_signs = Some(signs.fold(0.0, f64::max));
         if difference > DIFFERENCE / 10.0 {
-            let terms = largest(&assembled.residual(&reference, &forces).terms);
-            let (disturbed, _) = assembled.solve(closed, &free, Some(f64::EPSILON * terms));
+            let residual = assembled.residual(&reference, &forces, &tangential);
+            let terms = largest(&residual.terms);
+            let disturbed = solve(Some(f64::EPSILON * terms)).u;
             self.disturbance = Some(assembled.energy_difference(&reference, &disturbed));
         }
+    }
+
+    /// Whether tangents stick or slip, as the status says, or where the bound is there without contact, the
+    /// force.
+    fn along(&self, assembled: &Assembled, state: &State) -> Vec<Along> {
+        let bounds = state.bounds(assembled);
+        let one = |(k, tangent): (usize, &Tangent)| {
+            let (point, force) = (state.points[tangent.condition], state.tangential[k]);
+            let slips = match tangent.is_given() && !point.closed {
+                true => force.abs() >= (1.0 - FRICTION) * bounds[k],
+                false => point.slipping,
+            };
+            match (slips, point.closed || tangent.is_given()) {
+                (true, _) => Along::Slips(force.signum()),
+                (false, true) => Along::Stuck(state.jumps[k]),
+                (false, false) => Along::Free,
+            }
+        };
+        assembled.tangents.iter().enumerate().map(one).collect()
     }
 
     /// What is wrong, if anything is.
@@ -156,6 +349,11 @@ impl Findings {
             ("tension", self.tension, TENSION),
             ("complementarity", self.complementarity, COMPLEMENTARITY),
             ("supports", self.supports, PENETRATION),
+            ("bound", self.bound, FRICTION),
+            ("direction", self.direction, 1.0),
+            ("slip", self.slip, PENETRATION),
+            ("off the tangent", self.off_tangent, PENETRATION),
+            ("status", self.status, 1.0),
         ];
         if self.balance_round_off.is_finite() {
             let allowed = DISTURBANCES * self.balance_round_off;

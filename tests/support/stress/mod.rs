@@ -8,6 +8,7 @@ mod beams;
 mod boxes;
 mod cracks;
 mod draft;
+pub mod friction;
 mod inclusions;
 pub mod judge;
 pub mod manufactured;
@@ -17,10 +18,12 @@ mod towers;
 pub mod trial;
 mod walls;
 
+use contact_dd_partition::contact_point;
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::model::Model;
 
 use self::draft::Draft;
+use self::friction::{Friction, Law};
 use super::random::Random;
 use super::scenes::model;
 use super::sorts::{SORTS, Sort};
@@ -33,25 +36,24 @@ pub struct Family {
     pub name: &'static str,
     /// Whether nodes of bodies in contact lie opposite each other.
     matching: bool,
+    frictional: bool,
     make: fn(&mut Draft),
 }
 
 const fn matching(name: &'static str, make: fn(&mut Draft)) -> Family {
-    let matching = true;
     Family {
         name,
-        matching,
+        matching: true,
+        frictional: false,
         make,
     }
 }
 
 /// Its bodies are meshed each for itself.
 const fn uneven(name: &'static str, make: fn(&mut Draft)) -> Family {
-    let matching = false;
     Family {
-        name,
-        matching,
-        make,
+        matching: false,
+        ..matching(name, make)
     }
 }
 
@@ -103,6 +105,11 @@ pub struct Drawn {
     pub subdomains: usize,
     /// On how many ranks it runs besides without a launcher, 0 for none.
     pub ranks: usize,
+    /// Its laws of friction, if it has any.
+    pub friction: Option<Law>,
+    /// Whether the resultants of all contacts follow from statics, so that what rigid bodies with friction can
+    /// balance elastic ones do.
+    pub determined: bool,
 }
 
 impl Drawn {
@@ -129,6 +136,12 @@ pub fn draw_uneven(seed: u64, cells: usize) -> Drawn {
     draw_from(&FAMILIES[FIRST_UNEVEN..], seed, cells)
 }
 
+/// A scene with friction, of families of its own. Whether it has an equilibrium only [`Balance`] knows.
+#[track_caller]
+pub fn draw_frictional(seed: u64, cells: usize) -> Drawn {
+    draw_from(&friction::FAMILIES, seed, cells)
+}
+
 #[track_caller]
 fn draw_from(families: &[Family], seed: u64, cells: usize) -> Drawn {
     let family = families[(seed % families.len() as u64) as usize];
@@ -144,7 +157,14 @@ fn draw_from(families: &[Family], seed: u64, cells: usize) -> Drawn {
     };
     let mut draft = Draft::new(random.clone(), cells);
     draft.matching = family.matching;
+    if family.frictional {
+        // Numbers of its own, so that the rest is drawn as without friction.
+        draft.friction = Some(Friction::new(Random::new(!seed), draft.load));
+    }
     (family.make)(&mut draft);
+    if family.frictional {
+        draft.equilibrium = None;
+    }
     let text = draft.text();
     let mut model = model(&text, sort.of(&draft.blocks.mesh));
     let mut random = draft.random;
@@ -174,11 +194,19 @@ fn draw_from(families: &[Family], seed: u64, cells: usize) -> Drawn {
         equilibrium: draft.equilibrium,
         subdomains,
         ranks,
+        friction: draft.friction.map(|friction| friction.law),
+        determined: draft.determined,
     }
 }
 
-/// Multiplies forces, gaps and prescribed displacements, and so the solution.
+/// Multiplies forces, gaps, prescribed displacements and bounds of friction, and so the solution.
 pub fn scale(model: &mut Model, factor: f64) {
+    for step in &mut model.steps {
+        step.supports.iter_mut().for_each(|value| *value *= factor);
+        for force in &mut step.forces {
+            *force = force.map(|f| f * factor);
+        }
+    }
     for (_, force) in &mut model.forces {
         *force = force.map(|f| f * factor);
     }
@@ -187,6 +215,11 @@ pub fn scale(model: &mut Model, factor: f64) {
     }
     for condition in model.contacts.iter_mut().flat_map(|c| &mut c.points) {
         condition.gap *= factor;
+        match &mut condition.law {
+            contact_point::Law::Frictionless => {}
+            contact_point::Law::Given { bound } => *bound *= factor,
+            contact_point::Law::Coulomb { cohesion, .. } => *cohesion *= factor,
+        }
     }
 }
 

@@ -33,10 +33,12 @@ fn pile(draft: &mut Draft, height: impl Fn(&mut Draft, usize) -> f64) {
         _ => Fall::Stands,
     };
     draft.equilibrium = Some(fall == Fall::Stands);
+    draft.determined = !rolled;
     // A surface that isn't plane would hold what is pushed.
     let rough = fall == Fall::Stands && draft.random.chance(0.3);
     if rough && !rolled {
         draft.equilibrium = None;
+        draft.determined = false;
     }
     let width = draft.cells.max(2);
     let mut columns = [0, width];

@@ -3,11 +3,13 @@
 use std::path::Path;
 use std::time::Duration;
 
+use contact_dd_partition::model::Model;
 use contact_dd_partition::problem::Problem;
 use serde_json::Value;
 
 use super::super::assembled::Assembled;
 use super::super::process::{Ended, Running};
+use super::super::scenes::at_step;
 use super::super::solution::{Solution, datasets};
 use super::super::solver::{Case, launched};
 use super::judge::Findings;
@@ -70,8 +72,10 @@ pub struct Trial {
     /// Why, in words; empty where it is right.
     pub reason: String,
     /// Whether there is an equilibrium; `None` where that is a matter of round-off, so that both the
-    /// message that there is none and a solution are right.
+    /// message that there is none and a solution are right, or of what friction carries.
     pub equilibrium: Option<bool>,
+    /// Whether rigid bodies are held by friction, of which elastic ones may not find enough.
+    pub by_friction: bool,
     pub dofs: usize,
     pub conditions: usize,
     pub subdomains: usize,
@@ -79,6 +83,31 @@ pub struct Trial {
     pub findings: Option<Findings>,
     /// The program's own report.
     pub report: Option<Value>,
+}
+
+/// The scene with the loads of a step.
+struct Loaded {
+    model: Model,
+    assembled: Assembled,
+}
+
+impl Loaded {
+    fn new(model: Model) -> Self {
+        Self {
+            assembled: Assembled::new(&model),
+            model,
+        }
+    }
+}
+
+/// The worst of all.
+fn least(balances: impl Iterator<Item = Balance>) -> Balance {
+    let rank = |balance: &Balance| match balance {
+        Balance::Holds => 0,
+        Balance::Unclear => 1,
+        Balance::Fails => 2,
+    };
+    balances.max_by_key(rank).unwrap_or(Balance::Holds)
 }
 
 impl Trial {
@@ -89,15 +118,30 @@ impl Trial {
             verdict: Verdict::Right,
             reason: String::new(),
             equilibrium: drawn.equilibrium,
+            by_friction: false,
             dofs: model.mesh.dim * model.mesh.points.len(),
             conditions: model.contacts.iter().map(|c| c.points.len()).sum(),
             subdomains: 0,
             findings: None,
             report: None,
         };
-        let assembled = Assembled::new(model);
-        let balance = Balance::new(model, &assembled);
+        let steps: Vec<Loaded> = match model.steps.len() {
+            0 => vec![Loaded::new(model.clone())],
+            count => (0..count).map(|k| Loaded::new(at_step(model, k))).collect(),
+        };
+        let balance = least(
+            steps
+                .iter()
+                .map(|step| Balance::new(&step.model, &step.assembled)),
+        );
         trial.equilibrium = match (balance, drawn.equilibrium) {
+            (Balance::Holds, None) if drawn.friction.is_some() => {
+                let without =
+                    |step: &Loaded| Balance::without_friction(&step.model, &step.assembled);
+                let held = least(steps.iter().map(without)) == Balance::Holds;
+                trial.by_friction = !held;
+                (held || drawn.determined).then_some(true)
+            }
             (Balance::Holds, None | Some(true)) => Some(true),
             (Balance::Fails, None | Some(false)) => Some(false),
             (Balance::Unclear, None) => None,
@@ -126,7 +170,7 @@ impl Trial {
             .unwrap();
         }
         let ended = Running::start(launched(binary, 0).arg(case.problem())).wait(limit);
-        trial.judge(drawn, &assembled, &case, &ended);
+        trial.judge(drawn, &steps, &case, &ended);
         if drawn.ranks > 0 && trial.verdict == Verdict::Right {
             trial.again(drawn.ranks, binary, limit, &case, &ended);
         }
@@ -138,26 +182,48 @@ impl Trial {
         self.reason = reason.into();
     }
 
-    fn judge(&mut self, drawn: &Drawn, assembled: &Assembled, case: &Case, ended: &Ended) {
+    fn judge(&mut self, drawn: &Drawn, steps: &[Loaded], case: &Case, ended: &Ended) {
+        let has_steps = !drawn.model.steps.is_empty();
         let Some(status) = ended.status else {
             return self.ends(Verdict::Hung, format!("after {:.0?}", ended.took));
         };
         let message = ended.errors().join(" ");
         match (status.code(), self.equilibrium) {
+            (Some(4), None) if self.by_friction => {
+                return self.ends(Verdict::Unclear, message);
+            }
             (Some(4), Some(false) | None) => return,
             (Some(2 | 4), _) => return self.ends(Verdict::Refused, message),
             (Some(0 | 3), _) => {}
             _ => return self.ends(Verdict::Crashed, format!("{status} {}", ended.stderr)),
         }
-        let solution = Solution::read(&case.result());
-        self.report = Some(solution.report.clone());
+        self.report = Some(Solution::read_report(&case.result()));
         if self.equilibrium == Some(false) {
             return self.ends(Verdict::Missed, message);
         }
-        let reference = self.dofs <= REFERENCE;
-        let findings = Findings::new(&drawn.model, assembled, &solution, reference);
-        self.findings = Some(findings);
-        let faults = findings.faults();
+        let mut faults = Vec::new();
+        let solutions = Solution::increments(&case.result(), has_steps);
+        for (k, solution) in solutions.iter().enumerate() {
+            let Loaded { model, assembled } = &steps[k];
+            let reference = self.dofs <= REFERENCE;
+            let before = k.checked_sub(1).map(|k| &solutions[k]);
+            let findings = Findings::after(before, model, assembled, solution, reference);
+            let at = if has_steps {
+                format!("step {}: ", k + 1)
+            } else {
+                String::new()
+            };
+            faults.extend(
+                findings
+                    .faults()
+                    .into_iter()
+                    .map(|fault| at.clone() + &fault),
+            );
+            self.findings = Some(self.findings.map_or(findings, |before| before.or(findings)));
+        }
+        if status.code() == Some(0) && solutions.len() < steps.len() {
+            faults.push(format!("{} of {} steps", solutions.len(), steps.len()));
+        }
         if status.code() == Some(3) {
             self.ends(Verdict::NotConverged, faults.join(", "));
         } else if !faults.is_empty() {
@@ -193,6 +259,16 @@ impl Trial {
         keys.iter()
             .try_fold(report, |at, key| at.get(key))?
             .as_f64()
+    }
+
+    /// The most steps of Newton's method that an increment took.
+    pub fn newton_steps(&self) -> Option<f64> {
+        let report = self.report.as_ref()?;
+        let of = |entry: &Value| entry.get("active_set_iterations")?.as_f64();
+        match report.get("steps").and_then(Value::as_array) {
+            Some(steps) => steps.iter().filter_map(of).reduce(f64::max),
+            None => of(report),
+        }
     }
 
     /// The words of a list in the program's report.

@@ -1,0 +1,3 @@
+//! Contact with friction.
+
+mod judge;
