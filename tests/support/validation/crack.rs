@@ -1,5 +1,6 @@
 //! A closed inclined crack, turned so that it lies along x.
 
+use contact_dd_partition::model::Model;
 use nalgebra::Complex;
 
 use super::super::blocks::Blocks;
@@ -22,8 +23,18 @@ Mesh: the square [−3, 3]² with the exact tractions, graded (3rd power) toward
 The tips are singular: expected orders are 1 for linear and 1.5 for quadratic cells.
 ";
 
+const WITH_FRICTION: &str = "\
+The same crack with Coulomb's friction, μ = 0.6: what its sides carry of the shear by μ |t_N| drops out of the slip,
+4 (1 − ν²)/E σ (sinψ cosψ − μ sin²ψ) √(b² − x²), at most 3.7681e-3 m, and of Z, and adds to σ_xy everywhere. Above
+μ = cot ψ = 2.7475 nothing slips. *Sticking*: how many points don't slip.
+
+Source and mesh: as above.
+";
+
 const HALF: f64 = 3.0;
 const LOAD: f64 = 100e6;
+/// The coefficient of the case with friction.
+const FRICTION: f64 = 0.6;
 const SCENE: &str = "
     plane = 'strain'
     materials.rock = {young = 25e9, poisson = 0.25}
@@ -39,23 +50,33 @@ fn inclination() -> [f64; 2] {
     [sin, cos]
 }
 
-fn exact() -> Exact {
+/// Shear along the crack: what its sides carry, and what they don't.
+fn shears(friction: f64) -> [f64; 2] {
     let [sin, cos] = inclination();
+    let whole = LOAD * sin * cos;
+    let carried = (friction * LOAD * sin * sin).min(whole);
+    [carried, whole - carried]
+}
+
+fn exact(friction: f64) -> Exact {
+    let [sin, cos] = inclination();
+    let [carried, slipping] = shears(friction);
     Exact(Box::new(move |[x, y]: [f64; 2]| {
         let z = Complex::new(x, y);
         let root = (z - 1.0).sqrt() * (z + 1.0).sqrt();
-        let shear = -LOAD * sin * cos;
+        let shear = -slipping;
         let value = z / root * shear;
         let slope = -shear / (root * root * root);
         [
             -LOAD * cos * cos + 2.0 * value.im + y * slope.re,
             -LOAD * sin * sin - y * slope.re,
-            value.re - y * slope.im,
+            value.re - y * slope.im - carried,
         ]
     }))
 }
 
-fn solved(name: &str, n: usize) -> Measured {
+/// The crack in cells of a kind, its coefficient of friction, and the loads that go with it.
+fn posed(name: &str, n: usize, friction: f64) -> (Model, Exact) {
     let graded = |s: f64| s.powi(3);
     let outer = HALF - 1.0;
     let x = move |column: &str, s: f64| match column {
@@ -81,8 +102,12 @@ fn solved(name: &str, n: usize) -> Measured {
         ["left", "middle", "right"].map(|c| ["below", "above"].map(|r| format!("{c} {r}")));
     let pieces: Vec<&str> = pieces.iter().flatten().map(String::as_str).collect();
     gather(&mut mesh, "plate", &pieces);
-    let mut model = model(SCENE, mesh);
-    let exact = exact();
+    let law = match friction {
+        0.0 => String::new(),
+        _ => format!("\nfriction = {friction}"),
+    };
+    let mut model = model(&(SCENE.to_owned() + &law), mesh);
+    let exact = exact(friction);
     for column in ["left", "middle", "right"] {
         let ends = [
             format!("{column} below bottom"),
@@ -100,13 +125,23 @@ fn solved(name: &str, n: usize) -> Measured {
             &[(&ends[0], [-1.0, 0.0]), (&ends[1], [1.0, 0.0])],
         );
     }
-    measured(model, exact, of_crack)
+    (model, exact)
+}
+
+fn solved(name: &str, n: usize, friction: f64) -> Measured {
+    let (model, exact) = posed(name, n, friction);
+    measured(model, exact, move |solution| of_crack(solution, friction))
+}
+
+/// The crack where it sticks, and its uniform stress.
+pub fn stuck(friction: f64) -> (Model, Exact) {
+    posed("quad4", 8, friction)
 }
 
 /// Errors of the largest slip and of the pressure.
-fn of_crack(solution: &Solution) -> Vec<Figure> {
-    let [sin, cos] = inclination();
-    let slip = 4.0 * (1.0 - 0.25 * 0.25) / 25e9 * LOAD * sin * cos;
+fn of_crack(solution: &Solution, friction: f64) -> Vec<Figure> {
+    let [sin, _] = inclination();
+    let slip = 4.0 * (1.0 - 0.25 * 0.25) / 25e9 * shears(friction)[1];
     let pressure = LOAD * sin * sin;
     let points = &solution.contacts["crack"];
     let largest = points.iter().map(|point| {
@@ -116,34 +151,54 @@ fn of_crack(solution: &Solution) -> Vec<Figure> {
     let errors = points
         .iter()
         .map(|point| (point.pressure / pressure - 1.0).abs());
-    vec![
+    let mut figures = vec![
         falling("slip", largest.fold(0.0, f64::max) / slip - 1.0),
         plain("pressure", errors.fold(0.0, f64::max)),
-    ]
+    ];
+    if friction > 0.0 {
+        let sticking = points.iter().filter(|point| !point.slipping).count();
+        figures.push(plain("sticking", sticking as f64));
+    }
+    figures
+}
+
+fn families(friction: f64, names: &[&'static str]) -> Vec<Family> {
+    let family = |&name: &&'static str| {
+        let is_quadratic = sort(name).is_quadratic;
+        let order = if is_quadratic { 1.3 } else { 0.85 };
+        let finer = if is_quadratic { 4 } else { 8 };
+        let mut gates = vec![
+            Gate::Order("energy", order),
+            Gate::AtMost("slip", 3e-2),
+            Gate::AtMost("pressure", 1e-8),
+        ];
+        if friction > 0.0 {
+            gates.push(Gate::AtMost("sticking", 0.0));
+        }
+        Family {
+            name: name.into(),
+            run: Box::new(move |level| solved(name, finer << level, friction)),
+            meshes: [2, 4],
+            gates,
+        }
+    };
+    names.iter().map(family).collect()
 }
 
 /// The crack in linear and quadratic cells.
 pub fn case() -> Case {
-    let family = |name: &'static str| {
-        let is_quadratic = sort(name).is_quadratic;
-        let order = if is_quadratic { 1.3 } else { 0.85 };
-        let finer = if is_quadratic { 4 } else { 8 };
-        Family {
-            name: name.into(),
-            run: Box::new(move |level| solved(name, finer << level)),
-            meshes: [2, 4],
-            gates: vec![
-                Gate::Order("energy", order),
-                Gate::AtMost("slip", 3e-2),
-                Gate::AtMost("pressure", 1e-8),
-            ],
-        }
-    };
     Case {
         title: "Closed inclined crack",
         text: TEXT,
-        families: ["triangle3", "quad4", "triangle6", "quad9"]
-            .map(family)
-            .into(),
+        families: families(0.0, &["triangle3", "quad4", "triangle6", "quad9"]),
+    }
+}
+
+/// The same with friction.
+pub fn with_friction() -> Case {
+    Case {
+        title: "Closed inclined crack with friction",
+        text: WITH_FRICTION,
+        families: families(FRICTION, &["triangle3", "quad4", "triangle6", "quad9"]),
     }
 }

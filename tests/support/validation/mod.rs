@@ -8,7 +8,9 @@ pub mod crack;
 pub mod exact;
 pub mod hertz;
 pub mod hole;
+pub mod mindlin;
 pub mod punch;
+pub mod raous;
 pub mod roller;
 pub mod signorini;
 pub mod uniform;
@@ -87,6 +89,9 @@ pub fn cases() -> Vec<Case> {
         hertz::uneven_bodies(),
         roller::case(),
         crack::case(),
+        crack::with_friction(),
+        raous::case(),
+        mindlin::case(),
         punch::case(),
         signorini::case(),
         beam::case(),
@@ -119,16 +124,22 @@ pub type Figures = Box<dyn Fn(&Solution) -> Vec<Figure>>;
 
 /// Solves a model, in as many subdomains as suit its size.
 pub fn figured(model: &Model, figures: impl Fn(&Solution) -> Vec<Figure>) -> Measured {
+    figured_steps(model, |solutions| figures(&solutions[0]))
+}
+
+/// Solves all increments of a model, in as many subdomains as suit its size.
+pub fn figured_steps(model: &Model, figures: impl Fn(&[Solution]) -> Vec<Figure>) -> Measured {
     let dofs = 2 * model.mesh.points.len();
     let case = solver::Case::new(&solver::problem(model, None));
     let ended = case.run(&[]);
     assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
-    let solution = Solution::read(&case.result());
-    let backward = solution.report["certificate"]["equilibrium"].as_f64();
+    let solutions = Solution::increments(&case.result(), !model.steps.is_empty());
+    let report = Solution::read_report(&case.result());
+    let backward = report["certificate"]["equilibrium"].as_f64();
     let backward = plain(BACKWARD_ERROR, backward.unwrap());
     Measured {
         dofs,
-        figures: [figures(&solution), vec![backward]].concat(),
+        figures: [figures(&solutions), vec![backward]].concat(),
     }
 }
 
