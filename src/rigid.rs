@@ -15,6 +15,7 @@ mod cluster_modes;
 mod columns;
 mod description;
 pub mod energy;
+pub mod forces;
 pub mod free_motion;
 pub mod infeasible_nodes;
 mod kinematics;

@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
+use super::forces::{Forces, Friction, slips};
 use super::free_motion::FreeMotion;
-use super::kinematics::{Kinematics, RANK_TOLERANCE, null_space};
+use super::kinematics::{Kinematics, null_space};
 use super::motion::BodyFrame;
-use super::nonnegative;
 use crate::error::Failure;
 
 /// Load along a free motion, relative to all loads, that counts as none.
@@ -18,6 +18,9 @@ const RESULTANT_ROUND_OFF: f64 = 1e-12;
 const BALANCE_TOLERANCE: f64 = 1e-9;
 /// The same that may be more than round-off.
 const UNDECIDED: f64 = 1e-12;
+/// Load that friction can't balance, relative to all loads, that is the round-off of their sum: a body slides
+/// from a given angle on.
+const SLIDING: f64 = 2e-14;
 
 /// A body as the analysis sees it.
 #[derive(Clone, Debug)]
@@ -50,8 +53,10 @@ impl BodyState {
 pub struct RigidRow {
     /// Bodies, and the row against their motions.
     pub bodies: Vec<(usize, Vec<f64>)>,
-    /// g (m).
+    /// g (m); a tangential one has none.
     pub gap: f64,
+    /// What bounds its force if that is tangential; a normal one presses.
+    pub friction: Option<Friction>,
 }
 
 /// A spring on one node of a body that can move freely: u·direction = 0 there. It carries no force
@@ -124,17 +129,19 @@ impl Scene {
         }
         let held = &load - &driven;
         let balanced = |left: &DVector<f64>| left.norm() <= BALANCE_TOLERANCE * scale;
-        let actions = b.transpose();
-        let is_nothing = |left: &DVector<f64>| left.norm() <= UNDECIDED * scale;
-        let in_span = nonnegative::residual_in_span(&actions, &held, RANK_TOLERANCE);
-        let unbalanced = match in_span {
-            Some(left) if is_nothing(&left) => left,
-            in_span => {
-                let nearest = nonnegative::residual(&actions, &held);
-                let in_span = in_span.filter(|left| left.norm() < nearest.norm());
-                in_span.unwrap_or(nearest)
-            }
+        let mut forces = Forces::new(rows, |_| true);
+        let nothing = match forces.has_friction {
+            true => SLIDING,
+            false => UNDECIDED,
         };
+        let is_nothing = |left: &DVector<f64>| left.norm() <= nothing * scale;
+        let unbalanced = forces.residual(&b, &held, nothing * scale);
+        if forces.has_friction && !is_nothing(&unbalanced) {
+            let drive = forces.drive(&b, &held);
+            if slips(rows, &b, &drive) {
+                return Err(kinematics.sliding(bodies, names, &drive));
+            }
+        }
         if !balanced(&unbalanced) {
             let why = "contact can't hold it";
             return Err(kinematics.ill_posed(bodies, names, &unbalanced, why));
@@ -161,6 +168,29 @@ impl Kinematics {
         motion: &DVector<f64>,
         why: &str,
     ) -> Failure {
+        let (worst, how) = self.of_worst(bodies, motion);
+        Failure::ill_posed(format!(
+            "body '{}' can move freely under its load: {how}, and {why}; expected supports or contact \
+             against it",
+            names[worst],
+        ))
+    }
+
+    fn sliding(&self, bodies: &[BodyState], names: &[String], motion: &DVector<f64>) -> Failure {
+        let (worst, how) = self.of_worst(bodies, motion);
+        let along = how
+            .strip_prefix("translation ")
+            .map(|along| format!("slides {along}"));
+        Failure::ill_posed(format!(
+            "body '{}' {} under its load, and friction can't hold it; expected supports, contact against it, or \
+             more friction",
+            names[worst],
+            along.unwrap_or_else(|| format!("slides ({how})")),
+        ))
+    }
+
+    /// The body that moves farthest in `motion`, and how.
+    fn of_worst(&self, bodies: &[BodyState], motion: &DVector<f64>) -> (usize, String) {
         let size = |b: usize| -> f64 {
             self.of_body(b, motion.as_slice())
                 .iter()
@@ -174,12 +204,7 @@ impl Kinematics {
             }
         }
         let z = self.of_body(worst, motion.as_slice());
-        Failure::ill_posed(format!(
-            "body '{}' can move freely under its load: {}, and {why}; expected supports or contact \
-             against it",
-            names[worst],
-            bodies[worst].frame.describe(self.dim, &z)
-        ))
+        (worst, bodies[worst].frame.describe(self.dim, &z))
     }
 
     /// Pins the free motions, the columns of `free`, and says so.

@@ -41,12 +41,16 @@ impl RigidBodyAnalysis {
     }
 }
 
-/// Finds the free rigid motions of the scene in load step `step`, and those by which its bodies come to rest.
-/// Collective.
+/// Finds the free rigid motions of the scene in load step `step`, and those by which its bodies come to rest from
+/// where the closing motions of the step `before` left them, none for the first. Collective.
 ///
 /// # Errors
 /// The load drives a motion that nothing holds.
-pub fn analyse_bodies(context: &Context<'_>, step: usize) -> Result<RigidBodyAnalysis, Failure> {
+pub fn analyse_bodies(
+    context: &Context<'_>,
+    step: usize,
+    before: &[Vec<f64>],
+) -> Result<RigidBodyAnalysis, Failure> {
     let Context {
         comm,
         catalog,
@@ -71,7 +75,7 @@ pub fn analyse_bodies(context: &Context<'_>, step: usize) -> Result<RigidBodyAna
     let found = comm.agree(found)?;
     let mut found = found.map(|motions| Found {
         movable: scene.is_movable(),
-        closing_motions: closing_motions(scene.dim, &scene.bodies, &scene.rows),
+        closing_motions: closing_motions(scene.dim, &scene.bodies, &scene.rows, before),
         motions,
     });
     comm.broadcast(&mut found);

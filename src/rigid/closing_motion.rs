@@ -11,9 +11,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::analysis::{BodyState, RigidRow};
 use super::body_analysis::RigidBodyAnalysis;
-use super::kinematics::Kinematics;
+use super::forces::{Forces, Friction};
+use super::kinematics::{Kinematics, RANK_TOLERANCE, null_space};
 use super::motion::BodyFrame;
-use super::nonnegative;
 use crate::context::{Context, Loads};
 
 /// Drive that is left, relative to all, that counts as none.
@@ -28,55 +28,102 @@ const LIGHTEST: f64 = 1e-4;
 /// Which rigid motion each of `bodies` makes until contact `rows` balance the load: first what its
 /// supports prescribe, as far as no gap closes, then downhill along the load until one closes, and
 /// again. Gaps that are closed from the beginning stay as they are.
+///
+/// Friction makes these motions depend on the path: they go on from those `before`, of which there are none in the
+/// first load step, what friction holds stays, and what comes to rest on it does so with no more slip than it must.
 pub(super) fn closing_motions(
     dim: usize,
     bodies: &[BodyState],
     rows: &[RigidRow],
+    before: &[Vec<f64>],
 ) -> Vec<Vec<f64>> {
-    let mut motions: Vec<Vec<f64>> = bodies.iter().map(|body| prescribed(dim, body)).collect();
+    let has_friction = rows.iter().any(|row| row.friction.is_some());
+    let start: Vec<Vec<f64>> = match before {
+        before if has_friction && !before.is_empty() => before.to_vec(),
+        _ => vec![vec![0.0; BodyFrame::count(dim)]; bodies.len()],
+    };
+    let of_supports: Vec<Vec<f64>> = (bodies.iter().zip(&start))
+        .map(|(body, start)| prescribed(dim, body, start))
+        .collect();
     let round_off = ALONG
-        * motions
+        * of_supports
             .iter()
             .flatten()
             .fold(0.0, |m: f64, z| m.max(z.abs()));
-    let part = (rows.iter())
-        .map(|row| (row.gap.max(0.0), jump(row, &motions)))
+    let part = (rows.iter().zip(gaps_left(rows, &start)))
+        .map(|(row, gap)| (gap, jump(row, &of_supports)))
         .filter(|&(_, jump)| jump > round_off)
         .fold(1.0, |part: f64, (gap, jump)| part.min(gap / jump));
-    motions.iter_mut().flatten().for_each(|z| *z *= part);
+    let mut motions = start.clone();
+    for (z, change) in motions
+        .iter_mut()
+        .flatten()
+        .zip(of_supports.iter().flatten())
+    {
+        *z += change * part;
+    }
     let kinematics = Kinematics::new(dim, bodies);
     if kinematics.len == 0 || rows.is_empty() {
         return motions;
     }
     let speed = speeds(&kinematics, bodies);
-    let b = kinematics.rows(rows) * DMatrix::from_diagonal(&speed);
+    let b = kinematics.rows(rows);
+    let fast = &b * DMatrix::from_diagonal(&speed);
     let load = kinematics.load(bodies).component_mul(&speed);
-    let left = rows
-        .iter()
-        .map(|row| (row.gap - jump(row, &motions)).max(0.0));
-    let left = left.collect();
     let size = bodies.iter().fold(0.0, |m: f64, b| m.max(b.frame.size));
-    let y = fall(&b, &load, left, TOUCHING * size).component_mul(&speed);
-    for (body, motion) in motions.iter_mut().enumerate() {
-        for (z, fallen) in motion
-            .iter_mut()
-            .zip(kinematics.of_body(body, y.as_slice()))
-        {
-            *z += fallen;
-        }
+    let touching = TOUCHING * size;
+    let fallen =
+        fall(rows, &fast, &load, gaps_left(rows, &motions), touching).component_mul(&speed);
+    move_along(&mut motions, &kinematics, &fallen);
+    if has_friction {
+        let slip = rows
+            .iter()
+            .map(|row| jump(row, &motions) - jump(row, &start));
+        let back = without_slip(
+            rows,
+            &b,
+            &slip.collect::<Vec<f64>>(),
+            &gaps_left(rows, &motions),
+            touching,
+        );
+        move_along(&mut motions, &kinematics, &back);
     }
     motions
 }
 
-/// The rigid motion that fits what the supports of a body prescribe best.
-fn prescribed(dim: usize, body: &BodyState) -> Vec<f64> {
+/// The gaps that motions leave; what is tangential has none that could close.
+fn gaps_left(rows: &[RigidRow], motions: &[Vec<f64>]) -> Vec<f64> {
+    let left = |row: &RigidRow| match row.friction {
+        None => (row.gap - jump(row, motions)).max(0.0),
+        Some(_) => f64::INFINITY,
+    };
+    rows.iter().map(left).collect()
+}
+
+fn move_along(motions: &mut [Vec<f64>], kinematics: &Kinematics, y: &DVector<f64>) {
+    for (body, motion) in motions.iter_mut().enumerate() {
+        for (z, moved) in motion
+            .iter_mut()
+            .zip(kinematics.of_body(body, y.as_slice()))
+        {
+            *z += moved;
+        }
+    }
+}
+
+/// What is missing to the rigid motion that fits what the supports of a body prescribe best, from `start` on.
+fn prescribed(dim: usize, body: &BodyState, start: &[f64]) -> Vec<f64> {
     let modes = BodyFrame::count(dim);
     let rows = &body.supports;
-    if rows.iter().all(|row| row[modes] == 0.0) {
+    let missing = |row: &Vec<f64>| {
+        let there: f64 = row.iter().zip(start).map(|(a, z)| a * z).sum();
+        row[modes] - there
+    };
+    let values = DVector::from_iterator(rows.len(), rows.iter().map(missing));
+    if values.iter().all(|&value| value == 0.0) {
         return vec![0.0; modes];
     }
     let a = DMatrix::from_fn(rows.len(), modes, |i, j| rows[i][j]);
-    let values = DVector::from_fn(rows.len(), |i, _| rows[i][modes]);
     let svd = a.svd(true, true);
     let tolerance = 1e-9 * svd.singular_values.amax();
     svd.solve(&values, tolerance)
@@ -111,14 +158,19 @@ fn speeds(kinematics: &Kinematics, bodies: &[BodyState]) -> DVector<f64> {
     speed / fastest
 }
 
-/// How far to go along `load` within B y ≤ `left`: along what closed rows leave of the load, until
+/// How far to go along `load` within B y ≤ `left`: along what closed contacts leave of the load, until
 /// the next row closes. That drive becomes smaller with every row, so that this ends.
-fn fall(b: &DMatrix<f64>, load: &DVector<f64>, mut left: Vec<f64>, touching: f64) -> DVector<f64> {
+fn fall(
+    rows: &[RigidRow],
+    b: &DMatrix<f64>,
+    load: &DVector<f64>,
+    mut left: Vec<f64>,
+    touching: f64,
+) -> DVector<f64> {
     let mut y = DVector::zeros(load.len());
     let norms: Vec<f64> = b.row_iter().map(|row| row.norm()).collect();
     for _ in 0..b.nrows() + load.len() {
-        let closed: Vec<usize> = (0..left.len()).filter(|&j| left[j] <= touching).collect();
-        let drive = nonnegative::residual(&b.select_rows(&closed).transpose(), load);
+        let drive = Forces::new(rows, |j| left[j] <= touching).drive(b, load);
         if drive.norm() <= BALANCED * load.norm() {
             break;
         }
@@ -137,6 +189,42 @@ fn fall(b: &DMatrix<f64>, load: &DVector<f64>, mut left: Vec<f64>, touching: f64
         }
     }
     y
+}
+
+/// The motion that takes back as much of the `slip` of closed contacts as these leave: sides that stick once they
+/// touch do so where they were above each other, however the bodies came there.
+fn without_slip(
+    rows: &[RigidRow],
+    b: &DMatrix<f64>,
+    slip: &[f64],
+    left: &[f64],
+    touching: f64,
+) -> DVector<f64> {
+    let is_closed = |j: usize| left[j] <= touching;
+    let closed: Vec<usize> = (0..rows.len()).filter(|&j| is_closed(j)).collect();
+    let acts = |friction: &Friction| friction.is_given || is_closed(friction.normal);
+    let held: Vec<usize> = (0..rows.len())
+        .filter(|&i| rows[i].friction.as_ref().is_some_and(acts))
+        .collect();
+    let slip = DVector::from_iterator(held.len(), held.iter().map(|&i| slip[i]));
+    if slip.iter().all(|slip| slip.abs() <= touching) {
+        return DVector::zeros(b.ncols());
+    }
+    let kept = null_space(&b.select_rows(&closed));
+    if kept.is_empty() {
+        return DVector::zeros(b.ncols());
+    }
+    let svd = (b.select_rows(&held) * &kept).svd(true, true);
+    let tolerance = RANK_TOLERANCE * svd.singular_values.amax();
+    let Ok(back) = svd.solve(&-slip, tolerance) else {
+        return DVector::zeros(b.ncols());
+    };
+    let back = kept * back;
+    let closing = b * &back;
+    let part = (0..rows.len())
+        .filter(|&j| !is_closed(j) && closing[j] > ALONG * back.norm())
+        .fold(1.0, |part: f64, j| part.min(left[j] / closing[j]));
+    back * part
 }
 
 /// What is left of a length after a motion, relative to both, that is round-off: a body is stiff
@@ -221,6 +309,8 @@ fn moved(analysis: &RigidBodyAnalysis, dim: usize, body: usize, x: &[f64; 3]) ->
 
 #[cfg(test)]
 mod tests {
+    use contact_dd_partition::contact_point::Law;
+
     use super::*;
 
     fn square(load: [f64; 3], supports: Vec<Vec<f64>>) -> BodyState {
@@ -240,6 +330,7 @@ mod tests {
             RigidRow {
                 bodies: vec![(0, action)],
                 gap,
+                friction: None,
             }
         };
         [(-1.0, gaps[0]), (1.0, gaps[1])].map(row).to_vec()
@@ -256,7 +347,7 @@ mod tests {
     fn a_square_falls_onto_an_uneven_floor_and_leans_on_it() {
         let body = square([0.0, -2.0, 0.1], vec![]);
         let rows = floor(&body, [0.1, 0.3]);
-        let z = closing_motions(2, std::slice::from_ref(&body), &rows).remove(0);
+        let z = closing_motions(2, std::slice::from_ref(&body), &rows, &[]).remove(0);
         let motions = [z.clone()];
         close(&[0, 1].map(|j| jump(&rows[j], &motions)), &[0.1, 0.3]);
         // It sinks by the mean, and turns by the difference over its width.
@@ -267,7 +358,7 @@ mod tests {
     fn what_rests_stays() {
         let body = square([0.0, -2.0, 0.1], vec![]);
         let rows = floor(&body, [0.0, 0.0]);
-        close(&closing_motions(2, &[body], &rows)[0], &[0.0; 3]);
+        close(&closing_motions(2, &[body], &rows, &[])[0], &[0.0; 3]);
     }
 
     #[test]
@@ -277,7 +368,10 @@ mod tests {
         support.push(-0.4);
         let body = square([0.0; 3], vec![support]);
         let rows = floor(&body, [0.1, 0.3]);
-        close(&closing_motions(2, &[body], &rows)[0], &[0.0, -0.1, 0.0]);
+        close(
+            &closing_motions(2, &[body], &rows, &[])[0],
+            &[0.0, -0.1, 0.0],
+        );
     }
 
     #[test]
@@ -290,7 +384,7 @@ mod tests {
         };
         let body = square([0.0, 5.0, 0.0], vec![support(-1.0), support(1.0)]);
         close(
-            &closing_motions(2, &[body], &[])[0],
+            &closing_motions(2, &[body], &[], &[])[0],
             &[0.0, 0.3, 0.1 * frame.size],
         );
     }
@@ -303,6 +397,7 @@ mod tests {
                 .map(|&(b, n)| (b, bodies[b].frame.action(2, &[x, 0.0, 0.0], &[0.0, n, 0.0])))
                 .collect(),
             gap,
+            friction: None,
         };
         let rows: Vec<RigidRow> = [-1.0, 1.0]
             .into_iter()
@@ -313,8 +408,93 @@ mod tests {
                 ]
             })
             .collect();
-        let motions = closing_motions(2, &bodies, &rows);
+        let motions = closing_motions(2, &bodies, &rows, &[]);
         close(&motions[0], &[0.0, -0.75, 0.0]);
         close(&motions[1], &[0.0, -0.25, 0.0]);
+    }
+
+    /// A floor below the lower corners with a wall on the right, and friction on the floor.
+    fn rough_floor(body: &BodyState, gap: f64, wall: f64, friction: f64) -> Vec<RigidRow> {
+        let mut rows = floor(body, [gap; 2]);
+        rows.push(RigidRow {
+            bodies: vec![(0, body.frame.action(2, &[1.0, 0.0, 0.0], &[1.0, 0.0, 0.0]))],
+            gap: wall,
+            friction: None,
+        });
+        for (normal, x) in [-1.0, 1.0].into_iter().enumerate() {
+            let action = body.frame.action(2, &[x, -1.0, 0.0], &[1.0, 0.0, 0.0]);
+            let law = Law::Coulomb {
+                coefficient: friction,
+                cohesion: 0.0,
+            };
+            rows.push(RigidRow {
+                bodies: vec![(0, action)],
+                gap: 0.0,
+                friction: Friction::new(law, 1.0, normal),
+            });
+        }
+        rows
+    }
+
+    /// A push on the base, where it topples nothing.
+    fn pushed(push: f64) -> BodyState {
+        let frame = BodyFrame::new([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]);
+        let action = frame.action(2, &[0.0, -1.0, 0.0], &[push, -2.0, 0.0]);
+        square([action[0], action[1], action[2]], vec![])
+    }
+
+    #[test]
+    fn what_friction_holds_stays_and_what_it_does_not_slides_to_the_wall() {
+        for (push, along) in [(0.9, 0.0), (1.1, 0.7)] {
+            let body = pushed(push);
+            let rows = rough_floor(&body, 0.0, 0.7, 0.5);
+            let found = closing_motions(2, &[body], &rows, &[]);
+            close(&found[0], &[along, 0.0, 0.0]);
+        }
+    }
+
+    #[test]
+    fn what_falls_askew_onto_a_floor_that_holds_it_rests_without_slip() {
+        for (push, along) in [(0.9, 0.0), (1.1, 0.7)] {
+            let body = pushed(push);
+            let rows = rough_floor(&body, 0.1, 0.7, 0.5);
+            let found = closing_motions(2, &[body], &rows, &[]);
+            close(&found[0], &[along, -0.1, 0.0]);
+        }
+    }
+
+    /// Pushed to the wall, let go, and pulled back so far as a second wall lets it.
+    #[test]
+    fn a_body_goes_on_from_where_the_step_before_left_it() {
+        let body = pushed(1.1);
+        let rows = rough_floor(&body, 0.1, 0.7, 0.5);
+        let there = closing_motions(2, std::slice::from_ref(&body), &rows, &[]);
+        for push in [-0.9, 0.0, 0.3, 2.0] {
+            let found = closing_motions(2, &[pushed(push)], &rows, &there);
+            close(&found[0], &[0.7, -0.1, 0.0]);
+        }
+        let mut both = rows.clone();
+        let action = body.frame.action(2, &[-1.0, 0.0, 0.0], &[-1.0, 0.0, 0.0]);
+        both.push(RigidRow {
+            bodies: vec![(0, action)],
+            gap: 0.2,
+            friction: None,
+        });
+        let found = closing_motions(2, &[pushed(-1.1)], &both, &there);
+        close(&found[0], &[-0.2, -0.1, 0.0]);
+    }
+
+    #[test]
+    fn supports_go_on_from_where_the_step_before_left_them() {
+        let frame = BodyFrame::new([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]);
+        let mut support = frame.action(2, &[0.0; 3], &[0.0, 1.0, 0.0]);
+        support.push(0.4);
+        let body = square([0.0; 3], vec![support]);
+        let rows = rough_floor(&body, 0.0, 0.7, 0.5);
+        let before = [vec![0.3, 0.1, 0.0]];
+        close(
+            &closing_motions(2, &[body], &rows, &before)[0],
+            &[0.3, 0.4, 0.0],
+        );
     }
 }

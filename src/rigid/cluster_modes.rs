@@ -71,6 +71,7 @@ impl Scene {
             Some(RigidRow {
                 bodies: vec![(b, body.frame.action(self.dim, x, &axis))],
                 gap: 0.0,
+                friction: None,
             })
         })
     }

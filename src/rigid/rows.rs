@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::analysis::RigidRow;
+use super::forces::Friction;
 use super::motion::BodyFrame;
 use crate::comm::Comm;
 use crate::fem::contact_group::ContactGroup;
@@ -21,7 +22,10 @@ pub(super) fn rigid_rows(
     comm.gather(
         &plan.group_owners(),
         |g| of_group(&groups[&g], frames),
-        |_, of_group| {
+        |_, mut of_group: Vec<RigidRow>| {
+            for friction in of_group.iter_mut().filter_map(|row| row.friction.as_mut()) {
+                friction.normal += rows.len();
+            }
             conditions.push(of_group.len());
             rows.extend(of_group);
         },
@@ -29,6 +33,7 @@ pub(super) fn rigid_rows(
     (rows, conditions)
 }
 
+/// The conditions of a group: those along the normals, then those along the tangents where there is friction.
 fn of_group(group: &ContactGroup, frames: &[BodyFrame]) -> Vec<RigidRow> {
     let against = |(node, row): (u32, [f64; 3])| {
         let node = &group.nodes[node as usize];
@@ -38,10 +43,22 @@ fn of_group(group: &ContactGroup, frames: &[BodyFrame]) -> Vec<RigidRow> {
         )
     };
     let points = group.points.iter();
-    points
-        .map(|point| RigidRow {
-            bodies: point.row().map(against).collect(),
-            gap: point.gap,
+    let normals = points.clone().map(|point| RigidRow {
+        bodies: point.row().map(against).collect(),
+        gap: point.gap,
+        friction: None,
+    });
+    let tangential = points.enumerate().flat_map(|(j, point)| {
+        let friction = Friction::new(point.law, point.area, j);
+        let tangents = &point.frame.tangents[..group.dim - 1];
+        let with_friction = friction
+            .into_iter()
+            .flat_map(|friction| tangents.iter().map(move |&tangent| (friction, tangent)));
+        with_friction.map(|(friction, tangent)| RigidRow {
+            bodies: point.row_along(tangent).map(against).collect(),
+            gap: 0.0,
+            friction: Some(friction),
         })
-        .collect()
+    });
+    normals.chain(tangential).collect()
 }

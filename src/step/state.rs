@@ -60,16 +60,21 @@ pub fn analyse_steps(context: &Context<'_>) -> Result<Vec<RigidBodyAnalysis>, Fa
         groups,
         ..
     } = *context;
-    (0..catalog.steps.len().max(1))
-        .map(|k| {
-            let loads = context.loads(k);
-            let all = groups.values().zip(loads.groups.values());
-            let checked = all.map(|(group, loads)| infeasible_nodes::check(group, loads, catalog));
-            comm.agree(checked.collect())
-                .and_then(|()| analyse_bodies(context, k))
-                .map_err(|failure| context.in_step(failure, k))
-        })
-        .collect()
+    let mut analyses: Vec<RigidBodyAnalysis> = Vec::new();
+    for k in 0..catalog.steps.len().max(1) {
+        let loads = context.loads(k);
+        let all = groups.values().zip(loads.groups.values());
+        let checked = all.map(|(group, loads)| infeasible_nodes::check(group, loads, catalog));
+        let before = analyses
+            .last()
+            .map_or(&[][..], |last| &last.closing_motions);
+        let analysis = comm
+            .agree(checked.collect())
+            .and_then(|()| analyse_bodies(context, k, before))
+            .map_err(|failure| context.in_step(failure, k))?;
+        analyses.push(analysis);
+    }
+    Ok(analyses)
 }
 
 /// Ends the run before load step k if a signal asked for that, which sweeps that take long hear by themselves.

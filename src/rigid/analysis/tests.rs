@@ -20,6 +20,7 @@ fn floor(body: &BodyState, b: usize, xs: &[f64]) -> Vec<RigidRow> {
             RigidRow {
                 bodies: vec![(b, action)],
                 gap: 0.0,
+                friction: None,
             }
         })
         .collect()
@@ -105,6 +106,7 @@ fn tower(count: usize, slope: f64, unit: f64, push: f64) -> Scene {
         RigidRow {
             bodies: std::iter::once(above).chain(below).collect(),
             gap: 0.0,
+            friction: None,
         }
     };
     let rows: Vec<RigidRow> = (0..count * nodes).map(row).collect();
@@ -155,6 +157,7 @@ fn a_load_that_contact_hardly_fails_to_hold_is_told() {
                     .action(2, &block.frame.center, &[slope, -1.0, 0.0]),
             )],
             gap: 0.0,
+            friction: None,
         };
         let rows = vec![row(1e-5), row(2e-5)];
         let warnings = analyse(block, rows).unwrap().warnings;

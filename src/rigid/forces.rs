@@ -1,0 +1,268 @@
+//! The forces that contact can give: what normals press and friction holds.
+
+use contact_dd_partition::contact_point::Law;
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+use super::analysis::RigidRow;
+use super::kinematics::RANK_TOLERANCE;
+use super::nonnegative::{Nearest, nearest, residual, residual_in_span};
+
+/// Part of the fastest motion of a condition with which sides slip.
+const SLIPS: f64 = 0.1;
+/// What is left of a load, relative to it, that is round-off.
+const NOTHING: f64 = 1e-15;
+/// Part of what is left that more forces leave if they aren't worth it.
+const WORTH_IT: f64 = 0.9;
+/// How often cones get more forces.
+const REFINEMENTS: usize = 40;
+/// Half of the directions in a tangential plane that stand for all.
+const DIRECTIONS: usize = 4;
+
+/// What bounds the tangential force of a condition: |λ_t| ≤ coefficient·λ + bound, in space that of both tangents.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Friction {
+    /// The condition along the normal of the same point.
+    pub normal: usize,
+    /// Coefficient of friction.
+    pub coefficient: f64,
+    /// Tangential force without a normal one (N).
+    pub bound: f64,
+    /// Whether the bound holds where the contact is open, too.
+    pub is_given: bool,
+}
+
+impl Friction {
+    /// What `law` allows at a point of this `area` (m, in space m²) with this condition along its normal.
+    pub fn new(law: Law, area: f64, normal: usize) -> Option<Self> {
+        let (coefficient, pressure, is_given) = match law {
+            Law::Frictionless => return None,
+            Law::Given { bound } => (0.0, bound, true),
+            Law::Coulomb {
+                coefficient,
+                cohesion,
+            } => (coefficient, cohesion, false),
+        };
+        Some(Self {
+            normal,
+            coefficient,
+            bound: pressure * area,
+            is_given,
+        })
+    }
+}
+
+/// A force on conditions, which can be given up to so many times.
+#[derive(Clone, Debug, PartialEq)]
+struct Generator {
+    normal: Option<usize>,
+    /// Tangential conditions, and their part.
+    tangential: Vec<(usize, f64)>,
+    largest: f64,
+}
+
+/// Forces that contact can give: the sums of these.
+#[derive(Debug, Default)]
+pub(super) struct Forces {
+    generators: Vec<Generator>,
+    /// The circular ones: normal and tangential conditions, and the coefficient.
+    cones: Vec<(usize, [usize; 2], f64)>,
+    pub has_friction: bool,
+}
+
+impl Forces {
+    /// Those of the conditions of `rows` where the contact of a normal one is `closed`; in space a prism stands for
+    /// what is bounded beside the cones, at most 8 % wider.
+    pub fn new(rows: &[RigidRow], closed: impl Fn(usize) -> bool) -> Self {
+        let mut tangents: Vec<Vec<usize>> = vec![Vec::new(); rows.len()];
+        for (i, row) in rows.iter().enumerate() {
+            if let Some(friction) = &row.friction {
+                tangents[friction.normal].push(i);
+            }
+        }
+        let mut forces = Self::default();
+        for (j, tangents) in tangents.iter().enumerate() {
+            if rows[j].friction.is_some() {
+                continue;
+            }
+            let friction = tangents.first().and_then(|&i| rows[i].friction);
+            forces.has_friction |= friction.is_some();
+            forces.add_point(j, closed(j), friction, tangents);
+        }
+        forces
+    }
+
+    fn add_point(
+        &mut self,
+        normal: usize,
+        closed: bool,
+        friction: Option<Friction>,
+        tangents: &[usize],
+    ) {
+        let mut add = |normal, tangential, largest| {
+            self.generators.push(Generator {
+                normal,
+                tangential,
+                largest,
+            });
+        };
+        let along = directions(tangents);
+        let slope = friction.map_or(0.0, |friction| friction.coefficient);
+        if closed && slope == 0.0 {
+            add(Some(normal), Vec::new(), f64::INFINITY);
+        } else if closed {
+            for direction in &along {
+                let tangential = direction.iter().map(|&(i, part)| (i, slope * part));
+                add(Some(normal), tangential.collect(), f64::INFINITY);
+            }
+            if let [first, second] = *tangents {
+                self.cones.push((normal, [first, second], slope));
+            }
+        }
+        let bound = friction.filter(|friction| closed || friction.is_given);
+        let bound = bound.map_or(0.0, |friction| friction.bound);
+        if bound > 0.0 {
+            // In space the segments sum to a polygon around the circle.
+            let largest = match tangents {
+                [_] => bound,
+                _ => bound * half_angle().tan(),
+            };
+            for direction in along {
+                add(None, direction, largest);
+            }
+        }
+    }
+
+    /// Their work on motions of which `b` holds what each condition makes, a column each.
+    fn actions(&self, b: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut actions = DMatrix::zeros(b.ncols(), self.generators.len());
+        for (generator, mut action) in self.generators.iter().zip(actions.column_iter_mut()) {
+            let normal = generator.normal.map(|j| (j, 1.0));
+            for (i, part) in normal.into_iter().chain(generator.tangential.clone()) {
+                action.axpy(part, &b.row(i).transpose(), 1.0);
+            }
+        }
+        actions
+    }
+
+    fn largest(&self) -> Vec<f64> {
+        self.generators.iter().map(|g| g.largest).collect()
+    }
+
+    /// What these forces leave of a `load`, 0 where they balance it; a norm up to `nothing` decides that.
+    pub fn residual(
+        &mut self,
+        b: &DMatrix<f64>,
+        load: &DVector<f64>,
+        nothing: f64,
+    ) -> DVector<f64> {
+        let (actions, largest) = (self.actions(b), self.largest());
+        let in_span = residual_in_span(&actions, load, &largest, RANK_TOLERANCE);
+        match in_span {
+            Some(left) if left.norm() <= nothing => left,
+            in_span => {
+                let nearest = self.nearest(b, load).left;
+                let in_span = in_span.filter(|left| left.norm() < nearest.norm());
+                in_span.unwrap_or(nearest)
+            }
+        }
+    }
+
+    /// What drives the bodies of a `load` that these forces don't balance.
+    ///
+    /// With friction they slip that way and don't fly as high as the friction angle: the tangential forces that
+    /// come nearest are taken from the load, and normal ones balance what they can of the rest.
+    pub fn drive(&mut self, b: &DMatrix<f64>, load: &DVector<f64>) -> DVector<f64> {
+        let Nearest { lambda, left } = self.nearest(b, load);
+        if !self.has_friction {
+            return left;
+        }
+        let rest = load - b.tr_mul(&self.tangential(&lambda, b.nrows()));
+        let mut normals: Vec<usize> = self.generators.iter().filter_map(|g| g.normal).collect();
+        normals.sort_unstable();
+        normals.dedup();
+        residual(&b.select_rows(&normals).transpose(), &rest)
+    }
+
+    /// The forces that come nearest to a `load`; circular cones get more of them as long as that brings it nearer.
+    fn nearest(&mut self, b: &DMatrix<f64>, load: &DVector<f64>) -> Nearest {
+        let mut found = nearest(&self.actions(b), load, &self.largest());
+        for _ in 0..REFINEMENTS {
+            if self.cones.is_empty() || found.left.norm() <= NOTHING * load.norm() {
+                break;
+            }
+            self.refine(
+                &self.tangential(&found.lambda, b.nrows()),
+                f64::EPSILON * load.norm(),
+            );
+            self.refine(&(b * &found.left), f64::EPSILON * found.left.norm());
+            let nearer = nearest(&self.actions(b), load, &self.largest());
+            let enough = nearer.left.norm() > WORTH_IT * found.left.norm();
+            found = nearer;
+            if enough {
+                break;
+            }
+        }
+        found
+    }
+
+    /// Adds to every circular cone its force along tangential `parts` of the conditions that are more than
+    /// `nothing`.
+    fn refine(&mut self, parts: &DVector<f64>, nothing: f64) {
+        for &(normal, [t, s], slope) in &self.cones {
+            let size = parts[t].hypot(parts[s]);
+            if size > nothing {
+                let part = |i: usize| (i, slope * parts[i] / size);
+                self.generators.push(Generator {
+                    normal: Some(normal),
+                    tangential: vec![part(t), part(s)],
+                    largest: f64::INFINITY,
+                });
+            }
+        }
+    }
+
+    /// λ_t of all conditions.
+    fn tangential(&self, lambda: &[f64], conditions: usize) -> DVector<f64> {
+        let mut forces = DVector::zeros(conditions);
+        for (generator, lambda) in self.generators.iter().zip(lambda) {
+            for &(i, part) in &generator.tangential {
+                forces[i] += lambda * part;
+            }
+        }
+        forces
+    }
+}
+
+/// Whether sides with friction slip on each other in `motion`.
+pub(super) fn slips(rows: &[RigidRow], b: &DMatrix<f64>, motion: &DVector<f64>) -> bool {
+    let moved = b * motion;
+    let far = moved.amax();
+    rows.iter().zip(moved.iter()).any(|(row, along)| {
+        row.friction.is_some_and(|friction| {
+            along.abs() > SLIPS * far && moved[friction.normal].abs() < SLIPS * along.abs()
+        })
+    })
+}
+
+/// Directions in a tangential plane, each with its parts along `tangents`: both in the plane.
+fn directions(tangents: &[usize]) -> Vec<Vec<(usize, f64)>> {
+    match *tangents {
+        [t] => vec![vec![(t, 1.0)], vec![(t, -1.0)]],
+        [t, s] => (0..2 * DIRECTIONS)
+            .map(|k| {
+                let (sin, cos) = (2.0 * half_angle() * k as f64).sin_cos();
+                vec![(t, cos), (s, sin)]
+            })
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Half the angle between neighbouring ones of these.
+fn half_angle() -> f64 {
+    std::f64::consts::PI / (2 * DIRECTIONS) as f64
+}
+
+#[cfg(test)]
+mod tests;

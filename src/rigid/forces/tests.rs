@@ -1,0 +1,326 @@
+//! Bodies that friction holds, and some that it doesn't, judged by hand.
+
+use contact_dd_partition::contact_point::{Law, LocalFrame};
+
+use crate::error::Failure;
+use crate::rigid::analysis::{BodyState, RigidMotions, RigidRow, Scene};
+use crate::rigid::forces::Friction;
+use crate::rigid::motion::BodyFrame;
+
+fn coulomb(coefficient: f64) -> Law {
+    Law::Coulomb {
+        coefficient,
+        cohesion: 0.0,
+    }
+}
+
+/// A unit square about the origin or, with a third dimension, a cube.
+fn block(load: &[f64]) -> BodyState {
+    let z = if load.len() == 6 { 0.5 } else { 0.0 };
+    BodyState {
+        frame: BodyFrame::new([-0.5, -0.5, -z], [0.5, 0.5, z]),
+        supports: vec![],
+        load: load.to_vec(),
+        load_scale: load.iter().map(|f| f.abs()).sum(),
+        candidates: vec![(0, 0, [-0.5, -0.5, -z]), (0, 1, [0.5, 0.5, z])],
+    }
+}
+
+/// Points of the block, each with a normal against an obstacle and an area of a half.
+fn scene(body: BodyState, points: &[([f64; 3], [f64; 3])], law: Law) -> Scene {
+    let dim = if body.load.len() == 6 { 3 } else { 2 };
+    let row = |at: &[f64; 3], along: &[f64; 3], friction| RigidRow {
+        bodies: vec![(0, body.frame.action(dim, at, along))],
+        gap: 0.0,
+        friction,
+    };
+    let mut rows: Vec<RigidRow> = points.iter().map(|(at, n)| row(at, n, None)).collect();
+    for (j, (at, n)) in points.iter().enumerate() {
+        let friction = Friction::new(law, 0.5, j);
+        for tangent in &LocalFrame::new(*n).tangents[..dim - 1] {
+            rows.extend(friction.map(|friction| row(at, tangent, Some(friction))));
+        }
+    }
+    Scene {
+        dim,
+        bodies: vec![body],
+        names: vec!["block".into()],
+        conditions: vec![rows.len()],
+        rows,
+    }
+}
+
+const DOWN: [f64; 3] = [0.0, -1.0, 0.0];
+
+fn on_floor(load: [f64; 3], law: Law) -> Result<RigidMotions, Failure> {
+    let corners = [-0.5, 0.1, 0.5].map(|x| ([x, -0.5, 0.0], DOWN));
+    scene(block(&load), &corners, law).analyse()
+}
+
+#[track_caller]
+fn slides(found: Result<RigidMotions, Failure>, along: &str) {
+    let failure = found.unwrap_err();
+    let expected = format!("'block' slides along {along}");
+    assert!(failure.message.contains(&expected), "{failure}");
+    assert_eq!(failure.exit_code(), 4.into());
+}
+
+/// The weight acts at the middle of the base, so that it doesn't topple.
+#[test]
+fn a_block_on_an_incline_slides_from_the_friction_angle_on() {
+    for coefficient in [0.03_f64, 0.1, 0.3, 0.6, 1.0, 2.5] {
+        for turned in [0.0_f64, 0.3, -1.2, 2.9] {
+            let at = |slope: f64| {
+                let weight = 1.0 / slope.hypot(1.0);
+                let (sin, cos) = turned.sin_cos();
+                let turn = |x: f64, y: f64| [cos * x - sin * y, sin * x + cos * y, 0.0];
+                let [x, y, _] = turn(slope * weight, -weight);
+                let body = block(&[x, y, 0.0]);
+                let size = body.frame.size;
+                let mut body = body;
+                // The force acts at the base's middle, half below the center.
+                body.load[2] = 0.5 * slope * weight / size;
+                body.load_scale = x.abs() + y.abs();
+                let corners = [-0.5, 0.1, 0.5].map(|x| (turn(x, -0.5), turn(0.0, -1.0)));
+                let along = turn(1.0, 0.0);
+                (scene(body, &corners, coulomb(coefficient)).analyse(), along)
+            };
+            for below in [0.0, 0.5, 1.0 - 1e-6, 1.0 - 1e-12] {
+                let (found, _) = at(coefficient * below);
+                assert_eq!(found, Ok(RigidMotions::default()), "{coefficient} {turned}");
+            }
+            for above in [1.0 + 1e-12, 1.0 + 1e-6, 3.0] {
+                let (found, [x, y, _]) = at(coefficient * above);
+                let failure = found.unwrap_err();
+                assert!(
+                    failure.message.contains("'block' slides along"),
+                    "{failure}"
+                );
+                if above > 1.0 + 1e-9 {
+                    slides(Err(failure), &format!("({x:.4}, {y:.4})"));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn without_friction_the_floor_holds_no_push() {
+    let pushed = on_floor([0.1, -1.0, 0.0], Law::Frictionless);
+    assert!(pushed.unwrap_err().message.contains("nothing holds it"));
+    assert_eq!(
+        on_floor([0.0, -1.0, 0.0], Law::Frictionless)
+            .unwrap()
+            .free
+            .len(),
+        1
+    );
+    // What friction could hold isn't free.
+    assert_eq!(
+        on_floor([0.0, -1.0, 0.0], coulomb(0.1)),
+        Ok(RigidMotions::default())
+    );
+}
+
+#[test]
+fn friction_lifts_nothing_and_keeps_nothing_from_toppling() {
+    let lifted = on_floor([0.0, 1.0, 0.0], coulomb(0.5)).unwrap_err();
+    assert!(lifted.message.contains("can move freely"), "{lifted}");
+    // A push at half the height, beyond half the width over it.
+    for (push, topples) in [(0.99, false), (1.01, true)] {
+        let found = on_floor([push, -1.0, 0.0], coulomb(2.0));
+        assert_eq!(found.is_err(), topples, "{push}");
+        let message = found.err().map_or(String::new(), |f| f.message);
+        assert!(!message.contains("slides"), "{message}");
+    }
+}
+
+/// A force drives a wedge out from between two planes, each this angle from its axis: friction of the
+/// tangent of that angle holds whatever presses it.
+#[test]
+fn a_wedge_between_two_frictional_walls_locks_itself_at_the_angle_of_friction() {
+    let half: f64 = 0.2;
+    let (sin, cos) = half.sin_cos();
+    let walls = [
+        ([-0.4, 0.1, 0.0], [-cos, -sin, 0.0]),
+        ([-0.4, -0.1, 0.0], [-cos, -sin, 0.0]),
+        ([0.4, 0.1, 0.0], [cos, -sin, 0.0]),
+        ([0.4, -0.1, 0.0], [cos, -sin, 0.0]),
+    ];
+    let pulled =
+        |coefficient| scene(block(&[0.0, 1.0, 0.0]), &walls, coulomb(coefficient)).analyse();
+    assert_eq!(pulled(half.tan() * 1.000001), Ok(RigidMotions::default()));
+    assert!(pulled(half.tan() * 0.999999).is_err());
+    let pressed = scene(block(&[0.0, -1.0, 0.0]), &walls, coulomb(0.0)).analyse();
+    assert_eq!(pressed, Ok(RigidMotions::default()));
+}
+
+#[test]
+fn given_friction_holds_a_pull_up_to_its_bound_times_the_area() {
+    // Three points of half an area each.
+    let law = Law::Given { bound: 2e5 };
+    let floor = |pull: f64| on_floor([pull, -1e6, 0.0], law);
+    assert_eq!(floor(3e5 * (1.0 - 1e-12)), Ok(RigidMotions::default()));
+    slides(floor(3e5 * (1.0 + 1e-12)), "(1.0000, 0.0000)");
+    slides(floor(-4e5), "(-1.0000, 0.0000)");
+    // It doesn't ask for pressure.
+    let wall = [
+        ([0.5, -0.5, 0.0], [1.0, 0.0, 0.0]),
+        ([0.5, 0.5, 0.0], [1.0, 0.0, 0.0]),
+    ];
+    let hanging = |weight: f64| scene(block(&[1e6, -weight, 0.0]), &wall, law).analyse();
+    assert_eq!(hanging(1.9e5), Ok(RigidMotions::default()));
+    slides(hanging(2.1e5), "(0.0000, -1.0000)");
+}
+
+#[test]
+fn cohesion_holds_beside_friction() {
+    let law = Law::Coulomb {
+        coefficient: 0.5,
+        cohesion: 4.0,
+    };
+    let pushed = |push: f64| on_floor([push, -10.0, push / 2.0_f64.sqrt()], law);
+    assert_eq!(pushed(11.0 * (1.0 - 1e-12)), Ok(RigidMotions::default()));
+    slides(pushed(11.0 * (1.0 + 1e-12)), "(1.0000, 0.0000)");
+}
+
+/// A plate between two clamped ones, pressed by a load on it against the lower: what the upper one gives, it gives
+/// twice.
+#[test]
+fn what_is_clamped_between_two_plates_is_held_by_friction_alone() {
+    let up = [0.0, 1.0, 0.0];
+    let both = [
+        ([-0.5, -0.5, 0.0], DOWN),
+        ([0.5, -0.5, 0.0], DOWN),
+        ([-0.5, 0.5, 0.0], up),
+        ([0.5, 0.5, 0.0], up),
+    ];
+    for (plates, held) in [(&both[..], true), (&both[..2], false)] {
+        let found = scene(block(&[0.4, -1.0, 0.0]), plates, coulomb(0.3)).analyse();
+        assert_eq!(found.is_ok(), held, "{found:?}");
+    }
+    let found = scene(block(&[0.29, -1.0, 0.0]), &both[..2], coulomb(0.3)).analyse();
+    assert_eq!(found, Ok(RigidMotions::default()));
+}
+
+/// A bar leans against a wall without friction: the floor holds it up to the angle that textbooks tell, here a push
+/// half as large as the weight.
+#[test]
+fn friction_at_one_contact_works_beside_another_without() {
+    let leaning = |coefficient| {
+        let points = [
+            ([-0.5, -0.5, 0.0], DOWN),
+            ([0.5, 0.5, 0.0], [1.0, 0.0, 0.0]),
+        ];
+        let mut scene = scene(block(&[0.0, -1.0, 0.0]), &points, coulomb(coefficient));
+        // The second point's friction goes.
+        scene.rows.truncate(3);
+        scene.conditions = vec![3];
+        scene.analyse()
+    };
+    assert_eq!(leaning(0.5 * (1.0 + 1e-12)), Ok(RigidMotions::default()));
+    assert!(leaning(0.5 * (1.0 - 1e-11)).is_err());
+}
+
+/// In whatever direction the plane is inclined, tangents along none of which it slides.
+#[test]
+fn a_cube_on_an_incline_slides_from_the_friction_angle_on_in_every_direction() {
+    let down = [0.0, 0.0, -1.0];
+    let corners = [[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]];
+    let corners = corners.map(|[x, y]| ([x, y, -0.5], down));
+    for direction in [0.0_f64, 0.1, 0.7, 2.0, 3.9] {
+        let pushed = |push: f64| {
+            let (y, x) = direction.sin_cos();
+            let mut body = block(&[push * x, push * y, -1.0, 0.0, 0.0, 0.0]);
+            // It acts on the base.
+            let moment = body
+                .frame
+                .action(3, &[0.0, 0.0, -0.5], &[push * x, push * y, 0.0]);
+            body.load[3..].copy_from_slice(&moment[3..]);
+            scene(body, &corners, coulomb(0.4)).analyse()
+        };
+        let held = pushed(0.4 * (1.0 - 1e-9));
+        assert_eq!(held, Ok(RigidMotions::default()), "{direction}");
+        let found = pushed(0.4 * (1.0 + 1e-9)).unwrap_err();
+        assert!(found.message.contains("slides"), "{found}");
+    }
+}
+
+/// Rows of bricks in a wall, each under its weight and a push aside.
+fn wall(rows: usize, columns: usize, coefficient: f64, push: impl Fn(usize) -> f64) -> Scene {
+    let place = |b: usize| {
+        let (i, k) = (b / columns, b % columns);
+        let offset = if i.is_multiple_of(2) { 0.0 } else { 0.25 };
+        (k as f64 + offset, i as f64 * 0.3)
+    };
+    let state = |b: usize| {
+        let (x, y) = place(b);
+        let mut body = block(&[push(b), -1.0, 0.0]);
+        body.frame = BodyFrame::new([x, y, 0.0], [x + 1.0, y + 0.3, 0.0]);
+        body
+    };
+    let bodies: Vec<BodyState> = (0..rows * columns).map(state).collect();
+    let (mut normals, mut tangents) = (Vec::new(), Vec::new());
+    for upper in 0..bodies.len() {
+        let (x, y) = place(upper);
+        let below: Vec<Option<usize>> = match upper / columns {
+            0 => vec![None],
+            _ => (0..upper)
+                .filter(|&b| (y - place(b).1 - 0.3).abs() < 0.01 && (place(b).0 - x).abs() < 0.9)
+                .map(Some)
+                .collect(),
+        };
+        for lower in below {
+            let from = lower.map_or(x, |b| place(b).0.max(x));
+            let to = lower.map_or(x + 1.0, |b| (place(b).0 + 1.0).min(x + 1.0));
+            for k in 0..5 {
+                let at = [from + (to - from) * k as f64 / 4.0, y, 0.0];
+                let row = |along: [f64; 3], friction| {
+                    let of = |b: usize, sign: f64| {
+                        let along = along.map(|c| sign * c);
+                        (b, bodies[b].frame.action(2, &at, &along))
+                    };
+                    RigidRow {
+                        bodies: std::iter::once(of(upper, 1.0))
+                            .chain(lower.map(|b| of(b, -1.0)))
+                            .collect(),
+                        gap: 0.0,
+                        friction,
+                    }
+                };
+                let friction = Friction::new(coulomb(coefficient), 0.1, normals.len());
+                normals.push(row(DOWN, None));
+                tangents.push(row([1.0, 0.0, 0.0], friction));
+            }
+        }
+    }
+    normals.extend(tangents);
+    Scene {
+        dim: 2,
+        names: (0..bodies.len()).map(|b| format!("brick {b}")).collect(),
+        conditions: vec![normals.len()],
+        bodies,
+        rows: normals,
+    }
+}
+
+#[test]
+fn friction_holds_the_uppermost_brick_of_a_high_stack_to_its_last_digits() {
+    let stack = |part: f64| {
+        let push = |b: usize| if b == 11 { 0.5 * part } else { 0.0 };
+        wall(12, 1, 0.5, push).analyse()
+    };
+    assert_eq!(stack(1.0 - 1e-11), Ok(RigidMotions::default()));
+    let failure = stack(1.0 + 1e-11).unwrap_err();
+    assert!(failure.message.contains("'brick 11' slides"), "{failure}");
+}
+
+#[test]
+fn a_wall_under_a_push_on_every_brick_stands_up_to_its_coefficient() {
+    assert_eq!(
+        wall(4, 4, 0.5, |_| 0.499).analyse(),
+        Ok(RigidMotions::default())
+    );
+    let failure = wall(4, 4, 0.5, |_| 0.501).analyse().unwrap_err();
+    assert!(failure.message.contains("slides"), "{failure}");
+}
