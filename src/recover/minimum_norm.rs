@@ -4,6 +4,7 @@ use contact_dd_partition::contact_point::ContactPoint;
 
 use crate::certificate::Certificate;
 use crate::context::Context;
+use crate::fem::contact_group::ContactGroup;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::motions::{Field, Motions};
 use crate::recover::refine::replace_if_as_good;
@@ -11,7 +12,7 @@ use crate::recover::{DiscreteSolution, GroupSolution, displacements};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::closing_motion::with_closing_motions;
 use crate::rigid::free_motion::FreeMotion;
-use crate::rigid::released_modes::ReleasedModes;
+use crate::rigid::released_modes::{ConditionState, ReleasedModes};
 use crate::vector::largest as largest_entry;
 
 /// A contact force, relative to the terms of the equilibrium at its nodes, that is round-off.
@@ -124,10 +125,10 @@ fn move_nearer(
     comm.gather(
         &plan.group_owners(),
         |g| {
-            solution
-                .groups
-                .get_mut(&g)
-                .map_or(0, |of_group| open(of_group, OPENED * largest))
+            let of_group = solution.groups.get_mut(&g);
+            of_group.map_or(0, |of_group| {
+                open(&fixed.context.groups[&g], of_group, OPENED * largest)
+            })
         },
         |_, opened| minimum_norm.opened += opened,
     );
@@ -149,14 +150,19 @@ fn largest_displacement(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
     largest
 }
 
-/// Opens the points of a group that have a gap, and counts them.
-fn open(solution: &mut GroupSolution, closed_up_to: f64) -> usize {
+/// Opens the points of a group that have a gap, and counts them; what has moved from where it stuck without force
+/// doesn't stick any more.
+fn open(group: &ContactGroup, solution: &mut GroupSolution, closed_up_to: f64) -> usize {
     let mut opened = 0;
-    for (j, &gap) in solution.gaps.iter().enumerate() {
+    for (j, (_, is_tangential)) in points_of_conditions(group).enumerate() {
+        let gap = match is_tangential {
+            true => solution.gaps[j].abs(),
+            false => solution.gaps[j],
+        };
         if solution.closed[j] && gap > closed_up_to {
             solution.closed[j] = false;
             solution.forces[j] = 0.0;
-            opened += 1;
+            opened += usize::from(!is_tangential);
         }
     }
     opened
@@ -178,8 +184,7 @@ fn released_modes(
         let largest = |at: u32| largest_entry(&scale[at as usize * dim..][..dim]);
         nodes.iter().map(|(at, _)| largest(at.node)).collect()
     });
-    let mut carrying = Vec::new();
-    let mut gaps = Vec::new();
+    let mut conditions = Vec::new();
     comm.gather(
         &plan.group_owners(),
         |g| {
@@ -188,15 +193,28 @@ fn released_modes(
                 let nodes = point.entries.iter();
                 nodes.fold(0.0, |m: f64, (node, _)| m.max(scales[&g][*node as usize]))
             };
-            let points = groups[&g].points.iter().zip(&of_group.forces);
-            let carrying = points.map(|(point, &force)| force > ROUND_OFF * scale(point));
-            (carrying.collect::<Vec<bool>>(), of_group.gaps.clone())
+            let points = points_of_conditions(&groups[&g]).enumerate();
+            let state = |(j, (point, is_tangential))| {
+                let force: f64 = of_group.forces[j];
+                let size = if is_tangential { force.abs() } else { force };
+                ConditionState {
+                    carrying: size > ROUND_OFF * scale(point),
+                    closed: of_group.closed[j],
+                    gap: of_group.gaps[j],
+                }
+            };
+            points.map(state).collect::<Vec<_>>()
         },
-        |_, (of_group, left)| {
-            carrying.extend(of_group);
-            gaps.extend(left);
-        },
+        |_, of_group| conditions.extend(of_group),
     );
     let scene = analysis.scene.as_ref()?;
-    Some(scene.released_modes(&analysis.motions.free, &carrying, &gaps))
+    Some(scene.released_modes(&analysis.motions.free, &conditions))
+}
+
+/// The point of every condition of a group, and whether it is a tangential one.
+fn points_of_conditions(group: &ContactGroup) -> impl Iterator<Item = (&ContactPoint<u32>, bool)> {
+    let tangential = group.points.iter().filter(|point| point.law.has_friction());
+    let each = move |point| std::iter::repeat_n((point, true), group.dim - 1);
+    let normal = group.points.iter().map(|point| (point, false));
+    normal.chain(tangential.flat_map(each))
 }

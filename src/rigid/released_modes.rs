@@ -1,12 +1,25 @@
 //! Rigid motions that are free in a solution, because no contact force is left that resists them.
 
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 use super::analysis::Scene;
+use super::forces::Friction;
 use super::free_motion::FreeMotion;
 use super::kinematics::{Kinematics, null_space};
 use super::nonnegative;
 use super::projection::MotionProducts;
+
+/// A condition in a solution.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConditionState {
+    /// Whether it carries force.
+    pub carrying: bool,
+    /// Whether it is closed; a tangential one: sticks.
+    pub closed: bool,
+    /// What it has left (m).
+    pub gap: f64,
+}
 
 /// The released modes of a solution.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,21 +35,21 @@ pub struct ReleasedModes {
 }
 
 impl Scene {
-    /// The motions that no support and no contact force resists, where `free` ones are known
-    /// already; `carrying[j]` tells whether condition j carries force, `gaps[j]` is what it has left.
+    /// The motions that no support and no contact force resists, nor could resist, where `free` ones are known
+    /// already.
     pub fn released_modes(
         &self,
         free: &[FreeMotion],
-        carrying: &[bool],
-        gaps: &[f64],
+        conditions: &[ConditionState],
     ) -> ReleasedModes {
         let kinematics = Kinematics::new(self.dim, &self.bodies);
         if kinematics.len == 0 {
             return ReleasedModes::default();
         }
         let b = kinematics.rows(&self.rows);
-        let (held, redundant): (Vec<usize>, Vec<usize>) =
-            (0..carrying.len()).partition(|&j| carrying[j]);
+        let (held, mut redundant): (Vec<usize>, Vec<usize>) =
+            (0..conditions.len()).partition(|&j| self.holds(j, conditions));
+        redundant.retain(|&j| self.rows[j].friction.is_none());
         // What is free anyway comes first; the rest is orthogonal to it.
         let known: Vec<DVector<f64>> = free.iter().map(|m| kinematics.unknowns_of(m)).collect();
         let mut resisted = b.select_rows(&held).insert_rows(0, known.len(), 0.0);
@@ -56,11 +69,26 @@ impl Scene {
         ReleasedModes {
             motions,
             rows: b.select_rows(&redundant) * z,
-            gaps: redundant.iter().map(|&j| gaps[j].max(0.0)).collect(),
+            gaps: (redundant.iter())
+                .map(|&j| conditions[j].gap.max(0.0))
+                .collect(),
             warnings: (released.iter())
                 .map(|what| format!("no contact force holds {what}"))
                 .collect(),
         }
+    }
+
+    /// Whether condition j holds what moves it. A tangential one does where friction can give any force: sides that
+    /// stick stay, and sides that slip came where they are by their path, not to one of many places.
+    fn holds(&self, j: usize, conditions: &[ConditionState]) -> bool {
+        let can_resist = |friction: &Friction| {
+            let ConditionState {
+                carrying, closed, ..
+            } = conditions[friction.normal];
+            friction.coefficient > 0.0 && carrying
+                || friction.bound > 0.0 && (closed || friction.is_given)
+        };
+        conditions[j].carrying || self.rows[j].friction.as_ref().is_some_and(can_resist)
     }
 }
 
@@ -105,7 +133,11 @@ impl ReleasedModes {
 
 #[cfg(test)]
 mod tests {
+    use contact_dd_partition::contact_point::Law;
+
     use super::*;
+    use crate::rigid::analysis::{BodyState, RigidRow};
+    use crate::rigid::motion::BodyFrame;
 
     /// A displacement of one node along two motions, x and y.
     fn products(u: [f64; 2]) -> MotionProducts {
@@ -153,5 +185,68 @@ mod tests {
         let c =
             released(&[[-1.0, 0.0], [0.0, -1.0]], &[0.0, 1.0]).coefficients(&products([3.0, 4.0]));
         close(&c, [0.0, 1.0]);
+    }
+
+    /// A square on a floor below its corners: what is left to it where their normal and tangential conditions carry
+    /// force or not, and are closed or not.
+    fn motions_left(law: Law, carrying: [bool; 2], closed: bool) -> usize {
+        let frame = BodyFrame::new([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]);
+        let body = BodyState {
+            frame,
+            supports: vec![],
+            load: vec![0.0; 3],
+            load_scale: 0.0,
+            candidates: vec![],
+        };
+        let row = |x: f64, along: [f64; 3], friction| RigidRow {
+            bodies: vec![(0, frame.action(2, &[x, -1.0, 0.0], &along))],
+            gap: 0.0,
+            friction,
+        };
+        let down = [0.0, -1.0, 0.0];
+        let mut rows = vec![row(-1.0, down, None), row(1.0, down, None)];
+        let friction = |j: usize| Friction::new(law, 1.0, j);
+        let tangential = |(j, x)| row(x, [1.0, 0.0, 0.0], friction(j));
+        if law.has_friction() {
+            rows.extend([-1.0, 1.0].into_iter().enumerate().map(tangential));
+        }
+        let scene = Scene {
+            dim: 2,
+            bodies: vec![body],
+            names: vec!["square".into()],
+            conditions: vec![rows.len()],
+            rows,
+        };
+        let condition = |j: usize| ConditionState {
+            carrying: carrying[j / 2],
+            closed,
+            gap: 0.0,
+        };
+        let conditions: Vec<ConditionState> = (0..scene.rows.len()).map(condition).collect();
+        scene.released_modes(&[], &conditions).motions.len()
+    }
+
+    #[test]
+    fn what_friction_can_hold_is_not_released() {
+        let coulomb = |coefficient, cohesion| Law::Coulomb {
+            coefficient,
+            cohesion,
+        };
+        let given = Law::Given { bound: 1.0 };
+        for (law, carrying, closed, left) in [
+            (Law::Frictionless, [true, false], true, 1),
+            (Law::Frictionless, [false, false], true, 3),
+            // On its weight alone, without a push that friction would answer.
+            (coulomb(0.3, 0.0), [true, false], true, 0),
+            (coulomb(0.3, 0.0), [false, false], true, 3),
+            // Both tangential conditions are along the floor.
+            (coulomb(0.3, 2.0), [false, false], true, 2),
+            (coulomb(0.3, 2.0), [false, false], false, 3),
+            (coulomb(0.0, 2.0), [true, true], true, 0),
+            (given, [false, false], false, 2),
+        ] {
+            let found = motions_left(law, carrying, closed);
+            assert_eq!(found, left, "{law:?} {carrying:?} {closed}");
+        }
     }
 }
