@@ -148,7 +148,8 @@ impl<'a> Contacts<'a> {
                 short(-deepest)
             ));
         }
-        let mut kept = Vec::with_capacity(points.len());
+        let count = points.len();
+        let mut kept = Vec::with_capacity(count);
         for point in points {
             match self.prescribed_jump(&point) {
                 None => kept.push(ContactPoint {
@@ -172,6 +173,12 @@ impl<'a> Contacts<'a> {
         if kept.is_empty() {
             warnings.push(format!(
                 "{what}: all its nodes are prescribed; it has no condition"
+            ));
+        } else if keys.friction.is_some() && kept.len() < count {
+            warnings.push(format!(
+                "{what}: {} of its {count} nodes are prescribed along the normal, so that nothing presses there and \
+                 there is no friction",
+                count - kept.len()
             ));
         }
         Ok(Contact {

@@ -299,6 +299,13 @@ fn a_pair_that_is_prescribed_on_both_sides_carries_no_condition() {
     let rows = conditions(&stack(0.25), &text(-0.25)).unwrap();
     assert_eq!(rows.len(), 4);
     assert!(rows.iter().all(|row| row.position[0] > 0.0));
+    let lost = "contact 'c': 1 of its 5 nodes are prescribed along the normal";
+    for (keys, is_lost) in [("", false), ("friction = 0.5\n", true)] {
+        let rough = text(-0.25).replacen("[[bilateral]]", &format!("{keys}[[bilateral]]"), 1);
+        let warnings = stack(0.25).model(&rough).unwrap().warnings;
+        let said = warnings.iter().any(|warning| warning.starts_with(lost));
+        assert_eq!(said, is_lost, "{warnings:?}");
+    }
     let error = conditions(&stack(0.25), &text(-0.26)).unwrap_err();
     assert!(
         error.contains("contact 'c': at node") && error.contains("by 0.26 m"),
