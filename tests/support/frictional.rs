@@ -8,11 +8,15 @@
 //! After M. Jean, *The non-smooth contact dynamics method*, Comput. Methods Appl. Mech. Engrg 177 (1999), in
 //! displacements instead of forces.
 
+use std::collections::BTreeMap;
+
 use contact_dd_partition::model::Model;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use serde_json::Value;
 
 use super::assembled::{Along, Assembled, Solved};
 use super::scenes::at_step;
+use super::solution::{ContactPoint, Solution};
 
 /// Passes at most.
 const PASSES: usize = 400_000;
@@ -97,6 +101,49 @@ impl Frictional {
         };
         found.check(w, jump_scale, force_scale);
         found
+    }
+
+    /// What a result file would say.
+    pub fn written(&self, model: &Model) -> Solution {
+        let (assembled, solved) = (&self.assembled, &self.solved);
+        let gaps = assembled.gaps(&solved.u);
+        let points = model.contacts.iter().flat_map(|contact| &contact.points);
+        let mut points: Vec<ContactPoint> = (points.enumerate())
+            .map(|(j, point)| ContactPoint {
+                tags: [point.tag_a, point.tag_b],
+                position: point.position,
+                normal: point.normal(),
+                gap: gaps[j],
+                force: solved.forces[j].max(0.0),
+                pressure: solved.forces[j] / point.area,
+                closed: self.closed[j],
+                slipping: false,
+                tangential_force: [0.0; 3],
+                slip: [0.0; 3],
+            })
+            .collect();
+        for (k, tangent) in assembled.tangents.iter().enumerate() {
+            let point = &mut points[tangent.condition];
+            let jump = tangent.jump(&solved.u);
+            point.tangential_force = tangent.direction.map(|t| -solved.tangential[k] * t);
+            point.slip = tangent.direction.map(|t| jump * t);
+            point.slipping = point.closed && matches!(self.along[k], Along::Slips(_));
+        }
+        let mut points = points.into_iter();
+        let contacts = model.contacts.iter().map(|contact| {
+            let part = points.by_ref().take(contact.points.len());
+            (contact.name.clone(), part.collect())
+        });
+        let tags = model.mesh.node_tags.iter().copied();
+        let u = solved.u.chunks(2).map(|u| [u[0], u[1], 0.0]);
+        Solution {
+            contacts: contacts.collect(),
+            displacement: tags.zip(u).collect(),
+            cells: Vec::new(),
+            nodal_stress: BTreeMap::new(),
+            types: Vec::new(),
+            report: Value::Null,
+        }
     }
 
     /// Fails unless the law holds.

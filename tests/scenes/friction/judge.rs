@@ -1,15 +1,12 @@
 //! The judge of random scenes against the reference with friction, neither of which knows the program.
 
-use std::collections::BTreeMap;
-
 use contact_dd_partition::model::Model;
-use serde_json::Value;
 
-use crate::support::assembled::{Along, Assembled};
+use crate::support::assembled::Assembled;
 use crate::support::blocks::Blocks;
 use crate::support::frictional::Frictional;
 use crate::support::scenes::{BODIES, at_step, model};
-use crate::support::solution::{ContactPoint, Solution};
+use crate::support::solution::ContactPoint;
 use crate::support::stress::Balance;
 use crate::support::stress::judge::Findings;
 
@@ -42,50 +39,12 @@ fn pushed(law: &str) -> Model {
     model(&text, blocks.mesh)
 }
 
-/// An increment of the reference as a result file has it.
-fn written(model: &Model, found: &Frictional) -> Solution {
-    let (assembled, solved) = (&found.assembled, &found.solved);
-    let gaps = assembled.gaps(&solved.u);
-    let points = model.contacts[0].points.iter().enumerate();
-    let mut points: Vec<ContactPoint> = points
-        .map(|(j, point)| ContactPoint {
-            tags: [point.tag_a, point.tag_b],
-            position: point.position,
-            normal: point.normal(),
-            gap: gaps[j],
-            force: solved.forces[j].max(0.0),
-            pressure: solved.forces[j] / point.area,
-            closed: found.closed[j],
-            slipping: false,
-            tangential_force: [0.0; 3],
-            slip: [0.0; 3],
-        })
-        .collect();
-    for (k, tangent) in assembled.tangents.iter().enumerate() {
-        let point = &mut points[tangent.condition];
-        let jump = tangent.jump(&solved.u);
-        point.tangential_force = tangent.direction.map(|t| -solved.tangential[k] * t);
-        point.slip = tangent.direction.map(|t| jump * t);
-        point.slipping = point.closed && matches!(found.along[k], Along::Slips(_));
-    }
-    let tags = model.mesh.node_tags.iter().copied();
-    let u = solved.u.chunks(2).map(|u| [u[0], u[1], 0.0]);
-    Solution {
-        displacement: tags.zip(u).collect(),
-        cells: Vec::new(),
-        nodal_stress: BTreeMap::new(),
-        types: Vec::new(),
-        contacts: BTreeMap::from([("joint".to_owned(), points)]),
-        report: Value::Null,
-    }
-}
-
 /// What the judge finds in the second step after `tamper`.
 fn faults(law: &str, tamper: impl Fn(&mut Vec<ContactPoint>)) -> Vec<String> {
     let whole = pushed(law);
     let steps = Frictional::steps(&whole);
-    let before = written(&whole, &steps[0]);
-    let mut after = written(&whole, &steps[1]);
+    let before = steps[0].written(&whole);
+    let mut after = steps[1].written(&whole);
     let kinds = after.points().fold([0; 3], |mut kinds, point| {
         kinds[usize::from(point.closed) + usize::from(point.slipping)] += 1;
         kinds
@@ -152,7 +111,7 @@ fn the_judge_finds_every_breach_of_the_law_of_friction() {
 fn the_judge_looks_at_increments() {
     let whole = pushed("friction = 0.25");
     let steps = Frictional::steps(&whole);
-    let after = written(&whole, &steps[1]);
+    let after = steps[1].written(&whole);
     let model = at_step(&whole, 1);
     let found = Findings::after(None, &model, &Assembled::new(&model), &after, false).faults();
     assert!(

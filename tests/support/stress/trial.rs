@@ -129,18 +129,21 @@ impl Trial {
             0 => vec![Loaded::new(model.clone())],
             count => (0..count).map(|k| Loaded::new(at_step(model, k))).collect(),
         };
-        let balance = least(
-            steps
-                .iter()
-                .map(|step| Balance::new(&step.model, &step.assembled)),
-        );
+        // What stands without friction stands with it.
+        let without = |step: &Loaded| Balance::without_friction(&step.model, &step.assembled);
+        let held = least(steps.iter().map(without));
+        let balance = match (held, drawn.friction) {
+            (Balance::Holds, _) | (_, None) => held,
+            _ => least(
+                steps
+                    .iter()
+                    .map(|step| Balance::new(&step.model, &step.assembled)),
+            ),
+        };
         trial.equilibrium = match (balance, drawn.equilibrium) {
-            (Balance::Holds, None) if drawn.friction.is_some() => {
-                let without =
-                    |step: &Loaded| Balance::without_friction(&step.model, &step.assembled);
-                let held = least(steps.iter().map(without)) == Balance::Holds;
-                trial.by_friction = !held;
-                (held || drawn.determined).then_some(true)
+            (Balance::Holds, None) if held != Balance::Holds => {
+                trial.by_friction = true;
+                drawn.determined.then_some(true)
             }
             (Balance::Holds, None | Some(true)) => Some(true),
             (Balance::Fails, None | Some(false)) => Some(false),
