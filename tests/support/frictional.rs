@@ -21,7 +21,7 @@ use super::solution::{ContactPoint, Solution};
 /// Passes at most.
 const PASSES: usize = 400_000;
 /// Change of the jumps in a pass, relative to the largest, that ends them.
-const SETTLED: f64 = 1e-15;
+const SETTLED: f64 = 1e-12;
 /// What may be missed of the law, relative to the largest force or jump.
 const ROUND_OFF: f64 = 1e-10;
 
@@ -79,8 +79,7 @@ impl Frictional {
         let d = settled(&points, &r, &s);
         let count = assembled.conditions.len();
         let force = &r - &s * &d;
-        let largest = |values: &DVector<f64>| values.amax().max(f64::MIN_POSITIVE);
-        let (jump_scale, force_scale) = (largest(&d), largest(&force));
+        let force_scale = force.amax();
         // A jump of nothing and a force of nothing are both: it is open.
         let closed: Vec<bool> = (0..count)
             .map(|j| d[j] == 0.0 && force[j] > -1e-9 * force_scale)
@@ -99,7 +98,7 @@ impl Frictional {
             along,
             assembled,
         };
-        found.check(w, jump_scale, force_scale);
+        found.check(w, force_scale);
         found
     }
 
@@ -148,8 +147,9 @@ impl Frictional {
 
     /// Fails unless the law holds.
     #[track_caller]
-    fn check(&self, w: &[f64], jump_scale: f64, force_scale: f64) {
-        let (no_jump, no_force) = (ROUND_OFF * jump_scale, ROUND_OFF * force_scale);
+    fn check(&self, w: &[f64], force_scale: f64) {
+        let size = self.solved.u.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+        let (no_jump, no_force) = (ROUND_OFF * size, ROUND_OFF * force_scale);
         let gaps = self.assembled.gaps(&self.solved.u);
         for (j, &gap) in gaps.iter().enumerate() {
             let force = self.solved.forces[j];
