@@ -154,11 +154,9 @@ fn largest_displacement(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
 /// doesn't stick any more.
 fn open(group: &ContactGroup, solution: &mut GroupSolution, closed_up_to: f64) -> usize {
     let mut opened = 0;
-    for (j, (_, is_tangential)) in points_of_conditions(group).enumerate() {
-        let gap = match is_tangential {
-            true => solution.gaps[j].abs(),
-            false => solution.gaps[j],
-        };
+    let gaps = points_of_conditions(group).zip(&solution.gaps);
+    for (j, ((_, is_tangential), &gap)) in gaps.enumerate() {
+        let gap = if is_tangential { gap.abs() } else { gap };
         if solution.closed[j] && gap > closed_up_to {
             solution.closed[j] = false;
             solution.forces[j] = 0.0;
@@ -193,9 +191,8 @@ fn released_modes(
                 let nodes = point.entries.iter();
                 nodes.fold(0.0, |m: f64, (node, _)| m.max(scales[&g][*node as usize]))
             };
-            let points = points_of_conditions(&groups[&g]).enumerate();
-            let state = |(j, (point, is_tangential))| {
-                let force: f64 = of_group.forces[j];
+            let points = points_of_conditions(&groups[&g]).zip(&of_group.forces);
+            let state = |(j, ((point, is_tangential), &force)): (usize, (_, &f64))| {
                 let size = if is_tangential { force.abs() } else { force };
                 ConditionState {
                     carrying: size > ROUND_OFF * scale(point),
@@ -203,7 +200,7 @@ fn released_modes(
                     gap: of_group.gaps[j],
                 }
             };
-            points.map(state).collect::<Vec<_>>()
+            points.enumerate().map(state).collect::<Vec<_>>()
         },
         |_, of_group| conditions.extend(of_group),
     );

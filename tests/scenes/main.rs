@@ -12,6 +12,7 @@ mod elements;
 mod exact;
 mod floating;
 mod friction;
+mod friction_held;
 mod groups;
 mod laws;
 mod monolithic;
