@@ -33,6 +33,9 @@ pub struct Certificate {
     pub tension: f64,
     /// Largest product of contact force and gap over the product of their scales.
     pub complementarity: f64,
+    /// Largest tangential force beyond its bound, over the load scale, or product of slip and what its force lacks of
+    /// the bound against it, over the product of their scales.
+    pub friction: f64,
     /// Sum of loads and reactions over the load scale.
     pub force_balance: f64,
     /// Sum of their moments over the load scale times the size of the scene.
@@ -54,6 +57,7 @@ impl Certificate {
             penetration: worse(self.penetration, other.penetration),
             tension: worse(self.tension, other.tension),
             complementarity: worse(self.complementarity, other.complementarity),
+            friction: worse(self.friction, other.friction),
             force_balance: worse(self.force_balance, other.force_balance),
             moment_balance: worse(self.moment_balance, other.moment_balance),
             interface_jump: worse(self.interface_jump, other.interface_jump),
@@ -113,6 +117,10 @@ pub fn certificate(
         penetration: ratio(most.penetration, most.displacement),
         tension: ratio(most.tension, force_scale),
         complementarity: ratio(most.complementarity, most.contact_force * most.displacement),
+        friction: f64::max(
+            ratio(most.beyond_bound, force_scale),
+            ratio(most.not_opposed, most.contact_force * most.displacement),
+        ),
         force_balance: to_load * ratio(largest(&external.force), external.force_scale),
         moment_balance: to_load * ratio(largest(&external.moment), external.moment_scale),
         interface_jump: ratio(jump, most.displacement),

@@ -105,7 +105,8 @@ pub fn normal_jumps(
 ) -> Result<NormalJumps, Failure> {
     let node = &context.plan.tree.nodes[context.plan.groups[g].node];
     group.normal_jumps(&node.eliminated).map_err(|NoUnknown(j)| {
-        let point = &group.points[j];
+        let number = group.conditions().nth(j).map_or(0, |condition| condition.point);
+        let point = &group.points[number];
         let contact = &context.catalog.contacts[point.contact as usize].name;
         Failure::input(format!(
             "contact '{contact}': the point of nodes {} and {} can't be told from others that share \

@@ -6,6 +6,7 @@ pub mod active_equalities;
 pub mod active_set;
 pub mod dependent;
 pub mod dual;
+pub mod friction;
 pub mod interior_point;
 pub mod limits;
 pub mod normal_jump;

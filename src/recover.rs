@@ -29,14 +29,14 @@ pub struct BlockSolution {
     pub pushes: Vec<(u32, [f64; 3])>,
 }
 
-/// The solution at the points of a contact group.
+/// The solution at the conditions of a contact group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroupSolution {
-    /// Force of every point (N/m).
+    /// Force of every condition (N/m).
     pub forces: Vec<f64>,
-    /// Which points are closed.
+    /// Which conditions are closed; a tangential one is where the sides stick.
     pub closed: Vec<bool>,
-    /// The gap that is left at every point, g − B u (m).
+    /// The gap that is left at every condition, g − B u; the way back to where the sides stuck (m).
     pub gaps: Vec<f64>,
 }
 
@@ -50,6 +50,26 @@ pub struct DiscreteSolution {
 }
 
 impl DiscreteSolution {
+    /// The tangential jumps of every contact group since the bodies were unloaded, where those before the load step
+    /// were `before` (m).
+    pub fn slips(
+        &self,
+        context: &Context<'_>,
+        before: &BTreeMap<usize, Vec<f64>>,
+    ) -> BTreeMap<usize, Vec<f64>> {
+        let of_group = |(&g, solution): (&usize, &GroupSolution)| {
+            let first = context.groups[&g].points.len();
+            let ways = solution.gaps[first..].iter().zip(&solution.closed[first..]);
+            let ways = ways.map(|(way, sticks)| if *sticks { 0.0 } else { *way });
+            let slips = match before.get(&g) {
+                Some(before) => before.iter().zip(ways).map(|(w, way)| w - way).collect(),
+                None => ways.map(|way| -way).collect(),
+            };
+            (g, slips)
+        };
+        self.groups.iter().map(of_group).collect()
+    }
+
     /// Tells contact groups what gaps the displacements leave, and blocks what their forces push. Collective.
     pub fn share(&mut self, context: &Context<'_>, loads: &Loads) {
         let &Context { comm, plan, .. } = context;

@@ -109,14 +109,18 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     log.phase("creating the outputs", None);
     let finished = finished_steps(&context, settings)?;
     let mut outputs = create_outputs(&context, settings, finished.count)?;
-    let loads = |k: usize| without_closing_motions(&context, context.loads(k), &analyses[k]);
+    let loads = |k: usize, state: &StepState| {
+        let mut loads = context.loads(k);
+        state.hold(&mut loads);
+        without_closing_motions(&context, loads, &analyses[k])
+    };
     seconds.read = began.elapsed().as_secs_f64();
 
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy.
     log.phase("factorizing", Some(blocks.len()));
     let condensation = Condensation {
         context,
-        loads: &loads(0),
+        loads: &loads(0, &StepState::default()),
         fixing_dofs: &analyses[0].motions.fixing_dofs,
     };
     let condensed = condense_clusters(&condensation, &analyses[0], &|| log.bar.advance())?;
@@ -153,7 +157,8 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
             interface: interface.as_ref(),
             analysis,
         };
-        let problem = loading.problem(loads(k), state);
+        let held_at = state.slips.clone();
+        let problem = loading.problem(loads(k, &state), state);
         let mut problem = problem.map_err(|failure| context.in_step(failure, k))?;
         let limits = match &frozen {
             Some(_) => limits_of_groups(&context, &problem.loads)?,
@@ -216,9 +221,10 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         let mut resultants = Resultants::new(catalog, solution.reactions.clone());
         let result = outputs.as_mut().map(|outputs| &mut outputs.result);
         let contacts = &mut resultants.contacts;
-        write_solution(&context, &solution, result, contacts)?;
+        let slips = solution.discrete.slips(&context, &held_at);
+        write_solution(&context, &solution, &slips, result, contacts)?;
         seconds.write += lap.elapsed().as_secs_f64();
-        state = StepState::after(problem.pairs, outcome.as_ref(), settings.method);
+        state = StepState::after(problem.pairs, slips, outcome.as_ref(), settings.method);
         let totals = outcome.map(|o| StepTotals::new(o, &solution, resultants, analysis));
         steps.extend(totals);
         if k + 1 < analyses.len() {

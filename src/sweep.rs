@@ -17,6 +17,8 @@ use std::time::Instant;
 pub use contact_dd_partition::solver::Method;
 
 pub use self::outcome::{SweepOutcome, SweepRecord, SweepStatus};
+use crate::contact::friction::Status;
+use crate::contact::pair::ContactEnd;
 use crate::error::Failure;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::{ConState, ConTotals, SCon};
@@ -51,6 +53,8 @@ pub struct Sweeps<'a, 'c> {
     outcome: SweepOutcome,
     /// Whether another method took over from newton: then nothing may refine afterwards.
     has_fallen_back: bool,
+    /// The contact of every pair before the load step; nothing where it is the first.
+    before: Vec<ContactEnd>,
     began: Instant,
     observer: &'a mut dyn FnMut(&SweepRecord),
 }
@@ -71,8 +75,8 @@ pub struct Residual {
 pub enum Start {
     /// At the solution of the bilateral problem, (16)-(17).
     Bilateral,
-    /// At the solution under other loads: U, and which conditions of every pair were open.
-    Before(Vec<f64>, Vec<Vec<bool>>),
+    /// At the solution of the load step before: U, and the contact of every pair.
+    Before(Vec<f64>, Vec<ContactEnd>),
 }
 
 impl<'a, 'c> Sweeps<'a, 'c> {
@@ -106,10 +110,13 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         start: Start,
         observer: &'a mut dyn FnMut(&SweepRecord),
     ) -> (Self, Residual) {
-        let (u, expected) = match start {
+        let (u, before) = match start {
             Start::Bilateral => (problem.bilateral_start(), None),
-            Start::Before(u, open) => (u, Some(open)),
+            Start::Before(u, ends) => (u, Some(ends)),
         };
+        let of_pair = |end: &ContactEnd| end.status.clone();
+        let expected: Option<Vec<Vec<Status>>> =
+            (before.as_ref()).map(|ends| ends.iter().map(of_pair).collect());
         let mut sweeps = Self {
             problem,
             s_con,
@@ -118,6 +125,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             began: Instant::now(),
             outcome: SweepOutcome::before(u),
             has_fallen_back: false,
+            before: before.unwrap_or_default(),
             observer,
         };
         let residual = sweeps.evaluate(expected.as_deref());
@@ -129,9 +137,9 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         &mut self.outcome.u
     }
 
-    /// r(U), and a line of the history; the pairs' searches begin at the conditions `expected` to be
-    /// open, else at those of last time.
-    pub fn evaluate(&mut self, expected: Option<&[Vec<bool>]>) -> Residual {
+    /// r(U), and a line of the history; the pairs' searches begin at the statuses `expected`, else at those
+    /// of last time.
+    pub fn evaluate(&mut self, expected: Option<&[Vec<Status>]>) -> Residual {
         let residual = self.residual(expected);
         self.record(&residual);
         residual
@@ -147,7 +155,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         SweepOutcome {
             status,
             residual: last.relative,
-            open: self.state.open(),
+            contact: self.state.ends(),
             ..self.outcome
         }
     }
@@ -168,8 +176,8 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         Ok(true)
     }
 
-    /// r(U), where the pairs' normal jumps are `expected` to be open; else as they were last.
-    fn residual(&mut self, expected: Option<&[Vec<bool>]>) -> Residual {
+    /// r(U), where the pairs' limits have the statuses `expected`, else those of last time.
+    fn residual(&mut self, expected: Option<&[Vec<Status>]>) -> Residual {
         let u = &self.outcome.u;
         let totals = (self.s_con).evaluate(self.problem.interface, u, expected, &mut self.state);
         self.outcome.count(&totals, self.s_con.len());

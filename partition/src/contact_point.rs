@@ -140,6 +140,14 @@ impl<N: Copy> ContactPoint<N> {
         self.frame.normal
     }
 
+    /// The directions in which friction acts, where space has `dim` dimensions; none without friction.
+    pub fn tangents(&self, dim: usize) -> &[[f64; 3]] {
+        match self.law.has_friction() {
+            true => &self.frame.tangents[..dim - 1],
+            false => &[],
+        }
+    }
+
     /// Its row of B: every node with weight·n.
     pub fn row(&self) -> impl Iterator<Item = (N, [f64; 3])> + Clone {
         self.row_along(self.frame.normal)
@@ -173,9 +181,9 @@ impl<N: Copy> ContactPoint<N> {
 }
 
 impl ContactPoint<u32> {
-    /// The normal jump t = n·⟦u⟧ of displacements `u`, node by node (m).
-    pub fn normal_jump(&self, dim: usize, u: &[f64]) -> f64 {
-        self.row()
+    /// The jump along a `direction`, of ⟦u⟧ of displacements `u`, node by node (m).
+    pub fn jump_along(&self, direction: [f64; 3], dim: usize, u: &[f64]) -> f64 {
+        self.row_along(direction)
             .flat_map(|(node, n)| (0..dim).map(move |k| n[k] * u[node as usize * dim + k]))
             .sum()
     }
@@ -209,6 +217,9 @@ mod tests {
     fn the_jump_of_a_pair_is_what_its_sides_approach() {
         let normal = [0.0, 1.0, 0.0];
         let point = ContactPoint::new(vec![(0, 1.0), (1, -1.0)], normal, [0.0; 3], 7);
-        assert_eq!(point.normal_jump(2, &[5.0, 0.3, 5.0, 0.1]), 0.3 - 0.1);
+        assert_eq!(
+            point.jump_along(normal, 2, &[5.0, 0.3, 5.0, 0.1]),
+            0.3 - 0.1
+        );
     }
 }

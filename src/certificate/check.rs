@@ -6,8 +6,10 @@ use std::ops::Range;
 use contact_dd_partition::element::geometry::{advance, cross, dot, padded};
 use serde::{Deserialize, Serialize};
 
+use crate::contact::friction::TangentialCondition;
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
+use crate::fem::contact_group::ContactGroup;
 use crate::fem::frame::{Frame, support_frames};
 use crate::fem::load::BlockLoads;
 use crate::schur::condensed::InterfaceDof;
@@ -32,6 +34,10 @@ pub struct Most {
     pub load: f64,
     /// Product of contact force and gap (N).
     pub complementarity: f64,
+    /// Tangential force beyond its bound (N/m).
+    pub beyond_bound: f64,
+    /// What friction would have dissipated more under its bound, against the slip (N).
+    pub not_opposed: f64,
     /// Displacement (m).
     pub displacement: f64,
     /// Force that the bodies' closing motions would cause if it weren't rigid (N/m).
@@ -50,6 +56,8 @@ impl Most {
             external: larger(self.external, other.external),
             load: larger(self.load, other.load),
             complementarity: larger(self.complementarity, other.complementarity),
+            beyond_bound: larger(self.beyond_bound, other.beyond_bound),
+            not_opposed: larger(self.not_opposed, other.not_opposed),
             displacement: larger(self.displacement, other.displacement),
             rest: larger(self.rest, other.rest),
         };
@@ -177,14 +185,29 @@ impl BlockCheck {
 }
 
 impl Most {
-    /// What is largest at contact points with these gaps left and these forces.
-    pub fn at_points(gaps: &[f64], forces: &[f64]) -> Self {
+    /// What is largest at the points of a contact `group` with these gaps left and these forces at its conditions, of
+    /// which these are `closed`.
+    pub fn at_points(group: &ContactGroup, gaps: &[f64], forces: &[f64], closed: &[bool]) -> Self {
         let mut most = Self::default();
-        for (&gap, &force) in gaps.iter().zip(forces) {
+        for (&gap, &force) in gaps.iter().zip(forces).take(group.points.len()) {
             most.penetration = larger(most.penetration, gap.min(0.0));
             most.tension = larger(most.tension, force.min(0.0));
             most.contact_force = larger(most.contact_force, force);
             most.complementarity = larger(most.complementarity, gap * force);
+        }
+        for TangentialCondition {
+            number,
+            normal,
+            bound,
+        } in group.friction()
+        {
+            let (force, slip) = (forces[number], -gaps[number]);
+            let bound = bound.at(forces[normal], closed[normal]);
+            most.beyond_bound = larger(most.beyond_bound, (force.abs() - bound).max(0.0));
+            if !closed[number] {
+                let missing = bound * slip.abs() - force * slip;
+                most.not_opposed = larger(most.not_opposed, missing);
+            }
         }
         most
     }

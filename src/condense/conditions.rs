@@ -38,7 +38,7 @@ impl Factors<'_> {
                 .map(|(group, cluster)| (cluster, group)),
             |i| -> Vec<T> {
                 let (p, g) = places[i];
-                let count = plan.tree.nodes[plan.groups[g].node].points.len();
+                let count = plan.groups[g].conditions;
                 let left = of_clusters.get_mut(&p).map(|left| left.drain(..count));
                 left.into_iter().flatten().collect()
             },

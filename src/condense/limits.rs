@@ -75,5 +75,11 @@ fn of_group(
             )));
         }
     }
-    Ok(Limits::new(jumps.pivots.len(), &jumps.of, &bounds, scale))
+    Ok(Limits::new(
+        jumps.pivots.len(),
+        &jumps.of,
+        &bounds,
+        &group.friction(),
+        scale,
+    ))
 }

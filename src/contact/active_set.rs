@@ -29,7 +29,7 @@ pub(super) const FORCE_TOLERANCE: f64 = 1e-12;
 /// round-off is relative to it.
 const DIAGONAL_SHARE: f64 = 1e-3;
 /// How far below zero, relative to the displacements, a gap must be to close a contact.
-const GAP_TOLERANCE: f64 = 1e-14;
+pub(super) const GAP_TOLERANCE: f64 = 1e-14;
 /// Attempts at flipping all wrong signs without progress before that is given up.
 const PATIENCE: usize = 10;
 /// Linear systems that flipping may solve.
@@ -248,7 +248,7 @@ impl GapProblem<'_> {
     }
 
     /// left ← left − H t.
-    fn subtract(&self, t: &[f64], left: &mut [f64]) {
+    pub(super) fn subtract(&self, t: &[f64], left: &mut [f64]) {
         for (j, &t) in t.iter().enumerate() {
             if t != 0.0 {
                 for (left, h) in left.iter_mut().zip(self.h.col(j).iter()) {

@@ -1,9 +1,50 @@
 //! The limits of a pair: t ≤ g, D t ≤ d.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use super::dependent::DependentConstraints;
+use super::friction::{ForceBound, TangentialCondition};
 use super::normal_jump::{NormalJumpOf, defining_conditions};
+
+/// A slip, relative to the displacements that are prescribed, that is none.
+const ROUND_OFF: f64 = 1e-14;
+
+/// A limit that isn't one: a tangential jump, which sticks where the limit says as long as its force allows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TangentialLimit {
+    /// Which of the limits.
+    pub limit: usize,
+    /// The limit on the normal jump of its point, where there is one that carries force.
+    pub normal: Option<usize>,
+    /// What bounds its force.
+    pub bound: ForceBound,
+}
+
+/// A tangential jump that supports prescribe on both sides: its force moves nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct PrescribedSlip {
+    /// The condition, and the normal one of its point.
+    condition: usize,
+    normal: usize,
+    /// What bounds its force.
+    bound: ForceBound,
+    /// The slip in the load step (m).
+    slip: f64,
+}
+
+impl TangentialLimit {
+    /// The same where limits are numbered otherwise.
+    #[must_use]
+    pub fn renamed(&self, number: impl Fn(usize) -> usize) -> Self {
+        Self {
+            limit: number(self.limit),
+            normal: self.normal.map(number),
+            bound: self.bound,
+        }
+    }
+}
 
 /// The bounds t ≤ g and D t ≤ d, and the conditions that they come from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -21,12 +62,21 @@ pub struct Limits {
     pub conditions: usize,
     /// The largest displacement prescribed in the pair, initial gaps among them (m).
     pub scale: f64,
+    /// Those of tangential jumps, ascending.
+    pub tangents: Vec<TangentialLimit>,
+    prescribed_slips: Vec<PrescribedSlip>,
 }
 
 impl Limits {
-    /// The bounds on `jumps` unknowns that conditions with these `gaps` make; `scale` bounds
-    /// the displacements that are prescribed.
-    pub fn new(jumps: usize, of: &[NormalJumpOf], gaps: &[f64], scale: f64) -> Self {
+    /// The bounds on `jumps` unknowns that conditions with these `gaps` make, the last of which are the tangential
+    /// ones of `friction`; `scale` bounds the displacements that are prescribed.
+    pub fn new(
+        jumps: usize,
+        of: &[NormalJumpOf],
+        gaps: &[f64],
+        friction: &[TangentialCondition],
+        scale: f64,
+    ) -> Self {
         let mut limits = Self {
             bounds: vec![f64::INFINITY; jumps],
             rows: DependentConstraints::default(),
@@ -34,9 +84,21 @@ impl Limits {
             defining: defining_conditions(of, jumps),
             conditions: of.len(),
             scale,
+            tangents: Vec::new(),
+            prescribed_slips: Vec::new(),
         };
+        let is_tangential = |j: usize| j >= of.len() - friction.len();
         for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
             match of {
+                // A tangential jump is no bound for others, nor they for it.
+                &NormalJumpOf::Unknown { number, factor }
+                    if (is_tangential(j) || is_tangential(limits.defining[number]))
+                        && limits.defining[number] != j =>
+                {
+                    limits.rows.push(vec![(number, factor)]);
+                    limits.bounds.push(*gap);
+                    limits.tightest.push((j, 1.0));
+                }
                 &NormalJumpOf::Unknown { number, factor } => {
                     let bound = gap / factor;
                     if bound < limits.bounds[number] {
@@ -52,7 +114,47 @@ impl Limits {
                 NormalJumpOf::Prescribed => {}
             }
         }
+        limits.tangents = limits.tangents_of(friction);
+        for tangential in friction {
+            if of[tangential.number] == NormalJumpOf::Prescribed {
+                let slip = -gaps[tangential.number];
+                limits.prescribed_slips.push(PrescribedSlip {
+                    condition: tangential.number,
+                    normal: tangential.normal,
+                    bound: tangential.bound,
+                    slip: if slip.abs() > ROUND_OFF * scale {
+                        slip
+                    } else {
+                        0.0
+                    },
+                });
+            }
+        }
         limits
+    }
+
+    /// The limits of these tangential conditions.
+    fn tangents_of(&self, friction: &[TangentialCondition]) -> Vec<TangentialLimit> {
+        let of_condition: BTreeMap<usize, (usize, f64)> = (self.tightest.iter().enumerate())
+            .map(|(limit, &(condition, factor))| (condition, (limit, factor)))
+            .collect();
+        let mut tangents: Vec<TangentialLimit> = (friction.iter())
+            .filter_map(|tangential| {
+                let normal = of_condition.get(&tangential.normal).copied();
+                let (limit, _) = *of_condition.get(&tangential.number)?;
+                Some(TangentialLimit {
+                    limit,
+                    normal: normal.map(|(limit, _)| limit),
+                    bound: ForceBound {
+                        coefficient: tangential.bound.coefficient
+                            / normal.map_or(1.0, |(_, factor)| factor),
+                        ..tangential.bound
+                    },
+                })
+            })
+            .collect();
+        tangents.sort_by_key(|tangent| tangent.limit);
+        tangents
     }
 
     /// Number of normal jumps.
@@ -60,15 +162,25 @@ impl Limits {
         self.bounds.len() - self.rows.len()
     }
 
-    /// g − t, then d − D t, 0 for the rows of D that aren't `open`.
-    pub(super) fn gaps(&self, t: &[f64], open: &[bool]) -> Vec<f64> {
+    /// g − t, then d − D t, 0 for the rows of D that are `closed`.
+    pub(super) fn gaps(&self, t: &[f64], closed: impl Fn(usize) -> bool) -> Vec<f64> {
         let m = t.len();
         let mut gaps: Vec<f64> = self.bounds.iter().zip(t).map(|(g, t)| g - t).collect();
         gaps.extend((0..self.rows.len()).map(|j| {
             let left = self.bounds[m + j] - self.rows.value(j, t);
-            if open[m + j] { left.max(0.0) } else { 0.0 }
+            match (closed(m + j), self.is_tangential(m + j)) {
+                (true, _) => 0.0,
+                (false, true) => left,
+                (false, false) => left.max(0.0),
+            }
         }));
         gaps
+    }
+
+    /// Whether limit i is that of a tangential jump.
+    pub fn is_tangential(&self, i: usize) -> bool {
+        let found = (self.tangents).binary_search_by_key(&i, |tangent| tangent.limit);
+        found.is_ok()
     }
 
     /// The limits of several groups as those of one pair, whose normal jumps, linearly dependent constraints and
@@ -76,8 +188,16 @@ impl Limits {
     pub fn join(groups: &[Self]) -> Self {
         let mut all = Self::default();
         let mut dependent = (Vec::new(), Vec::new());
+        let jumps: usize = groups.iter().map(Self::jumps).sum();
         for group in groups {
             let m = group.jumps();
+            let (first, first_row) = (all.bounds.len(), all.rows.len());
+            let place = |limit: usize| match limit < m {
+                true => first + limit,
+                false => jumps + first_row + limit - m,
+            };
+            let tangents = group.tangents.iter();
+            (all.tangents).extend(tangents.map(|tangent| tangent.renamed(place)));
             let shifted =
                 |&(condition, factor): &(usize, f64)| (all.conditions + condition, factor);
             let (own, rows) = group.tightest.split_at(m);
@@ -88,11 +208,18 @@ impl Limits {
             all.tightest.extend(own.iter().map(shifted));
             all.defining
                 .extend(group.defining.iter().map(|j| all.conditions + j));
+            let prescribed = group.prescribed_slips.iter();
+            (all.prescribed_slips).extend(prescribed.map(|prescribed| PrescribedSlip {
+                condition: all.conditions + prescribed.condition,
+                normal: all.conditions + prescribed.normal,
+                ..*prescribed
+            }));
             all.conditions += group.conditions;
             all.scale = all.scale.max(group.scale);
         }
         all.bounds.append(&mut dependent.0);
         all.tightest.append(&mut dependent.1);
+        all.tangents.sort_by_key(|tangent| tangent.limit);
         all
     }
 
@@ -102,14 +229,22 @@ impl Limits {
         for (force, &(condition, factor)) in of_limits.iter().zip(&self.tightest) {
             forces[condition] = force / factor;
         }
+        for prescribed in self.prescribed_slips.iter().filter(|p| p.slip != 0.0) {
+            let normal = forces[prescribed.normal];
+            let bound = prescribed.bound.at(normal, normal > 0.0);
+            forces[prescribed.condition] = bound.copysign(prescribed.slip);
+        }
         forces
     }
 
-    /// Which conditions are closed where these limits are `open`.
-    pub fn closed(&self, open: &[bool]) -> Vec<bool> {
+    /// Which conditions are closed where the limits are; tangential ones that stick are.
+    pub fn closed(&self, limits: impl IntoIterator<Item = bool>) -> Vec<bool> {
         let mut closed = vec![false; self.conditions];
-        for (&(condition, _), open) in self.tightest.iter().zip(open) {
-            closed[condition] = !open;
+        for (&(condition, _), is_closed) in self.tightest.iter().zip(limits) {
+            closed[condition] = is_closed;
+        }
+        for prescribed in &self.prescribed_slips {
+            closed[prescribed.condition] = closed[prescribed.normal] && prescribed.slip == 0.0;
         }
         closed
     }
@@ -141,7 +276,7 @@ mod tests {
             unknown(1, 1.0),
             unknown(1, 2.0),
         ];
-        Limits::new(2, &of, &[gap, 2.5, 8.0, 6.0], 0.1)
+        Limits::new(2, &of, &[gap, 2.5, 8.0, 6.0], &[], 0.1)
     }
 
     #[test]
@@ -150,7 +285,7 @@ mod tests {
         assert_eq!(limits.bounds, [1.0, 3.0, 2.5]);
         assert_eq!(limits.forces(&[7.0, 8.0, 9.0]), [7.0, 9.0, 0.0, 4.0]);
         assert_eq!(
-            limits.closed(&[false, true, false]),
+            limits.closed([true, false, true]),
             [true, true, false, false]
         );
     }

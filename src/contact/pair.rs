@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::active_set::{GapProblem, GapSolution};
 use super::dependent::DependentConstraints;
-use super::limits::Limits;
+use super::friction::{FrictionProblem, Status};
+use super::limits::{Limits, TangentialLimit};
 use super::open_factor::OpenFactor;
 use crate::schur::condensed::Condensed;
 use crate::schur::local::multiply_add;
@@ -29,9 +30,22 @@ pub struct ContactPair {
 /// Where the last evaluation of a pair left it, and where the next one begins.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PairState {
-    /// Which normal jumps are open, then which linearly dependent constraints.
-    open: Vec<bool>,
+    /// The status of every jump, then of every linearly dependent constraint.
+    status: Vec<Status>,
     contact: GapSolution,
+}
+
+/// Where a load step leaves the contact of a pair.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactEnd {
+    /// The status of every jump, then of every linearly dependent constraint.
+    pub status: Vec<Status>,
+    /// t (m).
+    #[serde(with = "crate::bytes")]
+    pub jumps: Vec<f64>,
+    /// c − H t, the forces on the jumps (N/m).
+    #[serde(with = "crate::bytes")]
+    pub forces: Vec<f64>,
 }
 
 /// One evaluation of S_kl.
@@ -46,15 +60,20 @@ pub struct PairResponse {
     /// g − t: what every normal jump has left, then d − D t (m); 0 where closed.
     #[serde(with = "crate::bytes")]
     pub gaps: Vec<f64>,
+    /// t (m).
+    #[serde(with = "crate::bytes")]
+    pub jumps: Vec<f64>,
     /// c − H t: what contact forces hold where closed, round-off where open (N/m).
     #[serde(with = "crate::bytes")]
     pub contact_residual: Vec<f64>,
     /// Scale of the terms that each contact residual is a sum of.
     #[serde(with = "crate::bytes")]
     pub contact_residual_scale: Vec<f64>,
-    /// Which normal jumps are open, then which linearly dependent constraints.
-    pub open: Vec<bool>,
-    /// Conditions that opened or closed, against what was expected or the last evaluation.
+    /// The status of every jump, then of every linearly dependent constraint.
+    pub status: Vec<Status>,
+    /// How many normal jumps and linearly dependent constraints are closed.
+    pub active: usize,
+    /// Limits whose status changed, against what was expected or the last evaluation.
     pub changed: usize,
     /// Linear systems solved.
     pub steps: usize,
@@ -76,7 +95,7 @@ impl ContactPair {
         let bounds = limits.bounds.len();
         Self {
             state: before.unwrap_or_else(|| PairState {
-                open: vec![false; bounds],
+                status: vec![Status::Closed; bounds],
                 contact: GapSolution::bilateral(condensed.jumps, bounds),
             }),
             condensed,
@@ -104,7 +123,8 @@ impl ContactPair {
     pub fn conditions(&self) -> (Vec<f64>, Vec<bool>) {
         (
             self.limits.forces(&self.state.contact.forces),
-            self.limits.closed(&self.state.open),
+            self.limits
+                .closed(self.state.status.iter().map(|status| status.is_closed())),
         )
     }
 
@@ -124,10 +144,10 @@ impl ContactPair {
     }
 
     /// Evaluates S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ, where t(U) within the limits minimizes the pair's energy.
-    /// The search begins at the conditions `expected` to be open, else at those of last time.
-    pub fn evaluate(&mut self, u: &[f64], expected: Option<Vec<bool>>) -> PairResponse {
+    /// The search begins at the statuses `expected`, else at those of last time.
+    pub fn evaluate(&mut self, u: &[f64], expected: Option<Vec<Status>>) -> PairResponse {
         let m = self.condensed.jumps;
-        let before = expected.unwrap_or_else(|| self.state.open.clone());
+        let before = expected.unwrap_or_else(|| self.state.status.clone());
         let mut c = self.load[..m].to_vec();
         let mut c_scale: Vec<f64> = c.iter().map(|f| f.abs()).collect();
         for (j, &u_j) in u.iter().enumerate() {
@@ -138,8 +158,8 @@ impl ContactPair {
                 *scale += term.abs();
             }
         }
-        let mut open = before.clone();
-        let contact = GapProblem {
+        let mut status = before.clone();
+        let gap = GapProblem {
             h: self.condensed.s_tt(),
             diagonal: self.diagonal(),
             c: &c,
@@ -148,8 +168,12 @@ impl ContactPair {
             bounds: &self.limits.bounds,
             center: &self.state.contact.jumps,
             scale: u.iter().fold(self.limits.scale, |m, u| m.max(u.abs())),
+        };
+        let contact = FrictionProblem {
+            gap,
+            tangents: &self.limits.tangents,
         }
-        .solve(&mut open);
+        .solve(&mut status);
         let (mut contact_residual, mut contact_residual_scale) = (c, c_scale);
         for (column, &t) in self.condensed.s_tt().col_iter().zip(&contact.jumps) {
             for (i, h) in column.iter().enumerate() {
@@ -158,18 +182,22 @@ impl ContactPair {
             }
         }
         let mut response = PairResponse {
-            gaps: self.limits.gaps(&contact.jumps, &open),
+            gaps: (self.limits).gaps(&contact.jumps, |i| status[i].is_closed()),
+            jumps: contact.jumps.clone(),
             contact_residual,
             contact_residual_scale,
-            changed: before.iter().zip(&open).filter(|(a, b)| a != b).count(),
+            active: (0..status.len())
+                .filter(|&i| status[i].is_closed() && !self.limits.is_tangential(i))
+                .count(),
+            changed: (before.iter().zip(&status)).filter(|(a, b)| a != b).count(),
             steps: contact.steps,
             fell_back: contact.fell_back,
             converged: contact.converged,
             ..PairResponse::default()
         };
         self.state.contact = contact;
-        self.state.open.clone_from(&open);
-        response.open = open;
+        self.state.status.clone_from(&status);
+        response.status = status;
         (response.reaction, response.scale) = self.reaction(u);
         response
     }
@@ -191,15 +219,18 @@ impl ContactPair {
         (reaction, scale)
     }
 
-    /// S_kl'(U) x = S_ΓΓ x − S_ΓN H_NN⁻¹ S_NΓ x with the open normal jumps N of the last evaluation.
+    /// S_kl'(U) x = S_ΓΓ x − S_ΓN H_NN⁻¹ S_NΓ x with the open normal jumps N of the last evaluation, and the
+    /// slipping ones, whose friction is held.
     pub fn derivative(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         multiply_add(self.condensed.bilateral(), x, &mut y);
+        let open = self.state.status.iter().map(|status| !status.is_closed());
+        let open: Vec<bool> = open.collect();
         let factor = OpenFactor::new(
             self.condensed.s_tt(),
             self.diagonal(),
             &self.limits.rows,
-            &self.state.open,
+            &open,
         );
         let mut driven = vec![0.0; self.condensed.jumps];
         multiply_add(self.condensed.s_t_gamma(), x, &mut driven);
@@ -231,6 +262,8 @@ pub struct CondensedContact {
     pub rows: DependentConstraints,
     /// The condition that each normal jump is the unknown of.
     pub defining: Vec<usize>,
+    /// The limits of tangential jumps.
+    pub tangents: Vec<TangentialLimit>,
 }
 
 impl CondensedContact {
@@ -252,6 +285,7 @@ impl CondensedContact {
             diagonal: condensed.diagonal[..condensed.jumps].to_vec(),
             rows: limits.rows.clone(),
             defining: limits.defining.clone(),
+            tangents: limits.tangents.clone(),
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::contact_point::ContactPoint;
+use contact_dd_partition::contact_point::{ContactPoint, Law};
 use contact_dd_partition::element::geometry::{dot, length};
 use contact_dd_partition::model::{Material, Support};
 use contact_dd_partition::problem::consistency::Place;
@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::block::Block;
 use super::frame::{Frame, support_frames};
+use crate::contact::friction::{ForceBound, TangentialCondition};
 use crate::contact::normal_jump::{NoUnknown, NormalJumpRow, NormalJumps, Sum, Variable};
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::substitution::Replaced;
@@ -91,10 +92,22 @@ pub struct ContactGroup {
     pub dim: usize,
 }
 
+/// What a contact group asks of the jump at one of its points along one direction: a row of B.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Condition {
+    /// Number of the point.
+    pub point: usize,
+    /// The direction: n, or a tangent where friction acts.
+    pub direction: [f64; 3],
+    /// Whether it is a tangent.
+    pub is_tangential: bool,
+}
+
 /// What acts on a contact group in a load step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GroupLoads {
-    /// The gap at every point (m).
+    /// For every condition the jump that it allows (m): the gap g, or the tangential jump at which the sides stick,
+    /// that of the load step before.
     pub gaps: Vec<f64>,
     /// What the supports of every node prescribe (m).
     pub held: Vec<Vec<f64>>,
@@ -104,8 +117,12 @@ impl GroupLoads {
     /// What acts on `group` in load step k.
     pub fn new(group: &ContactGroup, k: usize) -> Self {
         let held = |node: &ContactNode| node.supports.iter().map(|(_, values)| values[k]).collect();
+        let gap = |condition: Condition| match condition.is_tangential {
+            true => 0.0,
+            false => group.points[condition.point].gap,
+        };
         Self {
-            gaps: group.points.iter().map(|point| point.gap).collect(),
+            gaps: group.conditions().map(gap).collect(),
             held: group.nodes.iter().map(held).collect(),
         }
     }
@@ -118,27 +135,83 @@ impl GroupLoads {
 }
 
 impl ContactGroup {
-    /// The gaps that displacements `u`, node by node, leave at the points: g − n·⟦u⟧ (m).
-    pub fn gaps_left(&self, loads: &GroupLoads, u: &[f64]) -> Vec<f64> {
-        let gaps = self.points.iter().zip(&loads.gaps);
-        gaps.map(|(point, gap)| gap - point.normal_jump(self.dim, u))
-            .collect()
+    /// Its conditions: the normal one of every point, then the tangential ones of the points that have friction.
+    pub fn conditions(&self) -> impl Iterator<Item = Condition> + '_ {
+        let normal = |(point, of_point): (usize, &ContactPoint<u32>)| Condition {
+            point,
+            direction: of_point.normal(),
+            is_tangential: false,
+        };
+        let tangential = |(point, of_point): (usize, &ContactPoint<u32>)| {
+            let tangents = of_point.tangents(self.dim).to_vec().into_iter();
+            tangents.map(move |direction| Condition {
+                point,
+                direction,
+                is_tangential: true,
+            })
+        };
+        let points = self.points.iter().enumerate();
+        points
+            .clone()
+            .map(normal)
+            .chain(points.flat_map(tangential))
     }
 
-    /// The gaps that supports leave where what is free doesn't move (m): the bounds on the normal jumps t = b·x.
+    /// The nodes of a condition's point with weight·direction.
+    pub fn row_of(&self, condition: &Condition) -> impl Iterator<Item = (u32, [f64; 3])> + Clone {
+        self.points[condition.point].row_along(condition.direction)
+    }
+
+    /// What the tangential conditions ask for, each with the normal condition of its point.
+    pub fn friction(&self) -> Vec<TangentialCondition> {
+        let of_condition = |(number, condition): (usize, Condition)| {
+            let point = &self.points[condition.point];
+            let (coefficient, bound, only_closed) = match point.law {
+                Law::Frictionless => return None,
+                Law::Given { bound } => (0.0, bound, false),
+                Law::Coulomb {
+                    coefficient,
+                    cohesion,
+                } => (coefficient, cohesion, true),
+            };
+            condition.is_tangential.then_some(TangentialCondition {
+                number,
+                normal: condition.point,
+                bound: ForceBound {
+                    coefficient,
+                    cohesion: bound * point.area,
+                    only_closed,
+                },
+            })
+        };
+        let conditions = self.conditions().enumerate();
+        conditions.filter_map(of_condition).collect()
+    }
+
+    /// What displacements `u`, node by node, leave of the jumps that conditions allow: the gaps g − n·⟦u⟧, and the
+    /// way back to where the sides stick (m).
+    pub fn gaps_left(&self, loads: &GroupLoads, u: &[f64]) -> Vec<f64> {
+        let left = |(condition, gap): (Condition, &f64)| {
+            gap - self.points[condition.point].jump_along(condition.direction, self.dim, u)
+        };
+        self.conditions().zip(&loads.gaps).map(left).collect()
+    }
+
+    /// The gaps that supports leave where what is free doesn't move (m): the bounds on the normal jumps t = b·x, and
+    /// the tangential jumps at which the sides stick.
     pub fn bounds(&self, loads: &GroupLoads) -> Vec<f64> {
         let frames = self.frames();
-        let bound = |(point, gap): (&ContactPoint<u32>, &f64)| {
-            let prescribed = point.row().flat_map(|(node, push)| {
+        let bound = |(condition, gap): (Condition, &f64)| {
+            let prescribed = self.row_of(&condition).flat_map(|(node, push)| {
                 let (axes, held) = (frames[node as usize].axes, &loads.held[node as usize]);
                 (held.iter().zip(axes)).map(move |(value, axis)| dot(push, axis) * value)
             });
             gap - prescribed.sum::<f64>()
         };
-        self.points.iter().zip(&loads.gaps).map(bound).collect()
+        self.conditions().zip(&loads.gaps).map(bound).collect()
     }
 
-    /// The normal jumps of the points, for the displacements along the axes of their nodes that supports leave
+    /// The jumps of the conditions, for the displacements along the axes of their nodes that supports leave
     /// free. They replace displacements of nodes that are `eliminated` where the points belong.
     ///
     /// # Errors
@@ -146,9 +219,8 @@ impl ContactGroup {
     pub fn normal_jumps(&self, eliminated: &[u32]) -> Result<NormalJumps, NoUnknown> {
         let frames = self.frames();
         let rows: Vec<_> = self
-            .points
-            .iter()
-            .map(|point| self.row(point, &frames))
+            .conditions()
+            .map(|condition| self.row(&condition, &frames))
             .collect();
         let node = |v: u32| &self.nodes[v as usize / self.dim];
         let may_go = |v: u32| eliminated.binary_search(&node(v).interface).is_ok();
@@ -180,11 +252,11 @@ impl ContactGroup {
         jumps.pivots.iter().map(replaced).collect()
     }
 
-    /// What contact `forces`, one a point, make of Bᵀλ: on every node its parts.
+    /// What contact `forces`, one a condition, make of Bᵀλ: on every node its parts.
     pub fn pushes(&self, forces: &[f64]) -> Vec<Vec<[f64; 3]>> {
         let mut pushes = vec![Vec::new(); self.nodes.len()];
-        for (point, force) in self.points.iter().zip(forces) {
-            for (node, row) in point.row() {
+        for (condition, force) in self.conditions().zip(forces) {
+            for (node, row) in self.row_of(&condition) {
                 pushes[node as usize].push(row.map(|n| n * force));
             }
         }
@@ -207,10 +279,10 @@ impl ContactGroup {
         self.nodes.iter().map(of_node).collect()
     }
 
-    /// The normal jump at a point in terms of what is free along the axes of its nodes' frames.
-    fn row(&self, point: &ContactPoint<u32>, frames: &[Frame]) -> NormalJumpRow {
+    /// The jump of a condition in terms of what is free along the axes of its nodes' frames.
+    fn row(&self, condition: &Condition, frames: &[Frame]) -> NormalJumpRow {
         let mut row: BTreeMap<u32, f64> = BTreeMap::new();
-        for (node, push) in point.row() {
+        for (node, push) in self.row_of(condition) {
             let frame = &frames[node as usize];
             for axis in (0..self.dim).filter(|&axis| frame.prescribed[axis].is_none()) {
                 let v = node * self.dim as u32 + axis as u32;
@@ -218,7 +290,7 @@ impl ContactGroup {
             }
         }
         // A frame along the point's own normal leaves round-off on its other axes.
-        let sizes = point.row().map(|(_, push)| length(push));
+        let sizes = self.row_of(condition).map(|(_, push)| length(push));
         let scale = sizes.fold(0.0, f64::max);
         row.retain(|_, c| c.abs() > 1e-14 * scale);
         row.into_iter().collect()

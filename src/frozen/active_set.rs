@@ -111,7 +111,7 @@ pub fn solve(
                 let both = limits
                     .forces(&forces)
                     .into_iter()
-                    .zip(limits.closed(&open[g]));
+                    .zip(limits.closed(open[g].iter().map(|open| !open)));
                 (*g, both.collect())
             });
             return Ok(FrozenContact {

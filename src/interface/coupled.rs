@@ -17,7 +17,9 @@ use super::operator::{Interface, diagonal_of};
 use super::problem::InterfaceProblem;
 use crate::contact::active_set::GapProblem;
 use crate::contact::dependent::DependentConstraints;
-use crate::contact::pair::{CondensedContact, PairResponse};
+use crate::contact::friction::{FrictionProblem, Status};
+use crate::contact::limits::TangentialLimit;
+use crate::contact::pair::{CondensedContact, ContactEnd, PairResponse};
 use crate::interface::s_con::ConState;
 use crate::rigid::energy::RigidBasis;
 use crate::schur::local::multiply_add;
@@ -38,6 +40,8 @@ pub struct CoupledContact<'a> {
     center: Vec<f64>,
     /// D of all pairs.
     rows: DependentConstraints,
+    /// The limits of tangential jumps of all pairs.
+    tangents: Vec<TangentialLimit>,
     scale: f64,
 }
 
@@ -50,8 +54,8 @@ pub struct CoupledStep {
     pub jumps: Vec<Vec<f64>>,
     /// λ, then the forces of linearly dependent constraints.
     pub forces: Vec<Vec<f64>>,
-    /// Which of both are open then.
-    pub open: Vec<Vec<bool>>,
+    /// The statuses of both then.
+    pub statuses: Vec<Vec<Status>>,
     /// Linear systems solved.
     pub steps: usize,
     /// Whether the interior-point method was needed.
@@ -109,13 +113,21 @@ impl<'a> CoupledContact<'a> {
             h: interface.condensed_laws(motions),
             diagonal: diagonal_of(laws),
             rows: all_rows(laws),
+            tangents: all_tangents(laws),
             center: vec![0.0; laws.iter().map(CondensedContact::len).sum()],
             scale: problem.scale,
         })
     }
 
-    /// The step to the solution from U, where the pairs answered `state` and the residual is `r`.
-    pub fn solve(&self, u: &[f64], r: &[f64], state: &ConState) -> CoupledStep {
+    /// The step to the solution from U, where the pairs answered `state` and the residual is `r`; the load step
+    /// before left them where `before` says.
+    pub fn solve(
+        &self,
+        u: &[f64],
+        r: &[f64],
+        state: &ConState,
+        before: &[ContactEnd],
+    ) -> CoupledStep {
         let all = |of: fn(&PairResponse) -> &Vec<f64>| -> Vec<f64> {
             state.responses.iter().flat_map(of).copied().collect()
         };
@@ -125,14 +137,36 @@ impl<'a> CoupledContact<'a> {
             all(|p| &p.contact_residual_scale),
         );
         self.motions.set_load(&mut condensed.c);
-        let mut open = self.side_by_side(state.responses.iter().map(|p| &p.open[..]));
+        let mut status = self.side_by_side(state.responses.iter().map(|p| &p.status[..]));
         let gaps = self.side_by_side(state.responses.iter().map(|p| &p.gaps[..]));
-        let solution = self.problem(&condensed, &gaps, u).solve(&mut open);
-        let mut step = self.step(r, &condensed, &solution.jumps, solution.forces, &open);
+        let problem = FrictionProblem {
+            gap: self.problem(&condensed, &gaps, u),
+            tangents: &self.tangents,
+        };
+        let solution = problem.solve_along(&self.loads_before(state, before), &mut status);
+        let mut step = self.step(r, &condensed, &solution.jumps, solution.forces, &status);
         step.steps = solution.steps;
         step.fell_back = solution.fell_back;
         step.converged = solution.converged;
         step
+    }
+
+    /// What loads the jumps in the equilibrium that the load step `before` left, in terms of changes from where the
+    /// pairs are; without friction nothing asks for it.
+    fn loads_before(&self, state: &ConState, before: &[ContactEnd]) -> Vec<f64> {
+        let mut loads = vec![0.0; self.h.nrows()];
+        if self.tangents.is_empty() {
+            return loads;
+        }
+        let jumps = state.responses.iter().flat_map(|pair| &pair.jumps);
+        let mut way: Vec<f64> = jumps.map(|t| -t).collect();
+        for (at, t) in way.iter_mut().zip(before.iter().flat_map(|end| &end.jumps)) {
+            *at += t;
+        }
+        let forces = before.iter().flat_map(|end| &end.forces);
+        loads.iter_mut().zip(forces).for_each(|(l, f)| *l = *f);
+        multiply_add(self.h, &way, &mut loads);
+        loads
     }
 
     /// The change that balances `r` on Γ and `loads` on the normal jumps of every pair where the
@@ -150,7 +184,8 @@ impl<'a> CoupledContact<'a> {
         let open = self.side_by_side(open.iter().map(Vec::as_slice));
         let missing = self.side_by_side(missing.iter().map(Vec::as_slice));
         let trial = self.problem(&condensed, &missing, &[]).linear(&open);
-        self.step(r, &condensed, &trial.jumps, trial.forces, &open)
+        let status: Vec<Status> = open.into_iter().map(Status::new).collect();
+        self.step(r, &condensed, &trial.jumps, trial.forces, &status)
     }
 
     fn condense(&self, r: &[f64], mut c: Vec<f64>, mut c_scale: Vec<f64>) -> Condensed {
@@ -195,7 +230,7 @@ impl<'a> CoupledContact<'a> {
         condensed: &Condensed,
         jumps: &[f64],
         forces: Vec<f64>,
-        open: &[bool],
+        status: &[Status],
     ) -> CoupledStep {
         let mut u = condensed.z.clone();
         if jumps.iter().any(|&t| t != 0.0) {
@@ -216,7 +251,7 @@ impl<'a> CoupledContact<'a> {
             u,
             jumps: self.by_pair(jumps),
             forces: self.by_pair(&forces),
-            open: self.by_pair(open),
+            statuses: self.by_pair(status),
             steps: 1,
             fell_back: false,
             converged: true,
@@ -246,6 +281,25 @@ impl<'a> CoupledContact<'a> {
         };
         self.interface.laws.iter().map(&mut take).collect()
     }
+}
+
+/// The limits of tangential jumps of all pairs, where jumps of all come before the linearly dependent constraints of
+/// all.
+fn all_tangents(laws: &[CondensedContact]) -> Vec<TangentialLimit> {
+    let jumps: usize = laws.iter().map(CondensedContact::len).sum();
+    let (mut first, mut first_row) = (0, jumps);
+    let mut all = Vec::new();
+    for law in laws {
+        let place = |limit: usize| match limit < law.len() {
+            true => first + limit,
+            false => first_row + limit - law.len(),
+        };
+        all.extend(law.tangents.iter().map(|tangent| tangent.renamed(place)));
+        first += law.len();
+        first_row += law.rows.len();
+    }
+    all.sort_by_key(|tangent| tangent.limit);
+    all
 }
 
 /// D of all pairs, whose normal jumps are numbered one after the other.

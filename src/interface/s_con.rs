@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 use super::operator::Interface;
 use crate::bytes::Reals;
 use crate::comm::Comm;
-use crate::contact::pair::{ContactPair, PairResponse};
+use crate::contact::friction::Status;
+use crate::contact::pair::{ContactEnd, ContactPair, PairResponse};
 
 /// S_CON = Σ R_kᵀ S_kl R_k, (15), as the root drives it and the other ranks serve it.
 pub struct SCon<'a> {
@@ -58,8 +59,8 @@ enum Request {
     Signals,
 }
 
-/// U of a pair, and the conditions that are expected to be open.
-type Question = (Reals, Option<Vec<bool>>);
+/// U of a pair, and the statuses that are expected.
+type Question = (Reals, Option<Vec<Status>>);
 
 impl<'a> SCon<'a> {
     /// S_CON over `pairs` of this rank; `owners` has the owner of every pair.
@@ -86,13 +87,13 @@ impl<'a> SCon<'a> {
     }
 
     /// Evaluates all pairs whose trace changed and leaves their answers in `state`; a pair's search
-    /// begins at the conditions `expected` to be open. On the root; the other ranks
+    /// begins at the statuses `expected`. On the root; the other ranks
     /// [`serve`](Self::serve).
     pub fn evaluate(
         &mut self,
         interface: &Interface,
         u: &[f64],
-        expected: Option<&[Vec<bool>]>,
+        expected: Option<&[Vec<Status>]>,
         state: &mut ConState,
     ) -> ConTotals {
         let n = self.len();
@@ -105,8 +106,8 @@ impl<'a> SCon<'a> {
         if !moved.is_empty() {
             (self.comm).broadcast(&mut Request::Evaluate(moved.clone()));
             let question = |p: usize| -> Question {
-                let open = expected.map(|sets| sets[p].clone());
-                (Reals(interface_dofs[p].clone()), open)
+                let status = expected.map(|all| all[p].clone());
+                (Reals(interface_dofs[p].clone()), status)
             };
             self.exchange(&moved, question, evaluate, |p, response| {
                 state.responses[p] = response;
@@ -117,7 +118,7 @@ impl<'a> SCon<'a> {
             ..ConTotals::default()
         };
         for (p, response) in state.responses.iter().enumerate() {
-            totals.active += response.open.iter().filter(|&&open| !open).count();
+            totals.active += response.active;
             totals.failed_pairs += usize::from(!response.converged);
             if moved.contains(&p) {
                 totals.changed += response.changed;
@@ -228,8 +229,13 @@ impl ConState {
         }
     }
 
-    /// The sets of open normal jumps and linearly dependent constraints, pair by pair.
-    pub fn open(&self) -> Vec<Vec<bool>> {
-        self.responses.iter().map(|r| r.open.clone()).collect()
+    /// Where the contact of every pair is.
+    pub fn ends(&self) -> Vec<ContactEnd> {
+        let end = |response: &PairResponse| ContactEnd {
+            status: response.status.clone(),
+            jumps: response.jumps.clone(),
+            forces: response.contact_residual.clone(),
+        };
+        self.responses.iter().map(end).collect()
     }
 }

@@ -46,7 +46,7 @@ fn front(tree: &Tree, v: usize, dim: usize, merging: Merging) -> Front {
     match merging {
         Merging::Frozen => Front {
             eliminated: front.eliminated,
-            kept: front.kept - node.conditions + node.points.len(),
+            kept: front.kept - node.conditions + tree.own_conditions(v),
         },
         _ => front,
     }

@@ -19,6 +19,8 @@ pub struct GroupPlan {
     pub nodes: Vec<(SubdomainNode, u32)>,
     /// The group's number of every node that a point names; copies of a node have one.
     pub numbers: BTreeMap<SubdomainNode, u32>,
+    /// Number of conditions of its points.
+    pub conditions: usize,
 }
 
 impl GroupPlan {
@@ -53,6 +55,7 @@ impl GroupPlan {
             node: v,
             nodes,
             numbers,
+            conditions: tree.own_conditions(v),
         }
     }
 

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 
 use crate::certificate::check::{BlockCheck, Most};
 use crate::certificate::{Certificate, certificate};
-use crate::recover::DiscreteSolution;
+use crate::fem::contact_group::ContactGroup;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::motions::Field;
+use crate::recover::{DiscreteSolution, GroupSolution};
 
 /// Equilibrium and penetration above which a solution is refined.
 const LIMIT: f64 = 4e-15;
@@ -93,8 +94,8 @@ fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate
     comm.gather(
         &plan.group_owners(),
         |g| {
-            let of_group = &solution.groups[&g];
-            Most::at_points(&of_group.gaps, &of_group.forces)
+            let (group, of_group) = (&fixed.context.groups[&g], &solution.groups[&g]);
+            Most::at_points(group, &of_group.gaps, &of_group.forces, &of_group.closed)
         },
         |_, most| at_points.include(most),
     );
@@ -136,13 +137,27 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
         }
     }
     for (g, changes) in change.forces {
-        let forces = solution
-            .groups
-            .get_mut(&g)
-            .map(|of_group| &mut of_group.forces);
-        for (force, change) in forces.into_iter().flatten().zip(changes) {
-            *force = (*force + change).max(0.0);
+        if let Some(of_group) = solution.groups.get_mut(&g) {
+            change_forces(&fixed.context.groups[&g], of_group, &changes);
         }
     }
     solution.share(&fixed.context, &fixed.step.loads);
+}
+
+/// Changes the forces of a contact group: none holds its sides together, and friction stays at its bound.
+fn change_forces(group: &ContactGroup, solution: &mut GroupSolution, changes: &[f64]) {
+    let normals = group.points.len();
+    for (j, (force, change)) in solution.forces.iter_mut().zip(changes).enumerate() {
+        *force += change;
+        if j < normals {
+            *force = force.max(0.0);
+        }
+    }
+    for tangential in group.friction() {
+        let (number, normal) = (tangential.number, tangential.normal);
+        if !solution.closed[number] && solution.forces[number] != 0.0 {
+            let bound = (tangential.bound).at(solution.forces[normal], solution.closed[normal]);
+            solution.forces[number] = bound.copysign(solution.forces[number]);
+        }
+    }
 }

@@ -2,6 +2,9 @@
 
 mod parcel;
 
+use std::collections::BTreeMap;
+
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::error::OutputError;
 
 use self::parcel::Parcel;
@@ -18,7 +21,8 @@ use crate::recover::solution::Solution;
 /// Streams all subdomains and contact rows to the root, which writes a slab of subdomains as soon
 /// as it is complete. Collective; `file` is the root's.
 ///
-/// On the root the conditions are added up to `contacts` on their way.
+/// On the root the conditions are added up to `contacts` on their way; `slips` are the tangential jumps of every
+/// contact group of this rank since the bodies were unloaded.
 ///
 /// The slabs don't depend on who owns what: the same calls write the same numbers on any ranks.
 ///
@@ -27,6 +31,7 @@ use crate::recover::solution::Solution;
 pub fn write_solution(
     context: &Context<'_>,
     solution: &Solution,
+    slips: &BTreeMap<usize, Vec<f64>>,
     mut file: Option<&mut ResultFile>,
     contacts: &mut [ContactResultant],
 ) -> Result<(), Failure> {
@@ -61,7 +66,13 @@ pub fn write_solution(
     }
     comm.gather(
         &plan.group_owners(),
-        |g| contact_rows(&context.groups[&g], &solution.discrete.groups[&g]),
+        |g| {
+            contact_rows(
+                &context.groups[&g],
+                &solution.discrete.groups[&g],
+                &slips[&g],
+            )
+        },
         |_, rows| {
             for (point, state) in &rows {
                 contacts[point.contact as usize].add(point, state);
@@ -73,18 +84,38 @@ pub fn write_solution(
     comm.agree(failed.map_err(Failure::from))
 }
 
-/// The points of a contact group, and the solution there.
-fn contact_rows(group: &ContactGroup, solution: &GroupSolution) -> Vec<ContactRow> {
-    let gaps = solution.gaps.iter().enumerate();
-    let row = |(j, gap): (usize, &f64)| {
+/// The points of a contact group, and the solution there; `slips` are its tangential jumps since the bodies were
+/// unloaded.
+fn contact_rows(group: &ContactGroup, solution: &GroupSolution, slips: &[f64]) -> Vec<ContactRow> {
+    let points = group.points.iter().enumerate();
+    let row = |(j, point): (usize, &ContactPoint<u32>)| {
         let closed = solution.closed[j];
         let state = ContactState {
-            gap: if closed { 0.0 } else { gap.max(0.0) },
+            gap: if closed {
+                0.0
+            } else {
+                solution.gaps[j].max(0.0)
+            },
             force: solution.forces[j],
             closed,
             ..ContactState::default()
         };
-        (group.points[j].clone(), state)
+        (point.clone(), state)
     };
-    gaps.map(row).collect()
+    let mut rows: Vec<ContactRow> = points.map(row).collect();
+    let tangential = group.conditions().enumerate().skip(rows.len());
+    for ((number, condition), slip) in tangential.zip(slips) {
+        let state = &mut rows[condition.point].1;
+        let force = solution.forces[number];
+        let slips = state.closed && !solution.closed[number];
+        for (k, t) in condition.direction.iter().enumerate() {
+            state.tangential_force[k] -= force * t;
+            state.slip[k] += slip * t;
+        }
+        state.slipping |= slips;
+        if !solution.closed[number] {
+            state.dissipated -= force * solution.gaps[number];
+        }
+    }
+    rows
 }

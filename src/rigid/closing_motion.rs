@@ -255,8 +255,8 @@ pub fn without_closing_motions(
         let moved: Vec<[f64; 3]> = nodes
             .map(|node| moved(analysis, dim, node.body, &node.at))
             .collect();
-        for (point, gap) in group.points.iter().zip(&mut loads.gaps) {
-            for (node, row) in point.row() {
+        for (condition, gap) in group.conditions().zip(&mut loads.gaps) {
+            for (node, row) in group.row_of(&condition) {
                 reduce(gap, &row, &moved[node as usize]);
             }
         }

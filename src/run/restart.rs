@@ -11,7 +11,8 @@ use std::path::Path;
 use contact_dd_partition::destination::unfinished;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::pair::PairState;
+use crate::bytes::Reals;
+use crate::contact::pair::{ContactEnd, PairState};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::output::vtkhdf::ResultFile;
@@ -26,10 +27,12 @@ struct Kept {
     run: Identity,
     /// The finished load steps.
     steps: Vec<StepTotals>,
-    /// U, and which normal jumps of every cluster in contact are open.
-    interface: Option<(Vec<f64>, Vec<Vec<bool>>)>,
+    /// U, and the contact of every cluster in contact.
+    interface: Option<(Vec<f64>, Vec<ContactEnd>)>,
     /// The clusters in contact.
     pairs: Vec<PairState>,
+    /// The tangential jumps of every contact group (m).
+    slips: Vec<Vec<f64>>,
 }
 
 /// Two runs that agree in this go the same way.
@@ -95,12 +98,13 @@ pub fn finished_steps(context: &Context<'_>, settings: &Settings) -> Result<Fini
         false => Ok(None),
     })?;
     let mut finished = Finished::default();
-    let mut pairs = Vec::new();
+    let (mut pairs, mut slips) = (Vec::new(), Vec::new());
     if let Some(kept) = kept {
         finished.count = kept.steps.len();
         finished.steps = kept.steps;
         finished.state.interface = kept.interface;
         pairs = kept.pairs;
+        slips = kept.slips;
     } else {
         finished.warning = Some(format!(
             "--restart: there is no {}: this run begins at the start",
@@ -114,6 +118,13 @@ pub fn finished_steps(context: &Context<'_>, settings: &Settings) -> Result<Fini
             |p| pairs[p].clone(),
             |p, state| {
                 finished.state.pairs.insert(p, state);
+            },
+        );
+        comm.scatter(
+            &context.plan.group_owners(),
+            |g| Reals(slips[g].clone()),
+            |g, Reals(of_group)| {
+                finished.state.slips.insert(g, of_group);
             },
         );
     }
@@ -158,12 +169,19 @@ pub fn keep(
         |p| state.pairs[&p].clone(),
         |_, pair| pairs.push(pair),
     );
+    let mut slips = Vec::new();
+    context.comm.gather(
+        &context.plan.group_owners(),
+        |g| Reals(state.slips[&g].clone()),
+        |_, Reals(of_group)| slips.push(of_group),
+    );
     let write = |result: &mut ResultFile| -> Result<(), Failure> {
         let kept = KeptRef {
             run: Identity::new(settings)?,
             steps,
             interface: &state.interface,
             pairs,
+            slips,
         };
         let mut bytes = Vec::new();
         ciborium::into_writer(&kept, &mut bytes)
@@ -178,6 +196,7 @@ pub fn keep(
 struct KeptRef<'a> {
     run: Identity,
     steps: &'a [StepTotals],
-    interface: &'a Option<(Vec<f64>, Vec<Vec<bool>>)>,
+    interface: &'a Option<(Vec<f64>, Vec<ContactEnd>)>,
     pairs: Vec<PairState>,
+    slips: Vec<Vec<f64>>,
 }

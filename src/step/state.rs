@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::destination::unfinished;
 
-use crate::contact::pair::{ContactPair, PairState};
-use crate::context::Context;
+use crate::contact::pair::{ContactEnd, ContactPair, PairState};
+use crate::context::{Context, Loads};
 use crate::error::Failure;
 use crate::rigid::body_analysis::{RigidBodyAnalysis, analyse_bodies};
 use crate::rigid::infeasible_nodes;
@@ -15,18 +15,22 @@ use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
 /// Where a load step leaves the scene: what the next one starts from.
 #[derive(Clone, Debug, Default)]
 pub struct StepState {
-    /// U, and which normal jumps of every cluster in contact are open; on the root.
-    pub interface: Option<(Vec<f64>, Vec<Vec<bool>>)>,
+    /// U, and the contact of every cluster in contact; on the root.
+    pub interface: Option<(Vec<f64>, Vec<ContactEnd>)>,
     /// The clusters in contact of this rank, by their place among those.
     pub pairs: BTreeMap<usize, PairState>,
+    /// The tangential jumps at the tangential conditions of every contact group of this rank, since the bodies
+    /// were unloaded (m).
+    pub slips: BTreeMap<usize, Vec<f64>>,
 }
 
 impl StepState {
-    /// The state after a step that ended with `outcome`, which the root has. A step that went nowhere is no
+    /// The state after a step that ended with `outcome`, which the root has, and `slips`. A step that went nowhere is no
     /// place to start from; neither are others for picard, whose relaxation is that of the contacts that the
     /// bilateral solution leaves closed.
     pub fn after(
         pairs: BTreeMap<usize, ContactPair>,
+        slips: BTreeMap<usize, Vec<f64>>,
         outcome: Option<&SweepOutcome>,
         method: Method,
     ) -> Self {
@@ -35,15 +39,25 @@ impl StepState {
             method != Method::Picard && outcome.status == SweepStatus::Converged
         };
         Self {
-            interface: (outcome.filter(starts)).map(|o| (o.u.clone(), o.open.clone())),
+            interface: (outcome.filter(starts)).map(|o| (o.u.clone(), o.contact.clone())),
             pairs: pairs.map(|(p, pair)| (p, pair.into_state())).collect(),
+            slips,
+        }
+    }
+
+    /// Lets the sides stick where this state leaves them: friction opposes the way from there.
+    pub fn hold(&self, loads: &mut Loads) {
+        for (g, loads) in &mut loads.groups {
+            let slips = self.slips.get(g).map_or(&[][..], Vec::as_slice);
+            let first = loads.gaps.len() - slips.len();
+            loads.gaps[first..].copy_from_slice(slips);
         }
     }
 
     /// Where the sweeps of the next step begin; on the root.
     pub fn start(&self) -> Start {
         match &self.interface {
-            Some((u, open)) => Start::Before(u.clone(), open.clone()),
+            Some((u, contact)) => Start::Before(u.clone(), contact.clone()),
             None => Start::Bilateral,
         }
     }

@@ -34,7 +34,7 @@ impl Sweeps<'_, '_> {
                 let why = format!("newton didn't converge in {limit} sweeps");
                 return self.fall_back(residual, &why);
             }
-            let step = coupled.solve(&self.outcome.u, &residual.r, &self.state);
+            let step = coupled.solve(&self.outcome.u, &residual.r, &self.state, &self.before);
             self.outcome.active_set_iterations += step.steps;
             if step.fell_back {
                 (self.outcome)
@@ -45,7 +45,7 @@ impl Sweeps<'_, '_> {
             }
             axpy(1.0, &step.u, &mut self.outcome.u);
             let before = residual.relative;
-            residual = self.evaluate(Some(&step.open));
+            residual = self.evaluate(Some(&step.statuses));
             let stalled = residual.totals.changed == 0 && residual.relative >= 0.5 * before;
             stalls = if stalled { stalls + 1 } else { 0 };
             if stalls == PATIENCE && !self.is_converged(&residual) {
@@ -77,11 +77,11 @@ impl Sweeps<'_, '_> {
             let Some(coupled) = CoupledContact::new(self.problem) else {
                 return;
             };
-            let step = coupled.solve(&self.outcome.u, &residual.r, &self.state);
+            let step = coupled.solve(&self.outcome.u, &residual.r, &self.state, &self.before);
             self.outcome.active_set_iterations += step.steps;
             let coarse = self.outcome.u.clone();
             axpy(1.0, &step.u, &mut self.outcome.u);
-            let after = self.residual(Some(&step.open));
+            let after = self.residual(Some(&step.statuses));
             if !step.converged
                 || after.totals.failed_pairs > 0
                 || after.relative > 0.5 * residual.relative

@@ -1,6 +1,7 @@
 //! What sweeps leave: U, why they ended, and how they got there.
 
 use crate::certificate::Certificate;
+use crate::contact::pair::ContactEnd;
 use crate::interface::s_con::ConTotals;
 use serde::{Deserialize, Serialize};
 
@@ -61,8 +62,8 @@ pub struct SweepOutcome {
     pub residual: f64,
     /// Totals of the last evaluation of S_CON.
     pub totals: ConTotals,
-    /// Which normal jumps and linearly dependent constraints of every pair are open then.
-    pub open: Vec<Vec<bool>>,
+    /// The contact of every pair then.
+    pub contact: Vec<ContactEnd>,
     /// Whether active sets were frozen one after the other.
     pub frozen: bool,
 }
@@ -80,7 +81,7 @@ impl SweepOutcome {
             fallbacks: Vec::new(),
             residual: f64::INFINITY,
             totals: ConTotals::default(),
-            open: Vec::new(),
+            contact: Vec::new(),
             frozen: false,
         }
     }

@@ -44,7 +44,7 @@ pub struct TreeNode {
     pub kept: Vec<u32>,
     /// The contact points that belong to it, by their place in the catalog, ascending.
     pub points: Vec<u32>,
-    /// Number of contact points that belong to it or to a node under it.
+    /// Number of conditions of the contact points that belong to it or to a node under it.
     pub conditions: usize,
 }
 
@@ -181,7 +181,10 @@ impl Tree {
         }
         for v in 0..self.nodes.len() {
             let mut kept: Vec<u32> = Vec::new();
-            let mut conditions = self.nodes[v].points.len();
+            let points = self.nodes[v].points.iter();
+            let mut conditions = points
+                .map(|&j| 1 + catalog.points[j as usize].tangents(catalog.dim).len())
+                .sum();
             for child in self.nodes[v].children.clone() {
                 kept.extend(&self.nodes[child].kept);
                 conditions += self.nodes[child].conditions;
@@ -210,13 +213,20 @@ impl Tree {
         v
     }
 
+    /// Number of conditions of the contact points that belong to node v.
+    pub fn own_conditions(&self, v: usize) -> usize {
+        let children = self.nodes[v].children.iter();
+        let below: usize = children.map(|&child| self.nodes[child].conditions).sum();
+        self.nodes[v].conditions - below
+    }
+
     /// The unknowns, `dim` at a node, that node v eliminates and keeps.
     pub fn front(&self, v: usize, dim: usize) -> Front {
         let node = &self.nodes[v];
         let kept = dim * node.kept.len() + node.conditions;
         let eliminated = match v < self.subdomains {
             true => (dim * node.of_subdomain).saturating_sub(kept),
-            false => (dim * node.eliminated.len()).saturating_sub(node.points.len()),
+            false => (dim * node.eliminated.len()).saturating_sub(self.own_conditions(v)),
         };
         Front { eliminated, kept }
     }

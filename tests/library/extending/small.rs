@@ -70,7 +70,7 @@ impl Cluster {
                 factor: 1.0,
             })
             .collect();
-        let limits = Limits::new(of.len(), &of, &self.gaps, 0.0);
+        let limits = Limits::new(of.len(), &of, &self.gaps, &[], 0.0);
         let layer = Layer::new(&self.condensed, &self.compliances);
         let condensed = Rc::new(layer.before(&self.condensed));
         ContactPair::new(condensed, limits, layer.load(&self.load), None)

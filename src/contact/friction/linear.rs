@@ -1,0 +1,311 @@
+//! The linear problem of fixed statuses.
+//!
+//! With t known where a limit is closed, and μ the forces of dependent rows D that are closed or slip,
+//!
+//! ```text
+//! λ = c − H t − Dᵀ μ,    λ_i = 0 where open,    λ_i = ±(c_i + μ_i λ_n) where slipping,    D t = d where closed
+//! ```
+//!
+//! are as many equations as unknowns. The ones of slipping limits make the matrix unsymmetric.
+
+use faer::linalg::solvers::{PartialPivLu, SolveCore};
+use faer::{Conj, Mat, MatMut};
+
+use super::{FrictionProblem, Status};
+use crate::contact::open_factor::scale_of;
+
+/// Pivot of the scaled matrix below which it is taken as singular.
+const SINGULAR_PIVOT: f64 = 1e-13;
+/// Stiffness of the springs that make it regular then, in that scale.
+const SPRING: f64 = 1e-12;
+/// Most refinements of a solution that springs have bent.
+const MAX_REFINEMENTS: usize = 40;
+
+/// The solution of the linear problem.
+#[derive(Clone, Debug)]
+pub(super) struct Linear {
+    /// t, exactly the bound where closed.
+    pub jumps: Vec<f64>,
+    /// λ, then μ; 0 where open.
+    pub forces: Vec<f64>,
+    /// What is left of the equations, relative to their terms.
+    pub unbalanced: f64,
+}
+
+/// A x = b in the scale of energies.
+struct System {
+    a: Mat<f64>,
+    /// Which limits the unknowns are of: jumps that aren't closed, then rows that are closed or slip.
+    unknowns: Vec<usize>,
+    /// What an unknown is in that scale: jump or force times this.
+    scale: Vec<f64>,
+    /// What an equation is divided by.
+    of_equation: Vec<f64>,
+    /// A spring on every jump, and what gives way in every closed row, where A is singular.
+    springs: Vec<f64>,
+}
+
+impl Linear {
+    /// Solves `problem` for the statuses of its limits.
+    pub fn solve(problem: &FrictionProblem<'_>, status: &[Status]) -> Self {
+        let gap = &problem.gap;
+        let m = gap.c.len();
+        let mut jumps: Vec<f64> = (0..m)
+            .map(|i| match status[i] {
+                Status::Closed => gap.bounds[i],
+                _ => gap.center[i],
+            })
+            .collect();
+        let mut forces = vec![0.0; status.len()];
+        let system = System::new(problem, status);
+        let left = problem.left(status, &jumps, &forces);
+        let b = left.iter().zip(&system.of_equation);
+        let b = b.map(|(r, s)| r / s).collect();
+        let x = system.solve(b, || problem.is_balanced(status, &jumps, &left));
+        for ((&i, x), scale) in system.unknowns.iter().zip(x).zip(&system.scale) {
+            match jumps.get_mut(i) {
+                Some(t) => *t += x / scale,
+                None => forces[i] = x / scale,
+            }
+        }
+        let unbalanced = problem.unbalanced(status, &jumps, &forces);
+        problem.complete(status, &jumps, &mut forces);
+        Self {
+            jumps,
+            forces,
+            unbalanced,
+        }
+    }
+}
+
+impl FrictionProblem<'_> {
+    /// The limits whose jump or force is unknown.
+    fn unknowns(&self, status: &[Status]) -> Vec<usize> {
+        let m = self.gap.c.len();
+        let is_unknown = |&i: &usize| match i < m {
+            true => !status[i].is_closed(),
+            false => status[i] != Status::Open,
+        };
+        (0..status.len()).filter(is_unknown).collect()
+    }
+
+    /// The bound of every slipping limit, with the sign of its force: what is independent of forces, and the share
+    /// of which one of the limits.
+    fn slipping(&self, status: &[Status]) -> Vec<Option<Slipping>> {
+        let mut all = vec![None; status.len()];
+        for tangent in self.tangents {
+            let sign = status[tangent.limit].sign();
+            if sign != 0.0 {
+                let of_normal = tangent.normal.filter(|&n| status[n].is_closed());
+                all[tangent.limit] = Some(Slipping {
+                    constant: sign * tangent.bound.cohesion,
+                    normal: of_normal.map(|n| (n, sign * tangent.bound.coefficient)),
+                });
+            }
+        }
+        all
+    }
+
+    /// c − H t − Dᵀ μ.
+    fn free_forces(&self, jumps: &[f64], forces: &[f64]) -> Vec<f64> {
+        let mut left = self.gap.c.to_vec();
+        self.gap.subtract(jumps, &mut left);
+        self.gap
+            .rows
+            .subtract_transposed(&forces[jumps.len()..], &mut left);
+        left
+    }
+
+    /// What jumps and forces leave of the equations of the unknowns.
+    fn left(&self, status: &[Status], jumps: &[f64], forces: &[f64]) -> Vec<f64> {
+        let m = jumps.len();
+        let free = self.free_forces(jumps, forces);
+        let slipping = self.slipping(status);
+        let force = |n: usize| if n < m { free[n] } else { forces[n] };
+        let allowed = |i: usize| {
+            slipping[i].as_ref().map_or(0.0, |slipping| {
+                let of_normal = slipping.normal.map_or(0.0, |(n, share)| share * force(n));
+                slipping.constant + of_normal
+            })
+        };
+        let unknowns = self.unknowns(status).into_iter();
+        unknowns
+            .map(|i| match (i < m, status[i].is_closed()) {
+                (true, _) => free[i] - allowed(i),
+                (false, true) => self.gap.bounds[i] - self.gap.rows.value(i - m, jumps),
+                (false, false) => allowed(i) - forces[i],
+            })
+            .collect()
+    }
+
+    /// Gives every closed or slipping limit its force.
+    fn complete(&self, status: &[Status], jumps: &[f64], forces: &mut [f64]) {
+        let m = jumps.len();
+        let free = self.free_forces(jumps, forces);
+        for i in (0..m).filter(|&i| status[i].is_closed()) {
+            forces[i] = free[i];
+        }
+        for (i, slipping) in self.slipping(status).into_iter().enumerate() {
+            if let Some(slipping) = slipping {
+                let of_normal = slipping.normal.map_or(0.0, |(n, share)| share * forces[n]);
+                forces[i] = slipping.constant + of_normal;
+            }
+        }
+    }
+
+    /// The largest of what is left of the equations at jumps that aren't closed, relative to their terms.
+    fn unbalanced(&self, status: &[Status], jumps: &[f64], forces: &[f64]) -> f64 {
+        let left = self.left(status, jumps, forces);
+        let unknowns = self.unknowns(status).into_iter().zip(left);
+        let of_jumps = unknowns.filter(|&(i, left)| i < jumps.len() && left != 0.0);
+        let relative = of_jumps.map(|(i, left)| {
+            let by_rows = self.gap.rows.iter().zip(&forces[jumps.len()..]);
+            let by_rows = by_rows.map(|(row, force)| {
+                let share = row.iter().find(|&&(jump, _)| jump == i);
+                share.map_or(0.0, |(_, share)| (share * force).abs())
+            });
+            left.abs() / (self.gap.scale_of(i, jumps) + by_rows.sum::<f64>())
+        });
+        relative.fold(0.0, |m, x| if x.is_nan() { x } else { f64::max(m, x) })
+    }
+
+    /// Whether nothing but round-off is `left` of the equations, so that round-off mustn't drive what moves freely.
+    fn is_balanced(&self, status: &[Status], jumps: &[f64], left: &[f64]) -> bool {
+        let m = jumps.len();
+        let mut unknowns = self.unknowns(status).into_iter().zip(left);
+        unknowns.all(|(i, left)| {
+            let tolerance = super::FORCE_TOLERANCE;
+            i < m && left.abs() <= tolerance * self.gap.scale_of(i, jumps)
+        })
+    }
+}
+
+/// The force of a slipping limit: a constant, and a share of the force of another limit.
+#[derive(Clone, Copy, Debug)]
+struct Slipping {
+    constant: f64,
+    normal: Option<(usize, f64)>,
+}
+
+impl System {
+    fn new(problem: &FrictionProblem<'_>, status: &[Status]) -> Self {
+        let gap = &problem.gap;
+        let m = gap.c.len();
+        let unknowns = problem.unknowns(status);
+        let of_jump = |j: usize| scale_of(gap.h[(j, j)], gap.diagonal[j]).sqrt();
+        let of_row = |j: usize| {
+            let terms = gap.rows.row(j).iter();
+            let squares = terms.map(|&(i, c)| (c / of_jump(i)).powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        let scale = |&i: &usize| if i < m { of_jump(i) } else { of_row(i - m) };
+        let scale: Vec<f64> = unknowns.iter().map(scale).collect();
+        let (mut of_equation, mut springs) = (scale.clone(), vec![SPRING; unknowns.len()]);
+        for (k, &i) in unknowns.iter().enumerate().filter(|(_, i)| **i >= m) {
+            if status[i].is_closed() {
+                springs[k] = -SPRING;
+            } else {
+                (of_equation[k], springs[k]) = (1.0 / scale[k], 0.0);
+            }
+        }
+        let mut place = vec![None; status.len()];
+        for (k, &i) in unknowns.iter().enumerate() {
+            place[i] = Some(k);
+        }
+        let n = unknowns.len();
+        let mut a = Mat::<f64>::zeros(n, n);
+        // The force of limit i, times −share, in equation k.
+        let subtract = |a: &mut Mat<f64>, k: usize, i: usize, share: f64| {
+            if i >= m {
+                if let Some(column) = place[i] {
+                    a[(k, column)] += share;
+                }
+                return;
+            }
+            for (column, &j) in unknowns.iter().enumerate() {
+                a[(k, column)] -= share
+                    * match j < m {
+                        true => gap.h[(i, j)],
+                        false => {
+                            let own = gap.rows.row(j - m).iter().find(|(jump, _)| *jump == i);
+                            own.map_or(0.0, |(_, c)| *c)
+                        }
+                    };
+            }
+        };
+        let slipping = problem.slipping(status);
+        for (k, &i) in unknowns.iter().enumerate() {
+            if i < m {
+                subtract(&mut a, k, i, -1.0);
+            } else if status[i].is_closed() {
+                for &(j, c) in gap.rows.row(i - m) {
+                    if let Some(column) = place[j] {
+                        a[(k, column)] += c;
+                    }
+                }
+            } else {
+                a[(k, k)] += 1.0;
+            }
+            if let Some((n, share)) = slipping[i].and_then(|slipping| slipping.normal) {
+                let sign = if i < m { 1.0 } else { -1.0 };
+                subtract(&mut a, k, n, sign * share);
+            }
+        }
+        for (column, of_column) in scale.iter().enumerate() {
+            for (k, of_equation) in of_equation.iter().enumerate() {
+                a[(k, column)] /= of_equation * of_column;
+            }
+        }
+        Self {
+            a,
+            unknowns,
+            scale,
+            of_equation,
+            springs,
+        }
+    }
+
+    /// A⁻¹ b, 0 where A is singular and b `is_balanced`.
+    fn solve(&self, b: Vec<f64>, is_balanced: impl Fn() -> bool) -> Vec<f64> {
+        let n = b.len();
+        let mut lu = self.a.partial_piv_lu();
+        let is_singular = (0..n).any(|k| lu.U()[(k, k)].abs() <= SINGULAR_PIVOT);
+        if is_singular {
+            if is_balanced() {
+                return vec![0.0; n];
+            }
+            let mut held = self.a.clone();
+            for (k, spring) in self.springs.iter().enumerate() {
+                held[(k, k)] += spring;
+            }
+            lu = held.partial_piv_lu();
+        }
+        let mut x = b.clone();
+        apply(&lu, &mut x);
+        let mut last = f64::INFINITY;
+        let refinements = if is_singular { MAX_REFINEMENTS } else { 1 };
+        for _ in 0..refinements {
+            let mut left = b.clone();
+            for (column, &x) in self.a.col_iter().zip(&x) {
+                for (left, a) in left.iter_mut().zip(column.iter()) {
+                    *left -= a * x;
+                }
+            }
+            let size = left.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
+            if size == 0.0 || size > 0.9 * last || size.is_nan() {
+                break;
+            }
+            last = size;
+            apply(&lu, &mut left);
+            for (x, dx) in x.iter_mut().zip(left) {
+                *x += dx;
+            }
+        }
+        x
+    }
+}
+
+fn apply(lu: &PartialPivLu<f64>, x: &mut [f64]) {
+    let n = x.len();
+    lu.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(x, n, 1));
+}

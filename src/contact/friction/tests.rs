@@ -1,0 +1,216 @@
+use faer::Mat;
+
+use super::*;
+use crate::contact::dependent::DependentConstraints;
+
+/// Points with a normal and a tangential jump each, normals first, on a random stiffness.
+struct Points {
+    h: Mat<f64>,
+    diagonal: Vec<f64>,
+    c: Vec<f64>,
+    bounds: Vec<f64>,
+    rows: DependentConstraints,
+    tangents: Vec<TangentialLimit>,
+}
+
+fn noise(seed: usize) -> f64 {
+    2.0 * ((seed as f64 * 78.233).sin() * 43758.5453).fract().abs() - 1.0
+}
+
+impl Points {
+    fn new(points: usize, seed: usize, bound: ForceBound) -> Self {
+        let m = 2 * points;
+        let a = Mat::from_fn(m, m, |i, j| noise(seed + 7 * i + 131 * j));
+        let mut h = a.transpose() * &a;
+        for i in 0..m {
+            h[(i, i)] += 2.0;
+        }
+        let tangent = |p: usize| TangentialLimit {
+            limit: points + p,
+            normal: Some(p),
+            bound,
+        };
+        Self {
+            diagonal: (0..m).map(|i| h[(i, i)]).collect(),
+            h,
+            c: (0..m).map(|i| 3.0 * noise(seed + 1000 + i)).collect(),
+            bounds: (0..m).map(|i| 0.1 * noise(seed + 2000 + i)).collect(),
+            rows: DependentConstraints::default(),
+            tangents: (0..points).map(tangent).collect(),
+        }
+    }
+
+    fn solve(&self, status: &mut [Status]) -> GapSolution {
+        let m = self.c.len();
+        let c_scale: Vec<f64> = self.c.iter().map(|c| c.abs()).collect();
+        FrictionProblem {
+            gap: GapProblem {
+                h: self.h.as_ref(),
+                diagonal: &self.diagonal,
+                c: &self.c,
+                c_scale: &c_scale,
+                rows: &self.rows,
+                bounds: &self.bounds,
+                center: &vec![0.0; m],
+                scale: 1.0,
+            },
+            tangents: &self.tangents,
+        }
+        .solve_along(&vec![0.0; m], status)
+    }
+
+    /// The value of every limit: jumps, then dependent rows.
+    fn values(&self, jumps: &[f64]) -> Vec<f64> {
+        let rows = (0..self.rows.len()).map(|j| self.rows.value(j, jumps));
+        jumps.iter().copied().chain(rows).collect()
+    }
+
+    /// The largest violation of equilibrium and of the laws.
+    fn violation(&self, solution: &GapSolution) -> f64 {
+        let (t, forces) = (&solution.jumps, &solution.forces);
+        let m = t.len();
+        let mut worst: f64 = 0.0;
+        let mut left = self.c.clone();
+        self.rows.subtract_transposed(&forces[m..], &mut left);
+        for i in 0..m {
+            let held: f64 = (0..m).map(|j| self.h[(i, j)] * t[j]).sum();
+            worst = worst.max((left[i] - held - forces[i]).abs());
+        }
+        let values = self.values(t);
+        let is_tangential = |i: usize| self.tangents.iter().find(|tangent| tangent.limit == i);
+        for (i, (&value, &force)) in values.iter().zip(forces).enumerate() {
+            let gap = self.bounds[i] - value;
+            let violation = match is_tangential(i) {
+                None => (-gap).max(-force).max((gap * force).abs()),
+                Some(tangent) => {
+                    let normal = tangent.normal.map_or(0.0, |n| forces[n]);
+                    let bound = tangent.bound.at(normal, normal > 0.0);
+                    let opposed = bound * gap.abs() + force * gap;
+                    (force.abs() - bound).max(opposed.abs())
+                }
+            };
+            worst = worst.max(violation);
+        }
+        worst
+    }
+}
+
+const COULOMB: ForceBound = ForceBound {
+    coefficient: 0.3,
+    cohesion: 0.0,
+    only_closed: true,
+};
+const GIVEN: ForceBound = ForceBound {
+    coefficient: 0.0,
+    cohesion: 0.4,
+    only_closed: false,
+};
+
+#[test]
+fn equilibrium_and_every_law_hold_at_random_points() {
+    let mut seen = [0; 4];
+    for seed in 0..200 {
+        let bound = [COULOMB, GIVEN][seed % 2];
+        let points = Points::new(1 + seed % 9, 17 * seed, bound);
+        let mut status = vec![Status::Closed; points.c.len()];
+        let solution = points.solve(&mut status);
+        assert!(solution.converged, "seed {seed}");
+        let violation = points.violation(&solution);
+        assert!(violation < 1e-11, "seed {seed}: {violation}");
+        for status in &status[points.tangents.len()..] {
+            seen[*status as usize] += 1;
+        }
+    }
+    assert!(seen.iter().all(|&count| count > 50), "{seen:?}");
+}
+
+/// Cohesion acts where a contact is closed alone, so that a solution exists where all are pressed.
+#[test]
+fn cohesion_holds_what_is_pressed() {
+    let bound = ForceBound {
+        cohesion: 0.2,
+        ..COULOMB
+    };
+    for seed in 0..60 {
+        let mut points = Points::new(1 + seed % 9, 17 * seed, bound);
+        for c in &mut points.c[..1 + seed % 9] {
+            *c += 12.0;
+        }
+        let mut status = vec![Status::Closed; points.c.len()];
+        let solution = points.solve(&mut status);
+        assert!(solution.converged, "seed {seed}");
+        let violation = points.violation(&solution);
+        assert!(violation < 1e-11, "seed {seed}: {violation}");
+    }
+}
+
+/// Given friction has one solution: that of the least energy, which coordinate descent finds, too.
+#[test]
+fn given_friction_has_the_solution_of_least_energy() {
+    for seed in 0..16 {
+        let points = Points::new(2 + seed % 4, 31 * seed + 5, GIVEN);
+        let (n, m) = (points.tangents.len(), points.c.len());
+        let mut t: Vec<f64> = points.bounds.clone();
+        for _ in 0..4_000 {
+            for i in 0..m {
+                let others: f64 = (0..m).map(|j| points.h[(i, j)] * t[j]).sum();
+                let (h, at) = (points.h[(i, i)], points.bounds[i]);
+                let c = points.c[i] - others + h * t[i];
+                t[i] = match i < n {
+                    true => (c / h).min(at),
+                    false => {
+                        let force = c - h * at;
+                        let over = (force.abs() - GIVEN.cohesion).max(0.0).copysign(force);
+                        at + over / h
+                    }
+                };
+            }
+        }
+        let mut status = vec![Status::Open; m];
+        let solution = points.solve(&mut status);
+        for (found, expected) in solution.jumps.iter().zip(&t) {
+            assert!((found - expected).abs() < 1e-9, "seed {seed}");
+        }
+    }
+}
+
+/// A node before two walls at right angles: the tangent of either is the other's normal.
+#[test]
+fn laws_of_dependent_jumps_hold_too() {
+    let mut slipping = 0;
+    for seed in 0..100 {
+        let mut points = Points::new(2, 13 * seed, COULOMB);
+        points.h = points.h.submatrix(0, 0, 2, 2).to_owned();
+        points.diagonal.truncate(2);
+        points.c.truncate(2);
+        points.rows.push(vec![(1, -1.0)]);
+        points.rows.push(vec![(0, 1.0)]);
+        points.bounds.fill(0.0);
+        let mut status = vec![Status::Closed; 4];
+        let solution = points.solve(&mut status);
+        assert!(solution.converged, "seed {seed}");
+        let violation = points.violation(&solution);
+        assert!(violation < 1e-9, "seed {seed}: {violation}");
+        let slips = |status: &&Status| status.sign() != 0.0;
+        slipping += status.iter().filter(slips).count();
+    }
+    assert!(slipping > 10, "{slipping}");
+}
+
+#[test]
+fn a_block_slides_where_the_slope_is_steeper_than_its_friction() {
+    let mut points = Points::new(1, 3, COULOMB);
+    points.h = Mat::from_fn(2, 2, |i, j| if i == j { 10.0 } else { 0.0 });
+    points.diagonal = vec![10.0; 2];
+    points.bounds = vec![0.0; 2];
+    for (pull, expected) in [
+        (0.3 - 1e-10, Status::Closed),
+        (0.3 + 1e-10, Status::Forward),
+        (-0.3 - 1e-10, Status::Backward),
+    ] {
+        points.c = vec![1.0, pull];
+        let mut status = vec![Status::Open; 2];
+        points.solve(&mut status);
+        assert_eq!(status[1], expected);
+    }
+}
