@@ -4,7 +4,7 @@ use contact_dd_partition::contact_point::ContactPoint;
 
 use crate::certificate::Certificate;
 use crate::context::Context;
-use crate::fem::contact_group::ContactGroup;
+use crate::fem::contact_group::{Condition, ContactGroup};
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::motions::{Field, Motions};
 use crate::recover::refine::replace_if_as_good;
@@ -154,8 +154,8 @@ fn largest_displacement(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
 /// doesn't stick any more.
 fn open(group: &ContactGroup, solution: &mut GroupSolution, closed_up_to: f64) -> usize {
     let mut opened = 0;
-    let gaps = points_of_conditions(group).zip(&solution.gaps);
-    for (j, ((_, is_tangential), &gap)) in gaps.enumerate() {
+    for (j, Condition { is_tangential, .. }) in group.conditions().enumerate() {
+        let gap = solution.gaps[j];
         let gap = if is_tangential { gap.abs() } else { gap };
         if solution.closed[j] && gap > closed_up_to {
             solution.closed[j] = false;
@@ -191,27 +191,24 @@ fn released_modes(
                 let nodes = point.entries.iter();
                 nodes.fold(0.0, |m: f64, (node, _)| m.max(scales[&g][*node as usize]))
             };
-            let points = points_of_conditions(&groups[&g]).zip(&of_group.forces);
-            let state = |(j, ((point, is_tangential), &force)): (usize, (_, &f64))| {
-                let size = if is_tangential { force.abs() } else { force };
+            let state = |(j, condition): (usize, Condition)| {
+                let force = of_group.forces[j];
+                let size = if condition.is_tangential {
+                    force.abs()
+                } else {
+                    force
+                };
                 ConditionState {
-                    carrying: size > ROUND_OFF * scale(point),
+                    carrying: size > ROUND_OFF * scale(&groups[&g].points[condition.point]),
                     closed: of_group.closed[j],
                     gap: of_group.gaps[j],
                 }
             };
-            points.enumerate().map(state).collect::<Vec<_>>()
+            let conditions = groups[&g].conditions().enumerate();
+            conditions.map(state).collect::<Vec<_>>()
         },
         |_, of_group| conditions.extend(of_group),
     );
     let scene = analysis.scene.as_ref()?;
     Some(scene.released_modes(&analysis.motions.free, &conditions))
-}
-
-/// The point of every condition of a group, and whether it is a tangential one.
-fn points_of_conditions(group: &ContactGroup) -> impl Iterator<Item = (&ContactPoint<u32>, bool)> {
-    let tangential = group.points.iter().filter(|point| point.law.has_friction());
-    let each = move |point| std::iter::repeat_n((point, true), group.dim - 1);
-    let normal = group.points.iter().map(|point| (point, false));
-    normal.chain(tangential.flat_map(each))
 }

@@ -202,7 +202,7 @@ fn without_slip(
 ) -> DVector<f64> {
     let is_closed = |j: usize| left[j] <= touching;
     let closed: Vec<usize> = (0..rows.len()).filter(|&j| is_closed(j)).collect();
-    let acts = |friction: &Friction| friction.is_given || is_closed(friction.normal);
+    let acts = |friction: &Friction| !friction.bound.only_closed || is_closed(friction.normal);
     let held: Vec<usize> = (0..rows.len())
         .filter(|&i| rows[i].friction.as_ref().is_some_and(acts))
         .collect();
@@ -309,9 +309,8 @@ fn moved(analysis: &RigidBodyAnalysis, dim: usize, body: usize, x: &[f64; 3]) ->
 
 #[cfg(test)]
 mod tests {
-    use contact_dd_partition::contact_point::Law;
-
     use super::*;
+    use crate::contact::friction::ForceBound;
 
     fn square(load: [f64; 3], supports: Vec<Vec<f64>>) -> BodyState {
         BodyState {
@@ -423,14 +422,15 @@ mod tests {
         });
         for (normal, x) in [-1.0, 1.0].into_iter().enumerate() {
             let action = body.frame.action(2, &[x, -1.0, 0.0], &[1.0, 0.0, 0.0]);
-            let law = Law::Coulomb {
+            let bound = ForceBound {
                 coefficient: friction,
                 cohesion: 0.0,
+                only_closed: true,
             };
             rows.push(RigidRow {
                 bodies: vec![(0, action)],
                 gap: 0.0,
-                friction: Friction::new(law, 1.0, normal),
+                friction: Some(Friction { normal, bound }),
             });
         }
         rows

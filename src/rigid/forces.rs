@@ -1,12 +1,12 @@
 //! The forces that contact can give: what normals press and friction holds.
 
-use contact_dd_partition::contact_point::Law;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use super::analysis::RigidRow;
 use super::kinematics::RANK_TOLERANCE;
 use super::nonnegative::{Nearest, nearest, residual, residual_in_span};
+use crate::contact::friction::ForceBound;
 
 /// Part of the fastest motion of a condition with which sides slip.
 const SLIPS: f64 = 0.1;
@@ -19,36 +19,19 @@ const REFINEMENTS: usize = 40;
 /// Half of the directions in a tangential plane that stand for all.
 const DIRECTIONS: usize = 4;
 
-/// What bounds the tangential force of a condition: |λ_t| ≤ coefficient·λ + bound, in space that of both tangents.
+/// What bounds the force of a tangential condition, in space that of both tangents of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Friction {
     /// The condition along the normal of the same point.
     pub normal: usize,
-    /// Coefficient of friction.
-    pub coefficient: f64,
-    /// Tangential force without a normal one (N).
-    pub bound: f64,
-    /// Whether the bound holds where the contact is open, too.
-    pub is_given: bool,
+    /// The bound.
+    pub bound: ForceBound,
 }
 
 impl Friction {
-    /// What `law` allows at a point of this `area` (m, in space m²) with this condition along its normal.
-    pub fn new(law: Law, area: f64, normal: usize) -> Option<Self> {
-        let (coefficient, pressure, is_given) = match law {
-            Law::Frictionless => return None,
-            Law::Given { bound } => (0.0, bound, true),
-            Law::Coulomb {
-                coefficient,
-                cohesion,
-            } => (coefficient, cohesion, false),
-        };
-        Some(Self {
-            normal,
-            coefficient,
-            bound: pressure * area,
-            is_given,
-        })
+    /// Whether it can give a force where the contact is as `closed` says, and without a normal force.
+    pub(super) fn holds_unpressed(&self, closed: bool) -> bool {
+        self.bound.at(0.0, closed) > 0.0
     }
 }
 
@@ -107,7 +90,7 @@ impl Forces {
             });
         };
         let along = directions(tangents);
-        let slope = friction.map_or(0.0, |friction| friction.coefficient);
+        let slope = friction.map_or(0.0, |friction| friction.bound.coefficient);
         if closed && slope == 0.0 {
             add(Some(normal), Vec::new(), f64::INFINITY);
         } else if closed {
@@ -119,8 +102,7 @@ impl Forces {
                 self.cones.push((normal, [first, second], slope));
             }
         }
-        let bound = friction.filter(|friction| closed || friction.is_given);
-        let bound = bound.map_or(0.0, |friction| friction.bound);
+        let bound = friction.map_or(0.0, |friction| friction.bound.at(0.0, closed));
         if bound > 0.0 {
             // In space the segments sum to a polygon around the circle.
             let largest = match tangents {

@@ -85,8 +85,7 @@ impl Scene {
             let ConditionState {
                 carrying, closed, ..
             } = conditions[friction.normal];
-            friction.coefficient > 0.0 && carrying
-                || friction.bound > 0.0 && (closed || friction.is_given)
+            friction.bound.coefficient > 0.0 && carrying || friction.holds_unpressed(closed)
         };
         conditions[j].carrying || self.rows[j].friction.as_ref().is_some_and(can_resist)
     }
@@ -133,9 +132,8 @@ impl ReleasedModes {
 
 #[cfg(test)]
 mod tests {
-    use contact_dd_partition::contact_point::Law;
-
     use super::*;
+    use crate::contact::friction::ForceBound;
     use crate::rigid::analysis::{BodyState, RigidRow};
     use crate::rigid::motion::BodyFrame;
 
@@ -189,7 +187,7 @@ mod tests {
 
     /// A square on a floor below its corners: what is left to it where their normal and tangential conditions carry
     /// force or not, and are closed or not.
-    fn motions_left(law: Law, carrying: [bool; 2], closed: bool) -> usize {
+    fn motions_left(bound: Option<ForceBound>, carrying: [bool; 2], closed: bool) -> usize {
         let frame = BodyFrame::new([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]);
         let body = BodyState {
             frame,
@@ -205,10 +203,9 @@ mod tests {
         };
         let down = [0.0, -1.0, 0.0];
         let mut rows = vec![row(-1.0, down, None), row(1.0, down, None)];
-        let friction = |j: usize| Friction::new(law, 1.0, j);
-        let tangential = |(j, x)| row(x, [1.0, 0.0, 0.0], friction(j));
-        if law.has_friction() {
-            rows.extend([-1.0, 1.0].into_iter().enumerate().map(tangential));
+        for (normal, x) in [-1.0, 1.0].into_iter().enumerate() {
+            let friction = bound.map(|bound| Friction { normal, bound });
+            rows.extend(friction.map(|friction| row(x, [1.0, 0.0, 0.0], Some(friction))));
         }
         let scene = Scene {
             dim: 2,
@@ -228,14 +225,21 @@ mod tests {
 
     #[test]
     fn what_friction_can_hold_is_not_released() {
-        let coulomb = |coefficient, cohesion| Law::Coulomb {
-            coefficient,
-            cohesion,
+        let coulomb = |coefficient, cohesion| {
+            Some(ForceBound {
+                coefficient,
+                cohesion,
+                only_closed: true,
+            })
         };
-        let given = Law::Given { bound: 1.0 };
+        let given = Some(ForceBound {
+            coefficient: 0.0,
+            cohesion: 1.0,
+            only_closed: false,
+        });
         for (law, carrying, closed, left) in [
-            (Law::Frictionless, [true, false], true, 1),
-            (Law::Frictionless, [false, false], true, 3),
+            (None, [true, false], true, 1),
+            (None, [false, false], true, 3),
             // On its weight alone, without a push that friction would answer.
             (coulomb(0.3, 0.0), [true, false], true, 0),
             (coulomb(0.3, 0.0), [false, false], true, 3),

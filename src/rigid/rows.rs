@@ -6,7 +6,8 @@ use super::analysis::RigidRow;
 use super::forces::Friction;
 use super::motion::BodyFrame;
 use crate::comm::Comm;
-use crate::fem::contact_group::ContactGroup;
+use crate::contact::friction::TangentialCondition;
+use crate::fem::contact_group::{Condition, ContactGroup};
 use crate::plan::Plan;
 
 /// The conditions against the rigid motions of the bodies, group by group, and how many each group has;
@@ -33,7 +34,6 @@ pub(super) fn rigid_rows(
     (rows, conditions)
 }
 
-/// The conditions of a group: those along the normals, then those along the tangents where there is friction.
 fn of_group(group: &ContactGroup, frames: &[BodyFrame]) -> Vec<RigidRow> {
     let against = |(node, row): (u32, [f64; 3])| {
         let node = &group.nodes[node as usize];
@@ -42,23 +42,22 @@ fn of_group(group: &ContactGroup, frames: &[BodyFrame]) -> Vec<RigidRow> {
             frames[node.body].action(group.dim, &node.at, &row),
         )
     };
-    let points = group.points.iter();
-    let normals = points.clone().map(|point| RigidRow {
-        bodies: point.row().map(against).collect(),
-        gap: point.gap,
+    let row = |condition: Condition| RigidRow {
+        bodies: group.row_of(&condition).map(against).collect(),
+        gap: match condition.is_tangential {
+            true => 0.0,
+            false => group.points[condition.point].gap,
+        },
         friction: None,
-    });
-    let tangential = points.enumerate().flat_map(|(j, point)| {
-        let friction = Friction::new(point.law, point.area, j);
-        let tangents = &point.frame.tangents[..group.dim - 1];
-        let with_friction = friction
-            .into_iter()
-            .flat_map(|friction| tangents.iter().map(move |&tangent| (friction, tangent)));
-        with_friction.map(|(friction, tangent)| RigidRow {
-            bodies: point.row_along(tangent).map(against).collect(),
-            gap: 0.0,
-            friction: Some(friction),
-        })
-    });
-    normals.chain(tangential).collect()
+    };
+    let mut rows: Vec<RigidRow> = group.conditions().map(row).collect();
+    for TangentialCondition {
+        number,
+        normal,
+        bound,
+    } in group.friction()
+    {
+        rows[number].friction = Some(Friction { normal, bound });
+    }
+    rows
 }

@@ -1,17 +1,29 @@
 //! Bodies that friction holds, and some that it doesn't, judged by hand.
 
-use contact_dd_partition::contact_point::{Law, LocalFrame};
+use contact_dd_partition::contact_point::LocalFrame;
 
+use crate::contact::friction::ForceBound;
 use crate::error::Failure;
 use crate::rigid::analysis::{BodyState, RigidMotions, RigidRow, Scene};
 use crate::rigid::forces::Friction;
 use crate::rigid::motion::BodyFrame;
 
-fn coulomb(coefficient: f64) -> Law {
-    Law::Coulomb {
+const FRICTIONLESS: Option<ForceBound> = None;
+
+fn coulomb(coefficient: f64) -> Option<ForceBound> {
+    Some(ForceBound {
         coefficient,
         cohesion: 0.0,
-    }
+        only_closed: true,
+    })
+}
+
+/// A bound at every point (N).
+fn given(cohesion: f64) -> Option<ForceBound> {
+    Some(ForceBound {
+        cohesion,
+        ..ForceBound::default()
+    })
 }
 
 /// A unit square about the origin or, with a third dimension, a cube.
@@ -26,8 +38,8 @@ fn block(load: &[f64]) -> BodyState {
     }
 }
 
-/// Points of the block, each with a normal against an obstacle and an area of a half.
-fn scene(body: BodyState, points: &[([f64; 3], [f64; 3])], law: Law) -> Scene {
+/// Points of the block, each with a normal against an obstacle.
+fn scene(body: BodyState, points: &[([f64; 3], [f64; 3])], bound: Option<ForceBound>) -> Scene {
     let dim = if body.load.len() == 6 { 3 } else { 2 };
     let row = |at: &[f64; 3], along: &[f64; 3], friction| RigidRow {
         bodies: vec![(0, body.frame.action(dim, at, along))],
@@ -36,7 +48,7 @@ fn scene(body: BodyState, points: &[([f64; 3], [f64; 3])], law: Law) -> Scene {
     };
     let mut rows: Vec<RigidRow> = points.iter().map(|(at, n)| row(at, n, None)).collect();
     for (j, (at, n)) in points.iter().enumerate() {
-        let friction = Friction::new(law, 0.5, j);
+        let friction = bound.map(|bound| Friction { normal: j, bound });
         for tangent in &LocalFrame::new(*n).tangents[..dim - 1] {
             rows.extend(friction.map(|friction| row(at, tangent, Some(friction))));
         }
@@ -52,9 +64,9 @@ fn scene(body: BodyState, points: &[([f64; 3], [f64; 3])], law: Law) -> Scene {
 
 const DOWN: [f64; 3] = [0.0, -1.0, 0.0];
 
-fn on_floor(load: [f64; 3], law: Law) -> Result<RigidMotions, Failure> {
+fn on_floor(load: [f64; 3], bound: Option<ForceBound>) -> Result<RigidMotions, Failure> {
     let corners = [-0.5, 0.1, 0.5].map(|x| ([x, -0.5, 0.0], DOWN));
-    scene(block(&load), &corners, law).analyse()
+    scene(block(&load), &corners, bound).analyse()
 }
 
 #[track_caller]
@@ -106,13 +118,10 @@ fn a_block_on_an_incline_slides_from_the_friction_angle_on() {
 
 #[test]
 fn without_friction_the_floor_holds_no_push() {
-    let pushed = on_floor([0.1, -1.0, 0.0], Law::Frictionless);
+    let pushed = on_floor([0.1, -1.0, 0.0], FRICTIONLESS);
     assert!(pushed.unwrap_err().message.contains("nothing holds it"));
     assert_eq!(
-        on_floor([0.0, -1.0, 0.0], Law::Frictionless)
-            .unwrap()
-            .free
-            .len(),
+        on_floor([0.0, -1.0, 0.0], FRICTIONLESS).unwrap().free.len(),
         1
     );
     // What friction could hold isn't free.
@@ -156,9 +165,8 @@ fn a_wedge_between_two_frictional_walls_locks_itself_at_the_angle_of_friction() 
 }
 
 #[test]
-fn given_friction_holds_a_pull_up_to_its_bound_times_the_area() {
-    // Three points of half an area each.
-    let law = Law::Given { bound: 2e5 };
+fn given_friction_holds_a_pull_up_to_its_bound() {
+    let law = given(1e5);
     let floor = |pull: f64| on_floor([pull, -1e6, 0.0], law);
     assert_eq!(floor(3e5 * (1.0 - 1e-12)), Ok(RigidMotions::default()));
     slides(floor(3e5 * (1.0 + 1e-12)), "(1.0000, 0.0000)");
@@ -175,10 +183,10 @@ fn given_friction_holds_a_pull_up_to_its_bound_times_the_area() {
 
 #[test]
 fn cohesion_holds_beside_friction() {
-    let law = Law::Coulomb {
-        coefficient: 0.5,
-        cohesion: 4.0,
-    };
+    let law = coulomb(0.5).map(|bound| ForceBound {
+        cohesion: 2.0,
+        ..bound
+    });
     let pushed = |push: f64| on_floor([push, -10.0, push / 2.0_f64.sqrt()], law);
     assert_eq!(pushed(11.0 * (1.0 - 1e-12)), Ok(RigidMotions::default()));
     slides(pushed(11.0 * (1.0 + 1e-12)), "(1.0000, 0.0000)");
@@ -288,7 +296,8 @@ fn wall(rows: usize, columns: usize, coefficient: f64, push: impl Fn(usize) -> f
                         friction,
                     }
                 };
-                let friction = Friction::new(coulomb(coefficient), 0.1, normals.len());
+                let normal = normals.len();
+                let friction = coulomb(coefficient).map(|bound| Friction { normal, bound });
                 normals.push(row(DOWN, None));
                 tangents.push(row([1.0, 0.0, 0.0], friction));
             }
