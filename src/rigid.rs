@@ -6,6 +6,10 @@
 //! leave, a motion z is free if B R z = 0, and held by contact if B R z ≤ 0 doesn't allow it; the
 //! load balances if contact forces λ ≥ 0 with (B R)ᵀ λ = Rᵀ f exist. B R has no energy and (B R)ᵀ c
 //! is Rᵀ f in every contact problem: what round-off makes of both is taken out.
+//!
+//! With friction B has tangential rows, too. No motion is free that these hold, and their forces help to balance the
+//! load within the law's bounds. That such forces exist is necessary: by which of them elastic bodies come to rest
+//! depends on their path, and a load that needs others is found by the solver not to converge.
 
 pub mod analysis;
 mod bodies;

@@ -150,8 +150,8 @@ fn largest_displacement(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
     largest
 }
 
-/// Opens the points of a group that have a gap, and counts them; what has moved from where it stuck without force
-/// doesn't stick any more.
+/// Opens the points of a group that have a gap, and counts them. What has moved from where it stuck without force
+/// doesn't stick any more, and an open contact has no friction of its pressure.
 fn open(group: &ContactGroup, solution: &mut GroupSolution, closed_up_to: f64) -> usize {
     let mut opened = 0;
     for (j, Condition { is_tangential, .. }) in group.conditions().enumerate() {
@@ -161,6 +161,12 @@ fn open(group: &ContactGroup, solution: &mut GroupSolution, closed_up_to: f64) -
             solution.closed[j] = false;
             solution.forces[j] = 0.0;
             opened += usize::from(!is_tangential);
+        }
+    }
+    for tangential in group.friction() {
+        if tangential.bound.only_closed && !solution.closed[tangential.normal] {
+            solution.closed[tangential.number] = false;
+            solution.forces[tangential.number] = 0.0;
         }
     }
     opened

@@ -262,3 +262,58 @@ fn a_plate_between_two_others_is_held_by_friction_alone() {
     }
     slides(&run(&of(1.2e6 * (1.0 + 1e-9)), 4), "middle");
 }
+
+/// A block between two walls, squeezed by `interference` on either side, above a smooth floor.
+fn squeezed(interference: f64, friction: f64, gap: f64) -> Model {
+    let blocks = Blocks::new().rectangle("block", [0.0, 1.0], [0.0, 0.5], [6, 3]);
+    let text = format!(
+        "plane = 'strain'
+        materials.rock = {{young = 20e9, poisson = 0.22}}
+        bodies.block = {{material = 'rock', body_force = [0.0, {:e}]}}
+        [[contact]]
+        name = 'left'
+        sides = ['block left']
+        gap = {:e}
+        friction = {friction}
+        obstacle = {{point = [0.0, 0.0], normal = [1.0, 0.0]}}
+        [[contact]]
+        name = 'right'
+        sides = ['block right']
+        gap = {:e}
+        friction = {friction}
+        obstacle = {{point = [1.0, 0.0], normal = [-1.0, 0.0]}}
+        [[contact]]
+        name = 'floor'
+        sides = ['block bottom']
+        obstacle = {{point = [0.0, {:e}], normal = [0.0, 1.0]}}",
+        -WEIGHT, -interference, -interference, -gap
+    );
+    model(&text, blocks.mesh)
+}
+
+/// The walls alone could hold it if they were pressed as they aren't: that is left to the solver.
+#[test]
+fn a_block_between_two_walls_hangs_if_they_squeeze_it_enough_and_slides_to_the_floor_if_not() {
+    let weight = 0.5 * WEIGHT;
+    for (interference, friction, hangs) in
+        [(1e-5, 0.3, true), (1e-5, 0.01, false), (0.0, 0.3, false)]
+    {
+        let solution = solve(&squeezed(interference, friction, 1e-3), 2);
+        let on_floor: f64 = solution.contacts["floor"].iter().map(|p| p.force).sum();
+        let held: f64 = solution.points().map(|p| p.tangential_force[1]).sum();
+        close(on_floor + held, weight, 1e-7);
+        assert_eq!(on_floor == 0.0, hangs, "{interference} {friction}");
+    }
+}
+
+/// Of the positions between walls that it doesn't touch a block gets the nearest, without friction of their pressure.
+#[test]
+fn what_moves_away_from_a_wall_leaves_no_friction_there() {
+    for count in [1, 3] {
+        let solution = solve(&squeezed(-1e-6, 1.0, 1e-3), count);
+        for point in solution.points().filter(|point| !point.closed) {
+            assert_eq!(point.tangential_force, [0.0; 3], "{point:?}");
+        }
+        assert_eq!(solution.closed(), solution.contacts["floor"].len());
+    }
+}
