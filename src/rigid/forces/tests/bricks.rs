@@ -1,0 +1,83 @@
+//! Bricks that friction holds on each other.
+
+use super::*;
+
+/// Rows of bricks in a wall, each under its weight and a push aside.
+fn wall(rows: usize, columns: usize, coefficient: f64, push: impl Fn(usize) -> f64) -> Scene {
+    let place = |b: usize| {
+        let (i, k) = (b / columns, b % columns);
+        let offset = if i.is_multiple_of(2) { 0.0 } else { 0.25 };
+        (k as f64 + offset, i as f64 * 0.3)
+    };
+    let state = |b: usize| {
+        let (x, y) = place(b);
+        let mut body = block(&[push(b), -1.0, 0.0]);
+        body.frame = BodyFrame::new([x, y, 0.0], [x + 1.0, y + 0.3, 0.0]);
+        body
+    };
+    let bodies: Vec<BodyState> = (0..rows * columns).map(state).collect();
+    let (mut normals, mut tangents) = (Vec::new(), Vec::new());
+    for upper in 0..bodies.len() {
+        let (x, y) = place(upper);
+        let below: Vec<Option<usize>> = match upper / columns {
+            0 => vec![None],
+            _ => (0..upper)
+                .filter(|&b| (y - place(b).1 - 0.3).abs() < 0.01 && (place(b).0 - x).abs() < 0.9)
+                .map(Some)
+                .collect(),
+        };
+        for lower in below {
+            let from = lower.map_or(x, |b| place(b).0.max(x));
+            let to = lower.map_or(x + 1.0, |b| (place(b).0 + 1.0).min(x + 1.0));
+            for k in 0..5 {
+                let at = [from + (to - from) * k as f64 / 4.0, y, 0.0];
+                let row = |along: [f64; 3], friction| {
+                    let of = |b: usize, sign: f64| {
+                        let along = along.map(|c| sign * c);
+                        (b, bodies[b].frame.action(2, &at, &along))
+                    };
+                    RigidRow {
+                        bodies: std::iter::once(of(upper, 1.0))
+                            .chain(lower.map(|b| of(b, -1.0)))
+                            .collect(),
+                        gap: 0.0,
+                        friction,
+                    }
+                };
+                let normal = normals.len();
+                let friction = coulomb(coefficient).map(|bound| Friction { normal, bound });
+                normals.push(row(DOWN, None));
+                tangents.push(row([1.0, 0.0, 0.0], friction));
+            }
+        }
+    }
+    normals.extend(tangents);
+    Scene {
+        dim: 2,
+        names: (0..bodies.len()).map(|b| format!("brick {b}")).collect(),
+        conditions: vec![normals.len()],
+        bodies,
+        rows: normals,
+    }
+}
+
+#[test]
+fn friction_holds_the_uppermost_brick_of_a_high_stack_to_its_last_digits() {
+    let stack = |part: f64| {
+        let push = |b: usize| if b == 11 { 0.5 * part } else { 0.0 };
+        wall(12, 1, 0.5, push).analyse()
+    };
+    assert_eq!(stack(1.0 - 1e-11), Ok(RigidMotions::default()));
+    let failure = stack(1.0 + 1e-11).unwrap_err();
+    assert!(failure.message.contains("'brick 11' slides"), "{failure}");
+}
+
+#[test]
+fn a_wall_under_a_push_on_every_brick_stands_up_to_its_coefficient() {
+    assert_eq!(
+        wall(4, 4, 0.5, |_| 0.499).analyse(),
+        Ok(RigidMotions::default())
+    );
+    let failure = wall(4, 4, 0.5, |_| 0.501).analyse().unwrap_err();
+    assert!(failure.message.contains("slides"), "{failure}");
+}
