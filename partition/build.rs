@@ -18,17 +18,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     meshes.sort();
     let mut code = String::new();
     for (name, mesh) in &meshes {
-        code += &format!("#[path = {mesh:?}]\nmod {name};\n");
+        let module = module(name);
+        code += &format!("#[path = {mesh:?}]\nmod {module};\n");
     }
     code += "/// The built-in scenes.\npub const EXAMPLES: &[Example] = &[\n";
     for (name, mesh) in &meshes {
+        let module = module(name);
         code += &format!(
-            "Example {{ name: {name:?}, about: {name}::ABOUT, subdomains: {name}::SUBDOMAINS, \
-             scene: include_str!({:?}), shape: {name}::SHAPE }},\n",
+            "Example {{ name: {name:?}, about: {module}::ABOUT, subdomains: {module}::SUBDOMAINS, \
+             scene: include_str!({:?}), shape: {module}::SHAPE }},\n",
             mesh.with_file_name("scene.toml")
         );
     }
     code += "];\n";
     fs::write(Path::new(&env::var("OUT_DIR")?).join("scenes.rs"), code)?;
     Ok(())
+}
+
+/// The module of a scene.
+fn module(name: &str) -> String {
+    name.replace('-', "_")
 }

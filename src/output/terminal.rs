@@ -132,7 +132,7 @@ pub fn closing(reason: &str, report: &Report, result: &Path) -> String {
     };
     let mut lines = vec![
         format!("\n{style}{reason}{style:#}\n"),
-        certificate(&report.certificate),
+        certificate(&report.certificate, report.friction.is_some()),
     ];
     if let Some(condition) = report.condition_number {
         lines.push(format!(
@@ -201,10 +201,14 @@ fn steps(steps: &[StepReport]) -> Vec<String> {
     lines
 }
 
-fn certificate(of: &Certificate) -> String {
+fn certificate(of: &Certificate, has_friction: bool) -> String {
+    let friction = match has_friction {
+        true => format!("  friction {:.1e}", of.friction),
+        false => String::new(),
+    };
     format!(
         "certificate  equilibrium {:.1e} ({:.1e} of the load)  penetration {:.1e}  tension {:.1e}  \
-         complementarity {:.1e}\n             \
+         complementarity {:.1e}{friction}\n             \
          force balance {:.1e}  moment balance {:.1e}  interface jump {:.1e}",
         of.equilibrium,
         of.equilibrium_of_load,

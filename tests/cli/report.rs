@@ -101,6 +101,22 @@ fn reports_of_less_than_a_whole_run_follow_the_schema() {
     assert_eq!(short["status"], "not_converged");
 }
 
+#[test]
+fn a_report_tells_what_sticks_and_slips_and_what_that_dissipates() {
+    let validator = strict();
+    let rough = report("raous", 2, &[], 0);
+    follows(&validator, &rough);
+    let friction = &rough["friction"];
+    let [sticking, slipping] = ["sticking", "slipping"].map(|key| friction[key].as_u64().unwrap());
+    assert!(sticking > 0 && slipping > 0);
+    assert_eq!(rough["active_contacts"], sticking + slipping);
+    assert!(friction["dissipated_work"].as_f64().unwrap() > 0.0);
+    assert_eq!(&rough["contacts"][0]["friction"], friction);
+    let smooth = report("granite", 1, &[], 0);
+    assert_eq!(smooth["friction"], Value::Null);
+    assert_eq!(smooth["contacts"][0]["friction"], Value::Null);
+}
+
 type Change = fn(&mut Value);
 
 #[test]

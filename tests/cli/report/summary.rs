@@ -49,6 +49,8 @@ fn a_page_says_how_the_run_ended_and_draws_its_contacts() {
     let converged = page("granite", &[], 0);
     let short = page("granite", &["--method", "picard", "--max-sweeps", "3"], 3);
     let linear = page("plain", &[], 0);
+    let rough = page("raous", &[], 0);
+    assert!(rough.contains("work of friction") && !converged.contains("friction"));
     for (page, badge, pictures) in [
         (&converged, "\"badge good\">converged<", 3),
         (&short, "\"badge bad\">not converged<", 3),

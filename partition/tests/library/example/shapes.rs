@@ -2,6 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use contact_dd_partition::example;
+use contact_dd_partition::scene::Scene;
+
 use super::{key, length, mesh_of, nodes_of};
 
 #[test]
@@ -94,4 +97,18 @@ fn flanks_of_the_gears_are_involutes_that_touch_on_the_line_of_action() {
             assert!(flank.len() > 40);
         }
     }
+}
+
+#[test]
+fn the_granite_block_with_friction_is_the_granite_block_but_for_friction() {
+    let [plain, rough] = ["granite", "granite-friction"].map(|name| example::find(name).unwrap());
+    assert_eq!(plain.mesh(1).unwrap(), rough.mesh(1).unwrap());
+    let mut scene = Scene::parse(rough.scene).unwrap();
+    assert!(scene.contact.iter().all(|c| c.friction.is_some()));
+    for contact in &mut scene.contact {
+        contact.friction = None;
+    }
+    let expected = Scene::parse(plain.scene).unwrap();
+    scene.title.clone_from(&expected.title);
+    assert_eq!(scene, expected);
 }
