@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use super::analysis::RigidRow;
-use super::kinematics::RANK_TOLERANCE;
+use super::kinematics::{RANK_TOLERANCE, null_space};
 use super::nonnegative::{Nearest, nearest, residual, residual_in_span};
 use crate::contact::friction::ForceBound;
 
@@ -138,8 +138,7 @@ impl Forces {
         load: &DVector<f64>,
         nothing: f64,
     ) -> DVector<f64> {
-        let (actions, largest) = (self.actions(b), self.largest());
-        let in_span = residual_in_span(&actions, load, &largest, RANK_TOLERANCE);
+        let in_span = self.residual_in_span(b, load);
         match in_span {
             Some(left) if left.norm() <= nothing => left,
             in_span => {
@@ -148,6 +147,19 @@ impl Forces {
                 in_span.unwrap_or(nearest)
             }
         }
+    }
+
+    fn residual_in_span(&self, b: &DMatrix<f64>, load: &DVector<f64>) -> Option<DVector<f64>> {
+        let (actions, largest) = (self.actions(b), self.largest());
+        if !self.has_friction {
+            let (left, _) = residual_in_span(&actions, load, &largest, RANK_TOLERANCE)?;
+            return Some(left);
+        }
+        // What conditions hold along tangents spans as much as they do, however little friction they have.
+        let held = null_space(&null_space(b).transpose());
+        let (actions, load) = (held.tr_mul(&actions), held.tr_mul(load));
+        let (left, outside) = residual_in_span(&actions, &load, &largest, NOTHING)?;
+        Some(held * (left + outside))
     }
 
     /// What drives the bodies of a `load` that these forces don't balance.

@@ -133,6 +133,15 @@ fn without_friction_the_floor_holds_no_push() {
     );
 }
 
+/// As an expression may give it in places.
+#[test]
+fn a_law_that_bounds_friction_by_nothing_holds_nothing() {
+    for none in [given(0.0), coulomb(0.0)] {
+        slides(on_floor([0.1, -1.0, 0.0], none), "(1.0000, 0.0000)");
+        assert!(on_floor([0.0, -1.0, 0.0], none).is_ok());
+    }
+}
+
 #[test]
 fn friction_lifts_nothing_and_keeps_nothing_from_toppling() {
     let lifted = on_floor([0.0, 1.0, 0.0], coulomb(0.5)).unwrap_err();

@@ -81,3 +81,23 @@ fn a_wall_under_a_push_on_every_brick_stands_up_to_its_coefficient() {
     let failure = wall(4, 4, 0.5, |_| 0.501).analyse().unwrap_err();
     assert!(failure.message.contains("slides"), "{failure}");
 }
+
+#[test]
+fn however_little_friction_there_is_it_holds_what_it_can_and_no_more() {
+    for friction in [1e-8, 1e-5, 1e-2, 1.0] {
+        let stack = |part: f64| {
+            wall(
+                12,
+                1,
+                friction,
+                |b| if b == 11 { part * friction } else { 0.0 },
+            )
+        };
+        assert_eq!(
+            stack(0.99).analyse(),
+            Ok(RigidMotions::default()),
+            "{friction}"
+        );
+        assert!(stack(1.01).analyse().is_err(), "{friction}");
+    }
+}
