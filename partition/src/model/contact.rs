@@ -8,7 +8,7 @@ use super::steps::Loads;
 use super::supports::PARALLEL;
 use super::surface::{CORNER, Surface};
 use super::{Contact, groups, mortar, node_pairs, obstacle};
-use crate::contact_point::ContactPoint;
+use crate::contact_point::{ContactPoint, Law};
 use crate::element::geometry::{advance, dot, length};
 use crate::error::InputError;
 use crate::magnitude::short;
@@ -29,6 +29,9 @@ const FELT: f64 = 0.1;
 
 /// Facets of side a that are shorter than this fraction of those of side b are finer.
 const FINER: f64 = 0.6;
+
+/// Coefficients of friction beyond this are rather angles in degrees, or meant as infinite, which costs digits.
+const STEEP: f64 = 10.0;
 
 /// A direction in which a node is held, and how far in each load step (m).
 struct Held {
@@ -129,6 +132,7 @@ impl<'a> Contacts<'a> {
                     InputError::new(format!("{what}.{reason} (node {})", point.tag_a))
                 })?;
             }
+            warnings.extend(steep_friction(&points, &what));
         }
         let slack = ROUNDING * self.size;
         let deepest = points.iter().map(|p| p.gap).fold(0.0, f64::min);
@@ -256,6 +260,21 @@ impl<'a> Contacts<'a> {
         }
         Some(jumps)
     }
+}
+
+/// The warning of a coefficient of friction that is more likely an angle.
+fn steep_friction(points: &[ContactPoint<u32>], what: &str) -> Option<String> {
+    let coefficients = points.iter().map(|point| match point.law {
+        Law::Coulomb { coefficient, .. } => coefficient,
+        Law::Given { .. } | Law::Frictionless => 0.0,
+    });
+    let largest = coefficients.fold(0.0, f64::max);
+    (largest > STEEP).then(|| {
+        format!(
+            "{what}.friction: a coefficient of {}; expected the tangent of the friction angle, a number like 0.6",
+            short(largest)
+        )
+    })
 }
 
 /// The warning of a curved contact whose side a is the finer one: its nodes carry the conditions, and

@@ -86,6 +86,26 @@ fn friction_is_that_of_the_place() {
 }
 
 #[test]
+fn a_coefficient_of_friction_that_looks_like_an_angle_is_noted() {
+    for (keys, is_noted) in [
+        ("friction = '20 - 5*x'", true),
+        ("friction = 1.5", false),
+        ("tresca = 1e6", false),
+    ] {
+        let warnings = stack(0.25)
+            .model(&format!("{CONTACT}{keys}"))
+            .unwrap()
+            .warnings;
+        let noted = "contact 'c'.friction: a coefficient of";
+        assert_eq!(
+            warnings.iter().any(|w| w.starts_with(noted)),
+            is_noted,
+            "{keys}"
+        );
+    }
+}
+
+#[test]
 fn friction_below_zero_is_named_with_its_node() {
     for (keys, expected) in [
         (
