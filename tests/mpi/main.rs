@@ -121,7 +121,7 @@ type Solved = OnceLock<(Case, BTreeMap<String, Vec<u64>>)>;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 17] = [
+    let cases: [(&str, MakeCase); 20] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
@@ -156,6 +156,11 @@ fn same_results(trials: &mut Trials) {
         ("fallen", || Case::of(&resting::fallen(), 5)),
         ("mortar", || Case::of(&resting::uneven(), 7)),
         ("in_steps", || Case::of(&steps::two_blocks_in_steps(), 6)),
+        ("with_friction_in_steps", || {
+            Case::of(&steps::two_blocks_with_friction(), 6)
+        }),
+        ("raous", || Case::of(&built_in_model("raous", 0), 7)),
+        ("incline", || Case::of(&built_in_model("incline", 0), 4)),
         ("on_circles", || Case::of(&resting::on_circles(), 6)),
     ];
     for (name, make) in cases {

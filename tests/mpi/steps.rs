@@ -6,6 +6,17 @@ use super::*;
 
 /// The two blocks with loads that open and close their joint.
 pub fn two_blocks_in_steps() -> Model {
+    posed_in_steps(&two_block_scene())
+}
+
+/// The same with friction in their joint.
+pub fn two_blocks_with_friction() -> Model {
+    let scene = two_block_scene();
+    assert!(scene.contains("[[contact]]\n"));
+    posed_in_steps(&scene.replacen("[[contact]]\n", "[[contact]]\nfriction = '0.1+0.2*x'\n", 1))
+}
+
+fn posed_in_steps(scene: &str) -> Model {
     let steps = "
         [[step]]
         scale = 0.5
@@ -16,8 +27,7 @@ pub fn two_blocks_in_steps() -> Model {
         [[step]]
         scale = { pressure = 2, displacement = 3 }
         body_force = { upper = [0.0, -1e6] }";
-    let text = format!("{}{steps}", two_block_scene());
-    model(&text, two_blocks().mesh)
+    model(&format!("{scene}{steps}"), two_blocks().mesh)
 }
 
 /// A step that has no solution ends the run before anything is solved, and names itself.

@@ -40,11 +40,18 @@ pub fn stopped_between_steps(trials: &mut Trials) {
     if cfg!(not(debug_assertions)) {
         return;
     }
-    trials.on_all_ranks("stopped::between_steps", |ranks| {
-        let case = Case::of(&steps::two_blocks_in_steps(), 6);
+    stop_between_steps(trials, "", steps::two_blocks_in_steps);
+    stop_between_steps(trials, "_with_friction", steps::two_blocks_with_friction);
+}
+
+fn stop_between_steps(trials: &mut Trials, name: &'static str, model: fn() -> Model) {
+    trials.on_all_ranks(&format!("stopped::between_steps{name}"), move |ranks| {
+        let case = Case::of(&model(), 6);
         let ended = case.run_on(ranks, &[]);
         assert_eq!(ended.code(), 0, "{}", ended.stderr);
         let expected = datasets(&case.result());
+        let status = &expected["/contact/joint/status"];
+        assert_eq!(status.contains(&2), !name.is_empty());
         fs::write(case.result(), "an older result").unwrap();
 
         stop_after_one_step(&case, ranks);
