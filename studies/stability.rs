@@ -79,6 +79,9 @@ pub fn run(arguments: &Arguments) -> ExitCode {
     for ran in [&without, &with] {
         random::summary(ran);
     }
+    if !with.is_empty() && !told {
+        print!("{}", document::friction(arguments.first, &with));
+    }
     let mut all = without.iter().chain(&with);
     match all.all(|one| one.trial.verdict == Verdict::Right) {
         true => ExitCode::SUCCESS,

@@ -4,6 +4,8 @@ mod friction;
 
 use std::fmt::Write as _;
 
+pub use self::friction::chapter as friction;
+
 use super::axes::Row;
 use super::random::Ran;
 use crate::support::stress::FAMILIES;
@@ -81,7 +83,7 @@ usual, up to 30 subdomains.
     distributions(&mut text, ran);
     worst(&mut text, ran);
     axes(&mut text, rows);
-    text + &friction::chapter(first, frictional)
+    text + &friction(first, frictional)
 }
 
 /// The head of a table of verdicts.

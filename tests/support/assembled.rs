@@ -51,6 +51,8 @@ pub enum Along {
     Stuck(f64),
     /// The force is the bound with this sign.
     Slips(f64),
+    /// The force is this.
+    Pushed(f64),
 }
 
 /// u, λ and λ_t.
@@ -284,12 +286,18 @@ impl Assembled {
             column[j] = Some(first + k);
         }
         for (tangent, along) in self.tangents.iter().zip(along) {
-            let &Along::Slips(sign) = along else { continue };
-            let (grows, constant) = tangent.bound(closed[tangent.condition]);
+            let (slope, force) = match *along {
+                Along::Slips(sign) => {
+                    let (slope, constant) = tangent.bound(closed[tangent.condition]);
+                    (sign * slope, sign * constant)
+                }
+                Along::Pushed(force) => (0.0, force),
+                Along::Free | Along::Stuck(_) => continue,
+            };
             for &(dof, c) in &tangent.row {
-                rhs[dof] -= sign * constant * c;
+                rhs[dof] -= force * c;
                 if let Some(column) = column[tangent.condition] {
-                    entries.push(Triplet::new(dof, column, sign * grows * c * self.scale));
+                    entries.push(Triplet::new(dof, column, slope * c * self.scale));
                 }
             }
         }
@@ -303,9 +311,13 @@ impl Assembled {
             tangential[k] = x[first + active.len() + i] * self.scale;
         }
         for (k, tangent) in self.tangents.iter().enumerate() {
-            if let Along::Slips(sign) = along[k] {
-                let (grows, constant) = tangent.bound(closed[tangent.condition]);
-                tangential[k] = sign * (grows * forces[tangent.condition] + constant);
+            match along[k] {
+                Along::Slips(sign) => {
+                    let (grows, constant) = tangent.bound(closed[tangent.condition]);
+                    tangential[k] = sign * (grows * forces[tangent.condition] + constant);
+                }
+                Along::Pushed(force) => tangential[k] = force,
+                Along::Free | Along::Stuck(_) => {}
             }
         }
         Solved {

@@ -210,13 +210,16 @@ impl Findings {
             };
             self.status = worse(self.status, wrong / STUCK);
         }
-        self.friction(assembled, state, size.max(before), load_scale);
+        // Where the terms of K u are so large that their round-off is a force, the law holds up to that.
+        let round_off = 10.0 * f64::EPSILON * largest(&residual.terms) / FRICTION;
+        let least = (LEAST_BOUND * load_scale).max(round_off);
+        self.friction(assembled, state, size.max(before), least);
     }
 
-    /// The law of friction, with displacements of this size and loads of this scale.
-    fn friction(&mut self, assembled: &Assembled, state: &State, size: f64, load_scale: f64) {
+    /// The law of friction, with displacements of this size and forces of at least this scale.
+    fn friction(&mut self, assembled: &Assembled, state: &State, size: f64, least: f64) {
         let bounds = state.bounds(assembled);
-        let scale = largest(&bounds).max(LEAST_BOUND * load_scale);
+        let scale = largest(&bounds).max(least);
         let mut has_friction = vec![false; state.points.len()];
         for (k, tangent) in assembled.tangents.iter().enumerate() {
             let (point, force, since) = (
@@ -323,7 +326,8 @@ impl Findings {
     }
 
     /// Whether tangents stick or slip, as the status says, or where the bound is there without contact, the
-    /// force.
+    /// force. What slips has the force that it has: by the law it would depend on the normal forces, which need not
+    /// be the only ones where conditions depend on others.
     fn along(&self, assembled: &Assembled, state: &State) -> Vec<Along> {
         let bounds = state.bounds(assembled);
         let one = |(k, tangent): (usize, &Tangent)| {
@@ -333,7 +337,7 @@ impl Findings {
                 false => point.slipping,
             };
             match (slips, point.closed || tangent.is_given()) {
-                (true, _) => Along::Slips(force.signum()),
+                (true, _) => Along::Pushed(force),
                 (false, true) => Along::Stuck(state.jumps[k]),
                 (false, false) => Along::Free,
             }
