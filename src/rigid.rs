@@ -23,6 +23,7 @@ pub mod forces;
 pub mod free_motion;
 pub mod infeasible_nodes;
 mod kinematics;
+mod many_bodies;
 pub mod motion;
 pub mod nonnegative;
 pub mod projection;

@@ -1,5 +1,6 @@
 //! The fronts above all contact, for an active set that is frozen.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use faer::Mat;
@@ -12,6 +13,7 @@ use crate::schur::condensed::Condensed;
 use crate::schur::local::CondensedLoad;
 use crate::schur::merge::{Merge, OwnJumps, Spare};
 use crate::schur::substitution::Replaced;
+use crate::vector::dot;
 
 /// The spring on an open normal jump, relative to its diagonal, where some part of the scene moves freely without
 /// the contacts that are open: the next active set closes what stops it.
@@ -21,7 +23,7 @@ const SPRING: f64 = 1e-9;
 #[derive(Debug)]
 struct FrozenFront {
     merge: Merge,
-    /// S of the closed ones against them and what is kept, a column each.
+    /// S of the closed ones against them and what is kept, a column each from the diagonal on.
     held: Mat<f64>,
     /// Which are open.
     open: Vec<bool>,
@@ -70,7 +72,13 @@ impl FrozenFronts {
                 is_below[v] = true;
             }
         }
-        let nodes: Vec<usize> = (0..is_below.len()).filter(|&v| !is_below[v]).collect();
+        let mut nodes: Vec<usize> = (0..is_below.len()).filter(|&v| !is_below[v]).collect();
+        let mut depth = vec![0; is_below.len()];
+        for v in (0..depth.len()).rev() {
+            depth[v] = (plan.tree.nodes[v].parent).map_or(0, |parent| depth[parent] + 1);
+        }
+        // The deepest first: what ranks share is near the root, and none waits for another before.
+        nodes.sort_by_key(|&v| Reverse(depth[v]));
         let own = plan
             .groups
             .iter()
@@ -87,13 +95,13 @@ impl FrozenFronts {
             smallest_pivot: f64::INFINITY,
         };
         for (c, cluster) in plan.clusters.iter().enumerate() {
-            fronts.pass_up(context, cluster.node, clusters.get(&c));
+            fronts.pass_up(context, cluster.node, clusters.get(&c).cloned());
         }
         Ok(fronts)
     }
 
     /// Brings S of a node to the owner of the one that it is merged into. Collective.
-    fn pass_up(&mut self, context: &Context<'_>, v: usize, condensed: Option<&Condensed>) {
+    fn pass_up(&mut self, context: &Context<'_>, v: usize, mut condensed: Option<Condensed>) {
         let Context { comm, plan, .. } = *context;
         let Some(parent) = plan.tree.nodes[v].parent else {
             return;
@@ -101,7 +109,7 @@ impl FrozenFronts {
         let way = (plan.node_owners[v], plan.node_owners[parent]);
         comm.route(
             [way],
-            |_| condensed.cloned(),
+            |_| condensed.take(),
             |_, arrived| {
                 self.merged.extend(arrived.map(|condensed| (v, condensed)));
             },
@@ -120,8 +128,7 @@ impl FrozenFronts {
     ) -> Result<(), Failure> {
         let comm = context.comm;
         let result = self.eliminate(context, open, self.fronts_known(context));
-        let failed = comm.collect(&result.is_err()).contains(&true);
-        if !comm.decide(failed) {
+        if comm.agree(result).is_ok() {
             return Ok(());
         }
         self.spring = SPRING;
@@ -190,7 +197,7 @@ impl FrozenFronts {
                 result = Err(failure);
                 None
             });
-            self.pass_up(context, v, condensed.as_ref());
+            self.pass_up(context, v, condensed);
         }
         result
     }
@@ -225,19 +232,20 @@ impl FrozenFronts {
                 ))
             })?;
         let (closed, n) = (whole.jumps, whole.s.nrows());
-        let mut held = whole.s.submatrix(0, 0, n, closed).to_owned();
-        for j in 0..closed {
-            for i in 0..j {
-                held[(i, j)] = held[(j, i)];
+        let mut held = Mat::zeros(n, closed);
+        copy_lower(&whole.s, 0, &mut held);
+        let s = match closed {
+            0 => whole.s,
+            _ => {
+                let mut kept = Mat::zeros(n - closed, n - closed);
+                copy_lower(&whole.s, closed, &mut kept);
+                self.spare.keep(whole.s);
+                kept
             }
-        }
-        let kept = n - closed;
+        };
         let condensed = Condensed {
             jumps: 0,
-            s: match closed {
-                0 => whole.s,
-                _ => whole.s.submatrix(closed, closed, kept, kept).to_owned(),
-            },
+            s,
             diagonal: whole.diagonal[closed..].to_vec(),
             interface_dofs: whole.interface_dofs,
             smallest_pivot: whole.smallest_pivot,
@@ -271,8 +279,9 @@ impl FrozenFronts {
                 let values = front.closed_values(plan.group_of(v).map(|g| &prescribed[&g][..]));
                 let closed = values.len();
                 let mut kept = load.boundary()[closed..].to_vec();
-                for (column, value) in front.held.col_iter().zip(&values) {
-                    for (kept, s) in kept.iter_mut().zip(column.iter().skip(closed)) {
+                for (j, value) in values.iter().enumerate() {
+                    let column = &front.held.col_as_slice(j)[closed..];
+                    for (kept, s) in kept.iter_mut().zip(column) {
                         *kept -= s * value;
                     }
                 }
@@ -319,6 +328,14 @@ impl FrozenFronts {
     }
 }
 
+/// Copies the first columns of the lower triangle from row and column `first` of a matrix on.
+fn copy_lower(from: &Mat<f64>, first: usize, to: &mut Mat<f64>) {
+    for j in 0..to.ncols() {
+        let below = &from.col_as_slice(first + j)[first + j..];
+        to.col_as_slice_mut(j)[j..].copy_from_slice(below);
+    }
+}
+
 /// Carries a vector of node v between its owner and that of the node above. Collective.
 fn carry(
     context: &Context<'_>,
@@ -357,14 +374,16 @@ impl FrozenFront {
     /// The forces on its own normal jumps, 0 where open: what the load leaves of them at the unknowns `boundary`,
     /// closed normal jumps and what is kept.
     fn forces(&self, load: &CondensedLoad, boundary: &[f64]) -> Vec<f64> {
-        let mut of_closed = self
-            .held
-            .col_iter()
-            .zip(load.boundary())
-            .map(|(column, load)| {
-                let terms = column.iter().zip(boundary).map(|(s, x)| s * x);
-                load - terms.sum::<f64>()
-            });
+        let closed = self.held.ncols();
+        let mut of_closed = load.boundary()[..closed].to_vec();
+        for j in 0..closed {
+            let column = &self.held.col_as_slice(j)[j..];
+            of_closed[j] -= dot(column, &boundary[j..]);
+            for (force, s) in of_closed[j..].iter_mut().zip(column).skip(1) {
+                *force -= s * boundary[j];
+            }
+        }
+        let mut of_closed = of_closed.into_iter();
         let of_jump = |open: &bool| match open {
             true => 0.0,
             false => of_closed.next().unwrap_or_default(),

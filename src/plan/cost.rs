@@ -34,9 +34,10 @@ const PER_PAIR_OF_CONDITIONS: f64 = 33.0;
 /// Estimated time of node v of the tree, in flops: its arithmetic, and what goes with it.
 pub(super) fn weight(tree: &Tree, v: usize, dim: usize, merging: Merging) -> f64 {
     let front = front(tree, v, dim, merging);
-    match v < tree.subdomains {
-        true => front.time_to_condense(),
-        false => front.time(),
+    match merging {
+        _ if v < tree.subdomains => front.time_to_condense(),
+        Merging::Frozen if tree.nodes[v].conditions > 0 => ACTIVE_SETS * front.time(),
+        _ => front.time(),
     }
 }
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::forces::{Forces, Friction, slips};
 use super::free_motion::FreeMotion;
 use super::kinematics::{Kinematics, null_space};
+use super::many_bodies::{MANY, ManyBodies};
 use super::motion::BodyFrame;
 use crate::error::Failure;
 
@@ -118,9 +119,12 @@ impl Scene {
         if kinematics.len == 0 {
             return Ok(RigidMotions::default());
         }
-        let b = kinematics.rows(rows);
         let load = kinematics.load(bodies);
         let scale: f64 = bodies.iter().map(|body| body.load_scale).sum();
+        if kinematics.len >= MANY && kinematics.rests(rows, &load, scale) {
+            return Ok(RigidMotions::default());
+        }
+        let b = kinematics.rows(rows);
         let free = null_space(&b);
         let along = free.transpose() * &load;
         let driven = &free * &along;
@@ -161,6 +165,19 @@ impl Scene {
 }
 
 impl Kinematics {
+    /// Whether the conditions `rows` certainly hold all motions, and those along normals balance the `load`, where
+    /// all loads are `scale`; if not, it takes longer to find out.
+    fn rests(&self, rows: &[RigidRow], load: &DVector<f64>, scale: f64) -> bool {
+        let bodies = |rows: &mut dyn Iterator<Item = &RigidRow>| {
+            ManyBodies::new(self.len, rows.map(|row| self.sparse_row(row)).collect())
+        };
+        let mut normals = rows.iter().filter(|row| row.friction.is_none());
+        let pressing = bodies(&mut normals);
+        let rest = pressing.rest(load.as_slice(), &vec![0.0; pressing.len()]);
+        rest.is_some_and(|rest| rest.unbalanced <= UNDECIDED * scale)
+            && bodies(&mut rows.iter()).hold_all()
+    }
+
     fn ill_posed(
         &self,
         bodies: &[BodyState],

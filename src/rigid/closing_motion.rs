@@ -13,11 +13,14 @@ use super::analysis::{BodyState, RigidRow};
 use super::body_analysis::RigidBodyAnalysis;
 use super::forces::{Forces, Friction};
 use super::kinematics::{Kinematics, RANK_TOLERANCE, null_space};
+use super::many_bodies::{MANY, ManyBodies};
 use super::motion::BodyFrame;
 use crate::context::{Context, Loads};
 
 /// Drive that is left, relative to all, that counts as none.
 const BALANCED: f64 = 1e-9;
+/// The same where springs that hold many bodies take a part of it: these move some thousand times their gaps.
+const SPRINGS: f64 = 1e-6;
 /// Distance, relative to the size of the scene, that counts as none.
 const TOUCHING: f64 = 1e-12;
 /// Cosine between a motion and a condition's row below which the motion doesn't close it.
@@ -67,11 +70,18 @@ pub(super) fn closing_motions(
         return motions;
     }
     let speed = speeds(&kinematics, bodies);
-    let b = kinematics.rows(rows);
-    let fast = &b * DMatrix::from_diagonal(&speed);
     let load = kinematics.load(bodies).component_mul(&speed);
     let size = bodies.iter().fold(0.0, |m: f64, b| m.max(b.frame.size));
     let touching = TOUCHING * size;
+    if kinematics.len >= MANY && !has_friction {
+        let left = gaps_left(rows, &motions);
+        if let Some(y) = rest(&kinematics, rows, &speed, &load, &left, touching) {
+            move_along(&mut motions, &kinematics, &y.component_mul(&speed));
+            return motions;
+        }
+    }
+    let b = kinematics.rows(rows);
+    let fast = &b * DMatrix::from_diagonal(&speed);
     let fallen =
         fall(rows, &fast, &load, gaps_left(rows, &motions), touching).component_mul(&speed);
     move_along(&mut motions, &kinematics, &fallen);
@@ -156,6 +166,33 @@ fn speeds(kinematics: &Kinematics, bodies: &[BodyState]) -> DVector<f64> {
     // The fastest moves as fast as the load says.
     let fastest = speed.amax();
     speed / fastest
+}
+
+/// Where many bodies come to rest, if that is found: they stay where they are if what touches balances the load.
+fn rest(
+    kinematics: &Kinematics,
+    rows: &[RigidRow],
+    speed: &DVector<f64>,
+    load: &DVector<f64>,
+    left: &[f64],
+    touching: f64,
+) -> Option<DVector<f64>> {
+    let with = |farthest: f64, missing: f64| {
+        let near = rows.iter().zip(left).filter(|(_, left)| **left <= farthest);
+        let (rows, gaps): (Vec<_>, Vec<f64>) = near
+            .map(|(row, left)| {
+                let mut sparse = kinematics.sparse_row(row);
+                sparse.iter_mut().for_each(|(i, b)| *b *= speed[*i]);
+                (sparse, if *left <= touching { 0.0 } else { *left })
+            })
+            .unzip();
+        let rest = ManyBodies::new(load.len(), rows).rest(load.as_slice(), &gaps);
+        rest.filter(|rest| rest.unbalanced <= missing * load.norm())
+    };
+    match with(touching, BALANCED) {
+        Some(_) => Some(DVector::zeros(load.len())),
+        None => with(f64::INFINITY, SPRINGS).map(|rest| DVector::from_vec(rest.motion)),
+    }
 }
 
 /// How far to go along `load` within B y ≤ `left`: along what closed contacts leave of the load, until

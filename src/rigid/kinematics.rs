@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::analysis::{BodyState, RigidRow};
 use super::free_motion::FreeMotion;
+use super::many_bodies::SparseRow;
 use super::motion::BodyFrame;
 
 /// Relative size below which a singular value is zero: a support that is this much shorter than
@@ -88,6 +89,24 @@ impl Kinematics {
             }
         }
         b
+    }
+
+    /// The same where a row touches few bodies.
+    pub fn sparse_row(&self, row: &RigidRow) -> SparseRow {
+        let mut sparse = SparseRow::new();
+        for (body, action) in &row.bodies {
+            let action = DVector::from_column_slice(action);
+            let along = self.bases[*body].tr_mul(&action);
+            sparse.extend(self.unknowns(*body).zip(along.iter().copied()));
+        }
+        // A body comes twice where two of its nodes do.
+        sparse.sort_by_key(|&(i, _)| i);
+        sparse.dedup_by(|(i, value), (kept, sum)| {
+            let same = i == kept;
+            *sum += if same { *value } else { 0.0 };
+            same
+        });
+        sparse
     }
 
     /// The load against them.

@@ -7,6 +7,7 @@ use super::analysis::Scene;
 use super::forces::Friction;
 use super::free_motion::FreeMotion;
 use super::kinematics::{Kinematics, null_space};
+use super::many_bodies::{MANY, ManyBodies};
 use super::nonnegative;
 use super::projection::MotionProducts;
 
@@ -45,6 +46,13 @@ impl Scene {
         let kinematics = Kinematics::new(self.dim, &self.bodies);
         if kinematics.len == 0 {
             return ReleasedModes::default();
+        }
+        if free.is_empty() && kinematics.len >= MANY {
+            let held = (0..conditions.len()).filter(|&j| self.holds(j, conditions));
+            let rows = held.map(|j| kinematics.sparse_row(&self.rows[j]));
+            if ManyBodies::new(kinematics.len, rows.collect()).hold_all() {
+                return ReleasedModes::default();
+            }
         }
         let b = kinematics.rows(&self.rows);
         let (held, mut redundant): (Vec<usize>, Vec<usize>) =

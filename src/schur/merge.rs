@@ -55,7 +55,8 @@ impl Spare {
         matrix
     }
 
-    fn keep(&mut self, matrix: Mat<f64>) {
+    /// Keeps what isn't needed any more.
+    pub fn keep(&mut self, matrix: Mat<f64>) {
         self.0.push(matrix);
         if self.0.len() > MOST_SPARE {
             let smallest = (0..self.0.len()).min_by_key(|&i| self.0[i].nrows());

@@ -68,6 +68,7 @@ fn main() -> ExitCode {
     outputs::full_disk(&mut trials);
     outputs::vanished_folder(&mut trials);
     sudden_ends::sudden_ends(&mut trials);
+    sudden_ends::in_a_frozen_step(&mut trials);
     stopping::stopped_while_factorizing(&mut trials);
     stopping::stopped_while_sweeping(&mut trials);
     stopping::stopped_between_steps(&mut trials);

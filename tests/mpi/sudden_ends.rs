@@ -50,6 +50,21 @@ pub fn sudden_ends(trials: &mut Trials) {
     }
 }
 
+/// A rank that fails while one of many active sets is frozen: all try once more with springs, and end.
+pub fn in_a_frozen_step(trials: &mut Trials) {
+    if cfg!(not(debug_assertions)) {
+        return;
+    }
+    for ranks in [2, 3] {
+        let name = format!("sudden_end::failure_while_an_active_set_is_frozen::on_{ranks}_ranks");
+        trials.once(&name, move || {
+            let case = Case::of(&built_in_model("wall", 1), 33);
+            fs::write(case.result(), "the result of yesterday").unwrap();
+            sudden_end(&case, [ranks - 1, ranks], "failure", "sweeping");
+        });
+    }
+}
+
 /// All phases of a run by the names that it gives them.
 fn phases() -> impl Iterator<Item = &'static str> {
     let run = include_str!("../../src/run.rs").split("phase(\"").skip(1);

@@ -11,14 +11,18 @@ use crate::support::solution::{ContactPoint, Solution};
 use crate::support::solver::solve;
 use crate::support::stress::judge::Findings;
 
-/// Number of nodes of the lower block.
-const LOWER_NODES: i64 = 9 * 5;
+/// Cells along and across half of the lower block.
+const CELLS: [usize; 2] = [4, 4];
 
 /// A block without load on one whose bottom goes up by `rise`, `gap` apart.
 fn on_a_lift(rise: f64, gap: f64) -> Model {
+    with_cells(CELLS, rise, gap)
+}
+
+fn with_cells([along, across]: [usize; 2], rise: f64, gap: f64) -> Model {
     let blocks = Blocks::new()
-        .rectangle("lower", [0.0, 2.0], [0.0, 1.0], [8, 4])
-        .rectangle("upper", [0.5, 1.5], [1.0, 2.0], [4, 4]);
+        .rectangle("lower", [0.0, 2.0], [0.0, 1.0], [2 * along, across])
+        .rectangle("upper", [0.5, 1.5], [1.0, 2.0], [along, across]);
     let text = format!(
         "plane = 'strain'
         materials.rock = {{young = 20e9, poisson = 0.22}}
@@ -37,10 +41,22 @@ fn on_a_lift(rise: f64, gap: f64) -> Model {
 /// Fails unless the upper block has moved by `y` and the lower one by `rise`.
 #[track_caller]
 fn moved(model: &Model, solution: &Solution, rise: f64, y: f64) {
+    moved_with_cells(CELLS, model, solution, rise, y);
+}
+
+#[track_caller]
+fn moved_with_cells(
+    [along, across]: [usize; 2],
+    model: &Model,
+    solution: &Solution,
+    rise: f64,
+    y: f64,
+) {
+    let of_lower = ((2 * along + 1) * (across + 1)) as i64;
     for (x, tag) in model.mesh.points.iter().zip(&model.mesh.node_tags) {
         let u = solution.displacement[tag];
         // Both have nodes where they touch; those of the lower one come first.
-        let on_upper = x[1] > 1.0 || (x[1] == 1.0 && *tag > LOWER_NODES);
+        let on_upper = x[1] > 1.0 || (x[1] == 1.0 && *tag > of_lower);
         let expected = [0.0, if on_upper { y } else { rise }];
         for (u, e) in u.iter().zip(expected) {
             close(*u, e, 1e-12 * rise.abs());
@@ -64,6 +80,17 @@ fn a_body_without_load_stays_when_its_support_leaves() {
         let gap_is_left = |p: &ContactPoint| (p.gap - 0.01).abs() < 1e-14;
         assert!(solution.points().all(gap_is_left));
     }
+}
+
+/// So many conditions that active sets are frozen: where all are open, springs hold the upper block.
+#[test]
+fn a_body_stays_that_many_contacts_let_go() {
+    let cells = [650, 2];
+    let model = with_cells(cells, -0.01, 0.0);
+    let solution = solve(&model, 9);
+    moved_with_cells(cells, &model, &solution, -0.01, 0.0);
+    assert_eq!(solution.closed(), 0);
+    assert!(names(&solution, "upper"));
 }
 
 #[test]

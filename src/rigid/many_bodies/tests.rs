@@ -1,0 +1,95 @@
+//! Sparse matrices against dense ones.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::*;
+use crate::rigid::nonnegative;
+
+/// Bodies in a row, each of two motions, on the next one or on the ground by `rows` conditions.
+fn chain(bodies: usize, rows: usize, seed: usize) -> (Vec<SparseRow>, DMatrix<f64>) {
+    let noise = |s: usize| ((s as f64 * 78.233).sin() * 43758.5453).fract();
+    // Unknowns in no order at all.
+    let number = |i: usize| i * 7 % (2 * bodies);
+    let row = |j: usize| -> SparseRow {
+        let body = j % bodies;
+        let unknowns = 2 * body..(2 * body + 4).min(2 * bodies);
+        unknowns
+            .map(|i| (number(i), noise(100 * seed + 5 * j + i)))
+            .collect()
+    };
+    let sparse: Vec<SparseRow> = (0..rows).map(row).collect();
+    let mut dense = DMatrix::zeros(rows, 2 * bodies);
+    for (j, row) in sparse.iter().enumerate() {
+        row.iter().for_each(|&(i, b)| dense[(j, i)] += b);
+    }
+    (sparse, dense)
+}
+
+#[test]
+fn forces_balance_what_those_of_least_squares_do() {
+    let mut balanced = 0;
+    for seed in 0..60 {
+        let (bodies, rows) = (4, 12 + seed % 9);
+        let (sparse, b) = chain(bodies, rows, seed);
+        let n = b.ncols();
+        // Half of the loads are within the cone.
+        let lambda = DVector::from_fn(rows, |j, _| ((j + seed) % 3) as f64);
+        let any = DVector::from_fn(n, |i, _| ((i * i + seed) as f64).sin());
+        let load = if seed % 2 == 0 {
+            b.tr_mul(&lambda)
+        } else {
+            any
+        };
+        let left = nonnegative::residual(&b.transpose(), &load).norm();
+        let found = ManyBodies::new(n, sparse).rest(load.as_slice(), &vec![0.0; rows]);
+        let found = found.map_or(f64::INFINITY, |rest| rest.unbalanced);
+        let nothing = 1e-11 * load.norm();
+        assert_eq!(
+            found <= nothing,
+            left <= nothing,
+            "{seed}: {found:e}, expected {left:e}"
+        );
+        balanced += usize::from(left <= nothing);
+    }
+    assert!((20..50).contains(&balanced), "{balanced}");
+}
+
+#[test]
+fn bodies_rest_where_no_motion_within_the_gaps_does_more_work() {
+    for seed in 0..20 {
+        let (sparse, b) = chain(5, 40, seed);
+        let gaps: Vec<f64> = (0..40).map(|j| 0.1 * (j % 4) as f64).collect();
+        let lambda = DVector::from_fn(40, |j, _| ((j + seed) % 3) as f64);
+        let load = b.tr_mul(&lambda);
+        let rest = ManyBodies::new(10, sparse)
+            .rest(load.as_slice(), &gaps)
+            .unwrap();
+        assert!(rest.unbalanced <= 1e-7 * load.norm(), "{rest:?}");
+        let y = DVector::from_vec(rest.motion);
+        let jumps = &b * &y;
+        for (jump, gap) in jumps.iter().zip(&gaps) {
+            assert!(*jump <= gap + 1e-12, "{jump}, expected at most {gap}");
+        }
+        // What the closed ones can't balance would do more work.
+        let closed: Vec<usize> = (0..40).filter(|&j| jumps[j] > gaps[j] - 1e-9).collect();
+        let drive = nonnegative::residual(&b.select_rows(&closed).transpose(), &load);
+        assert!(drive.norm() <= 1e-7 * load.norm(), "{drive}");
+    }
+}
+
+#[test]
+fn motions_are_held_unless_some_combination_is_free() {
+    for seed in 0..20 {
+        let (sparse, b) = chain(6, 30, seed);
+        assert!(ManyBodies::new(12, sparse.clone()).hold_all());
+        // The last column becomes a combination of others, as far as the rows have both.
+        let with_one_less = sparse.iter().map(|row| {
+            let all = row.iter().filter(|(i, _)| *i != 3);
+            all.copied().collect()
+        });
+        assert!(!ManyBodies::new(12, with_one_less.collect()).hold_all());
+        let few = sparse[..11].to_vec();
+        assert!(!ManyBodies::new(12, few).hold_all());
+        assert_eq!(b.ncols(), 12);
+    }
+}
