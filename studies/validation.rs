@@ -42,6 +42,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         kept &= broken.is_empty();
     }
     if let Some(path) = &arguments.markdown {
+        text += document::TAIL;
         std::fs::write(path, text).unwrap();
     }
     match kept {

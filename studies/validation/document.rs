@@ -19,6 +19,21 @@ last two meshes. Contact pressure is the force of a node over its tributary area
 
 ";
 
+/// What stands after the cases.
+pub const TAIL: &str = "\
+## Friction, exactly
+
+Among the tests alone, as they need no finer meshes (`tests/scenes/friction`):
+
+- A block on an incline stands and slides 1e-12 below and above the angle of friction; a block that is pushed up a wedge
+  of tan α = 0.1 with μ = 0.3 slides from F/G = 0.412371 on, within 1e-12 (NAFEMS CGS-4).
+- A joint that sticks is as good as glued: displacements agree to 1e-12 with those of a mesh without it.
+- A joint that slips evenly, under uniform pressure and shear, is exact to 1e-10 in all cells and between nodes that
+  don't match.
+- Over a cycle of load the work from outside is what friction dissipates, to 1e-10.
+- Increments of loads to and fro agree to 1e-11 in energy with a nonlinear Gauss-Seidel method on the whole mesh.
+";
+
 /// A case with its table, and which gates it doesn't keep.
 pub fn chapter(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String {
     let mut text = format!("## {}\n\n{}\n", case.title, case.text);

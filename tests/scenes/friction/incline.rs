@@ -36,8 +36,8 @@ fn a_block_stands_below_the_angle_of_friction_and_slides_above_it() {
     for angle in [0.1, 0.35, 0.9] {
         for (share, stands) in [
             (1.1, true),
-            (1.0 + 1e-9, true),
-            (1.0 - 1e-9, false),
+            (1.0 + 1e-12, true),
+            (1.0 - 1e-12, false),
             (0.9, false),
         ] {
             let law = format!("friction = {:?}", f64::tan(angle) * share);
@@ -88,8 +88,8 @@ fn a_wedge_begins_to_slide_as_the_nafems_benchmark_says() {
     let limit = 0.4 / 0.97;
     close(limit, 0.412_371, 1e-6);
     for (share, stands) in [
-        (1.0 - 1e-9, true),
-        (1.0 + 1e-9, false),
+        (1.0 - 1e-12, true),
+        (1.0 + 1e-12, false),
         (0.9995, true),
         (1.0005, false),
     ] {
