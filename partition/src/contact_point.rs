@@ -148,6 +148,11 @@ impl<N: Copy> ContactPoint<N> {
         }
     }
 
+    /// The directions in which it has conditions: its normal, and its tangents where it has friction.
+    pub fn directions(&self, dim: usize) -> impl Iterator<Item = [f64; 3]> + '_ {
+        std::iter::once(self.normal()).chain(self.tangents(dim).iter().copied())
+    }
+
     /// Its row of B: every node with weight·n.
     pub fn row(&self) -> impl Iterator<Item = (N, [f64; 3])> + Clone {
         self.row_along(self.frame.normal)

@@ -125,21 +125,25 @@ pub struct SubdomainNode {
 pub struct PointNode {
     /// Its number on Γ, if several subdomains have it.
     pub interface: Option<u32>,
-    /// Whether supports leave it free along the normal of the point, or nearly so.
+    /// Whether supports leave it free along the normal of the point, or nearly so, and where the point has friction
+    /// along its tangents.
     pub is_free: bool,
 }
 
 impl PointNode {
-    /// A node that `supports` hold along these directions, in a point with this `normal`.
+    /// A node that `supports` hold along these directions, in a point that has conditions along those.
     pub fn new(
         interface: Option<u32>,
-        normal: [f64; 3],
-        supports: impl Iterator<Item = [f64; 3]>,
+        conditions: impl IntoIterator<Item = [f64; 3]>,
+        supports: impl Iterator<Item = [f64; 3]> + Clone,
     ) -> Self {
-        let held: f64 = supports.map(|d| dot(d, normal).powi(2)).sum();
+        let is_free = |direction: [f64; 3]| {
+            let held: f64 = supports.clone().map(|d| dot(d, direction).powi(2)).sum();
+            1.0 - held > LEAST_FREE
+        };
         Self {
             interface,
-            is_free: 1.0 - held > LEAST_FREE,
+            is_free: conditions.into_iter().all(is_free),
         }
     }
 }

@@ -183,7 +183,7 @@ impl Tree {
             let mut kept: Vec<u32> = Vec::new();
             let points = self.nodes[v].points.iter();
             let mut conditions = points
-                .map(|&j| 1 + catalog.points[j as usize].tangents(catalog.dim).len())
+                .map(|&j| catalog.points[j as usize].directions(catalog.dim).count())
                 .sum();
             for child in self.nodes[v].children.clone() {
                 kept.extend(&self.nodes[child].kept);

@@ -18,7 +18,8 @@ impl Problem {
                 let subdomain = &self.subdomains[at.subdomain as usize];
                 let supports = subdomain.supports.iter().filter(|s| s.node == at.node);
                 let interface = numbers[at.subdomain as usize].get(&at.node).copied();
-                PointNode::new(interface, point.normal(), supports.map(|s| s.direction))
+                let directions = point.directions(self.catalog.dim);
+                PointNode::new(interface, directions, supports.map(|s| s.direction))
             });
             nodes.collect()
         };

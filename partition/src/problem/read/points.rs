@@ -132,7 +132,7 @@ fn read_nodes(
     let supports = 0..contents.count('S');
     let held = contents.integers("/support/node", supports.clone())?;
     let directions = contents.numbers("/support/direction", supports)?;
-    let of_node = |at: SubdomainNode, normal| {
+    let of_node = |at: SubdomainNode, point: &ContactPoint<SubdomainNode>| {
         let (subdomain, node) = (at.subdomain as usize, i64::from(at.node));
         let rows = contents.rows('I', subdomain);
         let place = shared.of(rows.clone()).iter().position(|&n| n == node);
@@ -141,13 +141,13 @@ fn read_nodes(
         let rows = rows.filter(|&row| held.all()[row] == node);
         PointNode::new(
             interface,
-            normal,
+            point.directions(contents.count('d')),
             rows.map(|row| directions.vectors(row..row + 1)[0]),
         )
     };
     let of_point = |point: &ContactPoint<SubdomainNode>| {
         let nodes = point.entries.iter();
-        nodes.map(|&(at, _)| of_node(at, point.normal())).collect()
+        nodes.map(|&(at, _)| of_node(at, point)).collect()
     };
     Ok(points.iter().map(of_point).collect())
 }
