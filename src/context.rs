@@ -29,6 +29,22 @@ pub struct Context<'a> {
     pub par: Par,
 }
 
+/// A place on the way through the load steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// The load step.
+    pub step: usize,
+    /// How much of the way is gone from the loads of the step before, none before the first, to those of the step.
+    pub part: f64,
+}
+
+impl Moment {
+    /// The end of a load step.
+    pub fn end_of(step: usize) -> Self {
+        Self { step, part: 1.0 }
+    }
+}
+
 /// What acts in a load step on what this rank has.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loads {
@@ -39,8 +55,25 @@ pub struct Loads {
 }
 
 impl Context<'_> {
-    /// What acts in load step k.
-    pub fn loads(&self, k: usize) -> Loads {
+    /// What acts at a moment.
+    pub fn loads(&self, moment: Moment) -> Loads {
+        let mut loads = self.loads_of_step(moment.step);
+        if moment.part < 1.0 {
+            let before = (moment.step.checked_sub(1)).map(|step| self.loads_of_step(step));
+            for (b, loads) in &mut loads.blocks {
+                let before = before.as_ref().map(|before| &before.blocks[b]);
+                loads.go_back(before, moment.part);
+            }
+            for (g, loads) in &mut loads.groups {
+                let before = before.as_ref().map(|before| &before.groups[g]);
+                loads.go_back(before, moment.part);
+            }
+        }
+        loads
+    }
+
+    /// What acts at the end of load step k.
+    fn loads_of_step(&self, k: usize) -> Loads {
         let (blocks, groups) = (self.blocks.iter(), self.groups.iter());
         Loads {
             blocks: blocks

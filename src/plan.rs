@@ -57,8 +57,7 @@ impl Plan {
 
     /// The merging that takes least for this scene, where newton may choose.
     pub fn cheapest(catalog: &Catalog) -> Merging {
-        let has_friction = catalog.points.iter().any(|point| point.law.has_friction());
-        match !has_friction && cost::freezing_pays(&Tree::new(catalog), catalog.dim) {
+        match !catalog.has_friction() && cost::freezing_pays(&Tree::new(catalog), catalog.dim) {
             true => Merging::Frozen,
             false => Merging::All,
         }

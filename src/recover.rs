@@ -40,6 +40,35 @@ pub struct GroupSolution {
     pub gaps: Vec<f64>,
 }
 
+/// What friction leaves at the tangential conditions of the contact groups of this rank, by their number.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Slips {
+    /// Tangential jumps since the bodies were unloaded (m).
+    pub jumps: BTreeMap<usize, Vec<f64>>,
+    /// What is dissipated in the load step: force times slip (J, per metre of thickness).
+    pub work: BTreeMap<usize, Vec<f64>>,
+}
+
+impl Slips {
+    /// Jumps and work of a contact group.
+    pub fn of(&self, g: usize) -> (&[f64], &[f64]) {
+        let [jumps, work] = [&self.jumps, &self.work].map(|all| all.get(&g));
+        (
+            jumps.map_or(&[], Vec::as_slice),
+            work.map_or(&[], Vec::as_slice),
+        )
+    }
+
+    /// Counts the work of increments before this one, too.
+    pub fn add_work(&mut self, earlier: &BTreeMap<usize, Vec<f64>>) {
+        for (g, work) in &mut self.work {
+            for (work, earlier) in work.iter_mut().zip(earlier.get(g).into_iter().flatten()) {
+                *work += earlier;
+            }
+        }
+    }
+}
+
 /// u and λ on what this rank has.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiscreteSolution {
@@ -50,24 +79,23 @@ pub struct DiscreteSolution {
 }
 
 impl DiscreteSolution {
-    /// The tangential jumps of every contact group since the bodies were unloaded, where those before the load step
-    /// were `before` (m).
-    pub fn slips(
-        &self,
-        context: &Context<'_>,
-        before: &BTreeMap<usize, Vec<f64>>,
-    ) -> BTreeMap<usize, Vec<f64>> {
-        let of_group = |(&g, solution): (&usize, &GroupSolution)| {
+    /// What friction leaves where the tangential jumps before the increment were `before` (m).
+    pub fn slips(&self, context: &Context<'_>, before: &BTreeMap<usize, Vec<f64>>) -> Slips {
+        let mut slips = Slips::default();
+        for (&g, solution) in &self.groups {
             let first = context.groups[&g].points.len();
-            let ways = solution.gaps[first..].iter().zip(&solution.closed[first..]);
-            let ways = ways.map(|(way, sticks)| if *sticks { 0.0 } else { *way });
-            let slips = match before.get(&g) {
-                Some(before) => before.iter().zip(ways).map(|(w, way)| w - way).collect(),
-                None => ways.map(|way| -way).collect(),
+            let tangential = first..solution.closed.len();
+            let slip = |j: usize| match solution.closed[j] {
+                true => 0.0,
+                false => -solution.gaps[j],
             };
-            (g, slips)
-        };
-        self.groups.iter().map(of_group).collect()
+            let was = |j: usize| before.get(&g).map_or(0.0, |before| before[j - first]);
+            let jumps = tangential.clone().map(|j| was(j) + slip(j)).collect();
+            let work = tangential.map(|j| solution.forces[j] * slip(j)).collect();
+            slips.jumps.insert(g, jumps);
+            slips.work.insert(g, work);
+        }
+        slips
     }
 
     /// Tells contact groups what gaps the displacements leave, and blocks what their forces push. Collective.

@@ -2,6 +2,7 @@
 //!
 //! read → assemble → condense → S_0 at the root → for each load step: F → sweeps → recover → write
 
+mod increment;
 mod restart;
 mod sweeping;
 
@@ -12,14 +13,13 @@ use std::time::Instant;
 use contact_dd_partition::problem::read::ProblemFile;
 use faer::Par;
 
+use self::increment::Increments;
 use self::restart::{finished_steps, keep};
-use self::sweeping::{sweep, sweep_frozen};
 use crate::comm::{Comm, phase};
 use crate::condense::Condensation;
 use crate::condense::interface::assemble_interface;
-use crate::condense::limits::limits_of_groups;
 use crate::condense::tree::condense_clusters;
-use crate::context::Context;
+use crate::context::{Context, Moment};
 use crate::error::Failure;
 use crate::frozen::fronts::FrozenFronts;
 use crate::output::memory::afford;
@@ -30,18 +30,16 @@ use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::plan::Plan;
 use crate::plan::cluster::Merging;
 use crate::read::{check_copies, collect_groups, depend_on_each_other, read_blocks};
-use crate::recover::fixed_active_set::FixedActiveSet;
-use crate::recover::solution::Solution;
-use crate::recover::{recover, substitute_back};
 use crate::report::log::RunLog;
 use crate::report::totals::{StepTotals, Totals};
 use crate::report::write::write_solution;
 use crate::report::{Outputs, collect};
+use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::closing_motion::without_closing_motions;
 use crate::settings::Settings;
 use crate::settings::command_line::CommandLine;
-use crate::step::Loading;
-use crate::step::state::{StepState, analyse_steps, stop_if_asked};
+use crate::step::state::{StepState, analyse, analyse_steps, stop_if_asked};
+use crate::step::way::Way;
 use crate::sweep::SweepStatus;
 
 /// How a run ended that didn't fail.
@@ -109,10 +107,10 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     log.phase("creating the outputs", None);
     let finished = finished_steps(&context, settings)?;
     let mut outputs = create_outputs(&context, settings, finished.count)?;
-    let loads = |k: usize, state: &StepState| {
-        let mut loads = context.loads(k);
+    let loads = |moment: Moment, analysis: &RigidBodyAnalysis, state: &StepState| {
+        let mut loads = context.loads(moment);
         state.hold(&mut loads);
-        without_closing_motions(&context, loads, &analyses[k])
+        without_closing_motions(&context, loads, analysis)
     };
     seconds.read = began.elapsed().as_secs_f64();
 
@@ -120,7 +118,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     log.phase("factorizing", Some(blocks.len()));
     let condensation = Condensation {
         context,
-        loads: &loads(0, &StepState::default()),
+        loads: &loads(Moment::end_of(0), &analyses[0], &StepState::default()),
         fixing_dofs: &analyses[0].motions.fixing_dofs,
     };
     let condensed = condense_clusters(&condensation, &analyses[0], &|| log.bar.advance())?;
@@ -142,91 +140,69 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     };
     seconds.interface = lap.elapsed().as_secs_f64();
 
-    // Load step by load step: each starts from the state that the one before it left.
+    // Load step by load step: each starts from the state that the one before it left, and goes on in halves where
+    // friction keeps it from converging at once.
+    let increments = Increments {
+        context,
+        settings,
+        log: &log,
+        factors: &condensed,
+        interface: interface.as_ref(),
+        frozen: frozen.as_ref(),
+    };
+    let has_friction = catalog.has_friction();
     let (mut state, mut steps) = (finished.state, finished.steps);
-    for (k, analysis) in analyses.iter().enumerate().skip(finished.count) {
+    for (k, at_end) in analyses.iter().enumerate().skip(finished.count) {
         stop_if_asked(&context, settings, k)?;
-
-        // F, condensed like the blocks, and the bounds on normal jumps.
-        log.phase("condensing the load", None);
-        let lap = Instant::now();
-        let start = state.start();
-        let loading = Loading {
-            context,
-            factors: &condensed,
-            interface: interface.as_ref(),
-            analysis,
-        };
-        let held_at = state.slips.clone();
-        let problem = loading.problem(loads(k, &state), state);
-        let mut problem = problem.map_err(|failure| context.in_step(failure, k))?;
-        let limits = match &frozen {
-            Some(_) => limits_of_groups(&context, &problem.loads)?,
-            None => BTreeMap::new(),
-        };
-        seconds.interface += lap.elapsed().as_secs_f64();
-
-        // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the step before.
-        log.phase("sweeping", None);
-        let lap = Instant::now();
         log.step(catalog, k);
-        let mut found = None;
-        let mut outcome = match &frozen {
-            Some(fronts) => {
-                let (fronts, loads) = (&mut fronts.borrow_mut(), &problem.condensed);
-                let contact = sweep_frozen(&context, settings, &log, fronts, loads, &limits)?;
-                let outcome = contact.outcome.clone();
-                found = Some(contact);
-                comm.is_root().then_some(outcome)
+        let mut way = Way::default();
+        let mut work = BTreeMap::new();
+        let mut solved = loop {
+            let moment = Moment {
+                step: k,
+                part: way.next(),
+            };
+            let on_the_way = match moment.part < 1.0 {
+                true => Some(analyse(&context, moment, analyses[..k].last())),
+                false => None,
+            };
+            let on_the_way = on_the_way.transpose();
+            let on_the_way = on_the_way.map_err(|failure| context.in_step(failure, k))?;
+            let analysis = on_the_way.as_ref().unwrap_or(at_end);
+            let before = match has_friction {
+                true => state.clone(),
+                false => std::mem::take(&mut state),
+            };
+            let acting = loads(moment, analysis, &before);
+            let solved = increments.solve(acting, analysis, before, &mut seconds);
+            let mut solved = solved.map_err(|failure| context.in_step(failure, k))?;
+            let is_converged = comm.decide(solved.is_converged());
+            if !is_converged && has_friction && way.halve() {
+                continue;
             }
-            None => {
-                let (on_gamma, pairs) = (problem.interface.as_ref(), &mut problem.pairs);
-                sweep(&context, settings, &log, on_gamma, pairs, start)?
+            solved.slips.add_work(&work);
+            if way.accept() || !is_converged {
+                break solved;
             }
+            work = std::mem::take(&mut solved.slips.work);
+            state = solved.into_state(settings.method);
         };
-        seconds.sweeps += lap.elapsed().as_secs_f64();
-
-        // Back-substitution, and the check of the full discrete problem.
-        log.phase("recovering", None);
-        let lap = Instant::now();
-        let fixed = FixedActiveSet::new(
-            context,
-            &condensed,
-            &problem,
-            analysis,
-            interface.as_ref(),
-            frozen.as_ref().map(|fronts| (fronts, &limits)),
-            outcome.as_ref(),
-        );
-        let discrete = match found {
-            Some(contact) => {
-                let (boundaries, conditions) = (contact.boundaries, contact.conditions);
-                substitute_back(fixed.factors(), &problem, boundaries, conditions)
-            }
-            None => {
-                let u = outcome.as_ref().map(|outcome| &outcome.u[..]);
-                let numbers = interface.as_ref().map(|(n, _)| &n.interface_dofs[..]);
-                recover(fixed.factors(), &problem, u.zip(numbers))
-            }
-        };
-        let solution = Solution::new(&fixed, analysis, discrete, !settings.no_stress);
-        if let Some(outcome) = &mut outcome {
-            outcome.accept(&solution.certificate);
+        if let (Some(outcome), true) = (&mut solved.outcome, way.was_halved()) {
+            outcome.count_increments(way.increments, way.done);
         }
-        seconds.recover += lap.elapsed().as_secs_f64();
 
         // Results travel to the root in slabs of subdomains and are written as they arrive.
         log.phase("writing", None);
         let lap = Instant::now();
-        let mut resultants = Resultants::new(catalog, solution.reactions.clone());
+        let mut resultants = Resultants::new(catalog, solved.solution.reactions.clone());
         let result = outputs.as_mut().map(|outputs| &mut outputs.result);
         let contacts = &mut resultants.contacts;
-        let slips = solution.discrete.slips(&context, &held_at);
-        write_solution(&context, &solution, &slips, result, contacts)?;
+        write_solution(&context, &solved.solution, &solved.slips, result, contacts)?;
         seconds.write += lap.elapsed().as_secs_f64();
-        state = StepState::after(problem.pairs, slips, outcome.as_ref(), settings.method);
-        let totals = outcome.map(|o| StepTotals::new(o, &solution, resultants, analysis));
+        let totals = solved.outcome.clone();
+        let totals = totals.map(|o| StepTotals::new(o, &solved.solution, resultants, at_end));
         steps.extend(totals);
+        state = solved.into_state(settings.method);
         if k + 1 < analyses.len() {
             let result = outputs.as_mut().map(|outputs| &mut outputs.result);
             keep(&context, settings, &state, &steps, result)?;

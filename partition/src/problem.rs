@@ -252,6 +252,11 @@ impl Catalog {
         self.dim * self.nodes()
     }
 
+    /// Whether a contact has friction.
+    pub fn has_friction(&self) -> bool {
+        self.points.iter().any(|point| point.law.has_friction())
+    }
+
     /// Number of contact conditions.
     pub fn conditions(&self) -> usize {
         self.contacts.iter().map(|contact| contact.conditions).sum()

@@ -127,6 +127,17 @@ impl GroupLoads {
         }
     }
 
+    /// Goes back from these loads to what acts part of the way from those `before` to them; from none to them, if
+    /// there are none.
+    pub fn go_back(&mut self, before: Option<&Self>, part: f64) {
+        for (node, held) in self.held.iter_mut().enumerate() {
+            for (i, value) in held.iter_mut().enumerate() {
+                let from = before.map_or(0.0, |before| before.held[node][i]);
+                *value = from + part * (*value - from);
+            }
+        }
+    }
+
     /// The largest displacement that is prescribed, gaps among them (m).
     pub fn largest_prescribed(&self) -> f64 {
         let all = self.held.iter().flatten().chain(&self.gaps);

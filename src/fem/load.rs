@@ -26,6 +26,20 @@ impl BlockLoads {
         }
     }
 
+    /// Goes back from these loads to what acts part of the way from those `before` to them; from none to them, if
+    /// there are none.
+    pub fn go_back(&mut self, before: Option<&Self>, part: f64) {
+        let forces = self.forces.iter_mut();
+        forces.for_each(|(_, force)| *force = force.map(|f| part * f));
+        let earlier = before.map_or(&[][..], |before| &before.forces);
+        let rest = |(node, force): &(u32, [f64; 3])| (*node, force.map(|f| (1.0 - part) * f));
+        self.forces.extend(earlier.iter().map(rest));
+        for (i, support) in self.supports.iter_mut().enumerate() {
+            let from = before.map_or(0.0, |before| before.supports[i].value);
+            support.value = from + part * (support.value - from);
+        }
+    }
+
     /// The largest displacement that is prescribed (m).
     pub fn largest_prescribed(&self) -> f64 {
         let prescribed = self.supports.iter().map(|support| support.value.abs());

@@ -2,8 +2,6 @@
 
 mod parcel;
 
-use std::collections::BTreeMap;
-
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::error::OutputError;
 
@@ -15,14 +13,13 @@ use crate::fem::contact_group::ContactGroup;
 use crate::output::result::{ContactRow, ContactState, SubdomainResults};
 use crate::output::resultants::ContactResultant;
 use crate::output::vtkhdf::ResultFile;
-use crate::recover::GroupSolution;
 use crate::recover::solution::Solution;
+use crate::recover::{GroupSolution, Slips};
 
 /// Streams all subdomains and contact rows to the root, which writes a slab of subdomains as soon
 /// as it is complete. Collective; `file` is the root's.
 ///
-/// On the root the conditions are added up to `contacts` on their way; `slips` are the tangential jumps of every
-/// contact group of this rank since the bodies were unloaded.
+/// On the root the conditions are added up to `contacts` on their way.
 ///
 /// The slabs don't depend on who owns what: the same calls write the same numbers on any ranks.
 ///
@@ -31,7 +28,7 @@ use crate::recover::solution::Solution;
 pub fn write_solution(
     context: &Context<'_>,
     solution: &Solution,
-    slips: &BTreeMap<usize, Vec<f64>>,
+    slips: &Slips,
     mut file: Option<&mut ResultFile>,
     contacts: &mut [ContactResultant],
 ) -> Result<(), Failure> {
@@ -70,7 +67,7 @@ pub fn write_solution(
             contact_rows(
                 &context.groups[&g],
                 &solution.discrete.groups[&g],
-                &slips[&g],
+                slips.of(g),
             )
         },
         |_, rows| {
@@ -84,9 +81,13 @@ pub fn write_solution(
     comm.agree(failed.map_err(Failure::from))
 }
 
-/// The points of a contact group, and the solution there; `slips` are its tangential jumps since the bodies were
-/// unloaded.
-fn contact_rows(group: &ContactGroup, solution: &GroupSolution, slips: &[f64]) -> Vec<ContactRow> {
+/// The points of a contact group, and the solution there, with slip and work of friction of its tangential
+/// conditions.
+fn contact_rows(
+    group: &ContactGroup,
+    solution: &GroupSolution,
+    (slips, work): (&[f64], &[f64]),
+) -> Vec<ContactRow> {
     let points = group.points.iter().enumerate();
     let row = |(j, point): (usize, &ContactPoint<u32>)| {
         let closed = solution.closed[j];
@@ -104,7 +105,7 @@ fn contact_rows(group: &ContactGroup, solution: &GroupSolution, slips: &[f64]) -
     };
     let mut rows: Vec<ContactRow> = points.map(row).collect();
     let tangential = group.conditions().enumerate().skip(rows.len());
-    for ((number, condition), slip) in tangential.zip(slips) {
+    for (((number, condition), slip), work) in tangential.zip(slips).zip(work) {
         let state = &mut rows[condition.point].1;
         let force = solution.forces[number];
         let slips = state.closed && !solution.closed[number];
@@ -113,9 +114,7 @@ fn contact_rows(group: &ContactGroup, solution: &GroupSolution, slips: &[f64]) -
             state.slip[k] += slip * t;
         }
         state.slipping |= slips;
-        if !solution.closed[number] {
-            state.dissipated -= force * solution.gaps[number];
-        }
+        state.dissipated += work;
     }
     rows
 }

@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 use super::analysis::BodyState;
 use super::motion::BodyFrame;
 use crate::comm::Comm;
+use crate::context::Loads;
+use crate::fem::load::BlockLoads;
 
 /// The frame of every body. Collective; what is asked of a subdomain is asked on its owner, which has
 /// read it.
@@ -36,14 +38,14 @@ pub(super) fn body_frames(
     frames
 }
 
-/// Every body as the analysis sees it in a load step, on the root. Collective.
+/// Every body as the analysis sees it under `loads`, on the root. Collective.
 pub(super) fn body_states(
     comm: &Comm,
     subdomains: &BTreeMap<usize, &Subdomain>,
     catalog: &Catalog,
     owners: &[usize],
     frames: &[BodyFrame],
-    step: usize,
+    loads: &Loads,
 ) -> Vec<BodyState> {
     let dim = catalog.dim;
     let modes = BodyFrame::count(dim);
@@ -61,7 +63,7 @@ pub(super) fn body_states(
         owners,
         |s| {
             let frame = &frames[catalog.subdomains[s].body];
-            of_subdomain(subdomains[&s], dim, frame, step)
+            of_subdomain(subdomains[&s], &loads.blocks[&s], dim, frame)
         },
         |s, part| {
             let state = &mut states[catalog.subdomains[s].body];
@@ -87,11 +89,15 @@ struct BodyPart {
     candidates: Vec<(u32, [f64; 3])>,
 }
 
-fn of_subdomain(subdomain: &Subdomain, dim: usize, frame: &BodyFrame, step: usize) -> BodyPart {
+fn of_subdomain(
+    subdomain: &Subdomain,
+    loads: &BlockLoads,
+    dim: usize,
+    frame: &BodyFrame,
+) -> BodyPart {
     let modes = BodyFrame::count(dim);
     let points = &subdomain.points;
-    let rows: Vec<Vec<f64>> = subdomain
-        .supports_in(step)
+    let rows: Vec<Vec<f64>> = (loads.supports.iter())
         .map(|s| {
             let mut row = frame.action(dim, &points[s.node as usize], &s.direction);
             row.push(s.value);
@@ -100,8 +106,8 @@ fn of_subdomain(subdomain: &Subdomain, dim: usize, frame: &BodyFrame, step: usiz
         .collect();
     let mut load = vec![0.0; modes];
     let mut load_scale = 0.0;
-    for (node, force) in subdomain.forces_in(step) {
-        let action = frame.action(dim, &points[node as usize], &force);
+    for (node, force) in &loads.forces {
+        let action = frame.action(dim, &points[*node as usize], force);
         for (sum, part) in load.iter_mut().zip(action) {
             *sum += part;
         }

@@ -12,7 +12,7 @@ use super::cluster_modes::cluster_modes;
 use super::energy::RigidModes;
 use super::motion::BodyFrame;
 use super::rows::rigid_rows;
-use crate::context::Context;
+use crate::context::{Context, Loads};
 use crate::error::Failure;
 
 /// Free rigid motions, and the frames that they are written in.
@@ -41,14 +41,14 @@ impl RigidBodyAnalysis {
     }
 }
 
-/// Finds the free rigid motions of the scene in load step `step`, and those by which its bodies come to rest from
+/// Finds the free rigid motions of the scene under `loads`, and those by which its bodies come to rest from
 /// where the closing motions of the step `before` left them, none for the first. Collective.
 ///
 /// # Errors
 /// The load drives a motion that nothing holds.
 pub fn analyse_bodies(
     context: &Context<'_>,
-    step: usize,
+    loads: &Loads,
     before: &[Vec<f64>],
 ) -> Result<RigidBodyAnalysis, Failure> {
     let Context {
@@ -66,7 +66,7 @@ pub fn analyse_bodies(
     let (rows, conditions) = rigid_rows(comm, groups, plan, &frames);
     let scene = Scene {
         dim: catalog.dim,
-        bodies: body_states(comm, &subdomains, catalog, owners, &frames, step),
+        bodies: body_states(comm, &subdomains, catalog, owners, &frames, loads),
         names: catalog.bodies.iter().map(|b| b.name.clone()).collect(),
         rows,
         conditions,

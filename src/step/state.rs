@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use contact_dd_partition::destination::unfinished;
 
 use crate::contact::pair::{ContactEnd, ContactPair, PairState};
-use crate::context::{Context, Loads};
+use crate::context::{Context, Loads, Moment};
 use crate::error::Failure;
 use crate::rigid::body_analysis::{RigidBodyAnalysis, analyse_bodies};
 use crate::rigid::infeasible_nodes;
@@ -63,32 +63,36 @@ impl StepState {
     }
 }
 
-/// Looks at the rigid motions of the scene in every load step, one where it has none. Collective.
+/// Looks at the rigid motions of the scene at the end of every load step, one where it has none. Collective.
 ///
 /// # Errors
 /// What a step prescribes leaves no place for a node, or its load drives a motion that nothing holds.
 pub fn analyse_steps(context: &Context<'_>) -> Result<Vec<RigidBodyAnalysis>, Failure> {
-    let Context {
-        comm,
-        catalog,
-        groups,
-        ..
-    } = *context;
     let mut analyses: Vec<RigidBodyAnalysis> = Vec::new();
-    for k in 0..catalog.steps.len().max(1) {
-        let loads = context.loads(k);
-        let all = groups.values().zip(loads.groups.values());
-        let checked = all.map(|(group, loads)| infeasible_nodes::check(group, loads, catalog));
-        let before = analyses
-            .last()
-            .map_or(&[][..], |last| &last.closing_motions);
-        let analysis = comm
-            .agree(checked.collect())
-            .and_then(|()| analyse_bodies(context, k, before))
+    for k in 0..context.catalog.steps.len().max(1) {
+        let analysis = analyse(context, Moment::end_of(k), analyses.last())
             .map_err(|failure| context.in_step(failure, k))?;
         analyses.push(analysis);
     }
     Ok(analyses)
+}
+
+/// Looks at the rigid motions of the scene at a moment, those of the step `before` known. Collective.
+///
+/// # Errors
+/// What is prescribed then leaves no place for a node, or the load drives a motion that nothing holds.
+pub fn analyse(
+    context: &Context<'_>,
+    moment: Moment,
+    before: Option<&RigidBodyAnalysis>,
+) -> Result<RigidBodyAnalysis, Failure> {
+    let loads = context.loads(moment);
+    let mut groups = context.groups.values().zip(loads.groups.values());
+    let checked = groups
+        .try_for_each(|(group, loads)| infeasible_nodes::check(group, loads, context.catalog));
+    context.comm.agree(checked)?;
+    let before = before.map_or(&[][..], |before| &before.closing_motions);
+    analyse_bodies(context, &loads, before)
 }
 
 /// Ends the run before load step k if a signal asked for that, which sweeps that take long hear by themselves.

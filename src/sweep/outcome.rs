@@ -104,6 +104,19 @@ impl SweepOutcome {
         }
     }
 
+    /// Says how far the load of a load step came in several increments.
+    pub fn count_increments(&mut self, increments: usize, done: f64) {
+        let what = match done < 1.0 {
+            true => format!("results are those at {:.1} % of its load", 100.0 * done),
+            false => {
+                format!("it took {increments} increments, and what slips is said of the last one")
+            }
+        };
+        self.notes.push(format!(
+            "a load step with friction didn't converge at once: {what}"
+        ));
+    }
+
     /// Takes back that the sweeps converged if the full discrete problem says otherwise: their
     /// residual is relative to terms that may be far larger than the load.
     pub fn accept(&mut self, certificate: &Certificate) {

@@ -1,0 +1,162 @@
+//! An increment of load: from the state before it to the state after it.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use crate::condense::blocks::CondensedBlocks;
+use crate::condense::limits::limits_of_groups;
+use crate::contact::pair::ContactPair;
+use crate::context::{Context, Loads};
+use crate::error::Failure;
+use crate::frozen::fronts::FrozenFronts;
+use crate::interface::numbering::Numbering;
+use crate::interface::operator::Interface;
+use crate::output::ranks::PhaseSeconds;
+use crate::recover::fixed_active_set::FixedActiveSet;
+use crate::recover::solution::Solution;
+use crate::recover::{Slips, recover, substitute_back};
+use crate::report::log::RunLog;
+use crate::rigid::body_analysis::RigidBodyAnalysis;
+use crate::run::sweeping::{sweep, sweep_frozen};
+use crate::settings::Settings;
+use crate::step::Loading;
+use crate::step::state::StepState;
+use crate::sweep::{Method, SweepOutcome, SweepStatus};
+
+/// What all increments share: what was made of matrices.
+#[derive(Clone, Copy)]
+pub struct Increments<'a> {
+    /// What the run works on.
+    pub context: Context<'a>,
+    /// What a user sets.
+    pub settings: &'a Settings,
+    /// Where it is told how the run goes.
+    pub log: &'a RunLog<'a>,
+    /// The factors of this rank.
+    pub factors: &'a CondensedBlocks,
+    /// Γ and the operators on it; on the root.
+    pub interface: Option<&'a (Numbering, Interface)>,
+    /// The fronts above all contact, where active sets are frozen.
+    pub frozen: Option<&'a RefCell<FrozenFronts>>,
+}
+
+/// An increment that was solved, or tried.
+pub struct Increment {
+    /// The clusters in contact of this rank.
+    pairs: BTreeMap<usize, ContactPair>,
+    /// What the sweeps found; on the root.
+    pub outcome: Option<SweepOutcome>,
+    /// What follows from it.
+    pub solution: Solution,
+    /// What friction leaves.
+    pub slips: Slips,
+}
+
+impl Increments<'_> {
+    /// Solves for `loads`, of which `analysis` knows the rigid motions, from the state `before`. Collective.
+    ///
+    /// # Errors
+    /// Supports that make two sides penetrate, a part that moves freely, or a signal that stopped the sweeps.
+    pub fn solve(
+        &self,
+        loads: Loads,
+        analysis: &RigidBodyAnalysis,
+        before: StepState,
+        seconds: &mut PhaseSeconds,
+    ) -> Result<Increment, Failure> {
+        let &Self {
+            context,
+            settings,
+            log,
+            factors,
+            interface,
+            frozen,
+        } = self;
+        let comm = context.comm;
+
+        // F, condensed like the blocks, and the bounds on normal jumps.
+        log.phase("condensing the load", None);
+        let lap = Instant::now();
+        let (start, held_at) = (before.start(), before.slips.clone());
+        let loading = Loading {
+            context,
+            factors,
+            interface,
+            analysis,
+        };
+        let mut problem = loading.problem(loads, before)?;
+        let limits = match frozen {
+            Some(_) => limits_of_groups(&context, &problem.loads)?,
+            None => BTreeMap::new(),
+        };
+        seconds.interface += lap.elapsed().as_secs_f64();
+
+        // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the state before.
+        log.phase("sweeping", None);
+        let lap = Instant::now();
+        let mut found = None;
+        let mut outcome = match frozen {
+            Some(fronts) => {
+                let (fronts, loads) = (&mut fronts.borrow_mut(), &problem.condensed);
+                let contact = sweep_frozen(&context, settings, log, fronts, loads, &limits)?;
+                let outcome = contact.outcome.clone();
+                found = Some(contact);
+                comm.is_root().then_some(outcome)
+            }
+            None => {
+                let (on_gamma, pairs) = (problem.interface.as_ref(), &mut problem.pairs);
+                sweep(&context, settings, log, on_gamma, pairs, start)?
+            }
+        };
+        seconds.sweeps += lap.elapsed().as_secs_f64();
+
+        // Back-substitution, and the check of the full discrete problem.
+        log.phase("recovering", None);
+        let lap = Instant::now();
+        let fixed = FixedActiveSet::new(
+            context,
+            factors,
+            &problem,
+            analysis,
+            interface,
+            frozen.map(|fronts| (fronts, &limits)),
+            outcome.as_ref(),
+        );
+        let discrete = match found {
+            Some(contact) => {
+                let (boundaries, conditions) = (contact.boundaries, contact.conditions);
+                substitute_back(fixed.factors(), &problem, boundaries, conditions)
+            }
+            None => {
+                let u = outcome.as_ref().map(|outcome| &outcome.u[..]);
+                let numbers = interface.map(|(n, _)| &n.interface_dofs[..]);
+                recover(fixed.factors(), &problem, u.zip(numbers))
+            }
+        };
+        let solution = Solution::new(&fixed, analysis, discrete, !settings.no_stress);
+        if let Some(outcome) = &mut outcome {
+            outcome.accept(&solution.certificate);
+        }
+        seconds.recover += lap.elapsed().as_secs_f64();
+        Ok(Increment {
+            slips: solution.discrete.slips(&context, &held_at),
+            pairs: problem.pairs,
+            outcome,
+            solution,
+        })
+    }
+}
+
+impl Increment {
+    /// Whether the sweeps converged; on the root.
+    pub fn is_converged(&self) -> bool {
+        let status = self.outcome.as_ref().map(|outcome| &outcome.status);
+        status == Some(&SweepStatus::Converged)
+    }
+
+    /// The state that it leaves.
+    pub fn into_state(self, method: Method) -> StepState {
+        StepState::after(self.pairs, self.slips.jumps, self.outcome.as_ref(), method)
+    }
+}

@@ -1,0 +1,67 @@
+//! The way through a load step: at once, or in halves where that doesn't converge.
+
+/// Smallest part of a load step that is tried.
+const SMALLEST: f64 = 1.0 / 16.0;
+
+/// How far a load step has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// How much of the load acts.
+    pub done: f64,
+    part: f64,
+    /// Increments that were accepted.
+    pub increments: usize,
+}
+
+impl Default for Way {
+    fn default() -> Self {
+        Self {
+            done: 0.0,
+            part: 1.0,
+            increments: 0,
+        }
+    }
+}
+
+impl Way {
+    /// How much of the load acts at the end of the next increment.
+    pub fn next(&self) -> f64 {
+        f64::min(1.0, self.done + self.part)
+    }
+
+    /// Accepts the next increment; whether it was the last.
+    pub fn accept(&mut self) -> bool {
+        self.done = self.next();
+        self.increments += 1;
+        self.done >= 1.0
+    }
+
+    /// Whether it goes on in parts.
+    pub fn was_halved(&self) -> bool {
+        self.part < 1.0
+    }
+
+    /// Makes the next increment half as large; whether it isn't too small for that.
+    pub fn halve(&mut self) -> bool {
+        self.part *= 0.5;
+        self.part >= SMALLEST
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_way_in_halves_ends_where_the_load_step_does() {
+        let mut way = Way::default();
+        assert!(way.halve());
+        assert!(!way.accept());
+        assert!(way.halve());
+        assert_eq!(way.next(), 0.75);
+        assert!(!way.accept());
+        assert!(way.accept());
+        assert_eq!(way.increments, 3);
+        assert!(way.halve() && way.halve() && !way.halve());
+    }
+}
