@@ -6,6 +6,8 @@ pub mod cost;
 
 pub mod links;
 
+use std::collections::BTreeSet;
+
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::tree::Tree;
 
@@ -143,6 +145,28 @@ impl Plan {
             true => &self.tree.nodes[v].eliminated,
             false => &self.tree.nodes[v].kept,
         }
+    }
+
+    /// The contact points of conditions of a cluster in contact, by its place among those: their places in `catalog`,
+    /// each once, ascending.
+    pub fn points_of_conditions(
+        &self,
+        catalog: &Catalog,
+        p: usize,
+        conditions: &[usize],
+    ) -> BTreeSet<u32> {
+        let groups = &self.clusters[self.contact[p]].groups;
+        let of_group = |&g: &usize| {
+            let points = &self.tree.nodes[self.groups[g].node].points;
+            let tangents = |&j: &u32| {
+                let tangents = catalog.points[j as usize].tangents(catalog.dim).len();
+                std::iter::repeat_n(j, tangents)
+            };
+            let tangential = points.iter().flat_map(tangents);
+            points.iter().copied().chain(tangential).collect::<Vec<_>>()
+        };
+        let all: Vec<u32> = groups.iter().flat_map(of_group).collect();
+        conditions.iter().map(|&j| all[j]).collect()
     }
 
     /// The owner of every cluster.

@@ -17,9 +17,10 @@ use super::limits::TangentialLimit;
 
 /// Exchanges of all wrong statuses in a row without progress before one is exchanged at a time.
 const PATIENCE: usize = 8;
-/// Linear systems that a search may solve: whatever the problem, and for each limit.
+/// Linear systems that a search may solve: whatever the problem, and for each limit, up to so many more.
 const STEPS: usize = 60;
 const STEPS_EACH: usize = 2;
+const MOST_STEPS: usize = 100;
 
 /// What bounds a tangential force: |λ_t| ≤ cohesion + coefficient·λ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -121,7 +122,7 @@ impl FrictionProblem<'_> {
             return solution;
         }
         self.settle(status, |_| 0.0);
-        let most = STEPS + STEPS_EACH * status.len();
+        let most = STEPS + (STEPS_EACH * status.len()).min(MOST_STEPS);
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
         let mut steps = 0;
         loop {
@@ -147,12 +148,20 @@ impl FrictionProblem<'_> {
         }
     }
 
+    /// The limits whose status is wrong where they have these.
+    pub fn unsettled(&self, status: &[Status]) -> Vec<usize> {
+        let linear = Linear::solve(self, status);
+        let wrong = self.wrong(status, &linear).into_iter();
+        wrong.map(|(i, _)| i).collect()
+    }
+
     /// The jumps and forces of fixed statuses, all of them right or not.
     fn solution(&self, linear: Linear, steps: usize, right: bool) -> GapSolution {
         let Linear {
             mut jumps,
             mut forces,
             unbalanced,
+            round_off,
         } = linear;
         let mut tangents = self.tangents.iter().map(|tangent| tangent.limit).peekable();
         for (i, force) in forces.iter_mut().enumerate() {
@@ -169,7 +178,7 @@ impl FrictionProblem<'_> {
             forces,
             steps,
             fell_back: false,
-            converged: right && unbalanced <= FORCE_TOLERANCE,
+            converged: right && unbalanced <= FORCE_TOLERANCE * round_off,
         }
     }
 
@@ -277,7 +286,7 @@ impl FrictionProblem<'_> {
                 scales.sum()
             }
         };
-        FORCE_TOLERANCE * scale
+        FORCE_TOLERANCE * scale * linear.round_off
     }
 }
 

@@ -157,6 +157,14 @@ impl Limits {
         tangents
     }
 
+    /// The condition that each limit is.
+    pub fn conditions_of_limits(&self) -> Vec<usize> {
+        self.tightest
+            .iter()
+            .map(|&(condition, _)| condition)
+            .collect()
+    }
+
     /// Number of normal jumps.
     pub fn jumps(&self) -> usize {
         self.bounds.len() - self.rows.len()

@@ -264,6 +264,8 @@ pub struct CondensedContact {
     pub defining: Vec<usize>,
     /// The limits of tangential jumps.
     pub tangents: Vec<TangentialLimit>,
+    /// The condition that each limit is.
+    pub conditions: Vec<usize>,
 }
 
 impl CondensedContact {
@@ -286,6 +288,7 @@ impl CondensedContact {
             rows: limits.rows.clone(),
             defining: limits.defining.clone(),
             tangents: limits.tangents.clone(),
+            conditions: limits.conditions_of_limits(),
         }
     }
 }

@@ -62,6 +62,8 @@ pub struct CoupledStep {
     pub fell_back: bool,
     /// Whether the contact problem converged.
     pub converged: bool,
+    /// Where it didn't for friction, the conditions of every pair whose status is wrong.
+    pub unsettled: Vec<Vec<usize>>,
 }
 
 /// The right-hand side after δ is eliminated.
@@ -145,6 +147,28 @@ impl<'a> CoupledContact<'a> {
         };
         let solution = problem.solve_along(&self.loads_before(state, before), &mut status);
         let mut step = self.step(r, &condensed, &solution.jumps, solution.forces, &status);
+        if !solution.converged && self.has_friction() {
+            let mut wrong = vec![false; status.len()];
+            problem
+                .unsettled(&status)
+                .into_iter()
+                .for_each(|i| wrong[i] = true);
+            let of_pair = |(law, wrong): (&CondensedContact, Vec<bool>)| {
+                let conditions = law.conditions.iter().zip(wrong);
+                conditions
+                    .filter(|(_, wrong)| *wrong)
+                    .map(|(&j, _)| j)
+                    .collect()
+            };
+            let by_pair = self.by_pair(&wrong);
+            step.unsettled = self
+                .interface
+                .laws
+                .iter()
+                .zip(by_pair)
+                .map(of_pair)
+                .collect();
+        }
         step.steps = solution.steps;
         step.fell_back = solution.fell_back;
         step.converged = solution.converged;
@@ -255,7 +279,13 @@ impl<'a> CoupledContact<'a> {
             steps: 1,
             fell_back: false,
             converged: true,
+            unsettled: Vec::new(),
         }
+    }
+
+    /// Whether a pair has friction.
+    pub fn has_friction(&self) -> bool {
+        !self.tangents.is_empty()
     }
 
     /// What every pair has of normal jumps, then what every pair has of linearly dependent constraints.

@@ -137,6 +137,7 @@ impl Increments<'_> {
         let solution = Solution::new(&fixed, analysis, discrete, !settings.no_stress);
         if let Some(outcome) = &mut outcome {
             outcome.accept(&solution.certificate);
+            outcome.name_unsettled(&unsettled_points(&context, outcome));
         }
         seconds.recover += lap.elapsed().as_secs_f64();
         Ok(Increment {
@@ -146,6 +147,22 @@ impl Increments<'_> {
             solution,
         })
     }
+}
+
+/// The contact points whose status cycles, by contact and node.
+fn unsettled_points(context: &Context<'_>, outcome: &SweepOutcome) -> Vec<String> {
+    let catalog = context.catalog;
+    let name = |j: u32| {
+        let point = &catalog.points[j as usize];
+        let contact = &catalog.contacts[point.contact as usize].name;
+        format!("node {} of contact '{contact}'", point.tag_a)
+    };
+    let pairs = outcome.unsettled.iter().enumerate();
+    let points = pairs.flat_map(|(p, conditions)| {
+        let plan = context.plan;
+        plan.points_of_conditions(catalog, p, conditions)
+    });
+    points.map(name).collect()
 }
 
 impl Increment {

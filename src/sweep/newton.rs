@@ -40,6 +40,10 @@ impl Sweeps<'_, '_> {
                 (self.outcome)
                     .fell_back("newton: the interior-point method named the closed contacts");
             }
+            if !step.converged && coupled.has_friction() {
+                self.outcome.unsettled = step.unsettled;
+                return Ok(self.gave_up(&residual, "statuses of contacts with friction cycle"));
+            }
             if !step.converged {
                 return self.fall_back(residual, "newton's contact problem didn't converge");
             }

@@ -17,6 +17,9 @@ const LOADED: f64 = 1e-2;
 /// Equilibrium relative to the load of an answer that says nothing.
 const NOT_BALANCED_OF_LOAD: f64 = 1e-2;
 
+/// Most contact points that are named.
+const MOST_NAMES: usize = 5;
+
 /// One line of the convergence history; line 0 is the bilateral start.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SweepRecord {
@@ -66,6 +69,8 @@ pub struct SweepOutcome {
     pub contact: Vec<ContactEnd>,
     /// Whether active sets were frozen one after the other.
     pub frozen: bool,
+    /// The conditions of every pair whose status cycles, where friction keeps sweeps from converging.
+    pub unsettled: Vec<Vec<usize>>,
 }
 
 impl SweepOutcome {
@@ -83,6 +88,7 @@ impl SweepOutcome {
             totals: ConTotals::default(),
             contact: Vec::new(),
             frozen: false,
+            unsettled: Vec::new(),
         }
     }
 
@@ -101,6 +107,18 @@ impl SweepOutcome {
     pub(super) fn fell_back(&mut self, what: &str) {
         if !self.fallbacks.iter().any(|known| known == what) {
             self.fallbacks.push(what.into());
+        }
+    }
+
+    /// Names the contact points, by contact and node, whose status cycles.
+    pub fn name_unsettled(&mut self, names: &[String]) {
+        if let (SweepStatus::NotConverged(why), false) = (&mut self.status, names.is_empty()) {
+            let (shown, more) = names.split_at(names.len().min(MOST_NAMES));
+            let more = match more.len() {
+                0 => String::new(),
+                n => format!(" and {n} more"),
+            };
+            why.push_str(&format!(", at {}{more}", shown.join(", ")));
         }
     }
 

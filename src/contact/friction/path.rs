@@ -4,7 +4,7 @@ use super::{FrictionProblem, Status};
 use crate::contact::active_set::{GapProblem, GapSolution};
 
 /// Parts of the load that are tried.
-const TRIES: usize = 40;
+const TRIES: usize = 10;
 
 impl FrictionProblem<'_> {
     /// Solves the problem from statuses as [`solve`](Self::solve) does, and where that finds no solution, from those
