@@ -48,8 +48,9 @@ impl Runs {
             for _ in 0..self.jobs {
                 scope.spawn(|| {
                     while let Some(&seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed)) {
-                        let one = self.one(draw, seed, told);
-                        ran.lock().unwrap().push(one);
+                        if let Some(one) = self.one(draw, seed, told) {
+                            ran.lock().unwrap().push(one);
+                        }
                     }
                 });
             }
@@ -59,10 +60,13 @@ impl Runs {
         ran
     }
 
-    fn one(&self, draw: Draw, seed: u64, told: bool) -> Ran {
+    /// None where what was drawn is no scene: moving nodes may fold a cell.
+    fn one(&self, draw: Draw, seed: u64, told: bool) -> Option<Ran> {
         let began = Instant::now();
-        let drawn = std::panic::catch_unwind(|| draw(seed, self.cells));
-        let drawn = drawn.unwrap_or_else(|_| panic!("the scene of seed {seed} can't be"));
+        let Ok(drawn) = std::panic::catch_unwind(|| draw(seed, self.cells)) else {
+            println!("{seed:>6} can't be");
+            return None;
+        };
         let trial = Trial::of(&drawn, &self.binary, self.limit, self.keep.as_deref());
         let ran = Ran::new(&drawn, trial, began);
         if told || ran.trial.verdict != Verdict::Right || ran.is_short() {
@@ -71,7 +75,7 @@ impl Runs {
         if told {
             tell(&drawn, &ran);
         }
-        ran
+        Some(ran)
     }
 }
 
