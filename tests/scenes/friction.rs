@@ -4,5 +4,6 @@ mod cycle;
 mod incline;
 mod judge;
 mod patch;
+mod random;
 mod reference;
 mod validation;
