@@ -5,18 +5,10 @@
 
 use contact_dd_partition::flops::{Front, condensation};
 use contact_dd_partition::problem::Catalog;
-use contact_dd_partition::problem::tree::Tree;
+use contact_dd_partition::problem::tree::{ACTIVE_SETS, Tree};
 
 use super::Plan;
 use super::cluster::Merging;
-
-/// Active sets that it takes, about.
-const ACTIVE_SETS: f64 = 8.0;
-/// Flops that the dense contact problem takes, over the cube of its size: its active sets need some 30 factors.
-const AT_ONCE: f64 = 10.0;
-/// Contact conditions up to which they are solved for at once, whatever that takes: that is more robust where bodies
-/// are held by next to nothing.
-const FEW_CONDITIONS: usize = 600;
 
 /// What a program needs that does nothing yet (bytes).
 const AT_REST: f64 = 2.8e7;
@@ -51,23 +43,6 @@ fn front(tree: &Tree, v: usize, dim: usize, merging: Merging) -> Front {
         },
         _ => front,
     }
-}
-
-/// Whether it takes fewer flops to eliminate what is above contacts for one active set after the other than to keep
-/// all normal jumps and solve for them at once.
-pub(super) fn freezing_pays(tree: &Tree, dim: usize) -> bool {
-    let inner = tree.subdomains..tree.nodes.len();
-    let above = inner.filter(|&v| tree.nodes[v].conditions > 0);
-    let flops = |merging| -> f64 {
-        let fronts = above.clone().map(|v| front(tree, v, dim, merging).flops());
-        fronts.sum()
-    };
-    let roots = tree.nodes.iter().filter(|node| node.parent.is_none());
-    let cubed = roots.clone().map(|root| (root.conditions as f64).powi(3));
-    let at_once = AT_ONCE * cubed.sum::<f64>();
-    let conditions: usize = roots.map(|root| root.conditions).sum();
-    conditions > FEW_CONDITIONS
-        && ACTIVE_SETS * flops(Merging::Frozen) < flops(Merging::All) + at_once
 }
 
 /// What a rank needs.

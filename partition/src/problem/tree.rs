@@ -16,6 +16,14 @@ use crate::disjoint_sets::DisjointSets;
 use crate::flops::{Front, condensation};
 use crate::lists::Lists;
 
+/// Active sets that it takes, about.
+pub const ACTIVE_SETS: f64 = 8.0;
+/// Flops that the dense contact problem takes, over the cube of its size: its active sets need some 30 factors.
+const AT_ONCE: f64 = 10.0;
+/// Contact conditions up to which they are solved for at once, whatever that takes: that is more robust where bodies
+/// are held by next to nothing.
+const FEW_CONDITIONS: usize = 600;
+
 /// The tree.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tree {
@@ -229,6 +237,30 @@ impl Tree {
             false => (dim * node.eliminated.len()).saturating_sub(self.own_conditions(v)),
         };
         Front { eliminated, kept }
+    }
+
+    /// The same where every active set is frozen, so that no jump of what is under the node is kept.
+    pub fn frozen_front(&self, v: usize, dim: usize) -> Front {
+        let (front, node) = (self.front(v, dim), &self.nodes[v]);
+        Front {
+            eliminated: front.eliminated,
+            kept: front.kept - node.conditions + node.points.len(),
+        }
+    }
+
+    /// Whether it takes fewer flops to eliminate what is above contacts for one active set after the other than to
+    /// keep all normal jumps and solve for them at once.
+    pub fn freezing_pays(&self, dim: usize) -> bool {
+        let inner = self.subdomains..self.nodes.len();
+        let above = inner.filter(|&v| self.nodes[v].conditions > 0);
+        let frozen = above.clone().map(|v| self.frozen_front(v, dim).flops());
+        let kept = above.map(|v| self.front(v, dim).flops());
+        let roots = self.nodes.iter().filter(|node| node.parent.is_none());
+        let cubed = roots.clone().map(|root| (root.conditions as f64).powi(3));
+        let at_once = AT_ONCE * cubed.sum::<f64>();
+        let conditions: usize = roots.map(|root| root.conditions).sum();
+        conditions > FEW_CONDITIONS
+            && ACTIVE_SETS * frozen.sum::<f64>() < kept.sum::<f64>() + at_once
     }
 
     /// Estimated flops of condensing a subdomain, or of merging what lies under an inner node.

@@ -2,7 +2,7 @@
 
 use crate::flops::Front;
 use crate::problem::Catalog;
-use crate::problem::tree::Tree;
+use crate::problem::tree::{ACTIVE_SETS, Tree};
 
 /// What the nodes of a problem's hierarchy cost.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,16 +20,26 @@ pub struct Work {
 const GAIN: f64 = 0.2;
 
 impl Work {
-    /// What the hierarchy of `catalog` costs.
+    /// What the hierarchy of `catalog` costs; the speed-up is that over all active sets where these are frozen.
     pub fn new(catalog: &Catalog) -> Self {
-        let tree = Tree::new(catalog);
+        let (tree, dim) = (Tree::new(catalog), catalog.dim);
+        let is_frozen = !catalog.has_friction() && tree.freezing_pays(dim);
+        let front = |v: usize| match is_frozen {
+            true => tree.frozen_front(v, dim),
+            false => tree.front(v, dim),
+        };
+        let time = |v: usize| match v < tree.subdomains {
+            true => front(v).time_to_condense(),
+            false if is_frozen && tree.nodes[v].conditions > 0 => ACTIVE_SETS * front(v).time(),
+            false => front(v).time(),
+        };
         let nodes = 0..tree.nodes.len();
-        let costs: Vec<f64> = nodes.map(|v| tree.flops(v, catalog.dim)).collect();
+        let costs: Vec<f64> = nodes.map(|v| tree.flops(v, dim)).collect();
         let inner = tree.subdomains..tree.nodes.len();
         Self {
-            fronts: inner.map(|v| tree.front(v, catalog.dim)).collect(),
+            fronts: inner.map(front).collect(),
             uneven_halves: uneven_halves(&tree, &tree.sums(&costs)),
-            speed_up: speed_up(&tree, catalog.dim),
+            speed_up: speed_up(&tree, time),
         }
     }
 
@@ -53,15 +63,12 @@ impl Work {
     }
 }
 
-fn speed_up(tree: &Tree, dim: usize) -> f64 {
+/// `time` is that of each node.
+fn speed_up(tree: &Tree, time: impl Fn(usize) -> f64) -> f64 {
     let mut all = 0.0;
     let mut ways = vec![0.0f64; tree.nodes.len()];
     for v in 0..tree.nodes.len() {
-        let front = tree.front(v, dim);
-        let own = match v < tree.subdomains {
-            true => front.time_to_condense(),
-            false => front.time(),
-        };
+        let own = time(v);
         let children = tree.nodes[v].children.iter().map(|&child| ways[child]);
         ways[v] = own + children.fold(0.0, f64::max);
         all += own;
