@@ -139,6 +139,24 @@ fn fronts_are_what_their_definition_says() {
     }
 }
 
+/// Where active sets are frozen no jump goes up to the root, which else keeps all of them.
+#[test]
+fn many_conditions_leave_fronts_small() {
+    let largest = |length: usize| {
+        let problem = problem(&stacked(5, length, 3), 60);
+        let kept = Work::new(&problem.catalog)
+            .fronts
+            .iter()
+            .map(|f| f.kept)
+            .max();
+        (problem.catalog.conditions(), kept.unwrap())
+    };
+    let (few, kept) = largest(100);
+    assert!(few < 600 && kept >= few, "{few} {kept}");
+    let (many, kept) = largest(200);
+    assert!(many > 600 && kept < many / 2, "{many} {kept}");
+}
+
 #[test]
 fn many_ranks_find_something_to_do() {
     let crack = cracked(60, &[(0, 18), (42, 60)]);
