@@ -36,7 +36,8 @@ const HOW_TO_READ: &str = "\
 bound and against the slip where there is slip since the step before, all checked from mesh, scene and result alone.
 Coulomb's law may have other solutions. Without equilibrium: by a linear program for rigid bodies with friction, whose
 failure no elasticity mends. *Unclear*: refused, where rigid bodies could be held by friction alone, which elastic ones
-need not find. *Newton steps* are those of a scene's worst increment.
+need not find. *In parts*: a load step was halved, once or more, as it didn't converge at once; the slip is then judged by
+its bound alone. *Newton steps* are those of a scene's worst increment.
 
 ";
 
@@ -75,6 +76,7 @@ pub fn chapter(first: u64, ran: &[Ran]) -> String {
     line("without equilibrium", &|one| {
         one.trial.equilibrium == Some(false)
     });
+    line("in parts", &|one| one.trial.in_parts);
     line("held by friction", &|one| one.trial.by_friction);
     line("**all**", &|_| true);
     text.push('\n');

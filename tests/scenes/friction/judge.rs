@@ -83,7 +83,7 @@ fn the_judge_finds_every_breach_of_the_law_of_friction() {
         ("direction", slips, |p| {
             p.tangential_force = p.tangential_force.map(|f| f * (1.0 - 1e-7))
         }),
-        ("status", slips, |p| p.slipping = false),
+        ("stuck", slips, |p| p.slipping = false),
         ("status", sticks, |p| p.slipping = true),
         ("slip", slips, |p| p.slip[0] += 1e-12),
         ("off the tangent", sticks, |p| p.tangential_force[1] += 1.0),
@@ -115,7 +115,7 @@ fn the_judge_looks_at_increments() {
     let model = at_step(&whole, 1);
     let found = Findings::after(None, &model, &Assembled::new(&model), &after, false).faults();
     assert!(
-        found.iter().any(|fault| fault.starts_with("status")),
+        found.iter().any(|fault| fault.starts_with("stuck")),
         "{found:?}"
     );
 }

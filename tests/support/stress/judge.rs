@@ -54,9 +54,11 @@ pub struct Findings {
     pub slip: f64,
     /// Force or slip out of the tangential direction, or without friction.
     pub off_tangent: f64,
-    /// By how much a point is not what its status says: open with a force, closed with a gap, stuck with a slip,
-    /// slipping with less force than the bound.
+    /// By how much a point is not what its status says: open with a force, closed with a gap, slipping
+    /// with less force than the bound.
     pub status: f64,
+    /// The largest slip since the step before of what sticks.
+    pub stuck: f64,
     /// Distance to the reference in the norm of the energy.
     pub difference: Option<f64>,
     /// The same of a reference with stiffness and balance of forces changed in the last digits;
@@ -151,6 +153,16 @@ impl Findings {
         findings
     }
 
+    /// The same without what is to be said of the whole step where it was made in parts: what slipped in one of
+    /// them may stick in the last.
+    pub fn in_parts(self) -> Self {
+        Self {
+            direction: 0.0,
+            stuck: 0.0,
+            ..self
+        }
+    }
+
     /// The worse of both in everything.
     pub fn or(self, other: Self) -> Self {
         let either = |a: Option<f64>, b: Option<f64>| match (a, b) {
@@ -170,6 +182,7 @@ impl Findings {
             slip: worse(self.slip, other.slip),
             off_tangent: worse(self.off_tangent, other.off_tangent),
             status: worse(self.status, other.status),
+            stuck: worse(self.stuck, other.stuck),
             difference: either(self.difference, other.difference),
             disturbance: either(self.disturbance, other.disturbance),
             reference_signs: either(self.reference_signs, other.reference_signs),
@@ -240,12 +253,14 @@ impl Findings {
                 let off = off.fold(0.0, |m: f64, x| worse(m, x.abs()));
                 self.off_tangent = worse(self.off_tangent, ratio(off, scale));
             }
-            let wrong = match (point.closed, point.slipping) {
-                (false, _) => 0.0,
-                (true, false) => slipped,
-                (true, true) => ratio(bounds[k] - force.abs(), scale) / FRICTION,
-            };
-            self.status = worse(self.status, wrong);
+            match (point.closed, point.slipping) {
+                (false, _) => {}
+                (true, false) => self.stuck = worse(self.stuck, slipped),
+                (true, true) => {
+                    let lacks = ratio(bounds[k] - force.abs(), scale) / FRICTION;
+                    self.status = worse(self.status, lacks);
+                }
+            }
         }
         for (point, has_friction) in state.points.iter().zip(has_friction) {
             let there = |vector: [f64; 3]| vector.iter().any(|x| *x != 0.0);
@@ -358,6 +373,7 @@ impl Findings {
             ("slip", self.slip, PENETRATION),
             ("off the tangent", self.off_tangent, PENETRATION),
             ("status", self.status, 1.0),
+            ("stuck", self.stuck, 1.0),
         ];
         if self.balance_round_off.is_finite() {
             let allowed = DISTURBANCES * self.balance_round_off;

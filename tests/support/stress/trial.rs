@@ -76,6 +76,8 @@ pub struct Trial {
     pub equilibrium: Option<bool>,
     /// Whether rigid bodies are held by friction, of which elastic ones may not find enough.
     pub by_friction: bool,
+    /// Whether a load step was made in parts, after it didn't converge as a whole.
+    pub in_parts: bool,
     pub dofs: usize,
     pub conditions: usize,
     pub subdomains: usize,
@@ -119,6 +121,7 @@ impl Trial {
             reason: String::new(),
             equilibrium: drawn.equilibrium,
             by_friction: false,
+            in_parts: false,
             dofs: model.mesh.dim * model.mesh.points.len(),
             conditions: model.contacts.iter().map(|c| c.points.len()).sum(),
             subdomains: 0,
@@ -210,7 +213,11 @@ impl Trial {
             let Loaded { model, assembled } = &steps[k];
             let reference = self.dofs <= REFERENCE;
             let before = k.checked_sub(1).map(|k| &solutions[k]);
-            let findings = Findings::after(before, model, assembled, solution, reference);
+            let mut findings = Findings::after(before, model, assembled, solution, reference);
+            if self.is_in_parts(drawn.model.steps.get(k).map(|step| step.name.as_str())) {
+                self.in_parts = true;
+                findings = findings.in_parts();
+            }
             let at = if has_steps {
                 format!("step {}: ", k + 1)
             } else {
@@ -272,6 +279,16 @@ impl Trial {
             Some(steps) => steps.iter().filter_map(of).reduce(f64::max),
             None => of(report),
         }
+    }
+
+    /// Whether the report warns that the step of this name, or the only increment, was made in parts.
+    fn is_in_parts(&self, step: Option<&str>) -> bool {
+        let start = step.map_or("a load step".to_owned(), |name| {
+            format!("step '{name}': a load step")
+        });
+        let warnings = self.listed("warnings").unwrap_or_default();
+        let mut warnings = warnings.iter();
+        warnings.any(|words| words.starts_with(&start) && words.contains("didn't converge at once"))
     }
 
     /// The words of a list in the program's report.
