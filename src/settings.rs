@@ -51,6 +51,8 @@ pub struct Settings {
     pub no_stress: bool,
     /// Whether to go on after the load steps that a stopped run finished.
     pub restart: bool,
+    /// Whether to look for another solution where there is friction.
+    pub second_start: bool,
     /// Whether to validate the problem file and solve nothing.
     pub check: bool,
     /// Whether to print nothing but warnings and errors.
@@ -92,6 +94,7 @@ impl Settings {
                 .choose("threads", &run.threads, &None)
                 .map_or(1, u16::from),
             restart: run.restart,
+            second_start: run.second_start,
             check: command_line.check,
             problem: path,
             from,
@@ -128,6 +131,7 @@ impl Settings {
             tolerance: self.tolerance,
             max_sweeps: self.max_sweeps,
             relaxation: self.relaxation,
+            second_start: self.second_start,
         }
     }
 

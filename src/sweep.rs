@@ -41,6 +41,8 @@ pub struct SweepSettings {
     pub max_sweeps: Option<usize>,
     /// θ of `picard`; `None` to find one.
     pub relaxation: Option<f64>,
+    /// Whether to look for another solution where there is friction.
+    pub second_start: bool,
 }
 
 /// The sweeps on the root.
@@ -98,6 +100,9 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             Method::Anderson => sweeps.anderson(residual)?,
             Method::Picard => sweeps.picard(residual)?,
         };
+        if settings.second_start && status == SweepStatus::Converged {
+            sweeps.look_for_another();
+        }
         Ok(sweeps.end(status))
     }
 

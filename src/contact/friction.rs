@@ -7,6 +7,7 @@
 //! don't become fewer, one at a time until they do (Júdice and Pires, Computers Ops. Res. 21, 1994).
 
 mod linear;
+mod other;
 mod path;
 
 use serde::{Deserialize, Serialize};

@@ -175,6 +175,27 @@ impl<'a> CoupledContact<'a> {
         step
     }
 
+    /// How far another solution with friction is from U, the largest difference of a jump (m). U is a solution, at which
+    /// the pairs answered `state` and the residual is `r`.
+    pub fn other_solution(&self, u: &[f64], r: &[f64], state: &ConState) -> Option<f64> {
+        let all = |of: fn(&PairResponse) -> &Vec<f64>| -> Vec<f64> {
+            state.responses.iter().flat_map(of).copied().collect()
+        };
+        let condensed = self.condense(
+            r,
+            all(|p| &p.contact_residual),
+            all(|p| &p.contact_residual_scale),
+        );
+        let gaps = self.side_by_side(state.responses.iter().map(|p| &p.gaps[..]));
+        let problem = FrictionProblem {
+            gap: self.problem(&condensed, &gaps, u),
+            tangents: &self.tangents,
+        };
+        let jumps = all(|p| &p.jumps);
+        let largest = |x: &[f64]| x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        problem.other_solution(&vec![0.0; jumps.len()], largest(&jumps).max(largest(u)))
+    }
+
     /// What loads the jumps in the equilibrium that the load step `before` left, in terms of changes from where the
     /// pairs are; without friction nothing asks for it.
     fn loads_before(&self, state: &ConState, before: &[ContactEnd]) -> Vec<f64> {

@@ -52,6 +52,8 @@ pub struct Friction {
     pub slipping: usize,
     /// Work that becomes heat (J, per metre of thickness in the plane).
     pub dissipated_work: f64,
+    /// Whether `--second-start` found another solution; `null` without it.
+    pub other_solution: Option<bool>,
 }
 
 impl Friction {
@@ -72,6 +74,7 @@ impl ContactResultant {
                 sticking: usize::from(state.status() == 1),
                 slipping: usize::from(state.status() == 2),
                 dissipated_work: state.dissipated,
+                other_solution: None,
             });
         }
         let force = advance(state.tangential_force, -state.force, point.normal());
@@ -181,6 +184,7 @@ mod tests {
             sticking: 1,
             slipping: 1,
             dissipated_work: 0.25,
+            other_solution: None,
         };
         assert_eq!(contact.friction, Some(sum));
         let mut all = Resultants::default();

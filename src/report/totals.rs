@@ -81,6 +81,15 @@ impl StepTotals {
         }
     }
 
+    /// What friction does.
+    pub fn friction(&self) -> Option<Friction> {
+        let friction = self.resultants.friction();
+        friction.map(|friction| Friction {
+            other_solution: self.outcome.other_solution,
+            ..friction
+        })
+    }
+
     /// Number of sweeps after the start.
     pub fn sweeps(&self) -> usize {
         self.outcome.records.len().saturating_sub(1)
@@ -126,9 +135,13 @@ impl Totals<'_> {
     /// What friction does: the state in the end, the work of all steps.
     pub fn friction(&self) -> Option<Friction> {
         let steps = self.steps.iter();
-        let all = steps.filter_map(|step| step.resultants.friction());
+        let all = steps.filter_map(StepTotals::friction);
         all.reduce(|before, last| Friction {
             dissipated_work: before.dissipated_work + last.dissipated_work,
+            other_solution: match before.other_solution {
+                Some(true) => before.other_solution,
+                _ => last.other_solution,
+            },
             ..last
         })
     }
@@ -169,7 +182,7 @@ impl Totals<'_> {
                 condition_number: totals.condition,
                 error_estimate: totals.error_estimate(),
                 resultants: totals.resultants.clone(),
-                friction: totals.resultants.friction(),
+                friction: totals.friction(),
             })
             .collect()
     }

@@ -117,6 +117,10 @@ pub struct RunSettings {
     #[arg(long, help_heading = "Running")]
     pub restart: bool,
 
+    /// Look for another solution with friction from other starts, and say whether there is one
+    #[arg(long, help_heading = "Running")]
+    pub second_start: bool,
+
     /// Threads of each rank [default: 1]
     #[arg(long, value_name = "N", help_heading = "Running")]
     pub threads: Option<NonZeroU16>,

@@ -71,6 +71,22 @@ impl Sweeps<'_, '_> {
         self.anderson(residual)
     }
 
+    /// Looks whether friction allows for another solution.
+    pub(super) fn look_for_another(&mut self) {
+        let residual = self.residual(None);
+        let coupled = CoupledContact::new(self.problem);
+        let Some(coupled) = coupled.filter(CoupledContact::has_friction) else {
+            return;
+        };
+        let other = coupled.other_solution(&self.outcome.u, &residual.r, &self.state);
+        self.outcome.other_solution = Some(other.is_some());
+        if let Some(difference) = other {
+            self.outcome.notes.push(format!(
+                "a second start found another solution with friction, whose jumps differ by up to {difference:.1e} m"
+            ));
+        }
+    }
+
     /// Newton's steps beyond the tolerance of the sweeps, which isn't what limits the solution.
     pub(super) fn refine(&mut self) {
         let mut residual = self.residual(None);

@@ -69,6 +69,8 @@ pub struct SweepOutcome {
     pub contact: Vec<ContactEnd>,
     /// Whether active sets were frozen one after the other.
     pub frozen: bool,
+    /// Whether another solution with friction was found, where it was looked for.
+    pub other_solution: Option<bool>,
     /// The conditions of every pair whose status cycles, where friction keeps sweeps from converging.
     pub unsettled: Vec<Vec<usize>>,
 }
@@ -88,6 +90,7 @@ impl SweepOutcome {
             totals: ConTotals::default(),
             contact: Vec::new(),
             frozen: false,
+            other_solution: None,
             unsettled: Vec::new(),
         }
     }

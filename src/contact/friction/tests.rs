@@ -41,9 +41,13 @@ impl Points {
     }
 
     fn solve(&self, status: &mut [Status]) -> GapSolution {
+        self.with(|problem| problem.solve_along(&vec![0.0; self.c.len()], status))
+    }
+
+    fn with<T>(&self, ask: impl FnOnce(&FrictionProblem<'_>) -> T) -> T {
         let m = self.c.len();
         let c_scale: Vec<f64> = self.c.iter().map(|c| c.abs()).collect();
-        FrictionProblem {
+        ask(&FrictionProblem {
             gap: GapProblem {
                 h: self.h.as_ref(),
                 diagonal: &self.diagonal,
@@ -55,8 +59,7 @@ impl Points {
                 scale: 1.0,
             },
             tangents: &self.tangents,
-        }
-        .solve_along(&vec![0.0; m], status)
+        })
     }
 
     /// The value of every limit: jumps, then dependent rows.
@@ -212,5 +215,28 @@ fn a_block_slides_where_the_slope_is_steeper_than_its_friction() {
         let mut status = vec![Status::Open; 2];
         points.solve(&mut status);
         assert_eq!(status[1], expected);
+    }
+}
+
+/// Where a slip relieves the contact, sticking, slipping and opening are all in equilibrium.
+#[test]
+fn coulomb_s_friction_may_have_several_solutions() {
+    let strong = ForceBound {
+        coefficient: 1.5,
+        ..COULOMB
+    };
+    for (coupling, opened) in [(0.9, Some(0.5 / 0.19)), (0.3, None)] {
+        let mut points = Points::new(1, 3, strong);
+        points.h = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 } else { coupling });
+        points.diagonal = vec![1.0; 2];
+        points.bounds = vec![0.0; 2];
+        points.c = vec![1.0, 1.4];
+        let mut status = vec![Status::Closed; 2];
+        let known = points.solve(&mut status).jumps;
+        assert_eq!(known, [0.0; 2]);
+        let other = points.with(|problem| problem.other_solution(&known, 1.0));
+        assert_eq!(other.is_some(), opened.is_some());
+        let (found, expected) = (other.unwrap_or_default(), opened.unwrap_or_default());
+        assert!((found - expected).abs() < 1e-12, "{found}");
     }
 }

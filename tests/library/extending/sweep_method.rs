@@ -81,6 +81,7 @@ fn solve(comm: &Comm, small: &Small, way: Way) -> (SweepOutcome, Vec<u32>) {
         tolerance: TOLERANCE,
         max_sweeps: None,
         relaxation: None,
+        second_start: false,
     };
     let outcome = match way {
         Way::Added(limit) => Aitken {
