@@ -157,6 +157,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         log.step(catalog, k);
         let mut way = Way::default();
         let mut work = BTreeMap::new();
+        let slips_before = state.slips.clone();
         let mut solved = loop {
             let moment = Moment {
                 step: k,
@@ -187,6 +188,18 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
             work = std::mem::take(&mut solved.slips.work);
             state = solved.into_state(settings.method);
         };
+        if way.increments > 1 && way.done >= 1.0 {
+            // Its end may be a solution of the whole load step, too.
+            let moment = Moment::end_of(k);
+            let before = solved.clone_state(slips_before, settings.method);
+            let acting = loads(moment, at_end, &before);
+            let at_once = increments.solve(acting, at_end, before, &mut seconds);
+            let at_once = at_once.map_err(|failure| context.in_step(failure, k))?;
+            if comm.decide(at_once.is_converged()) {
+                solved = at_once;
+                way = Way::default();
+            }
+        }
         if let (Some(outcome), true) = (&mut solved.outcome, way.was_halved()) {
             outcome.count_increments(way.increments, way.done);
         }

@@ -17,7 +17,7 @@ use crate::schur::local::multiply_add;
 
 /// Subdomains in contact, with what else is merged with them, condensed onto their normal jumps t and
 /// their traces U on Γ.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ContactPair {
     /// S on [t | U], both triangles.
     condensed: Rc<Condensed>,

@@ -85,6 +85,7 @@ impl StepTotals {
     pub fn friction(&self) -> Option<Friction> {
         let friction = self.resultants.friction();
         friction.map(|friction| Friction {
+            increments: self.outcome.increments,
             other_solution: self.outcome.other_solution,
             ..friction
         })
@@ -138,6 +139,7 @@ impl Totals<'_> {
         let all = steps.filter_map(StepTotals::friction);
         all.reduce(|before, last| Friction {
             dissipated_work: before.dissipated_work + last.dissipated_work,
+            increments: before.increments.max(last.increments),
             other_solution: match before.other_solution {
                 Some(true) => before.other_solution,
                 _ => last.other_solution,

@@ -172,6 +172,11 @@ impl Increment {
         status == Some(&SweepStatus::Converged)
     }
 
+    /// The state that it leaves, but for the tangential jumps, which are those of another one.
+    pub fn clone_state(&self, slips: BTreeMap<usize, Vec<f64>>, method: Method) -> StepState {
+        StepState::after(self.pairs.clone(), slips, self.outcome.as_ref(), method)
+    }
+
     /// The state that it leaves.
     pub fn into_state(self, method: Method) -> StepState {
         StepState::after(self.pairs, self.slips.jumps, self.outcome.as_ref(), method)

@@ -69,6 +69,8 @@ pub struct SweepOutcome {
     pub contact: Vec<ContactEnd>,
     /// Whether active sets were frozen one after the other.
     pub frozen: bool,
+    /// Increments that the load step was solved in.
+    pub increments: usize,
     /// Whether another solution with friction was found, where it was looked for.
     pub other_solution: Option<bool>,
     /// The conditions of every pair whose status cycles, where friction keeps sweeps from converging.
@@ -90,6 +92,7 @@ impl SweepOutcome {
             totals: ConTotals::default(),
             contact: Vec::new(),
             frozen: false,
+            increments: 1,
             other_solution: None,
             unsettled: Vec::new(),
         }
@@ -127,6 +130,7 @@ impl SweepOutcome {
 
     /// Says how far the load of a load step came in several increments.
     pub fn count_increments(&mut self, increments: usize, done: f64) {
+        self.increments = increments;
         let what = match done < 1.0 {
             true => format!("results are those at {:.1} % of its load", 100.0 * done),
             false => {
