@@ -61,7 +61,20 @@ pub struct StepReport {
     #[serde(flatten)]
     pub resultants: Resultants,
     /// What friction does in it, in all contacts; `null` where there is none.
-    pub friction: Option<Friction>,
+    pub friction: Option<FrictionOfStep>,
+}
+
+/// What friction does in a load step, in all contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct FrictionOfStep {
+    /// What it does.
+    #[serde(flatten)]
+    pub friction: Friction,
+    /// Number of increments that the load step was solved in, of several load steps the largest; slip and status are said
+    /// of the last one.
+    pub increments: usize,
+    /// Whether `--second-start` found another solution; `null` without it.
+    pub other_solution: Option<bool>,
 }
 
 /// The report. A number that isn't finite is `null` in its JSON.
@@ -114,7 +127,7 @@ pub struct Report {
     #[serde(flatten)]
     pub resultants: Resultants,
     /// What friction does in all contacts; `null` where there is none.
-    pub friction: Option<Friction>,
+    pub friction: Option<FrictionOfStep>,
     /// The load steps, where the problem has any. Above, sweeps, inner steps and friction's work are those of
     /// all, residual, certificate and condition those of the worst, and all else is that of the last one.
     pub steps: Vec<StepReport>,

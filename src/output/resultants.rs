@@ -52,11 +52,6 @@ pub struct Friction {
     pub slipping: usize,
     /// Work that becomes heat (J, per metre of thickness in the plane).
     pub dissipated_work: f64,
-    /// Number of increments that the load step was solved in, the largest of all steps; slip and status are said of the
-    /// last one.
-    pub increments: usize,
-    /// Whether `--second-start` found another solution; `null` without it.
-    pub other_solution: Option<bool>,
 }
 
 impl Friction {
@@ -77,8 +72,6 @@ impl ContactResultant {
                 sticking: usize::from(state.status() == 1),
                 slipping: usize::from(state.status() == 2),
                 dissipated_work: state.dissipated,
-                increments: 0,
-                other_solution: None,
             });
         }
         let force = advance(state.tangential_force, -state.force, point.normal());
@@ -188,8 +181,6 @@ mod tests {
             sticking: 1,
             slipping: 1,
             dissipated_work: 0.25,
-            increments: 0,
-            other_solution: None,
         };
         assert_eq!(contact.friction, Some(sum));
         let mut all = Resultants::default();

@@ -14,7 +14,7 @@ use contact_dd_partition::message::{ERROR, WARNING};
 use contact_dd_partition::problem::LoadStep;
 use serde::Serialize;
 
-use super::report::{Report, Status, StepReport};
+use super::report::{FrictionOfStep, Report, Status, StepReport};
 use crate::certificate::Certificate;
 use crate::plan::cost::CostEstimate;
 use crate::sweep::SweepRecord;
@@ -145,7 +145,7 @@ pub fn closing(reason: &str, report: &Report, result: &Path) -> String {
             "mesh         stresses are off by about {percent:.1} % in the energy norm"
         ));
     }
-    if let Some(friction) = report.friction {
+    if let Some(FrictionOfStep { friction, .. }) = report.friction {
         lines.push(format!(
             "friction     {} conditions stick, {} slip; work {:.4e} J/m",
             friction.sticking, friction.slipping, friction.dissipated_work
@@ -183,7 +183,9 @@ fn steps(steps: &[StepReport]) -> Vec<String> {
     let line = |(k, step): (usize, &StepReport)| {
         let contacts = step.resultants.contacts.iter();
         let pressure = contacts.fold(0.0, |most: f64, contact| most.max(contact.largest_pressure));
-        let slipping = step.friction.map(|sum| format!("  {:>8}", sum.slipping));
+        let slipping = step
+            .friction
+            .map(|sum| format!("  {:>8}", sum.friction.slipping));
         let slipping = slipping.unwrap_or_default();
         format!(
             "{:>5}  {:>10}  {:>8}  {:>8}{slipping}  {pressure:>12.4e}  {:>12.1e}  {}",

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::certificate::Certificate;
 use crate::fem::estimate::CellError;
 use crate::output::ranks::RankReport;
-use crate::output::report::{ErrorEstimate, Status, StepReport};
+use crate::output::report::{ErrorEstimate, FrictionOfStep, Status, StepReport};
 use crate::output::resultants::{Friction, Resultants};
 use crate::plan::Plan;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
@@ -82,12 +82,12 @@ impl StepTotals {
     }
 
     /// What friction does.
-    pub fn friction(&self) -> Option<Friction> {
+    pub fn friction(&self) -> Option<FrictionOfStep> {
         let friction = self.resultants.friction();
-        friction.map(|friction| Friction {
+        friction.map(|friction| FrictionOfStep {
+            friction,
             increments: self.outcome.increments,
             other_solution: self.outcome.other_solution,
-            ..friction
         })
     }
 
@@ -134,17 +134,19 @@ impl Totals<'_> {
     }
 
     /// What friction does: the state in the end, the work of all steps.
-    pub fn friction(&self) -> Option<Friction> {
+    pub fn friction(&self) -> Option<FrictionOfStep> {
         let steps = self.steps.iter();
         let all = steps.filter_map(StepTotals::friction);
-        all.reduce(|before, last| Friction {
-            dissipated_work: before.dissipated_work + last.dissipated_work,
+        all.reduce(|before, last| FrictionOfStep {
+            friction: Friction {
+                dissipated_work: before.friction.dissipated_work + last.friction.dissipated_work,
+                ..last.friction
+            },
             increments: before.increments.max(last.increments),
             other_solution: match before.other_solution {
                 Some(true) => before.other_solution,
                 _ => last.other_solution,
             },
-            ..last
         })
     }
 
