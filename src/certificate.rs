@@ -33,7 +33,7 @@ pub struct Certificate {
     pub tension: f64,
     /// Largest product of contact force and gap over the product of their scales.
     pub complementarity: f64,
-    /// Largest tangential force beyond its bound, over the load scale, or product of slip and what its force lacks of
+    /// Largest tangential force beyond its bound, over the largest contact force, or product of slip and what its force lacks of
     /// the bound against it, over the product of their scales.
     pub friction: f64,
     /// Sum of loads and reactions over the load scale.
@@ -118,7 +118,7 @@ pub fn certificate(
         tension: ratio(most.tension, force_scale),
         complementarity: ratio(most.complementarity, most.contact_force * most.displacement),
         friction: f64::max(
-            ratio(most.beyond_bound, force_scale),
+            ratio(most.beyond_bound, most.contact_force),
             ratio(most.not_opposed, most.contact_force * most.displacement),
         ),
         force_balance: to_load * ratio(largest(&external.force), external.force_scale),

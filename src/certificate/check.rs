@@ -203,6 +203,7 @@ impl Most {
         {
             let (force, slip) = (forces[number], -gaps[number]);
             let bound = bound.at(forces[normal], closed[normal]);
+            most.contact_force = larger(most.contact_force, force);
             most.beyond_bound = larger(most.beyond_bound, (force.abs() - bound).max(0.0));
             if !closed[number] {
                 let missing = bound * slip.abs() - force * slip;

@@ -162,7 +162,6 @@ impl FrictionProblem<'_> {
             mut jumps,
             mut forces,
             unbalanced,
-            round_off,
         } = linear;
         let mut tangents = self.tangents.iter().map(|tangent| tangent.limit).peekable();
         for (i, force) in forces.iter_mut().enumerate() {
@@ -179,7 +178,7 @@ impl FrictionProblem<'_> {
             forces,
             steps,
             fell_back: false,
-            converged: right && unbalanced <= FORCE_TOLERANCE * round_off,
+            converged: right && unbalanced <= FORCE_TOLERANCE,
         }
     }
 
@@ -287,7 +286,7 @@ impl FrictionProblem<'_> {
                 scales.sum()
             }
         };
-        FORCE_TOLERANCE * scale * linear.round_off
+        FORCE_TOLERANCE * scale
     }
 }
 

@@ -14,6 +14,8 @@ const NOT_BALANCED_FROZEN: f64 = 1e-13;
 const ROUND_OFF_OF_TERMS: f64 = 1e-12;
 /// Share of loads in the forces on nodes from which these aren't round-off of a scene without load.
 const LOADED: f64 = 1e-2;
+/// Violation of the law of friction of an answer that isn't one.
+const AGAINST_FRICTION: f64 = 1e-6;
 /// Equilibrium relative to the load of an answer that says nothing.
 const NOT_BALANCED_OF_LOAD: f64 = 1e-2;
 
@@ -150,6 +152,7 @@ impl SweepOutcome {
             equilibrium_of_load,
             load_share,
             penetration,
+            friction,
             ..
         } = *certificate;
         let not_round_off = equilibrium > ROUND_OFF_OF_TERMS || load_share > LOADED;
@@ -160,6 +163,12 @@ impl SweepOutcome {
         };
         let unbalanced =
             equilibrium > limit || (not_round_off && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
+        if friction > AGAINST_FRICTION && self.status == SweepStatus::Converged {
+            self.status = SweepStatus::NotConverged(format!(
+                "tangential forces break the law of friction by {friction:.1e} of the largest contact force: the \
+                 scene is too badly conditioned"
+            ));
+        }
         let failed = unbalanced || penetration > limit || equilibrium.is_nan();
         if failed && self.status == SweepStatus::Converged {
             self.status = SweepStatus::NotConverged(format!(

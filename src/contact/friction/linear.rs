@@ -20,8 +20,6 @@ const SINGULAR_PIVOT: f64 = 1e-13;
 const SPRING: f64 = 1e-12;
 /// How much closed rows that depend on each other give way, in that scale: their forces share what one could carry.
 const YIELD: f64 = 1e-6;
-/// Round-off of forces that depend on how they share, relative to that of others.
-const SHARED_ROUND_OFF: f64 = 1e3;
 /// Most refinements of a solution that springs have bent.
 const MAX_REFINEMENTS: usize = 40;
 
@@ -34,8 +32,6 @@ pub(super) struct Linear {
     pub forces: Vec<f64>,
     /// What is left of the equations, relative to their terms.
     pub unbalanced: f64,
-    /// Round-off of forces, relative to what it is elsewhere.
-    pub round_off: f64,
 }
 
 /// A x = b in the scale of energies.
@@ -67,7 +63,7 @@ impl Linear {
         let left = problem.left(status, &jumps, &forces);
         let b = left.iter().zip(&system.of_equation);
         let b = b.map(|(r, s)| r / s).collect();
-        let (x, is_singular) = system.solve(b, || problem.is_balanced(status, &jumps, &left));
+        let x = system.solve(b, || problem.is_balanced(status, &jumps, &left));
         for ((&i, x), scale) in system.unknowns.iter().zip(x).zip(&system.scale) {
             match jumps.get_mut(i) {
                 Some(t) => *t += x / scale,
@@ -80,10 +76,6 @@ impl Linear {
             jumps,
             forces,
             unbalanced,
-            round_off: match is_singular && !gap.rows.is_empty() {
-                true => SHARED_ROUND_OFF,
-                false => 1.0,
-            },
         }
     }
 }
@@ -275,14 +267,14 @@ impl System {
         }
     }
 
-    /// A⁻¹ b, 0 where A is singular and b `is_balanced`; and whether A is singular.
-    fn solve(&self, b: Vec<f64>, is_balanced: impl Fn() -> bool) -> (Vec<f64>, bool) {
+    /// A⁻¹ b, 0 where A is singular and b `is_balanced`.
+    fn solve(&self, b: Vec<f64>, is_balanced: impl Fn() -> bool) -> Vec<f64> {
         let n = b.len();
         let mut lu = self.a.partial_piv_lu();
         let is_singular = (0..n).any(|k| lu.U()[(k, k)].abs() <= SINGULAR_PIVOT);
         if is_singular {
             if is_balanced() {
-                return (vec![0.0; n], true);
+                return vec![0.0; n];
             }
             let mut held = self.a.clone();
             for (k, spring) in self.springs.iter().enumerate() {
@@ -311,7 +303,7 @@ impl System {
                 *x += dx;
             }
         }
-        (x, is_singular)
+        x
     }
 }
 
