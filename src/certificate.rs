@@ -33,8 +33,8 @@ pub struct Certificate {
     pub tension: f64,
     /// Largest product of contact force and gap over the product of their scales.
     pub complementarity: f64,
-    /// Largest tangential force beyond its bound, over the largest contact force, or product of slip and what its force lacks of
-    /// the bound against it, over the product of their scales.
+    /// The largest of: tangential force beyond its bound, over the largest contact force; way of what sticks, over the
+    /// largest displacement; product of slip and what its force lacks of the bound against it, over that of both scales.
     pub friction: f64,
     /// Sum of loads and reactions over the load scale.
     pub force_balance: f64,
@@ -117,10 +117,13 @@ pub fn certificate(
         penetration: ratio(most.penetration, most.displacement),
         tension: ratio(most.tension, force_scale),
         complementarity: ratio(most.complementarity, most.contact_force * most.displacement),
-        friction: f64::max(
+        friction: [
             ratio(most.beyond_bound, most.contact_force),
+            ratio(most.astray, most.displacement),
             ratio(most.not_opposed, most.contact_force * most.displacement),
-        ),
+        ]
+        .into_iter()
+        .fold(0.0, larger),
         force_balance: to_load * ratio(largest(&external.force), external.force_scale),
         moment_balance: to_load * ratio(largest(&external.moment), external.moment_scale),
         interface_jump: ratio(jump, most.displacement),

@@ -36,6 +36,8 @@ pub struct Most {
     pub complementarity: f64,
     /// Tangential force beyond its bound (N/m).
     pub beyond_bound: f64,
+    /// Way of a point that sticks from where it does (m).
+    pub astray: f64,
     /// What friction would have dissipated more under its bound, against the slip (N).
     pub not_opposed: f64,
     /// Displacement (m).
@@ -57,6 +59,7 @@ impl Most {
             load: larger(self.load, other.load),
             complementarity: larger(self.complementarity, other.complementarity),
             beyond_bound: larger(self.beyond_bound, other.beyond_bound),
+            astray: larger(self.astray, other.astray),
             not_opposed: larger(self.not_opposed, other.not_opposed),
             displacement: larger(self.displacement, other.displacement),
             rest: larger(self.rest, other.rest),
@@ -205,7 +208,9 @@ impl Most {
             let bound = bound.at(forces[normal], closed[normal]);
             most.contact_force = larger(most.contact_force, force);
             most.beyond_bound = larger(most.beyond_bound, (force.abs() - bound).max(0.0));
-            if !closed[number] {
+            if closed[number] {
+                most.astray = larger(most.astray, slip);
+            } else {
                 let missing = bound * slip.abs() - force * slip;
                 most.not_opposed = larger(most.not_opposed, missing);
             }

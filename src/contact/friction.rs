@@ -23,6 +23,9 @@ const STEPS: usize = 60;
 const STEPS_EACH: usize = 2;
 const MOST_STEPS: usize = 100;
 
+/// Round-off of dependent limits, relative to that of others, beyond which they aren't where they should be.
+const ASTRAY: f64 = 1e4;
+
 /// What bounds a tangential force: |λ_t| ≤ cohesion + coefficient·λ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ForceBound {
@@ -213,7 +216,10 @@ impl FrictionProblem<'_> {
 
     fn normal_status(&self, i: usize, status: &[Status], linear: &Linear) -> Status {
         match status[i] {
-            Status::Closed => Status::new(linear.forces[i] < -self.force_round_off(i, linear)),
+            Status::Closed => Status::new(
+                linear.forces[i] < -self.force_round_off(i, linear)
+                    || self.is_astray(i, linear) && self.way(i, linear) > 0.0,
+            ),
             _ => Status::new(self.way(i, linear) >= -self.gap_round_off(i, linear)),
         }
     }
@@ -232,6 +238,7 @@ impl FrictionProblem<'_> {
             Status::Open => Status::Open,
             // The force of its normal says first that this is open.
             _ if self.opens(tangent, status, linear) => status[i],
+            Status::Closed if self.is_astray(i, linear) => Status::of_slip(slip),
             Status::Closed => {
                 let over = linear.forces[i].abs() - bound;
                 match over > self.force_round_off(i, linear) {
@@ -250,6 +257,11 @@ impl FrictionProblem<'_> {
     fn opens(&self, tangent: &TangentialLimit, status: &[Status], linear: &Linear) -> bool {
         let opens = |n: usize| !self.normal_status(n, status, linear).is_closed();
         tangent.bound.only_closed && tangent.normal.is_some_and(opens)
+    }
+
+    /// Whether limit i, which is closed, isn't where it should be: what it depends on is held elsewhere.
+    fn is_astray(&self, i: usize, linear: &Linear) -> bool {
+        i >= self.gap.c.len() && self.way(i, linear).abs() > ASTRAY * self.gap_round_off(i, linear)
     }
 
     /// How far limit i is from its bound: the gap that is left, or the way back to where it sticks (m).

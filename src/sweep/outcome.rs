@@ -165,8 +165,7 @@ impl SweepOutcome {
             equilibrium > limit || (not_round_off && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
         if friction > AGAINST_FRICTION && self.status == SweepStatus::Converged {
             self.status = SweepStatus::NotConverged(format!(
-                "tangential forces break the law of friction by {friction:.1e} of the largest contact force: the \
-                 scene is too badly conditioned"
+                "contacts break the law of friction by {friction:.1e} of the largest force or displacement"
             ));
         }
         let failed = unbalanced || penetration > limit || equilibrium.is_nan();
