@@ -15,7 +15,8 @@ const SIZE: [f64; 2] = [3.0, 1.0];
 
 fn squares() -> Vec<Square> {
     let [long, high] = SIZE.map(|size| size / 25.0);
-    let on_slope = |along: f64, across: f64| [24.0 * along - 7.0 * across, 7.0 * along + 24.0 * across];
+    let on_slope =
+        |along: f64, across: f64| [24.0 * along - 7.0 * across, 7.0 * along + 24.0 * across];
     let corners = [(0.0, 0.0), (long, 0.0), (long, high), (0.0, high)];
     let corners = corners.map(|(along, across)| on_slope(along, across));
     let sides = ["base", "upper face", "top", "lower face"].map(Some);
