@@ -136,7 +136,7 @@ impl Increments<'_> {
         };
         let solution = Solution::new(&fixed, analysis, discrete, !settings.no_stress);
         if let Some(outcome) = &mut outcome {
-            outcome.accept(&solution.certificate);
+            outcome.accept(&solution.certificate, context.catalog.has_friction());
             outcome.name_unsettled(&unsettled_points(&context, outcome));
         }
         seconds.recover += lap.elapsed().as_secs_f64();

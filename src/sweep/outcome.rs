@@ -7,15 +7,15 @@ use serde::{Deserialize, Serialize};
 
 /// Equilibrium and penetration of a certificate that isn't one.
 const NOT_BALANCED: f64 = 1e-10;
-/// The same where the active set was frozen: without the exact laws of clusters, and their rigid motions, that is
-/// round-off no more, and the set may be another.
+/// The same where the active set was frozen, or contacts have friction: without the exact laws of clusters, and their
+/// rigid motions, that is round-off no more, and the set may be another.
 const NOT_BALANCED_FROZEN: f64 = 1e-13;
 /// Equilibrium that may be round-off of a scene without load.
 const ROUND_OFF_OF_TERMS: f64 = 1e-12;
 /// Share of loads in the forces on nodes from which these aren't round-off of a scene without load.
 const LOADED: f64 = 1e-2;
 /// Violation of the law of friction of an answer that isn't one.
-const AGAINST_FRICTION: f64 = 1e-6;
+const AGAINST_FRICTION: f64 = 1e-9;
 /// Equilibrium relative to the load of an answer that says nothing.
 const NOT_BALANCED_OF_LOAD: f64 = 1e-2;
 
@@ -146,7 +146,7 @@ impl SweepOutcome {
 
     /// Takes back that the sweeps converged if the full discrete problem says otherwise: their
     /// residual is relative to terms that may be far larger than the load.
-    pub fn accept(&mut self, certificate: &Certificate) {
+    pub fn accept(&mut self, certificate: &Certificate, has_friction: bool) {
         let Certificate {
             equilibrium,
             equilibrium_of_load,
@@ -156,7 +156,7 @@ impl SweepOutcome {
             ..
         } = *certificate;
         let not_round_off = equilibrium > ROUND_OFF_OF_TERMS || load_share > LOADED;
-        let limit = if self.frozen {
+        let limit = if self.frozen || has_friction {
             NOT_BALANCED_FROZEN
         } else {
             NOT_BALANCED
@@ -190,13 +190,14 @@ mod tests {
             status: SweepStatus::Converged,
             ..SweepOutcome::before(Vec::new())
         };
-        outcome.accept(&Certificate {
+        let certificate = Certificate {
             equilibrium,
             equilibrium_of_load,
             load_share,
             penetration,
             ..Certificate::default()
-        });
+        };
+        outcome.accept(&certificate, false);
         outcome.status
     }
 
