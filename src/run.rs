@@ -7,7 +7,6 @@ mod restart;
 mod sweeping;
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 use std::time::Instant;
 
 use contact_dd_partition::problem::read::ProblemFile;
@@ -34,12 +33,9 @@ use crate::report::log::RunLog;
 use crate::report::totals::{StepTotals, Totals};
 use crate::report::write::write_solution;
 use crate::report::{Outputs, collect};
-use crate::rigid::body_analysis::RigidBodyAnalysis;
-use crate::rigid::closing_motion::without_closing_motions;
 use crate::settings::Settings;
 use crate::settings::command_line::CommandLine;
-use crate::step::state::{StepState, analyse, analyse_steps, stop_if_asked};
-use crate::step::way::Way;
+use crate::step::state::{StepState, analyse_steps, stop_if_asked};
 use crate::sweep::SweepStatus;
 
 /// How a run ended that didn't fail.
@@ -107,18 +103,13 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     log.phase("creating the outputs", None);
     let finished = finished_steps(&context, settings)?;
     let mut outputs = create_outputs(&context, settings, finished.count)?;
-    let loads = |moment: Moment, analysis: &RigidBodyAnalysis, state: &StepState| {
-        let mut loads = context.loads(moment);
-        state.hold(&mut loads);
-        without_closing_motions(&context, loads, analysis)
-    };
     seconds.read = began.elapsed().as_secs_f64();
 
     // S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy.
     log.phase("factorizing", Some(blocks.len()));
     let condensation = Condensation {
         context,
-        loads: &loads(Moment::end_of(0), &analyses[0], &StepState::default()),
+        loads: &StepState::default().loads(&context, Moment::end_of(0), &analyses[0]),
         fixing_dofs: &analyses[0].motions.fixing_dofs,
     };
     let condensed = condense_clusters(&condensation, &analyses[0], &|| log.bar.advance())?;
@@ -140,8 +131,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     };
     seconds.interface = lap.elapsed().as_secs_f64();
 
-    // Load step by load step: each starts from the state that the one before it left, and goes on in halves where
-    // friction keeps it from converging at once.
+    // Load step by load step: each starts from the state that the one before it left.
     let increments = Increments {
         context,
         settings,
@@ -150,59 +140,12 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         interface: interface.as_ref(),
         frozen: frozen.as_ref(),
     };
-    let has_friction = catalog.has_friction();
     let (mut state, mut steps) = (finished.state, finished.steps);
     for (k, at_end) in analyses.iter().enumerate().skip(finished.count) {
         stop_if_asked(&context, settings, k)?;
         log.step(catalog, k);
-        let mut way = Way::default();
-        let mut work = BTreeMap::new();
-        let slips_before = state.slips.clone();
-        let mut solved = loop {
-            let moment = Moment {
-                step: k,
-                part: way.next(),
-            };
-            let on_the_way = match moment.part < 1.0 {
-                true => Some(analyse(&context, moment, analyses[..k].last())),
-                false => None,
-            };
-            let on_the_way = on_the_way.transpose();
-            let on_the_way = on_the_way.map_err(|failure| context.in_step(failure, k))?;
-            let analysis = on_the_way.as_ref().unwrap_or(at_end);
-            let before = match has_friction {
-                true => state.clone(),
-                false => std::mem::take(&mut state),
-            };
-            let acting = loads(moment, analysis, &before);
-            let solved = increments.solve(acting, analysis, before, &mut seconds);
-            let mut solved = solved.map_err(|failure| context.in_step(failure, k))?;
-            let is_converged = comm.decide(solved.is_converged());
-            if !is_converged && has_friction && way.halve() {
-                continue;
-            }
-            solved.slips.add_work(&work);
-            if way.accept() || !is_converged {
-                break solved;
-            }
-            work = std::mem::take(&mut solved.slips.work);
-            state = solved.into_state(settings.method);
-        };
-        if way.increments > 1 && way.done >= 1.0 {
-            // Its end may be a solution of the whole load step, too.
-            let moment = Moment::end_of(k);
-            let before = solved.clone_state(slips_before, settings.method);
-            let acting = loads(moment, at_end, &before);
-            let at_once = increments.solve(acting, at_end, before, &mut seconds);
-            let at_once = at_once.map_err(|failure| context.in_step(failure, k))?;
-            if comm.decide(at_once.is_converged()) {
-                solved = at_once;
-                way = Way::default();
-            }
-        }
-        if let (Some(outcome), true) = (&mut solved.outcome, way.was_halved()) {
-            outcome.count_increments(way.increments, way.done);
-        }
+        let solved = increments.step(k, &analyses, state, &mut seconds);
+        let solved = solved.map_err(|failure| context.in_step(failure, k))?;
 
         // Results travel to the root in slabs of subdomains and are written as they arrive.
         log.phase("writing", None);

@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::limits::limits_of_groups;
 use crate::contact::pair::ContactPair;
-use crate::context::{Context, Loads};
+use crate::context::{Context, Moment};
 use crate::error::Failure;
 use crate::frozen::fronts::FrozenFronts;
 use crate::interface::numbering::Numbering;
@@ -21,7 +21,8 @@ use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::run::sweeping::{sweep, sweep_frozen};
 use crate::settings::Settings;
 use crate::step::Loading;
-use crate::step::state::StepState;
+use crate::step::state::{StepState, analyse};
+use crate::step::way::Way;
 use crate::sweep::{Method, SweepOutcome, SweepStatus};
 
 /// What all increments share: what was made of matrices.
@@ -54,13 +55,89 @@ pub struct Increment {
 }
 
 impl Increments<'_> {
-    /// Solves for `loads`, of which `analysis` knows the rigid motions, from the state `before`. Collective.
+    /// Solves load step k from the state `before`; `analyses` know the rigid motions of all steps. Where friction keeps
+    /// it from converging at once, in halves. Collective.
     ///
     /// # Errors
     /// Supports that make two sides penetrate, a part that moves freely, or a signal that stopped the sweeps.
-    pub fn solve(
+    pub fn step(
         &self,
-        loads: Loads,
+        k: usize,
+        analyses: &[RigidBodyAnalysis],
+        before: StepState,
+        seconds: &mut PhaseSeconds,
+    ) -> Result<Increment, Failure> {
+        let (end, at_end) = (Moment::end_of(k), &analyses[k]);
+        if !self.context.catalog.has_friction() {
+            return self.solve(end, at_end, before, seconds);
+        }
+        let at_once = self.solve(end, at_end, before.clone(), seconds)?;
+        if self.is_converged(&at_once) {
+            return Ok(at_once);
+        }
+        let slips = before.slips.clone();
+        let Some(in_parts) = self.in_halves(k, analyses, before, seconds)? else {
+            return Ok(at_once);
+        };
+        // Its end may be a solution of the whole load step, too.
+        let from_there = in_parts.clone_state(slips, self.settings.method);
+        let at_once = self.solve(end, at_end, from_there, seconds)?;
+        match self.is_converged(&at_once) {
+            true => Ok(at_once),
+            false => Ok(in_parts),
+        }
+    }
+
+    /// Solves load step k in halves, halves of these and so on; `None` where small parts don't converge either.
+    /// Collective.
+    fn in_halves(
+        &self,
+        k: usize,
+        analyses: &[RigidBodyAnalysis],
+        mut state: StepState,
+        seconds: &mut PhaseSeconds,
+    ) -> Result<Option<Increment>, Failure> {
+        let mut way = Way::default();
+        let mut work = BTreeMap::new();
+        loop {
+            let moment = Moment {
+                step: k,
+                part: way.next(),
+            };
+            let analysis = analyse(&self.context, moment, analyses[..k].last())?;
+            let mut solved = self.solve(moment, &analysis, state.clone(), seconds)?;
+            if !self.is_converged(&solved) {
+                match way.halve() {
+                    true => continue,
+                    false => return Ok(None),
+                }
+            }
+            solved.slips.add_work(&work);
+            if way.accept() {
+                if let Some(outcome) = &mut solved.outcome {
+                    outcome.count_increments(way.increments);
+                }
+                return Ok(Some(solved));
+            }
+            work = std::mem::take(&mut solved.slips.work);
+            state = solved.into_state(self.settings.method);
+        }
+    }
+
+    /// Whether the sweeps converged. Collective.
+    fn is_converged(&self, increment: &Increment) -> bool {
+        let status = increment.outcome.as_ref().map(|outcome| &outcome.status);
+        (self.context.comm).decide(status == Some(&SweepStatus::Converged))
+    }
+
+    /// Solves for the loads of a moment, of which `analysis` knows the rigid motions, from the state `before`.
+    /// Collective.
+    ///
+    /// # Errors
+    /// Supports that make two sides penetrate, a part that moves freely, or a signal that stopped the sweeps.
+    fn solve(
+        &self,
+        moment: Moment,
         analysis: &RigidBodyAnalysis,
         before: StepState,
         seconds: &mut PhaseSeconds,
@@ -79,6 +156,7 @@ impl Increments<'_> {
         log.phase("condensing the load", None);
         let lap = Instant::now();
         let (start, held_at) = (before.start(), before.slips.clone());
+        let loads = before.loads(&context, moment, analysis);
         let loading = Loading {
             context,
             factors,
@@ -166,14 +244,8 @@ fn unsettled_points(context: &Context<'_>, outcome: &SweepOutcome) -> Vec<String
 }
 
 impl Increment {
-    /// Whether the sweeps converged; on the root.
-    pub fn is_converged(&self) -> bool {
-        let status = self.outcome.as_ref().map(|outcome| &outcome.status);
-        status == Some(&SweepStatus::Converged)
-    }
-
     /// The state that it leaves, but for the tangential jumps, which are those of another one.
-    pub fn clone_state(&self, slips: BTreeMap<usize, Vec<f64>>, method: Method) -> StepState {
+    fn clone_state(&self, slips: BTreeMap<usize, Vec<f64>>, method: Method) -> StepState {
         StepState::after(self.pairs.clone(), slips, self.outcome.as_ref(), method)
     }
 

@@ -8,6 +8,7 @@ use crate::contact::pair::{ContactEnd, ContactPair, PairState};
 use crate::context::{Context, Loads, Moment};
 use crate::error::Failure;
 use crate::rigid::body_analysis::{RigidBodyAnalysis, analyse_bodies};
+use crate::rigid::closing_motion::without_closing_motions;
 use crate::rigid::infeasible_nodes;
 use crate::settings::Settings;
 use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
@@ -45,13 +46,21 @@ impl StepState {
         }
     }
 
-    /// Lets the sides stick where this state leaves them: friction opposes the way from there.
-    pub fn hold(&self, loads: &mut Loads) {
+    /// What acts at a moment after this state, without the closing motions of `analysis`: the sides stick where it leaves
+    /// them, and friction opposes the way from there.
+    pub fn loads(
+        &self,
+        context: &Context<'_>,
+        moment: Moment,
+        analysis: &RigidBodyAnalysis,
+    ) -> Loads {
+        let mut loads = context.loads(moment);
         for (g, loads) in &mut loads.groups {
             let slips = self.slips.get(g).map_or(&[][..], Vec::as_slice);
             let first = loads.gaps.len() - slips.len();
             loads.gaps[first..].copy_from_slice(slips);
         }
+        without_closing_motions(context, loads, analysis)
     }
 
     /// Where the sweeps of the next step begin; on the root.

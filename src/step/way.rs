@@ -1,4 +1,4 @@
-//! The way through a load step: at once, or in halves where that doesn't converge.
+//! The way through a load step in halves, and halves of these.
 
 /// Smallest part of a load step that is tried.
 const SMALLEST: f64 = 1.0 / 8.0;
@@ -6,8 +6,7 @@ const SMALLEST: f64 = 1.0 / 8.0;
 /// How far a load step has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Way {
-    /// How much of the load acts.
-    pub done: f64,
+    done: f64,
     part: f64,
     /// Increments that were accepted.
     pub increments: usize,
@@ -17,7 +16,7 @@ impl Default for Way {
     fn default() -> Self {
         Self {
             done: 0.0,
-            part: 1.0,
+            part: 0.5,
             increments: 0,
         }
     }
@@ -36,11 +35,6 @@ impl Way {
         self.done >= 1.0
     }
 
-    /// Whether it goes on in parts.
-    pub fn was_halved(&self) -> bool {
-        self.part < 1.0
-    }
-
     /// Makes the next increment half as large; whether it isn't too small for that.
     pub fn halve(&mut self) -> bool {
         self.part *= 0.5;
@@ -55,7 +49,6 @@ mod tests {
     #[test]
     fn a_way_in_halves_ends_where_the_load_step_does() {
         let mut way = Way::default();
-        assert!(way.halve());
         assert!(!way.accept());
         assert!(way.halve());
         assert_eq!(way.next(), 0.75);

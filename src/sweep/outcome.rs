@@ -130,17 +130,12 @@ impl SweepOutcome {
         }
     }
 
-    /// Says how far the load of a load step came in several increments.
-    pub fn count_increments(&mut self, increments: usize, done: f64) {
+    /// Says that a load step took several increments.
+    pub fn count_increments(&mut self, increments: usize) {
         self.increments = increments;
-        let what = match done < 1.0 {
-            true => format!("results are those at {:.1} % of its load", 100.0 * done),
-            false => {
-                format!("it took {increments} increments, and what slips is said of the last one")
-            }
-        };
         self.notes.push(format!(
-            "a load step with friction didn't converge at once: {what}"
+            "a load step with friction didn't converge at once: it took {increments} increments, and what slips is \
+             said of the last one"
         ));
     }
 
