@@ -1,0 +1,100 @@
+//! What the letters of shapes count in a file.
+
+use std::collections::BTreeMap;
+
+use super::{Field, noun};
+use crate::stiffness::components;
+
+/// How many there are of what letters count.
+#[derive(Clone, Debug, Default)]
+pub struct Counts(BTreeMap<char, usize>);
+
+impl Counts {
+    /// What the dimension of space says.
+    pub fn new(dim: usize) -> Self {
+        let mut counts = Self::default();
+        counts.set('d', dim);
+        counts.set('v', components(dim));
+        counts
+    }
+
+    /// The number behind a letter; 0 where nothing has said it.
+    pub fn of(&self, letter: char) -> usize {
+        self.0.get(&letter).copied().unwrap_or(0)
+    }
+
+    /// Says what a letter counts.
+    pub fn set(&mut self, letter: char, count: usize) {
+        self.0.insert(letter, count);
+    }
+
+    /// The extents of a field's shape; a letter of which nothing is known counts nothing.
+    pub fn shape(&self, field: &Field) -> Vec<usize> {
+        let terms = self.terms(field).into_iter();
+        terms.map(|term| self.sum(term).0).collect()
+    }
+
+    /// Compares the extents of a field with its shape. Where one letter of an extent isn't known
+    /// yet, the extent says what it counts.
+    ///
+    /// # Errors
+    /// The shape that was expected.
+    pub fn learn(&mut self, field: &Field, found: &[usize]) -> Result<(), String> {
+        let terms = self.terms(field);
+        // h5py writes `data=[]` with shape (0,) whatever the width of a row.
+        let rows = match found {
+            [0] => &terms[..1],
+            _ => &terms[..],
+        };
+        let mut fits = rows.len() == found.len();
+        for (&term, &extent) in rows.iter().zip(found) {
+            match self.sum(term) {
+                (known, None) => fits &= known == extent,
+                (known, Some(letter)) => match extent.checked_sub(known) {
+                    Some(count) => self.set(letter, count),
+                    None => fits = false,
+                },
+            }
+        }
+        match fits {
+            true => Ok(()),
+            false => Err(self.expected(&terms)),
+        }
+    }
+
+    /// The extents that a field has: one with a question mark only if it isn't 0.
+    fn terms(&self, field: &Field) -> Vec<&'static str> {
+        let terms = field.shape.split(", ");
+        let present = terms.filter_map(|term| match term.strip_suffix('?') {
+            Some(term) => (self.sum(term).0 > 0).then_some(term),
+            None => Some(term),
+        });
+        present.collect()
+    }
+
+    /// The sum of an extent's known parts, and its letter of which nothing is known.
+    fn sum(&self, term: &str) -> (usize, Option<char>) {
+        let (mut sum, mut unknown) = (0, None);
+        for part in term.split(" + ") {
+            let letter = part.chars().next().unwrap_or_default();
+            match part.parse().ok().or_else(|| self.0.get(&letter).copied()) {
+                Some(count) => sum += count,
+                None => unknown = Some(letter),
+            }
+        }
+        (sum, unknown)
+    }
+
+    /// A shape in words: "[R, d] with R = 12 contact points".
+    fn expected(&self, terms: &[&str]) -> String {
+        let shape = terms.join(", ");
+        let known = self.0.iter().filter(|(letter, _)| shape.contains(**letter));
+        let known: Vec<String> = known
+            .map(|(&letter, count)| format!("{letter} = {count} {}", noun(letter)))
+            .collect();
+        match known.is_empty() {
+            true => format!("[{shape}]"),
+            false => format!("[{shape}] with {}", known.join(", ")),
+        }
+    }
+}
