@@ -5,11 +5,13 @@
 //! [`Definition`](reference::Definition) and to name it here.
 
 pub mod geometry;
+pub mod hexahedra;
 pub mod jacobian;
 pub mod lines;
 pub mod quadrature;
 pub mod quadrilaterals;
 pub mod reference;
+pub mod tetrahedra;
 pub mod triangles;
 
 use std::ops::Deref;
@@ -18,8 +20,9 @@ use self::reference::ReferenceElement;
 
 /// The kind of a cell or of a facet.
 ///
-/// Nodes are numbered as VTK and Gmsh do: corners first, counter-clockwise, then a node on each
-/// edge, in the order of the edges, then one in the middle. Edges of quadratic kinds may be curved.
+/// Nodes are numbered as VTK does: corners first, counter-clockwise, then a node on each edge, in the
+/// order of the edges, then those in the middles of faces and cells. Edges and faces of quadratic kinds
+/// may be curved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ElementKind {
     /// A single node.
@@ -38,11 +41,21 @@ pub enum ElementKind {
     Quad8,
     /// A biquadratic quadrilateral of nine nodes.
     Quad9,
+    /// A linear tetrahedron of four nodes.
+    Tetrahedron4,
+    /// A quadratic tetrahedron of ten nodes.
+    Tetrahedron10,
+    /// A trilinear hexahedron of eight nodes.
+    Hexahedron8,
+    /// A quadratic hexahedron of twenty nodes, the serendipity element.
+    Hexahedron20,
+    /// A triquadratic hexahedron of twenty-seven nodes.
+    Hexahedron27,
 }
 
 impl ElementKind {
     /// All kinds, in the order of their declaration.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 13] = [
         Self::Point1,
         Self::Line2,
         Self::Line3,
@@ -51,6 +64,11 @@ impl ElementKind {
         Self::Quad4,
         Self::Quad8,
         Self::Quad9,
+        Self::Tetrahedron4,
+        Self::Tetrahedron10,
+        Self::Hexahedron8,
+        Self::Hexahedron20,
+        Self::Hexahedron27,
     ];
 
     /// What it is: nodes, shape functions, facets, rules.
@@ -64,6 +82,11 @@ impl ElementKind {
             Self::Quad4 => &quadrilaterals::QUAD4,
             Self::Quad8 => &quadrilaterals::QUAD8,
             Self::Quad9 => &quadrilaterals::QUAD9,
+            Self::Tetrahedron4 => &tetrahedra::TETRAHEDRON4,
+            Self::Tetrahedron10 => &tetrahedra::TETRAHEDRON10,
+            Self::Hexahedron8 => &hexahedra::HEXAHEDRON8,
+            Self::Hexahedron20 => &hexahedra::HEXAHEDRON20,
+            Self::Hexahedron27 => &hexahedra::HEXAHEDRON27,
         }
     }
 

@@ -33,6 +33,12 @@ pub fn padded(components: &[f64]) -> [f64; 3] {
     vector
 }
 
+/// A point or vector in words, without the components that space of `dim` dimensions lacks: `(1, 2)`.
+pub fn shown(vector: [f64; 3], dim: usize) -> String {
+    let components = vector.iter().take(dim).map(f64::to_string);
+    format!("({})", components.collect::<Vec<_>>().join(", "))
+}
+
 /// |a|.
 pub fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
@@ -55,6 +61,10 @@ impl ReferenceElement {
 
     /// det ∂x/∂ξ at a point where the shape functions have these `gradients` (m^dim).
     pub fn determinant(&self, gradients: &[[f64; 3]], at: &[[f64; 3]]) -> f64 {
+        if self.dim() == 3 {
+            let [r, s, t] = tangents(gradients, at);
+            return dot(cross(r, s), t);
+        }
         // One for every point of every cell: without the components that the plane lacks.
         let mut j = [[0.0; 2]; 2];
         for (gradient, x) in gradients.iter().zip(at) {
@@ -70,13 +80,20 @@ impl ReferenceElement {
         }
     }
 
-    /// ∫ det ∂x/∂ξ dξ of a cell that fills the plane: its area, with the sign of its orientation
-    /// (m²).
+    /// ∫ det ∂x/∂ξ dξ of a cell that fills its space: its area or volume, with the sign of its orientation
+    /// (m², m³).
     pub fn measure(&self, at: &[[f64; 3]]) -> f64 {
         // One for every cell of a mesh: without a rule where the map is affine.
-        if let (Domain::Triangle, [a, b, c]) = (self.domain(), at) {
-            let (t, s) = (difference(*b, *a), difference(*c, *a));
-            return 0.5 * (t[0] * s[1] - t[1] * s[0]);
+        match (self.domain(), at) {
+            (Domain::Triangle, [a, b, c]) => {
+                let (t, s) = (difference(*b, *a), difference(*c, *a));
+                return 0.5 * (t[0] * s[1] - t[1] * s[0]);
+            }
+            (Domain::Tetrahedron, [a, b, c, d]) => {
+                let [r, s, t] = [b, c, d].map(|corner| difference(*corner, *a));
+                return dot(cross(r, s), t) / 6.0;
+            }
+            _ => {}
         }
         let points = self.stiffness_points().iter();
         points
@@ -84,8 +101,8 @@ impl ReferenceElement {
             .sum()
     }
 
-    /// n dS/dξ of a facet whose cell lies to its left: its unit outward normal times the measure
-    /// that a unit of the reference facet has in space.
+    /// n dS/dξ of a facet whose nodes run as [`facets`](Self::facets) does: its unit outward normal times the
+    /// measure that a unit of the reference facet has in space.
     pub fn area_vector(&self, at: &[[f64; 3]], xi: [f64; 3]) -> [f64; 3] {
         let [t, s, _] = tangents(&self.gradients(xi), at);
         match self.dim() {

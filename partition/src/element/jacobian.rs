@@ -1,16 +1,12 @@
 //! det ∂x/∂ξ > 0: whether the map of a cell is one to one, everywhere and not at some points.
 
-use std::array::from_fn;
+use nalgebra::DMatrix;
 
 use super::geometry::{difference, length};
 use super::reference::{Domain, ReferenceElement};
 
-/// Degree in each direction of the Jacobian's polynomial on the unit square.
-const DEGREE: usize = 3;
-/// Coefficients in each direction.
-const COUNT: usize = DEGREE + 1;
-/// Halvings after which a Jacobian that still may vanish counts as one that does.
-const HALVINGS: u32 = 24;
+/// Halvings in each direction after which a Jacobian that still may vanish counts as one that does.
+const HALVINGS: usize = 12;
 
 /// A place at which the map of a cell turns over or degenerates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,16 +20,17 @@ pub struct Fold {
 }
 
 impl ReferenceElement {
-    /// A place at which det ∂x/∂ξ of a cell of the plane isn't above `floor`; `None` where it is
+    /// A place at which det ∂x/∂ξ of a cell that fills its space isn't above `floor`; `None` where it is
     /// above it in the whole cell.
     ///
-    /// On the unit square the determinant is a polynomial of at most third degree in each
-    /// direction, that of a triangle by way of the collapse (s, t) → (s, t(1 − s)). Its
-    /// coefficients in Bernstein's basis bound it from both sides (Johnen, Remacle and Geuzaine,
-    /// J. Comput. Phys. 233, 2013); where they don't decide, the square is halved.
+    /// On the unit square or cube the determinant is a polynomial, that of a triangle or tetrahedron by way
+    /// of the collapse (s, t) → (s, t(1 − s)). Its coefficients in Bernstein's basis bound it from both sides
+    /// (Johnen, Remacle and Geuzaine, J. Comput. Phys. 233, 2013); where they don't decide, the square is
+    /// halved.
     pub fn fold(&self, at: &[[f64; 3]], floor: f64) -> Option<Fold> {
-        if self.domain() == Domain::Triangle && self.is_linear() {
-            let jacobian = 2.0 * self.measure(at);
+        let is_simplex = matches!(self.domain(), Domain::Triangle | Domain::Tetrahedron);
+        if is_simplex && self.is_linear() {
+            let jacobian = self.measure(at) / self.domain().measure();
             let holds = jacobian > floor;
             return (!holds).then_some(Fold {
                 jacobian,
@@ -53,27 +50,97 @@ impl ReferenceElement {
     }
 }
 
-/// A rectangle of the unit square with Bernstein's coefficients of the Jacobian over it.
-#[derive(Clone, Copy)]
+/// Where the Jacobian is sampled: places that cut each direction of the unit square or cube into equal parts,
+/// as many as it has degrees there.
+#[derive(Debug)]
+pub(super) struct Lattice {
+    degree: usize,
+    /// Gradients of the shape functions at the places, the first direction fastest.
+    gradients: Vec<Vec<[f64; 3]>>,
+    /// Bernstein's coefficients on a line from the values at its places.
+    to_bernstein: DMatrix<f64>,
+}
+
+impl Lattice {
+    pub fn new(element: &ReferenceElement) -> Self {
+        let degree: usize = match (element.domain(), element.is_linear()) {
+            (Domain::Cube, true) => 2,
+            (Domain::Cube, false) => 5,
+            _ => 3,
+        };
+        let count = degree + 1;
+        let share = |i: usize| i as f64 / degree as f64;
+        let places = (0..count.pow(element.dim() as u32))
+            .map(|i| [i % count, i / count % count, i / (count * count)].map(share));
+        let binomial =
+            |k: usize| (0..k).fold(1.0_f64, |b, j| b * (degree - j) as f64 / (j + 1) as f64);
+        let bernstein = DMatrix::from_fn(count, count, |i, k| {
+            let x = share(i);
+            binomial(k) * x.powi(k as i32) * (1.0 - x).powi((degree - k) as i32)
+        });
+        Self {
+            degree,
+            gradients: places
+                .map(|place| element.gradients(element.domain().of_unit_cube(place)))
+                .collect(),
+            to_bernstein: bernstein.try_inverse().unwrap_or_default(),
+        }
+    }
+}
+
+/// A part of the unit square or cube with Bernstein's coefficients of the Jacobian over it.
+#[derive(Clone)]
 struct Piece {
-    coefficients: [[f64; COUNT]; COUNT],
-    low: [f64; 2],
-    high: [f64; 2],
-    halvings: u32,
+    coefficients: Vec<f64>,
+    dim: usize,
+    degree: usize,
+    low: [f64; 3],
+    high: [f64; 3],
+    halvings: usize,
 }
 
 impl Piece {
-    /// The coefficients over the whole square from values at 4 × 4 places.
+    /// The coefficients over the whole from the values on the lattice.
     fn whole(element: &ReferenceElement, at: &[[f64; 3]]) -> Self {
-        let gradients = element.lattice();
-        let values: [[f64; COUNT]; COUNT] =
-            from_fn(|i| from_fn(|j| element.determinant(&gradients[i * COUNT + j], at)));
-        let rows = values.map(bernstein);
-        Self {
-            coefficients: transposed(transposed(rows).map(bernstein)),
-            low: [0.0; 2],
-            high: [1.0; 2],
+        let lattice = element.lattice();
+        let values = lattice.gradients.iter();
+        let mut piece = Self {
+            coefficients: values
+                .map(|gradients| element.determinant(gradients, at))
+                .collect(),
+            dim: element.dim(),
+            degree: lattice.degree,
+            low: [0.0; 3],
+            high: [1.0; 3],
             halvings: 0,
+        };
+        let mut values = vec![0.0; lattice.degree + 1];
+        for axis in 0..piece.dim {
+            piece.change_rows(axis, |row| {
+                values.copy_from_slice(row);
+                for (i, coefficient) in row.iter_mut().enumerate() {
+                    let weights = lattice.to_bernstein.row(i);
+                    *coefficient = weights.iter().zip(&values).map(|(w, v)| w * v).sum();
+                }
+            });
+        }
+        piece
+    }
+
+    /// Changes the rows of coefficients along an axis, one after the other.
+    fn change_rows(&mut self, axis: usize, mut change: impl FnMut(&mut [f64])) {
+        let count = self.degree + 1;
+        let stride = count.pow(axis as u32);
+        let mut row = vec![0.0; count];
+        for start in (0..self.coefficients.len()).filter(|i| (i / stride).is_multiple_of(count)) {
+            let places = (start..).step_by(stride);
+            for (value, place) in row.iter_mut().zip(places.clone()) {
+                *value = self.coefficients[place];
+            }
+            change(&mut row);
+            for (&value, place) in row.iter().zip(places) {
+                self.coefficients[place] = value;
+            }
         }
     }
 
@@ -82,13 +149,13 @@ impl Piece {
         let mut open = vec![self];
         while let Some(piece) = open.pop() {
             // So that NaN isn't above anything.
-            if (piece.coefficients.iter().flatten()).all(|&c| c > floor) {
+            if piece.coefficients.iter().all(|&c| c > floor) {
                 continue;
             }
             let (value, corner) = piece.least_corner();
             let is_above = value > floor;
-            if !is_above || piece.halvings == HALVINGS {
-                return Some(element.domain().of_unit_square(corner));
+            if !is_above || piece.halvings == HALVINGS * piece.dim {
+                return Some(element.domain().of_unit_cube(corner));
             }
             open.extend(piece.halves());
         }
@@ -97,79 +164,48 @@ impl Piece {
 
     /// The least of the Jacobian's values at the corners, where coefficients are values, and its
     /// place.
-    fn least_corner(&self) -> (f64, [f64; 2]) {
-        let ends = [(0, self.low), (DEGREE, self.high)];
+    fn least_corner(&self) -> (f64, [f64; 3]) {
+        let count = self.degree + 1;
         let mut least = (f64::INFINITY, self.low);
-        for (i, s) in ends {
-            for (j, t) in ends {
-                let value = self.coefficients[i][j];
-                if value < least.0 || value.is_nan() {
-                    least = (value, [s[0], t[1]]);
-                }
+        for corner in 0..1 << self.dim {
+            let mut place = self.low;
+            let mut index = 0;
+            for axis in (0..self.dim).filter(|axis| corner >> axis & 1 == 1) {
+                place[axis] = self.high[axis];
+                index += self.degree * count.pow(axis as u32);
+            }
+            let value = self.coefficients[index];
+            if value < least.0 || value.is_nan() {
+                least = (value, place);
             }
         }
         least
     }
 
-    /// Both halves, cut across one direction and the other by turns.
-    fn halves(&self) -> [Self; 2] {
-        let axis = self.halvings as usize % 2;
+    /// Both halves, cut across one direction after the other, by de Casteljau's scheme.
+    fn halves(mut self) -> [Self; 2] {
+        let axis = self.halvings % self.dim;
         let middle = 0.5 * (self.low[axis] + self.high[axis]);
-        let rows = match axis {
-            0 => transposed(self.coefficients),
-            _ => self.coefficients,
-        };
-        let halves = rows.map(halved);
-        [0, 1].map(|side| {
-            let half = halves.map(|pair| pair[side]);
-            let mut piece = Self {
-                coefficients: if axis == 0 { transposed(half) } else { half },
-                halvings: self.halvings + 1,
-                ..*self
-            };
-            match side {
-                0 => piece.high[axis] = middle,
-                _ => piece.low[axis] = middle,
+        self.halvings += 1;
+        let (mut near, mut far) = (self.clone(), self);
+        near.high[axis] = middle;
+        far.low[axis] = middle;
+        near.change_rows(axis, |row| {
+            for step in 1..row.len() {
+                for i in (step..row.len()).rev() {
+                    row[i] = 0.5 * (row[i - 1] + row[i]);
+                }
             }
-            piece
-        })
+        });
+        far.change_rows(axis, |row| {
+            for step in 1..row.len() {
+                for i in 0..row.len() - step {
+                    row[i] = 0.5 * (row[i] + row[i + 1]);
+                }
+            }
+        });
+        [near, far]
     }
-}
-
-/// Gradients of the shape functions at the 4 × 4 places.
-pub(super) fn lattice(element: &ReferenceElement) -> Vec<Vec<[f64; 3]>> {
-    let share = |i: usize| i as f64 / DEGREE as f64;
-    let places = (0..COUNT).flat_map(|i| (0..COUNT).map(move |j| [share(i), share(j)]));
-    places
-        .map(|place| element.gradients(element.domain().of_unit_square(place)))
-        .collect()
-}
-
-/// Bernstein's coefficients of the cubic with these values at 0, 1/3, 2/3, 1.
-fn bernstein([a, b, c, d]: [f64; COUNT]) -> [f64; COUNT] {
-    [
-        a,
-        (-5.0 * a + 18.0 * b - 9.0 * c + 2.0 * d) / 6.0,
-        (2.0 * a - 9.0 * b + 18.0 * c - 5.0 * d) / 6.0,
-        d,
-    ]
-}
-
-/// The coefficients over both halves, by de Casteljau's scheme.
-fn halved(mut row: [f64; COUNT]) -> [[f64; COUNT]; 2] {
-    let mut halves = [row; 2];
-    for step in 1..COUNT {
-        for i in 0..COUNT - step {
-            row[i] = 0.5 * (row[i] + row[i + 1]);
-        }
-        halves[0][step] = row[0];
-        halves[1][DEGREE - step] = row[DEGREE - step];
-    }
-    halves
-}
-
-fn transposed(rows: [[f64; COUNT]; COUNT]) -> [[f64; COUNT]; COUNT] {
-    from_fn(|i| from_fn(|j| rows[j][i]))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::ElementKind;
-use super::jacobian::lattice;
+use super::jacobian::Lattice;
 use super::quadrature::TabulatedPoint;
 
 /// What a reference element fills.
@@ -17,6 +17,10 @@ pub enum Domain {
     Triangle,
     /// −1 ≤ ξ, η ≤ 1.
     Square,
+    /// The tetrahedron with the corners 0 and (1, 0, 0), (0, 1, 0), (0, 0, 1).
+    Tetrahedron,
+    /// −1 ≤ ξ, η, ζ ≤ 1.
+    Cube,
 }
 
 impl Domain {
@@ -26,6 +30,7 @@ impl Domain {
             Self::Point => 0,
             Self::Line => 1,
             Self::Triangle | Self::Square => 2,
+            Self::Tetrahedron | Self::Cube => 3,
         }
     }
 
@@ -35,7 +40,8 @@ impl Domain {
             Self::Point => 1,
             Self::Line => 2,
             Self::Triangle => 3,
-            Self::Square => 4,
+            Self::Square | Self::Tetrahedron => 4,
+            Self::Cube => 8,
         }
     }
 
@@ -46,14 +52,19 @@ impl Domain {
             Self::Line => 2.0,
             Self::Triangle => 0.5,
             Self::Square => 4.0,
+            Self::Tetrahedron => 1.0 / 6.0,
+            Self::Cube => 8.0,
         }
     }
 
-    /// The point that a point of the unit square stands for; a triangle is the square with one of
-    /// its edges collapsed, (s, t) → (s, t(1 − s)).
-    pub(super) fn of_unit_square(self, [s, t]: [f64; 2]) -> [f64; 3] {
+    /// The point that a point of the unit square or cube stands for; a triangle is the square with one of
+    /// its edges collapsed, (s, t) → (s, t(1 − s)), a tetrahedron the cube with two faces collapsed,
+    /// (s, t, r) → (s, t(1 − s), r(1 − s)(1 − t)).
+    pub(super) fn of_unit_cube(self, [s, t, r]: [f64; 3]) -> [f64; 3] {
         match self {
             Self::Triangle => [s, t * (1.0 - s), 0.0],
+            Self::Tetrahedron => [s, t * (1.0 - s), r * (1.0 - s) * (1.0 - t)],
+            Self::Cube => [2.0 * s - 1.0, 2.0 * t - 1.0, 2.0 * r - 1.0],
             _ => [2.0 * s - 1.0, 2.0 * t - 1.0, 0.0],
         }
     }
@@ -67,14 +78,14 @@ pub struct Definition {
     /// What it fills.
     pub domain: Domain,
     /// Reference coordinates of its nodes, in the order of VTK: corners first, counter-clockwise,
-    /// the first one at the domain's first; nodes on edges; nodes in the middle.
+    /// the first one at the domain's first; nodes on edges; nodes in the middles of faces; of the cell.
     pub node_coordinates: &'static [[f64; 3]],
     /// N_i(ξ), one for each node.
     pub shape: fn([f64; 3]) -> Vec<f64>,
     /// ∂N_i/∂ξ_j, one for each node; 0 beyond its dimension.
     pub gradients: fn([f64; 3]) -> Vec<[f64; 3]>,
-    /// Kind and local nodes of every facet, in the order in which the cell lies to their left; facet
-    /// i begins at corner i.
+    /// Kind and local nodes of every facet. In the plane the cell lies to their left, and facet i begins
+    /// at corner i; in space they run counter-clockwise seen from outside.
     pub facets: &'static [(ElementKind, &'static [usize])],
     /// The order of its nodes that turns it inside out.
     pub reversed: &'static [usize],
@@ -84,8 +95,8 @@ pub struct Definition {
     pub rules: Option<CellRules>,
 }
 
-/// The rules by which a cell is integrated: degrees up to which they are exact, on the square in each
-/// direction.
+/// The rules by which a cell is integrated: degrees up to which they are exact, on the square and
+/// the cube in each direction.
 #[derive(Clone, Copy, Debug)]
 pub struct CellRules {
     /// Of ∫ Bᵀ C B: exact for ∫ ∇N_i, and with it the patch test, on cells of any shape with curved
@@ -113,7 +124,7 @@ struct Tables {
     along: Vec<usize>,
     stiffness: Vec<TabulatedPoint>,
     stress: Vec<TabulatedPoint>,
-    lattice: Vec<Vec<[f64; 3]>>,
+    lattice: Lattice,
 }
 
 impl ReferenceElement {
@@ -176,7 +187,8 @@ impl ReferenceElement {
         (self.definition.gradients)(xi)
     }
 
-    /// Facets of a cell: kind and local nodes, in the order in which the cell lies to their left.
+    /// Facets of a cell: kind and local nodes, in the plane with the cell to their left, in space
+    /// counter-clockwise seen from outside.
     pub fn facets(&self) -> &'static [(ElementKind, &'static [usize])] {
         self.definition.facets
     }
@@ -206,8 +218,8 @@ impl ReferenceElement {
         &self.tables().stress
     }
 
-    /// Gradients of the shape functions where the Jacobian is sampled.
-    pub(super) fn lattice(&self) -> &[Vec<[f64; 3]>] {
+    /// Where the Jacobian is sampled.
+    pub(super) fn lattice(&self) -> &Lattice {
         &self.tables().lattice
     }
 
@@ -225,7 +237,7 @@ impl ReferenceElement {
                 along,
                 stiffness: rule(|rules| rules.stiffness),
                 stress: rule(|rules| rules.stress),
-                lattice: lattice(self),
+                lattice: Lattice::new(self),
             }
         })
     }

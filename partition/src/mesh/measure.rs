@@ -1,7 +1,7 @@
-//! Measures of cells: areas in the plane, and which way round a cell's nodes run.
+//! Measures of cells, areas or volumes, and which way round a cell's nodes run.
 
 use super::Mesh;
-use crate::element::geometry::{difference, length};
+use crate::element::geometry::{difference, length, shown};
 use crate::error::InputError;
 use crate::magnitude::SMALLEST_AREA;
 
@@ -9,7 +9,7 @@ use crate::magnitude::SMALLEST_AREA;
 const FLAT: f64 = 1e-13;
 
 impl Mesh {
-    /// Signed measure of a cell, in m²: negative where its nodes run clockwise.
+    /// Signed measure of a cell, in m² or m³: negative where its nodes run the wrong way round.
     pub fn measure(&self, cell: usize) -> f64 {
         let nodes = self.cells.nodes_of(cell).iter();
         let at: Vec<_> = nodes.map(|&n| self.points[n as usize]).collect();
@@ -25,8 +25,12 @@ impl Mesh {
             let measure = self.measure(cell);
             let size = self.longest_edge(cell).powi(self.dim as i32);
             if measure.is_nan() || measure.abs() <= (FLAT * size).max(SMALLEST_AREA) {
+                let (missing, place) = match self.dim {
+                    3 => ("volume", "in one plane"),
+                    _ => ("area", "on one line"),
+                };
                 return Err(InputError::new(format!(
-                    "element {} has no area: its nodes {} lie on one line",
+                    "element {} has no {missing}: its nodes {} lie {place}",
                     self.cell_tags[cell],
                     self.tags_of(self.cells.nodes_of(cell))
                 )));
@@ -50,14 +54,14 @@ impl Mesh {
         let Some(fold) = kind.fold(&at, floor) else {
             return Ok(());
         };
-        let [x, y, _] = fold.position;
         Err(InputError::new(format!(
-            "element {} ({}) is folded: its Jacobian is {:e} at ({x}, {y}), near node {}; \
+            "element {} ({}) is folded: its Jacobian is {:e} at {}, near node {}; \
              expected a positive one everywhere (corners below 180°, nodes on edges near their \
              middle)",
             self.cell_tags[cell],
             kind.name(),
             fold.jacobian,
+            shown(fold.position, self.dim),
             self.node_tags[nodes[fold.node] as usize]
         )))
     }

@@ -1,7 +1,7 @@
 //! Which cells meet at a facet, and what hangs together.
 
 use super::Mesh;
-use crate::element::Elements;
+use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::lists::Lists;
 
@@ -33,6 +33,53 @@ impl CellFacet {
     }
 }
 
+/// The nodes that tell a facet of these nodes apart: of a face its corners, as it shares all nodes of an edge with
+/// its neighbours.
+fn telling(facet: &[u32]) -> &[u32] {
+    match facet.len() {
+        6 => &facet[..3],
+        8 | 9 => &facet[..4],
+        _ => facet,
+    }
+}
+
+/// A line or a face where cells meet that differ in what lies within it.
+#[derive(Debug)]
+pub struct Tear {
+    /// Two of these cells.
+    pub cells: [u32; 2],
+    /// Its corners, those with the smallest numbers.
+    pub corners: Vec<u32>,
+}
+
+/// A line or a face of a kind of cells: its local corners and what lies within it.
+struct Seam {
+    corners: Vec<usize>,
+    within: Vec<usize>,
+}
+
+impl Seam {
+    /// The edges and faces of a kind.
+    fn of(kind: ElementKind) -> Vec<Self> {
+        let mut seams = Vec::new();
+        for (facet, local) in kind.facets() {
+            let corners = local[..facet.corners()].to_vec();
+            let within = match facet.dim() {
+                1 => local[2..].to_vec(),
+                _ => local.get(8).copied().into_iter().collect(),
+            };
+            seams.push(Self { corners, within });
+            if kind.dim() == 3 {
+                seams.extend(facet.facets().iter().map(|(_, edge)| Self {
+                    corners: edge[..2].iter().map(|&i| local[i]).collect(),
+                    within: edge[2..].iter().map(|&i| local[i]).collect(),
+                }));
+            }
+        }
+        seams
+    }
+}
+
 /// The facets of cells, those of the same nodes beside each other.
 #[derive(Clone, Debug)]
 pub struct Facets {
@@ -45,8 +92,12 @@ impl Facets {
     pub fn new(cells: &Elements, nodes: usize) -> Self {
         let all = cells.iter().enumerate().flat_map(|(cell, (kind, nodes))| {
             let facets = kind.facets().iter().enumerate();
-            facets.map(move |(facet, (_, local))| {
-                let [first, rest @ ..] = key(local.iter().map(|&i| nodes[i]));
+            facets.map(move |(facet, (facet_kind, local))| {
+                let count = match facet_kind.dim() {
+                    2 => facet_kind.corners(),
+                    _ => local.len(),
+                };
+                let [first, rest @ ..] = key(local[..count].iter().map(|&i| nodes[i]));
                 let cell = cell as u32;
                 let facet = facet as u8;
                 (first, (rest, CellFacet { cell, facet }))
@@ -64,8 +115,11 @@ impl Facets {
     }
 
     /// Whether two facets lead from one node to the same other one, several times faster than finding
-    /// all facets: where none do, no two cells lie on the same side of an edge.
+    /// all facets: where none do, no two cells lie on the same side of an edge. In space it always may be.
     pub fn repeat_themselves(cells: &Elements, nodes: usize) -> bool {
+        if cells.iter().next().is_some_and(|(kind, _)| kind.dim() == 3) {
+            return true;
+        }
         let ends = cells.iter().flat_map(|(kind, nodes)| {
             let facets = kind.facets().iter();
             facets.map(move |(_, local)| (nodes[local[0]], nodes[local[1]]))
@@ -76,13 +130,23 @@ impl Facets {
             .any(|to| (1..to.len()).any(|i| to[..i].contains(&to[i])))
     }
 
-    /// Two cells on the same side of an edge that they share, if there are any: one of them is
+    /// Two cells on the same side of a facet that they share, if there are any: one of them is
     /// turned over, or they overlap.
     pub fn overlap(&self, cells: &Elements) -> Option<[CellFacet; 2]> {
+        // What the order of its nodes begins with: seen from the other side a line starts at the other end, and
+        // the corners of a face follow each other the other way round.
         let start = |of: &CellFacet| {
             let cell = of.cell as usize;
-            let (_, local) = cells.kind(cell).facets()[of.facet as usize];
-            cells.nodes_of(cell)[local[0]]
+            let (facet, local) = cells.kind(cell).facets()[of.facet as usize];
+            let node = |i: usize| cells.nodes_of(cell)[local[i]];
+            let corners = facet.corners();
+            match facet.dim() {
+                2 => {
+                    let least = (0..corners).min_by_key(|&i| node(i)).unwrap_or_default();
+                    node((least + 1) % corners)
+                }
+                _ => node(0),
+            }
         };
         self.places().find_map(|same| {
             // Of three cells two are on one side.
@@ -92,27 +156,29 @@ impl Facets {
         })
     }
 
-    /// Two cells that share the ends of an edge but not what lies between them, if there are any:
-    /// a node in its middle would hang.
-    pub fn torn(cells: &Elements, nodes: usize) -> Option<[CellFacet; 2]> {
+    /// A line or a face whose corners cells share, but not what lies between them, if there is any: a node in
+    /// its middle would hang.
+    pub fn torn(cells: &Elements, nodes: usize) -> Option<Tear> {
         if cells.iter().all(|(kind, _)| kind.is_linear()) {
             return None;
         }
+        let seams = ElementKind::ALL.map(Seam::of);
         let all = cells.iter().enumerate().flat_map(|(cell, (kind, nodes))| {
-            let facets = kind.facets().iter().enumerate();
-            facets.map(move |(facet, (kind, local))| {
-                let corners = local.iter().take(kind.corners());
-                let corners = key(corners.map(|&i| nodes[i]));
-                let whole = key(local.iter().map(|&i| nodes[i]));
-                let (cell, facet) = (cell as u32, facet as u8);
-                (corners[0], (corners, whole, CellFacet { cell, facet }))
+            let seams = seams[kind as usize].iter();
+            seams.map(move |seam| {
+                let corners = key(seam.corners.iter().map(|&i| nodes[i]));
+                let within = key(seam.within.iter().map(|&i| nodes[i]));
+                (corners[0], (corners, within, cell as u32))
             })
         });
         let mut by_node = Lists::new(nodes, all);
         by_node.sort();
-        let torn = |pair: &[(Key, Key, CellFacet)]| {
+        let torn = |pair: &[(Key, Key, u32)]| {
             let (a, b) = (pair[0], pair[1]);
-            (a.0 == b.0 && a.1 != b.1).then_some([a.2, b.2])
+            (a.0 == b.0 && a.1 != b.1).then(|| Tear {
+                cells: [a.2, b.2],
+                corners: a.0.into_iter().filter(|&node| node != u32::MAX).collect(),
+            })
         };
         by_node
             .iter()
@@ -127,17 +193,22 @@ impl Mesh {
     /// Two that don't, by their tags: such as a linear cell beside a quadratic one, whose node in the
     /// middle would hang.
     pub(crate) fn check_edges(&self) -> Result<(), InputError> {
-        let Some([a, b]) = Facets::torn(&self.cells, self.points.len()) else {
+        let Some(tear) = Facets::torn(&self.cells, self.points.len()) else {
             return Ok(());
         };
-        let [a_name, b_name] = [a, b].map(|at| self.cells.kind(at.cell as usize).name());
+        let [a, b] = tear.cells.map(|cell| cell as usize);
+        let [a_name, b_name] = [a, b].map(|cell| self.cells.kind(cell).name());
+        let what = match tear.corners.len() {
+            2 => "an edge between",
+            _ => "a face of",
+        };
         Err(InputError::new(format!(
-            "elements {} ({a_name}) and {} ({b_name}) share an edge between the nodes {}, but not the \
+            "elements {} ({a_name}) and {} ({b_name}) share {what} the nodes {}, but not the \
              node in its middle; expected linear or quadratic elements on both of its sides, of the same \
              nodes",
-            self.cell_tags[a.cell as usize],
-            self.cell_tags[b.cell as usize],
-            self.tags_of(&a.nodes(&self.cells)[..2])
+            self.cell_tags[a],
+            self.cell_tags[b],
+            self.tags_of(&tear.corners)
         )))
     }
 }
@@ -163,7 +234,7 @@ impl Topology {
         Self { facets, neighbours }
     }
 
-    /// Checks that no two cells lie on the same side of an edge that they share.
+    /// Checks that no two cells lie on the same side of a facet that they share.
     ///
     /// # Errors
     /// Two such cells, by their tags.
@@ -172,17 +243,18 @@ impl Topology {
             return Ok(());
         };
         Err(InputError::new(format!(
-            "elements {} and {} lie on the same side of the edge of nodes {} that they share; \
+            "elements {} and {} lie on the same side of the {} of nodes {} that they share; \
              expected cells that don't overlap (is one of them inside out?)",
             mesh.cell_tags[a.cell as usize],
             mesh.cell_tags[b.cell as usize],
+            if mesh.dim == 3 { "face" } else { "edge" },
             mesh.tags_of(&a.nodes(&mesh.cells))
         )))
     }
 
-    /// The facets of cells that have exactly these nodes, in any order.
+    /// The facets of cells that have exactly these nodes, in any order, in space these corners.
     pub fn cells_at(&self, facet_nodes: &[u32]) -> Vec<CellFacet> {
-        let [first, rest @ ..] = key(facet_nodes.iter().copied());
+        let [first, rest @ ..] = key(telling(facet_nodes).iter().copied());
         let by_node = &self.facets.by_node;
         let list = match first as usize {
             node if node < by_node.len() => by_node.of(node),

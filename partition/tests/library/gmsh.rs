@@ -2,6 +2,7 @@
 
 mod file;
 mod kinds;
+mod solids;
 
 use std::collections::BTreeMap;
 

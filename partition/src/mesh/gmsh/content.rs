@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::cursor::Cursor;
+use super::element_type;
 use crate::element::ElementKind;
 use crate::error::InputError;
 
@@ -20,8 +21,17 @@ pub(super) struct Content {
 }
 
 impl Content {
-    /// Appends an element to the last block if it is of its kind and groups, else to a fresh one.
+    /// Appends an element to the last block if it is of its kind and groups, else to a fresh one. `nodes` are
+    /// in Gmsh's order.
     pub(super) fn push(&mut self, kind: ElementKind, groups: &[i64], tag: i64, nodes: &[u32]) {
+        let ordered: Vec<u32>;
+        let nodes = match element_type::order(kind) {
+            Some(order) => {
+                ordered = order.iter().map(|&place| nodes[place]).collect();
+                &ordered
+            }
+            None => nodes,
+        };
         let last = self.blocks.last_mut();
         match last.filter(|last| last.kind == kind && last.groups == groups) {
             Some(last) => {

@@ -1,4 +1,4 @@
-//! Gmsh's numbers of element types.
+//! Gmsh's numbers of element types, and the order of their nodes.
 
 use crate::element::ElementKind;
 
@@ -11,9 +11,9 @@ pub(super) fn kind(element: i64, number: i64) -> Result<ElementKind, String> {
         return Ok(kind);
     }
     let what = match number {
-        4..=7 | 11..=14 | 17..=19 | 29..=31 => {
-            ", a solid; scenes lie in the plane: gmsh -2 makes a mesh that does"
-        }
+        6 | 13 | 18 => ", a prism",
+        7 | 14 | 19 => ", a pyramid",
+        29..=31 | 92 | 93 => ", of third or higher order; gmsh -order 2 makes quadratic ones",
         20..=28 => ", of third or higher order; gmsh -order 2 makes quadratic ones",
         _ => ", which isn't supported",
     };
@@ -35,6 +35,26 @@ pub(super) fn code(kind: ElementKind) -> i64 {
         ElementKind::Quad4 => 3,
         ElementKind::Quad8 => 16,
         ElementKind::Quad9 => 10,
+        ElementKind::Tetrahedron4 => 4,
+        ElementKind::Tetrahedron10 => 11,
+        ElementKind::Hexahedron8 => 5,
+        ElementKind::Hexahedron20 => 17,
+        ElementKind::Hexahedron27 => 12,
+    }
+}
+
+/// Where Gmsh has the nodes of `kind`, one after the other; `None` where it orders them as VTK does.
+pub(super) fn order(kind: ElementKind) -> Option<&'static [usize]> {
+    const TETRAHEDRON: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
+    const HEXAHEDRON: &[usize; 27] = &[
+        0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20,
+        25, 26,
+    ];
+    match kind {
+        ElementKind::Tetrahedron10 => Some(TETRAHEDRON),
+        ElementKind::Hexahedron20 => Some(HEXAHEDRON.split_at(20).0),
+        ElementKind::Hexahedron27 => Some(HEXAHEDRON),
+        _ => None,
     }
 }
 
@@ -43,11 +63,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_solid_is_told_apart_from_a_plane_cell_of_high_order() {
+    fn what_is_not_supported_is_named() {
         for (number, words) in [
-            (4, "scenes lie in the plane"),
-            (11, "scenes lie in the plane"),
+            (6, "a prism; expected one of"),
+            (19, "a pyramid; expected one of"),
             (21, "gmsh -order 2"),
+            (29, "gmsh -order 2"),
             (99, "isn't supported"),
         ] {
             let said = kind(7, number).unwrap_err();

@@ -34,7 +34,7 @@ pub(super) fn mesh(content: Content) -> Result<Mesh, InputError> {
     let dim = dim.unwrap_or_default();
     if dim < ElementKind::Triangle3.dim() {
         return Err(InputError::new(
-            "the mesh has no cells: expected triangles or quadrilaterals (a file of Gmsh holds \
+            "the mesh has no cells: expected triangles or quadrilaterals, or tetrahedra or hexahedra in space (a file of Gmsh holds \
              only what is in a physical group, unless Mesh.SaveAll is set)",
         ));
     }

@@ -170,8 +170,12 @@ impl<'a> Plan<'a> {
             writeln!(out, "{} {} {code} {count}", entity.dim, entity.tag)?;
             for (tag, nodes) in &entity.elements {
                 write!(out, "{tag}")?;
-                for &node in nodes {
-                    write!(out, " {}", mesh.node_tags[node as usize])?;
+                let mut places: Vec<usize> = (0..nodes.len()).collect();
+                if let Some(order) = element_type::order(entity.kind) {
+                    places.sort_unstable_by_key(|&place| order[place]);
+                }
+                for place in places {
+                    write!(out, " {}", mesh.node_tags[nodes[place] as usize])?;
                 }
                 writeln!(out)?;
             }

@@ -9,7 +9,7 @@ use crate::element::geometry::{dot, padded};
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::magnitude::SMALLEST_AREA;
-use crate::mesh::topology::{CellFacet, Facets};
+use crate::mesh::topology::Facets;
 use crate::model::Support;
 use crate::problem::{InterfaceNode, StepLoads, Subdomain, UNIT_TOLERANCE};
 
@@ -180,7 +180,7 @@ impl ProblemFile {
             return Err(slices.points.error(row, "the point belongs to no cell"));
         }
         if let Some((cells, what)) = fault_between_cells(&elements, points.len()) {
-            let [one, other] = cells.map(|facet| facet.cell as usize);
+            let [one, other] = cells.map(|cell| cell as usize);
             let [one, other] = [one.min(other), one.max(other)];
             let row = entries.start + elements.offsets()[other];
             let [one, other] = [one, other].map(|cell| rows.start + cell);
@@ -287,17 +287,23 @@ fn fault_of_cell(kind: ElementKind, nodes: &[u32], points: &[[f64; 3]]) -> Optio
 }
 
 /// Two cells that can't stand side by side, and why.
-fn fault_between_cells(cells: &Elements, points: usize) -> Option<([CellFacet; 2], &'static str)> {
+fn fault_between_cells(cells: &Elements, points: usize) -> Option<([u32; 2], &'static str)> {
     if Facets::repeat_themselves(cells, points)
         && let Some(two) = Facets::new(cells, points).overlap(cells)
     {
-        let what =
-            "lie on the same side of an edge that they share; expected cells that don't overlap";
-        return Some((two, what));
+        let what = match cells.kind(0).dim() {
+            3 => {
+                "lie on the same side of a face that they share; expected cells that don't overlap"
+            }
+            _ => {
+                "lie on the same side of an edge that they share; expected cells that don't overlap"
+            }
+        };
+        return Some((two.map(|facet| facet.cell), what));
     }
     let what = "share the ends of an edge, but not the node between them; expected the same nodes \
                 on both sides";
-    Some((Facets::torn(cells, points)?, what))
+    Some((Facets::torn(cells, points)?.cells, what))
 }
 
 fn take_node_tags(slices: &Slices, rows: Range<usize>) -> Result<Vec<i64>, InputError> {

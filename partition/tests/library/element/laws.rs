@@ -1,20 +1,25 @@
 //! What every reference element keeps, whoever defined it.
 
-use contact_dd_partition::element::geometry::{advance, difference, dot, length};
+use contact_dd_partition::element::geometry::{advance, cross, difference, dot, length};
 use contact_dd_partition::element::reference::Domain;
 use contact_dd_partition::element::reference::{CellRules, ReferenceElement};
 
 /// Dimension, corners and nodes of the cells that VTK numbers so, from `vtkCellType.h` and the
 /// classes of these cells.
-const VTK: [(u8, [usize; 3]); 11] = [
+const VTK: [(u8, [usize; 3]); 16] = [
     (1, [0, 1, 1]),
     (3, [1, 2, 2]),
     (5, [2, 3, 3]),
     (9, [2, 4, 4]),
+    (10, [3, 4, 4]),
+    (12, [3, 8, 8]),
     (21, [1, 2, 3]),
     (22, [2, 3, 6]),
     (23, [2, 4, 8]),
+    (24, [3, 4, 10]),
+    (25, [3, 8, 20]),
     (28, [2, 4, 9]),
+    (29, [3, 8, 27]),
     (30, [2, 4, 6]),
     (34, [2, 3, 7]),
     (35, [1, 2, 4]),
@@ -28,13 +33,22 @@ pub fn keeps_all(element: &ReferenceElement) {
     linear_fields_are_reproduced(element);
     gradients_are_difference_quotients(element);
     turned_over_it_has_the_opposite_measure(element);
-    if element.dim() == 2 {
+    if element.dim() >= 2 {
         facets_are_those_of_the_cell(element);
         normals_close(element);
         the_jacobian_is_bounded(element);
     }
     if let Some(rules) = element.rules() {
         rules_are_exact(element, rules);
+    }
+}
+
+/// What round-off leaves of sums, in the plane or in space, which has more and larger terms.
+fn rounding(element: &ReferenceElement, in_plane: f64) -> f64 {
+    if element.dim() == 3 {
+        10.0 * in_plane
+    } else {
+        in_plane
     }
 }
 
@@ -46,13 +60,17 @@ fn is_what_vtk_has_under_its_number(element: &ReferenceElement) {
 
 /// Points all over the reference element.
 fn everywhere(domain: Domain, each_way: usize) -> impl Iterator<Item = [f64; 3]> {
-    let share = move |i: usize| i as f64 / each_way as f64;
-    let pairs = (0..=each_way).flat_map(move |i| (0..=each_way).map(move |j| (share(i), share(j))));
-    pairs.map(move |(s, t)| match domain {
+    let count = each_way + 1;
+    let all = (0..count.pow(domain.dim() as u32)).map(move |i| {
+        [i % count, i / count % count, i / (count * count)].map(|i| i as f64 / each_way as f64)
+    });
+    all.map(move |[s, t, r]| match domain {
         Domain::Point => [0.0; 3],
         Domain::Line => [2.0 * s - 1.0, 0.0, 0.0],
         Domain::Triangle => [s, t * (1.0 - s), 0.0],
         Domain::Square => [2.0 * s - 1.0, 2.0 * t - 1.0, 0.0],
+        Domain::Tetrahedron => [s, t * (1.0 - s), r * (1.0 - s) * (1.0 - t)],
+        Domain::Cube => [s, t, r].map(|x| 2.0 * x - 1.0),
     })
 }
 
@@ -82,7 +100,8 @@ fn linear_fields_are_reproduced(element: &ReferenceElement) {
 }
 
 fn gradients_are_difference_quotients(element: &ReferenceElement) {
-    let (xi, step) = ([0.2, 0.3, 0.0], 1e-5);
+    let (mut xi, step) = ([0.2, 0.3, 0.15], 1e-5);
+    xi[element.dim()..].fill(0.0);
     let gradients = element.gradients(xi);
     for axis in 0..element.dim() {
         let (mut ahead, mut behind) = (xi, xi);
@@ -101,25 +120,38 @@ fn turned_over_it_has_the_opposite_measure(element: &ReferenceElement) {
     let mut every = order.to_vec();
     every.sort_unstable();
     assert!(every.into_iter().eq(0..element.nodes()), "{order:?}");
-    if element.dim() == 2 {
+    if element.dim() >= 2 {
         let measure = element.domain().measure();
-        assert!((element.measure(at) - measure).abs() < 1e-14);
+        assert!((element.measure(at) - measure).abs() < rounding(element, 1e-14));
         let bent = bent(element);
         let turned: Vec<_> = order.iter().map(|&i| bent[i]).collect();
         let sum = element.measure(&bent) + element.measure(&turned);
-        assert!(sum.abs() < 1e-13, "{}: {sum:e}", element.name());
+        assert!(
+            sum.abs() < rounding(element, 1e-13),
+            "{}: {sum:e}",
+            element.name()
+        );
     }
 }
 
 fn facets_are_those_of_the_cell(element: &ReferenceElement) {
-    assert_eq!(element.facets().len(), element.corners());
-    for (corner, (facet, local)) in element.facets().iter().enumerate() {
-        assert_eq!(facet.nodes(), local.len());
-        assert_eq!(local[..2], [corner, (corner + 1) % element.corners()]);
+    for (number, (facet, local)) in element.facets().iter().enumerate() {
+        assert_eq!(
+            [facet.nodes(), facet.dim() + 1],
+            [local.len(), element.dim()]
+        );
+        if element.dim() == 2 {
+            assert_eq!(local[..2], [number, (number + 1) % element.corners()]);
+        }
+        assert!(
+            local[..facet.corners()]
+                .iter()
+                .all(|&corner| corner < element.corners())
+        );
         let at: Vec<_> = (local.iter())
             .map(|&i| element.node_coordinates()[i])
             .collect();
-        for xi in everywhere(Domain::Line, 4) {
+        for xi in everywhere(facet.domain(), 4) {
             let on_cell = element.shape(facet.position(&at, xi));
             for (i, value) in on_cell.into_iter().enumerate() {
                 let place = local.iter().position(|&n| n == i);
@@ -134,17 +166,17 @@ fn facets_are_those_of_the_cell(element: &ReferenceElement) {
 pub fn bent(element: &ReferenceElement) -> Vec<[f64; 3]> {
     let nodes = element.node_coordinates().iter();
     nodes
-        .map(|&[x, y, _]| {
+        .map(|&[x, y, z]| {
             [
-                0.2 + 1.1 * x + 0.3 * y + 0.1 * y * y,
-                0.1 + 1.6 * y - 0.2 * x * y + 0.05 * x * x,
-                0.0,
+                0.2 + 1.1 * x + 0.3 * y + 0.1 * y * y + 0.2 * z - 0.07 * x * z,
+                0.1 + 1.6 * y - 0.2 * x * y + 0.05 * x * x + 0.06 * z * z,
+                z * (0.9 + 0.1 * x - 0.05 * y * z),
             ]
         })
         .collect()
 }
 
-/// ∮ n dS = 0, and ∮ x·n dS = ∫ div x dx = 2 |cell|.
+/// ∮ n dS = 0, and ∮ x·n dS = ∫ div x dx = dim · |cell|.
 fn normals_close(element: &ReferenceElement) {
     let at = bent(element);
     let (mut sum, mut moment) = ([0.0; 3], 0.0);
@@ -156,9 +188,13 @@ fn normals_close(element: &ReferenceElement) {
             moment += weight * dot(normal, facet.position(&on, xi));
         }
     }
-    assert!(length(sum) < 1e-14, "{}", element.name());
-    let error = moment - 2.0 * element.measure(&at);
-    assert!(error.abs() < 1e-13, "{}: {error:e}", element.name());
+    assert!(length(sum) < rounding(element, 1e-14), "{}", element.name());
+    let error = moment - element.dim() as f64 * element.measure(&at);
+    assert!(
+        error.abs() < rounding(element, 1e-13),
+        "{}: {error:e}",
+        element.name()
+    );
 }
 
 /// A cell that is said to have no fold has none, and one that is said to have one has it there.
@@ -172,9 +208,15 @@ fn the_jacobian_is_bounded(element: &ReferenceElement) {
     for round in 0..200 {
         let amount = 1e-3 * 1.045_f64.powi(round);
         let at: Vec<[f64; 3]> = (element.node_coordinates().iter())
-            .map(|&[x, y, _]| [x + amount * draw(), y + amount * draw(), 0.0])
+            .map(|&node| {
+                let mut at = node;
+                let moved = at.iter_mut().take(element.dim());
+                moved.for_each(|x| *x += amount * draw());
+                at
+            })
             .collect();
-        let jacobians = everywhere(element.domain(), 40).map(|xi| element.jacobian(&at, xi));
+        let jacobians = everywhere(element.domain(), [40, 8][element.dim() - 2])
+            .map(|xi| element.jacobian(&at, xi));
         let least = jacobians.fold(f64::INFINITY, f64::min);
         match element.fold(&at, floor) {
             None => {
@@ -214,10 +256,11 @@ fn rules_are_exact(element: &ReferenceElement, rules: CellRules) {
             }
             sums
         };
-        for (sum, exact) in integral(degree).into_iter().zip(integral(16)) {
+        let most = [16, 11][element.dim() - 2];
+        for (sum, exact) in integral(degree).into_iter().zip(integral(most)) {
             let error = (sum - exact).abs();
             assert!(
-                error < 1e-13,
+                error < rounding(element, 1e-13),
                 "{}, degree {degree}: {error:e}",
                 element.name()
             );
@@ -226,7 +269,7 @@ fn rules_are_exact(element: &ReferenceElement, rules: CellRules) {
     let area: f64 = (element.stress_points().iter())
         .map(|point| point.weight)
         .sum();
-    assert!((area - element.domain().measure()).abs() < 1e-14);
+    assert!((area - element.domain().measure()).abs() < rounding(element, 1e-14));
 }
 
 /// What is integrated over the reference element, for each node.
@@ -236,18 +279,27 @@ type Integrand = fn(&ReferenceElement, &[[f64; 3]], [f64; 3]) -> Vec<f64>;
 fn stretched(element: &ReferenceElement) -> Vec<[f64; 3]> {
     let nodes = element.node_coordinates().iter();
     nodes
-        .map(|&[x, y, _]| [0.3 + x + 0.4 * y, 0.8 * y - 0.1 * x, 0.0])
+        .map(|&[x, y, z]| {
+            [
+                0.3 + x + 0.4 * y + 0.2 * z,
+                0.8 * y - 0.1 * x,
+                0.7 * z + 0.1 * y,
+            ]
+        })
         .collect()
 }
 
 fn slope_along_x(element: &ReferenceElement, at: &[[f64; 3]], xi: [f64; 3]) -> Vec<f64> {
     let gradients = element.gradients(xi);
-    let mut y = [0.0; 2];
-    for (gradient, x) in gradients.iter().zip(at) {
-        y = [y[0] + gradient[0] * x[1], y[1] + gradient[1] * x[1]];
+    let [mut y, mut z] = [[0.0; 3]; 2];
+    for (&gradient, x) in gradients.iter().zip(at) {
+        y = advance(y, x[1], gradient);
+        z = advance(z, x[2], gradient);
     }
-    let slopes = gradients.iter().map(|g| g[0] * y[1] - g[1] * y[0]);
-    slopes.collect()
+    if element.dim() == 2 {
+        z = [0.0, 0.0, 1.0];
+    }
+    gradients.iter().map(|&g| dot(g, cross(y, z))).collect()
 }
 
 fn constant_load(element: &ReferenceElement, at: &[[f64; 3]], xi: [f64; 3]) -> Vec<f64> {
@@ -256,8 +308,8 @@ fn constant_load(element: &ReferenceElement, at: &[[f64; 3]], xi: [f64; 3]) -> V
 }
 
 fn cubic_load(element: &ReferenceElement, at: &[[f64; 3]], xi: [f64; 3]) -> Vec<f64> {
-    let [x, y, _] = element.position(at, xi);
-    let load = x * x * y - y * y * y + x * x * x;
+    let [x, y, z] = element.position(at, xi);
+    let load = x * x * y - y * y * y + x * x * x + x * y * z - z * z * z;
     let values = constant_load(element, at, xi);
     values.into_iter().map(|value| value * load).collect()
 }

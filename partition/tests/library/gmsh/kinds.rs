@@ -5,12 +5,12 @@ use std::f64::consts::PI;
 use contact_dd_partition::element::ElementKind::{self, *};
 use contact_dd_partition::mesh::{Mesh, gmsh};
 
-fn read(name: &str) -> Mesh {
+pub fn read(name: &str) -> Mesh {
     let dir = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/library/gmsh/kinds");
     gmsh::read(&dir.join(format!("{name}.msh"))).unwrap()
 }
 
-const FORMS: [&str; 4] = ["4.1-ascii", "4.1-binary", "2.2-ascii", "2.2-binary"];
+pub const FORMS: [&str; 4] = ["4.1-ascii", "4.1-binary", "2.2-ascii", "2.2-binary"];
 const CASES: [(&str, [ElementKind; 3]); 3] = [
     ("linear", [Quad4, Triangle3, Line2]),
     ("eight", [Quad8, Triangle6, Line3]),
