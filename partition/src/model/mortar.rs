@@ -1,5 +1,5 @@
-//! Conditions between sides whose nodes don't match: segment-to-segment contact with dual Lagrange
-//! multipliers (Wohlmuth 2000; Popp, Gitterle, Gee and Wall 2010).
+//! Conditions between sides whose nodes don't match: segment-to-segment contact, in space with polygons for
+//! segments, with dual Lagrange multipliers (Wohlmuth 2000; Popp, Gitterle, Gee and Wall 2010).
 //!
 //! Side a carries the multipliers. Its averaged normals, interpolated along its facets, say what of
 //! side b lies opposite each of its points. With the dual basis φ on what is covered, ∫ φ_j N_k =
@@ -13,11 +13,19 @@
 //! that side b covers (Cichosz and Bischoff 2011), so that a uniform pressure passes whatever the
 //! meshes and wherever the sides end.
 
+mod bases;
+mod chart;
+mod clip;
 mod cover;
 mod dual;
 mod field;
+mod foot;
+mod polygons;
 mod root;
 mod rows;
+mod segments;
+#[cfg(test)]
+mod tests;
 mod weights;
 
 use std::collections::HashMap;
@@ -25,7 +33,7 @@ use std::collections::HashMap;
 use self::cover::{Cover, Opposite};
 use self::field::Field;
 use self::rows::Row;
-use self::weights::Weights;
+use self::weights::weights;
 use super::sides::{Sides, apart};
 use super::surface::SurfaceFacet;
 use crate::contact_point::ContactPoint;
@@ -54,14 +62,13 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, String> {
         let field = Field::new(facet, normals);
         let (cover, back_facing) = opposite.cover(&field);
         any_back_facing |= back_facing;
-        if !cover.samples.is_empty() {
+        if !cover.is_empty() {
             covered.push(Covered { facet, cover });
         }
     }
-    let weights = Weights::new(sides, &covered);
     let mut rows: HashMap<u32, Row> = HashMap::new();
-    for on in &covered {
-        for (node, weight) in weights.on(on) {
+    for (on, weights) in covered.iter().zip(weights(sides, &covered)) {
+        for (node, weight) in weights {
             rows.entry(node).or_default().add(on, sides.b, &weight);
         }
     }

@@ -30,6 +30,23 @@ pub(super) struct SurfaceFacet {
 }
 
 impl SurfaceFacet {
+    /// A facet of `nodes` at `at`.
+    pub fn new(kind: ElementKind, nodes: Vec<u32>, at: Vec<[f64; 3]>) -> Self {
+        let area = integrate(kind, |xi| kind.area_vector(&at, xi));
+        let chord = length(area);
+        let measure = match kind.is_linear() {
+            true => chord,
+            false => integrate(kind, |xi| [length(kind.area_vector(&at, xi)), 0.0, 0.0])[0],
+        };
+        Self {
+            kind,
+            nodes,
+            normal: area.map(|c| c / chord),
+            measure,
+            at,
+        }
+    }
+
     /// Its diameter, by the order of magnitude (m).
     pub fn size(&self) -> f64 {
         match self.kind.dim() {
@@ -146,19 +163,7 @@ impl Surface {
             let (kind, local) = kind.facets()[cell_facet.facet as usize];
             let nodes: Vec<u32> = local.iter().map(|&i| cell[i]).collect();
             let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
-            let area = integrate(kind, |xi| kind.area_vector(&at, xi));
-            let chord = length(area);
-            let measure = match kind.is_linear() {
-                true => chord,
-                false => integrate(kind, |xi| [length(kind.area_vector(&at, xi)), 0.0, 0.0])[0],
-            };
-            Ok(SurfaceFacet {
-                kind,
-                nodes,
-                normal: area.map(|c| c / chord),
-                measure,
-                at,
-            })
+            Ok(SurfaceFacet::new(kind, nodes, at))
         };
         let facets = facets.iter().map(facet_of).collect::<Result<_, _>>()?;
         Ok(Self { facets })

@@ -1,36 +1,30 @@
-//! The dual basis on the covered part of a facet: ∫ φ_j N_k = δ_jk ∫ N_k.
+//! The dual basis on the covered part of a facet: ∫ φ_j P_k = δ_jk ∫ P_k.
 
 use nalgebra::DMatrix;
 
-use super::cover::Sample;
+use super::bases::lift;
+use super::cover::Cover;
 
 /// Coefficients of the dual basis in terms of the shape functions, φ_j = Σ_i A_ji N_i, with
-/// ∫ φ_j N_k = δ_jk ∫ N_k over the `samples` of a facet: A = D M⁻¹ with the facet's own mass matrix
-/// M_ik = ∫ N_i N_k and D_jj = ∫ N_j. Its columns sum to 1: Σ_j φ_j = 1. `None` where the samples
-/// don't tell the shape functions apart.
-pub(super) fn dual_basis(samples: &[Sample]) -> Option<DMatrix<f64>> {
-    let count = samples.first()?.shape.len();
-    let mut mass = DMatrix::<f64>::zeros(count, count);
-    for sample in samples {
-        for i in 0..count {
-            for k in 0..count {
-                mass[(i, k)] += sample.weight * sample.shape[i] * sample.shape[k];
-            }
-        }
-    }
+/// ∫ φ_j P_k = δ_jk ∫ P_k over what is covered of a facet, for the functions P of `basis`: A = D M⁻¹ P with
+/// their mass matrix M_ik = ∫ P_i P_k and D_jj = ∫ P_j. Its columns sum to 1: Σ_j φ_j = 1. `None` where what
+/// is covered doesn't tell the functions apart: the least eigenvalue of M, scaled to a unit diagonal, isn't above
+/// `floor`.
+pub(super) fn dual_basis(cover: &Cover, basis: &DMatrix<f64>, floor: f64) -> Option<DMatrix<f64>> {
+    let mass = basis * &cover.mass * basis.transpose();
+    let count = mass.nrows();
     // Scaled to a unit diagonal it is well-conditioned however little of the facet is covered.
     let scale: Vec<f64> = (0..count).map(|i| 1.0 / mass[(i, i)].sqrt()).collect();
     let scaled = DMatrix::from_fn(count, count, |i, k| scale[i] * mass[(i, k)] * scale[k]);
-    let inverse = scaled.cholesky()?.inverse();
-    let integrals: Vec<f64> = (0..count).map(|j| integral(samples, j)).collect();
-    Some(DMatrix::from_fn(count, count, |j, i| {
+    let inverse = scaled.clone().cholesky()?.inverse();
+    if floor > 0.0 && scaled.symmetric_eigenvalues().min() <= floor {
+        return None;
+    }
+    let integrals = lift(basis, &cover.integrals);
+    let dual = DMatrix::from_fn(count, count, |j, i| {
         integrals[j] * scale[j] * inverse[(j, i)] * scale[i]
-    }))
-}
-
-/// ∫ N_j over the samples of a facet.
-pub(super) fn integral(samples: &[Sample], j: usize) -> f64 {
-    samples.iter().map(|s| s.weight * s.shape[j]).sum()
+    });
+    Some(dual * basis)
 }
 
 #[cfg(test)]
@@ -40,23 +34,23 @@ mod tests {
 
     /// The part of the reference line from `from` to `to`, by the midpoint rule of `count` points:
     /// exact to the rule, whatever the rule.
-    fn samples(from: f64, to: f64, count: usize) -> Vec<Sample> {
+    fn cover(from: f64, to: f64, count: usize) -> Cover {
         let step = (to - from) / count as f64;
-        let at = |i: usize| from + (i as f64 + 0.5) * step;
-        (0..count)
-            .map(|i| Sample {
-                weight: step,
-                shape: Line2.shape([at(i), 0.0, 0.0]),
-                opposite: 0,
-                opposite_shape: vec![],
-                gap: 0.0,
-            })
-            .collect()
+        let mut cover = Cover::new(2);
+        for i in 0..count {
+            let at = from + (i as f64 + 0.5) * step;
+            cover.add(step, &Line2.shape([at, 0.0, 0.0]));
+        }
+        cover
+    }
+
+    fn dual(cover: &Cover) -> Option<DMatrix<f64>> {
+        dual_basis(cover, &DMatrix::identity(2, 2), 0.0)
     }
 
     #[test]
     fn the_whole_line_has_the_dual_basis_of_the_books() {
-        let basis = dual_basis(&samples(-1.0, 1.0, 20_000)).unwrap();
+        let basis = dual(&cover(-1.0, 1.0, 20_000)).unwrap();
         let expected = [[2.0, -1.0], [-1.0, 2.0]];
         for (j, row) in expected.iter().enumerate() {
             for (i, value) in row.iter().enumerate() {
@@ -74,18 +68,14 @@ mod tests {
             (-1.0, -0.7),
             (0.2, 0.21),
         ] {
-            let samples = samples(from, to, 12);
-            let basis = dual_basis(&samples).unwrap();
+            let cover = cover(from, to, 12);
+            let basis = dual(&cover).unwrap();
+            let products = &basis * &cover.mass;
             for j in 0..2 {
                 for k in 0..2 {
-                    let dual = |s: &Sample| (0..2).map(|i| basis[(j, i)] * s.shape[i]).sum::<f64>();
-                    let product: f64 = samples
-                        .iter()
-                        .map(|s| s.weight * dual(s) * s.shape[k])
-                        .sum();
-                    let expected = if j == k { integral(&samples, j) } else { 0.0 };
+                    let expected = if j == k { cover.integrals[j] } else { 0.0 };
                     assert!(
-                        (product - expected).abs() < 1e-10 * (to - from),
+                        (products[(j, k)] - expected).abs() < 1e-10 * (to - from),
                         "{from} {to}"
                     );
                 }
@@ -99,7 +89,9 @@ mod tests {
 
     #[test]
     fn one_point_doesnt_tell_two_shape_functions_apart() {
-        assert!(dual_basis(&samples(0.0, 0.5, 1)).is_none());
-        assert!(dual_basis(&[]).is_none());
+        assert!(dual(&cover(0.0, 0.5, 1)).is_none());
+        assert!(dual(&Cover::new(2)).is_none());
+        let nearly = cover(0.0, 0.01, 12);
+        assert!(dual_basis(&nearly, &DMatrix::identity(2, 2), 1e-3).is_none());
     }
 }

@@ -36,24 +36,24 @@ impl<'a> Field<'a> {
     }
 
     /// x(ξ) (m).
-    pub fn position(&self, xi: f64) -> [f64; 3] {
-        self.facet.kind.position(&self.facet.at, [xi, 0.0, 0.0])
+    pub fn position(&self, xi: [f64; 3]) -> [f64; 3] {
+        self.facet.kind.position(&self.facet.at, xi)
     }
 
     /// n(ξ), normalized. The normals at the nodes of a facet are less than 90° from its own, so
     /// that their sum isn't zero.
-    pub fn normal(&self, xi: f64) -> [f64; 3] {
-        let sum = self.facet.kind.position(&self.normals, [xi, 0.0, 0.0]);
+    pub fn normal(&self, xi: [f64; 3]) -> [f64; 3] {
+        let sum = self.facet.kind.position(&self.normals, xi);
         let size = length(sum);
         sum.map(|c| c / size)
     }
 
-    /// n(ξ) × (x − x(ξ)) and its derivative by ξ: on which side of the line at ξ the point x lies,
+    /// In the plane n(ξ) × (x − x(ξ)) and its derivative by ξ: on which side of the line at ξ the point x lies,
     /// zero on it (m).
     pub fn aside(&self, xi: f64, x: [f64; 3]) -> [f64; 2] {
         let SurfaceFacet { kind, at, .. } = self.facet;
         let normal = kind.position(&self.normals, [xi, 0.0, 0.0]);
-        let way = difference(x, self.position(xi));
+        let way = difference(x, self.position([xi, 0.0, 0.0]));
         let turn = slope(*kind, &self.normals, xi);
         let step = slope(*kind, at, xi);
         [cross(normal, way), cross(turn, way) - cross(normal, step)]

@@ -1,26 +1,30 @@
 //! What a multiplier's weight covers, gathered facet by facet, and the contact point that comes of it.
 
 use super::super::sides::SideNode;
-use super::super::surface::Surface;
+use super::super::surface::{Surface, SurfaceFacet};
 use super::Covered;
-use super::field::cross;
-use crate::contact_point::ContactPoint;
-use crate::element::geometry::{advance, difference};
+use super::cover::{Cover, Overlap, Pieces, Sample};
+use super::weights::Weight;
+use crate::contact_point::{ContactPoint, LocalFrame};
+use crate::element::geometry::{advance, difference, dot};
 use crate::mesh::Mesh;
 
 /// Weight below which a node of side b has no part in a point: round-off of shape
 /// functions that are orthogonal.
 const ROUND_OFF: f64 = 1e-13;
 
+/// Mean square of the distances of nodes, relative to the part of side a, below which they lie in one place.
+const TOGETHER: f64 = 1e-8;
+
 /// What a multiplier's weight ψ covers.
 pub(super) struct Row {
-    /// ∫ ψ (m).
+    /// ∫ ψ (m, in space m²).
     area: f64,
-    /// ∫ ψ N of the nodes of side a, in the order along it (m).
+    /// ∫ ψ N of the nodes of side a, in the order along it (m, in space m²).
     side_a: Vec<(u32, f64)>,
     /// The same of side b.
     side_b: Vec<(u32, f64)>,
-    /// ∫ ψ g (m²).
+    /// ∫ ψ g (m², in space m³).
     gap: f64,
     /// The least gap where ψ isn't zero (m).
     least_gap: f64,
@@ -46,20 +50,76 @@ fn add(terms: &mut Vec<(u32, f64)>, node: u32, value: f64) {
 }
 
 impl Row {
-    /// Adds what a facet of side a contributes, `weight` being ψ at its samples.
-    pub fn add(&mut self, on: &Covered, side_b: &Surface, weight: &[f64]) {
+    /// Adds what a facet of side a contributes on which ψ is `weight`.
+    pub fn add(&mut self, on: &Covered, side_b: &Surface, weight: &Weight) {
         let Covered { facet, cover } = on;
         self.least_gap = self.least_gap.min(cover.least_gap);
-        for (sample, weight) in cover.samples.iter().zip(weight) {
-            let weight = weight * sample.weight;
-            self.area += weight;
-            self.gap += weight * sample.gap;
-            for (&node, n) in facet.nodes.iter().zip(&sample.shape) {
-                add(&mut self.side_a, node, weight * n);
+        match &cover.pieces {
+            Pieces::Samples(samples) => {
+                for sample in samples {
+                    self.add_sample(facet, sample, side_b, weight);
+                }
             }
-            let opposite = &side_b.facets[sample.opposite];
-            for (&node, n) in opposite.nodes.iter().zip(&sample.opposite_shape) {
-                add(&mut self.side_b, node, weight * n);
+            Pieces::Overlaps(overlaps) => {
+                let coefficients = match weight {
+                    Weight::One => vec![1.0; facet.nodes.len()],
+                    Weight::Combination(coefficients) => coefficients.clone(),
+                };
+                self.add_overlaps(facet, cover, overlaps, side_b, &coefficients);
+            }
+        }
+    }
+
+    fn add_sample(
+        &mut self,
+        facet: &SurfaceFacet,
+        sample: &Sample,
+        side_b: &Surface,
+        weight: &Weight,
+    ) {
+        let value = match weight {
+            Weight::One => 1.0,
+            Weight::Combination(c) => c.iter().zip(&sample.shape).map(|(c, n)| c * n).sum(),
+        };
+        let weight = value * sample.weight;
+        self.area += weight;
+        self.gap += weight * sample.gap;
+        for (&node, n) in facet.nodes.iter().zip(&sample.shape) {
+            add(&mut self.side_a, node, weight * n);
+        }
+        let opposite = &side_b.facets[sample.opposite];
+        for (&node, n) in opposite.nodes.iter().zip(&sample.opposite_shape) {
+            add(&mut self.side_b, node, weight * n);
+        }
+    }
+
+    fn add_overlaps(
+        &mut self,
+        facet: &SurfaceFacet,
+        cover: &Cover,
+        overlaps: &[Overlap],
+        side_b: &Surface,
+        coefficients: &[f64],
+    ) {
+        let product =
+            |column: &[f64]| -> f64 { coefficients.iter().zip(column).map(|(c, n)| c * n).sum() };
+        self.area += product(&cover.integrals);
+        for (k, &node) in facet.nodes.iter().enumerate() {
+            add(
+                &mut self.side_a,
+                node,
+                product(cover.mass.column(k).as_slice()),
+            );
+        }
+        for overlap in overlaps {
+            self.gap += product(&overlap.gaps);
+            let nodes = &side_b.facets[overlap.opposite].nodes;
+            for (k, &node) in nodes.iter().enumerate() {
+                add(
+                    &mut self.side_b,
+                    node,
+                    product(overlap.products.column(k).as_slice()),
+                );
             }
         }
     }
@@ -70,23 +130,59 @@ impl Row {
     /// It is so already where the sides are straight. Without it, the ragged facets of round bodies
     /// would keep them from turning against each other.
     fn balance(&mut self, a: &SideNode, mesh: &Mesh) {
-        // In multiples of its part of side a, so that no square of a length overflows.
-        let place = |node: u32| {
-            let way = difference(mesh.points[node as usize], a.position);
-            cross(a.normal, way) / self.area
+        // In multiples of the size of its part of side a, so that no square of a length overflows.
+        let size = if mesh.dim == 2 {
+            self.area
+        } else {
+            self.area.sqrt()
         };
-        let moment = |terms: &[(u32, f64)]| terms.iter().map(|&(n, c)| c * place(n)).sum::<f64>();
-        let defect = moment(&self.side_a) - moment(&self.side_b);
+        let way = |node: u32| difference(mesh.points[node as usize], a.position);
         // Each node takes part as it does already.
-        let parts = || self.side_b.iter().map(|&(n, c)| (c.abs(), place(n)));
-        let middle =
-            parts().map(|(c, s)| c * s).sum::<f64>() / parts().map(|(c, _)| c).sum::<f64>();
-        let spread: f64 = parts().map(|(c, s)| c * (s - middle).powi(2)).sum();
-        if spread > 0.0 {
-            let shift =
-                |(n, c): (u32, f64)| (n, c + defect * c.abs() * (place(n) - middle) / spread);
-            self.side_b = self.side_b.iter().copied().map(shift).collect();
+        let before = self.side_b.clone();
+        for axis in self.axes(a, mesh) {
+            let place = |node: u32| dot(axis, way(node)) / size;
+            let moment =
+                |terms: &[(u32, f64)]| terms.iter().map(|&(n, c)| c * place(n)).sum::<f64>();
+            let defect = moment(&self.side_a) - moment(&before);
+            let parts = || before.iter().map(|&(n, c)| (c.abs(), place(n)));
+            let total = parts().map(|(c, _)| c).sum::<f64>();
+            let middle = parts().map(|(c, s)| c * s).sum::<f64>() / total;
+            let spread: f64 = parts().map(|(c, s)| c * (s - middle).powi(2)).sum();
+            if spread > TOGETHER * total {
+                for ((_, value), (c, s)) in self.side_b.iter_mut().zip(parts()) {
+                    *value += defect * c * (s - middle) / spread;
+                }
+            }
         }
+    }
+
+    /// The principal axes along side a of where the nodes of side b lie, each as it takes part: what is shifted along
+    /// one of them leaves the other as it is.
+    fn axes(&self, a: &SideNode, mesh: &Mesh) -> Vec<[f64; 3]> {
+        let [t_1, t_2] = LocalFrame::new(a.normal).tangents;
+        if mesh.dim == 2 {
+            return vec![t_1];
+        }
+        let flat = |node: u32| {
+            let way = difference(mesh.points[node as usize], a.position);
+            [dot(t_1, way), dot(t_2, way)]
+        };
+        let total: f64 = self.side_b.iter().map(|(_, c)| c.abs()).sum();
+        let parts = || self.side_b.iter().map(|&(n, c)| (c.abs() / total, flat(n)));
+        let middle = parts().fold([0.0; 2], |sum, (c, s)| {
+            [sum[0] + c * s[0], sum[1] + c * s[1]]
+        });
+        let mut spread = [0.0; 3];
+        for (c, s) in parts() {
+            let [x, y] = [s[0] - middle[0], s[1] - middle[1]];
+            spread = advance(spread, c, [x * x, y * y, x * y]);
+        }
+        let [xx, yy, xy] = spread;
+        let (sin, cos) = (0.5 * (2.0 * xy).atan2(xx - yy)).sin_cos();
+        vec![
+            [0, 1, 2].map(|k| cos * t_1[k] + sin * t_2[k]),
+            [0, 1, 2].map(|k| cos * t_2[k] - sin * t_1[k]),
+        ]
     }
 
     /// Where the force on side a acts: beside node `a` where others hand over to it.

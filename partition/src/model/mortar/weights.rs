@@ -1,87 +1,129 @@
 //! Which nodes of side a carry a multiplier, and with what weight on each facet.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use nalgebra::DMatrix;
 
 use super::super::sides::Sides;
 use super::Covered;
-use super::cover::Sample;
-use super::dual::{dual_basis, integral};
+use super::bases::{Bases, lift};
+use super::cover::Cover;
+use super::dual::dual_basis;
+use crate::element::ElementKind;
 
-/// Share of what is covered around a node that the integral of its shape function over it has to
-/// have for the node to carry a multiplier. With less, its condition would extrapolate side b from
-/// afar, and its multiplier be next to nothing. Wholly covered, nodes of straight facets have a half.
-/// No round number: where sides overlap by a fifth of a facet, round-off would decide.
-const LEAST: f64 = 0.098_765;
-/// Share of a facet with less of which covered its shape functions can't be told apart reliably. No
-/// round number either.
+/// Share of a line with less of which covered its shape functions can't be told apart reliably. No round number:
+/// round-off would decide.
 const SLIVER: f64 = 0.987_65e-3;
+/// Least eigenvalue, down to which the functions of all nodes of a facet are told apart: dual functions are
+/// below 100 then. Those of the corners alone may be so much larger. No round numbers either.
+const FLOORS: [f64; 2] = [0.987_65e-3, 0.987_65e-7];
+
+/// Part of the integral that a node needs that has to be left of it when others have handed theirs over.
+const KEPT: f64 = 0.5;
+
+/// The weight ψ of a multiplier on a facet.
+pub(super) enum Weight {
+    /// ψ = 1.
+    One,
+    /// ψ = Σ c_i N_i.
+    Combination(Vec<f64>),
+}
+
+impl Weight {
+    /// ∫ ψ over what is covered (m, in space m²).
+    fn integral(&self, cover: &Cover) -> f64 {
+        match self {
+            Self::One => cover.measure,
+            Self::Combination(c) => c.iter().zip(&cover.integrals).map(|(c, n)| c * n).sum(),
+        }
+    }
+}
 
 /// The nodes that carry multipliers. All others on what is covered, crack tips among them, hand
 /// their part of the dual basis to those beside them, so that the weights sum to 1 everywhere: what
 /// is integrated is lost nowhere, and a uniform pressure passes exactly.
-pub(super) struct Weights {
-    carrying: HashSet<u32>,
+struct Carrying {
+    nodes: HashSet<u32>,
+    bases: BTreeMap<ElementKind, Bases>,
 }
 
-impl Weights {
-    /// Chooses them: nodes that are covered themselves and not only what lies beside them, and the
-    /// best of a facet without any.
-    pub fn new(sides: &Sides, covered: &[Covered]) -> Self {
-        let mut around: HashMap<u32, [f64; 2]> = HashMap::new();
-        for Covered { facet, cover } in covered {
-            for (i, &node) in facet.nodes.iter().enumerate() {
-                let [own, all] = around.entry(node).or_default();
-                *own += integral(&cover.samples, i);
-                *all += measure(&cover.samples);
-            }
+/// The weights of the multipliers on each facet, by the nodes that carry them.
+pub(super) fn weights(sides: &Sides, covered: &[Covered]) -> Vec<Vec<(u32, Weight)>> {
+    let bases = Bases::new(covered.iter().map(|on| on.facet));
+    let mut around: HashMap<u32, [f64; 2]> = HashMap::new();
+    for Covered { facet, cover } in covered {
+        let Bases { levels, least } = &bases[&facet.kind];
+        let integrals = lift(&levels[0], &cover.integrals);
+        for (i, &node) in facet.nodes.iter().enumerate() {
+            let [own, needed] = around.entry(node).or_default();
+            *own += integrals[i];
+            *needed += least[i] * cover.measure;
         }
-        let may_carry = |node: &&u32| !sides.shared.contains(node);
-        let nodes = around.iter().filter(|(_, [own, all])| *own >= LEAST * all);
-        let mut carrying: HashSet<u32> = nodes.map(|(node, _)| *node).collect();
-        carrying.retain(|node| may_carry(&node));
-        for Covered { facet, .. } in covered {
-            if !facet.nodes.iter().any(|node| carrying.contains(node)) {
-                let nodes = facet.nodes.iter().filter(may_carry);
-                carrying.extend(nodes.max_by(|p, q| around[p][0].total_cmp(&around[q][0])));
-            }
-        }
-        Self { carrying }
     }
+    around.retain(|node, _| !sides.shared.contains(node));
+    let enough = (around.iter()).filter(|(_, [own, needed])| own >= needed);
+    let nodes = enough.map(|(node, _)| *node).collect();
+    let mut carrying = Carrying { nodes, bases };
+    loop {
+        for Covered { facet, .. } in covered {
+            if !facet.nodes.iter().any(|node| carrying.nodes.contains(node)) {
+                let nodes = facet.nodes.iter().filter(|node| around.contains_key(node));
+                (carrying.nodes).extend(nodes.max_by(|p, q| around[p][0].total_cmp(&around[q][0])));
+            }
+        }
+        let weights: Vec<_> = covered.iter().map(|on| carrying.on(on)).collect();
+        let mut areas: HashMap<u32, f64> = HashMap::new();
+        for (on, weights) in covered.iter().zip(&weights) {
+            for (node, weight) in weights {
+                *areas.entry(*node).or_default() += weight.integral(&on.cover);
+            }
+        }
+        // What others hand over may be negative where functions of theirs are.
+        areas.retain(|node, area| *area < KEPT * around[node][1]);
+        areas.retain(|node, _| around.remove(node).is_some());
+        if areas.is_empty() {
+            return weights;
+        }
+        carrying.nodes.retain(|node| !areas.contains_key(node));
+    }
+}
 
-    /// The weights on a facet of those of its nodes that carry a multiplier: at every sample.
-    pub fn on(&self, covered: &Covered) -> Vec<(u32, Vec<f64>)> {
+impl Carrying {
+    /// The weights on a facet of those of its nodes that carry a multiplier.
+    fn on(&self, covered: &Covered) -> Vec<(u32, Weight)> {
         let Covered { facet, cover } = covered;
-        let samples = &cover.samples;
-        let mut own: Vec<usize> = (0..facet.nodes.len())
-            .filter(|&i| self.carrying.contains(&facet.nodes[i]))
-            .collect();
-        let is_sliver = measure(samples) < SLIVER * facet.measure;
-        let basis = dual_basis(samples).filter(|_| !is_sliver);
-        let Some(basis) = basis.filter(|_| own.len() > 1) else {
-            own.sort_by(|&i, &k| integral(samples, k).total_cmp(&integral(samples, i)));
-            let best = own
-                .first()
-                .map(|&i| (facet.nodes[i], vec![1.0; samples.len()]));
-            return best.into_iter().collect();
-        };
-        let handed = handed_over(&basis, &own);
-        let at = |j: usize| {
-            let value = |shape: &[f64]| -> f64 {
-                (0..shape.len()).map(|i| handed[(j, i)] * shape[i]).sum()
+        let levels = &self.bases[&facet.kind].levels;
+        let carries = |&i: &usize| self.nodes.contains(&facet.nodes[i]);
+        let is_line = facet.kind.dim() == 1;
+        for (basis, floor) in levels.iter().zip(FLOORS) {
+            let own: Vec<usize> = (0..basis.nrows()).filter(carries).collect();
+            let (is_told_apart, floor) = match is_line {
+                true => (cover.measure >= SLIVER * facet.measure, 0.0),
+                // The functions of linear facets are those of corners.
+                false if facet.kind.is_linear() => (true, FLOORS[1]),
+                false => (true, floor),
             };
-            samples.iter().map(|s| value(&s.shape)).collect()
-        };
-        (0..own.len())
-            .map(|j| (facet.nodes[own[j]], at(j)))
+            if own.len() > 1
+                && is_told_apart
+                && let Some(dual) = dual_basis(cover, basis, floor)
+            {
+                let handed = handed_over(&dual, &own);
+                let row = |j: usize| handed.row(j).iter().copied().collect();
+                return (0..own.len())
+                    .map(|j| (facet.nodes[own[j]], Weight::Combination(row(j))))
+                    .collect();
+            }
+        }
+        let integrals = lift(&levels[0], &cover.integrals);
+        let own = (0..facet.nodes.len()).filter(carries);
+        // Of equal ones the first.
+        let best = own
+            .rev()
+            .max_by(|&i, &k| integrals[i].total_cmp(&integrals[k]));
+        best.map(|i| (facet.nodes[i], Weight::One))
+            .into_iter()
             .collect()
     }
-}
-
-/// What the samples of a facet cover (m).
-fn measure(samples: &[Sample]) -> f64 {
-    samples.iter().map(|s| s.weight).sum()
 }
 
 /// The rows of the dual basis that belong to `own`, each with its part of the others.

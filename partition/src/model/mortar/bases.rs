@@ -1,0 +1,142 @@
+//! The functions of a facet to which multipliers are dual.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DMatrix;
+
+use super::super::surface::SurfaceFacet;
+use crate::element::ElementKind;
+
+/// What a corner takes of the function of a node on an edge (Popp, Wohlmuth, Gee and Wall, SIAM J. Sci. Comput.
+/// 34, 2012). On triangles of 6 nodes it may be anything below 1/2, on quadrilaterals of 8 above 1/8, too; with
+/// this the dual functions are the least in the mean.
+const TAKEN: f64 = 0.2;
+/// Share of what is covered around a node that the integral of its function over it has to have for the node to
+/// carry a multiplier. With less, its condition would extrapolate side b from afar, and its multiplier
+/// be next to nothing. Wholly covered, nodes of straight lines have a half. No round number: where sides
+/// overlap by a fifth of a facet, round-off would decide.
+const LEAST: f64 = 0.098_765;
+
+/// The functions of the facets of a kind, as rows of coefficients of its shape functions. Those of a basis sum
+/// to 1, as their duals do.
+pub(super) struct Bases {
+    /// From one function for each node to one for each corner, which tells apart what a small part of the
+    /// facet can.
+    pub levels: Vec<DMatrix<f64>>,
+    /// Share of what is covered that each node needs in order to carry a multiplier.
+    pub least: Vec<f64>,
+}
+
+impl Bases {
+    /// Those of every kind of facets.
+    pub fn new<'a>(facets: impl Iterator<Item = &'a SurfaceFacet>) -> BTreeMap<ElementKind, Self> {
+        let mut bases = BTreeMap::new();
+        for facet in facets {
+            (bases.entry(facet.kind)).or_insert_with(|| Self::of(facet.kind));
+        }
+        bases
+    }
+
+    fn of(kind: ElementKind) -> Self {
+        let nodes = kind.nodes();
+        let each = match has_weightless_corners(kind) {
+            true => blend(kind, nodes, TAKEN),
+            false => DMatrix::identity(nodes, nodes),
+        };
+        let whole = || -> Vec<f64> {
+            let mut sums = vec![0.0; nodes];
+            for (xi, weight) in kind.quadrature(4) {
+                let values = kind.shape(xi);
+                (sums.iter_mut().zip(values)).for_each(|(sum, n)| *sum += weight * n);
+            }
+            lift(&each, &sums)
+        };
+        let least = match kind.dim() {
+            1 => vec![LEAST; nodes],
+            _ => {
+                let part = 2.0 * LEAST / kind.domain().measure();
+                whole()
+                    .into_iter()
+                    .map(|integral| part * integral)
+                    .collect()
+            }
+        };
+        let mut levels = vec![each];
+        if kind.dim() > 1 && !kind.is_linear() {
+            levels.push(blend(kind, kind.corners(), 0.5));
+        }
+        Self { levels, least }
+    }
+}
+
+/// The integrals of a basis from those of the shape functions.
+pub(super) fn lift(basis: &DMatrix<f64>, integrals: &[f64]) -> Vec<f64> {
+    let row = |i: usize| {
+        integrals
+            .iter()
+            .enumerate()
+            .map(move |(k, n)| basis[(i, k)] * n)
+    };
+    (0..basis.nrows()).map(|i| row(i).sum()).collect()
+}
+
+/// Whether ∫ N of corners isn't positive: quadratic facets of space without a node in the middle.
+fn has_weightless_corners(kind: ElementKind) -> bool {
+    kind.dim() > 1 && kind.nodes() == 2 * kind.corners()
+}
+
+/// The functions of the first `count` nodes when each of a node on an edge hands the part `taken` to either
+/// end of the edge. All of it handed over leaves the functions of the linear facet; there a node
+/// in the middle hands its own to all corners.
+fn blend(kind: ElementKind, count: usize, taken: f64) -> DMatrix<f64> {
+    let (nodes, corners) = (kind.nodes(), kind.corners());
+    let mut basis = DMatrix::identity(count, nodes);
+    for (_, edge) in kind.facets() {
+        let &[start, end, middle] = *edge else {
+            continue;
+        };
+        basis[(start, middle)] += taken;
+        basis[(end, middle)] += taken;
+        if middle < count {
+            basis[(middle, middle)] = 1.0 - 2.0 * taken;
+        }
+    }
+    if count == corners {
+        for middle in 2 * corners..nodes {
+            (0..corners).for_each(|corner| basis[(corner, middle)] = 1.0 / corners as f64);
+        }
+    }
+    basis
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::ElementKind::{Line2, Line3, Quad4, Quad8, Quad9, Triangle3, Triangle6};
+
+    #[test]
+    fn functions_sum_to_one_and_have_positive_integrals() {
+        for kind in [Line2, Line3, Triangle3, Triangle6, Quad4, Quad8, Quad9] {
+            let bases = Bases::of(kind);
+            assert!(bases.least.iter().all(|&least| least > 0.005), "{kind:?}");
+            for basis in &bases.levels {
+                for column in basis.column_iter() {
+                    assert!((column.sum() - 1.0).abs() < 1e-15, "{kind:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn corners_of_quadratic_facets_have_the_functions_of_linear_ones() {
+        for (kind, linear) in [(Triangle6, Triangle3), (Quad8, Quad4), (Quad9, Quad4)] {
+            let bases = Bases::of(kind);
+            for (xi, _) in kind.quadrature(3) {
+                let found = lift(&bases.levels[1], &kind.shape(xi));
+                for (found, expected) in found.iter().zip(linear.shape(xi)) {
+                    assert!((found - expected).abs() < 1e-14, "{kind:?}");
+                }
+            }
+        }
+    }
+}

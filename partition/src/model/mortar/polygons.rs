@@ -1,0 +1,230 @@
+//! What of side b covers a facet of side a in space: polygons, cut out in flat coordinates on the facet
+//! (Puso and Laursen 2004; Popp, Gitterle, Gee and Wall 2010).
+//!
+//! All facets of side b are seen along the same averaged normals, so that those with a common edge neither
+//! overlap nor leave anything between them, and neither do those that neighbours on side a see.
+
+use nalgebra::DMatrix;
+
+use super::super::surface::SurfaceFacet;
+use super::chart::{Chart, aside};
+use super::clip::{Point, area, clip, contains, middle, triangles};
+use super::cover::{Cover, Opposite, Overlap, Pieces};
+use super::field::Field;
+use super::foot::{foot, middle as middle_of};
+use crate::element::ElementKind;
+use crate::element::geometry::{difference, dot, length};
+use crate::element::reference::Domain;
+
+/// Area of a polygon relative to that of the facet below which it is round-off of facets with a common edge.
+const SLIVER: f64 = 1e-12;
+/// Distance of a curved edge from the chord, relative to the facet, that doesn't matter.
+const SAG: f64 = 1e-3;
+/// Most parts of a curved edge.
+const PARTS: f64 = 8.0;
+/// Distance of a node from where an affine map would have it, relative to the facet, that doesn't matter.
+const AFFINE: f64 = 1e-6;
+/// Degree beyond that of the shape functions' products to which maps that aren't affine are integrated: then
+/// cells whose nodes are moved by a fifth of their size have errors of 1e-12.
+const BEYOND: usize = 6;
+
+/// A facet of side b and what of it is seen from a facet of side a.
+struct Piece {
+    facet: usize,
+    polygon: Vec<Point>,
+    /// Distance in the middle (m).
+    distance: f64,
+}
+
+/// What covers a facet of side a, and whether some of it faces the same way.
+pub(super) fn cover(opposite: &Opposite, field: &Field) -> (Cover, bool) {
+    let chart = Chart::new(field);
+    let mut pieces = Vec::new();
+    let mut any_back_facing = false;
+    for candidate in candidates(opposite, field, &chart) {
+        let mut shadow = shadow(&chart, &opposite.surface.facets[candidate]);
+        let faces = opposite.faces(candidate, chart.normal());
+        if faces {
+            shadow.reverse();
+        }
+        let polygon = clip(&shadow, &chart.outline);
+        // False of what isn't a number, too.
+        let is_seen = area(&polygon) > SLIVER * chart.area;
+        if !is_seen {
+            continue;
+        }
+        let facet = &opposite.surface.facets[candidate];
+        let xi = chart.xi(middle(&polygon));
+        let (x, normal) = (field.position(xi), field.normal(xi));
+        let Some((_, distance)) = foot(facet, x, normal, middle_of(facet.kind.domain())) else {
+            continue;
+        };
+        if distance < -opposite.behind {
+            continue;
+        }
+        match faces {
+            true => pieces.push(Piece {
+                facet: candidate,
+                polygon,
+                distance,
+            }),
+            false => any_back_facing = true,
+        }
+    }
+    let hidden: Vec<bool> = pieces
+        .iter()
+        .map(|piece| is_hidden(piece, &pieces))
+        .collect();
+    let mut cover = Cover::new(field.facet().nodes.len());
+    let mut overlaps = Vec::new();
+    for (piece, hidden) in pieces.iter().zip(hidden) {
+        if !hidden {
+            let facet = &opposite.surface.facets[piece.facet];
+            overlaps.push(integrate(&chart, field, piece, facet, &mut cover));
+        }
+    }
+    cover.pieces = Pieces::Overlaps(overlaps);
+    (cover, any_back_facing)
+}
+
+/// The facets of side b that may lie on a normal of `field`: in a cone around the one in the middle.
+fn candidates(opposite: &Opposite, field: &Field, chart: &Chart) -> Vec<usize> {
+    let facet = field.facet();
+    let axis = chart.normal();
+    let start = field.position(middle_of(facet.kind.domain()));
+    let away = |x: &[f64; 3]| length(difference(*x, start));
+    let radius = facet.at.iter().map(away).fold(0.0, f64::max);
+    let tilt = |&node: &[f64; 3]| {
+        let normal = field.normal(node);
+        let along = dot(normal, axis);
+        (1.0 - along * along).max(0.0).sqrt() / along
+    };
+    // Normals and edges of curved facets go beyond those at the nodes by less than this.
+    let nodes = facet.kind.node_coordinates().iter();
+    let spread = 2.0 * nodes.map(tilt).fold(0.0, f64::max);
+    let radius = 1.5 * radius;
+    let mut candidates = opposite.target.facets(|low, high| {
+        let center = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
+        let size = 0.5 * length(difference(high, low));
+        let way = difference(center, start);
+        let along = dot(way, axis);
+        let across = (dot(way, way) - along * along).max(0.0).sqrt();
+        across <= radius + size + spread * (along.abs() + size)
+    });
+    candidates.sort_unstable();
+    candidates
+}
+
+/// A facet of side b as it is seen in the chart, its corners in their order and curved edges in parts.
+fn shadow(chart: &Chart, facet: &SurfaceFacet) -> Vec<Point> {
+    let corners = &facet.at[..facet.kind.corners()];
+    let corners: Vec<Point> = corners.iter().map(|&x| chart.place(x)).collect();
+    let mut shadow = Vec::new();
+    for (i, (kind, local)) in facet.kind.facets().iter().enumerate() {
+        let at: Vec<_> = local.iter().map(|&node| facet.at[node]).collect();
+        let along = |s: f64| chart.place(kind.position(&at, [s, 0.0, 0.0]));
+        let (p, q) = (corners[i], corners[(i + 1) % corners.len()]);
+        shadow.push(p);
+        let sag = aside(p, q, along(0.0)) / (SAG * chart.area.sqrt());
+        let parts = sag.sqrt().ceil().clamp(1.0, PARTS);
+        shadow.extend((1..parts as usize).map(|part| along(2.0 * part as f64 / parts - 1.0)));
+    }
+    shadow
+}
+
+/// Whether something else lies before the middle of a piece.
+fn is_hidden(piece: &Piece, pieces: &[Piece]) -> bool {
+    let x = middle(&piece.polygon);
+    pieces.iter().any(|other| {
+        other.facet != piece.facet
+            && other.distance.abs() < piece.distance.abs()
+            && contains(&other.polygon, x)
+    })
+}
+
+/// Adds a piece, which a facet of side b covers, to `cover`.
+fn integrate(
+    chart: &Chart,
+    field: &Field,
+    piece: &Piece,
+    other: &SurfaceFacet,
+    cover: &mut Cover,
+) -> Overlap {
+    let facet = field.facet();
+    let mut overlap = Overlap {
+        opposite: piece.facet,
+        products: DMatrix::zeros(facet.nodes.len(), other.nodes.len()),
+        gaps: vec![0.0; facet.nodes.len()],
+    };
+    let mut eta = middle_of(other.kind.domain());
+    let mut across = |xi: [f64; 3]| {
+        let found = foot(other, field.position(xi), field.normal(xi), eta);
+        if let Some((found, _)) = found {
+            eta = found;
+        }
+        found
+    };
+    for &corner in &piece.polygon {
+        if let Some((_, gap)) = across(chart.xi(corner)) {
+            cover.least_gap = cover.least_gap.min(gap);
+        }
+    }
+    let rule = ElementKind::Triangle3.quadrature(degree(facet, other));
+    for [p, q, r] in triangles(&piece.polygon) {
+        let double = 2.0 * area(&[p, q, r]);
+        for &([s, t, _], weight) in &rule {
+            let at = [0, 1].map(|k| p[k] + s * (q[k] - p[k]) + t * (r[k] - p[k]));
+            let xi = chart.xi(at);
+            let Some((eta, gap)) = across(xi) else {
+                continue;
+            };
+            let weight = weight * double * chart.density(xi);
+            let shape = facet.kind.shape(xi);
+            cover.add(weight, &shape);
+            cover.least_gap = cover.least_gap.min(gap);
+            let opposite = other.kind.shape(eta);
+            for (i, n) in shape.iter().enumerate() {
+                overlap.gaps[i] += weight * n * gap;
+                for (k, m) in opposite.iter().enumerate() {
+                    overlap.products[(i, k)] += weight * n * m;
+                }
+            }
+        }
+    }
+    overlap
+}
+
+/// The degree to which the products of the shape functions of two facets are integrated.
+fn degree(a: &SurfaceFacet, b: &SurfaceFacet) -> usize {
+    let [own, other] = [a, b].map(|facet| {
+        let order = if facet.kind.is_linear() { 1 } else { 2 };
+        match facet.kind.domain() {
+            Domain::Square => 2 * order,
+            _ => order,
+        }
+    });
+    let product = own + own.max(other);
+    match is_affine(a) && is_affine(b) {
+        true => product,
+        false => product + BEYOND,
+    }
+}
+
+/// Whether a facet is the image of the reference facet under an affine map.
+fn is_affine(facet: &SurfaceFacet) -> bool {
+    let kind = facet.kind;
+    let nodes = kind.node_coordinates();
+    // Three corners make the map: the first one, the next one and the last one.
+    let (origin, ends) = (nodes[0], [1, kind.corners() - 1]);
+    let image = |xi: [f64; 3]| {
+        let mut x = facet.at[0];
+        for (k, end) in ends.into_iter().enumerate() {
+            let part = (xi[k] - origin[k]) / (nodes[end][k] - origin[k]);
+            let edge = difference(facet.at[end], facet.at[0]);
+            x = [0, 1, 2].map(|i| x[i] + part * edge[i]);
+        }
+        x
+    };
+    let off = |(&xi, &x): (&[f64; 3], &[f64; 3])| length(difference(image(xi), x));
+    (nodes.iter().zip(&facet.at)).all(|pair| off(pair) <= AFFINE * facet.size())
+}

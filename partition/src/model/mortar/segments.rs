@@ -1,0 +1,152 @@
+//! What of side b covers a line of side a: segments between the places onto which ends of facets of side b are
+//! projected.
+
+use super::super::surface::SurfaceFacet;
+use super::cover::{Cover, Opposite, Pieces, Sample};
+use super::field::{Field, ahead, beside, cross};
+use super::root::{ENDS, root};
+use crate::element::geometry::{difference, length};
+
+/// Degree to which a segment is integrated. The product of two straight facets' shape functions
+/// has degree 2; projections between facets that aren't parallel are rational.
+const DEGREE: usize = 9;
+
+/// What covers a facet of side a, and whether some of it faces the same way.
+///
+/// The facet is cut wherever an end of a facet of side b is projected onto it; what the middle
+/// of a piece meets first is opposite all of it.
+pub(super) fn cover(opposite: &Opposite, field: &Field) -> (Cover, bool) {
+    let candidates = candidates(opposite, field);
+    let mut cuts = ENDS.to_vec();
+    for &facet in &candidates {
+        let facet = &opposite.surface.facets[facet];
+        for end in ENDS {
+            let x = facet.kind.position(&facet.at, [end, 0.0, 0.0]);
+            cuts.extend(root(|xi| field.aside(xi, x)));
+        }
+    }
+    cuts.sort_by(f64::total_cmp);
+    let mut samples = Samples {
+        list: Vec::new(),
+        least_gap: f64::INFINITY,
+    };
+    let mut any_back_facing = false;
+    for ends in cuts.windows(2).filter(|ends| ends[0] < ends[1]) {
+        let middle = 0.5 * (ends[0] + ends[1]);
+        match nearest(opposite, field, middle, &candidates) {
+            Ok(found) => samples.add(opposite, field, [ends[0], ends[1]], found),
+            Err(back_facing) => any_back_facing |= back_facing,
+        }
+    }
+    (samples.cover(field), any_back_facing)
+}
+
+/// The facets of side b that may lie on a line of `field`: between its first and its last.
+fn candidates(opposite: &Opposite, field: &Field) -> Vec<usize> {
+    let lines = ENDS.map(|end| {
+        (
+            field.position([end, 0.0, 0.0]),
+            field.normal([end, 0.0, 0.0]),
+        )
+    });
+    let mut candidates = opposite.target.facets(|low, high| {
+        let corners = [
+            [low[0], low[1], 0.0],
+            [high[0], low[1], 0.0],
+            [low[0], high[1], 0.0],
+            [high[0], high[1], 0.0],
+        ];
+        let sides = lines.map(|(x, n)| corners.map(|corner| cross(n, difference(corner, x))));
+        let all = |is: fn(f64) -> bool| sides.iter().flatten().all(|&side| is(side));
+        !all(|side| side > 0.0) && !all(|side| side < 0.0)
+    });
+    candidates.sort_unstable();
+    candidates
+}
+
+/// The facet that the line at ξ meets first face to face, either way but not too far backwards; where there
+/// is none, whether it meets one that faces the same way.
+fn nearest(
+    opposite: &Opposite,
+    field: &Field,
+    xi: f64,
+    candidates: &[usize],
+) -> Result<usize, bool> {
+    let (x, normal) = (field.position([xi, 0.0, 0.0]), field.normal([xi, 0.0, 0.0]));
+    let mut nearest: Option<(usize, f64)> = None;
+    let mut back_facing = false;
+    for &candidate in candidates {
+        let facet = &opposite.surface.facets[candidate];
+        let Some(eta) = root(|eta| beside(facet, x, normal, eta)) else {
+            continue;
+        };
+        let distance = ahead(facet, x, normal, eta);
+        if distance < -opposite.behind {
+            continue;
+        }
+        if !opposite.faces(candidate, normal) {
+            back_facing = true;
+        } else if nearest.is_none_or(|(_, other)| distance.abs() < other.abs()) {
+            nearest = Some((candidate, distance));
+        }
+    }
+    nearest.map(|(facet, _)| facet).ok_or(back_facing)
+}
+
+/// The samples of segments, one after the other along a facet.
+struct Samples {
+    list: Vec<Sample>,
+    least_gap: f64,
+}
+
+impl Samples {
+    /// Adds those of the segment between `ends`, which the facet `found` of side b covers.
+    fn add(&mut self, opposite: &Opposite, field: &Field, ends: [f64; 2], found: usize) {
+        let (a, b) = (field.facet(), &opposite.surface.facets[found]);
+        let [from, to] = ends;
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        for end in ends {
+            let (_, gap) = project(field, b, end);
+            self.least_gap = self.least_gap.min(gap);
+        }
+        for (point, weight) in a.kind.quadrature(DEGREE) {
+            let xi = middle + half * point[0];
+            let (eta, gap) = project(field, b, xi);
+            let xi = [xi, 0.0, 0.0];
+            self.least_gap = self.least_gap.min(gap);
+            self.list.push(Sample {
+                weight: weight * half * length(a.kind.area_vector(&a.at, xi)),
+                shape: a.kind.shape(xi),
+                opposite: found,
+                opposite_shape: b.kind.shape([eta, 0.0, 0.0]),
+                gap,
+            });
+        }
+    }
+
+    fn cover(self, field: &Field) -> Cover {
+        let mut cover = Cover::new(field.facet().nodes.len());
+        for sample in &self.list {
+            cover.add(sample.weight, &sample.shape);
+        }
+        cover.least_gap = self.least_gap;
+        cover.pieces = Pieces::Samples(self.list);
+        cover
+    }
+}
+
+/// Where the line at ξ meets a facet that is opposite: η, and the gap (m).
+fn project(field: &Field, facet: &SurfaceFacet, xi: f64) -> (f64, f64) {
+    let (x, normal) = (field.position([xi, 0.0, 0.0]), field.normal([xi, 0.0, 0.0]));
+    let side = |eta: f64| beside(facet, x, normal, eta);
+    let eta = root(side).unwrap_or_else(|| {
+        // Round-off has the line pass by the end that it goes through.
+        let [low, high] = ENDS;
+        if side(low)[0].abs() < side(high)[0].abs() {
+            low
+        } else {
+            high
+        }
+    });
+    (eta, ahead(facet, x, normal, eta))
+}

@@ -1,0 +1,412 @@
+//! Sides in space whose nodes don't match.
+
+use std::array::from_fn;
+
+use super::*;
+use crate::element::ElementKind::{self, Quad4, Quad8, Quad9, Triangle3, Triangle6};
+use crate::element::geometry::{advance, cross, difference, length};
+use crate::mesh::Mesh;
+use crate::model::surface::Surface;
+
+const KINDS: [ElementKind; 5] = [Triangle3, Triangle6, Quad4, Quad8, Quad9];
+
+type Point = [f64; 3];
+/// Where a side lies, along x and y.
+type Range = [[f64; 2]; 2];
+
+/// Sides of a mesh in space, without cells.
+#[derive(Default)]
+struct Space {
+    mesh: Mesh,
+    sides: Vec<Vec<(ElementKind, Vec<u32>)>>,
+}
+
+impl Space {
+    fn new() -> Self {
+        let mut space = Self::default();
+        space.mesh.dim = 3;
+        space
+    }
+
+    /// Adds a side: the rectangle `x` × `y` in n[0] × n[1] quadrilaterals, or twice as many triangles, moved by
+    /// `map`; its normal is z before that, and −z if it is `upper`. Inner corners are moved by up to
+    /// `uneven` of a facet first.
+    fn side(
+        mut self,
+        kind: ElementKind,
+        [x, y]: Range,
+        n: [usize; 2],
+        uneven: f64,
+        upper: bool,
+        map: impl Fn(Point) -> Point,
+    ) -> Self {
+        let noise =
+            |i: usize, j: usize, k: f64| (12.9 * i as f64 + 78.2 * j as f64 + 37.7 * k).sin();
+        let corner = |i: usize, j: usize| -> Point {
+            let inner = !i.is_multiple_of(n[0]) && !j.is_multiple_of(n[1]);
+            let shift = |k: f64| if inner { uneven * noise(i, j, k) } else { 0.0 };
+            let s = (i as f64 + shift(1.0)) / n[0] as f64;
+            let t = (j as f64 + shift(2.0)) / n[1] as f64;
+            [x[0] + s * (x[1] - x[0]), y[0] + t * (y[1] - y[0]), 0.0]
+        };
+        let first = self.mesh.points.len();
+        let mut flat: Vec<Point> = Vec::new();
+        let mut node = |p: Point| -> u32 {
+            let near = |q: &Point| length(difference(*q, p)) < 1e-9;
+            let place = flat.iter().position(near).unwrap_or_else(|| {
+                flat.push(p);
+                flat.len() - 1
+            });
+            (first + place) as u32
+        };
+        let mean = |points: &[Point]| -> Point {
+            from_fn(|k| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64)
+        };
+        let mut facets = Vec::new();
+        for (i, j) in (0..n[0]).flat_map(|i| (0..n[1]).map(move |j| (i, j))) {
+            let [a, b, c, d] =
+                [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| corner(i, j));
+            let cells = match (kind.corners(), (i + j) % 2) {
+                (4, _) => vec![vec![a, b, c, d]],
+                (_, 0) => vec![vec![a, b, c], vec![a, c, d]],
+                _ => vec![vec![a, b, d], vec![b, c, d]],
+            };
+            for mut corners in cells {
+                if upper {
+                    corners.reverse();
+                }
+                let mut at = corners.clone();
+                for (_, edge) in kind.facets() {
+                    if edge.len() == 3 {
+                        at.push(mean(&[corners[edge[0]], corners[edge[1]]]));
+                    }
+                }
+                if kind == Quad9 {
+                    at.push(mean(&corners));
+                }
+                facets.push((kind, at.into_iter().map(&mut node).collect()));
+            }
+        }
+        self.mesh.points.extend(flat.into_iter().map(map));
+        self.mesh.node_tags = (1..=self.mesh.points.len() as i64).collect();
+        self.sides.push(facets);
+        self
+    }
+
+    fn surface(&self, side: usize) -> Surface {
+        let facet = |(kind, nodes): &(ElementKind, Vec<u32>)| {
+            let at = nodes
+                .iter()
+                .map(|&n| self.mesh.points[n as usize])
+                .collect();
+            SurfaceFacet::new(*kind, nodes.clone(), at)
+        };
+        Surface {
+            facets: self.sides[side].iter().map(facet).collect(),
+        }
+    }
+
+    /// The contact points of side `a` with another.
+    fn points(&self, a: usize, b: usize) -> Vec<ContactPoint<u32>> {
+        let (a, b) = (self.surface(a), self.surface(b));
+        let sides = Sides::new(&self.mesh, &a, &b, "test").unwrap();
+        points(&sides).unwrap()
+    }
+
+    /// ∫ of the shape function of every node over a side, by node.
+    fn integrals(&self, side: usize) -> HashMap<u32, f64> {
+        let mut integrals = HashMap::new();
+        for facet in self.surface(side).facets {
+            for (xi, weight) in facet.kind.quadrature(12) {
+                let area = length(facet.kind.area_vector(&facet.at, xi));
+                for (&node, n) in facet.nodes.iter().zip(facet.kind.shape(xi)) {
+                    *integrals.entry(node).or_default() += weight * area * n;
+                }
+            }
+        }
+        integrals
+    }
+}
+
+fn turned([x, y, z]: Point) -> Point {
+    let [x, y] = [0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y];
+    let [y, z] = [0.28 * y - 0.96 * z, 0.96 * y + 0.28 * z];
+    [x + 0.3, y - 2.0, z]
+}
+
+/// Two sides of the same square, one above the other.
+fn square(
+    kinds: [ElementKind; 2],
+    n: [[usize; 2]; 2],
+    uneven: f64,
+    gap: f64,
+    map: fn(Point) -> Point,
+) -> Space {
+    let range = [[0.0, 2.0], [0.0, 3.0]];
+    let lift = |[x, y, _]: Point| map([x, y, gap]);
+    Space::new()
+        .side(kinds[0], range, n[0], uneven, false, map)
+        .side(kinds[1], range, n[1], uneven, true, lift)
+}
+
+/// Each kind twice as either side.
+fn pairs_of_kinds() -> impl Iterator<Item = [ElementKind; 2]> {
+    [1, 3]
+        .into_iter()
+        .flat_map(|step| (0..5).map(move |i| [KINDS[i], KINDS[(i + step) % 5]]))
+}
+
+/// Σ over points of area·weight at every node.
+fn forces(points: &[ContactPoint<u32>]) -> HashMap<u32, f64> {
+    let mut forces = HashMap::new();
+    for point in points {
+        for &(node, weight) in &point.entries {
+            *forces.entry(node).or_default() += point.area * weight;
+        }
+    }
+    forces
+}
+
+fn close(found: f64, expected: f64, tolerance: f64, what: &str) {
+    let error = (found - expected).abs();
+    assert!(
+        error <= tolerance,
+        "{what}: {found} instead of {expected}, {error:e}"
+    );
+}
+
+#[test]
+fn a_uniform_pressure_loads_both_sides_as_if_it_were_applied_to_them() {
+    for kinds in pairs_of_kinds() {
+        for (n, uneven) in [([[2, 3], [1, 2]], 0.0), ([[2, 2], [3, 2]], 0.2)] {
+            let space = square(kinds, n, uneven, 0.0, turned);
+            for [a, b] in [[0, 1], [1, 0]] {
+                let what = format!("{kinds:?} {uneven} side {a}");
+                let points = space.points(a, b);
+                assert!(points.iter().all(|point| point.area > 0.0), "{what}");
+                let forces = forces(&points);
+                for (side, sign) in [(a, 1.0), (b, -1.0)] {
+                    for (node, expected) in space.integrals(side) {
+                        let found = forces.get(&node).copied().unwrap_or_default();
+                        close(found, sign * expected, 1e-11, &what);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Sides that overlap in part: whole facets, parts of them, slivers, narrow ones on the middle of a wide facet.
+fn overlaps() -> Vec<(Range, Range, [[usize; 2]; 2])> {
+    let whole = [[0.0, 3.0], [0.0, 2.0]];
+    let mut all = vec![
+        (whole, [[0.7, 2.1], [0.3, 1.9]], [[5, 4], [3, 3]]),
+        (whole, [[1.1, 4.4], [-0.7, 1.2]], [[3, 2], [4, 5]]),
+        (whole, [[1.5, 3.0], [0.0, 2.0]], [[2, 2], [2, 3]]),
+        (whole, [[0.2, 0.7], [0.3, 0.8]], [[2, 1], [2, 1]]),
+    ];
+    for exponent in [1, 2, 3, 6, 9] {
+        // A facet of each ends at x = 1.
+        let sliver = 10.0_f64.powi(-exponent);
+        all.push((
+            whole,
+            [[0.0, 1.0 + sliver], [0.0, 1.0 + sliver]],
+            [[3, 2], [2, 2]],
+        ));
+    }
+    all
+}
+
+#[test]
+fn sides_that_overlap_in_part_pass_forces_and_moments() {
+    for (i, (one, other, n)) in overlaps().into_iter().enumerate() {
+        for kinds in pairs_of_kinds().skip(i % 2).step_by(2) {
+            let space = Space::new()
+                .side(kinds[0], one, n[0], 0.1, false, turned)
+                .side(kinds[1], other, n[1], 0.1, true, |[x, y, z]| {
+                    turned([x, y, z + 0.125])
+                });
+            let common: f64 = (0..2)
+                .map(|k| one[k][1].min(other[k][1]) - one[k][0].max(other[k][0]))
+                .product();
+            for [a, b] in [[0, 1], [1, 0]] {
+                let what = format!("{kinds:?} {other:?} side {a}");
+                let points = space.points(a, b);
+                let area: f64 = points.iter().map(|point| point.area).sum();
+                // Slivers of 1e-12 of a facet are left out.
+                close(area, common, 1e-11, &what);
+                for point in &points {
+                    assert!(point.area > 0.0, "{what}");
+                    close(point.gap, 0.125, 1e-10, &what);
+                    let (mut force, mut moment, mut size) = (0.0, [0.0; 3], 1.0_f64);
+                    for &(node, weight) in &point.entries {
+                        let arm = difference(space.mesh.points[node as usize], point.position);
+                        moment = advance(moment, weight, cross(arm, point.normal()));
+                        force += weight;
+                        size = size.max(weight.abs());
+                    }
+                    close(force, 0.0, 1e-11 * size, &what);
+                    close(length(moment), 0.0, 1e-10 * size, &what);
+                }
+            }
+        }
+    }
+}
+
+/// Rows of fully covered sides are dual: they take a linear field to its value at the node, or to what the
+/// corners around a node on an edge make of it.
+#[test]
+fn a_row_takes_linear_displacements_to_the_jump_at_its_node() {
+    let u = |[x, y, z]: Point| 0.3 * x - 0.2 * y + 0.7 * z + 1.0;
+    let v = |[x, y, z]: Point| -0.6 * x + 0.9 * y - 0.1 * z + 0.2;
+    for kinds in pairs_of_kinds() {
+        let space = square(kinds, [[3, 4], [2, 3]], 0.2, 0.25, turned);
+        let below = space.sides[0].iter().flat_map(|(_, nodes)| nodes).max();
+        for point in space.points(0, 1) {
+            let jump: f64 = (point.entries.iter())
+                .map(|&(node, weight)| {
+                    let x = space.mesh.points[node as usize];
+                    weight * if Some(&node) <= below { u(x) } else { v(x) }
+                })
+                .sum();
+            let x = point.position;
+            let expected = u(x) - v(advance(x, 0.25, point.normal()));
+            close(jump, expected, 1e-10, &format!("{kinds:?}"));
+            close(point.gap, 0.25, 1e-11, "gap");
+        }
+    }
+}
+
+#[test]
+fn where_nodes_match_a_row_has_the_same_of_both_sides() {
+    for kind in KINDS {
+        let bent = |[x, y, z]: Point| turned([x, y, z + 0.05 * x * x - 0.1 * x * y]);
+        let maps: [fn(Point) -> Point; 2] = [turned, bent];
+        for (map, gap) in maps.into_iter().zip([0.1, 0.0]) {
+            let space = square([kind; 2], [[3, 4]; 2], 0.2, gap, map);
+            let points = space.points(0, 1);
+            let at = |node: u32| space.mesh.points[node as usize];
+            for point in &points {
+                for &(node, weight) in &point.entries {
+                    let is_partner = |&&(other, _): &&(u32, f64)| {
+                        let away = length(difference(at(other), at(node)));
+                        other != node && (away - gap).abs() < 1e-9
+                    };
+                    let (_, partner) = point.entries.iter().find(is_partner).unwrap();
+                    close(*partner, -weight, 1e-10, &format!("{kind:?}"));
+                }
+                if kind.is_linear() || kind == Quad9 {
+                    assert_eq!(point.entries.len(), 2, "{kind:?}");
+                }
+            }
+            let nodes = space.integrals(0).len();
+            assert_eq!(points.len(), nodes, "{kind:?}");
+        }
+    }
+}
+
+/// Part of a ball of radius 1 and more of a hollow around it.
+fn balls(kinds: [ElementKind; 2], n: usize, gap: f64) -> Space {
+    let on = |radius: f64| {
+        move |[x, y, _]: Point| {
+            let far = length([x, y, 1.0]);
+            turned([x, y, 1.0].map(|c| c * radius / far))
+        }
+    };
+    let range = |end: f64| [[-end, end]; 2];
+    Space::new()
+        .side(kinds[0], range(0.5), [n, n], 0.1, false, on(1.0))
+        .side(kinds[1], range(0.7), [n, n + 1], 0.1, true, on(1.0 + gap))
+}
+
+#[test]
+fn round_sides_are_covered_whole_and_turn_together() {
+    for kinds in pairs_of_kinds() {
+        let (n, gap) = (4, 0.05);
+        let space = balls(kinds, n, gap);
+        let surface = space.surface(0);
+        let points = space.points(0, 1);
+        let what = format!("{kinds:?}");
+        let area: f64 = points.iter().map(|point| point.area).sum();
+        let expected: f64 = space.integrals(0).values().sum();
+        close(area, expected, 1e-6, &what);
+        // Chords are as far off the curve.
+        let is_linear = kinds.iter().any(|kind| kind.is_linear());
+        let off = if is_linear { 4e-2 } else { 4e-3 };
+        for point in &points {
+            close(point.gap, gap, off, &what);
+            let mut moment = [0.0; 3];
+            for &(node, weight) in &point.entries {
+                let arm = space.mesh.points[node as usize];
+                moment = advance(moment, weight, cross(arm, point.normal()));
+            }
+            close(length(moment), 0.0, 1e-12, &what);
+        }
+        assert!(points.len() <= surface.nodes().len());
+    }
+}
+
+#[test]
+fn numbers_and_reflections_change_nothing() {
+    let key = |x: Point| x.map(|c| (c * 1e6).round() as i64);
+    for kinds in [[Triangle6, Quad8], [Quad9, Triangle3], [Quad4, Triangle6]] {
+        let space = balls(kinds, 4, 0.01);
+        let mirrored = Space {
+            mesh: Mesh {
+                points: space
+                    .mesh
+                    .points
+                    .iter()
+                    .map(|&[x, y, z]| [-x, y, z])
+                    .collect(),
+                ..space.mesh.clone()
+            },
+            sides: (space.sides.iter())
+                .map(|side| {
+                    let turn = |(kind, nodes): &(ElementKind, Vec<u32>)| {
+                        let order = kind.reversed();
+                        (*kind, order.iter().map(|&i| nodes[i]).collect())
+                    };
+                    side.iter().rev().map(turn).collect()
+                })
+                .collect(),
+        };
+        let others = mirrored.points(0, 1);
+        let points = space.points(0, 1);
+        assert_eq!(points.len(), others.len());
+        for point in points {
+            let [x, y, z] = point.position;
+            let other = others
+                .iter()
+                .find(|other| key(other.position) == key([-x, y, z]));
+            let other = other.unwrap();
+            close(point.gap, other.gap, 1e-12, "gap");
+            close(point.area, other.area, 1e-12, "area");
+            assert_eq!(point.entries.len(), other.entries.len());
+            for (node, weight) in &point.entries {
+                let twin = other.entries.iter().find(|(twin, _)| twin == node);
+                close(*weight, twin.unwrap().1, 1e-9, "weight");
+            }
+        }
+    }
+}
+
+/// Of a closed surface the side that faces away has no part; a layer behind another is hidden.
+#[test]
+fn what_lies_behind_is_not_seen() {
+    let range = [[0.0, 2.0], [0.0, 3.0]];
+    let at = |height: f64| move |[x, y, _]: Point| turned([x, y, height]);
+    let mut space = Space::new()
+        .side(Quad4, range, [2, 2], 0.0, false, at(0.0))
+        .side(Triangle3, range, [3, 2], 0.0, true, at(0.1))
+        .side(Triangle3, range, [2, 3], 0.0, false, at(0.4))
+        .side(Triangle3, range, [3, 3], 0.0, true, at(0.7));
+    let hidden: Vec<_> = space.sides.drain(2..).flatten().collect();
+    space.sides[1].extend(hidden);
+    let points = space.points(0, 1);
+    let area: f64 = points.iter().map(|point| point.area).sum();
+    close(area, 6.0, 1e-12, "area");
+    points
+        .iter()
+        .for_each(|point| close(point.gap, 0.1, 1e-12, "gap"));
+}
