@@ -20,6 +20,7 @@ mod cover;
 mod dual;
 mod field;
 mod foot;
+mod map;
 mod polygons;
 mod root;
 mod rows;

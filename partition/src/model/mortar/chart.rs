@@ -2,42 +2,48 @@
 
 use super::clip::{Point, area};
 use super::field::Field;
-use super::foot::{middle, point, solve};
+use super::foot::{ROUND_OFF, STEPS, middle, solve};
+use super::map::{Map, Xi};
 use crate::contact_point::LocalFrame;
-use crate::element::geometry::{advance, difference, dot, length};
+use crate::element::geometry::{advance, cross, difference, dot, length};
 use crate::element::reference::Domain;
 
 /// Distance of a node on an edge from the chord, relative to the chord, from which on the edge is curved.
 const CURVED: f64 = 1e-9;
-/// Steps after which an iteration that still moves is left where it is.
-const STEPS: usize = 30;
-/// Change of a coordinate of order 1 that is none.
-const ROUND_OFF: f64 = 1e-14;
+/// Distance relative to the facet that is none.
+const STILL: f64 = 1e-12;
 
 /// Coordinates on a facet: those of the plane across its normal, in which straight edges are straight wherever
 /// they come from, so that flat sides are cut exactly; on a facet with curved edges its reference coordinates,
 /// in which at least its own are straight.
-pub(super) struct Chart<'a> {
-    field: &'a Field<'a>,
+pub(super) struct Chart {
+    domain: Domain,
+    positions: Map,
+    normals: Map,
     /// (n, t₁, t₂) in its middle.
     frame: LocalFrame,
     origin: [f64; 3],
-    is_curved: bool,
+    size: f64,
+    /// Whether the coordinates are those of the reference facet.
+    pub is_curved: bool,
     /// The corners of the facet, counter-clockwise.
     pub outline: Vec<Point>,
     /// The area within.
     pub area: f64,
 }
 
-impl<'a> Chart<'a> {
+impl Chart {
     /// The chart of a facet with averaged normals.
-    pub fn new(field: &'a Field<'a>) -> Self {
+    pub fn new(field: &Field) -> Self {
         let facet = field.facet();
         let (kind, at) = (facet.kind, &facet.at);
         let mut chart = Self {
-            field,
+            domain: kind.domain(),
+            positions: Map::new(kind, at),
+            normals: Map::new(kind, field.normals()),
             frame: LocalFrame::new(facet.normal),
             origin: at[0],
+            size: facet.size(),
             is_curved: false,
             outline: Vec::new(),
             area: 0.0,
@@ -65,24 +71,26 @@ impl<'a> Chart<'a> {
         self.frame.normal
     }
 
-    /// Coordinates in the plane across the normal.
-    fn flat(&self, x: [f64; 3]) -> Point {
-        let way = difference(x, self.origin);
-        self.frame.tangents.map(|t| dot(t, way))
+    /// The position at ξ and the averaged normal (m).
+    pub fn line(&self, xi: Xi) -> [[f64; 3]; 2] {
+        // The normals at the nodes of a facet are less than 90° from its own, so that their sum isn't zero.
+        let normal = self.normals.at(xi);
+        let size = length(normal);
+        [self.positions.at(xi), normal.map(|c| c / size)]
     }
 
-    /// Reference coordinates of a point of the chart.
-    pub fn xi(&self, p: Point) -> [f64; 3] {
+    /// Reference coordinates of a point of the chart; the search for them starts at `near`.
+    pub fn xi(&self, p: Point, near: Xi) -> Xi {
         match self.is_curved {
-            true => [p[0], p[1], 0.0],
-            false => self.inverse(p, self.middle()),
+            true => p,
+            false => self.inverse(p, near),
         }
     }
 
     /// Area that a unit of the chart's has in space, at ξ.
-    pub fn density(&self, xi: [f64; 3]) -> f64 {
-        let facet = self.field.facet();
-        let vector = facet.kind.area_vector(&facet.at, xi);
+    pub fn density(&self, xi: Xi) -> f64 {
+        let [x_s, x_t] = self.positions.slopes(xi);
+        let vector = cross(x_s, x_t);
         match self.is_curved {
             true => length(vector),
             false => length(vector) / dot(vector, self.frame.normal),
@@ -93,62 +101,49 @@ impl<'a> Chart<'a> {
     /// normals are those at the edge.
     pub fn place(&self, y: [f64; 3]) -> Point {
         let normal = self.frame.normal;
-        let height = |x: [f64; 3]| dot(difference(y, x), normal);
-        let mut xi = self.middle();
+        let mut xi = middle(self.domain);
         let mut flat = self.flat(y);
         for _ in 0..STEPS {
-            let [s, t] = clamped(self.domain(), [xi[0], xi[1]]);
-            let inside = [s, t, 0.0];
-            let along = self.field.normal(inside);
-            let ahead = height(self.field.position(inside)) / dot(along, normal);
+            xi = self.inverse(flat, xi);
+            let [x, along] = self.line(clamped(self.domain, xi));
+            let ahead = dot(difference(y, x), normal) / dot(along, normal);
             let next = self.flat(advance(y, -ahead, along));
             let moved = (next[0] - flat[0]).hypot(next[1] - flat[1]);
             flat = next;
-            if moved <= ROUND_OFF * self.field.facet().size() {
+            if moved <= STILL * self.size {
                 break;
             }
-            xi = self.inverse(flat, xi);
         }
         match self.is_curved {
-            true => {
-                let [s, t, _] = self.inverse(flat, xi);
-                [s, t]
-            }
+            true => self.inverse(flat, xi),
             false => flat,
         }
     }
 
-    fn domain(&self) -> Domain {
-        self.field.facet().kind.domain()
+    /// Coordinates in the plane across the normal.
+    fn flat(&self, x: [f64; 3]) -> Point {
+        let way = difference(x, self.origin);
+        self.frame.tangents.map(|t| dot(t, way))
     }
 
-    fn middle(&self) -> [f64; 3] {
-        middle(self.domain())
-    }
-
-    /// ξ of a point of the plane, by Newton's method from `start`. Beyond its edges the facet goes on straight.
-    fn inverse(&self, p: Point, start: [f64; 3]) -> [f64; 3] {
-        let facet = self.field.facet();
-        let [t_1, t_2] = self.frame.tangents;
-        let mut xi = [start[0], start[1]];
+    /// ξ of a point of the plane, by Newton's method from `near`. Beyond its edges the facet goes on straight.
+    fn inverse(&self, p: Point, near: Xi) -> Xi {
+        let tangents = self.frame.tangents;
+        let mut xi = near;
         for _ in 0..STEPS {
-            let [s, t] = clamped(self.domain(), xi);
-            let inside = [s, t, 0.0];
-            let (x, [x_s, x_t]) = point(facet, inside);
-            let j = [
-                [dot(t_1, x_s), dot(t_1, x_t)],
-                [dot(t_2, x_s), dot(t_2, x_t)],
-            ];
-            let at = self.flat(x);
+            let inside = clamped(self.domain, xi);
+            let slopes = self.positions.slopes(inside);
+            let at = self.flat(self.positions.at(inside));
+            let j = tangents.map(|t| slopes.map(|slope| dot(t, slope)));
             let step = solve(j, [p[0] - at[0], p[1] - at[1]]);
-            let next = [s + step[0], t + step[1]];
+            let next = [inside[0] + step[0], inside[1] + step[1]];
             let moved = (next[0] - xi[0]).abs().max((next[1] - xi[1]).abs());
             xi = next;
             if moved <= ROUND_OFF {
                 break;
             }
         }
-        [xi[0], xi[1], 0.0]
+        xi
     }
 }
 
@@ -159,7 +154,7 @@ pub(super) fn aside(p: Point, q: Point, x: Point) -> f64 {
 }
 
 /// The point of a facet nearest to ξ, more or less.
-fn clamped(domain: Domain, [s, t]: Point) -> Point {
+fn clamped(domain: Domain, [s, t]: Xi) -> Xi {
     match domain {
         Domain::Triangle => {
             let (s, t) = (s.max(0.0), t.max(0.0));

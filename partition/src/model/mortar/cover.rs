@@ -5,8 +5,12 @@ use nalgebra::DMatrix;
 use super::super::ray_search::{FACING, Target};
 use super::super::surface::Surface;
 use super::field::Field;
+use super::map::Map;
+use super::polygons::MOST_DEGREE;
 use super::{polygons, segments};
+use crate::element::ElementKind::Triangle3;
 use crate::element::geometry::dot;
+use crate::element::quadrature::Quadrature;
 
 /// A point at which a segment is integrated.
 pub(super) struct Sample {
@@ -90,6 +94,10 @@ impl Cover {
 /// Side b as side a sees it.
 pub(super) struct Opposite<'a> {
     pub surface: &'a Surface,
+    /// x(η) of its facets; none in the plane.
+    pub maps: Vec<Map>,
+    /// Rules on triangles by their degree.
+    pub rules: Vec<Quadrature>,
     pub target: Target<'a>,
     /// How far backwards it may lie (m).
     pub behind: f64,
@@ -98,8 +106,15 @@ pub(super) struct Opposite<'a> {
 impl<'a> Opposite<'a> {
     /// Makes side b ready to be searched; `behind` is how far backwards it may lie (m).
     pub fn new(surface: &'a Surface, behind: f64) -> Self {
+        let in_space = surface.facets.iter().filter(|facet| facet.kind.dim() > 1);
         Self {
             surface,
+            maps: in_space
+                .map(|facet| Map::new(facet.kind, &facet.at))
+                .collect(),
+            rules: (0..=MOST_DEGREE)
+                .map(|degree| Triangle3.quadrature(degree))
+                .collect(),
             target: Target::new(surface),
             behind,
         }

@@ -35,6 +35,11 @@ impl<'a> Field<'a> {
         self.facet
     }
 
+    /// The normals at its nodes.
+    pub fn normals(&self) -> &[[f64; 3]] {
+        &self.normals
+    }
+
     /// x(ξ) (m).
     pub fn position(&self, xi: [f64; 3]) -> [f64; 3] {
         self.facet.kind.position(&self.facet.at, xi)

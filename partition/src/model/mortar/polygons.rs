@@ -4,6 +4,8 @@
 //! All facets of side b are seen along the same averaged normals, so that those with a common edge neither
 //! overlap nor leave anything between them, and neither do those that neighbours on side a see.
 
+use std::collections::HashMap;
+
 use nalgebra::DMatrix;
 
 use super::super::surface::SurfaceFacet;
@@ -12,7 +14,7 @@ use super::clip::{Point, area, clip, contains, middle, triangles};
 use super::cover::{Cover, Opposite, Overlap, Pieces};
 use super::field::Field;
 use super::foot::{foot, middle as middle_of};
-use crate::element::ElementKind;
+use super::map::Xi;
 use crate::element::geometry::{difference, dot, length};
 use crate::element::reference::Domain;
 
@@ -24,9 +26,13 @@ const SAG: f64 = 1e-3;
 const PARTS: f64 = 8.0;
 /// Distance of a node from where an affine map would have it, relative to the facet, that doesn't matter.
 const AFFINE: f64 = 1e-6;
-/// Degree beyond that of the shape functions' products to which maps that aren't affine are integrated: then
-/// cells whose nodes are moved by a fifth of their size have errors of 1e-12.
+/// Degree beyond that of the shape functions' products to which flat facets are integrated whose maps aren't affine:
+/// then those whose nodes are moved by a fifth of their size have errors of 1e-12.
 const BEYOND: usize = 6;
+/// The same of facets that aren't flat, which nothing integrates exactly.
+const BEYOND_CURVED: usize = 2;
+/// The highest degree of all: of quadrilaterals of 9 nodes.
+pub(super) const MOST_DEGREE: usize = 8 + BEYOND;
 
 /// A facet of side b and what of it is seen from a facet of side a.
 struct Piece {
@@ -39,10 +45,12 @@ struct Piece {
 /// What covers a facet of side a, and whether some of it faces the same way.
 pub(super) fn cover(opposite: &Opposite, field: &Field) -> (Cover, bool) {
     let chart = Chart::new(field);
+    let mut shadows = Shadows::new(&chart);
     let mut pieces = Vec::new();
     let mut any_back_facing = false;
     for candidate in candidates(opposite, field, &chart) {
-        let mut shadow = shadow(&chart, &opposite.surface.facets[candidate]);
+        let facet = &opposite.surface.facets[candidate];
+        let mut shadow = shadows.of(facet);
         let faces = opposite.faces(candidate, chart.normal());
         if faces {
             shadow.reverse();
@@ -53,10 +61,8 @@ pub(super) fn cover(opposite: &Opposite, field: &Field) -> (Cover, bool) {
         if !is_seen {
             continue;
         }
-        let facet = &opposite.surface.facets[candidate];
-        let xi = chart.xi(middle(&polygon));
-        let (x, normal) = (field.position(xi), field.normal(xi));
-        let Some((_, distance)) = foot(facet, x, normal, middle_of(facet.kind.domain())) else {
+        let line = chart.line(chart.xi(middle(&polygon), center(field.facet())));
+        let Some((_, distance)) = foot(&opposite.maps[candidate], line, center(facet)) else {
             continue;
         };
         if distance < -opposite.behind {
@@ -71,38 +77,32 @@ pub(super) fn cover(opposite: &Opposite, field: &Field) -> (Cover, bool) {
             false => any_back_facing = true,
         }
     }
-    let hidden: Vec<bool> = pieces
-        .iter()
-        .map(|piece| is_hidden(piece, &pieces))
-        .collect();
     let mut cover = Cover::new(field.facet().nodes.len());
-    let mut overlaps = Vec::new();
-    for (piece, hidden) in pieces.iter().zip(hidden) {
-        if !hidden {
-            let facet = &opposite.surface.facets[piece.facet];
-            overlaps.push(integrate(&chart, field, piece, facet, &mut cover));
-        }
-    }
-    cover.pieces = Pieces::Overlaps(overlaps);
+    let seen = pieces.iter().filter(|piece| !is_hidden(piece, &pieces));
+    let overlaps = seen.map(|piece| integrate(&chart, field.facet(), piece, opposite, &mut cover));
+    cover.pieces = Pieces::Overlaps(overlaps.collect());
     (cover, any_back_facing)
+}
+
+/// ξ in the middle of a facet.
+fn center(facet: &SurfaceFacet) -> Xi {
+    middle_of(facet.kind.domain())
 }
 
 /// The facets of side b that may lie on a normal of `field`: in a cone around the one in the middle.
 fn candidates(opposite: &Opposite, field: &Field, chart: &Chart) -> Vec<usize> {
     let facet = field.facet();
     let axis = chart.normal();
-    let start = field.position(middle_of(facet.kind.domain()));
+    let [start, _] = chart.line(center(facet));
     let away = |x: &[f64; 3]| length(difference(*x, start));
-    let radius = facet.at.iter().map(away).fold(0.0, f64::max);
-    let tilt = |&node: &[f64; 3]| {
-        let normal = field.normal(node);
+    let tilt = |&normal: &[f64; 3]| {
         let along = dot(normal, axis);
         (1.0 - along * along).max(0.0).sqrt() / along
     };
     // Normals and edges of curved facets go beyond those at the nodes by less than this.
-    let nodes = facet.kind.node_coordinates().iter();
-    let spread = 2.0 * nodes.map(tilt).fold(0.0, f64::max);
-    let radius = 1.5 * radius;
+    let beyond = if facet.kind.is_linear() { 1.0 } else { 1.5 };
+    let radius = beyond * facet.at.iter().map(away).fold(0.0, f64::max);
+    let spread = beyond * field.normals().iter().map(tilt).fold(0.0, f64::max);
     let mut candidates = opposite.target.facets(|low, high| {
         let center = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
         let size = 0.5 * length(difference(high, low));
@@ -115,21 +115,44 @@ fn candidates(opposite: &Opposite, field: &Field, chart: &Chart) -> Vec<usize> {
     candidates
 }
 
-/// A facet of side b as it is seen in the chart, its corners in their order and curved edges in parts.
-fn shadow(chart: &Chart, facet: &SurfaceFacet) -> Vec<Point> {
-    let corners = &facet.at[..facet.kind.corners()];
-    let corners: Vec<Point> = corners.iter().map(|&x| chart.place(x)).collect();
-    let mut shadow = Vec::new();
-    for (i, (kind, local)) in facet.kind.facets().iter().enumerate() {
-        let at: Vec<_> = local.iter().map(|&node| facet.at[node]).collect();
-        let along = |s: f64| chart.place(kind.position(&at, [s, 0.0, 0.0]));
-        let (p, q) = (corners[i], corners[(i + 1) % corners.len()]);
-        shadow.push(p);
-        let sag = aside(p, q, along(0.0)) / (SAG * chart.area.sqrt());
-        let parts = sag.sqrt().ceil().clamp(1.0, PARTS);
-        shadow.extend((1..parts as usize).map(|part| along(2.0 * part as f64 / parts - 1.0)));
+/// Facets of side b as they are seen in a chart.
+struct Shadows<'a> {
+    chart: &'a Chart,
+    /// Corners that were seen already.
+    corners: HashMap<u32, Point>,
+}
+
+impl<'a> Shadows<'a> {
+    fn new(chart: &'a Chart) -> Self {
+        Self {
+            chart,
+            corners: HashMap::new(),
+        }
     }
-    shadow
+
+    /// The corners of a facet in their order, curved edges in parts.
+    fn of(&mut self, facet: &SurfaceFacet) -> Vec<Point> {
+        let chart = self.chart;
+        let corners = facet.nodes.iter().zip(&facet.at).take(facet.kind.corners());
+        let corners: Vec<Point> = corners
+            .map(|(&node, &x)| *self.corners.entry(node).or_insert_with(|| chart.place(x)))
+            .collect();
+        // Lines are straight in a plane.
+        if facet.kind.is_linear() && !chart.is_curved {
+            return corners;
+        }
+        let mut shadow = Vec::new();
+        for (i, (kind, local)) in facet.kind.facets().iter().enumerate() {
+            let at: Vec<_> = local.iter().map(|&node| facet.at[node]).collect();
+            let along = |s: f64| chart.place(kind.position(&at, [s, 0.0, 0.0]));
+            let (p, q) = (corners[i], corners[(i + 1) % corners.len()]);
+            shadow.push(p);
+            let sag = aside(p, q, along(0.0)) / (SAG * chart.area.sqrt());
+            let parts = sag.sqrt().ceil().clamp(1.0, PARTS);
+            shadow.extend((1..parts as usize).map(|part| along(2.0 * part as f64 / parts - 1.0)));
+        }
+        shadow
+    }
 }
 
 /// Whether something else lies before the middle of a piece.
@@ -145,47 +168,46 @@ fn is_hidden(piece: &Piece, pieces: &[Piece]) -> bool {
 /// Adds a piece, which a facet of side b covers, to `cover`.
 fn integrate(
     chart: &Chart,
-    field: &Field,
+    facet: &SurfaceFacet,
     piece: &Piece,
-    other: &SurfaceFacet,
+    opposite: &Opposite,
     cover: &mut Cover,
 ) -> Overlap {
-    let facet = field.facet();
+    let other = &opposite.surface.facets[piece.facet];
     let mut overlap = Overlap {
         opposite: piece.facet,
         products: DMatrix::zeros(facet.nodes.len(), other.nodes.len()),
         gaps: vec![0.0; facet.nodes.len()],
     };
-    let mut eta = middle_of(other.kind.domain());
-    let mut across = |xi: [f64; 3]| {
-        let found = foot(other, field.position(xi), field.normal(xi), eta);
-        if let Some((found, _)) = found {
-            eta = found;
-        }
-        found
+    // Where the last point was the next one is near.
+    let (mut xi, mut eta) = (center(facet), center(other));
+    let mut across = |p: Point| {
+        xi = chart.xi(p, xi);
+        let gap;
+        (eta, gap) = foot(&opposite.maps[piece.facet], chart.line(xi), eta)?;
+        Some((xi, eta, gap))
     };
     for &corner in &piece.polygon {
-        if let Some((_, gap)) = across(chart.xi(corner)) {
+        if let Some((_, _, gap)) = across(corner) {
             cover.least_gap = cover.least_gap.min(gap);
         }
     }
-    let rule = ElementKind::Triangle3.quadrature(degree(facet, other));
+    let rule = &opposite.rules[degree(facet, other)];
     for [p, q, r] in triangles(&piece.polygon) {
         let double = 2.0 * area(&[p, q, r]);
-        for &([s, t, _], weight) in &rule {
+        for &([s, t, _], weight) in rule {
             let at = [0, 1].map(|k| p[k] + s * (q[k] - p[k]) + t * (r[k] - p[k]));
-            let xi = chart.xi(at);
-            let Some((eta, gap)) = across(xi) else {
+            let Some((xi, eta, gap)) = across(at) else {
                 continue;
             };
             let weight = weight * double * chart.density(xi);
-            let shape = facet.kind.shape(xi);
+            let shape = facet.kind.shape([xi[0], xi[1], 0.0]);
             cover.add(weight, &shape);
             cover.least_gap = cover.least_gap.min(gap);
-            let opposite = other.kind.shape(eta);
+            let others = other.kind.shape([eta[0], eta[1], 0.0]);
             for (i, n) in shape.iter().enumerate() {
                 overlap.gaps[i] += weight * n * gap;
-                for (k, m) in opposite.iter().enumerate() {
+                for (k, m) in others.iter().enumerate() {
                     overlap.products[(i, k)] += weight * n * m;
                 }
             }
@@ -204,10 +226,17 @@ fn degree(a: &SurfaceFacet, b: &SurfaceFacet) -> usize {
         }
     });
     let product = own + own.max(other);
-    match is_affine(a) && is_affine(b) {
-        true => product,
-        false => product + BEYOND,
+    match [a, b] {
+        both if both.iter().all(|facet| is_affine(facet)) => product,
+        both if both.iter().all(|facet| is_flat(facet)) => product + BEYOND,
+        _ => product + BEYOND_CURVED,
     }
+}
+
+/// Whether all nodes of a facet lie in a plane.
+fn is_flat(facet: &SurfaceFacet) -> bool {
+    let height = |&x: &[f64; 3]| dot(difference(x, facet.at[0]), facet.normal);
+    (facet.at.iter()).all(|x| height(x).abs() <= AFFINE * facet.size())
 }
 
 /// Whether a facet is the image of the reference facet under an affine map.

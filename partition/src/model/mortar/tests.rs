@@ -410,3 +410,22 @@ fn what_lies_behind_is_not_seen() {
         .iter()
         .for_each(|point| close(point.gap, 0.1, 1e-12, "gap"));
 }
+
+#[test]
+fn many_facets_take_no_quadratic_time() {
+    let n = 40;
+    let bent = |lift: f64| move |[x, y, _]: Point| [x, y, lift + 0.1 * (3.0 * x).sin() * y];
+    let space = Space::new()
+        .side(Triangle3, [[0.0, 1.0]; 2], [n, n], 0.1, false, bent(0.0))
+        .side(
+            Triangle3,
+            [[0.0, 1.0]; 2],
+            [n + 1, n + 1],
+            0.1,
+            true,
+            bent(0.01),
+        );
+    let start = std::time::Instant::now();
+    assert_eq!(space.points(0, 1).len(), (n + 1) * (n + 1));
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+}
