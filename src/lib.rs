@@ -56,6 +56,7 @@
 //! [`run`] is all of it on one page. Only [`comm`] knows MPI; [`contact_dd_partition`] makes the
 //! problem file.
 
+pub mod bddc;
 pub mod bytes;
 pub mod certificate;
 pub mod comm;

@@ -31,6 +31,9 @@ pub struct Plan {
     pub contact: Vec<usize>,
     /// What becomes of contact on the way.
     pub merging: Merging,
+    /// The nodes of the hierarchy above which nothing is merged where active sets are frozen, ascending: its roots, or
+    /// the clusters between which the iterative interface solver works.
+    pub tops: Vec<usize>,
 }
 
 impl Plan {
@@ -38,7 +41,7 @@ impl Plan {
     /// by estimated cost.
     pub fn new(catalog: &Catalog, ranks: usize, merging: Merging) -> Self {
         let tree = match merging {
-            Merging::All | Merging::Frozen => Tree::new(catalog),
+            Merging::All | Merging::Frozen | Merging::Clusters => Tree::new(catalog),
             Merging::Linear | Merging::Groups => Tree::by_group(catalog),
         };
         let in_contact = (0..tree.nodes.len()).filter(|&v| !tree.nodes[v].points.is_empty());
@@ -46,6 +49,10 @@ impl Plan {
             groups: in_contact
                 .map(|v| GroupPlan::new(catalog, &tree, v))
                 .collect(),
+            tops: match merging {
+                Merging::Clusters => tree.clusters.clone(),
+                _ => tree.roots().collect(),
+            },
             tree,
             node_owners: Vec::new(),
             clusters: Vec::new(),
@@ -67,12 +74,9 @@ impl Plan {
 
     /// The owner of every node of the hierarchy.
     fn hand_out(&self, catalog: &Catalog, ranks: usize) -> Vec<usize> {
-        let all = 0..self.tree.nodes.len();
         let top = match self.merging {
-            Merging::Frozen => all
-                .filter(|&v| self.tree.nodes[v].parent.is_none())
-                .collect(),
-            _ => cluster_nodes(&self.tree, self.merging),
+            Merging::Frozen | Merging::Clusters => self.tops.clone(),
+            _ => cluster_nodes(&self.tree, self.merging, &self.tops),
         };
         let mut costs = vec![0.0; self.tree.nodes.len()];
         for &v in &top {
@@ -87,7 +91,7 @@ impl Plan {
     pub fn form_clusters(&mut self, merging: Merging) {
         self.merging = merging;
         self.clusters.clear();
-        for node in cluster_nodes(&self.tree, merging) {
+        for node in cluster_nodes(&self.tree, merging, &self.tops) {
             let under = self.tree.subtree(node).into_iter();
             self.clusters.push(ClusterPlan {
                 node,
@@ -110,6 +114,38 @@ impl Plan {
         &self.node_owners[..self.blocks()]
     }
 
+    /// The owners of nodes of the hierarchy.
+    pub fn owners_of(&self, nodes: &[usize]) -> Vec<usize> {
+        nodes.iter().map(|&v| self.node_owners[v]).collect()
+    }
+
+    /// Whether frozen active sets are merged no further than to node v of the hierarchy.
+    pub fn is_top(&self, v: usize) -> bool {
+        self.tops.binary_search(&v).is_ok()
+    }
+
+    /// The node of the hierarchy that node v is merged into.
+    pub fn merged_into(&self, v: usize) -> Option<usize> {
+        self.tree.nodes[v].parent.filter(|_| !self.is_top(v))
+    }
+
+    /// Whether frozen active sets are merged up to the roots of the hierarchy, so that nothing is left between clusters.
+    pub fn has_one_cluster(&self) -> bool {
+        (self.tops.iter()).all(|&v| self.tree.nodes[v].parent.is_none())
+    }
+
+    /// Whether node v of the hierarchy is above the last ones that frozen active sets are merged to.
+    pub fn is_above_tops(&self, v: usize) -> bool {
+        let mut above = Some(v);
+        while let Some(v) = above {
+            if self.is_top(v) {
+                return false;
+            }
+            above = self.tree.nodes[v].parent;
+        }
+        true
+    }
+
     /// The owner of every group.
     pub fn group_owners(&self) -> Vec<usize> {
         let nodes = self.groups.iter().map(|group| group.node);
@@ -128,7 +164,7 @@ impl Plan {
     pub fn leaves_its_nodes(&self, v: usize) -> bool {
         let node = &self.tree.nodes[v];
         let is_root = node.parent.is_none() && node.children.len() > 1;
-        is_root && self.merging != Merging::Frozen
+        is_root && !self.merging.is_frozen()
     }
 
     /// The nodes of Γ that the merge at node v eliminates.
@@ -270,6 +306,7 @@ mod tests {
                     .into_iter()
                     .chain([None])
                     .collect(),
+                clusters: Vec::new(),
             },
             solver: SolverSettings::default(),
             warnings: Vec::new(),

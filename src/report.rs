@@ -15,9 +15,11 @@ use crate::output::report::{Build, Report, ReportFile};
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
+use crate::plan::cluster::Merging;
 use crate::report::totals::{StepTotals, Totals};
 use crate::settings::Settings;
-use crate::sweep::SweepStatus;
+use crate::settings::command_line::InterfaceMethod;
+use crate::sweep::{Method, SweepStatus};
 
 /// Pivot relative to its diagonal entry that may as well be zero.
 const SUSPICIOUS_PIVOT: f64 = 1e-13;
@@ -80,6 +82,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
     warnings.extend(unknown_stress(catalog));
     warnings.extend(totals.warnings.iter().cloned());
     warnings.extend(totals.step_warnings());
+    warnings.extend(solved_directly(totals, settings));
     let certificate = totals.certificate();
     let condition = totals.condition();
     if certificate.equilibrium > 1e-14 || certificate.penetration > 1e-14 {
@@ -119,6 +122,11 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         fallbacks: totals.fallbacks(),
         interface_residual: (totals.steps.iter())
             .fold(0.0, |worst: f64, step| worst.max(step.outcome.residual)),
+        interface_solver: totals.interface_solver(),
+        interface_iterations: (totals.steps.iter())
+            .flat_map(|step| step.interface_iterations().iter().copied())
+            .collect(),
+        coarse_dofs: last.map_or(0, |step| step.coarse_dofs()),
         dofs: catalog.dofs(),
         interface_dofs: catalog.dim * catalog.interface_nodes,
         contact_conditions: catalog.conditions(),
@@ -144,6 +152,26 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         version: env!("CARGO_PKG_VERSION").into(),
         build: Build::of_this_program(comm::library()),
     }
+}
+
+/// Why the interface problem was solved directly where the iterative solver was asked for.
+fn solved_directly(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
+    let is_asked_for = settings.interface == InterfaceMethod::Iterative;
+    if !is_asked_for || totals.interface_solver() == InterfaceMethod::Iterative {
+        return None;
+    }
+    let why = if settings.method != Method::Newton {
+        "it goes with --method newton"
+    } else if totals.catalog.has_friction() {
+        "it doesn't know friction yet"
+    } else if totals.plan.merging == Merging::Clusters {
+        "the problem file has one cluster"
+    } else {
+        "some contact conditions depend on others"
+    };
+    Some(format!(
+        "--interface iterative: {why}; the interface problem was solved directly"
+    ))
 }
 
 /// A warning for every material whose σ_zz isn't known.

@@ -70,16 +70,14 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
 
     // Every rank reads its own subdomains and pairs.
     let catalog = file.catalog();
-    let merging = settings
-        .merging()
-        .unwrap_or_else(|| Plan::cheapest(catalog));
+    let merging = comm.agree(settings.merging(catalog))?;
     let mut plan = Plan::new(catalog, comm.size(), merging);
     let costs = plan.cost_estimates(catalog, comm.size());
     let available = afford(comm, &costs)?;
     let blocks = comm.agree(read_blocks(comm.rank(), &file, &plan))?;
     check_copies(comm, &file, &plan, &blocks)?;
     let groups = collect_groups(comm, &file, &plan, &blocks)?;
-    if merging == Merging::Frozen && depend_on_each_other(comm, &plan, &groups) {
+    if merging.is_frozen() && depend_on_each_other(comm, &plan, &groups) {
         plan.form_clusters(Merging::All);
     }
     log.problem(catalog, &plan);
@@ -118,12 +116,12 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     // The root assembles S_0, (15), and the bilateral operator.
     log.phase("assembling the interface problem", None);
     let lap = Instant::now();
-    let frozen = match plan.merging {
-        Merging::Frozen => Some(RefCell::new(FrozenFronts::new(
+    let frozen = match plan.merging.is_frozen() {
+        true => Some(RefCell::new(FrozenFronts::new(
             &condensation,
             &condensed.linear,
         )?)),
-        _ => None,
+        false => None,
     };
     let interface = match frozen {
         Some(_) => None,

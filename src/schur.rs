@@ -7,7 +7,7 @@ mod children;
 pub mod condensed;
 mod dissection;
 pub mod factor;
-mod front;
+pub(crate) mod front;
 mod fronts;
 pub mod local;
 pub mod merge;

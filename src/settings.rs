@@ -9,12 +9,14 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::solver::{Positive, SolverSettings};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
-use self::command_line::{CommandLine, LogFormat};
+use self::command_line::{CommandLine, InterfaceMethod, LogFormat};
 use crate::error::Failure;
+use crate::plan::Plan;
 use crate::plan::cluster::Merging;
 use crate::sweep::{Method, SweepSettings};
 
@@ -45,6 +47,8 @@ pub struct Settings {
     pub max_sweeps: Option<usize>,
     /// Relaxation of picard; 1 is the paper's (18) to the letter.
     pub relaxation: Option<f64>,
+    /// How the linear interface problem is solved.
+    pub interface: InterfaceMethod,
     /// Threads of each rank.
     pub threads: u16,
     /// Whether stresses are left out: neither recovered nor written.
@@ -90,6 +94,9 @@ impl Settings {
             quiet: from
                 .choose("quiet", &run.quiet.then_some(true), &None)
                 .unwrap_or(false),
+            interface: from
+                .choose("interface", &run.interface, &None)
+                .unwrap_or_default(),
             threads: from
                 .choose("threads", &run.threads, &None)
                 .map_or(1, u16::from),
@@ -147,14 +154,24 @@ impl Settings {
     }
 
     /// What becomes of contact when Schur complements are merged: picard inverts S_0 alone, which has to be that of
-    /// all linear subdomains; anderson needs the contact problems of groups; `None` for newton, which takes what
-    /// costs least.
-    pub fn merging(&self) -> Option<Merging> {
-        match self.method {
-            Method::Picard => Some(Merging::Linear),
-            Method::Anderson => Some(Merging::Groups),
-            Method::Newton => None,
-        }
+    /// all linear subdomains; anderson needs the contact problems of groups; newton takes what costs least.
+    ///
+    /// # Errors
+    /// The iterative solver is asked for, and the problem file has no clusters.
+    pub fn merging(&self, catalog: &Catalog) -> Result<Merging, Failure> {
+        let is_iterative = self.interface == InterfaceMethod::Iterative;
+        Ok(match self.method {
+            Method::Picard => Merging::Linear,
+            Method::Anderson => Merging::Groups,
+            Method::Newton if is_iterative && catalog.hierarchy.clusters.is_empty() => {
+                return Err(Failure::input(
+                    "dataset /hierarchy/cluster is missing, which --interface iterative needs; make the problem file \
+                     anew, or use --interface direct",
+                ));
+            }
+            Method::Newton if is_iterative && !catalog.has_friction() => Merging::Clusters,
+            Method::Newton => Plan::cheapest(catalog),
+        })
     }
 
     /// The settings by name, for people: those that aren't the default with what settled them.

@@ -16,7 +16,7 @@ use std::time::Instant;
 
 pub use contact_dd_partition::solver::Method;
 
-pub use self::outcome::{SweepOutcome, SweepRecord, SweepStatus};
+pub use self::outcome::{IterativeSolves, SweepOutcome, SweepRecord, SweepStatus};
 use crate::contact::friction::Status;
 use crate::contact::pair::ContactEnd;
 use crate::error::Failure;

@@ -81,6 +81,10 @@ pub struct CommandLine {
     )]
     pub subdomains: Option<usize>,
 
+    /// Number of clusters of subdomains for contact-dd-mpi --interface iterative, about [default: by size]
+    #[arg(long, value_name = "N", help_heading = "Problem file")]
+    pub clusters: Option<usize>,
+
     /// Problem file to write [default: the scene's stem + .h5]
     #[arg(short, long, value_name = "FILE.h5", help_heading = "Problem file",
           value_hint = ValueHint::FilePath)]

@@ -2,7 +2,7 @@
 
 /// A partition of `0..n` into sets, each known by its smallest member.
 #[derive(Clone, Debug)]
-pub(crate) struct DisjointSets {
+pub struct DisjointSets {
     parent: Vec<u32>,
 }
 

@@ -37,7 +37,7 @@ pub mod contact_point;
 #[cfg(feature = "metis")]
 pub mod decompose;
 pub mod destination;
-mod disjoint_sets;
+pub mod disjoint_sets;
 pub mod element;
 pub mod error;
 pub mod example;

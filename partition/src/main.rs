@@ -81,7 +81,10 @@ fn run(args: &CommandLine) -> Result<(), Failure> {
         None => error,
     };
     let model = Model::new(&source.scene, source.mesh).map_err(in_scene)?;
-    let problem = without_stdout(|| split(&model, source.subdomains)).map_err(in_scene)?;
+    let mut problem = without_stdout(|| split(&model, source.subdomains)).map_err(in_scene)?;
+    if args.clusters.is_some() {
+        problem.catalog.choose_clusters(args.clusters);
+    }
     problem.write(&source.output)?;
     report(&problem, &source.output);
     Ok(())

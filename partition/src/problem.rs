@@ -3,6 +3,7 @@
 //! The writer and the reader of `problem.h5` share these types; docs/problem-file.md says the
 //! same for somebody who writes one with h5py.
 
+pub mod clusters;
 pub mod consistency;
 pub mod copies;
 mod friction;
@@ -196,6 +197,9 @@ pub struct Body {
 pub struct Hierarchy {
     /// The parent of every node, greater than its own number; `None` for a root.
     pub parent: Vec<Option<u32>>,
+    /// The clusters: the nodes between which an iterative interface solver works, ascending, one above every
+    /// subdomain or the subdomain itself. None where the file doesn't say.
+    pub clusters: Vec<u32>,
 }
 
 /// What every rank knows of the whole problem.

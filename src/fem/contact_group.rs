@@ -12,7 +12,9 @@ use serde::{Deserialize, Serialize};
 use super::block::Block;
 use super::frame::{Frame, support_frames};
 use crate::contact::friction::{ForceBound, TangentialCondition};
-use crate::contact::normal_jump::{NoUnknown, NormalJumpRow, NormalJumps, Sum, Variable};
+use crate::contact::normal_jump::{
+    NoUnknown, NormalJumpRow, NormalJumps, Sum, Variable, defining_conditions,
+};
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::substitution::Replaced;
 
@@ -102,6 +104,10 @@ pub struct Condition {
     /// Whether it is a tangent.
     pub is_tangential: bool,
 }
+
+/// The rows of the normal jumps of a contact group.
+#[derive(Clone, Debug)]
+pub struct JumpRows(Vec<NormalJumpRow>);
 
 /// What acts on a contact group in a load step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -228,26 +234,76 @@ impl ContactGroup {
     /// # Errors
     /// A point that no displacement can be replaced for.
     pub fn normal_jumps(&self, eliminated: &[u32]) -> Result<NormalJumps, NoUnknown> {
+        self.solve_rows(&self.rows(), eliminated)
+    }
+
+    /// The rows of B on what is free along the axes of the nodes, a condition each.
+    fn rows(&self) -> Vec<NormalJumpRow> {
         let frames = self.frames();
-        let rows: Vec<_> = self
-            .conditions()
+        let conditions = self.conditions();
+        conditions
             .map(|condition| self.row(&condition, &frames))
-            .collect();
+            .collect()
+    }
+
+    fn solve_rows(
+        &self,
+        rows: &[NormalJumpRow],
+        eliminated: &[u32],
+    ) -> Result<NormalJumps, NoUnknown> {
         let node = |v: u32| &self.nodes[v as usize / self.dim];
         let may_go = |v: u32| eliminated.binary_search(&node(v).interface).is_ok();
-        NormalJumps::new(&rows, may_go, |v| node(v).stiffness)
+        NormalJumps::new(rows, may_go, |v| node(v).stiffness)
+    }
+
+    /// The rows of normal jumps, t = b·x.
+    pub fn rows_of(&self, jumps: &NormalJumps) -> JumpRows {
+        let rows = self.rows();
+        let defining = defining_conditions(&jumps.of, jumps.pivots.len());
+        JumpRows(defining.into_iter().map(|j| rows[j].clone()).collect())
+    }
+
+    /// What the jumps that are `closed` replace where all others are none; they keep their numbers among the `rows` of
+    /// all.
+    ///
+    /// # Errors
+    /// One that no displacement of a node that is `eliminated` can be replaced for: its number among the closed ones.
+    pub fn replaced_by(
+        &self,
+        rows: &JumpRows,
+        closed: &[usize],
+        eliminated: &[u32],
+    ) -> Result<Vec<Replaced>, NoUnknown> {
+        let of_closed: Vec<NormalJumpRow> = closed.iter().map(|&t| rows.0[t].clone()).collect();
+        let jumps = self.solve_rows(&of_closed, eliminated)?;
+        let defining = defining_conditions(&jumps.of, jumps.pivots.len());
+        let mut replaced = self.replaced(&jumps);
+        for (t, _) in replaced.iter_mut().flat_map(|replaced| &mut replaced.jumps) {
+            *t = closed[defining[*t]];
+        }
+        Ok(replaced)
+    }
+
+    /// The terms of every normal jump, in the words of Γ.
+    pub fn terms_of(&self, rows: &JumpRows) -> Vec<Vec<(InterfaceDof, f64)>> {
+        let terms = |row: &NormalJumpRow| row.iter().map(|&(v, c)| (self.dof(v), c)).collect();
+        rows.0.iter().map(terms).collect()
+    }
+
+    /// An unknown of the group in the words of Γ.
+    fn dof(&self, v: u32) -> InterfaceDof {
+        InterfaceDof {
+            node: self.nodes[v as usize / self.dim].interface,
+            axis: v % self.dim as u32,
+        }
     }
 
     /// What normal jumps replace, in the words of Γ.
     pub fn replaced(&self, jumps: &NormalJumps) -> Vec<Replaced> {
-        let dof = |v: u32| InterfaceDof {
-            node: self.nodes[v as usize / self.dim].interface,
-            axis: v % self.dim as u32,
-        };
         let replaced = |pivot: &u32| {
             let Sum { terms } = &jumps.replaced[pivot];
             let staying = terms.iter().filter_map(|&(variable, c)| match variable {
-                Variable::Displacement(v) => Some((dof(v), c)),
+                Variable::Displacement(v) => Some((self.dof(v), c)),
                 Variable::NormalJump(_) => None,
             });
             let of_jumps = terms.iter().filter_map(|&(variable, c)| match variable {
@@ -255,7 +311,7 @@ impl ContactGroup {
                 Variable::NormalJump(t) => Some((t as usize, c)),
             });
             Replaced {
-                dof: dof(*pivot),
+                dof: self.dof(*pivot),
                 staying: staying.collect(),
                 jumps: of_jumps.collect(),
             }

@@ -116,6 +116,11 @@ pub fn solve(
             seconds: began.elapsed().as_secs_f64(),
         };
         outcome.records.push(record);
+        if let Some(coarse_dofs) = fronts.coarse_dofs() {
+            let solves = outcome.iterative.get_or_insert_default();
+            solves.iterations.push(solution.iterations);
+            solves.coarse_dofs = coarse_dofs;
+        }
         observer(&record);
         let gave_up = sweep >= max_steps.unwrap_or(MAX_STEPS);
         if faults.count == 0 || gave_up {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
+use crate::bddc::Bddc;
 use crate::bytes::Reals;
 use crate::condense::Condensation;
 use crate::context::Context;
@@ -18,6 +19,9 @@ use crate::vector::dot;
 /// The spring on an open normal jump, relative to its diagonal, where some part of the scene moves freely without
 /// the contacts that are open: the next active set closes what stops it.
 const SPRING: f64 = 1e-9;
+
+/// What the error of an iterative solution is less than, in the energy norm.
+const TOLERANCE: f64 = 1e-12;
 
 /// A front whose own normal jumps are open or closed.
 #[derive(Debug)]
@@ -42,6 +46,8 @@ pub struct FrozenFronts {
     spare: Spare,
     /// The smallest pivot of the last factorization, relative to its diagonal entry.
     pub smallest_pivot: f64,
+    /// What works between the nodes that nothing here is above, where these aren't the roots of the hierarchy.
+    bddc: Option<Bddc>,
 }
 
 /// What a load does where the active set is frozen, on this rank.
@@ -53,6 +59,8 @@ pub struct FrozenSolution {
     pub forces: BTreeMap<usize, Vec<f64>>,
     /// The unknowns on the boundary of every cluster.
     pub boundaries: BTreeMap<usize, Vec<f64>>,
+    /// Iterations between clusters.
+    pub iterations: usize,
 }
 
 impl FrozenFronts {
@@ -66,14 +74,17 @@ impl FrozenFronts {
     ) -> Result<Self, Failure> {
         let context = &condensation.context;
         let plan = context.plan;
-        let mut is_below = vec![false; plan.tree.nodes.len()];
+        let mut is_between = vec![false; plan.tree.nodes.len()];
+        for v in plan.tops.iter().flat_map(|&v| plan.tree.subtree(v)) {
+            is_between[v] = true;
+        }
         for cluster in &plan.clusters {
             for v in plan.tree.subtree(cluster.node) {
-                is_below[v] = true;
+                is_between[v] = false;
             }
         }
-        let mut nodes: Vec<usize> = (0..is_below.len()).filter(|&v| !is_below[v]).collect();
-        let mut depth = vec![0; is_below.len()];
+        let mut nodes: Vec<usize> = (0..is_between.len()).filter(|&v| is_between[v]).collect();
+        let mut depth = vec![0; is_between.len()];
         for v in (0..depth.len()).rev() {
             depth[v] = (plan.tree.nodes[v].parent).map_or(0, |parent| depth[parent] + 1);
         }
@@ -93,6 +104,7 @@ impl FrozenFronts {
             spring: 0.0,
             spare: Spare::default(),
             smallest_pivot: f64::INFINITY,
+            bddc: None,
         };
         for (c, cluster) in plan.clusters.iter().enumerate() {
             fronts.pass_up(context, cluster.node, clusters.get(&c).cloned());
@@ -100,10 +112,17 @@ impl FrozenFronts {
         Ok(fronts)
     }
 
+    /// Number of coarse unknowns of the iterative interface solver, where there is one; 0 but on the root.
+    pub fn coarse_dofs(&self) -> Option<usize> {
+        self.bddc.as_ref().map(|bddc| bddc.coarse_dofs)
+    }
+
     /// Brings S of a node to the owner of the one that it is merged into. Collective.
     fn pass_up(&mut self, context: &Context<'_>, v: usize, mut condensed: Option<Condensed>) {
         let Context { comm, plan, .. } = *context;
-        let Some(parent) = plan.tree.nodes[v].parent else {
+        let Some(parent) = plan.merged_into(v) else {
+            self.merged
+                .extend(condensed.map(|condensed| (v, condensed)));
             return;
         };
         let way = (plan.node_owners[v], plan.node_owners[parent]);
@@ -126,14 +145,36 @@ impl FrozenFronts {
         context: &Context<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
     ) -> Result<(), Failure> {
-        let comm = context.comm;
-        let result = self.eliminate(context, open, self.fronts_known(context));
-        if comm.agree(result).is_ok() {
+        let is_known = self.fronts_known(context);
+        if self.factorize(context, open, is_known).is_ok() {
             return Ok(());
         }
         self.spring = SPRING;
-        let result = self.eliminate(context, open, false);
-        comm.agree(result)
+        self.factorize(context, open, false)
+    }
+
+    /// Eliminates what is touched, and makes the preconditioner between clusters. Collective.
+    fn factorize(
+        &mut self,
+        context: &Context<'_>,
+        open: &BTreeMap<usize, Vec<bool>>,
+        is_known: bool,
+    ) -> Result<(), Failure> {
+        let Context { comm, plan, .. } = *context;
+        let touched = self.touched(context, open, is_known);
+        let result = self.eliminate(context, open, &touched);
+        comm.agree(result)?;
+        if !touched.contains(&true) || plan.has_one_cluster() {
+            return Ok(());
+        }
+        let mut bddc = match self.bddc.take() {
+            Some(bddc) => bddc,
+            None => Bddc::new(context, &self.merged)?,
+        };
+        bddc.freeze(context, &self.merged, open, self.spring)?;
+        self.smallest_pivot = self.smallest_pivot.min(bddc.smallest_pivot);
+        self.bddc = Some(bddc);
+        Ok(())
     }
 
     /// Whether all fronts were factorized before. Collective.
@@ -143,7 +184,8 @@ impl FrozenFronts {
             .nodes
             .iter()
             .filter(|&&v| plan.node_owners[v] == comm.rank());
-        let mine = own.count() == self.fronts.len();
+        let between = plan.has_one_cluster() || self.bddc.is_some();
+        let mine = own.count() == self.fronts.len() && between;
         let all = !comm.collect(&mine).contains(&false);
         comm.decide(all)
     }
@@ -157,8 +199,12 @@ impl FrozenFronts {
     ) -> Vec<bool> {
         let Context { comm, plan, .. } = *context;
         let changed = |g: usize| {
-            let front = self.fronts.get(&plan.groups[g].node);
-            front.is_none_or(|front| front.open != open[&g])
+            let front = self
+                .fronts
+                .get(&plan.groups[g].node)
+                .map(|front| &front.open);
+            let between = || self.bddc.as_ref().and_then(|bddc| bddc.open(g));
+            front.or_else(between) != Some(&open[&g])
         };
         let mut touched = vec![!is_known; plan.tree.nodes.len()];
         comm.gather(&plan.group_owners(), changed, |g, changed| {
@@ -178,9 +224,8 @@ impl FrozenFronts {
         &mut self,
         context: &Context<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
-        is_known: bool,
+        touched: &[bool],
     ) -> Result<(), Failure> {
-        let touched = self.touched(context, open, is_known);
         let mut result = Ok(());
         self.smallest_pivot = f64::INFINITY;
         for v in self.nodes.clone() {
@@ -292,10 +337,20 @@ impl FrozenFronts {
         }
         let mut solution = FrozenSolution::default();
         let mut below: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-        for &v in self.nodes.iter().rev() {
-            if plan.tree.nodes[v].parent.is_none() {
-                below.insert(v, Vec::new());
+        match &self.bddc {
+            // Roots keep nothing.
+            None => below.extend(plan.tops.iter().map(|&v| (v, Vec::new()))),
+            Some(bddc) => {
+                let between = bddc.solve(context, &self.merged, &arrived, prescribed, TOLERANCE);
+                below = between.clusters;
+                solution.iterations = between.iterations;
+                for (g, (jumps, forces)) in between.groups {
+                    solution.jumps.insert(g, jumps);
+                    solution.forces.insert(g, forces);
+                }
             }
+        }
+        for &v in self.nodes.iter().rev() {
             let mut of_children: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
             if let (Some(front), Some((load, values)), Some(x)) =
                 (self.fronts.get(&v), condensed.get(&v), below.remove(&v))
@@ -316,13 +371,7 @@ impl FrozenFronts {
                 carry(context, child, x, &mut below, Direction::Down);
             }
         }
-        // Clusters that nothing is above keep nothing.
-        let own = plan
-            .clusters
-            .iter()
-            .filter(|c| c.owner == context.comm.rank());
-        let alone = own.filter(|c| plan.tree.nodes[c.node].parent.is_none());
-        below.extend(alone.map(|c| (c.node, Vec::new())));
+        below.retain(|&v, _| plan.node_owners[v] == context.comm.rank());
         solution.boundaries = below;
         solution
     }
@@ -345,7 +394,8 @@ fn carry(
     direction: Direction,
 ) {
     let Context { comm, plan, .. } = *context;
-    let Some(parent) = plan.tree.nodes[v].parent else {
+    let Some(parent) = plan.merged_into(v) else {
+        into.extend(vector.map(|vector| (v, vector)));
         return;
     };
     let (here, above) = (plan.node_owners[v], plan.node_owners[parent]);

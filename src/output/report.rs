@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::ranks::{PhaseSeconds, RankReport};
 use super::resultants::{Friction, Resultants};
 use crate::certificate::Certificate;
+use crate::settings::command_line::InterfaceMethod;
 use crate::settings::{Origins, Settings};
 
 /// How a run ended.
@@ -49,6 +50,8 @@ pub struct StepReport {
     pub active_set_iterations: usize,
     /// Relative residual of the interface problem at the end.
     pub interface_residual: f64,
+    /// Iterations of the interface solver in the start and in every sweep; empty where it is direct.
+    pub interface_iterations: Vec<usize>,
     /// Number of contact conditions that are closed.
     pub active_contacts: usize,
     /// Checks of its solution.
@@ -92,6 +95,13 @@ pub struct Report {
     pub fallbacks: Vec<String>,
     /// Relative residual of the interface problem at the end.
     pub interface_residual: f64,
+    /// How the linear interface problem was solved: `direct` or `iterative`.
+    pub interface_solver: InterfaceMethod,
+    /// Iterations of the interface solver in the start and in every sweep, load step after load step; empty where it is
+    /// direct.
+    pub interface_iterations: Vec<usize>,
+    /// Unknowns of the coarse problem of the iterative interface solver; 0 where it is direct.
+    pub coarse_dofs: usize,
     /// Number of degrees of freedom.
     pub dofs: usize,
     /// Number of degrees of freedom on Γ.

@@ -16,6 +16,15 @@ pub enum Merging {
     Groups,
     /// What has no contact is merged once, the rest for every active set anew.
     Frozen,
+    /// The same, no further than to the clusters between which the iterative interface solver works.
+    Clusters,
+}
+
+impl Merging {
+    /// Whether active sets are frozen.
+    pub fn is_frozen(self) -> bool {
+        matches!(self, Self::Frozen | Self::Clusters)
+    }
 }
 
 /// The blocks under one node of the hierarchy, condensed onto what other clusters share and onto
@@ -39,14 +48,24 @@ impl ClusterPlan {
 
 /// The nodes of `tree` that are clusters. Its roots are left to the interface problem, unless contact points
 /// belong to them; what is under a node with contact points is one cluster with it.
-pub(super) fn cluster_nodes(tree: &Tree, merging: Merging) -> Vec<usize> {
+pub(super) fn cluster_nodes(tree: &Tree, merging: Merging, tops: &[usize]) -> Vec<usize> {
+    let is_above_tops = above(tree, tops);
     tree.highest(|v| {
         let node = &tree.nodes[v];
         let below_root = |most| node.parent.is_some() && node.conditions <= most;
         match merging {
             Merging::All | Merging::Groups => !node.points.is_empty() || below_root(MAX_CONDITIONS),
             Merging::Linear => !node.points.is_empty() || below_root(0),
-            Merging::Frozen => node.conditions == 0,
+            Merging::Frozen | Merging::Clusters => node.conditions == 0 && !is_above_tops[v],
         }
     })
+}
+
+/// Which nodes of `tree` are above all of some.
+fn above(tree: &Tree, nodes: &[usize]) -> Vec<bool> {
+    let mut is_above = vec![true; tree.nodes.len()];
+    for v in nodes.iter().flat_map(|&v| tree.subtree(v)) {
+        is_above[v] = false;
+    }
+    is_above
 }

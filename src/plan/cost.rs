@@ -28,7 +28,7 @@ pub(super) fn weight(tree: &Tree, v: usize, dim: usize, merging: Merging) -> f64
     let front = front(tree, v, dim, merging);
     match merging {
         _ if v < tree.subdomains => front.time_to_condense(),
-        Merging::Frozen if tree.nodes[v].conditions > 0 => ACTIVE_SETS * front.time(),
+        _ if merging.is_frozen() && tree.nodes[v].conditions > 0 => ACTIVE_SETS * front.time(),
         _ => front.time(),
     }
 }
@@ -36,12 +36,12 @@ pub(super) fn weight(tree: &Tree, v: usize, dim: usize, merging: Merging) -> f64
 /// The front of node v, which keeps all normal jumps under it unless active sets are frozen.
 fn front(tree: &Tree, v: usize, dim: usize, merging: Merging) -> Front {
     let (front, node) = (tree.front(v, dim), &tree.nodes[v]);
-    match merging {
-        Merging::Frozen => Front {
+    match merging.is_frozen() {
+        true => Front {
             eliminated: front.eliminated,
             kept: front.kept - node.conditions + tree.own_conditions(v),
         },
-        _ => front,
+        false => front,
     }
 }
 
@@ -78,7 +78,10 @@ impl Plan {
     pub fn cost_estimates(&self, catalog: &Catalog, ranks: usize) -> Vec<CostEstimate> {
         let mut estimates = vec![CostEstimate::default(); ranks];
         let mut largest = vec![0.0f64; ranks];
-        for (v, &owner) in self.node_owners.iter().enumerate() {
+        let all = self.node_owners.iter().enumerate();
+        for (v, &owner) in
+            all.filter(|&(v, _)| self.merging != Merging::Clusters || !self.is_above_tops(v))
+        {
             let front = front(&self.tree, v, catalog.dim, self.merging);
             let estimate = &mut estimates[owner];
             estimate.flops += match v < self.blocks() {
@@ -98,7 +101,7 @@ impl Plan {
         for (estimate, largest) in estimates.iter_mut().zip(largest) {
             estimate.bytes += AT_REST + PER_ENTRY * largest * largest;
         }
-        if let (Some(root), true) = (estimates.first_mut(), self.merging != Merging::Frozen) {
+        if let (Some(root), true) = (estimates.first_mut(), !self.merging.is_frozen()) {
             root.bytes += PER_PAIR_OF_CONDITIONS * (catalog.conditions() as f64).powi(2);
         }
         estimates

@@ -12,6 +12,7 @@ use crate::output::report::{ErrorEstimate, FrictionOfStep, Status, StepReport};
 use crate::output::resultants::{Friction, Resultants};
 use crate::plan::Plan;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
+use crate::settings::command_line::InterfaceMethod;
 use crate::sweep::{SweepOutcome, SweepStatus};
 
 /// A whole run.
@@ -96,6 +97,18 @@ impl StepTotals {
         self.outcome.records.len().saturating_sub(1)
     }
 
+    /// Iterations of an iterative interface solver.
+    pub fn interface_iterations(&self) -> &[usize] {
+        let iterative = self.outcome.iterative.as_ref();
+        iterative.map_or(&[], |solves| &solves.iterations)
+    }
+
+    /// Coarse unknowns of an iterative interface solver.
+    pub fn coarse_dofs(&self) -> usize {
+        let iterative = self.outcome.iterative.as_ref();
+        iterative.map_or(0, |solves| solves.coarse_dofs)
+    }
+
     /// The estimate as the report has it.
     pub fn error_estimate(&self) -> Option<ErrorEstimate> {
         self.estimate.map(|estimate| ErrorEstimate {
@@ -150,6 +163,18 @@ impl Totals<'_> {
         })
     }
 
+    /// How the linear interface problem was solved.
+    pub fn interface_solver(&self) -> InterfaceMethod {
+        match self
+            .steps
+            .iter()
+            .any(|step| step.outcome.iterative.is_some())
+        {
+            true => InterfaceMethod::Iterative,
+            false => InterfaceMethod::Direct,
+        }
+    }
+
     /// Which other methods had to help, in words.
     pub fn fallbacks(&self) -> Vec<String> {
         let all = self.steps.iter().flat_map(|step| &step.outcome.fallbacks);
@@ -181,6 +206,7 @@ impl Totals<'_> {
                 sweeps: totals.sweeps(),
                 active_set_iterations: totals.outcome.active_set_iterations,
                 interface_residual: totals.outcome.residual,
+                interface_iterations: totals.interface_iterations().to_vec(),
                 active_contacts: totals.active,
                 certificate: totals.certificate,
                 condition_number: totals.condition,

@@ -127,7 +127,7 @@ const WORTH_THREADS: f64 = 1e8;
 ///
 /// # Errors
 /// The column whose pivot isn't positive.
-pub(super) fn partial_cholesky(
+pub(crate) fn partial_cholesky(
     columns: MatMut<'_, f64>,
     update: MatMut<'_, f64>,
     par: Par,

@@ -121,9 +121,26 @@ pub struct RunSettings {
     #[arg(long, help_heading = "Running")]
     pub second_start: bool,
 
+    /// How the linear interface problem is solved, with --method newton [default: direct]
+    #[arg(long, value_name = "NAME", value_enum, help_heading = "Solving")]
+    pub interface: Option<InterfaceMethod>,
+
     /// Threads of each rank [default: 1]
     #[arg(long, value_name = "N", help_heading = "Running")]
     pub threads: Option<NonZeroU16>,
+}
+
+/// How the linear interface problem is solved.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum InterfaceMethod {
+    /// By factorization, merged up to the root
+    #[default]
+    Direct,
+    /// By conjugate gradients between clusters of subdomains
+    Iterative,
 }
 
 /// What a run prints.

@@ -46,6 +46,15 @@ pub enum SweepStatus {
     NotConverged(String),
 }
 
+/// What an iterative interface solver took.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct IterativeSolves {
+    /// Iterations of the start and of every sweep.
+    pub iterations: Vec<usize>,
+    /// Unknowns of its coarse problem, in the end.
+    pub coarse_dofs: usize,
+}
+
 /// What the sweeps found.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SweepOutcome {
@@ -71,6 +80,8 @@ pub struct SweepOutcome {
     pub contact: Vec<ContactEnd>,
     /// Whether active sets were frozen one after the other.
     pub frozen: bool,
+    /// What an iterative interface solver took, where there was one.
+    pub iterative: Option<IterativeSolves>,
     /// Increments that the load step was solved in.
     pub increments: usize,
     /// Whether another solution with friction was found, where it was looked for.
@@ -94,6 +105,7 @@ impl SweepOutcome {
             totals: ConTotals::default(),
             contact: Vec::new(),
             frozen: false,
+            iterative: None,
             increments: 1,
             other_solution: None,
             unsettled: Vec::new(),

@@ -30,7 +30,7 @@ use support::solver::{LIMIT, program};
 use walk::{Place, places};
 
 /// Where a change makes another problem that nothing in the file contradicts.
-const FREE: [&str; 35] = [
+const FREE: [&str; 36] = [
     "/@title",
     "/@plane",
     "/VTKHDF/Points",
@@ -42,6 +42,7 @@ const FREE: [&str; 35] = [
     "/materials/out_of_plane",
     "/materials/poisson",
     "/hierarchy/parent",
+    "/hierarchy/cluster",
     "/settings/@max_sweeps",
     "/settings/@method",
     "/settings/@no_stress",
@@ -212,6 +213,7 @@ fn what_is_dropped_is_missed_unless_the_format_says_that_it_may_be() {
             "/VTKHDF/@Type",
             "/VTKHDF/@Version",
             "/VTKHDF/CellData/Subdomain",
+            "/hierarchy/cluster",
             "/materials/out_of_plane",
             "/materials/poisson",
             "/settings/@max_sweeps",

@@ -165,32 +165,53 @@ fn same_results(trials: &mut Trials) {
         ("on_circles", || Case::of(&resting::on_circles(), 6)),
     ];
     for (name, make) in cases {
-        let alone = Solved::new();
-        trials.on_all_ranks(&format!("same_bits::{name}"), move |ranks| {
-            let (_, expected) = alone.get_or_init(|| {
-                let case = make();
-                let ended = case.run(&[]);
-                assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
-                let datasets = datasets(&case.result());
-                (case, datasets)
-            });
-            let case = make();
-            let ended = case.run_on(ranks, &[]);
-            assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
-            let found = datasets(&case.result());
-            assert!(found.keys().eq(expected.keys()), "{:?}", found.keys());
-            for (name, values) in &found {
-                assert!(values == &expected[name], "{name} differs");
-            }
-            let report = Solution::read_report(&case.result());
-            assert_eq!(report["ranks"], ranks);
-            assert_eq!(report["hosts"], 1);
-            assert_eq!(report["per_rank"].as_array().unwrap().len(), ranks);
-            // The certificate stands once, whoever printed it.
-            assert_eq!(ended.stdout.matches("certificate").count(), 1);
-            assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
-        });
+        same_bits(trials, name, make, &[]);
     }
+    let iterative: [(&str, MakeCase); 4] = [
+        ("between_clusters::plain", || {
+            Case::in_clusters(&built_in_model("plain", 0), 20, 9)
+        }),
+        ("between_clusters::granite", || {
+            Case::in_clusters(&built_in_model("granite", 0), 30, 12)
+        }),
+        ("between_clusters::stack", || {
+            Case::in_clusters(&built_in_model("stack", 0), 20, 7)
+        }),
+        ("between_clusters::in_steps", || {
+            Case::in_clusters(&steps::two_blocks_in_steps(), 12, 6)
+        }),
+    ];
+    for (name, make) in iterative {
+        same_bits(trials, name, make, &["--interface", "iterative"]);
+    }
+}
+
+fn same_bits(trials: &mut Trials, name: &str, make: MakeCase, args: &'static [&'static str]) {
+    let alone = Solved::new();
+    trials.on_all_ranks(&format!("same_bits::{name}"), move |ranks| {
+        let (_, expected) = alone.get_or_init(|| {
+            let case = make();
+            let ended = case.run(args);
+            assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+            let datasets = datasets(&case.result());
+            (case, datasets)
+        });
+        let case = make();
+        let ended = case.run_on(ranks, args);
+        assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+        let found = datasets(&case.result());
+        assert!(found.keys().eq(expected.keys()), "{:?}", found.keys());
+        for (name, values) in &found {
+            assert!(values == &expected[name], "{name} differs");
+        }
+        let report = Solution::read_report(&case.result());
+        assert_eq!(report["ranks"], ranks);
+        assert_eq!(report["hosts"], 1);
+        assert_eq!(report["per_rank"].as_array().unwrap().len(), ranks);
+        // The certificate stands once, whoever printed it.
+        assert_eq!(ended.stdout.matches("certificate").count(), 1);
+        assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
+    });
 }
 
 /// Stresses that are left out aren't in the file, and nothing else in it changes.

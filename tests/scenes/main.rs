@@ -14,6 +14,7 @@ mod floating;
 mod friction;
 mod friction_held;
 mod groups;
+mod iterative;
 mod laws;
 mod monolithic;
 mod mortar;

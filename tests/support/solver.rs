@@ -36,6 +36,14 @@ impl Case {
         Self::new(&problem(model, Some(count)))
     }
 
+    /// A model in `count` subdomains and so many clusters of them, about.
+    #[track_caller]
+    pub fn in_clusters(model: &Model, count: usize, clusters: usize) -> Self {
+        let mut problem = problem(model, Some(count));
+        problem.catalog.choose_clusters(Some(clusters));
+        Self::new(&problem)
+    }
+
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }

@@ -83,6 +83,7 @@ impl Problem {
             subdomains,
         };
         problem.describe_points();
+        problem.catalog.choose_clusters(None);
         Ok(problem)
     }
 }

@@ -58,7 +58,10 @@ impl Branch {
     pub fn hierarchy(&self, mut number: impl FnMut(&[u32]) -> u32) -> Hierarchy {
         let mut parent = vec![None; self.leaves()];
         self.hang(true, &mut number, &mut parent);
-        Hierarchy { parent }
+        Hierarchy {
+            parent,
+            clusters: Vec::new(),
+        }
     }
 
     /// Numbers what is under it, and returns the nodes that hang next to each other: itself, or its sides.

@@ -94,6 +94,7 @@ impl fmt::Display for Summary<'_> {
             fronts.max().unwrap_or(0),
             work.uneven_halves
         )?;
+        writeln!(f, "clusters      {}", catalog.hierarchy.clusters.len())?;
         writeln!(
             f,
             "ranks         {} are useful, best possible speed-up {:.1}",

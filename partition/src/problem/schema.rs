@@ -98,6 +98,7 @@ pub const LETTERS: &[(char, &str)] = &[
     ('M', "materials"),
     ('B', "bodies"),
     ('T', "nodes of the hierarchy"),
+    ('Z', "clusters"),
     ('L', "load steps"),
     ('I', "entries of Γ, summed over subdomains"),
     ('S', "supports, summed over subdomains"),
@@ -177,6 +178,9 @@ pub const FIELDS: &[Field] = &[
     field("/subdomains/body", "N", Indices("body", 'B'), "body of each subdomain"),
     field("/subdomains/group", "N", Integers, "contact group of each subdomain, −1 for none"),
     field("/hierarchy/parent", "T", Integers, "parent of each node, −1 for a root"),
+    optional("/hierarchy/cluster", "Z", Indices("node of the hierarchy", 'T'),
+        "the nodes between which `--interface iterative` works, strictly ascending: each subdomain is one of them or \
+         under exactly one"),
     field("/interface/offset", "N + 1", Offsets('I'), "slices of the two datasets below"),
     field("/interface/node", "I", Integers, "node, counted within the subdomain"),
     field("/interface/interface", "I", Indices("number on Γ", 'I'),

@@ -36,6 +36,8 @@ pub struct Tree {
     pub interface_nodes: usize,
     /// The second kind and their numbers on Γ, subdomain by subdomain.
     pub unshared: Vec<(SubdomainNode, u32)>,
+    /// The nodes between which an iterative interface solver works, ascending; none where the file doesn't say.
+    pub clusters: Vec<usize>,
 }
 
 /// A node of the tree.
@@ -76,6 +78,7 @@ impl Tree {
             subdomains: catalog.subdomains.len(),
             interface_nodes: interface.subdomains.len(),
             unshared: Vec::new(),
+            clusters: Vec::new(),
         };
         tree.grow(catalog, hierarchy, &interface);
         tree.join_roots(&interface);
@@ -107,6 +110,9 @@ impl Tree {
             let node = above.get(node).copied().unwrap_or(node + shift);
             self.nodes[node].parent = parent.map(|p| p as usize + shift);
         }
+        let place = |&v: &u32| above.get(v as usize).copied().unwrap_or(v as usize + shift);
+        self.clusters = hierarchy.clusters.iter().map(place).collect();
+        self.clusters.sort_unstable();
     }
 
     /// Puts a new root above all roots that a node of Γ or a contact point links.
@@ -220,6 +226,11 @@ impl Tree {
             }
         }
         v
+    }
+
+    /// The nodes that nothing is above.
+    pub fn roots(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.nodes.len()).filter(|&v| self.nodes[v].parent.is_none())
     }
 
     /// Number of conditions of the contact points that belong to node v.
@@ -345,6 +356,7 @@ impl Hierarchy {
         };
         Self {
             parent: number.keys().map(above).chain([None]).collect(),
+            clusters: Vec::new(),
         }
     }
 }

@@ -94,6 +94,10 @@ impl Problem {
             "/hierarchy/parent",
             parents.map(|p| p.map_or(-1, i64::from)),
         )?;
+        let clusters = catalog.hierarchy.clusters.iter();
+        if clusters.len() > 0 {
+            datasets.put("/hierarchy/cluster", clusters.map(|&v| i64::from(v)))?;
+        }
         let steps = &catalog.steps;
         if !steps.is_empty() {
             datasets.strings("/steps/name", steps.iter().map(|step| step.name.as_str()))?;

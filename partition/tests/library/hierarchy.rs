@@ -109,10 +109,33 @@ fn numbers(hierarchy: &Hierarchy) -> Vec<i64> {
 fn plant(path: &Path, parent: &[i64]) {
     let file = hdf5::File::open_rw(path).unwrap();
     file.unlink("hierarchy/parent").unwrap();
+    file.unlink("hierarchy/cluster").unwrap();
     let dataset = file.new_dataset::<i64>().shape(parent.len());
     let dataset = dataset.create("hierarchy/parent").unwrap();
     dataset.write_raw(parent).unwrap();
     file.close().unwrap();
+}
+
+#[test]
+fn every_subdomain_is_in_one_cluster_of_about_as_many_as_asked_for() {
+    for mut problem in problems() {
+        let catalog = &mut problem.catalog;
+        let parents = catalog.hierarchy.parent.clone();
+        let roots = parents.iter().filter(|parent| parent.is_none()).count();
+        for wanted in [1, 2, 3, 5, catalog.subdomains.len()] {
+            catalog.choose_clusters(Some(wanted));
+            let clusters = &catalog.hierarchy.clusters;
+            assert!(
+                clusters.len() >= wanted.min(catalog.subdomains.len()).max(roots)
+                    && clusters.len() <= catalog.subdomains.len()
+            );
+            for subdomain in 0..catalog.subdomains.len() as u32 {
+                let ways = std::iter::successors(Some(subdomain), |&v| parents[v as usize]);
+                let above = ways.filter(|v| clusters.binary_search(v).is_ok());
+                assert_eq!(above.count(), 1, "{clusters:?}");
+            }
+        }
+    }
 }
 
 #[test]

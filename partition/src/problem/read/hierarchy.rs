@@ -8,8 +8,12 @@ use crate::problem::{Catalog, Hierarchy};
 /// Reads and checks the tree.
 pub(super) fn read(contents: &Contents, catalog: &Catalog) -> Result<Hierarchy, InputError> {
     let rows = contents.all_integers("/hierarchy/parent")?;
+    let subdomains = catalog.subdomains.len();
+    let parent = read_parents(&rows, subdomains)?;
+    let clusters = contents.all_integers("/hierarchy/cluster")?;
     let hierarchy = Hierarchy {
-        parent: read_parents(&rows, catalog.subdomains.len())?,
+        clusters: read_clusters(&clusters, &parent, subdomains)?,
+        parent,
     };
     check_roots(&hierarchy, catalog)?;
     Ok(hierarchy)
@@ -46,6 +50,31 @@ fn read_parents(rows: &Slice<i64>, subdomains: usize) -> Result<Vec<Option<u32>>
     match (subdomains..nodes).find(|&node| !is_parent[node]) {
         Some(node) => Err(rows.error(node, "the inner node has no child; expected one at least")),
         None => Ok(parents),
+    }
+}
+
+/// Every subdomain is a cluster or under exactly one, where there are any.
+fn read_clusters(
+    rows: &Slice<i64>,
+    parents: &[Option<u32>],
+    subdomains: usize,
+) -> Result<Vec<u32>, InputError> {
+    let clusters: Vec<u32> = rows.all().iter().map(|&v| v as u32).collect();
+    if let Some(at) = clusters.windows(2).position(|w| w[0] >= w[1]) {
+        return Err(rows.error(at + 1, "expected nodes in strictly ascending order"));
+    }
+    let mut above = vec![0; parents.len()];
+    for v in (0..parents.len()).rev() {
+        let own = usize::from(clusters.binary_search(&(v as u32)).is_ok());
+        above[v] = own + parents[v].map_or(0, |parent| above[parent as usize]);
+    }
+    let wrong = (0..subdomains).find(|&subdomain| above[subdomain] != 1);
+    match wrong.filter(|_| !clusters.is_empty()) {
+        Some(subdomain) => Err(InputError::new(format!(
+            "dataset /hierarchy/cluster: subdomain {subdomain} is in {} clusters; expected one",
+            above[subdomain]
+        ))),
+        None => Ok(clusters),
     }
 }
 

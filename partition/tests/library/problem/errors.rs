@@ -251,6 +251,11 @@ fn every_defect_is_named() {
             &["/hierarchy/parent, row 4", "no child"],
         ),
         (
+            "subdomain in two clusters",
+            |f| replace(f, "/hierarchy/cluster", &[2], &[0i64, 6]),
+            &["/hierarchy/cluster", "subdomain 0 is in 2 clusters"],
+        ),
+        (
             "offsets that fall",
             |f| set(f, "/interface/offset", 1, 1000i64),
             &["/interface/offset, row 1", "1000"],

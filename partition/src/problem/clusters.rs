@@ -1,0 +1,44 @@
+//! Clusters: the nodes of the hierarchy between which an iterative interface solver works.
+//!
+//! They follow from sizes alone, never from ranks.
+
+use super::Catalog;
+
+/// Most dofs of a cluster where the user doesn't say how many there should be.
+const DOFS: usize = 24_000;
+
+impl Catalog {
+    /// Chooses the clusters: from the roots on the largest one is split, until there are `count`, or none that can be
+    /// split is larger than suits.
+    pub fn choose_clusters(&mut self, count: Option<usize>) {
+        let parents = &self.hierarchy.parent;
+        let mut dofs = vec![0; parents.len()];
+        for (dofs, subdomain) in dofs.iter_mut().zip(&self.subdomains) {
+            *dofs = self.dim * subdomain.nodes;
+        }
+        let mut children: Vec<Vec<usize>> = vec![Vec::new(); parents.len()];
+        for (v, parent) in parents.iter().enumerate() {
+            if let Some(parent) = parent.map(|parent| parent as usize) {
+                dofs[parent] += dofs[v];
+                children[parent].push(v);
+            }
+        }
+        let roots = (0..parents.len()).filter(|&v| parents[v].is_none());
+        let mut clusters: Vec<usize> = roots.collect();
+        loop {
+            let can_be_split = (0..clusters.len()).filter(|&c| !children[clusters[c]].is_empty());
+            let largest = can_be_split.max_by_key(|&c| dofs[clusters[c]]);
+            let wanted = |&c: &usize| match count {
+                Some(count) => clusters.len() < count,
+                None => dofs[clusters[c]] > DOFS,
+            };
+            let Some(largest) = largest.filter(wanted) else {
+                break;
+            };
+            let split = clusters.swap_remove(largest);
+            clusters.extend(&children[split]);
+        }
+        clusters.sort_unstable();
+        self.hierarchy.clusters = clusters.into_iter().map(|v| v as u32).collect();
+    }
+}

@@ -1,0 +1,414 @@
+//! An interface solver that scales: conjugate gradients between clusters, preconditioned by balancing domain
+//! decomposition by constraints (BDDC).
+//!
+//! The clusters are those of the problem file. What they share is sorted into [`classes`]; of each class some
+//! combinations of unknowns, the [coarse](constraints) ones, are the same in all clusters, the others are solved for in
+//! every [cluster](local) by itself. Contact conditions between clusters are [tied](closed) where they are closed.
+
+mod classes;
+mod closed;
+mod coarse;
+mod constraints;
+mod gradients;
+mod local;
+
+use std::collections::BTreeMap;
+
+use faer::Mat;
+
+use self::classes::Classes;
+use self::closed::{GroupBetween, Ties};
+use self::coarse::{Coarse, CoarsePart};
+use self::constraints::{Basis, Side};
+use self::gradients::{Gradients, Vectors};
+use self::local::{Local, Moves, Shared};
+use crate::comm::Comm;
+use crate::contact::normal_jump::NoUnknown;
+use crate::context::Context;
+use crate::error::Failure;
+use crate::schur::condensed::{Condensed, InterfaceDof};
+use crate::vector::dot;
+
+/// Clusters and what is between them.
+#[derive(Debug)]
+pub struct Bddc {
+    /// The owner of every cluster.
+    owners: Vec<usize>,
+    /// Their unknowns, on all ranks.
+    dofs: Vec<Vec<InterfaceDof>>,
+    /// The contact groups between clusters.
+    between: Vec<Between>,
+    /// Those of this rank, by number.
+    groups: BTreeMap<usize, GroupBetween>,
+    ties: Ties,
+    classes: Classes,
+    locals: BTreeMap<usize, Local>,
+    coarse: Option<Coarse>,
+    /// Number of coarse unknowns; on the root.
+    pub coarse_dofs: usize,
+    /// The smallest pivot of the coarse problem relative to its diagonal entry; on the root.
+    pub smallest_pivot: f64,
+}
+
+/// A contact group between clusters.
+#[derive(Debug)]
+struct Between {
+    number: usize,
+    owner: usize,
+    /// Its unknowns, ascending.
+    dofs: Vec<InterfaceDof>,
+    /// The clusters that have some of them, ascending.
+    clusters: Vec<usize>,
+}
+
+/// What a load does, on this rank.
+#[derive(Debug, Default)]
+pub struct BddcSolution {
+    /// The unknowns of every cluster, by its node.
+    pub clusters: BTreeMap<usize, Vec<f64>>,
+    /// The normal jumps of every contact group between clusters (m), and the forces on them, 0 where open (N/m).
+    pub groups: BTreeMap<usize, (Vec<f64>, Vec<f64>)>,
+    /// Iterations that it took.
+    pub iterations: usize,
+}
+
+impl Bddc {
+    /// Between the clusters that `condensed` has, by node; nothing is factorized yet. Collective.
+    ///
+    /// # Errors
+    /// A contact point that nothing can be replaced for.
+    pub fn new(
+        context: &Context<'_>,
+        condensed: &BTreeMap<usize, Condensed>,
+    ) -> Result<Self, Failure> {
+        let Context { comm, plan, .. } = *context;
+        let owners = plan.owners_of(&plan.tops);
+        let mut dofs: Vec<Vec<InterfaceDof>> = Vec::new();
+        comm.gather(
+            &owners,
+            |c| {
+                condensed
+                    .get(&plan.tops[c])
+                    .map(|of| of.interface_dofs.clone())
+            },
+            |_, of_cluster| dofs.extend(of_cluster),
+        );
+        comm.broadcast(&mut dofs);
+        let numbers: Vec<usize> = (0..plan.groups.len())
+            .filter(|&g| plan.is_above_tops(plan.groups[g].node))
+            .collect();
+        let own = numbers
+            .iter()
+            .filter_map(|g| Some((*g, context.groups.get(g)?)));
+        let groups = own.map(|(g, group)| Ok((g, GroupBetween::new(context, g, group)?)));
+        let groups: BTreeMap<usize, GroupBetween> = comm.agree(groups.collect())?;
+        let mut of_groups: Vec<Vec<InterfaceDof>> = Vec::new();
+        let group_owners: Vec<usize> = (numbers.iter())
+            .map(|&g| plan.node_owners[plan.groups[g].node])
+            .collect();
+        comm.gather(
+            &group_owners,
+            |i| groups[&numbers[i]].dofs(),
+            |_, of_group| of_groups.push(of_group),
+        );
+        comm.broadcast(&mut of_groups);
+        let has_some = |c: usize, sought: &[InterfaceDof]| {
+            (sought.iter()).any(|dof| dofs[c].binary_search(dof).is_ok())
+        };
+        let between = (numbers.iter().zip(group_owners)).zip(of_groups);
+        let between = between.map(|((&number, owner), sought)| Between {
+            number,
+            owner,
+            clusters: (0..dofs.len()).filter(|&c| has_some(c, &sought)).collect(),
+            dofs: sought,
+        });
+        Ok(Self {
+            between: between.collect(),
+            owners,
+            dofs,
+            groups,
+            ties: Ties::default(),
+            classes: Classes::default(),
+            locals: BTreeMap::new(),
+            coarse: None,
+            coarse_dofs: 0,
+            smallest_pivot: f64::INFINITY,
+        })
+    }
+
+    /// Makes the preconditioner for `condensed` clusters and conditions that are `open`, with a `spring`, relative to
+    /// the diagonal, on what these have let go. Collective.
+    ///
+    /// # Errors
+    /// A part of the scene can move.
+    pub fn freeze(
+        &mut self,
+        context: &Context<'_>,
+        condensed: &BTreeMap<usize, Condensed>,
+        open: &BTreeMap<usize, Vec<bool>>,
+        spring: f64,
+    ) -> Result<(), Failure> {
+        let Context {
+            comm, plan, par, ..
+        } = *context;
+        let mut frozen = Ok(());
+        for (&g, of_group) in &mut self.groups {
+            let eliminated = &plan.tree.nodes[plan.groups[g].node].eliminated;
+            let result = of_group.freeze(&context.groups[&g], &open[&g], eliminated);
+            frozen = frozen.and(result.map_err(|NoUnknown(t)| {
+                Failure::internal(format!(
+                    "contact group {g}: closed jump {t} replaces nothing"
+                ))
+            }));
+        }
+        comm.agree(frozen)?;
+        self.share_ties(comm);
+        self.classes = Classes::new(&self.dofs, &self.ties);
+
+        let own = self.owners.iter().enumerate();
+        let own = own.filter(|(_, owner)| **owner == comm.rank());
+        let shared = own.map(|(c, _)| {
+            let of_cluster = &condensed[&plan.tops[c]];
+            let shared = Shared::new(c, of_cluster, &self.classes, &self.ties, spring, par);
+            Ok((c, shared.map_err(moves)?))
+        });
+        let shared: BTreeMap<usize, Shared> = comm.agree(shared.collect())?;
+        let mut bases = self.bases(context, &shared)?;
+        let locals = shared.into_iter().map(|(c, shared)| {
+            let of_cluster = bases.remove(&c).unwrap_or_default();
+            Ok((c, Local::new(shared, of_cluster, par).map_err(moves)?))
+        });
+        self.locals = comm.agree(locals.collect())?;
+
+        let mut parts = Vec::new();
+        comm.gather(
+            &self.owners,
+            |c| CoarsePart::of(&self.locals[&c]),
+            |_, part| parts.push(part),
+        );
+        let coarse = comm.is_root().then(|| Coarse::new(&parts, par));
+        self.coarse = comm.agree(coarse.transpose())?;
+        if let Some(coarse) = &self.coarse {
+            self.coarse_dofs = coarse.len();
+            self.smallest_pivot = coarse.smallest_pivot();
+        }
+        Ok(())
+    }
+
+    /// Which conditions of contact group g of this rank, between clusters, are open.
+    pub fn open(&self, g: usize) -> Option<&Vec<bool>> {
+        self.groups.get(&g).map(|group| &group.open)
+    }
+
+    /// Tells all ranks what closed conditions tie. Collective.
+    fn share_ties(&mut self, comm: &Comm) {
+        let mut all = Vec::new();
+        comm.gather(
+            &self.group_owners(),
+            |i| self.groups[&self.between[i].number].ties(),
+            |_, ties| all.push(ties),
+        );
+        self.ties = Ties::join(all);
+        comm.broadcast(&mut self.ties);
+    }
+
+    fn group_owners(&self) -> Vec<usize> {
+        self.between.iter().map(|group| group.owner).collect()
+    }
+
+    /// The bases of the classes of every cluster of this rank: each is made where the first cluster of the class is.
+    /// Collective.
+    fn bases(
+        &self,
+        context: &Context<'_>,
+        shared: &BTreeMap<usize, Shared>,
+    ) -> Result<BTreeMap<usize, Vec<Basis>>, Failure> {
+        let Context { comm, par, .. } = *context;
+        let adaptive =
+            (self.classes.list.iter().enumerate()).filter(|(_, class)| !class.is_coarse());
+        let ends: Vec<(usize, usize)> = adaptive
+            .flat_map(|(k, class)| class.clusters.iter().map(move |&c| (k, c)))
+            .collect();
+        let mut made = BTreeMap::new();
+        let sides = shared.iter().flat_map(|(&c, shared)| {
+            let classes = shared.classes.iter();
+            let adaptive = classes.filter(|(k, _)| !self.classes.list[*k].is_coarse());
+            adaptive.map(move |(k, range)| ((*k, c), shared.on(range, par)))
+        });
+        let sides = sides.map(|(end, side)| Ok((end, side.map_err(moves)?)));
+        let mut sides: BTreeMap<(usize, usize), Side> = comm.agree(sides.collect())?;
+        let home = |k: usize| self.owners[self.classes.list[k].clusters[0]];
+        let mut arrived: BTreeMap<usize, Vec<Side>> = BTreeMap::new();
+        comm.route(
+            ends.iter().map(|&(k, c)| (self.owners[c], home(k))),
+            |i| sides.remove(&ends[i]),
+            |i, side| arrived.entry(ends[i].0).or_default().extend(side),
+        );
+        let mut result = Ok(());
+        for (k, sides) in arrived {
+            if let [a, b] = &sides[..] {
+                match Basis::adaptive([a, b]) {
+                    Ok(bases) => {
+                        let clusters = &self.classes.list[k].clusters;
+                        let ends = clusters.iter().map(|&c| (k, c));
+                        made.extend(ends.zip(bases));
+                    }
+                    Err(Moves) => result = Err(moves(Moves)),
+                }
+            }
+        }
+        comm.agree(result)?;
+        let mut of_ends = BTreeMap::new();
+        comm.route(
+            ends.iter().map(|&(k, c)| (home(k), self.owners[c])),
+            |i| made.remove(&ends[i]),
+            |i, basis| of_ends.extend(basis.map(|basis| (ends[i], basis))),
+        );
+        let of_cluster = |(&c, shared): (&usize, &Shared)| {
+            let classes = shared.classes.iter().map(|(k, range)| {
+                let coarse = || Basis::coarse(range.len(), self.classes.list[*k].clusters[0] == c);
+                of_ends.remove(&(*k, c)).unwrap_or_else(coarse)
+            });
+            (c, classes.collect())
+        };
+        Ok(shared.iter().map(of_cluster).collect())
+    }
+
+    /// Solves for `loads` on the unknowns of the clusters of this rank, by node, where the closed normal jumps of
+    /// every contact group between them have these `values`. Collective.
+    pub fn solve(
+        &self,
+        context: &Context<'_>,
+        condensed: &BTreeMap<usize, Condensed>,
+        loads: &BTreeMap<usize, Vec<f64>>,
+        values: &BTreeMap<usize, Vec<f64>>,
+        tolerance: f64,
+    ) -> BddcSolution {
+        let Context { comm, plan, .. } = *context;
+        let constants = self.constants(comm, values);
+        let constants_of = |c: usize| -> Vec<f64> {
+            let dofs = self.dofs[c].iter();
+            dofs.map(|dof| constants.get(dof).copied().unwrap_or(0.0))
+                .collect()
+        };
+        let (mut own, mut b, mut x) = (Vectors::new(), Vectors::new(), Vectors::new());
+        for (&c, local) in &self.locals {
+            let mut load = loads[&plan.tops[c]].clone();
+            let held = product_of_lower(&condensed[&plan.tops[c]].s, &constants_of(c));
+            load.iter_mut()
+                .zip(held)
+                .for_each(|(load, held)| *load -= held);
+            let (of_own, of_shared) = local.condense(&load);
+            own.insert(c, of_own);
+            x.insert(c, vec![0.0; of_shared.len()]);
+            b.insert(c, of_shared);
+        }
+        let gradients = Gradients {
+            comm,
+            owners: &self.owners,
+            classes: &self.classes,
+            locals: &self.locals,
+            coarse: self.coarse.as_ref(),
+        };
+        let iterations = gradients.solve(b, &mut x, tolerance);
+        let mut clusters = Vectors::new();
+        for (&c, local) in &self.locals {
+            let mut all = local.recover(&own[&c], &x[&c]);
+            all.iter_mut()
+                .zip(constants_of(c))
+                .for_each(|(x, constant)| *x += constant);
+            clusters.insert(c, all);
+        }
+        let unbalanced = clusters.iter().map(|(&c, x)| {
+            let mut r = loads[&plan.tops[c]].clone();
+            let s_x = product_of_lower(&condensed[&plan.tops[c]].s, x);
+            r.iter_mut().zip(s_x).for_each(|(r, s_x)| *r -= s_x);
+            (c, r)
+        });
+        let groups = self.answers(comm, &clusters, &unbalanced.collect());
+        let by_node = clusters.into_iter().map(|(c, x)| (plan.tops[c], x));
+        BddcSolution {
+            clusters: by_node.collect(),
+            groups,
+            iterations,
+        }
+    }
+
+    /// What tied displacements are beside the terms of others, on all ranks. Collective.
+    fn constants(
+        &self,
+        comm: &Comm,
+        values: &BTreeMap<usize, Vec<f64>>,
+    ) -> BTreeMap<InterfaceDof, f64> {
+        let mut constants = Vec::new();
+        comm.gather(
+            &self.group_owners(),
+            |i| {
+                let number = self.between[i].number;
+                self.groups[&number].constants(&values[&number])
+            },
+            |_, of_group| constants.extend(of_group),
+        );
+        comm.broadcast(&mut constants);
+        constants.into_iter().collect()
+    }
+
+    /// Jumps and forces of the contact groups of this rank, for the unknowns of clusters and what is `unbalanced` there.
+    /// Collective.
+    fn answers(
+        &self,
+        comm: &Comm,
+        clusters: &Vectors,
+        unbalanced: &Vectors,
+    ) -> BTreeMap<usize, (Vec<f64>, Vec<f64>)> {
+        let ways: Vec<(usize, usize)> = (self.between.iter().enumerate())
+            .flat_map(|(i, group)| group.clusters.iter().map(move |&c| (i, c)))
+            .collect();
+        let mut of_groups: BTreeMap<usize, [BTreeMap<InterfaceDof, f64>; 2]> = BTreeMap::new();
+        comm.route(
+            ways.iter()
+                .map(|&(i, c)| (self.owners[c], self.between[i].owner)),
+            |way| {
+                let (i, c) = ways[way];
+                let at = |dof: &InterfaceDof| {
+                    let at = self.dofs[c].binary_search(dof).ok()?;
+                    Some((*dof, clusters[&c][at], unbalanced[&c][at]))
+                };
+                let said = self.between[i].dofs.iter().filter_map(at);
+                said.collect::<Vec<_>>()
+            },
+            |way, said| {
+                let number = self.between[ways[way].0].number;
+                let [x, r] = of_groups.entry(number).or_default();
+                for (dof, of_x, of_r) in said {
+                    x.entry(dof).or_insert(of_x);
+                    *r.entry(dof).or_insert(0.0) += of_r;
+                }
+            },
+        );
+        let answers = of_groups.iter();
+        answers
+            .map(|(g, [x, r])| (*g, self.groups[g].answer(x, r)))
+            .collect()
+    }
+}
+
+fn moves(Moves: Moves) -> Failure {
+    Failure::ill_posed(
+        "a part of the scene can move although every contact that presses is held; expected supports or contact that \
+         hold it",
+    )
+}
+
+/// S x, where the lower triangle of S counts.
+fn product_of_lower(s: &Mat<f64>, x: &[f64]) -> Vec<f64> {
+    let mut y = vec![0.0; x.len()];
+    for j in 0..x.len() {
+        let column = &s.col_as_slice(j)[j..];
+        y[j] += dot(column, &x[j..]);
+        for (y, s) in y[j + 1..].iter_mut().zip(&column[1..]) {
+            *y += s * x[j];
+        }
+    }
+    y
+}

@@ -1,0 +1,193 @@
+//! The classes of Γ: unknowns that the same clusters have, vertices and edges of the clusters among them.
+
+use std::collections::BTreeMap;
+
+use contact_dd_partition::disjoint_sets::DisjointSets;
+use faer::Mat;
+
+use crate::bddc::closed::Ties;
+use crate::schur::condensed::InterfaceDof;
+
+/// Most unknowns of a class all of which are coarse ones.
+const SMALL: usize = 4;
+/// What is none beside a unit vector.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Unknowns that the same clusters have.
+#[derive(Clone, Debug)]
+pub struct Class {
+    /// The clusters, ascending.
+    pub clusters: Vec<usize>,
+    /// The unknowns, ascending.
+    pub dofs: Vec<InterfaceDof>,
+    /// Unknowns in the place of these of which one of the clusters has only some.
+    pub turned: Option<Turned>,
+}
+
+/// Combinations of the unknowns of a class of two clusters: those that both have, then those that one of them has.
+///
+/// Where a closed contact condition has put displacements of another cluster in the place of one of its own, a cluster
+/// has only as many combinations of them as it has conditions.
+#[derive(Clone, Debug)]
+pub struct Turned {
+    /// A column each.
+    pub q: Mat<f64>,
+    /// Where those of both, of the first and of the second cluster begin and end.
+    pub ends: [usize; 4],
+}
+
+impl Class {
+    /// Number of unknowns that all of its clusters have.
+    pub fn size(&self) -> usize {
+        (self.turned.as_ref()).map_or(self.dofs.len(), |turned| turned.ends[1])
+    }
+
+    /// Whether all of its unknowns are coarse ones, as those of a vertex.
+    pub fn is_coarse(&self) -> bool {
+        self.clusters.len() > 2 || self.size() <= SMALL
+    }
+}
+
+/// All classes.
+#[derive(Clone, Debug, Default)]
+pub struct Classes {
+    /// Those that several clusters have.
+    pub list: Vec<Class>,
+    /// For every cluster the numbers of these, ascending.
+    pub of_clusters: Vec<Vec<usize>>,
+    /// For every cluster the unknowns that no other has.
+    pub own: Vec<Vec<InterfaceDof>>,
+}
+
+impl Classes {
+    /// Those of clusters that have these `dofs`, with closed contact conditions that tie some to others.
+    pub fn new(dofs: &[Vec<InterfaceDof>], ties: &Ties) -> Self {
+        let mut clusters_of: BTreeMap<InterfaceDof, Vec<usize>> = BTreeMap::new();
+        for (c, list) in dofs.iter().enumerate() {
+            let mut left: Vec<InterfaceDof> = (list.iter())
+                .flat_map(|dof| ties.terms(dof))
+                .map(|(dof, _)| dof)
+                .collect();
+            left.sort_unstable();
+            left.dedup();
+            for dof in left {
+                clusters_of.entry(dof).or_default().push(c);
+            }
+        }
+        let mut of: BTreeMap<Vec<usize>, Vec<InterfaceDof>> = BTreeMap::new();
+        for (dof, clusters) in clusters_of {
+            of.entry(clusters).or_default().push(dof);
+        }
+        let mut classes = Self {
+            list: Vec::new(),
+            of_clusters: vec![Vec::new(); dofs.len()],
+            own: vec![Vec::new(); dofs.len()],
+        };
+        for (clusters, of_class) in of {
+            if let [cluster] = clusters[..] {
+                classes.own[cluster] = of_class;
+                continue;
+            }
+            for &c in &clusters {
+                classes.of_clusters[c].push(classes.list.len());
+            }
+            let mut class = Class {
+                clusters,
+                dofs: of_class,
+                turned: None,
+            };
+            if !class.is_coarse() {
+                class.turned = turned(&class, dofs, ties);
+            }
+            classes.list.push(class);
+        }
+        classes
+    }
+}
+
+/// The combinations of the unknowns of a class that its two clusters have, where one doesn't have all.
+fn turned(class: &Class, dofs: &[Vec<InterfaceDof>], ties: &Ties) -> Option<Turned> {
+    let [a, b] = class.clusters[..] else {
+        return None;
+    };
+    let has_all = |c: usize| {
+        let mut own = class.dofs.iter();
+        own.all(|dof| dofs[c].binary_search(dof).is_ok())
+    };
+    if has_all(a) && has_all(b) {
+        return None;
+    }
+    // What each has, in terms of the class.
+    let n = class.dofs.len();
+    let row = |dof: &InterfaceDof| -> Vec<(usize, f64)> {
+        let place = |dof: &InterfaceDof| class.dofs.binary_search(dof).ok();
+        let terms = ties.terms(dof).into_iter();
+        terms
+            .filter_map(|(dof, c)| Some((place(&dof)?, c)))
+            .collect()
+    };
+    let rows = [a, b].map(|c| {
+        let rows = dofs[c].iter().map(row);
+        rows.filter(|row| !row.is_empty()).collect::<Vec<_>>()
+    });
+    let mut linked = DisjointSets::new(n);
+    for row in rows.iter().flatten() {
+        for pair in row.windows(2) {
+            linked.unite(pair[0].0 as u32, pair[1].0 as u32);
+        }
+    }
+    let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for i in 0..n {
+        members.entry(linked.find(i as u32)).or_default().push(i);
+    }
+    let mut columns: [Vec<Vec<f64>>; 3] = [const { Vec::new() }; 3];
+    for (set, members) in members {
+        let k = members.len();
+        let place = |i: usize| members.binary_search(&i).unwrap_or_default();
+        let [not_a, not_b] = rows.each_ref().map(|rows| {
+            let of_set = rows
+                .iter()
+                .filter(|row| linked.clone().find(row[0].0 as u32) == set);
+            let mut all = Mat::<f64>::zeros(k, 0);
+            for (j, row) in of_set.enumerate() {
+                all.resize_with(k, j + 1, |_, _| 0.0);
+                row.iter().for_each(|&(i, c)| all[(place(i), j)] += c);
+            }
+            complement(&all)
+        });
+        let alone = Mat::from_fn(k, not_a.ncols() + not_b.ncols(), |i, j| {
+            match j.checked_sub(not_b.ncols()) {
+                Some(j) => not_a[(i, j)],
+                None => not_b[(i, j)],
+            }
+        });
+        for (columns, part) in columns.iter_mut().zip([complement(&alone), not_b, not_a]) {
+            for column in part.col_iter() {
+                let mut of_class = vec![0.0; n];
+                let values = members.iter().zip(column.iter());
+                values.for_each(|(&at, value)| of_class[at] = *value);
+                columns.push(of_class);
+            }
+        }
+    }
+    let [both, first, second] = columns.each_ref().map(Vec::len);
+    let columns = columns.concat();
+    Some(Turned {
+        q: Mat::from_fn(n, n, |i, j| columns[j][i]),
+        ends: [0, both, both + first, both + first + second],
+    })
+}
+
+/// An orthonormal basis of what is orthogonal to the columns of a matrix.
+fn complement(a: &Mat<f64>) -> Mat<f64> {
+    if a.ncols() == 0 {
+        return Mat::identity(a.nrows(), a.nrows());
+    }
+    let qr = a.col_piv_qr();
+    let r = qr.R();
+    let largest = r[(0, 0)].abs();
+    let diagonal = 0..r.nrows().min(r.ncols());
+    let independent = diagonal.filter(|&i| r[(i, i)].abs() > ROUND_OFF * largest);
+    let rank = independent.count();
+    qr.compute_Q().subcols(rank, a.nrows() - rank).to_owned()
+}

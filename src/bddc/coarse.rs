@@ -1,0 +1,111 @@
+//! The coarse problem: what clusters leave to coarse unknowns, added up and factorized at the root.
+
+use faer::{Mat, Par};
+use serde::{Deserialize, Serialize};
+
+use crate::bddc::local::Local;
+use crate::error::Failure;
+use crate::interface::numbering::Numbering;
+use crate::schur::condensed::InterfaceDof;
+use crate::schur::factor::BoundaryLastCholesky;
+use crate::schur::pattern::{LowerPattern, SparseSymmetric};
+
+/// What a cluster says of its coarse unknowns.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct CoarsePart {
+    /// Its classes, and how many unknowns each has.
+    pub classes: Vec<(usize, usize)>,
+    /// What the cluster leaves to them.
+    #[serde(with = "crate::bytes::symmetric")]
+    pub s: Mat<f64>,
+}
+
+impl CoarsePart {
+    /// That of a cluster.
+    pub fn of(local: &Local) -> Self {
+        Self {
+            classes: local.coarse_of_classes().collect(),
+            s: local.coarse.clone(),
+        }
+    }
+}
+
+/// The coarse problem, on the root.
+#[derive(Debug)]
+pub struct Coarse {
+    factor: BoundaryLastCholesky,
+    /// The coarse unknowns of every cluster.
+    numbers: Vec<Vec<u32>>,
+    len: usize,
+}
+
+impl Coarse {
+    /// Adds up what all clusters say, in their order, and factorizes it.
+    ///
+    /// # Errors
+    /// A part of the scene can move.
+    pub fn new(parts: &[CoarsePart], par: Par) -> Result<Self, Failure> {
+        // A class stands for a node, as its unknowns belong to the same clusters.
+        let unknowns = |part: &CoarsePart| -> Vec<InterfaceDof> {
+            let of_class = |&(k, count): &(usize, usize)| {
+                let axes = 0..count as u32;
+                axes.map(move |axis| InterfaceDof {
+                    node: k as u32,
+                    axis,
+                })
+            };
+            part.classes.iter().flat_map(of_class).collect()
+        };
+        let dofs: Vec<Vec<InterfaceDof>> = parts.iter().map(unknowns).collect();
+        let classes = |part: &CoarsePart| part.classes.iter().map(|&(k, _)| k as u32).collect();
+        let classes: Vec<Vec<u32>> = parts.iter().map(classes).collect();
+        let numbering = Numbering::new(
+            &dofs.iter().map(Vec::as_slice).collect::<Vec<_>>(),
+            &classes.iter().map(Vec::as_slice).collect::<Vec<_>>(),
+            &vec![false; parts.len()],
+        )?;
+        let n = numbering.len;
+        let too_large = || {
+            Failure::internal("the coarse problem has more than 2^32 entries: use fewer clusters")
+        };
+        let pattern = LowerPattern::new(n, &numbering.cliques(0..parts.len()));
+        let mut sum = SparseSymmetric::zeros(pattern.ok_or_else(too_large)?);
+        for (part, numbers) in parts.iter().zip(&numbering.interface_dofs) {
+            sum.add_large(numbers, part.s.as_ref());
+        }
+        let factor = BoundaryLastCholesky::new(&sum, n, par).map_err(|error| {
+            Failure::ill_posed(format!(
+                "the coarse problem of the clusters can't be solved ({error}): some part of the scene is held neither \
+                 by supports nor by contact"
+            ))
+        })?;
+        Ok(Self {
+            factor,
+            numbers: numbering.interface_dofs,
+            len: n,
+        })
+    }
+
+    /// Number of coarse unknowns.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// The smallest pivot relative to its diagonal entry.
+    pub fn smallest_pivot(&self) -> f64 {
+        self.factor.smallest_pivot()
+    }
+
+    /// The coarse unknowns of every cluster, for the loads of all.
+    pub fn solve(&self, loads: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut x = vec![0.0; self.len];
+        for (numbers, load) in self.numbers.iter().zip(loads) {
+            for (&i, load) in numbers.iter().zip(load) {
+                x[i as usize] += load;
+            }
+        }
+        self.factor.solve(&mut x);
+        let of_cluster = |numbers: &Vec<u32>| numbers.iter().map(|&i| x[i as usize]).collect();
+        self.numbers.iter().map(of_cluster).collect()
+    }
+}

@@ -1,0 +1,168 @@
+//! Conjugate gradients on what clusters share, preconditioned by clusters side by side and the coarse problem.
+//!
+//! Every rank holds the vectors of its own clusters. Sums run in the order of clusters, so that ranks make no
+//! difference.
+
+use std::collections::BTreeMap;
+
+use crate::bddc::classes::Classes;
+use crate::bddc::coarse::Coarse;
+use crate::bddc::local::Local;
+use crate::bytes::Reals;
+use crate::comm::Comm;
+use crate::vector::dot;
+
+/// Most iterations.
+const MAX_ITERATIONS: usize = 500;
+
+/// A vector on what clusters share, by cluster.
+pub type Vectors = BTreeMap<usize, Vec<f64>>;
+
+/// What conjugate gradients need.
+#[derive(Clone, Copy)]
+pub struct Gradients<'a> {
+    /// All ranks.
+    pub comm: &'a Comm,
+    /// The owner of every cluster.
+    pub owners: &'a [usize],
+    /// The classes of Γ.
+    pub classes: &'a Classes,
+    /// The clusters of this rank.
+    pub locals: &'a BTreeMap<usize, Local>,
+    /// The coarse problem, on the root.
+    pub coarse: Option<&'a Coarse>,
+}
+
+impl Gradients<'_> {
+    /// Solves S x = b, of which every cluster has a part, from x on; returns the number of iterations. Collective.
+    ///
+    /// It ends where √(rᵀ M r), with M the preconditioner about the error in the energy norm, is less than the
+    /// `tolerance` of that of b.
+    pub fn solve(&self, mut b: Vectors, x: &mut Vectors, tolerance: f64) -> usize {
+        self.add_up(&mut b);
+        let scale = self.dot(&b, &self.precondition(&b));
+        let enough = tolerance * tolerance * scale;
+        let mut r = b;
+        if x.values().flatten().any(|x| *x != 0.0) || self.comm.size() > 1 {
+            subtract(&mut r, &self.multiply(x), 1.0);
+        }
+        let mut z = self.precondition(&r);
+        let mut p = z.clone();
+        let mut rho = self.dot(&r, &z);
+        let mut iterations = 0;
+        while rho > enough && iterations < MAX_ITERATIONS {
+            let q = self.multiply(&p);
+            let curvature = self.dot(&p, &q);
+            if curvature <= 0.0 || curvature.is_nan() {
+                break;
+            }
+            let step = rho / curvature;
+            subtract(x, &p, -step);
+            subtract(&mut r, &q, step);
+            z = self.precondition(&r);
+            let before = std::mem::replace(&mut rho, self.dot(&r, &z));
+            for (p, z) in p.values_mut().zip(z.values()) {
+                p.iter_mut()
+                    .zip(z)
+                    .for_each(|(p, z)| *p = z + rho / before * *p);
+            }
+            iterations += 1;
+        }
+        iterations
+    }
+
+    /// S x. Collective.
+    fn multiply(&self, x: &Vectors) -> Vectors {
+        let of = |(&c, local): (&usize, &Local)| (c, local.multiply(&x[&c]));
+        let mut y = self.locals.iter().map(of).collect();
+        self.add_up(&mut y);
+        y
+    }
+
+    /// M r. Collective.
+    fn precondition(&self, r: &Vectors) -> Vectors {
+        let (mut others, mut coarse) = (Vectors::new(), Vectors::new());
+        for (&c, local) in self.locals {
+            let (of_others, of_coarse) = local.share(&r[&c]);
+            others.insert(c, of_others);
+            coarse.insert(c, of_coarse);
+        }
+        let mut loads = Vec::new();
+        self.comm.gather(
+            self.owners,
+            |c| Reals(coarse.remove(&c).unwrap_or_default()),
+            |_, Reals(load)| loads.push(load),
+        );
+        let mut answers = (self.coarse).map_or_else(Vec::new, |coarse| coarse.solve(&loads));
+        let mut z = Vectors::new();
+        self.comm.scatter(
+            self.owners,
+            |c| Reals(std::mem::take(&mut answers[c])),
+            |c, Reals(x)| {
+                let others = others.remove(&c).unwrap_or_default();
+                z.insert(c, self.locals[&c].correct(others, &x));
+            },
+        );
+        self.add_up(&mut z);
+        z
+    }
+
+    /// Replaces what every cluster has by the sum over all that share it. Collective.
+    fn add_up(&self, v: &mut Vectors) {
+        let ranges = |c: usize, k: usize| {
+            let classes = self.locals[&c].classes();
+            let at = classes.binary_search_by_key(&k, |(k, _)| *k);
+            at.map_or(0..0, |at| classes[at].1.clone())
+        };
+        let parts: Vec<(usize, usize)> = (self.classes.list.iter().enumerate())
+            .flat_map(|(k, class)| class.clusters.iter().map(move |&c| (k, c)))
+            .collect();
+        let home = |k: usize| self.owners[self.classes.list[k].clusters[0]];
+        let mut sums: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        self.comm.route(
+            parts.iter().map(|&(k, c)| (self.owners[c], home(k))),
+            |i| Reals(v[&parts[i].1][ranges(parts[i].1, parts[i].0)].to_vec()),
+            |i, Reals(part)| match sums.get_mut(&parts[i].0) {
+                Some(sum) => sum
+                    .iter_mut()
+                    .zip(part)
+                    .for_each(|(sum, part)| *sum += part),
+                None => drop(sums.insert(parts[i].0, part)),
+            },
+        );
+        self.comm.route(
+            parts.iter().map(|&(k, c)| (home(k), self.owners[c])),
+            |i| Reals(sums[&parts[i].0].clone()),
+            |i, Reals(sum)| {
+                let (k, c) = parts[i];
+                if let Some(of_cluster) = v.get_mut(&c) {
+                    of_cluster[ranges(c, k)].copy_from_slice(&sum);
+                }
+            },
+        );
+    }
+
+    /// x·y, every unknown once, on all ranks. Collective.
+    fn dot(&self, x: &Vectors, y: &Vectors) -> f64 {
+        let mut sum = 0.0;
+        self.comm.gather(
+            self.owners,
+            |c| {
+                let classes = self.locals[&c].classes().iter();
+                let own = classes.filter(|(k, _)| self.classes.list[*k].clusters[0] == c);
+                let of = own.map(|(_, range)| dot(&x[&c][range.clone()], &y[&c][range.clone()]));
+                of.sum::<f64>()
+            },
+            |_, part| sum += part,
+        );
+        self.comm.broadcast(&mut sum);
+        sum
+    }
+}
+
+/// x ← x − a y.
+fn subtract(x: &mut Vectors, y: &Vectors, a: f64) {
+    for (x, y) in x.values_mut().zip(y.values()) {
+        x.iter_mut().zip(y).for_each(|(x, y)| *x -= a * y);
+    }
+}
