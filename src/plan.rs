@@ -279,7 +279,7 @@ mod tests {
             title: String::new(),
             dim: 2,
             units: Units::Metre,
-            plane: PlaneState::Strain,
+            plane: Some(PlaneState::Strain),
             materials: Vec::new(),
             bodies: vec![Body { name: "b".into() }],
             supports: Vec::new(),

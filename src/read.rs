@@ -77,6 +77,7 @@ pub fn collect_groups(
                 .map(|(&at, &n)| (at, nodes[n as usize].place()))
                 .collect(),
             extent,
+            dim: catalog.dim,
         };
         let mut points = Vec::new();
         for &j in &plan.tree.nodes[of_plan.node].points {

@@ -179,7 +179,7 @@ fn unknown_stress(catalog: &Catalog) -> Vec<String> {
     catalog
         .materials
         .iter()
-        .filter(|m| catalog.plane == PlaneState::Strain && m.out_of_plane.is_none())
+        .filter(|m| catalog.plane == Some(PlaneState::Strain) && m.out_of_plane.is_none())
         .map(|m| {
             format!(
                 "material '{}' has no out_of_plane stiffness: its stress ZZ is reported as 0",

@@ -5,10 +5,11 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 
+use crate::element::geometry::{advance, cross};
 use crate::error::InputError;
 use crate::model::Material;
 use crate::problem::read::ProblemFile;
-use crate::problem::{Problem, VERSION};
+use crate::problem::{Catalog, Problem, VERSION};
 
 /// Most lines about things of one kind.
 const MOST: usize = 20;
@@ -37,20 +38,17 @@ impl Info {
         })
     }
 
-    /// Sum of all loads in a load step (N per metre of thickness), and their moment about the origin (N); in
+    /// Sum of all loads in a load step (N, in the plane per metre of thickness), and their moment about the origin; in
     /// a problem without steps those that are there at once.
-    pub fn load(&self, step: usize) -> ([f64; 3], f64) {
-        let (mut force, mut moment) = ([0.0; 3], 0.0);
+    pub fn load(&self, step: usize) -> ([f64; 3], [f64; 3]) {
+        let (mut sum, mut moment) = ([0.0; 3], [0.0; 3]);
         for subdomain in &self.problem.subdomains {
-            for (node, [x, y, z]) in subdomain.forces_in(step) {
-                let at = subdomain.points[node as usize];
-                force[0] += x;
-                force[1] += y;
-                force[2] += z;
-                moment += at[0] * y - at[1] * x;
+            for (node, force) in subdomain.forces_in(step) {
+                sum = advance(sum, 1.0, force);
+                moment = advance(moment, 1.0, cross(subdomain.points[node as usize], force));
             }
         }
-        (force, moment)
+        (sum, moment)
     }
 
     /// How many nodes each condition of the scene supports, by name.
@@ -85,13 +83,21 @@ impl Info {
     /// The resultant of every load step, of all loads where there are no steps.
     fn loads(&self) -> Vec<String> {
         let resultant = |step: usize| {
-            let ([x, y, _], moment) = self.load(step);
+            let Catalog { dim, units, .. } = self.problem.catalog;
+            let (force, moment) = self.load(step);
+            let (force, moment) = (&force[..dim], &moment[if dim == 2 { 2 } else { 0 }..]);
+            let listed = |of: &[f64]| {
+                of.iter()
+                    .map(|&x| rounded(x))
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            };
             format!(
-                "{}, {} {} in sum, moment {} N about the origin",
-                rounded(x),
-                rounded(y),
-                self.problem.catalog.units.force(),
-                rounded(moment)
+                "{} {} in sum, moment {} {} about the origin",
+                listed(force),
+                units.force(dim),
+                listed(moment),
+                units.moment(dim)
             )
         };
         let steps = &self.problem.catalog.steps;
@@ -138,7 +144,9 @@ impl fmt::Display for Info {
             self.bytes as f64 / 1e6
         );
         entry(f, "file", &size)?;
-        entry(f, "plane", catalog.plane.name())?;
+        if let Some(plane) = catalog.plane {
+            entry(f, "plane", plane.name())?;
+        }
         writeln!(f, "{}", self.problem.summary())?;
         let unit = catalog.units.stress();
         let materials = catalog.materials.iter().map(|m| elastic(m, unit));
@@ -178,9 +186,10 @@ impl fmt::Display for Info {
 fn elastic(material: &Material, unit: &str) -> String {
     let (name, c) = (&material.name, &material.stiffness);
     match material.poisson {
-        // G = E / (2 (1 + ν)) in both plane states.
+        // G = E / (2 (1 + ν)) in both plane states and in space.
         Some(ratio) => {
-            let young = rounded(2.0 * (1.0 + ratio) * c[2][2]);
+            let shear = c[c.size() - 1][c.size() - 1];
+            let young = rounded(2.0 * (1.0 + ratio) * shear);
             format!("{name}: E {young} {unit}, ν {ratio}")
         }
         None => format!(

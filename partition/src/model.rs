@@ -3,6 +3,7 @@
 //! Loads are consistent nodal forces, supports are rows `u·d = v`, contact is `B u ≤ g`; nothing
 //! behind this point knows how they came about.
 
+mod blend;
 mod bodies;
 mod contact;
 mod diagnostics;
@@ -28,14 +29,14 @@ use crate::scene::units::Units;
 use crate::solver::SolverSettings;
 use crate::stiffness::Stiffness;
 
-/// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane).
+/// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane; xx, yy, zz, yz, xz, xy in space).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Name in the scene.
     pub name: String,
     /// C, symmetric positive definite, for the scene's plane state (Pa).
     pub stiffness: Stiffness,
-    /// Row of σ_zz against (ε_xx, ε_yy, γ_xy) (Pa); `None` where the user didn't give it.
+    /// Row of σ_zz against (ε_xx, ε_yy, γ_xy) (Pa); `None` where the user didn't give it, and in space.
     pub out_of_plane: Option<[f64; 3]>,
     /// Poisson's ratio of an isotropic material.
     pub poisson: Option<f64>,
@@ -73,8 +74,8 @@ pub struct Model {
     pub solver: SolverSettings,
     /// The units that messages and pictures name.
     pub units: Units,
-    /// Plane state.
-    pub plane: PlaneState,
+    /// Plane state; `None` in space.
+    pub plane: Option<PlaneState>,
     /// Mesh.
     pub mesh: Mesh,
     /// Materials.
@@ -153,15 +154,22 @@ impl Model {
     }
 }
 
-/// The plane state, of a scene whose mesh lies in the plane.
-fn plane_state(scene: &Scene, mesh: &Mesh) -> Result<PlaneState, InputError> {
-    if mesh.dim != 2 {
-        return Err(InputError::new(format!(
-            "the mesh has {} dimensions; expected 2",
-            mesh.dim
-        )));
-    }
-    scene.plane.ok_or_else(|| {
-        InputError::new("the key 'plane' is missing: the mesh has 2 dimensions; expected plane = \"strain\" or \"stress\"")
-    })
+/// The plane state of a scene whose mesh lies in the plane.
+///
+/// # Errors
+/// None where one is expected, or one in space; a value that isn't of the mesh's dimension.
+fn plane_state(scene: &Scene, mesh: &Mesh) -> Result<Option<PlaneState>, InputError> {
+    let fault = match (mesh.dim, scene.plane) {
+        (2, None) => {
+            "the key 'plane' is missing: the mesh has 2 dimensions; expected plane = \"strain\" or \"stress\""
+        }
+        (3, Some(_)) => {
+            "the key 'plane' is of plane scenes: the mesh has 3 dimensions; expected none"
+        }
+        _ => {
+            scene.check_dimension(mesh.dim)?;
+            return Ok(scene.plane);
+        }
+    };
+    Err(InputError::new(fault))
 }

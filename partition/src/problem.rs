@@ -211,8 +211,8 @@ pub struct Catalog {
     pub dim: usize,
     /// The units that messages and pictures name.
     pub units: Units,
-    /// Plane state.
-    pub plane: PlaneState,
+    /// Plane state; `None` in space.
+    pub plane: Option<PlaneState>,
     /// Materials.
     pub materials: Vec<Material>,
     /// Bodies.

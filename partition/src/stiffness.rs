@@ -9,7 +9,7 @@ use crate::magnitude::SMALLEST_STIFFNESS;
 /// How far a stiffness may be from its transpose, relative to its largest entry.
 const SYMMETRY_TOLERANCE: f64 = 1e-10;
 
-/// The number of components of a strain in `dim` dimensions: xx, yy, xy in the plane.
+/// The number of components of a strain in `dim` dimensions: xx, yy, xy in the plane, xx, yy, zz, yz, xz, xy in space.
 pub const fn components(dim: usize) -> usize {
     dim * (dim + 1) / 2
 }
@@ -24,10 +24,20 @@ pub struct Stiffness {
 impl Stiffness {
     /// The matrix of `values`, row by row, in `dim` dimensions.
     pub fn new(dim: usize, values: &[f64]) -> Self {
+        Self::square(components(dim), values)
+    }
+
+    /// The matrix of `values` with so many rows.
+    pub(crate) fn square(size: usize, values: &[f64]) -> Self {
         Self {
-            size: components(dim),
+            size,
             values: values.to_vec(),
         }
+    }
+
+    /// Number of components of a strain.
+    pub fn size(&self) -> usize {
+        self.size
     }
 
     /// All entries, row by row.

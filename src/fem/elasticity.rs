@@ -1,86 +1,150 @@
-//! Linear elasticity of one element in the plane: K_e = ∫ Bᵀ C B dx, (2).
+//! Linear elasticity of one element: K_e = ∫ Bᵀ C B dx, (2).
 //!
-//! ε = B u holds ε_xx, ε_yy and γ_xy = 2 ε_xy, from the gradients of the shape functions; σ = C ε.
+//! ε = B u holds in Voigt's order ε_xx, ε_yy, γ_xy in the plane and ε_xx, ε_yy, ε_zz, γ_yz, γ_xz, γ_xy in space, with
+//! γ = 2 ε, from the gradients of the shape functions; σ = C ε.
 
+use std::array::from_fn;
+
+use contact_dd_partition::element::geometry::cross;
 use contact_dd_partition::element::quadrature::TabulatedPoint;
 use contact_dd_partition::element::reference::ReferenceElement;
 use contact_dd_partition::model::{Material, PlaneState};
 use contact_dd_partition::stiffness::Stiffness;
+use nalgebra::Matrix3;
 
 /// Most nodes that an element has.
-pub const MAX_NODES: usize = 9;
+pub const MAX_NODES: usize = 27;
+/// Most nodes that one of the plane has.
+const MAX_PLANE_NODES: usize = 9;
 /// Most dofs that an element has.
-pub const MAX_DOFS: usize = 2 * MAX_NODES;
+pub const MAX_DOFS: usize = 3 * MAX_NODES;
 
-/// Gradients of the shape functions at a point of an element, and the weight of that point.
-#[derive(Clone, Copy, Debug)]
-pub struct PointGradients {
+/// A strain or stress in Voigt's order; in the plane the first three components count.
+pub type Voigt = [f64; 6];
+
+/// The place of γ_ab in Voigt's order.
+const fn shear(dim: usize, a: usize, b: usize) -> usize {
+    if dim == 2 { 2 } else { 6 - a - b }
+}
+
+/// Gradients of the shape functions at a point of an element with up to N nodes in D dimensions, and the weight of
+/// that point.
+struct PointGradients<const D: usize, const N: usize> {
     /// ∂N_i/∂x_d (1/m).
-    pub gradients: [[f64; 2]; MAX_NODES],
-    /// Quadrature weight times Jacobian (m²).
-    pub weight: f64,
+    gradients: [[f64; D]; N],
+    /// Quadrature weight times Jacobian (m², m³).
+    weight: f64,
 }
 
-/// The quadrature points of an element's stiffness.
-pub fn stiffness_points(
-    element: &ReferenceElement,
-    points: &[[f64; 3]],
-) -> impl Iterator<Item = PointGradients> {
-    let reference = element.stiffness_points().iter();
-    reference.map(move |reference| gradients(reference, points))
-}
-
-/// The gradients at one point of the element with the nodes at `points`.
-pub fn gradients(reference: &TabulatedPoint, points: &[[f64; 3]]) -> PointGradients {
-    // J = ∂x/∂ξ
-    let mut j = [[0.0; 2]; 2];
-    for (x, g) in points.iter().zip(&reference.gradients) {
-        for (row, x) in j.iter_mut().zip(x) {
-            row[0] += x * g[0];
-            row[1] += x * g[1];
+impl<const D: usize, const N: usize> PointGradients<D, N> {
+    /// The gradients at one point of the element with the nodes at `points`.
+    #[inline(always)]
+    fn new(reference: &TabulatedPoint, points: &[[f64; 3]]) -> Self {
+        // J = ∂x/∂ξ
+        let mut j = [[0.0; D]; D];
+        for (x, g) in points.iter().zip(&reference.gradients) {
+            for (row, x) in j.iter_mut().zip(x) {
+                for (entry, g) in row.iter_mut().zip(g) {
+                    *entry += x * g;
+                }
+            }
+        }
+        let (cofactors, det) = cofactors(&j);
+        let mut gradients = [[0.0; D]; N];
+        for (gradient, g) in gradients.iter_mut().zip(&reference.gradients) {
+            for (component, row) in gradient.iter_mut().zip(&cofactors) {
+                let terms = row.iter().zip(g).map(|(c, g)| c * g);
+                *component = terms.reduce(|sum, term| sum + term).unwrap_or_default() / det;
+            }
+        }
+        Self {
+            gradients,
+            weight: det * reference.weight,
         }
     }
-    let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-    let mut gradients = [[0.0; 2]; MAX_NODES];
-    for (gradient, g) in gradients.iter_mut().zip(&reference.gradients) {
-        gradient[0] = (j[1][1] * g[0] - j[1][0] * g[1]) / det;
-        gradient[1] = (j[0][0] * g[1] - j[0][1] * g[0]) / det;
-    }
-    PointGradients {
-        gradients,
-        weight: det * reference.weight,
+
+    /// ε at the point for nodal displacements `u`.
+    fn strain(&self, u: &[f64]) -> Voigt {
+        let mut strain = [0.0; 6];
+        for (g, u) in self.gradients.iter().zip(u.chunks_exact(D)) {
+            for a in 0..D {
+                strain[a] += g[a] * u[a];
+                for b in a + 1..D {
+                    strain[shear(D, a, b)] += g[b] * u[a] + g[a] * u[b];
+                }
+            }
+        }
+        strain
     }
 }
 
-/// ε = (ε_xx, ε_yy, γ_xy) at a point for nodal displacements `u`.
-pub fn strain(point: &PointGradients, u: &[f64]) -> [f64; 3] {
-    let mut strain = [0.0; 3];
-    for (g, u) in point.gradients.iter().zip(u.chunks_exact(2)) {
-        strain[0] += g[0] * u[0];
-        strain[1] += g[1] * u[1];
-        strain[2] += g[1] * u[0] + g[0] * u[1];
+/// det J and det J · J⁻ᵀ.
+#[inline(always)]
+fn cofactors<const D: usize>(j: &[[f64; D]; D]) -> ([[f64; D]; D], f64) {
+    let mut cofactors = [[0.0; D]; D];
+    if D == 2 {
+        cofactors[0] = from_fn(|k| if k == 0 { j[1][1] } else { -j[1][0] });
+        cofactors[1] = from_fn(|k| if k == 0 { -j[0][1] } else { j[0][0] });
+        return (cofactors, j[0][0] * j[1][1] - j[0][1] * j[1][0]);
     }
-    strain
+    let row = |i: usize| [j[i][0], j[i][1], j[i][2]];
+    for (i, cofactors) in cofactors.iter_mut().enumerate() {
+        let normal = cross(row((i + 1) % 3), row((i + 2) % 3));
+        *cofactors = from_fn(|k| normal[k]);
+    }
+    let det = (0..D).map(|k| j[0][k] * cofactors[0][k]).sum();
+    (cofactors, det)
 }
 
-/// σ = (XX, YY, ZZ, XY, YZ, XZ) for a strain in the plane (Pa).
+/// ε at a point of the element with the nodes at `points` for their displacements `u`, and the weight of the point,
+/// that of quadrature times the Jacobian (m², m³).
+pub fn strain(reference: &TabulatedPoint, points: &[[f64; 3]], u: &[f64]) -> (Voigt, f64) {
+    match u.len() == 2 * points.len() {
+        true => {
+            let point = PointGradients::<2, MAX_PLANE_NODES>::new(reference, points);
+            (point.strain(u), point.weight)
+        }
+        false => {
+            let point = PointGradients::<3, MAX_NODES>::new(reference, points);
+            (point.strain(u), point.weight)
+        }
+    }
+}
+
+/// σ = (XX, YY, ZZ, XY, YZ, XZ) for a strain (Pa).
 ///
-/// σ_zz follows from the material's row out of the plane; where that isn't known it is 0.
-pub fn stress(material: &Material, plane: PlaneState, strain: &[f64; 3]) -> [f64; 6] {
-    let [xx, yy, xy] = stress_in_plane(material, strain);
+/// In the plane σ_zz follows from the material's row out of the plane; where that isn't known it is 0.
+pub fn stress(material: &Material, plane: Option<PlaneState>, strain: &Voigt) -> [f64; 6] {
+    let s = voigt_stress(material, strain);
+    let Some(plane) = plane else {
+        return result_order(&s);
+    };
     let zz = match (plane, &material.out_of_plane) {
         (PlaneState::Strain, Some(out_of_plane)) => product(out_of_plane, strain),
         _ => 0.0,
     };
-    [xx, yy, zz, xy, 0.0, 0.0]
+    [s[0], s[1], zz, s[2], 0.0, 0.0]
 }
 
-/// σ = (XX, YY, XY) for a strain in the plane (Pa).
-pub fn stress_in_plane(material: &Material, strain: &[f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|i| product(&material.stiffness[i], strain))
+/// σ = C ε (Pa).
+pub fn voigt_stress(material: &Material, strain: &Voigt) -> Voigt {
+    let mut stress = [0.0; 6];
+    for (i, stress) in stress
+        .iter_mut()
+        .enumerate()
+        .take(material.stiffness.size())
+    {
+        *stress = product(&material.stiffness[i], strain);
+    }
+    stress
 }
 
-fn product(row: &[f64], strain: &[f64; 3]) -> f64 {
+/// Voigt's order of space as results have it, XX, YY, ZZ, XY, YZ, XZ.
+fn result_order(&[xx, yy, zz, yz, xz, xy]: &Voigt) -> [f64; 6] {
+    [xx, yy, zz, xy, yz, xz]
+}
+
+fn product(row: &[f64], strain: &[f64]) -> f64 {
     row.iter().zip(strain).map(|(c, e)| c * e).sum()
 }
 
@@ -111,32 +175,42 @@ impl ElementMatrix {
         (0..self.order).map(|i| self.row(i))
     }
 
-    /// Becomes K_e = ∫ Bᵀ C B over an element of unit thickness (Pa), dofs node by node.
+    /// Becomes K_e = ∫ Bᵀ C B over an element, in the plane of unit thickness (Pa; in space N/m), dofs node by node.
     pub fn set(&mut self, element: &ReferenceElement, points: &[[f64; 3]], c: &Stiffness) {
+        if element.dim() == 3 {
+            let c = &c.rows::<6>();
+            return match element.nodes() {
+                4 => self.integrate::<3, 6, 4>(4, element, points, c),
+                8 => self.integrate::<3, 6, 8>(8, element, points, c),
+                nodes => self.integrate::<3, 6, MAX_NODES>(nodes, element, points, c),
+            };
+        }
         let c = &c.rows::<3>();
         // The compiler unrolls what it knows the size of.
         match element.nodes() {
-            3 => self.integrate(3, element, points, c),
-            4 => self.integrate(4, element, points, c),
-            6 => self.integrate(6, element, points, c),
-            8 => self.integrate(8, element, points, c),
-            9 => self.integrate(9, element, points, c),
-            nodes => self.integrate(nodes, element, points, c),
+            3 => self.integrate::<2, 3, MAX_PLANE_NODES>(3, element, points, c),
+            4 => self.integrate::<2, 3, MAX_PLANE_NODES>(4, element, points, c),
+            6 => self.integrate::<2, 3, MAX_PLANE_NODES>(6, element, points, c),
+            8 => self.integrate::<2, 3, MAX_PLANE_NODES>(8, element, points, c),
+            9 => self.integrate::<2, 3, MAX_PLANE_NODES>(9, element, points, c),
+            nodes => self.integrate::<2, 3, MAX_PLANE_NODES>(nodes, element, points, c),
         }
     }
 
+    /// In D dimensions, with V components of strain, for up to N nodes.
     #[inline(always)]
-    fn integrate(
+    fn integrate<const D: usize, const V: usize, const N: usize>(
         &mut self,
         nodes: usize,
         element: &ReferenceElement,
         points: &[[f64; 3]],
-        c: &[[f64; 3]; 3],
+        c: &[[f64; V]; V],
     ) {
-        let order = 2 * nodes;
+        let order = D * nodes;
         self.order = order;
         self.values[..order * order].fill(0.0);
-        for point in stiffness_points(element, &points[..nodes]) {
+        for reference in element.stiffness_points() {
+            let point = PointGradients::<D, N>::new(reference, &points[..nodes]);
             self.add_lower(nodes, &point, c);
         }
         // Symmetric to the last bit, so that assembling one triangle is assembling both.
@@ -149,30 +223,49 @@ impl ElementMatrix {
 
     /// Adds the lower triangle of a point's contribution.
     #[inline(always)]
-    fn add_lower(&mut self, nodes: usize, point: &PointGradients, c: &[[f64; 3]; 3]) {
-        let order = 2 * nodes;
+    fn add_lower<const D: usize, const V: usize, const N: usize>(
+        &mut self,
+        nodes: usize,
+        point: &PointGradients<D, N>,
+        c: &[[f64; V]; V],
+    ) {
+        let order = D * nodes;
         for j in 0..nodes {
-            let [gx, gy] = point.gradients[j];
-            // The stress that a unit displacement of either component causes.
-            let x = [0, 1, 2].map(|r| c[r][0] * gx + c[r][2] * gy);
-            let y = [0, 1, 2].map(|r| c[r][1] * gy + c[r][2] * gx);
+            let g = &point.gradients[j];
+            // The stress that a unit displacement of each component causes.
+            let stresses: [[f64; V]; D] = from_fn(|a| {
+                from_fn(|r| {
+                    let others = (0..D).filter(|&b| b != a);
+                    others.fold(c[r][a] * g[a], |sum, b| sum + c[r][shear(D, a, b)] * g[b])
+                })
+            });
             for i in j..nodes {
-                let [gx, gy] = point.gradients[i];
-                for (column, s) in [(2 * j, x), (2 * j + 1, y)] {
-                    let k = &mut self.values[2 * i * order + column..];
-                    k[0] += point.weight * (gx * s[0] + gy * s[2]);
-                    k[order] += point.weight * (gy * s[1] + gx * s[2]);
+                let g = &point.gradients[i];
+                for (component, s) in stresses.iter().enumerate() {
+                    let k = &mut self.values[D * i * order + D * j + component..];
+                    for a in 0..D {
+                        let others = (0..D).filter(|&b| b != a);
+                        let force =
+                            others.fold(g[a] * s[a], |sum, b| sum + g[b] * s[shear(D, a, b)]);
+                        k[a * order] += point.weight * force;
+                    }
                 }
             }
         }
     }
 }
 
-/// (σ_1 ≥ σ_2 ≥ σ_3) of a stress (XX, YY, ZZ, XY, 0, 0): by Mohr's circle, and the stress across the
+/// (σ_1 ≥ σ_2 ≥ σ_3) of a stress (XX, YY, ZZ, XY, YZ, XZ); by Mohr's circle where it has none of the last two, as in the
 /// plane.
 pub fn principal_stresses(s: &[f64; 6]) -> [f64; 3] {
-    let (center, radius) = (0.5 * (s[0] + s[1]), (0.5 * (s[0] - s[1])).hypot(s[3]));
-    let mut values = [center + radius, center - radius, s[2]];
+    let [xx, yy, zz, xy, yz, xz] = *s;
+    let mut values: [f64; 3] = if yz == 0.0 && xz == 0.0 {
+        let (center, radius) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
+        [center + radius, center - radius, zz]
+    } else {
+        let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        tensor.symmetric_eigenvalues().into()
+    };
     values.sort_unstable_by(|a, b| b.total_cmp(a));
     values
 }
@@ -191,25 +284,40 @@ mod tests {
     use super::*;
 
     const C: [[f64; 3]; 3] = [[3.0, 1.0, 0.2], [1.0, 2.5, -0.1], [0.2, -0.1, 0.9]];
+    /// ∂u_i/∂x_j, and the strain of it in the plane and in space.
+    const SLOPES: [[f64; 3]; 3] = [[0.1, 0.2, -0.5], [-0.3, 0.4, 0.6], [0.7, -0.8, 0.9]];
+    const PLANE_STRAIN: [f64; 6] = [0.1, 0.4, -0.1, 0.0, 0.0, 0.0];
+    const STRAIN: [f64; 6] = [0.1, 0.4, 0.9, -0.2, 0.2, -0.1];
 
-    fn material() -> Material {
+    fn material(dim: usize) -> Material {
+        let solid: [[f64; 6]; 6] = from_fn(|i| {
+            from_fn(|j| 0.1 * ((i * j) as f64).cos() + if i == j { 2.0 + i as f64 } else { 0.0 })
+        });
         Material {
             name: "m".into(),
-            stiffness: C.into(),
+            stiffness: if dim == 2 { C.into() } else { solid.into() },
             out_of_plane: Some([0.3, 0.4, 0.5]),
             poisson: None,
         }
+    }
+
+    fn plane(kind: ElementKind) -> Option<PlaneState> {
+        (kind.dim() == 2).then_some(PlaneState::Strain)
+    }
+
+    fn cells() -> impl Iterator<Item = ElementKind> {
+        [2, 3].into_iter().flat_map(ElementKind::of_dim)
     }
 
     /// A cell of no special shape, its edges curved where they can be.
     fn points(kind: ElementKind) -> Vec<[f64; 3]> {
         let nodes = kind.node_coordinates().iter();
         nodes
-            .map(|&[x, y, _]| {
+            .map(|&[x, y, z]| {
                 [
-                    0.2 + 1.1 * x + 0.3 * y + 0.1 * y * y,
-                    0.1 + 1.6 * y - 0.2 * x * y,
-                    0.0,
+                    0.2 + 1.1 * x + 0.3 * y + 0.1 * y * y + 0.2 * z,
+                    0.1 + 1.6 * y - 0.2 * x * y + 0.05 * z * z,
+                    z * (1.2 + 0.1 * x - 0.1 * y),
                 ]
             })
             .collect()
@@ -217,25 +325,39 @@ mod tests {
 
     fn stiffness(kind: ElementKind) -> ElementMatrix {
         let mut k = ElementMatrix::default();
-        k.set(&kind, &points(kind), &C.into());
+        k.set(&kind, &points(kind), &material(kind.dim()).stiffness);
         k
+    }
+
+    /// The displacements with [`SLOPES`].
+    fn linear(kind: ElementKind) -> Vec<f64> {
+        let dim = kind.dim();
+        let at = |x: &[f64; 3]| {
+            let x = *x;
+            (0..dim).map(move |i| (0..dim).map(|j| SLOPES[i][j] * x[j]).sum())
+        };
+        points(kind).iter().flat_map(at).collect()
     }
 
     #[test]
     fn there_is_room_for_every_kind() {
-        assert!(ElementKind::of_dim(2).all(|kind| kind.nodes() <= MAX_NODES));
+        for (dim, most) in [(2, MAX_PLANE_NODES), (3, MAX_NODES)] {
+            assert!(ElementKind::of_dim(dim).all(|kind| kind.nodes() <= most));
+        }
     }
 
     #[test]
     fn a_linear_displacement_has_its_own_strain() {
-        for kind in ElementKind::of_dim(2) {
-            let points = points(kind);
-            let u: Vec<f64> = (points.iter())
-                .flat_map(|x| [0.1 * x[0] + 0.2 * x[1], -0.3 * x[0] + 0.4 * x[1]])
-                .collect();
-            for point in stiffness_points(&kind, &points) {
-                let e = strain(&point, &u);
-                for (e, exact) in e.iter().zip([0.1, 0.4, -0.1]) {
+        for kind in cells() {
+            let (points, u) = (points(kind), linear(kind));
+            let exact = if kind.dim() == 2 {
+                PLANE_STRAIN
+            } else {
+                STRAIN
+            };
+            for point in kind.stiffness_points() {
+                let (e, _) = strain(point, &points, &u);
+                for (e, exact) in e.iter().zip(exact) {
                     assert!((e - exact).abs() < 1e-14, "{kind:?}");
                 }
             }
@@ -244,13 +366,20 @@ mod tests {
 
     #[test]
     fn stiffness_is_symmetric_and_rigid_motions_cost_nothing() {
-        for kind in ElementKind::of_dim(2) {
-            let k = stiffness(kind);
-            let rotation: Vec<f64> = points(kind).iter().flat_map(|x| [-x[1], x[0]]).collect();
+        for kind in cells() {
+            let (k, dim) = (stiffness(kind), kind.dim());
+            let about = if dim == 2 {
+                [0.0, 0.0, 1.0]
+            } else {
+                [0.3, -0.4, 1.0]
+            };
+            let rotation: Vec<f64> = (points(kind).iter())
+                .flat_map(|&x| cross(about, x).into_iter().take(dim))
+                .collect();
             for (i, row) in k.rows().enumerate() {
                 let force: f64 = row.iter().zip(&rotation).map(|(k, u)| k * u).sum();
-                let push: f64 = row.iter().step_by(2).sum();
-                assert!(force.abs() < 1e-13 && push.abs() < 1e-13, "{kind:?}");
+                let push: f64 = row.iter().step_by(dim).sum();
+                assert!(force.abs() < 1e-12 && push.abs() < 1e-12, "{kind:?}");
                 assert!(k.rows().zip(row).all(|(column, k)| column[i] == *k));
             }
         }
@@ -258,36 +387,41 @@ mod tests {
 
     /// ∫ Bᵀ σ for a uniform stress is ∮ N σ n, with nothing at nodes inside.
     #[test]
-    fn the_forces_of_a_uniform_stress_are_its_tractions_on_the_edges() {
-        for kind in ElementKind::of_dim(2) {
-            let (k, at) = (stiffness(kind), points(kind));
-            let u: Vec<f64> = (at.iter())
-                .flat_map(|x| [0.1 * x[0] + 0.2 * x[1], -0.3 * x[0] + 0.4 * x[1]])
-                .collect();
-            let s = stress(&material(), PlaneState::Strain, &[0.1, 0.4, -0.1]);
+    fn the_forces_of_a_uniform_stress_are_its_tractions_on_the_facets() {
+        for kind in cells() {
+            let (k, at, dim) = (stiffness(kind), points(kind), kind.dim());
+            let u = linear(kind);
+            let of = if dim == 2 { &PLANE_STRAIN } else { &STRAIN };
+            let [xx, yy, zz, xy, yz, xz] = stress(&material(dim), plane(kind), of);
             let mut exact = vec![0.0; u.len()];
             for (facet, local) in kind.facets() {
                 let on: Vec<_> = local.iter().map(|&i| at[i]).collect();
                 for (xi, weight) in facet.quadrature(7) {
-                    let n = facet.area_vector(&on, xi);
-                    let traction = [s[0] * n[0] + s[3] * n[1], s[3] * n[0] + s[1] * n[1]];
+                    let [nx, ny, nz] = facet.area_vector(&on, xi);
+                    let traction = [
+                        xx * nx + xy * ny + xz * nz,
+                        xy * nx + yy * ny + yz * nz,
+                        xz * nx + yz * ny + zz * nz,
+                    ];
                     for (&i, shape) in local.iter().zip(facet.shape(xi)) {
-                        exact[2 * i] += weight * shape * traction[0];
-                        exact[2 * i + 1] += weight * shape * traction[1];
+                        for (component, traction) in traction.iter().enumerate().take(dim) {
+                            exact[dim * i + component] += weight * shape * traction;
+                        }
                     }
                 }
             }
             for (row, exact) in k.rows().zip(&exact) {
                 let force: f64 = row.iter().zip(&u).map(|(k, u)| k * u).sum();
-                assert!((force - exact).abs() < 1e-13, "{kind:?}");
+                assert!((force - exact).abs() < 1e-12, "{kind:?}: {force} {exact}");
             }
         }
     }
 
     #[test]
-    fn the_energy_is_half_stress_times_strain_times_area() {
-        for kind in ElementKind::of_dim(2) {
-            let u: Vec<f64> = (0..2 * kind.nodes())
+    fn the_energy_is_half_stress_times_strain_times_measure() {
+        for kind in cells() {
+            let material = material(kind.dim());
+            let u: Vec<f64> = (0..kind.dim() * kind.nodes())
                 .map(|i| (1.7 * i as f64).sin())
                 .collect();
             let k = stiffness(kind);
@@ -295,11 +429,10 @@ mod tests {
                 .rows()
                 .map(|row| row.iter().zip(&u).map(|(k, u)| k * u).sum::<f64>());
             let energy: f64 = forces.zip(&u).map(|(force, u)| force * u).sum();
-            let exact: f64 = stiffness_points(&kind, &points(kind))
+            let exact: f64 = (kind.stiffness_points().iter())
                 .map(|point| {
-                    let e = strain(&point, &u);
-                    let s = stress(&material(), PlaneState::Strain, &e);
-                    point.weight * (s[0] * e[0] + s[1] * e[1] + s[3] * e[2])
+                    let (e, weight) = strain(point, &points(kind), &u);
+                    weight * product(&voigt_stress(&material, &e), &e)
                 })
                 .sum();
             assert!((energy - exact).abs() < 1e-12 * exact, "{kind:?}");
@@ -308,12 +441,14 @@ mod tests {
 
     #[test]
     fn principal_stresses_and_von_mises_of_known_states() {
-        let shear = [0.0, 0.0, 0.0, 2.0, 0.0, 0.0];
-        let exact = [2.0, 0.0, -2.0];
-        for (s, e) in principal_stresses(&shear).iter().zip(exact) {
-            assert!((s - e).abs() < 1e-15);
+        for place in 3..6 {
+            let mut shear = [0.0; 6];
+            shear[place] = 2.0;
+            for (s, e) in principal_stresses(&shear).iter().zip([2.0, 0.0, -2.0]) {
+                assert!((s - e).abs() < 1e-15);
+            }
+            assert!((von_mises(&shear) - 2.0 * 3f64.sqrt()).abs() < 1e-15);
         }
-        assert!((von_mises(&shear) - 2.0 * 3f64.sqrt()).abs() < 1e-15);
         assert_eq!(von_mises(&[5.0, 5.0, 5.0, 0.0, 0.0, 0.0]), 0.0);
     }
 }

@@ -5,13 +5,13 @@
 
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::model::Material;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
-use super::elasticity::{stiffness_points, strain, stress_in_plane};
-use super::patch::COMPONENTS;
+use super::elasticity::{Voigt, strain, voigt_stress};
+use super::patch::NodalStress;
 
-/// Squares of energy norms over a cell (N, per metre of thickness).
+/// Squares of energy norms over a cell (N m, in the plane per metre of thickness).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CellError {
     /// ‖σ* − σ_h‖² = ∫ (σ* − σ_h) C⁻¹ (σ* − σ_h), with σ* the recovered stress.
@@ -37,41 +37,67 @@ impl CellError {
 }
 
 /// C⁻¹ of a material (1/Pa), in whose norm stresses are measured.
-#[derive(Clone, Copy, Debug)]
-pub struct Compliance(Matrix3<f64>);
+#[derive(Clone, Debug)]
+pub enum Compliance {
+    /// In the plane.
+    Plane(Matrix3<f64>),
+    /// In space.
+    Solid(Box<Matrix6<f64>>),
+}
 
 impl Compliance {
     /// That of a material; zero where its stiffness is singular.
     pub fn new(material: &Material) -> Self {
-        let c = Matrix3::from_fn(|i, j| material.stiffness[i][j]);
-        Self(c.try_inverse().unwrap_or_default())
+        let c = &material.stiffness;
+        match c.size() {
+            3 => {
+                let c = Matrix3::from_fn(|i, j| c[i][j]);
+                Self::Plane(c.try_inverse().unwrap_or_default())
+            }
+            _ => {
+                let c = Matrix6::from_fn(|i, j| c[i][j]);
+                Self::Solid(Box::new(c.try_inverse().unwrap_or_default()))
+            }
+        }
     }
 
-    /// s C⁻¹ s of (XX, YY, XY).
-    fn norm(&self, s: &[f64; 3]) -> f64 {
-        let s = Vector3::from(*s);
-        s.dot(&(self.0 * s))
+    /// s C⁻¹ s.
+    fn norm(&self, s: &Voigt) -> f64 {
+        match self {
+            Self::Plane(inverse) => {
+                let s = Vector3::new(s[0], s[1], s[2]);
+                s.dot(&(inverse * s))
+            }
+            Self::Solid(inverse) => {
+                let s = Vector6::from(*s);
+                s.dot(&(inverse.as_ref() * s))
+            }
+        }
     }
 
-    /// The error of a linear triangle with an area, whose stress is the same everywhere.
-    pub fn triangle(
-        &self,
-        area: f64,
-        stress: &[f64; 6],
-        recovered: [&[f64; COMPONENTS]; 3],
-    ) -> CellError {
-        let stress = [stress[0], stress[1], stress[3]];
+    /// A stress in the order of results in Voigt's.
+    fn voigt(&self, &[xx, yy, zz, xy, yz, xz]: &NodalStress) -> Voigt {
+        match self {
+            Self::Plane(_) => [xx, yy, xy, 0.0, 0.0, 0.0],
+            Self::Solid(_) => [xx, yy, zz, yz, xz, xy],
+        }
+    }
+
+    /// The error of a linear triangle or tetrahedron with a `measure`, whose stress is the same everywhere.
+    pub fn simplex(&self, measure: f64, stress: &[f64; 6], recovered: &[NodalStress]) -> CellError {
+        let stress = self.voigt(stress);
         // The difference is linear: ∫ over its values at the corners.
-        let mut total = [0.0; 3];
+        let mut total = [0.0; 6];
         let mut squares = 0.0;
         for at_node in recovered {
-            let d = difference(at_node, &stress);
+            let d = difference(&self.voigt(at_node), &stress);
             squares += self.norm(&d);
             total = std::array::from_fn(|k| total[k] + d[k]);
         }
+        let corners = recovered.len();
         CellError {
-            error: area / 12.0 * (squares + self.norm(&total)),
-            energy: area * self.norm(&stress),
+            error: measure / (corners * (corners + 1)) as f64 * (squares + self.norm(&total)),
+            energy: measure * self.norm(&stress),
         }
     }
 
@@ -80,28 +106,26 @@ impl Compliance {
     pub fn cell(
         &self,
         (kind, points, u): (ElementKind, &[[f64; 3]], &[f64]),
-        recovered: &[[f64; COMPONENTS]],
+        recovered: &[NodalStress],
         material: &Material,
     ) -> CellError {
         let mut sum = CellError::default();
-        let references = kind.stiffness_points().iter();
-        for (reference, point) in references.zip(stiffness_points(&kind, points)) {
-            let stress = stress_in_plane(material, &strain(&point, u));
-            let mut smooth = [0.0; COMPONENTS];
+        for reference in kind.stiffness_points() {
+            let (strain, weight) = strain(reference, points, u);
+            let stress = voigt_stress(material, &strain);
+            let mut smooth = [0.0; 6];
             for (n, at_node) in reference.shape.iter().zip(recovered) {
                 for (s, v) in smooth.iter_mut().zip(at_node) {
                     *s += n * v;
                 }
             }
-            sum.energy += point.weight * self.norm(&stress);
-            sum.error += point.weight * self.norm(&difference(&smooth, &stress));
+            sum.energy += weight * self.norm(&stress);
+            sum.error += weight * self.norm(&difference(&self.voigt(&smooth), &stress));
         }
         sum
     }
 }
 
-/// Recovered (XX, YY, ZZ, XY) less (XX, YY, XY).
-fn difference(recovered: &[f64; COMPONENTS], stress: &[f64; 3]) -> [f64; 3] {
-    let [xx, yy, _, xy] = recovered;
-    [xx - stress[0], yy - stress[1], xy - stress[2]]
+fn difference(a: &Voigt, b: &Voigt) -> Voigt {
+    std::array::from_fn(|k| a[k] - b[k])
 }

@@ -6,12 +6,11 @@
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 
-/// Components of a stress in the plane: XX, YY, ZZ, XY.
-pub const COMPONENTS: usize = 4;
-/// Terms of a quadratic polynomial: 1, x, y, x², xy, y².
-const TERMS: usize = 6;
-/// Terms of a linear one.
-const LINEAR: usize = 3;
+/// A stress at a node: XX, YY, ZZ, XY, YZ, XZ; in the plane the last two are 0.
+pub type NodalStress = [f64; 6];
+
+/// Terms of a quadratic polynomial in space: 1, x, y, z, x², xy, y², xz, yz, z².
+const TERMS: usize = 10;
 /// Entries of the lower triangle of the normal equations.
 const GRAM: usize = TERMS * (TERMS + 1) / 2;
 
@@ -20,21 +19,106 @@ const FULL_TURN: f64 = 1e-6;
 /// Pivot, relative to a unit diagonal, below which samples don't determine a polynomial.
 const DETERMINED: f64 = 1e-6;
 
+/// Components of a stress in `dim` dimensions: XX, YY, ZZ, XY in the plane.
+const fn components(dim: usize) -> usize {
+    if dim == 2 { 4 } else { 6 }
+}
+
+/// Terms of a quadratic polynomial; of a linear one there are one more than dimensions.
+const fn terms(dim: usize) -> usize {
+    (dim + 1) * (dim + 2) / 2
+}
+
 /// The normal equations of the polynomial around a vertex that is nearest to samples of the stress.
 /// Those of several blocks add up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(into = "Sums", from = "Sums")]
 pub struct PatchSum {
-    /// The rotation by the angles of all cells, cosine and sine; 0 where there are none.
+    dim: usize,
+    /// The rotation by the angles of all cells, in space by half their solid angles, cosine and sine; 0 where there
+    /// are none.
     turn: [f64; 2],
     /// Whether any of its cells is linear, and any quadratic.
     has_linear: bool,
     has_quadratic: bool,
     gram: [f64; GRAM],
-    load: [[f64; COMPONENTS]; TERMS],
+    /// The components of a term one after the other.
+    load: [f64; 6 * TERMS],
+}
+
+/// What of a patch sum isn't zero for want of dimensions.
+#[derive(Serialize, Deserialize)]
+struct Sums {
+    dim: usize,
+    turn: [f64; 2],
+    has_linear: bool,
+    has_quadratic: bool,
+    sums: Vec<f64>,
+}
+
+impl From<PatchSum> for Sums {
+    fn from(patch: PatchSum) -> Self {
+        let (gram, load) = patch.parts();
+        Self {
+            dim: patch.dim,
+            turn: patch.turn,
+            has_linear: patch.has_linear,
+            has_quadratic: patch.has_quadratic,
+            sums: [&patch.gram[..gram], &patch.load[..load]].concat(),
+        }
+    }
+}
+
+impl From<Sums> for PatchSum {
+    fn from(sums: Sums) -> Self {
+        let mut patch = Self::empty(sums.dim);
+        patch.turn = sums.turn;
+        patch.has_linear = sums.has_linear;
+        patch.has_quadratic = sums.has_quadratic;
+        let (gram, load) = patch.parts();
+        let of_load = sums.sums.iter().skip(gram);
+        patch.gram[..gram]
+            .iter_mut()
+            .zip(&sums.sums)
+            .for_each(|(a, b)| *a = *b);
+        patch.load[..load]
+            .iter_mut()
+            .zip(of_load)
+            .for_each(|(a, b)| *a = *b);
+        patch
+    }
 }
 
 impl PatchSum {
-    /// Adds a cell with an angle at the vertex, given by its cosine and sine.
+    /// A patch without cells.
+    pub fn empty(dim: usize) -> Self {
+        Self {
+            dim,
+            turn: [0.0; 2],
+            has_linear: false,
+            has_quadratic: false,
+            gram: [0.0; GRAM],
+            load: [0.0; 6 * TERMS],
+        }
+    }
+
+    /// Takes all cells out, which is faster than making an empty one.
+    pub fn clear(&mut self) {
+        let (gram, load) = self.parts();
+        self.gram[..gram].fill(0.0);
+        self.load[..load].fill(0.0);
+        self.turn = [0.0; 2];
+        self.has_linear = false;
+        self.has_quadratic = false;
+    }
+
+    /// How many of `gram` and `load` there are in this dimension.
+    fn parts(&self) -> (usize, usize) {
+        let terms = terms(self.dim);
+        (terms * (terms + 1) / 2, terms * components(self.dim))
+    }
+
+    /// Adds a cell with an angle at the vertex, in space half a solid angle, given by its cosine and sine.
     pub fn add_cell(&mut self, turn: [f64; 2], is_quadratic: bool) {
         self.add_turn(turn);
         self.has_linear |= !is_quadratic;
@@ -42,22 +126,25 @@ impl PatchSum {
     }
 
     /// Adds the stress (Pa) at a point, given from the vertex on (m).
-    pub fn add_sample(&mut self, at: [f64; 2], stress: [f64; COMPONENTS]) {
-        match self.has_quadratic {
-            true => self.add_terms::<TERMS>(at, stress),
-            false => self.add_terms::<LINEAR>(at, stress),
+    pub fn add_sample(&mut self, at: [f64; 3], stress: &NodalStress) {
+        match (self.dim, self.has_quadratic) {
+            (2, true) => self.add_terms::<6, 4>(at, stress),
+            (2, false) => self.add_terms::<3, 4>(at, stress),
+            (_, true) => self.add_terms::<10, 6>(at, stress),
+            (_, false) => self.add_terms::<4, 6>(at, stress),
         }
     }
 
-    fn add_terms<const N: usize>(&mut self, at: [f64; 2], stress: [f64; COMPONENTS]) {
-        let terms = monomials(at);
+    /// The same for N terms and C components.
+    fn add_terms<const N: usize, const C: usize>(&mut self, at: [f64; 3], stress: &NodalStress) {
+        let terms: [f64; N] = monomials(at, if C == 4 { 2 } else { 3 });
         let mut entry = 0;
         for i in 0..N {
             for b in &terms[..=i] {
                 self.gram[entry] += terms[i] * b;
                 entry += 1;
             }
-            for (sum, s) in self.load[i].iter_mut().zip(stress) {
+            for (sum, s) in self.load[C * i..C * (i + 1)].iter_mut().zip(stress) {
                 *sum += terms[i] * s;
             }
         }
@@ -84,22 +171,31 @@ impl PatchSum {
     /// The polynomial: quadratic where all cells are, else linear; where the samples
     /// don't determine it, or lie on one side of the vertex only, one of lower degree.
     pub fn fit(&self) -> Polynomial {
+        let (linear, quadratic): (Solve, Solve) = match self.dim {
+            2 => (Self::solve::<3, 4>, Self::solve::<6, 4>),
+            _ => (Self::solve::<4, 6>, Self::solve::<10, 6>),
+        };
+        let constant: Solve = match self.dim {
+            2 => Self::solve::<1, 4>,
+            _ => Self::solve::<1, 6>,
+        };
         let quadratic = match self.has_quadratic && !self.has_linear && self.is_inner() {
-            true => self.solve::<TERMS>(),
+            true => quadratic(self),
             false => None,
         };
-        // A quadratic cell alone has a linear stress; three linear ones have no better than a mean.
-        let enough = LINEAR as f64 + if self.has_linear { 1.0 } else { 0.0 };
+        // A quadratic cell alone has a linear stress; as many linear ones as there are terms have no better than a
+        // mean.
+        let enough = (self.dim + 1) as f64 + if self.has_linear { 1.0 } else { 0.0 };
         let is_enough = self.is_inner() || self.gram[0] >= enough;
         let linear = || match is_enough {
-            true => self.solve::<LINEAR>(),
+            true => linear(self),
             false => None,
         };
-        let best = quadratic.or_else(linear).or_else(|| self.solve::<1>());
-        best.unwrap_or_default()
+        let best = quadratic.or_else(linear).or_else(|| constant(self));
+        best.unwrap_or_else(|| Polynomial::zero(self.dim))
     }
 
-    fn solve<const N: usize>(&self) -> Option<Polynomial> {
+    fn solve<const N: usize, const C: usize>(&self) -> Option<Polynomial> {
         let mut gram = SMatrix::<f64, N, N>::zeros();
         let mut entry = 0;
         for i in 0..N {
@@ -116,15 +212,20 @@ impl PatchSum {
                 gram[(i, j)] *= scale[i] * scale[j];
             }
         }
-        let load = SMatrix::<f64, N, COMPONENTS>::from_fn(|i, c| scale[i] * self.load[i][c]);
+        let load = SMatrix::<f64, N, C>::from_fn(|i, c| scale[i] * self.load[C * i + c]);
         let factor = gram.cholesky()?;
         let is_determined = |i: usize| factor.l_dirty()[(i, i)].powi(2) > DETERMINED;
         if !(0..N).all(is_determined) {
             return None;
         }
         let solution = factor.solve(&load);
-        let mut polynomial = Polynomial::default();
-        for (i, coefficients) in polynomial.coefficients[..N].iter_mut().enumerate() {
+        let mut polynomial = Polynomial::zero(self.dim);
+        for (i, coefficients) in polynomial
+            .coefficients
+            .chunks_exact_mut(C)
+            .take(N)
+            .enumerate()
+        {
             for (c, coefficient) in coefficients.iter_mut().enumerate() {
                 *coefficient = scale[i] * solution[(i, c)];
             }
@@ -139,27 +240,76 @@ impl PatchSum {
         }
         self.has_linear |= other.has_linear;
         self.has_quadratic |= other.has_quadratic;
-        for (a, b) in self.gram.iter_mut().zip(&other.gram) {
+        let (gram, load) = self.parts();
+        for (a, b) in self.gram.iter_mut().zip(&other.gram[..gram]) {
             *a += b;
         }
-        let others = other.load.as_flattened();
-        for (a, b) in self.load.as_flattened_mut().iter_mut().zip(others) {
+        for (a, b) in self.load.iter_mut().zip(&other.load[..load]) {
             *a += b;
         }
     }
 }
 
+/// The way to a polynomial of some degree.
+type Solve = fn(&PatchSum) -> Option<Polynomial>;
+
 /// A stress that varies as a polynomial of the place, seen from a vertex.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(into = "Coefficients", from = "Coefficients")]
 pub struct Polynomial {
-    coefficients: [[f64; COMPONENTS]; TERMS],
+    dim: usize,
+    /// The components of a term one after the other.
+    coefficients: [f64; 6 * TERMS],
+}
+
+/// Those of a polynomial that there are in its dimension.
+#[derive(Serialize, Deserialize)]
+struct Coefficients {
+    dim: usize,
+    coefficients: Vec<f64>,
+}
+
+impl From<Polynomial> for Coefficients {
+    fn from(polynomial: Polynomial) -> Self {
+        let dim = polynomial.dim;
+        Self {
+            dim,
+            coefficients: polynomial.coefficients[..components(dim) * terms(dim)].to_vec(),
+        }
+    }
+}
+
+impl From<Coefficients> for Polynomial {
+    fn from(message: Coefficients) -> Self {
+        let mut polynomial = Self::zero(message.dim);
+        let coefficients = polynomial.coefficients.iter_mut();
+        coefficients
+            .zip(message.coefficients)
+            .for_each(|(a, b)| *a = b);
+        polynomial
+    }
 }
 
 impl Polynomial {
+    /// The one that is 0 everywhere.
+    pub fn zero(dim: usize) -> Self {
+        Self {
+            dim,
+            coefficients: [0.0; 6 * TERMS],
+        }
+    }
+
+    /// The coefficients of its terms.
+    fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        let rows = self.coefficients.chunks_exact(components(self.dim));
+        rows.take(terms(self.dim))
+    }
+
     /// Its value at a point, given from the vertex on (m).
-    pub fn at(&self, at: [f64; 2]) -> [f64; COMPONENTS] {
-        let mut value = [0.0; COMPONENTS];
-        for (term, coefficients) in monomials(at).iter().zip(&self.coefficients) {
+    pub fn at(&self, at: [f64; 3]) -> NodalStress {
+        let mut value = [0.0; 6];
+        let monomials: [f64; TERMS] = monomials(at, self.dim);
+        for (term, coefficients) in monomials.iter().zip(self.rows()) {
             for (v, c) in value.iter_mut().zip(coefficients) {
                 *v += term * c;
             }
@@ -169,27 +319,24 @@ impl Polynomial {
 
     /// The same polynomial as it is seen from a point.
     #[must_use]
-    pub fn seen_from(&self, [x, y]: [f64; 2]) -> Self {
-        let c = &self.coefficients;
-        let of = |factors: [f64; TERMS]| {
-            std::array::from_fn(|k| factors.iter().zip(c).map(|(f, c)| f * c[k]).sum())
-        };
-        Self {
-            coefficients: [
-                self.at([x, y]),
-                of([0.0, 1.0, 0.0, 2.0 * x, y, 0.0]),
-                of([0.0, 0.0, 1.0, 0.0, x, 2.0 * y]),
-                c[3],
-                c[4],
-                c[5],
-            ],
+    pub fn seen_from(&self, at: [f64; 3]) -> Self {
+        let mut seen = *self;
+        let width = components(self.dim);
+        seen.coefficients[..width].copy_from_slice(&self.at(at)[..width]);
+        for axis in 0..self.dim {
+            let factors = slopes(at, self.dim, axis);
+            let linear = &mut seen.coefficients[(axis + 1) * width..][..width];
+            for (k, sum) in linear.iter_mut().enumerate() {
+                *sum = factors.iter().zip(self.rows()).map(|(f, c)| f * c[k]).sum();
+            }
         }
+        seen
     }
 
     /// Adds a multiple of another one that is seen from the same point.
     pub fn add(&mut self, factor: f64, other: &Self) {
-        let others = other.coefficients.as_flattened();
-        for (a, b) in self.coefficients.as_flattened_mut().iter_mut().zip(others) {
+        let others = &other.coefficients[..components(self.dim) * terms(self.dim)];
+        for (a, b) in self.coefficients.iter_mut().zip(others) {
             *a += factor * b;
         }
     }
@@ -199,15 +346,17 @@ impl Polynomial {
 /// mesh.
 #[derive(Clone, Debug)]
 pub struct Polynomials {
+    dim: usize,
     width: usize,
     values: Vec<f64>,
 }
 
 impl Polynomials {
     /// Zeros for `count` nodes, of linear polynomials alone or of quadratic ones too.
-    pub fn zeros(count: usize, are_linear: bool) -> Self {
-        let width = COMPONENTS * if are_linear { LINEAR } else { TERMS };
+    pub fn zeros(dim: usize, count: usize, are_linear: bool) -> Self {
+        let width = components(dim) * if are_linear { dim + 1 } else { terms(dim) };
         Self {
+            dim,
             width,
             values: vec![0.0; width * count],
         }
@@ -215,43 +364,77 @@ impl Polynomials {
 
     /// That of a node.
     pub fn get(&self, node: usize) -> Polynomial {
-        let mut polynomial = Polynomial::default();
-        let coefficients = polynomial.coefficients.as_flattened_mut();
-        coefficients[..self.width].copy_from_slice(&self.values[self.width * node..][..self.width]);
+        let mut polynomial = Polynomial::zero(self.dim);
+        let coefficients = &mut polynomial.coefficients[..self.width];
+        coefficients.copy_from_slice(&self.values[self.width * node..][..self.width]);
         polynomial
     }
 
     /// Sets that of a node; of a quadratic one, among linear ones, its linear terms.
     pub fn set(&mut self, node: usize, polynomial: &Polynomial) {
         let values = &mut self.values[self.width * node..][..self.width];
-        values.copy_from_slice(&polynomial.coefficients.as_flattened()[..self.width]);
+        values.copy_from_slice(&polynomial.coefficients[..self.width]);
     }
 }
 
-fn monomials([x, y]: [f64; 2]) -> [f64; TERMS] {
-    [1.0, x, y, x * x, x * y, y * y]
+/// The first N of 1, the coordinates, their products.
+fn monomials<const N: usize>(at: [f64; 3], dim: usize) -> [f64; N] {
+    let mut terms = [0.0; N];
+    terms[0] = 1.0;
+    terms
+        .iter_mut()
+        .skip(1)
+        .zip(&at[..dim])
+        .for_each(|(term, x)| *term = *x);
+    let products = (0..dim).flat_map(|i| (0..=i).map(move |j| (j, i)));
+    let quadratic = terms.iter_mut().skip(dim + 1);
+    quadratic
+        .zip(products)
+        .for_each(|(term, (j, i))| *term = at[j] * at[i]);
+    terms
+}
+
+/// Their derivatives along an axis.
+fn slopes(at: [f64; 3], dim: usize, axis: usize) -> [f64; TERMS] {
+    let mut slopes = [0.0; TERMS];
+    slopes[axis + 1] = 1.0;
+    let products = (0..dim).flat_map(|i| (0..=i).map(move |j| [j, i]));
+    for (slope, pair) in slopes.iter_mut().skip(dim + 1).zip(products) {
+        *slope = match pair.map(|k| k == axis) {
+            [true, true] => 2.0 * at[axis],
+            [true, false] => at[pair[1]],
+            [false, true] => at[pair[0]],
+            [false, false] => 0.0,
+        };
+    }
+    slopes
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn field([x, y]: [f64; 2], degree: usize) -> [f64; COMPONENTS] {
+    fn field([x, y, z]: [f64; 3], dim: usize, degree: usize) -> NodalStress {
         let quadratic = if degree > 1 { 1.0 } else { 0.0 };
-        [1.0, -2.0, 0.5, 3.0]
-            .map(|c| c + 2.0 * x - c * y + quadratic * (x * x - 0.3 * x * y + c * y * y))
+        let mut stress = [1.0, -2.0, 0.5, 3.0, -1.5, 2.5].map(|c| {
+            c + 2.0 * x - c * y
+                + 1.5 * z
+                + quadratic * (x * x - 0.3 * x * y + c * y * y + 0.4 * x * z - c * y * z + z * z)
+        });
+        stress[components(dim)..].fill(0.0);
+        stress
     }
 
-    fn patch(degree: usize, points: &[[f64; 2]]) -> PatchSum {
-        let mut sum = PatchSum::default();
+    fn patch(dim: usize, degree: usize, points: &[[f64; 3]]) -> PatchSum {
+        let mut sum = PatchSum::empty(dim);
         sum.add_cell([1.0, 0.0], degree > 1);
         for &at in points {
-            sum.add_sample(at, field(at, degree));
+            sum.add_sample(at, &field(at, dim, degree));
         }
         sum
     }
 
-    const POINTS: [[f64; 2]; 7] = [
+    const POINTS: [[f64; 2]; 12] = [
         [1e-3, 2e-3],
         [-2e-3, 1e-3],
         [0.5e-3, -1e-3],
@@ -259,56 +442,90 @@ mod tests {
         [-1e-3, -2e-3],
         [1.5e-3, 1.7e-3],
         [-0.2e-3, 2.2e-3],
+        [1.1e-3, 0.3e-3],
+        [-0.7e-3, -0.4e-3],
+        [0.1e-3, 0.9e-3],
+        [0.6e-3, -2.1e-3],
+        [-1.8e-3, 1.9e-3],
     ];
 
-    fn is_near(a: [f64; COMPONENTS], b: [f64; COMPONENTS]) -> bool {
+    fn points(dim: usize) -> Vec<[f64; 3]> {
+        let height = |i: usize| {
+            if dim == 2 {
+                0.0
+            } else {
+                1e-3 * (2.3 * i as f64).sin()
+            }
+        };
+        let count = if dim == 2 { 7 } else { 12 };
+        let plane = POINTS[..count].iter().enumerate();
+        plane.map(|(i, &[x, y])| [x, y, height(i)]).collect()
+    }
+
+    /// A point of the plane, or above it in space.
+    fn above(dim: usize, x: f64, y: f64) -> [f64; 3] {
+        [x, y, if dim == 2 { 0.0 } else { 0.4 * x - 0.7 * y }]
+    }
+
+    fn is_near(a: NodalStress, b: NodalStress) -> bool {
         a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-11)
     }
 
     #[test]
     fn a_polynomial_is_found_from_its_values() {
-        for degree in [1, 2] {
-            let polynomial = patch(degree, &POINTS).fit();
-            for at in [[0.0, 0.0], [1e-3, -1e-3]] {
-                assert!(is_near(polynomial.at(at), field(at, degree)));
+        for (dim, degree) in [(2, 1), (2, 2), (3, 1), (3, 2)] {
+            let polynomial = patch(dim, degree, &points(dim)).fit();
+            for at in [[0.0; 3], above(dim, 1e-3, -1e-3)] {
+                assert!(
+                    is_near(polynomial.at(at), field(at, dim, degree)),
+                    "{dim} {degree}"
+                );
             }
         }
     }
 
     #[test]
     fn too_few_samples_have_a_polynomial_of_lower_degree() {
-        let linear = patch(2, &POINTS[..5]).fit();
-        assert_eq!(linear.coefficients[3], [0.0; COMPONENTS]);
-        let mean = patch(1, &POINTS[..2]).fit();
-        assert_eq!(mean.coefficients[1], [0.0; COMPONENTS]);
-        let [a, b] = [POINTS[0], POINTS[1]].map(|at| field(at, 1));
-        assert!(is_near(
-            mean.at([1.0, 1.0]),
-            std::array::from_fn(|c| 0.5 * (a[c] + b[c]))
-        ));
-        let on_a_line = patch(1, &[[1.0, 1.0], [2.0, 2.0], [-1.0, -1.0], [3.0, 3.0]]).fit();
-        assert_eq!(on_a_line.coefficients[1], [0.0; COMPONENTS]);
+        for dim in [2, 3] {
+            let points = points(dim);
+            let linear = patch(dim, 2, &points[..terms(dim) - 1]).fit();
+            assert!(linear.rows().skip(dim + 1).flatten().all(|&c| c == 0.0));
+            let mean = patch(dim, 1, &points[..2]).fit();
+            assert!(mean.rows().skip(1).flatten().all(|&c| c == 0.0));
+            let [a, b] = [points[0], points[1]].map(|at| field(at, dim, 1));
+            let half = std::array::from_fn(|c| 0.5 * (a[c] + b[c]));
+            assert!(is_near(mean.at(above(dim, 1.0, 1.0)), half));
+            let on_a_line: Vec<[f64; 3]> = [1.0, 2.0, -1.0, 3.0, 4.0]
+                .iter()
+                .map(|&s| above(dim, s, s))
+                .collect();
+            let on_a_line = patch(dim, 1, &on_a_line).fit();
+            assert!(on_a_line.rows().skip(1).flatten().all(|&c| c == 0.0));
+        }
     }
 
     #[test]
     fn a_polynomial_is_the_same_from_anywhere() {
-        let polynomial = patch(2, &POINTS).fit();
-        let moved = polynomial.seen_from([1e-3, 2e-3]);
-        assert!(is_near(
-            moved.at([3e-3, -1e-3]),
-            polynomial.at([4e-3, 1e-3])
-        ));
+        for dim in [2, 3] {
+            let polynomial = patch(dim, 2, &points(dim)).fit();
+            let moved = polynomial.seen_from(above(dim, 1e-3, 2e-3));
+            let [a, b] = [(3e-3, -1e-3), (4e-3, 1e-3)].map(|(x, y)| above(dim, x, y));
+            assert!(is_near(moved.at(a), polynomial.at(b)));
+        }
     }
 
     #[test]
     fn parts_of_a_patch_add_up_whatever_their_degree() {
-        for degree in [1, 2] {
-            let whole = patch(degree, &POINTS);
-            let mut parts = patch(degree, &POINTS[..3]);
-            parts.add(&patch(degree, &POINTS[3..]));
+        for (dim, degree) in [(2, 1), (2, 2), (3, 1), (3, 2)] {
+            let points = points(dim);
+            let whole = patch(dim, degree, &points);
+            let mut parts = patch(dim, degree, &points[..3]);
+            parts.add(&patch(dim, degree, &points[3..]));
             assert!(parts.is_inner());
-            let [a, b] = [whole.fit(), parts.fit()].map(|p| p.at([1e-3, 1e-3]));
+            let [a, b] = [whole.fit(), parts.fit()].map(|p| p.at(above(dim, 1e-3, 1e-3)));
             assert!(is_near(a, b));
+            let sent = PatchSum::from(Sums::from(parts));
+            assert_eq!(sent, parts);
         }
     }
 }

@@ -6,10 +6,10 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::element::ElementKind;
+use contact_dd_partition::element::geometry::difference;
 
 use super::block::{Block, BlockCell};
-use super::patch::{COMPONENTS, PatchSum, Polynomial, Polynomials};
+use super::patch::{NodalStress, PatchSum, Polynomial, Polynomials};
 
 /// A block's part of the patches around the vertices in one material, and what comes of them.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ impl Recovery {
             .map(|&(node, _)| patches[node as usize])
             .collect();
         let are_linear = block.cells().all(|cell| cell.kind.is_linear());
-        let mut polynomials = Polynomials::zeros(block.nodes(), are_linear);
+        let mut polynomials = Polynomials::zeros(block.dim, block.nodes(), are_linear);
         for (node, patch) in patches.iter().enumerate() {
             if !patch.is_empty() {
                 polynomials.set(node, &patch.fit());
@@ -74,7 +74,8 @@ impl Recovery {
                 continue;
             }
             for at_boundary in corners.clone().filter(|&c| !self.is_inner[c]) {
-                let (sum, count) = self.neighbours.entry(at_boundary).or_default();
+                let (sum, count) = (self.neighbours.entry(at_boundary))
+                    .or_insert_with(|| (Polynomial::zero(block.dim), 0.0));
                 for within in corners.clone().filter(|&c| self.is_inner[c]) {
                     let way = way(block, within, at_boundary);
                     sum.add(1.0, &self.polynomials.get(within).seen_from(way));
@@ -103,26 +104,26 @@ impl Recovery {
         self.neighbours.insert(node, (sum, count));
     }
 
-    /// The stress at every node of the block in this material (Pa): XX, YY, ZZ, XY; 0 at others.
-    pub fn at_nodes(mut self, block: &Block) -> Vec<[f64; COMPONENTS]> {
+    /// The stress at every node of the block in this material (Pa); 0 at others.
+    pub fn at_nodes(mut self, block: &Block) -> Vec<NodalStress> {
         for (&node, (sum, count)) in &self.neighbours {
             if *count > 0.0 {
-                let mut mean = Polynomial::default();
+                let mut mean = Polynomial::zero(block.dim);
                 mean.add(count.recip(), sum);
                 self.polynomials.set(node, &mean);
             }
         }
-        let mut stress: Vec<[f64; COMPONENTS]> = (0..block.nodes())
-            .map(|node| self.polynomials.get(node).at([0.0; 2]))
+        let mut stress: Vec<NodalStress> = (0..block.nodes())
+            .map(|node| self.polynomials.get(node).at([0.0; 3]))
             .collect();
         let quadratic =
             |cell: &BlockCell<'_>| cell.material == self.material && !cell.kind.is_linear();
         for cell in block.cells().filter(quadratic) {
             let nodes: Vec<usize> = cell.nodes().map(|node| node as usize).collect();
             for local in cell.kind.corners()..nodes.len() {
-                let around = vertices_of(cell.kind, local);
+                let around = cell.kind.corners_around(local);
                 let node = nodes[local];
-                let mut mean = [0.0; COMPONENTS];
+                let mut mean = [0.0; 6];
                 for &vertex in around {
                     let from = nodes[vertex];
                     let value = self.polynomials.get(from).at(way(block, from, node));
@@ -145,15 +146,6 @@ fn corners(cell: &BlockCell<'_>) -> impl Iterator<Item = usize> + Clone {
 }
 
 /// From one node to another (m).
-fn way(block: &Block, from: usize, to: usize) -> [f64; 2] {
-    [0, 1].map(|k| block.points()[to][k] - block.points()[from][k])
-}
-
-/// The corners that a local node on an edge or in the face lies between.
-fn vertices_of(kind: ElementKind, local: usize) -> &'static [usize] {
-    let mut edges = kind.facets().iter();
-    match edges.find(|(_, nodes)| nodes.get(2) == Some(&local)) {
-        Some((_, nodes)) => &nodes[..2],
-        None => &[0, 1, 2, 3][..kind.corners()],
-    }
+fn way(block: &Block, from: usize, to: usize) -> [f64; 3] {
+    difference(block.points()[to], block.points()[from])
 }

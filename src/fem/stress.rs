@@ -2,13 +2,15 @@
 //! tells of.
 
 use contact_dd_partition::element::ElementKind;
+use contact_dd_partition::element::geometry::{cross, difference, dot, length};
 use contact_dd_partition::element::quadrature::TabulatedPoint;
+use contact_dd_partition::element::reference::Domain;
 use contact_dd_partition::model::{Material, PlaneState};
 
 use super::block::{Block, BlockCell};
-use super::elasticity::{MAX_DOFS, MAX_NODES, gradients, stiffness_points, strain, stress};
+use super::elasticity::{MAX_DOFS, MAX_NODES, strain, stress};
 use super::estimate::{CellError, Compliance};
-use super::patch::{COMPONENTS, PatchSum};
+use super::patch::{NodalStress, PatchSum};
 use super::recovery::Recovery;
 
 /// The stresses of a block.
@@ -26,7 +28,7 @@ pub struct RecoveredStress {
     /// The block's materials, ascending.
     materials: Vec<usize>,
     /// At every node in each of them (Pa).
-    at_nodes: Vec<Vec<[f64; COMPONENTS]>>,
+    at_nodes: Vec<Vec<NodalStress>>,
     /// Estimated error of every cell.
     pub errors: Vec<CellError>,
 }
@@ -36,7 +38,7 @@ impl BlockStress {
     pub fn new(
         block: &Block,
         materials: &[Material],
-        plane: PlaneState,
+        plane: Option<PlaneState>,
         u: &[f64],
         patches: &mut Vec<PatchSum>,
     ) -> Self {
@@ -45,8 +47,8 @@ impl BlockStress {
             .collect();
         present.sort_unstable();
         present.dedup();
-        patches.clear();
-        patches.resize_with(block.nodes() * present.len(), PatchSum::default);
+        patches.iter_mut().for_each(PatchSum::clear);
+        patches.resize_with(block.nodes() * present.len(), || PatchSum::empty(block.dim));
         let mut cells = Vec::with_capacity(block.subdomain.cells.len());
         let mut local = LocalCell::empty();
         for cell in block.cells() {
@@ -64,14 +66,12 @@ impl BlockStress {
             }
             for point in cell.kind.stress_points() {
                 let at = local.place(point);
-                let sigma = match cell.kind {
-                    // It is the same everywhere.
-                    ElementKind::Triangle3 => mean,
-                    _ => local.stress(point, material, plane),
+                let sigma = match is_uniform(cell.kind) {
+                    true => mean,
+                    false => local.stress(point, material, plane),
                 };
-                let [xx, yy, zz, xy, ..] = sigma;
                 for (&node, from) in corners.iter().zip(&local.points) {
-                    around[node].add_sample([at[0] - from[0], at[1] - from[1]], [xx, yy, zz, xy]);
+                    around[node].add_sample(difference(at, *from), &sigma);
                 }
             }
         }
@@ -101,17 +101,14 @@ impl BlockStress {
                 continue;
             };
             let (at_nodes, compliance) = (&at_nodes[place], &compliances[place]);
-            if cell.kind == ElementKind::Triangle3 {
-                let mut nodes = cell.nodes().map(|node| node as usize);
-                let nodes: [usize; 3] = std::array::from_fn(|_| nodes.next().unwrap_or_default());
-                let area = cell.kind.measure(&nodes.map(|node| block.points()[node]));
-                let recovered = nodes.map(|node| &at_nodes[node]);
-                errors.push(compliance.triangle(area, stress, recovered));
-                continue;
-            }
             local.take(block, &cell, u);
             recovered.clear();
             recovered.extend(cell.nodes().map(|node| at_nodes[node as usize]));
+            if is_uniform(cell.kind) {
+                let measure = cell.kind.measure(&local.points);
+                errors.push(compliance.simplex(measure, stress, &recovered));
+                continue;
+            }
             let of_cell = (cell.kind, &local.points[..], &local.u[..]);
             errors.push(compliance.cell(of_cell, &recovered, &materials[cell.material]));
         }
@@ -135,11 +132,15 @@ impl RecoveredStress {
         }
         let stress = |(node, material): (usize, &usize)| {
             let place = self.materials.binary_search(material);
-            let [xx, yy, zz, xy] = place.map_or([0.0; 4], |place| self.at_nodes[place][node]);
-            [xx, yy, zz, xy, 0.0, 0.0]
+            place.map_or([0.0; 6], |place| self.at_nodes[place][node])
         };
         material.iter().enumerate().map(stress).collect()
     }
+}
+
+/// Whether the stress is the same everywhere in a cell: that of a linear triangle or tetrahedron.
+fn is_uniform(kind: ElementKind) -> bool {
+    kind.is_linear() && matches!(kind.domain(), Domain::Triangle | Domain::Tetrahedron)
 }
 
 /// A cell with its nodes, their coordinates and displacements.
@@ -174,58 +175,83 @@ impl LocalCell {
     }
 
     /// The mean stress.
-    fn mean(&self, material: &Material, plane: PlaneState) -> [f64; 6] {
-        let (mut sum, mut area) = ([0.0; 6], 0.0);
-        for point in stiffness_points(&self.kind, &self.points) {
-            let sigma = stress(material, plane, &strain(&point, &self.u));
+    fn mean(&self, material: &Material, plane: Option<PlaneState>) -> [f64; 6] {
+        let (mut sum, mut measure) = ([0.0; 6], 0.0);
+        for point in self.kind.stiffness_points() {
+            let (strain, weight) = strain(point, &self.points, &self.u);
+            let sigma = stress(material, plane, &strain);
             for (sum, s) in sum.iter_mut().zip(sigma) {
-                *sum += point.weight * s;
+                *sum += weight * s;
             }
-            area += point.weight;
+            measure += weight;
         }
-        sum.map(|s| s / area)
+        sum.map(|s| s / measure)
     }
 
     /// Where a point is (m).
-    fn place(&self, point: &TabulatedPoint) -> [f64; 2] {
-        let mut at = [0.0; 2];
+    fn place(&self, point: &TabulatedPoint) -> [f64; 3] {
+        let mut at = [0.0; 3];
         for (n, x) in point.shape.iter().zip(&self.points) {
-            at[0] += n * x[0];
-            at[1] += n * x[1];
+            for (at, x) in at.iter_mut().zip(x) {
+                *at += n * x;
+            }
         }
         at
     }
 
     /// The stress at a point.
-    fn stress(&self, point: &TabulatedPoint, material: &Material, plane: PlaneState) -> [f64; 6] {
-        let strain = strain(&gradients(point, &self.points), &self.u);
+    fn stress(
+        &self,
+        point: &TabulatedPoint,
+        material: &Material,
+        plane: Option<PlaneState>,
+    ) -> [f64; 6] {
+        let (strain, _) = strain(point, &self.points, &self.u);
         stress(material, plane, &strain)
     }
 
-    /// Cosine and sine of the angle between the edges at a corner.
+    /// Cosine and sine of the angle between the edges at a corner, in space of half the solid angle.
     fn turn(&self, corner: usize) -> [f64; 2] {
-        let edges = self.kind.facets();
-        let vertex = self.points[corner];
-        let tangent = |other: usize, edge: &[usize]| {
-            let end = self.points[other];
-            let way = [0, 1].map(|k| end[k] - vertex[k]);
-            match edge.get(2) {
-                None => way,
-                // The derivative at the end of a parabola through three points.
-                Some(&middle) => {
-                    [0, 1].map(|k| 4.0 * (self.points[middle][k] - vertex[k]) - way[k])
-                }
+        let [cos, sin] = match self.kind.dim() {
+            2 => {
+                let [out, back, _] = self.edges(corner);
+                [
+                    out[0] * back[0] + out[1] * back[1],
+                    out[0] * back[1] - out[1] * back[0],
+                ]
+            }
+            _ => {
+                // Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30 (1983).
+                let [a, b, c] = self.edges(corner).map(|edge| {
+                    let size = length(edge);
+                    edge.map(|x| x / size)
+                });
+                [
+                    1.0 + dot(a, b) + dot(b, c) + dot(c, a),
+                    dot(cross(a, b), c).abs(),
+                ]
             }
         };
-        let (after, before) = (
-            edges[corner].1,
-            edges[(corner + edges.len() - 1) % edges.len()].1,
-        );
-        let out = tangent(after[1], after);
-        let back = tangent(before[0], before);
-        let cos = out[0] * back[0] + out[1] * back[1];
-        let sin = out[0] * back[1] - out[1] * back[0];
         let length = (cos * cos + sin * sin).sqrt();
         [cos / length, sin / length]
+    }
+
+    /// The directions of the edges at a corner: in the plane from the one after it to the one before it, in space all
+    /// three.
+    fn edges(&self, corner: usize) -> [[f64; 3]; 3] {
+        let mut edges = [[0.0; 3]; 3];
+        let at_corner = self.kind.edges_at(corner);
+        for (edge, &(end, middle)) in edges.iter_mut().zip(at_corner) {
+            let way = difference(self.points[end], self.points[corner]);
+            *edge = match middle {
+                None => way,
+                // The derivative at the end of a parabola through three points.
+                Some(middle) => {
+                    let half = difference(self.points[middle], self.points[corner]);
+                    [0, 1, 2].map(|k| 4.0 * half[k] - way[k])
+                }
+            };
+        }
+        edges
     }
 }

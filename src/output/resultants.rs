@@ -23,6 +23,11 @@ impl Resultant {
         self.force = advance(self.force, 1.0, force);
         self.moment = advance(self.moment, 1.0, cross(at, force));
     }
+
+    /// Whether it isn't one of the plane.
+    pub fn is_spatial(&self) -> bool {
+        self.force[2] != 0.0 || self.moment[..2] != [0.0; 2]
+    }
 }
 
 /// What a contact transfers.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::element::geometry::{cross, difference, length};
 use contact_dd_partition::mesh::bounding_box::BoundingBox;
 use contact_dd_partition::problem::{Catalog, Subdomain};
 use nalgebra::DMatrix;
@@ -136,7 +137,7 @@ fn compressed(rows: Vec<Vec<f64>>, entries: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The first and last node along every axis.
+/// The first and last node along every axis; in space also three that don't lie on a line, if there are any.
 fn extreme_nodes(points: &[[f64; 3]], dim: usize) -> Vec<usize> {
     let mut nodes: Vec<usize> = (0..dim)
         .flat_map(|axis| {
@@ -146,6 +147,18 @@ fn extreme_nodes(points: &[[f64; 3]], dim: usize) -> Vec<usize> {
             first.into_iter().chain(last)
         })
         .collect();
+    if dim == 3 {
+        let farthest = |far: &dyn Fn([f64; 3]) -> f64| {
+            (0..points.len()).max_by(|&a, &b| far(points[a]).total_cmp(&far(points[b])))
+        };
+        let first = points.first().copied().unwrap_or_default();
+        let start = farthest(&|x| length(difference(x, first)));
+        let from = start.map_or(first, |node| points[node]);
+        let end = farthest(&|x| length(difference(x, from)));
+        let along = end.map_or(from, |node| difference(points[node], from));
+        let aside = farthest(&|x| length(cross(difference(x, from), along)));
+        nodes.extend([start, end, aside].into_iter().flatten());
+    }
     nodes.sort_unstable();
     nodes.dedup();
     nodes

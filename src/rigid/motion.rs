@@ -1,6 +1,6 @@
 //! Rigid motions z of a body: translations, and rotations ω × (x − x_0) about its center scaled by its size.
 
-use contact_dd_partition::element::geometry::cross;
+use contact_dd_partition::element::geometry::{cross, dot, length};
 use serde::{Deserialize, Serialize};
 
 /// The frame in which the rigid motions of a body are written.
@@ -75,24 +75,48 @@ impl BodyFrame {
         let (translation, rotation) = z.split_at(dim);
         if norm(rotation) <= 1e-6 * norm(translation) {
             let length = norm(translation);
-            let along: Vec<String> = translation
-                .iter()
-                .map(|t| format!("{:.4}", (1e4 * t / length).round() / 1e4 + 0.0))
-                .collect();
-            return format!("translation along ({})", along.join(", "));
+            let along: Vec<f64> = translation.iter().map(|t| t / length).collect();
+            return format!("translation along ({})", listed(&along, 4));
         }
         if dim == 2 {
             let omega = rotation[0] / self.size;
             let x = self.center[0] - translation[1] / omega;
             let y = self.center[1] + translation[0] / omega;
-            // Digits below a ten thousandth of the body are round-off.
-            let digits = (4.0 - self.size.log10().floor()).clamp(0.0, 30.0) as usize;
-            let step = 10.0_f64.powi(-(digits as i32));
-            let [x, y] = [x, y].map(|c| (c / step).round() * step + 0.0);
-            return format!("rotation about ({x:.digits$}, {y:.digits$})");
+            return format!("rotation about ({})", listed(&[x, y], self.digits()));
         }
-        "rotation".into()
+        // About the third axis, the first and the second, as in `action`.
+        let omega = [rotation[1], rotation[2], rotation[0]].map(|w| w / self.size);
+        let rate = length(omega);
+        let translation = [translation[0], translation[1], translation[2]];
+        // Of both directions of the axis the one whose first component that counts is positive.
+        let first = omega.iter().find(|w| w.abs() > 1e-6 * rate);
+        let axis = omega.map(|w| w / rate.copysign(first.copied().unwrap_or(rate)));
+        let arm = cross(omega, translation).map(|x| x / (rate * rate));
+        let through = [0, 1, 2].map(|k| self.center[k] + arm[k]);
+        let digits = self.digits();
+        let shift = match dot(translation, axis).abs() > 1e-6 * rate * self.size {
+            true => " and translation along it",
+            false => "",
+        };
+        format!(
+            "rotation about the axis through ({}) along ({}){shift}",
+            listed(&through, digits),
+            listed(&axis, 4)
+        )
     }
+
+    /// Digits behind the point of a coordinate: below a ten thousandth of the body they are round-off.
+    fn digits(&self) -> usize {
+        (4.0 - self.size.log10().floor()).clamp(0.0, 30.0) as usize
+    }
+}
+
+/// Numbers with so many digits behind the point, none of them −0.
+fn listed(numbers: &[f64], digits: usize) -> String {
+    let step = 10.0_f64.powi(-(digits as i32));
+    let rounded = numbers.iter().map(|c| (c / step).round() * step + 0.0);
+    let shown = rounded.map(|c| format!("{c:.digits$}"));
+    shown.collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
@@ -113,6 +137,36 @@ mod tests {
             let same: f64 = action.iter().zip(&z).map(|(a, z)| a * z).sum();
             assert!((work - same).abs() < 1e-14);
         }
+    }
+
+    #[test]
+    fn the_axis_that_a_rotation_is_about_stays() {
+        let frame = BodyFrame::new([0.0, 0.0, -1.0], [2.0, 4.0, 1.0]);
+        let (point, axis) = ([3.0, -1.0, 0.5], [0.6, 0.0, 0.8]);
+        let at = |x: [f64; 3]| cross(axis, [0, 1, 2].map(|k| x[k] - point[k]));
+        let [x, y, z] = at(frame.center);
+        let turn = axis.map(|w| w * frame.size);
+        let z = [x, y, z, turn[2], turn[0], turn[1]];
+        let u = frame.displacement(3, &[0.5, 0.25, 0.7], &z);
+        let exact = at([0.5, 0.25, 0.7]);
+        assert!(
+            (0..3).all(|k| (u[k] - exact[k]).abs() < 1e-14),
+            "{u:?} {exact:?}"
+        );
+        let through = "(2.0400, -1.0000, -0.7800)";
+        let words = frame.describe(3, &z);
+        assert_eq!(
+            words,
+            format!("rotation about the axis through {through} along (0.6000, 0.0000, 0.8000)")
+        );
+        let mut screw = z.map(|z| -z);
+        screw[1] += 1.0;
+        screw[0] -= 2.0;
+        assert!(frame.describe(3, &screw).ends_with("translation along it"));
+        assert_eq!(
+            frame.describe(3, &[0.0, -2.0, 0.0, 0.0, 0.0, 0.0]),
+            "translation along (0.0000, -1.0000, 0.0000)"
+        );
     }
 
     #[test]

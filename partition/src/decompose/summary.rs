@@ -38,8 +38,9 @@ impl Summary<'_> {
     fn pairings(&self) -> Vec<&'static str> {
         let mut pairings = vec![""; self.0.catalog.contacts.len()];
         for point in &self.0.catalog.points {
-            pairings[point.contact as usize] = match (point.entries.len(), point.tag_b) {
-                (1, _) => ", obstacle",
+            let weights: f64 = point.entries.iter().map(|(_, weight)| weight).sum();
+            pairings[point.contact as usize] = match (weights > 0.5, point.tag_b) {
+                (true, _) => ", obstacle",
                 (_, -1) => ", mortar",
                 _ => ", node by node",
             };

@@ -112,21 +112,39 @@ impl ReferenceElement {
         }
     }
 
-    /// Points whose convex hull holds a line, its ends among them (m).
+    /// Points whose convex hull holds a line or face, its corners among them (m).
     pub fn hull(&self, at: &[[f64; 3]]) -> Vec<[f64; 3]> {
         match (self.domain(), at) {
             // The middle one of Bernstein's coefficients.
-            (Domain::Line, &[p, q, m]) => {
-                let middle = [0, 1, 2].map(|i| 2.0 * m[i] - 0.5 * (p[i] + q[i]));
-                vec![p, q, middle]
+            (Domain::Line, &[p, q, m]) => vec![p, q, bernstein(p, m, q)],
+            (Domain::Triangle, &[a, b, c, ab, bc, ca]) => {
+                vec![
+                    a,
+                    b,
+                    c,
+                    bernstein(a, ab, b),
+                    bernstein(b, bc, c),
+                    bernstein(c, ca, a),
+                ]
+            }
+            (Domain::Square, _) if !self.is_linear() => {
+                let places = [-1.0, 0.0, 1.0];
+                let rows = places.map(|t| {
+                    let [p, m, q] = places.map(|s| self.position(at, [s, t, 0.0]));
+                    [p, bernstein(p, m, q), q]
+                });
+                let column = |i: usize| {
+                    let [p, m, q] = rows.map(|row| row[i]);
+                    [p, bernstein(p, m, q), q]
+                };
+                (0..3).flat_map(column).collect()
             }
             _ => at.to_vec(),
         }
     }
 
-    /// Where the line x + s·`direction` (a unit vector) crosses the inside of a facet of the
-    /// plane: s (m), the one nearest to x where there are two. `None` where it passes by, or along
-    /// it.
+    /// Where the line x + s·`direction` (a unit vector) crosses the inside of a facet: s (m), in the plane the one
+    /// nearest to x where there are two. `None` where it passes by, or along it.
     pub fn crossing(&self, at: &[[f64; 3]], x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
         let aside = |p: [f64; 3]| {
             let way = difference(p, x);
@@ -152,9 +170,56 @@ impl ReferenceElement {
                 });
                 ways.min_by(|a, b| a.abs().total_cmp(&b.abs()))
             }
+            (Domain::Triangle | Domain::Square, _) => self.crossing_of_face(at, x, direction),
             _ => None,
         }
     }
+
+    /// The same of a face, borders included, by Newton's method from its middle.
+    fn crossing_of_face(&self, at: &[[f64; 3]], x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
+        let mut xi = match self.domain() {
+            Domain::Triangle => [1.0 / 3.0, 1.0 / 3.0, 0.0],
+            _ => [0.0; 3],
+        };
+        let mut ahead = dot(difference(self.position(at, xi), x), direction);
+        for _ in 0..NEWTON_STEPS {
+            let missed = difference(self.position(at, xi), advance(x, ahead, direction));
+            let [r, s, _] = tangents(&self.gradients(xi), at);
+            let normal = cross(r, s);
+            // x(ξ + δ) = x + (s + δ_s) direction by Cramer's rule.
+            let across = dot(normal, direction);
+            if across.abs() <= PARALLEL * length(normal) {
+                return None;
+            }
+            let change = [
+                dot(cross(s, missed), direction) / across,
+                dot(cross(missed, r), direction) / across,
+            ];
+            xi = [xi[0] + change[0], xi[1] + change[1], 0.0];
+            ahead += dot(normal, missed) / across;
+            if change.iter().all(|c| c.abs() <= BORDER) {
+                let [s, t, _] = xi;
+                let is_inside = match self.domain() {
+                    Domain::Triangle => s.min(t).min(1.0 - s - t) >= -BORDER,
+                    _ => s.abs().max(t.abs()) <= 1.0 + BORDER,
+                };
+                return is_inside.then_some(ahead);
+            }
+        }
+        None
+    }
+}
+
+/// Steps after which Newton's method isn't on its way to a point of a face.
+const NEWTON_STEPS: usize = 20;
+/// Reference coordinates up to which the border of a face belongs to it.
+const BORDER: f64 = 1e-9;
+/// Sine of the angle between a line and a face up to which it runs along it.
+const PARALLEL: f64 = 1e-9;
+
+/// Bernstein's middle coefficient of a quadratic with these values at the ends and in the middle.
+fn bernstein(p: [f64; 3], m: [f64; 3], q: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|i| 2.0 * m[i] - 0.5 * (p[i] + q[i]))
 }
 
 /// The columns ∂x/∂ξ_j of the map of an element with the nodes at `at`.

@@ -45,6 +45,23 @@ impl Domain {
         }
     }
 
+    /// The corners whose linear shape functions aren't 0 at a point.
+    fn corners_near(self, xi: [f64; 3]) -> Vec<usize> {
+        let linear = match self {
+            Self::Point => ElementKind::Point1,
+            Self::Line => ElementKind::Line2,
+            Self::Triangle => ElementKind::Triangle3,
+            Self::Square => ElementKind::Quad4,
+            Self::Tetrahedron => ElementKind::Tetrahedron4,
+            Self::Cube => ElementKind::Hexahedron8,
+        };
+        let shares = linear.shape(xi).into_iter().enumerate();
+        shares
+            .filter(|(_, share)| *share != 0.0)
+            .map(|(corner, _)| corner)
+            .collect()
+    }
+
     /// Its measure.
     pub fn measure(self) -> f64 {
         match self {
@@ -122,6 +139,8 @@ pub struct ReferenceElement {
 #[derive(Debug)]
 struct Tables {
     along: Vec<usize>,
+    corners_around: Vec<Vec<usize>>,
+    edges_at: Vec<Vec<(usize, Option<usize>)>>,
     stiffness: Vec<TabulatedPoint>,
     stress: Vec<TabulatedPoint>,
     lattice: Lattice,
@@ -208,6 +227,17 @@ impl ReferenceElement {
         &self.tables().along
     }
 
+    /// The corners that a local node lies between: itself, the ends of its edge, the corners of its face or all.
+    pub fn corners_around(&self, node: usize) -> &[usize] {
+        &self.tables().corners_around[node]
+    }
+
+    /// The edges at a corner of a cell, the other end and the node between, if there is one: in the plane the one
+    /// after the corner and the one before it, in space all three.
+    pub fn edges_at(&self, corner: usize) -> &[(usize, Option<usize>)] {
+        &self.tables().edges_at[corner]
+    }
+
     /// The points at which a cell's stiffness is integrated; facets have none.
     pub fn stiffness_points(&self) -> &[TabulatedPoint] {
         &self.tables().stiffness
@@ -235,10 +265,43 @@ impl ReferenceElement {
             };
             Tables {
                 along,
+                corners_around: at
+                    .iter()
+                    .map(|&xi| self.domain().corners_near(xi))
+                    .collect(),
+                edges_at: (0..self.corners())
+                    .map(|corner| self.find_edges(corner))
+                    .collect(),
                 stiffness: rule(|rules| rules.stiffness),
                 stress: rule(|rules| rules.stress),
                 lattice: Lattice::new(self),
             }
         })
+    }
+
+    fn find_edges(&self, corner: usize) -> Vec<(usize, Option<usize>)> {
+        let lines = self
+            .facets()
+            .iter()
+            .flat_map(|&(facet, local)| -> Vec<Vec<usize>> {
+                let edges = facet.facets().iter();
+                match facet.dim() {
+                    2 => edges
+                        .map(|(_, edge)| edge.iter().map(|&i| local[i]).collect())
+                        .collect(),
+                    _ => vec![local.to_vec()],
+                }
+            });
+        let mut found: Vec<(usize, Option<usize>)> = Vec::new();
+        for line in lines.filter(|line| line.len() > 1) {
+            let middle = line.get(2).copied();
+            // In space each edge is one of two faces, in the other direction.
+            match (line[0] == corner, line[1] == corner) {
+                (true, _) => found.insert(0, (line[1], middle)),
+                (_, true) if self.dim() == 2 => found.push((line[0], middle)),
+                _ => {}
+            }
+        }
+        found
     }
 }

@@ -9,6 +9,7 @@ use crate::mesh::{Group, Mesh};
 use crate::scene::Scene;
 use crate::scene::condition::{Body, Contact, Names};
 use crate::scene::material::Elasticity;
+use crate::stiffness::Stiffness;
 
 /// Poisson's ratio from which on linear cells lock: too stiff by 7 % in energy at 0.499.
 const LOCKING: f64 = 0.49;
@@ -95,8 +96,8 @@ fn warn_of_locking(scene: &Scene, mesh: &Mesh, cell_material: &[u32], warnings: 
     }
 }
 
-/// Materials in the order of their names, with C for the plane state.
-pub(super) fn materials(scene: &Scene, plane: PlaneState) -> Vec<Material> {
+/// Materials in the order of their names, with C for the plane state, or for space.
+pub(super) fn materials(scene: &Scene, plane: Option<PlaneState>) -> Vec<Material> {
     scene
         .materials
         .iter()
@@ -104,39 +105,53 @@ pub(super) fn materials(scene: &Scene, plane: PlaneState) -> Vec<Material> {
         .collect()
 }
 
-fn material(name: &str, elasticity: &Elasticity, plane: PlaneState) -> Material {
-    let (stiffness, in_plane_strain, poisson) = match *elasticity {
+fn material(name: &str, elasticity: &Elasticity, plane: Option<PlaneState>) -> Material {
+    let (stiffness, out_of_plane, poisson) = match elasticity {
         Elasticity::Isotropic { young, poisson } => {
-            let shear = young / (2.0 * (1.0 + poisson));
-            let lambda = match plane {
-                PlaneState::Strain => 2.0 * shear * poisson / (1.0 - 2.0 * poisson),
-                PlaneState::Stress => 2.0 * shear * poisson / (1.0 - poisson),
-            };
-            let axial = lambda + 2.0 * shear;
-            (
-                [
-                    [axial, lambda, 0.0],
-                    [lambda, axial, 0.0],
-                    [0.0, 0.0, shear],
-                ],
-                Some([lambda, lambda, 0.0]),
-                Some(poisson),
-            )
+            let (stiffness, out_of_plane) = isotropic(*young, *poisson, plane);
+            (stiffness, Some(out_of_plane), Some(*poisson))
         }
         Elasticity::Anisotropic {
             stiffness,
             out_of_plane,
-        } => (stiffness, out_of_plane, None),
+        } => (stiffness.clone(), *out_of_plane, None),
     };
     Material {
         name: name.to_owned(),
-        stiffness: stiffness.into(),
+        stiffness,
         out_of_plane: match plane {
-            PlaneState::Strain => in_plane_strain,
-            PlaneState::Stress => Some([0.0; 3]),
+            Some(PlaneState::Strain) => out_of_plane,
+            Some(PlaneState::Stress) => Some([0.0; 3]),
+            None => None,
         },
         poisson,
     }
+}
+
+/// C by Hooke's law, and in plane strain the row of σ_zz.
+fn isotropic(young: f64, poisson: f64, plane: Option<PlaneState>) -> (Stiffness, [f64; 3]) {
+    let shear = young / (2.0 * (1.0 + poisson));
+    let lambda = match plane {
+        Some(PlaneState::Stress) => 2.0 * shear * poisson / (1.0 - poisson),
+        Some(PlaneState::Strain) | None => 2.0 * shear * poisson / (1.0 - 2.0 * poisson),
+    };
+    let axial = lambda + 2.0 * shear;
+    let stiffness = match plane {
+        Some(_) => Stiffness::from([
+            [axial, lambda, 0.0],
+            [lambda, axial, 0.0],
+            [0.0, 0.0, shear],
+        ]),
+        None => Stiffness::from(std::array::from_fn::<_, 6, _>(|i| {
+            std::array::from_fn::<_, 6, _>(|j| match (i < 3, j < 3) {
+                (true, true) if i == j => axial,
+                (true, true) => lambda,
+                _ if i == j => shear,
+                _ => 0.0,
+            })
+        })),
+    };
+    (stiffness, [lambda, lambda, 0.0])
 }
 
 /// Groups of cells that are no body, to end a message with; empty where there is none.

@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::blend::has_weightless_corners;
 use super::node_pairs::Unpaired;
 use super::sides::{Sides, side_nodes};
 use super::steps::Loads;
@@ -203,12 +204,14 @@ impl<'a> Contacts<'a> {
         };
         let (node, angle, _) = (side_a.turns().into_iter())
             .find(|&(node, angle, _)| angle > CORNER && is_mean(node) == Some(true))?;
-        let [x, y, _] = self.mesh.points[node as usize].map(short);
+        let at = self.mesh.points[node as usize][..self.mesh.dim].iter();
+        let at: Vec<String> = at.map(|&c| short(c)).collect();
         Some(format!(
-            "{what}: side a has a corner of {:.0}° at node {}, ({x}, {y}), where it presses along the mean of \
+            "{what}: side a has a corner of {:.0}° at node {}, ({}), where it presses along the mean of \
              both normals; expected sides without corners, a contact for each",
             angle.to_degrees(),
-            tag(node)
+            tag(node),
+            at.join(", ")
         ))
     }
 
@@ -229,7 +232,19 @@ impl<'a> Contacts<'a> {
     ) -> Result<Vec<ContactPoint<u32>>, InputError> {
         let refused = InputError::about(what);
         let sides = Sides::new(self.mesh, side_a, side_b, what)?;
+        let are_weightless = side_a
+            .facets
+            .iter()
+            .any(|facet| has_weightless_corners(facet.kind));
         let matched = match pairing {
+            Some(Pairing::Nodes) if are_weightless => {
+                return Err(refused(
+                    "nodes can't be paired on quadratic faces without a node in the middle, whose corners would pull; \
+                     expected pairing = \"mortar\", or none"
+                        .into(),
+                ));
+            }
+            None if are_weightless => return mortar::points(&sides).map_err(refused),
             Some(Pairing::Mortar) => return mortar::points(&sides).map_err(refused),
             Some(Pairing::Nodes) | None => node_pairs::points(&sides),
         };

@@ -13,9 +13,9 @@ use crate::scene::Scene;
 use crate::scene::number::Vector;
 use crate::scene::step::Loading;
 
-/// Degree of exactness on facets: a cubic pressure along a curved quadratic one times a shape
-/// function and n dS needs 9.
-const FACET_DEGREE: usize = 9;
+/// Degree of exactness on lines and faces: a cubic pressure along a curved quadratic one times a shape
+/// function and n dS needs 9 and 11.
+const FACET_DEGREES: [usize; 2] = [9, 11];
 
 /// The nodal forces of a loading of `scene`, node by node.
 pub(super) fn forces(
@@ -108,7 +108,7 @@ fn surface_load(
     load: impl Fn([f64; 3], [f64; 3]) -> Result<[f64; 3], String>,
 ) -> Result<(), String> {
     for facet in &surface.facets {
-        for (xi, weight) in facet.kind.quadrature(FACET_DEGREE) {
+        for (xi, weight) in facet.kind.quadrature(FACET_DEGREES[facet.kind.dim() - 1]) {
             let x = facet.kind.position(&facet.at, xi);
             let load = load(x, facet.kind.area_vector(&facet.at, xi))?;
             for (&node, value) in facet.nodes.iter().zip(facet.kind.shape(xi)) {

@@ -1,10 +1,13 @@
-//! Contact with a rigid obstacle, n·u ≤ g: points of one node.
+//! Contact with a rigid obstacle, n·u ≤ g: points of one node, on some quadratic faces with the ends of its edge.
 
+use std::collections::HashMap;
+
+use super::blend::{TAKEN, has_weightless_corners};
 use super::ray_search::FACING;
 use super::sides::SideNode;
 use super::surface::Surface;
 use crate::contact_point::ContactPoint;
-use crate::element::geometry::{difference, dot, length};
+use crate::element::geometry::{advance, difference, dot, length};
 use crate::mesh::Mesh;
 use crate::scene::condition::Obstacle;
 
@@ -28,17 +31,19 @@ pub(super) fn points(
         if area > 0.0 { area } else { a.tributary_area }
     };
     let mut points = Vec::with_capacity(nodes.len());
+    let mut place = HashMap::new();
     for a in nodes {
         let tag = mesh.node_tags[a.node as usize];
         let Some((distance, out)) = distance(obstacle, a.position) else {
             return Err(format!(
-                "node {tag} lies in the circle's centre, where no point of it is nearest"
+                "node {tag} lies in the obstacle's centre, where no point of it is nearest"
             ));
         };
         let normal = out.map(|c| -c);
         if dot(a.normal, normal) < FACING {
             continue;
         }
+        place.insert(a.node, points.len());
         points.push(ContactPoint {
             gap: distance,
             area: facing_area(&a, normal),
@@ -52,33 +57,81 @@ pub(super) fn points(
                 .to_owned(),
         );
     }
+    blend_corners(side, &mut points, &place);
     Ok(points)
+}
+
+/// On quadratic faces without a node in the middle: with functions of which corners take a part from the nodes on
+/// their edges, N_e = (Ñ_e + …)/(1 − Σ taken), the condition of such a node is
+///
+/// > (u_e − Σ taken·u_c)·n/(1 − Σ taken) ≤ (g_e − Σ taken·g_c)/(1 − Σ taken),   c the ends of its edge
+fn blend_corners(side: &Surface, points: &mut [ContactPoint<u32>], place: &HashMap<u32, usize>) {
+    let plain = points.to_vec();
+    for facet in side
+        .facets
+        .iter()
+        .filter(|facet| has_weightless_corners(facet.kind))
+    {
+        for (_, edge) in facet.kind.facets() {
+            let [a, b, middle] = [0, 1, 2].map(|i| place.get(&facet.nodes[edge[i]]).copied());
+            let Some(middle) = middle.filter(|&middle| points[middle].entries.len() == 1) else {
+                continue;
+            };
+            let ends: Vec<&ContactPoint<u32>> =
+                [a, b].into_iter().flatten().map(|c| &plain[c]).collect();
+            let left = 1.0 - TAKEN * ends.len() as f64;
+            let point = &mut points[middle];
+            point.entries[0].1 = 1.0 / left;
+            point.gap /= left;
+            point.force_point = point.position.map(|x| x / left);
+            for end in ends {
+                point.entries.push((end.entries[0].0, -TAKEN / left));
+                point.gap -= TAKEN / left * end.gap;
+                point.force_point = advance(point.force_point, -TAKEN / left, end.position);
+            }
+        }
+    }
 }
 
 /// Signed distance of a point to an obstacle, positive outside of its material, and the
 /// obstacle's normal at its point nearest to it, out of its material.
 fn distance(obstacle: &Obstacle, at: [f64; 3]) -> Option<(f64, [f64; 3])> {
     match obstacle {
-        Obstacle::HalfPlane { point, normal } => {
-            // Scaled first, so that no square under- or overflows.
-            let largest = normal.value.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
-            let scaled = normal.value.map(|c| c / largest);
-            let normal = scaled.map(|c| c / length(scaled));
+        Obstacle::HalfSpace { point, normal } => {
+            let normal = unit(normal.value);
             Some((dot(difference(at, point.value), normal), normal))
         }
-        Obstacle::Circle {
+        Obstacle::Ball {
             center,
             radius,
             inside,
+        } => round(difference(at, center.value), *radius, *inside),
+        Obstacle::Cylinder {
+            point,
+            axis,
+            radius,
+            inside,
         } => {
-            let arm = difference(at, center.value);
-            let far = length(arm);
-            let out = (far > 0.0).then(|| arm.map(|c| c / far))?;
-            Some(if *inside {
-                (radius - far, out.map(|c| -c))
-            } else {
-                (far - radius, out)
-            })
+            let (arm, axis) = (difference(at, point.value), unit(axis.value));
+            round(advance(arm, -dot(arm, axis), axis), *radius, *inside)
         }
     }
+}
+
+/// The same at the end of `arm`, which starts in the centre or on the axis.
+fn round(arm: [f64; 3], radius: f64, inside: bool) -> Option<(f64, [f64; 3])> {
+    let far = length(arm);
+    let out = (far > 0.0).then(|| arm.map(|c| c / far))?;
+    Some(match inside {
+        true => (radius - far, out.map(|c| -c)),
+        false => (far - radius, out),
+    })
+}
+
+/// The unit vector along a direction.
+fn unit(direction: [f64; 3]) -> [f64; 3] {
+    // Scaled first, so that no square under- or overflows.
+    let largest = direction.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+    let scaled = direction.map(|c| c / largest);
+    scaled.map(|c| c / length(scaled))
 }

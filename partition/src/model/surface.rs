@@ -1,9 +1,10 @@
 //! A piece of the boundary: its facets with their outward normals.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
+use super::blend::{has_weightless_corners, positive};
 use crate::element::ElementKind;
-use crate::element::geometry::{advance, dot, length};
+use crate::element::geometry::{advance, cross, dot, length};
 use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::bounding_box::BoundingBox;
@@ -72,13 +73,19 @@ impl SurfaceFacet {
         self.kind.along().iter().map(|&i| self.nodes[i])
     }
 
-    /// ∫ of the shape function of a node over it; 0 of one that isn't its own.
+    /// ∫ of the shape function of a node over it, of quadratic faces the function that is [`positive`]; 0 of one that
+    /// isn't its own.
     pub fn tributary_area(&self, node: u32) -> f64 {
         let Some(place) = self.nodes.iter().position(|&own| own == node) else {
             return 0.0;
         };
+        let blended = has_weightless_corners(self.kind).then(|| positive(self.kind));
         let area = integrate(self.kind, |xi| {
-            let weight = self.kind.shape(xi)[place];
+            let shape = self.kind.shape(xi);
+            let weight = match &blended {
+                None => shape[place],
+                Some(basis) => basis.row(place).iter().zip(shape).map(|(b, n)| b * n).sum(),
+            };
             let measure = length(self.kind.area_vector(&self.at, xi));
             [weight * measure, 0.0, 0.0]
         });
@@ -94,13 +101,32 @@ impl SurfaceFacet {
         Some(advance(way, -dot(way, normal), normal))
     }
 
+    /// The edges of a face at its corner `node`, across `normal`.
+    fn wedge(&self, node: u32, normal: [f64; 3]) -> Option<[[f64; 3]; 2]> {
+        let corner = self.nodes.iter().position(|&n| n == node)?;
+        if self.kind.dim() < 2 || corner >= self.kind.corners() {
+            return None;
+        }
+        let edges = self.kind.edges_at(corner);
+        let edge = |&(end, _): &(usize, Option<usize>)| {
+            let way = advance(self.at[end], -1.0, self.at[corner]);
+            advance(way, -dot(way, normal), normal)
+        };
+        Some([edge(edges.first()?), edge(edges.get(1)?)])
+    }
+
     /// Whether this facet at node `a` and `other` at node `b`, which lies on the `normal` of `a`,
     /// lie opposite each other and not beside each other.
     pub fn is_opposite(&self, a: u32, other: &Self, b: u32, normal: [f64; 3]) -> bool {
         match (self.aside(a, normal), other.aside(b, normal)) {
             (Some(own), Some(others)) => {
-                dot(own, others) > 1e-6 * length(own) * length(others)
-                    && dot(self.normal, other.normal) < 0.0
+                let same_way = match (self.wedge(a, normal), other.wedge(b, normal)) {
+                    (Some(wedge), Some(opposite)) => {
+                        is_between(opposite, others, own) || is_between(wedge, own, others)
+                    }
+                    _ => dot(own, others) > 1e-6 * length(own) * length(others),
+                };
+                same_way && dot(self.normal, other.normal) < 0.0
             }
             _ => false,
         }
@@ -183,18 +209,34 @@ impl Surface {
         nodes
     }
 
-    /// The nodes at which two facets meet at an angle (rad), with the larger size of the two (m).
+    /// The nodes at which two facets meet at an angle (rad), in space one end of every edge where they do, with the
+    /// larger size of the two (m).
     pub fn turns(&self) -> Vec<(u32, f64, f64)> {
-        let around = self.around();
-        let turn = |node: u32| {
-            let [a, b] = around[&node][..] else {
+        let turn = |(node, facets): (u32, &[usize])| {
+            let [a, b] = *facets else {
                 return None;
             };
             let (a, b) = (&self.facets[a], &self.facets[b]);
             let cosine = dot(a.normal_at(node), b.normal_at(node)).clamp(-1.0, 1.0);
             Some((node, cosine.acos(), a.size().max(b.size())))
         };
-        self.in_order().into_iter().filter_map(turn).collect()
+        if self.facets.iter().any(|facet| facet.kind.dim() > 1) {
+            let mut edges: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
+            for (index, facet) in self.facets.iter().enumerate() {
+                for (_, edge) in facet.kind.facets() {
+                    let [a, b] = [facet.nodes[edge[0]], facet.nodes[edge[1]]];
+                    edges.entry([a.min(b), a.max(b)]).or_default().push(index);
+                }
+            }
+            return (edges.iter())
+                .filter_map(|(ends, facets)| turn((ends[0], facets)))
+                .collect();
+        }
+        let around = self.around();
+        let nodes = self.in_order().into_iter();
+        nodes
+            .filter_map(|node| turn((node, &around[&node])))
+            .collect()
     }
 
     /// How far straight facets stand off a curve that they stand for, at most (m).
@@ -231,8 +273,18 @@ impl Surface {
 
     /// Its nodes one after the other: lines are followed from end to end with the body to the
     /// left, closed ones from their point of least coordinates; pieces in the order of where they
-    /// start. Numbers of nodes play no part.
+    /// start. The nodes of faces are sorted by coordinates. Numbers of nodes play no part.
     pub fn in_order(&self) -> Vec<u32> {
+        if self.facets.iter().any(|facet| facet.kind.dim() > 1) {
+            let all = self
+                .facets
+                .iter()
+                .flat_map(|facet| facet.nodes.iter().zip(&facet.at));
+            let nodes: BTreeMap<u32, [f64; 3]> = all.map(|(&node, &at)| (node, at)).collect();
+            let mut order: Vec<u32> = nodes.keys().copied().collect();
+            order.sort_by(|a, b| compare(nodes[a], nodes[b]));
+            return order;
+        }
         let mut facets: Vec<usize> = (0..self.facets.len()).collect();
         let start = |&f: &usize| self.facets[f].at[0];
         facets.sort_by(|a, b| compare(start(a), start(b)));
@@ -276,6 +328,12 @@ impl Surface {
     pub fn extent(&self) -> f64 {
         BoundingBox::around(self.facets.iter().flat_map(|facet| &facet.at)).extent()
     }
+}
+
+/// Whether a direction lies in the wedge between two edges that holds `inside`, all of them in one plane.
+fn is_between([first, second]: [[f64; 3]; 2], inside: [f64; 3], direction: [f64; 3]) -> bool {
+    let beside = |edge| dot(cross(edge, inside), cross(edge, direction)) >= 0.0;
+    beside(first) && beside(second)
 }
 
 fn integrate(kind: ElementKind, integrand: impl Fn([f64; 3]) -> [f64; 3]) -> [f64; 3] {

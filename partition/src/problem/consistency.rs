@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::contact_point::ContactPoint;
-use crate::element::geometry::{advance, difference, length};
+use crate::element::geometry::{advance, difference, length, shown};
 use crate::error::InputError;
 use crate::problem::SubdomainNode;
 
@@ -36,6 +36,8 @@ pub struct Places {
     pub nodes: BTreeMap<SubdomainNode, Place>,
     /// The largest extent of the subdomains that they lie in (m).
     pub extent: f64,
+    /// Dimension of space.
+    pub dim: usize,
 }
 
 impl Places {
@@ -54,7 +56,7 @@ impl Places {
     /// What is wrong with a point, and in which dataset.
     fn fault(&self, point: &Point) -> Option<(&'static str, String)> {
         let extent = self.extent;
-        if point.area > LARGEST_AREA * extent {
+        if point.area > LARGEST_AREA * extent.powi(self.dim as i32 - 1) {
             let what = format!(
                 "{:e}; expected a part of a side of subdomains whose extent is {extent:e}",
                 point.area
@@ -64,9 +66,11 @@ impl Places {
         let weights = point.entries.iter().map(|&(_, weight)| weight);
         let scale = weights.clone().fold(0.0, |m: f64, w| m.max(w.abs()));
         let sum: f64 = weights.sum();
-        let (expected, why) = match point.entries.len() {
-            1 => (1.0, "1, that of a node against an obstacle"),
-            _ => (0.0, "0: those of side a to 1, those of side b to -1"),
+        // On some quadratic faces the ends of a node's edge count, too.
+        let is_blended = self.dim == 3 && point.tag_b == -1 && (sum - 1.0).abs() <= WEIGHT * scale;
+        let (expected, why) = match point.entries.len() == 1 || is_blended {
+            true => (1.0, "1, that of a node against an obstacle"),
+            false => (0.0, "0: those of side a to 1, those of side b to -1"),
         };
         if (sum - expected).abs() > WEIGHT * scale {
             let what = format!("the weights of the point sum to {sum}; expected {why}");
@@ -100,12 +104,16 @@ impl Places {
                 let is_there =
                     |place: [f64; 3]| length(difference(place, at)) <= PLACE * self.extent;
                 if !is_there(point.position) {
-                    return Some(("position", displaced(point.position, at, tag)));
+                    let [found, at] = [point.position, at].map(|place| shown(place, self.dim));
+                    return Some((
+                        "position",
+                        format!("{found}; expected {at}, where node {tag} is"),
+                    ));
                 }
                 if !self.acts_there(point, node) {
-                    let [x, y, _] = point.force_point;
                     let what = format!(
-                        "({x}, {y}); expected the sum of weight · position over the nodes of side a"
+                        "{}; expected the sum of weight · position over the nodes of side a",
+                        shown(point.force_point, self.dim)
                     );
                     return Some(("force_point", what));
                 }
@@ -135,10 +143,4 @@ impl Places {
         let force_point = difference(point.force_point, point.position);
         length(difference(force_point, place)) <= PLACE * self.extent * scale.max(1.0)
     }
-}
-
-fn displaced(place: [f64; 3], node: [f64; 3], tag: i64) -> String {
-    let [x, y, _] = place;
-    let [a, b, _] = node;
-    format!("({x}, {y}); expected ({a}, {b}), where node {tag} is")
 }

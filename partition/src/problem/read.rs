@@ -120,6 +120,7 @@ impl ProblemFile {
         let places = Places {
             nodes: named.map(place).collect(),
             extent: BoundingBox::around(subdomains.iter().flat_map(|s| &s.points)).extent(),
+            dim: self.catalog.dim,
         };
         for (row, point) in self.catalog.points.iter().enumerate() {
             (places.check(point, row)).map_err(|error| self.refuse(error))?;

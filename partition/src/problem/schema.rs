@@ -109,8 +109,8 @@ pub const LETTERS: &[(char, &str)] = &[
     ('R', "contact points"),
     ('E', "entries of contact points"),
     ('W', "warnings"),
-    ('d', "dimensions of space, 2"),
-    ('v', "components of a strain, 3 in the plane"),
+    ('d', "dimensions of space, 2 or 3"),
+    ('v', "components of a strain, 3 in the plane, 6 in space"),
 ];
 
 /// Groups that may be empty where there is nothing to say. All but `/support` may be absent, too.
@@ -127,8 +127,8 @@ pub const ATTRIBUTES: &[Attribute] = &[
     attribute("/", "title", "a line of text; optional"),
     attribute("/", "units",
         "`\"m\"` (m, N, Pa) or `\"mm\"` (mm, N, MPa), what messages and pictures call them; optional"),
-    attribute("/", "dimension", "2"),
-    attribute("/", "plane", "`\"strain\"` or `\"stress\"`"),
+    attribute("/", "dimension", "2 or 3"),
+    attribute("/", "plane", "`\"strain\"` or `\"stress\"`; absent in 3 dimensions"),
     attribute("/VTKHDF", "Version", "`[2, 0]`; optional"),
     attribute("/VTKHDF", "Type",
         "`\"UnstructuredGrid\"`: ParaView's reader needs a string of 16 bytes, null-padded, \
@@ -151,16 +151,17 @@ pub const FIELDS: &[Field] = &[
     field("/VTKHDF/NumberOfCells", "N", Sizes('C'), "cells of each subdomain"),
     field("/VTKHDF/NumberOfConnectivityIds", "N", Sizes('K'),
         "connectivity entries of each subdomain"),
-    field("/VTKHDF/Points", "P, 3", Numbers, "coordinates [m]; z = 0"),
+    field("/VTKHDF/Points", "P, 3", Numbers, "coordinates [m]; in the plane z = 0"),
     field("/VTKHDF/Types", "C", Integers,
         "VTK's cell type: 5 or 22, triangle of 3 or 6 nodes; 9, 23 or 28, quadrilateral of 4, 8 \
-         or 9"),
+         or 9; in space 10 or 24, tetrahedron of 4 or 10 nodes; 12, 25 or 29, hexahedron of 8, 20 or 27"),
     field("/VTKHDF/Offsets", "C + N", Integers,
         "start of each cell in the subdomain's connectivity, and its end: cells + 1 entries for \
          every subdomain, each starting with 0"),
     field("/VTKHDF/Connectivity", "K", Integers,
         "nodes of the cells, counted within the subdomain: corners counter-clockwise, then the \
-         node on each edge, the first between the first two corners, then the one in the middle"),
+         node on each edge, the first between the first two corners, then the one in the middle; in space in the \
+         order of VTK"),
     field("/VTKHDF/PointData/GlobalNodeId", "P", Integers,
         "a number ≥ 0 that names the node: equal for copies of one node on Γ, different for all \
          others, such as those on the two sides of a contact"),
@@ -168,10 +169,10 @@ pub const FIELDS: &[Field] = &[
     optional("/VTKHDF/CellData/Subdomain", "C", Integers, "for ParaView; not read"),
     field("/materials/name", "M", Names, ""),
     field("/materials/stiffness", "M, v, v", Numbers,
-        "maps (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy) for the plane state of the file [Pa]; \
-         symmetric positive definite"),
+        "maps (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy) for the plane state of the file [Pa], in space in the order \
+         xx, yy, zz, yz, xz, xy; symmetric positive definite"),
     optional("/materials/out_of_plane", "M, v", NumbersOrNan,
-        "maps the same strains to σ_zz; rows of NaN where it isn't known"),
+        "in the plane: maps the same strains to σ_zz; rows of NaN where it isn't known"),
     optional("/materials/poisson", "M", NumbersOrNan, "Poisson's ratio; NaN where it isn't known"),
     field("/bodies/name", "B", Names,
         "a body is what hangs together through shared nodes, its subdomains through Γ"),
@@ -208,7 +209,7 @@ pub const FIELDS: &[Field] = &[
         "place in the contact's results: 0 up to the number of its points, each once"),
     field("/contact/gap", "R", Numbers, "g [m]; negative for an interference fit"),
     field("/contact/area", "R", Positive,
-        "tributary area on side a, the integral of the point's weight [m], above 0; pressure is \
+        "tributary area on side a, the integral of the point's weight [m, in space m²], above 0; pressure is \
          force over area"),
     field("/contact/position", "R, d", Numbers,
         "undeformed position on side a, that of `node_a` where there is one [m]"),

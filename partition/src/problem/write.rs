@@ -51,7 +51,9 @@ impl Problem {
         attribute(file, "version", VERSION)?;
         text(file, "title", &catalog.title)?;
         attribute(file, "dimension", catalog.dim as i64)?;
-        text(file, "plane", catalog.plane.name())?;
+        if let Some(plane) = catalog.plane {
+            text(file, "plane", plane.name())?;
+        }
         text(file, "units", catalog.units.length())?;
         if catalog.solver.is_empty() {
             return Ok(());
@@ -77,9 +79,11 @@ impl Problem {
         datasets.strings("/materials/name", names)?;
         let stiffness = materials.iter().flat_map(|m| m.stiffness.values()).copied();
         datasets.put("/materials/stiffness", stiffness)?;
-        let planes = materials.iter();
-        let planes = planes.flat_map(|m| m.out_of_plane.unwrap_or([f64::NAN; 3]));
-        datasets.put("/materials/out_of_plane", planes)?;
+        if catalog.plane.is_some() {
+            let planes = materials.iter();
+            let planes = planes.flat_map(|m| m.out_of_plane.unwrap_or([f64::NAN; 3]));
+            datasets.put("/materials/out_of_plane", planes)?;
+        }
         let ratios = materials.iter().map(|m| m.poisson.unwrap_or(f64::NAN));
         datasets.put("/materials/poisson", ratios)?;
 

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
 use super::friction::{self, Friction};
-use super::number::{Constant, ConstantVector, Number, Vector};
+use super::number::{Constant, ConstantVector, Number, Vector, expected_components};
 use crate::name;
 
 /// Names of physical groups: one, or a list without repetition.
@@ -80,7 +80,7 @@ pub struct Displacement {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table of on, x and y")]
+#[serde(deny_unknown_fields, expecting = "a table of on, x, y and z")]
 struct DisplacementKeys {
     on: Names,
     x: Option<Number>,
@@ -94,7 +94,7 @@ impl TryFrom<DisplacementKeys> for Displacement {
     fn try_from(keys: DisplacementKeys) -> Result<Self, Self::Error> {
         let components = [keys.x, keys.y, keys.z];
         if components.iter().all(Option::is_none) {
-            return Err("it prescribes nothing; expected at least one of 'x' and 'y'");
+            return Err("it prescribes nothing; expected at least one of 'x', 'y' and 'z'");
         }
         Ok(Self {
             on: keys.on,
@@ -254,17 +254,28 @@ fn contact_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D:
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "ObstacleKeys")]
 pub enum Obstacle {
-    /// All that lies behind a straight wall.
-    HalfPlane {
+    /// All that lies behind a flat wall.
+    HalfSpace {
         /// A point on the wall (m).
         point: ConstantVector,
         /// Direction out of the obstacle towards the body, of any length but zero.
         normal: ConstantVector,
     },
-    /// A circle.
-    Circle {
+    /// A circle, in space a sphere.
+    Ball {
         /// Centre (m).
         center: ConstantVector,
+        /// Radius (m).
+        radius: f64,
+        /// Whether it keeps bodies inside, not outside.
+        inside: bool,
+    },
+    /// A cylinder without ends.
+    Cylinder {
+        /// A point on its axis (m).
+        point: ConstantVector,
+        /// Direction of its axis, of any length but zero.
+        axis: ConstantVector,
         /// Radius (m).
         radius: f64,
         /// Whether it keeps bodies inside, not outside.
@@ -275,13 +286,15 @@ pub enum Obstacle {
 #[derive(Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "a table of point and normal, or of center and radius"
+    expecting = "a table of point and normal, of center and radius, or of point, axis and radius"
 )]
 struct ObstacleKeys {
     point: Option<ConstantVector>,
     #[serde(default, deserialize_with = "direction")]
     normal: Option<ConstantVector>,
     center: Option<ConstantVector>,
+    #[serde(default, deserialize_with = "direction")]
+    axis: Option<ConstantVector>,
     #[serde(default, deserialize_with = "radius")]
     radius: Option<f64>,
     inside: Option<bool>,
@@ -291,37 +304,52 @@ impl TryFrom<ObstacleKeys> for Obstacle {
     type Error = &'static str;
 
     fn try_from(keys: ObstacleKeys) -> Result<Self, Self::Error> {
-        match (
-            keys.point,
-            keys.normal,
-            keys.center,
-            keys.radius,
-            keys.inside,
-        ) {
-            (Some(point), Some(normal), None, None, None) if point.dim == normal.dim => {
-                Ok(Self::HalfPlane { point, normal })
+        let inside = keys.inside.unwrap_or(false);
+        let obstacle = match (keys.point, keys.normal, keys.center, keys.axis, keys.radius) {
+            (Some(point), Some(normal), None, None, None) if keys.inside.is_none() => {
+                Self::HalfSpace { point, normal }
             }
-            (Some(_), Some(_), None, None, None) => {
-                Err("'point' and 'normal' have different numbers of components")
-            }
-            (None, None, Some(center), Some(radius), inside) => Ok(Self::Circle {
+            (None, None, Some(center), None, Some(radius)) => Self::Ball {
                 center,
                 radius,
-                inside: inside.unwrap_or(false),
-            }),
-            _ => Err("expected 'point' and 'normal' (a straight wall), \
-                      or 'center', 'radius' and perhaps 'inside' (a circle)"),
+                inside,
+            },
+            (Some(point), None, None, Some(axis), Some(radius)) => Self::Cylinder {
+                point,
+                axis,
+                radius,
+                inside,
+            },
+            _ => {
+                return Err("expected 'point' and 'normal' (a straight wall), \
+                            'center', 'radius' and perhaps 'inside' (a circle or sphere), \
+                            or 'point', 'axis', 'radius' and perhaps 'inside' (a cylinder)");
+            }
+        };
+        match &obstacle {
+            Self::HalfSpace { point, normal } if point.dim != normal.dim => {
+                Err("'point' and 'normal' have different numbers of components")
+            }
+            Self::Cylinder { point, axis, .. } if point.dim != axis.dim => {
+                Err("'point' and 'axis' have different numbers of components")
+            }
+            _ => Ok(obstacle),
         }
     }
 }
 
 impl Obstacle {
-    /// Number of components of its vectors.
-    pub fn dim(&self) -> usize {
-        match self {
-            Self::HalfPlane { point, .. } => point.dim,
-            Self::Circle { center, .. } => center.dim,
-        }
+    /// Why it is none in space of `dim` dimensions.
+    pub(super) fn fault(&self, dim: usize) -> Option<String> {
+        let own = match self {
+            Self::HalfSpace { point, .. } => point.dim,
+            Self::Ball { center, .. } => center.dim,
+            Self::Cylinder { .. } if dim == 2 => {
+                return Some("a plane scene has no cylinder; expected a circle".into());
+            }
+            Self::Cylinder { point, .. } => point.dim,
+        };
+        (own != dim).then(|| expected_components(dim))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Expressions of x and y, with the precedence of mathematics: −x^2 is −(x²), 2^3^2 is 2^9.
+//! Expressions of x, y and z, with the precedence of mathematics: −x^2 is −(x²), 2^3^2 is 2^9.
 
 use super::suggest::hint_and_known;
 
@@ -6,7 +6,7 @@ use super::suggest::hint_and_known;
 const LONGEST: usize = 4096;
 const DEEPEST: usize = 64;
 
-const VARIABLES: [&str; 2] = ["x", "y"];
+const VARIABLES: [&str; 3] = ["x", "y", "z"];
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("PI", std::f64::consts::PI)];
 type Unary = fn(f64) -> f64;
 type Binary = fn(f64, f64) -> f64;
@@ -50,12 +50,14 @@ enum Step {
     Binary(Binary),
 }
 
-/// An expression of x and y.
+/// An expression of x, y and z.
 #[derive(Clone, Debug)]
 pub struct Expression {
     text: String,
     steps: Vec<Step>,
     is_constant: bool,
+    /// The first of its characters that is z.
+    z_at: Option<usize>,
 }
 
 impl PartialEq for Expression {
@@ -65,7 +67,7 @@ impl PartialEq for Expression {
 }
 
 impl Expression {
-    /// Parses `text`: numbers, `x`, `y`, `pi`, `+ - * / ^` (or `**`), parentheses, and the
+    /// Parses `text`: numbers, `x`, `y`, `z`, `pi`, `+ - * / ^` (or `**`), parentheses, and the
     /// functions sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, ln, log10, sqrt, cbrt,
     /// abs, sign, min, max, atan2, hypot.
     ///
@@ -80,13 +82,12 @@ impl Expression {
                 text: text.to_owned(),
                 steps: Vec::new(),
                 is_constant: true,
+                z_at: None,
             },
         };
-        parser.whole().map_err(|reason| {
-            let shown: String = text.chars().take(60).collect();
-            let place = text[..parser.at].chars().count() + 1;
-            format!("expression '{shown}', character {place}: {reason}")
-        })?;
+        parser
+            .whole()
+            .map_err(|reason| located(text, parser.at, &reason))?;
         Ok(parser.expression)
     }
 
@@ -120,10 +121,27 @@ impl Expression {
         &self.text
     }
 
+    /// Why it has no value in the plane: it names z.
+    pub fn fault_in_plane(&self) -> Option<String> {
+        let at = self.z_at?;
+        Some(located(
+            &self.text,
+            at,
+            "'z' isn't known in the plane; expected x and y",
+        ))
+    }
+
     /// Whether it is the same everywhere.
     pub fn is_constant(&self) -> bool {
         self.is_constant
     }
+}
+
+/// What is wrong at a byte of an expression.
+fn located(text: &str, at: usize, reason: &str) -> String {
+    let shown: String = text.chars().take(60).collect();
+    let place = text[..at].chars().count() + 1;
+    format!("expression '{shown}', character {place}: {reason}")
 }
 
 /// Recursive descent through an expression.
@@ -237,8 +255,8 @@ impl Parser<'_> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() || c == '_' => self.word(),
-            Some(found) => Err(format!("expected a number, x or y, found '{found}'")),
-            None => Err("expected a number, x or y, found the end".into()),
+            Some(found) => Err(format!("expected a number, x, y or z, found '{found}'")),
+            None => Err("expected a number, x, y or z, found the end".into()),
         }
     }
 
@@ -279,6 +297,9 @@ impl Parser<'_> {
         self.at += end;
         if let Some(axis) = VARIABLES.iter().position(|&name| name == word) {
             self.expression.is_constant = false;
+            if axis == 2 {
+                self.expression.z_at.get_or_insert(start);
+            }
             self.push(Step::Variable(axis));
         } else if let Some(&(_, value)) = CONSTANTS.iter().find(|c| c.0 == word) {
             self.push(Step::Number(value));
@@ -361,7 +382,6 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named_with_its_character() {
         for (text, expected) in [
-            ("1 + z", "character 5: 'z' isn't known"),
             ("1 + r", "character 5: 'r' isn't known"),
             ("sine(x)", "did you mean 'sin'"),
             ("2x", "character 2: expected an operator"),

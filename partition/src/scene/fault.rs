@@ -2,10 +2,13 @@
 
 use std::collections::HashMap;
 
-use super::condition::{Displacement, Partner, Traction};
-use super::place::Step;
+use super::condition::{Displacement, Partner, Pressure, Traction};
+use super::material::Elasticity;
+use super::place::{self, Step};
 use super::{Scene, suggest};
+use crate::error::InputError;
 use crate::name;
+use crate::stiffness::components;
 
 /// The key at which something is wrong, and what.
 type Fault = (Vec<Step>, String);
@@ -32,7 +35,7 @@ impl Scene {
         self.wrong_name()
             .or_else(|| self.unknown_material())
             .or_else(|| self.repeated_contact())
-            .or_else(|| self.wrong_dimension())
+            .or_else(|| self.plane.and_then(|_| self.wrong_dimension(2)))
             .or_else(|| self.wrong_step())
     }
 
@@ -77,36 +80,75 @@ impl Scene {
         None
     }
 
-    /// A vector that isn't of the plane, where the scene says that it has one.
-    fn wrong_dimension(&self) -> Option<Fault> {
-        self.plane?;
+    /// The first value that space of `dim` dimensions has no place for.
+    ///
+    /// # Errors
+    /// The value, by its key.
+    pub(crate) fn check_dimension(&self, dim: usize) -> Result<(), InputError> {
+        match self.wrong_dimension(dim) {
+            Some((path, message)) => Err(place::error_at("", &path, &message)),
+            None => Ok(()),
+        }
+    }
+
+    /// The same, and its key.
+    fn wrong_dimension(&self, dim: usize) -> Option<Fault> {
+        let mut found = Vec::new();
+        let mut check = |path: Vec<Step>, fault: Option<String>| {
+            found.extend(fault.map(|message| (path, message)));
+        };
+        for (name, material) in &self.materials {
+            let Elasticity::Anisotropic {
+                stiffness,
+                out_of_plane,
+            } = material
+            else {
+                continue;
+            };
+            let rows = components(dim);
+            let fault = (stiffness.size() != rows)
+                .then(|| format!("expected {rows} rows of {rows} numbers in {dim} dimensions"));
+            check(at(["materials", name, "stiffness"]), fault);
+            let fault =
+                (dim == 3 && out_of_plane.is_some()).then(|| "a scene in space has none".into());
+            check(at(["materials", name, "out_of_plane"]), fault);
+        }
         for (name, body) in &self.bodies {
-            if body.body_force.as_ref().is_some_and(|v| v.dim() != 2) {
-                return Some((at(["bodies", name, "body_force"]), TWO.into()));
-            }
+            let fault = body.body_force.as_ref().and_then(|force| force.fault(dim));
+            check(at(["bodies", name, "body_force"]), fault);
         }
-        if let Some(wrong) = not_plane(&self.displacement, &self.traction) {
-            return Some(wrong);
-        }
+        wrong_loads(
+            dim,
+            &[],
+            &self.displacement,
+            &self.traction,
+            &self.pressure,
+            &mut check,
+        );
         for (index, step) in self.step.iter().enumerate() {
-            let within = |path: Vec<Step>| [vec!["step".into(), index.into()], path].concat();
+            let within: Vec<Step> = vec!["step".into(), index.into()];
             for (name, force) in &step.body_force {
-                if force.dim() != 2 {
-                    return Some((within(at(["body_force", name])), TWO.into()));
-                }
+                check(
+                    [within.clone(), at(["body_force", name])].concat(),
+                    force.fault(dim),
+                );
             }
             let displacement = step.displacement.as_deref().unwrap_or_default();
             let traction = step.traction.as_deref().unwrap_or_default();
-            if let Some((path, message)) = not_plane(displacement, traction) {
-                return Some((within(path), message));
-            }
+            let pressure = step.pressure.as_deref().unwrap_or_default();
+            wrong_loads(dim, &within, displacement, traction, pressure, &mut check);
         }
         for (index, contact) in self.contact.iter().enumerate() {
-            if matches!(&contact.partner, Partner::Obstacle(o) if o.dim() != 2) {
-                return Some((entry("contact", index, "obstacle"), TWO.into()));
+            if let Partner::Obstacle(obstacle) = &contact.partner {
+                check(entry("contact", index, "obstacle"), obstacle.fault(dim));
+            }
+            let gap = contact.gap.as_ref().and_then(|gap| gap.fault(dim));
+            check(entry("contact", index, "gap"), gap);
+            if let Some((key, fault)) = contact.friction.as_ref().and_then(|law| law.fault(dim)) {
+                check(entry("contact", index, key), Some(fault));
             }
         }
-        None
+        found.into_iter().next()
     }
 
     /// A step with a wrong name, a time before that of the step before, or a body that isn't there.
@@ -148,16 +190,29 @@ impl Scene {
     }
 }
 
-/// What was expected of a vector.
-const TWO: &str = "a plane scene has vectors of two components";
-
-/// The first vector that isn't of the plane.
-fn not_plane(displacement: &[Displacement], traction: &[Traction]) -> Option<Fault> {
-    let mut displacement = displacement.iter();
-    if let Some(index) = displacement.position(|d| d.components[2].is_some()) {
-        let path = entry("displacement", index, "z");
-        return Some((path, "a plane scene has no 'z'".into()));
+/// Checks the loads of the scene, or of a step that the keys `within` lead to.
+fn wrong_loads(
+    dim: usize,
+    within: &[Step],
+    displacement: &[Displacement],
+    traction: &[Traction],
+    pressure: &[Pressure],
+    check: &mut impl FnMut(Vec<Step>, Option<String>),
+) {
+    let path = |list: &str, index: usize, key: &str| [within, &entry(list, index, key)].concat();
+    for (index, displacement) in displacement.iter().enumerate() {
+        for (component, key) in displacement.components.iter().zip(["x", "y", "z"]) {
+            let fault = component.as_ref().and_then(|number| match key {
+                "z" if dim == 2 => Some("a plane scene has no 'z'".into()),
+                _ => number.fault(dim),
+            });
+            check(path("displacement", index, key), fault);
+        }
     }
-    let index = traction.iter().position(|t| t.value.dim() != 2)?;
-    Some((entry("traction", index, "value"), TWO.into()))
+    for (index, traction) in traction.iter().enumerate() {
+        check(path("traction", index, "value"), traction.value.fault(dim));
+    }
+    for (index, pressure) in pressure.iter().enumerate() {
+        check(path("pressure", index, "value"), pressure.value.fault(dim));
+    }
 }

@@ -51,6 +51,27 @@ impl Friction {
         }
     }
 
+    /// Why it is no law in space of `dim` dimensions, and the key to say so at.
+    pub(super) fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
+        let numbers = match self {
+            Self::Given { bound } => [Some(("tresca", bound)), None],
+            Self::Coulomb {
+                coefficient,
+                cohesion,
+            } => [
+                Some(("friction", coefficient)),
+                cohesion.as_ref().map(|cohesion| ("cohesion", cohesion)),
+            ],
+        };
+        numbers.into_iter().flatten().find_map(|(key, number)| {
+            let fault = match dim {
+                3 => Some("friction isn't supported in three dimensions".into()),
+                _ => number.fault(dim),
+            };
+            Some((key, fault?))
+        })
+    }
+
     /// The law at a point (m).
     ///
     /// # Errors

@@ -1,11 +1,12 @@
 //! Materials as a scene gives them, and its plane state.
 
-use nalgebra::Matrix3;
+use nalgebra::DMatrix;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 
 use super::number::Constant;
 use crate::magnitude::SMALLEST_STIFFNESS;
+use crate::stiffness::Stiffness;
 
 /// How a material answers to strain.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -18,10 +19,11 @@ pub enum Elasticity {
         /// Poisson's ratio.
         poisson: f64,
     },
-    /// Any stiffness in the plane.
+    /// Any stiffness.
     Anisotropic {
-        /// C: (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy), symmetric positive definite (Pa).
-        stiffness: [[f64; 3]; 3],
+        /// C: (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy), in space in the order xx, yy, zz, yz, xz, xy; symmetric positive
+        /// definite (Pa).
+        stiffness: Stiffness,
         /// (ε_xx, ε_yy, γ_xy) to σ_zz in plane strain (Pa).
         out_of_plane: Option<[f64; 3]>,
     },
@@ -61,7 +63,7 @@ struct MaterialKeys {
     #[serde(default, deserialize_with = "poisson")]
     poisson: Option<f64>,
     #[serde(default, deserialize_with = "stiffness")]
-    stiffness: Option<[[f64; 3]; 3]>,
+    stiffness: Option<Stiffness>,
     out_of_plane: Option<[Constant; 3]>,
 }
 
@@ -104,14 +106,20 @@ fn poisson<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D:
 }
 
 /// A symmetric positive definite matrix, its symmetric part.
-fn stiffness<'de, D>(deserializer: D) -> Result<Option<[[f64; 3]; 3]>, D::Error>
+fn stiffness<'de, D>(deserializer: D) -> Result<Option<Stiffness>, D::Error>
 where
     D: Deserializer<'de>,
 {
-    let rows = <[[Constant; 3]; 3]>::deserialize(deserializer)?;
-    let given = Matrix3::from(rows.map(|row| row.map(|c| c.0))).transpose();
+    let rows = Vec::<Vec<Constant>>::deserialize(deserializer)?;
+    let size = rows.len();
+    if !matches!(size, 3 | 6) || rows.iter().any(|row| row.len() != size) {
+        return Err(D::Error::custom(
+            "expected 3 rows of 3 numbers in the plane, or 6 of 6 in space",
+        ));
+    }
+    let given = DMatrix::from_fn(size, size, |i, j| rows[i][j].0);
     let slack = 1e-9 * given.amax();
-    for (i, j) in [(1, 0), (2, 0), (2, 1)] {
+    for (i, j) in (0..size).flat_map(|i| (0..i).map(move |j| (i, j))) {
         let (below, above) = (given[(i, j)], given[(j, i)]);
         if (below - above).abs() > slack {
             return Err(D::Error::custom(format!(
@@ -121,13 +129,13 @@ where
             )));
         }
     }
-    let symmetric = 0.5 * (given + given.transpose());
+    let symmetric = 0.5 * (&given + given.transpose());
     // Scaled first, so that no product under- or overflows.
     let scale = symmetric.amax();
-    let eigenvalues = (symmetric / scale).symmetric_eigenvalues() * scale;
+    let eigenvalues = (&symmetric / scale).symmetric_eigenvalues() * scale;
     let (least, largest) = (eigenvalues.min(), eigenvalues.max());
     match least > 1e-15 * largest && scale >= SMALLEST_STIFFNESS {
-        true => Ok(Some(symmetric.into())),
+        true => Ok(Some(Stiffness::square(size, symmetric.as_slice()))),
         false => Err(D::Error::custom(format!(
             "the stiffness isn't positive definite: its eigenvalues reach from {least:.3e} to {largest:.3e}"
         ))),

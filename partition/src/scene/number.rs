@@ -6,7 +6,7 @@ use serde::de::{Deserializer, Error, Visitor};
 use super::expression::Expression;
 use crate::magnitude;
 
-/// A finite number, or an expression of x and y.
+/// A finite number, or an expression of x, y and z.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Number {
     /// The same everywhere.
@@ -30,14 +30,26 @@ impl Number {
         }
     }
 
+    /// Why it has no value in space of `dim` dimensions.
+    pub(super) fn fault(&self, dim: usize) -> Option<String> {
+        match self {
+            Self::Varying(expression) if dim == 2 => expression.fault_in_plane(),
+            _ => None,
+        }
+    }
+
     /// The message that its `value` at a point isn't what was `expected`.
     pub(super) fn unexpected(&self, value: f64, point: [f64; 3], expected: &str) -> String {
-        let [x, y, _] = point;
+        let [x, y, z] = point;
         match self {
             Self::Constant(_) => format!("{value:e}; expected {expected}"),
             Self::Varying(expression) => {
                 let text = expression.text();
-                format!("'{text}' is {value:e} at x = {x}, y = {y}; expected {expected}")
+                let z = match z == 0.0 {
+                    true => String::new(),
+                    false => format!(", z = {z}"),
+                };
+                format!("'{text}' is {value:e} at x = {x}, y = {y}{z}; expected {expected}")
             }
         }
     }
@@ -50,7 +62,7 @@ impl<'de> Deserialize<'de> for Number {
             type Value = Number;
 
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                f.write_str("a number or an expression of x and y in quotes")
+                f.write_str("a number or an expression of x, y and z in quotes")
             }
 
             fn visit_i64<E: Error>(self, value: i64) -> Result<Number, E> {
@@ -77,7 +89,7 @@ impl<'de> Deserialize<'de> for Number {
     }
 }
 
-/// A finite number that is the same everywhere; an expression without x and y will do.
+/// A finite number that is the same everywhere; an expression without x, y and z will do.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "Number")]
 pub struct Constant(pub f64);
@@ -139,6 +151,14 @@ impl Vector {
         self.0.len()
     }
 
+    /// Why it is no vector of space of `dim` dimensions.
+    pub(super) fn fault(&self, dim: usize) -> Option<String> {
+        match self.dim() == dim {
+            true => self.0.iter().find_map(|number| number.fault(dim)),
+            false => Some(expected_components(dim)),
+        }
+    }
+
     /// Its value at a point (m), with zero for a third component that it hasn't.
     ///
     /// # Errors
@@ -154,6 +174,14 @@ impl Vector {
     /// Whether it is the same everywhere.
     pub fn is_constant(&self) -> bool {
         self.0.iter().all(|n| matches!(n, Number::Constant(_)))
+    }
+}
+
+/// What was expected of a vector.
+pub(super) fn expected_components(dim: usize) -> String {
+    match dim {
+        2 => "a plane scene has vectors of two components".into(),
+        _ => "a scene in space has vectors of three components".into(),
     }
 }
 

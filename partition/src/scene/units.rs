@@ -21,9 +21,20 @@ impl Units {
         self.pick("m", "mm")
     }
 
-    /// That of forces per thickness, of which moments per thickness are in N.
-    pub fn force(self) -> &'static str {
-        self.pick("N/m", "N/mm")
+    /// That of forces, in the plane per thickness.
+    pub fn force(self, dim: usize) -> &'static str {
+        match dim {
+            2 => self.pick("N/m", "N/mm"),
+            _ => "N",
+        }
+    }
+
+    /// That of moments, in the plane per thickness.
+    pub fn moment(self, dim: usize) -> &'static str {
+        match dim {
+            2 => "N",
+            _ => self.pick("N m", "N mm"),
+        }
     }
 
     /// That of stresses.

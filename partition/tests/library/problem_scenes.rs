@@ -84,7 +84,7 @@ impl Builder {
             units: Units::default(),
             solver: SolverSettings::default(),
             title: "Löwe & Söhne".into(),
-            plane: PlaneState::Strain,
+            plane: Some(PlaneState::Strain),
             materials: vec![
                 material("steel", Some([0.3, 0.3, 0.0]), Some(0.3)),
                 material("wood", None, None),

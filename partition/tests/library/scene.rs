@@ -92,7 +92,7 @@ fn every_key_is_read() {
     assert_eq!(
         scene.materials["wood"],
         Elasticity::Anisotropic {
-            stiffness: [[10.0, 2.0, 0.0], [2.0, 5.0, 0.0], [0.0, 0.0, 2.0]],
+            stiffness: [[10.0, 2.0, 0.0], [2.0, 5.0, 0.0], [0.0, 0.0, 2.0]].into(),
             out_of_plane: Some([1.0, 2.0, 0.0]),
         }
     );
@@ -128,10 +128,10 @@ fn every_key_is_read() {
     assert_eq!(ring.friction, None);
     assert_eq!(table.gap, None);
     assert!(matches!(&table.partner,
-        Partner::Obstacle(Obstacle::HalfPlane { point, normal })
+        Partner::Obstacle(Obstacle::HalfSpace { point, normal })
             if point.value == [0.0; 3] && normal.value == [0.0, 2.0, 0.0]));
     assert!(matches!(&ring.partner,
-        Partner::Obstacle(Obstacle::Circle { radius, inside: true, .. })
+        Partner::Obstacle(Obstacle::Ball { radius, inside: true, .. })
             if *radius == 2.0 * std::f64::consts::PI));
 }
 

@@ -16,7 +16,18 @@ pub(super) fn lines(resultants: &Resultants) -> Vec<String> {
         .chain(reactions.iter().map(|r| r.support.as_str()))
         .chain([title]);
     let width = names.map(|name| name.chars().count()).max().unwrap_or(0);
-    let columns = "force x      force y     moment z";
+    let in_space = (contacts.iter().map(|c| &c.resultant))
+        .chain(reactions.iter().map(|r| &r.resultant))
+        .any(Resultant::is_spatial);
+    let columns = match in_space {
+        true => "force x      force y      force z",
+        false => "force x      force y     moment z",
+    };
+    let forces = |resultant: &Resultant| {
+        let [x, y, z] = resultant.force;
+        let last = if in_space { z } else { resultant.moment[2] };
+        format!(" {x:>12.4e} {y:>12.4e} {last:>12.4e}")
+    };
     let has_friction = resultants.friction().is_some();
     let contact = |contact: &ContactResultant| {
         let closed = format!("{} of {}", contact.closed, contact.conditions);
@@ -53,12 +64,6 @@ fn table<T>(head: String, all: &[T], line: impl Fn(&T) -> String) -> Vec<String>
         lines.push(format!("… and {rest} more in the report"));
     }
     lines
-}
-
-fn forces(resultant: &Resultant) -> String {
-    let [x, y, _] = resultant.force;
-    let [.., z] = resultant.moment;
-    format!(" {x:>12.4e} {y:>12.4e} {z:>12.4e}")
 }
 
 #[cfg(test)]

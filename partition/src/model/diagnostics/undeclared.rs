@@ -53,8 +53,11 @@ impl Chord {
 }
 
 impl Diagnostics<'_> {
-    /// Facets that lie on each other, neither of which is on a side of a contact: body by body.
+    /// In the plane: facets that lie on each other, neither of which is on a side of a contact: body by body.
     pub(super) fn undeclared(&self) -> Vec<String> {
+        if self.bodies.mesh.dim != 2 {
+            return Vec::new();
+        }
         let chords = self.free_chords();
         let leaf = |(index, chord): (usize, &Chord)| {
             GeomWithData::new(Line::new(chord.start, chord.end), index)

@@ -4,13 +4,10 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
+use super::super::blend::{blend, positive};
 use super::super::surface::SurfaceFacet;
 use crate::element::ElementKind;
 
-/// What a corner takes of the function of a node on an edge (Popp, Wohlmuth, Gee and Wall, SIAM J. Sci. Comput.
-/// 34, 2012). On triangles of 6 nodes it may be anything below 1/2, on quadrilaterals of 8 above 1/8, too; with
-/// this the dual functions are the least in the mean.
-const TAKEN: f64 = 0.2;
 /// Share of what is covered around a node that the integral of its function over it has to have for the node to
 /// carry a multiplier. With less, its condition would extrapolate side b from afar, and its multiplier
 /// be next to nothing. Wholly covered, nodes of straight lines have a half. No round number: where sides
@@ -39,10 +36,7 @@ impl Bases {
 
     fn of(kind: ElementKind) -> Self {
         let nodes = kind.nodes();
-        let each = match has_weightless_corners(kind) {
-            true => blend(kind, nodes, TAKEN),
-            false => DMatrix::identity(nodes, nodes),
-        };
+        let each = positive(kind);
         let whole = || -> Vec<f64> {
             let mut sums = vec![0.0; nodes];
             for (xi, weight) in kind.quadrature(4) {
@@ -78,35 +72,6 @@ pub(super) fn lift(basis: &DMatrix<f64>, integrals: &[f64]) -> Vec<f64> {
             .map(move |(k, n)| basis[(i, k)] * n)
     };
     (0..basis.nrows()).map(|i| row(i).sum()).collect()
-}
-
-/// Whether ∫ N of corners isn't positive: quadratic facets of space without a node in the middle.
-fn has_weightless_corners(kind: ElementKind) -> bool {
-    kind.dim() > 1 && kind.nodes() == 2 * kind.corners()
-}
-
-/// The functions of the first `count` nodes when each of a node on an edge hands the part `taken` to either
-/// end of the edge. All of it handed over leaves the functions of the linear facet; there a node
-/// in the middle hands its own to all corners.
-fn blend(kind: ElementKind, count: usize, taken: f64) -> DMatrix<f64> {
-    let (nodes, corners) = (kind.nodes(), kind.corners());
-    let mut basis = DMatrix::identity(count, nodes);
-    for (_, edge) in kind.facets() {
-        let &[start, end, middle] = *edge else {
-            continue;
-        };
-        basis[(start, middle)] += taken;
-        basis[(end, middle)] += taken;
-        if middle < count {
-            basis[(middle, middle)] = 1.0 - 2.0 * taken;
-        }
-    }
-    if count == corners {
-        for middle in 2 * corners..nodes {
-            (0..corners).for_each(|corner| basis[(corner, middle)] = 1.0 / corners as f64);
-        }
-    }
-    basis
 }
 
 #[cfg(test)]

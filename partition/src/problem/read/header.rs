@@ -14,7 +14,7 @@ pub(super) struct Header {
     pub title: String,
     pub dim: usize,
     pub units: Units,
-    pub plane: PlaneState,
+    pub plane: Option<PlaneState>,
 }
 
 impl Header {
@@ -22,25 +22,38 @@ impl Header {
     /// attributes; a title and units may be absent.
     pub fn read(file: &hdf5::File) -> Result<Self, InputError> {
         check_format(file)?;
-        if !attribute::is_there(file, "dimension")
-            || attribute::read(file, "dimension")? != 2.into()
+        let is_there = attribute::is_there(file, "dimension");
+        let dim = match is_there
+            .then(|| attribute::read(file, "dimension"))
+            .transpose()?
         {
-            return Err(unexpected(file, "dimension", "2"));
-        }
+            Some(Value::Integer(2)) => 2,
+            Some(Value::Integer(3)) => 3,
+            _ => return Err(unexpected(file, "dimension", "2 or 3")),
+        };
         let title = text(file, "title", "")?;
         name::check_text(&title).map_err(|reason| {
             let shown = name::shown(&title);
             InputError::new(format!("attribute title: '{shown}' {reason}"))
         })?;
-        let plane = text(file, "plane", "")?;
-        let plane = PlaneState::ALL.into_iter().find(|p| p.name() == plane);
+        let named = text(file, "plane", "")?;
+        let plane = PlaneState::ALL.into_iter().find(|p| p.name() == named);
+        match dim {
+            2 if plane.is_none() => {
+                return Err(unexpected(file, "plane", "\"strain\" or \"stress\""));
+            }
+            3 if !named.is_empty() => {
+                return Err(unexpected(file, "plane", "none in 3 dimensions"));
+            }
+            _ => {}
+        }
         let units = text(file, "units", Units::default().length())?;
         let units = Units::ALL.into_iter().find(|u| u.length() == units);
         Ok(Self {
-            dim: 2,
+            dim,
             title,
             units: units.ok_or_else(|| unexpected(file, "units", "\"m\" or \"mm\""))?,
-            plane: plane.ok_or_else(|| unexpected(file, "plane", "\"strain\" or \"stress\""))?,
+            plane,
         })
     }
 }

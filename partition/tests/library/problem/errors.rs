@@ -112,7 +112,12 @@ fn every_defect_is_named() {
         (
             "three dimensions",
             |f| f.attr("dimension").unwrap().write_scalar(&3i64).unwrap(),
-            &["dimension is 3", "expected 2"],
+            &["plane is \"strain\"", "none in 3 dimensions"],
+        ),
+        (
+            "four dimensions",
+            |f| f.attr("dimension").unwrap().write_scalar(&4i64).unwrap(),
+            &["dimension is 4", "expected 2 or 3"],
         ),
         (
             "missing points",
