@@ -12,7 +12,6 @@ pub mod summary;
 use self::dissect::{Wanted, dissect};
 use self::graph::Graph;
 use crate::error::InputError;
-use crate::mesh::topology::Topology;
 use crate::model::Model;
 use crate::problem::Hierarchy;
 
@@ -53,8 +52,7 @@ impl Decomposition {
                 _ => Ok(Self::of_cells(model, subdomain.clone(), found)),
             };
         }
-        let topology = Topology::new(&model.mesh);
-        let graph = Graph::new(model, &topology);
+        let graph = Graph::new(model);
         let wanted = match count {
             // Halves of halves of a mesh come out between this and half of it.
             None => Wanted::Dofs(std::f64::consts::SQRT_2 * DOFS),
@@ -87,7 +85,7 @@ impl Decomposition {
 
     /// The partition in which every cell is in the given one of `count` subdomains.
     pub fn of_cells(model: &Model, subdomain: Vec<u32>, count: usize) -> Self {
-        let cells = Graph::new(model, &Topology::new(&model.mesh));
+        let cells = Graph::new(model);
         let graph = cells.contracted(&subdomain, count);
         let branch = dissect(graph, Wanted::Dofs(0.0));
         Self {

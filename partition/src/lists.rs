@@ -1,7 +1,7 @@
 //! Many short lists in two allocations.
 
 /// Lists of items, one for each of `0..len`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Lists<T> {
     offsets: Vec<usize>,
     items: Vec<T>,

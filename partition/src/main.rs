@@ -132,7 +132,7 @@ fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
         keep(path, &output)?;
         keep(&scene.mesh, &output)?;
         return Ok(Some(Source {
-            mesh: gmsh::read(&scene.mesh)?,
+            mesh: gmsh::read(&scene.mesh)?.along_curve(),
             scene,
             subdomains: args.subdomains,
             output,

@@ -1,6 +1,7 @@
 //! A mesh: points, cells, facets, and the physical groups that name them.
 
 pub mod bounding_box;
+mod curve;
 mod foreign;
 pub mod gmsh;
 mod measure;

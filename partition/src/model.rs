@@ -78,6 +78,8 @@ pub struct Model {
     pub plane: Option<PlaneState>,
     /// Mesh.
     pub mesh: Mesh,
+    /// Which of its cells meet at a facet.
+    pub topology: Topology,
     /// Materials.
     pub materials: Vec<Material>,
     /// Names of the scene's bodies.
@@ -143,6 +145,7 @@ impl Model {
             cell_material: bodies.cell_material,
             cell_body: bodies.cell_body,
             mesh: bodies.mesh,
+            topology,
             support_names: loads.names,
             supports: loads.supports,
             forces: loads.forces,

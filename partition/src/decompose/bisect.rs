@@ -15,10 +15,13 @@ pub(super) const LARGE: usize = 8000;
 const CLUMP: usize = 8;
 
 /// Layers of clumps on each side of a cut among which it is made shorter.
-const LAYERS: u32 = 2;
+const LAYERS: u32 = 4;
 
-/// Vertices by which a direction is judged, at most; some more where strides don't come out even.
+/// Vertices by which a direction is judged, at most.
 const SAMPLE: usize = 1024;
+
+/// The golden ratio's fraction.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// How many of the directions in which a set may be cut are tried.
 const TRIED: usize = 4;
@@ -148,8 +151,7 @@ impl Cut {
 
 /// The cheapest cuts across the best of several directions.
 fn geometric(graph: &Graph, aim: Aim) -> Vec<Vec<bool>> {
-    let stride = graph.len().div_ceil(SAMPLE);
-    let sample: Vec<usize> = (0..graph.len()).step_by(stride).collect();
+    let sample = sample(graph.len());
     let mut slabs: Vec<(u64, Slab)> = directions(graph, &sample)
         .into_iter()
         .map(|direction| Slab::new(graph, &sample, direction, aim))
@@ -158,6 +160,18 @@ fn geometric(graph: &Graph, aim: Aim) -> Vec<Vec<bool>> {
     slabs.sort_by_key(|&(price, _)| price);
     let tried = slabs.iter().take(TRIED);
     tried.flat_map(|(_, slab)| slab.cuts(graph)).collect()
+}
+
+/// Vertices out of so many, at most [`SAMPLE`], spread evenly: at multiples of the golden ratio, as equal strides along
+/// a curve through a regular mesh would find its points in few rows.
+fn sample(len: usize) -> Vec<usize> {
+    if len <= SAMPLE {
+        return (0..len).collect();
+    }
+    let place = |k: usize| (k as f64 * GOLDEN).fract();
+    (0..SAMPLE)
+        .map(|k| (place(k) * len as f64) as usize)
+        .collect()
 }
 
 /// The axes, the diagonals between two of them, and the principal axes of a sample of the vertices.

@@ -2,7 +2,6 @@
 //! are facets, and contact points that tie the cells on both sides to each other.
 
 use crate::lists::Lists;
-use crate::mesh::topology::Topology;
 use crate::model::Model;
 
 /// Weight of a node that a cut lets both sides share.
@@ -58,8 +57,8 @@ pub(super) struct Graph {
 
 impl Graph {
     /// The graph of the cells of a model.
-    pub fn new(model: &Model, topology: &Topology) -> Self {
-        let mesh = &model.mesh;
+    pub fn new(model: &Model) -> Self {
+        let (mesh, topology) = (&model.mesh, &model.topology);
         let mut valence = vec![0u32; mesh.points.len()];
         for &node in mesh.cells.connectivity() {
             valence[node as usize] += 1;
@@ -86,7 +85,7 @@ impl Graph {
             centres.push(centre);
         }
         let mut ties = ties(model);
-        ties.extend(hinges(model, topology));
+        ties.extend(hinges(model));
         let ties = ties.iter().flat_map(|&(a, b, weight)| {
             [(a, b), (b, a)].map(|(from, to)| (from, Edge::new(to, weight, false)))
         });
@@ -322,8 +321,8 @@ fn facet_weight(model: &Model, cell: usize) -> u32 {
 }
 
 /// Pairs of cells of two pieces of the mesh that share a node but no facet, and the weight of that.
-fn hinges(model: &Model, topology: &Topology) -> Vec<(u32, u32, u32)> {
-    let piece = topology.pieces();
+fn hinges(model: &Model) -> Vec<(u32, u32, u32)> {
+    let piece = model.topology.pieces();
     let mut ties = Vec::new();
     if piece.iter().all(|&piece| piece == 0) {
         return ties;

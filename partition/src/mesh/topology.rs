@@ -81,7 +81,7 @@ impl Seam {
 }
 
 /// The facets of cells, those of the same nodes beside each other.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Facets {
     /// By their smallest node, with the other nodes of their keys.
     by_node: Lists<(Rest, CellFacet)>,
@@ -214,7 +214,7 @@ impl Mesh {
 }
 
 /// The adjacency of a mesh's cells across facets.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Topology {
     facets: Facets,
     neighbours: Lists<u32>,

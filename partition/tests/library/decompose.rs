@@ -246,6 +246,7 @@ fn pieces_that_share_a_node_alone_are_one_body_of_two_subdomains() {
             }
         }
     }
+    model.topology = Topology::new(&model.mesh);
     assert_eq!(range(&model).0, 2);
     let decomposition = Decomposition::new(&model, Some(2)).unwrap();
     let catalog = Problem::new(&model, &decomposition).unwrap().catalog;
@@ -269,6 +270,7 @@ fn a_node_with_a_condition_at_which_the_mesh_is_pinched_keeps_its_group_together
             }
         }
     }
+    model.topology = Topology::new(&model.mesh);
     for count in 2..12 {
         let decomposition = Decomposition::new(&model, Some(count)).unwrap();
         assert_eq!(components(&model, &decomposition), count);

@@ -10,6 +10,7 @@ use std::ops::Range;
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::{ElementKind, Elements};
 use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::mesh::topology::Topology;
 use contact_dd_partition::model::{Contact, Material, Model, PlaneState, Support};
 use contact_dd_partition::scene::units::Units;
 use contact_dd_partition::solver::SolverSettings;
@@ -80,6 +81,15 @@ impl Builder {
             .filter(|&n| self.points[n as usize][1] == 0.0)
             .collect();
         let top = self.points.iter().map(|p| p[1]).fold(0.0, f64::max);
+        let mesh = Mesh {
+            dim: 2,
+            node_tags: (0..self.points.len() as u32).map(tag).collect(),
+            points: self.points.clone(),
+            cell_tags: (0..self.cells.len() as i64).map(|c| 1000 + c).collect(),
+            cells: self.cells,
+            facets: Elements::default(),
+            groups: BTreeMap::new(),
+        };
         Model {
             units: Units::default(),
             solver: SolverSettings::default(),
@@ -107,15 +117,8 @@ impl Builder {
                 .filter(|&n| self.points[n as usize][1] == top)
                 .map(|n| (n, [0.5, -1.0, 0.0]))
                 .collect(),
-            mesh: Mesh {
-                dim: 2,
-                node_tags: (0..self.points.len() as u32).map(tag).collect(),
-                points: self.points,
-                cell_tags: (0..self.cells.len() as i64).map(|c| 1000 + c).collect(),
-                cells: self.cells,
-                facets: Elements::default(),
-                groups: BTreeMap::new(),
-            },
+            topology: Topology::new(&mesh),
+            mesh,
             cell_body: self.cell_body,
             steps: Vec::new(),
             contacts: self.contacts,
@@ -218,6 +221,7 @@ pub fn shuffled(model: &Model, seed: u64) -> Model {
             .collect();
         out.mesh.cells.push(mesh.cells.kind(c), &moved);
     }
+    out.topology = Topology::new(&out.mesh);
     out.cell_body = cells.iter().map(|&c| model.cell_body[c]).collect();
     out.cell_material = cells.iter().map(|&c| model.cell_material[c]).collect();
     for support in &mut out.supports {

@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::decompose::Decomposition;
 use crate::disjoint_sets::DisjointSets;
-use crate::mesh::topology::Topology;
 use crate::model::Model;
 
 /// The bodies of a mesh, in the order of their first cell.
@@ -78,10 +77,9 @@ fn numbered(names: impl Iterator<Item = String>) -> Vec<String> {
 pub(super) fn scattered(model: &Model, decomposition: &Decomposition) -> Option<String> {
     model.prescribed_subdomains.as_ref()?;
     let of = &decomposition.subdomain;
-    let topology = Topology::new(&model.mesh);
     let mut sets = DisjointSets::new(of.len());
     for cell in 0..of.len() {
-        for &next in topology.neighbours(cell) {
+        for &next in model.topology.neighbours(cell) {
             if of[cell] == of[next as usize] {
                 sets.unite(cell as u32, next);
             }
