@@ -11,6 +11,7 @@ import sys
 
 import numpy as np
 
+from drawing import space
 from drawing.canvas import round_below
 from drawing.gaps import honest_scale
 from drawing.overview import overview
@@ -65,6 +66,21 @@ def factor(text):
     return value
 
 
+def folder(arguments):
+    """Where the pictures go."""
+    outdir = arguments.outdir or arguments.result.parent / "figures"
+    try:
+        outdir.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        sys.exit(f"figures: {outdir}: can't be made: {error.strerror}")
+    return outdir
+
+
+def in_space(arguments):
+    """Draws the overview, the only picture of a result in space."""
+    space.overview(arguments.result, arguments.step or 1, arguments.scale, folder(arguments) / "overview.png")
+
+
 def main():
     # Where nobody reads on, as behind `| head`, there is nothing more to do.
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
@@ -76,6 +92,8 @@ def main():
     parser.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
     arguments = parser.parse_args()
     try:
+        if space.is_in_space(arguments.result):
+            return in_space(arguments)
         result = Result(arguments.result, arguments.step)
     except FileNotFoundError:
         sys.exit(f"figures: {arguments.result}: there is no such file")
@@ -86,11 +104,7 @@ def main():
     if scale > honest:
         print(f"figures: × {scale:g} enlarges gaps that close, too, so that bodies that touch are drawn one over the "
               f"other or apart; × {round_below(honest):g} isn't too much", file=sys.stderr)
-    outdir = arguments.outdir or arguments.result.parent / "figures"
-    try:
-        outdir.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        sys.exit(f"figures: {outdir}: can't be made: {error.strerror}")
+    outdir = folder(arguments)
     for name in arguments.only:
         PICTURES[name](result, scale, outdir / f"{name}.png")
 

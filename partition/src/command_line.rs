@@ -120,9 +120,9 @@ pub struct CommandLine {
     )]
     pub refine: u32,
 
-    /// Cells of the built-in scene [default: triangle3]
+    /// Cells of the built-in scene [default: triangle3, in space what suits the scene]
     ///
-    /// Where the mesh size changes, there are triangles between quadrilaterals.
+    /// In the plane triangles and quadrilaterals, in space tetrahedra and hexahedra. Where the mesh size changes, there are triangles between quadrilaterals.
     #[arg(long, value_name = "KIND", requires = "example", conflicts_with = "scene",
           value_parser = elements(), help_heading = "Built-in scenes")]
     pub element: Option<ElementKind>,
@@ -152,12 +152,17 @@ fn examples() -> PossibleValuesParser {
 
 /// The kinds of cells by name.
 fn elements() -> impl TypedValueParser<Value = ElementKind> {
-    const KINDS: [(&str, ElementKind); 5] = [
+    const KINDS: [(&str, ElementKind); 10] = [
         ("triangle3", ElementKind::Triangle3),
         ("triangle6", ElementKind::Triangle6),
         ("quad4", ElementKind::Quad4),
         ("quad8", ElementKind::Quad8),
         ("quad9", ElementKind::Quad9),
+        ("tetrahedron4", ElementKind::Tetrahedron4),
+        ("tetrahedron10", ElementKind::Tetrahedron10),
+        ("hexahedron8", ElementKind::Hexahedron8),
+        ("hexahedron20", ElementKind::Hexahedron20),
+        ("hexahedron27", ElementKind::Hexahedron27),
     ];
     PossibleValuesParser::new(KINDS.map(|(name, _)| name)).try_map(|name| {
         let found = KINDS.iter().find(|(known, _)| *known == name);

@@ -4,11 +4,13 @@
 //! tests look for (`README.md`), that page's picture, and `mesh.rs`: `SHAPE` is what its mesh is made from,
 //! `ABOUT` and `SUBDOMAINS` are as in [`Example`]. `build.rs` lists the folders.
 
+mod cubes;
 mod pattern;
 mod squares;
 
 use std::path::{Path, PathBuf};
 
+use self::cubes::Cube;
 use self::squares::Square;
 use crate::destination;
 use crate::element::ElementKind;
@@ -38,6 +40,11 @@ pub struct Example {
 enum Shape {
     /// Mapped squares, to be filled with cells of any kind and size.
     Squares(fn() -> Vec<Square>),
+    /// Mapped cubes, to be filled with cells of any kind and size, and the kind where the user doesn't say.
+    Cubes {
+        cubes: fn() -> Vec<Cube>,
+        kind: ElementKind,
+    },
     /// A geometry of Gmsh, and the mesh that Gmsh made of it.
     Gmsh {
         geometry: &'static str,
@@ -82,6 +89,7 @@ impl Example {
     pub fn mesh(&self, refine: u32) -> Result<Mesh, InputError> {
         match self.shape {
             Shape::Squares(_) => self.mesh_of(ElementKind::Triangle3, refine),
+            Shape::Cubes { kind, .. } => self.mesh_of(kind, refine),
             Shape::Gmsh { mesh, .. } if refine == 0 => gmsh::parse(mesh),
             Shape::Gmsh { .. } => Err(self.as_gmsh_made_it()),
         }
@@ -95,6 +103,7 @@ impl Example {
     pub fn mesh_of(&self, kind: ElementKind, refine: u32) -> Result<Mesh, InputError> {
         match self.shape {
             Shape::Squares(of_scene) => squares::mesh(&of_scene(), refine, kind),
+            Shape::Cubes { cubes, .. } => cubes::mesh(&cubes(), refine, kind),
             Shape::Gmsh { .. } => Err(self.as_gmsh_made_it()),
         }
     }

@@ -30,13 +30,13 @@ class Result:
                 sys.exit(f"figures: {path}: there are no stresses; expected a run without --no-stress")
             self.points = grid["Points"][:, :2]
             self.tags = grid["PointData/GlobalNodeId"][:]
-            self.displacement = self.of_step(grid["PointData/Displacement"])[:, :2]
-            self.stress = self.of_step(grid["PointData/Stress"])
-            self.cell_stress = self.of_step(grid["CellData/Stress"])
+            self.displacement = of_step(grid, "PointData/Displacement", self.step)[:, :2]
+            self.stress = of_step(grid, "PointData/Stress", self.step)
+            self.cell_stress = of_step(grid, "CellData/Stress", self.step)
             subdomain = grid["CellData/Subdomain"][:]
             self.cells = list(cells_of(grid))
             self.contacts = {
-                name: {key: self.state(table, key) for key in table}
+                name: {key: state(table, key, self.step) for key in table}
                 for name, table in file.get("contact", {}).items()
             }
         if not self.cells:
@@ -50,16 +50,6 @@ class Result:
         # Linear cells don't bend, and that many quadratic ones show no kinks.
         steps = 3 if len(self.cell_stress) < 20_000 else 2
         self.weights, self.nodes, self.triangles, self.cell_of_triangle = self.cut(steps)
-
-    def of_step(self, field):
-        """The rows of this step; those of all steps follow each other."""
-        rows = len(field) // self.steps
-        return field[(self.step - 1) * rows : self.step * rows]
-
-    def state(self, table, key):
-        """What a contact table has in this step: of what changes there is a row for every step."""
-        changes = table["status"].ndim == 2 and key in STATES
-        return table[key][self.step - 1] if changes else table[key][:]
 
     def all_facets(self, subdomain):
         """Facets of all cells from corner to corner, three nodes each, and the subdomain of each.
@@ -122,6 +112,19 @@ class Result:
         middle = self.at_points(self.points)[self.triangles].mean(axis=1)
         np.add.at(sums, self.cell_of_triangle, middle)
         return sums / np.bincount(self.cell_of_triangle, minlength=len(sums))[:, None]
+
+
+def of_step(grid, name, step):
+    """The rows of a step; those of all steps follow each other."""
+    steps = int(grid["Steps"].attrs["NSteps"]) if "Steps" in grid else 1
+    rows = len(grid[name]) // steps
+    return grid[name][(step - 1) * rows : step * rows]
+
+
+def state(table, key, step):
+    """What a contact table has in a step: of what changes there is a row for every step."""
+    changes = table["status"].ndim == 2 and key in STATES
+    return table[key][step - 1] if changes else table[key][:]
 
 
 def curves(points, facets):

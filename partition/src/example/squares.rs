@@ -6,10 +6,10 @@ use crate::error::InputError;
 use crate::mesh::{Group, Mesh};
 
 /// The largest mesh that is made.
-const MOST_CELLS: usize = 100_000_000;
+pub(super) const MOST_CELLS: usize = 100_000_000;
 
 /// Distance at which ends of sides count as the same point, relative to the largest coordinate.
-const SAME: f64 = 1e-9;
+pub(super) const SAME: f64 = 1e-9;
 
 /// The image of the unit square, a piece of one body.
 pub(super) struct Square {
@@ -79,6 +79,12 @@ struct Placed {
 /// # Errors
 /// A refinement too large to be made.
 pub(super) fn mesh(squares: &[Square], refine: u32, kind: ElementKind) -> Result<Mesh, InputError> {
+    if kind.dim() != 2 {
+        return Err(InputError::new(format!(
+            "a {} doesn't lie in the plane of this scene; expected triangles or quadrilaterals",
+            kind.name()
+        )));
+    }
     let coarsest: usize = squares.iter().map(|p| p.pattern.triangles()).sum();
     let cells = 4_usize
         .checked_pow(refine)
@@ -133,7 +139,8 @@ pub(super) fn mesh(squares: &[Square], refine: u32, kind: ElementKind) -> Result
     Ok(mesh)
 }
 
-fn group<'a>(mesh: &'a mut Mesh, name: &str, dim: usize) -> &'a mut Group {
+/// The group of that name.
+pub(super) fn group<'a>(mesh: &'a mut Mesh, name: &str, dim: usize) -> &'a mut Group {
     let group = mesh.groups.entry(name.to_owned()).or_default();
     group.dim = dim;
     group
@@ -220,7 +227,8 @@ fn glue(squares: &[Square], placed: &[Placed]) -> Vec<usize> {
     (0..count).map(|node| root(&parent, node)).collect()
 }
 
-fn root(parent: &[usize], mut node: usize) -> usize {
+/// The first of those that a node is glued to.
+pub(super) fn root(parent: &[usize], mut node: usize) -> usize {
     while parent[node] != node {
         node = parent[node];
     }
