@@ -2,6 +2,7 @@
 
 pub mod bounding_box;
 mod curve;
+mod extruded;
 mod foreign;
 pub mod gmsh;
 mod measure;

@@ -122,7 +122,7 @@ type Solved = OnceLock<(Case, BTreeMap<String, Vec<u64>>)>;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 20] = [
+    let cases: [(&str, MakeCase); 21] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
@@ -159,6 +159,14 @@ fn same_results(trials: &mut Trials) {
         ("in_steps", || Case::of(&steps::two_blocks_in_steps(), 6)),
         ("with_friction_in_steps", || {
             Case::of(&steps::two_blocks_with_friction(), 6)
+        }),
+        ("in_space", || {
+            let mesh = sort("quad4")
+                .of(&two_blocks().mesh)
+                .extruded(&[0.0, 0.1, 0.2]);
+            let scene = two_block_scene().replace("plane = 'strain'\n", "");
+            let held = "[[bilateral]]\non = ['lower back', 'upper back']\n";
+            Case::of(&model(&format!("{scene}{held}"), mesh.unwrap()), 9)
         }),
         ("raous", || Case::of(&built_in_model("raous", 0), 7)),
         ("incline", || Case::of(&built_in_model("incline", 0), 4)),

@@ -22,6 +22,7 @@ mod obstacles;
 mod redundant;
 mod released_modes;
 mod resultants;
+mod space;
 mod stability;
 mod steps;
 #[path = "../support/mod.rs"]

@@ -252,7 +252,7 @@ pub fn shuffled(mesh: &Mesh, seed: u64) -> (Mesh, BTreeMap<i64, i64>) {
 pub fn joined(mut first: Mesh, second: Mesh) -> Mesh {
     let nodes = first.points.len() as u32;
     let number: Vec<u32> = (nodes..nodes + second.points.len() as u32).collect();
-    let counts = [nodes, first.facets.len() as u32, first.cells.len() as u32];
+    let [facets_before, cells_before] = [&first.facets, &first.cells].map(|e| e.len() as u32);
     first.points.extend(&second.points);
     let cells = renumbered(&second.cells, &number);
     let facets = renumbered(&second.facets, &number);
@@ -261,9 +261,15 @@ pub fn joined(mut first: Mesh, second: Mesh) -> Mesh {
     first.node_tags = (1..=first.points.len() as i64).collect();
     first.cell_tags = (1..=first.cells.len() as i64).collect();
     for (name, mut group) in second.groups {
-        for member in &mut group.members {
-            *member += counts[group.dim];
-        }
+        let before = match first.dim - group.dim {
+            0 => cells_before,
+            1 => facets_before,
+            _ => nodes,
+        };
+        group
+            .members
+            .iter_mut()
+            .for_each(|member| *member += before);
         first.groups.insert(name, group);
     }
     first

@@ -17,6 +17,7 @@ pub mod process;
 pub mod random;
 pub mod round;
 pub mod scenes;
+pub mod solids;
 pub mod solution;
 pub mod solver;
 pub mod sorts;

@@ -10,5 +10,6 @@ mod mortar;
 mod mortar_discs;
 mod obstacle;
 mod quadratic;
+mod space;
 mod steps;
 mod supports;
