@@ -4,4 +4,5 @@ mod invariance;
 mod patch;
 mod round;
 mod sorts;
+mod space;
 mod system;

@@ -1,0 +1,179 @@
+//! A uniform pressure passes exactly between cells of space.
+
+use std::f64::consts::PI;
+
+use contact_dd_partition::element::ElementKind::{
+    self, Hexahedron8, Hexahedron20, Hexahedron27, Tetrahedron4,
+};
+use contact_dd_partition::element::geometry::dot;
+use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::model::Model;
+
+use crate::support::blocks::joined;
+use crate::support::close::close;
+use crate::support::scenes::model;
+use crate::support::solids::{SOLIDS, between, moved, solid, turned};
+use crate::support::solution::Solution;
+use crate::support::solver::solve;
+use crate::support::uneven::PRESSURE;
+
+const SCENE: &str = "
+materials.steel = {young = 210e9, poisson = 0.3}
+materials.rock = {young = 20e9, poisson = 0.22}
+bodies.lower.material = 'rock'
+bodies.upper.material = 'steel'
+[[bilateral]]
+on = ['lower x0', 'lower y0', 'lower z0', 'upper x0', 'upper y0']
+[[pressure]]
+on = 'upper z1'
+value = 1e6
+";
+
+const SIDES: [&str; 2] = ["'lower z1', 'upper z0'", "'upper z0', 'lower z1'"];
+
+fn scene(sides: &str) -> String {
+    format!("{SCENE}[[contact]]\nname = 'joint'\nsides = [{sides}]\ngap = 0.0\n")
+}
+
+/// A box whose linear cells have faces of irregular shape. Edges of quadratic ones stay straight.
+fn block(name: &str, kind: ElementKind, n: [usize; 3], low: [f64; 3], high: [f64; 3]) -> Mesh {
+    let mesh = solid(name, kind, n, |x| x);
+    let amount = if [Tetrahedron4, Hexahedron8].contains(&kind) {
+        0.06
+    } else {
+        0.0
+    };
+    let uneven = |[x, y, z]: [f64; 3]| {
+        let bulge = amount * (PI * x).sin() * (PI * y).sin();
+        [x + bulge, y - 0.7 * bulge, z]
+    };
+    let place = between(low, high);
+    moved(mesh, |x| place(uneven(x)))
+}
+
+/// Fails unless everything is under the uniform pressure, all contacts closed, to within 1e-10.
+#[track_caller]
+fn is_uniform(solution: &Solution) {
+    let n = turned([0.0, 0.0, 1.0]);
+    let pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
+    let expected = pairs.map(|(i, j)| -PRESSURE * n[i] * n[j]);
+    for (_, stress) in &solution.cells {
+        (0..6).for_each(|k| close(stress[k], expected[k], 1e-10 * PRESSURE));
+    }
+    for point in solution.points() {
+        assert!(point.closed && point.tags[1] == -1, "{point:?}");
+        close(point.pressure, PRESSURE, 1e-10 * PRESSURE);
+    }
+}
+
+#[test]
+fn a_uniform_pressure_passes_between_solids_of_any_cells() {
+    for (i, lower) in SOLIDS.into_iter().enumerate() {
+        for (step, sides) in [(1, SIDES[0]), (3, SIDES[1])] {
+            let upper = SOLIDS[(i + step) % SOLIDS.len()];
+            let mesh = joined(
+                block("lower", lower, [2, 3, 2], [0.0; 3], [2.0, 2.0, 1.0]),
+                block("upper", upper, [3, 2, 1], [0.0, 0.0, 1.0], [2.0; 3]),
+            );
+            is_uniform(&solve(&model(&scene(sides), moved(mesh, turned)), 3));
+        }
+    }
+}
+
+/// A part of the plane, along x and y.
+type Rectangle = [[f64; 2]; 2];
+
+/// ∫ N over the part of a side of rectangles that lies in one: node and value.
+fn integrals(mesh: &Mesh, side: &str, part: Rectangle) -> Vec<(u32, f64)> {
+    let mut list = Vec::new();
+    for &facet in &mesh.groups[side].members {
+        let kind = mesh.facets.kind(facet as usize);
+        let nodes = mesh.facets.nodes_of(facet as usize);
+        let at = |local: usize| mesh.points[nodes[local] as usize];
+        let range = |axis: usize| {
+            let own = [at(0)[axis].min(at(2)[axis]), at(0)[axis].max(at(2)[axis])];
+            let common = [own[0].max(part[axis][0]), own[1].min(part[axis][1])];
+            (own, common)
+        };
+        let ranges = [range(0), range(1)];
+        if ranges.iter().any(|(_, common)| common[0] >= common[1]) {
+            continue;
+        }
+        for (xi, weight) in kind.quadrature(4) {
+            let x = [0, 1].map(|axis| {
+                let [from, to] = ranges[axis].1;
+                from + 0.5 * (1.0 + xi[axis]) * (to - from)
+            });
+            let area: f64 = ranges
+                .iter()
+                .map(|(_, [from, to])| 0.5 * (to - from))
+                .product();
+            // The reference coordinates of x, along the edges from the first corner.
+            let along = |end: usize| {
+                let edge = [0, 1].map(|axis| at(end)[axis] - at(0)[axis]);
+                let way = [0, 1].map(|axis| x[axis] - at(0)[axis]);
+                let [edge, way] = [edge, way].map(|[x, y]| [x, y, 0.0]);
+                2.0 * dot(way, edge) / dot(edge, edge) - 1.0
+            };
+            let shape = kind.shape([along(1), along(3), 0.0]);
+            list.extend(
+                nodes
+                    .iter()
+                    .zip(shape)
+                    .map(|(&node, n)| (node, weight * area * n)),
+            );
+        }
+    }
+    list
+}
+
+/// The model with the pressure wherever a side isn't covered.
+fn pressed_beside(text: &str, mesh: &Mesh, covered: Rectangle) -> Model {
+    let mut model = model(text, moved(mesh.clone(), turned));
+    let everywhere = [[-9.0, 9.0]; 2];
+    for (side, out) in [("lower z1", 1.0), ("upper z0", -1.0)] {
+        for (part, sign) in [(everywhere, 1.0), (covered, -1.0)] {
+            for (node, integral) in integrals(mesh, side, part) {
+                let force = turned([0.0, 0.0, -out * sign * PRESSURE * integral]);
+                model.forces.push((node, force));
+            }
+        }
+    }
+    let mut sums = std::collections::BTreeMap::new();
+    for (node, force) in model.forces {
+        let sum = sums.entry(node).or_insert([0.0; 3]);
+        *sum = [0, 1, 2].map(|k| sum[k] + force[k]);
+    }
+    model.forces = sums.into_iter().collect();
+    model
+}
+
+#[test]
+fn a_uniform_pressure_passes_where_solids_overlap_in_part() {
+    let kinds = [Hexahedron8, Hexahedron20, Hexahedron27];
+    for (i, (low, high, n)) in [
+        ([0.0, 0.0], [1.3, 0.9], [3, 2, 1]),
+        ([0.0, 0.0], [2.6, 1.2], [2, 2, 1]),
+        ([0.3, 0.4], [1.1, 2.3], [2, 2, 2]),
+        ([0.0, 0.0], [1.0 + 1e-7, 1.0], [1, 2, 1]),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        for sides in SIDES {
+            let (lower, upper) = (kinds[i % 3], kinds[(i + 1) % 3]);
+            let low = [low[0], low[1], 1.0];
+            let mesh = joined(
+                solid(
+                    "lower",
+                    lower,
+                    [3, 2, 1],
+                    between([0.0; 3], [2.0, 2.0, 1.0]),
+                ),
+                solid("upper", upper, n, between(low, [high[0], high[1], 2.0])),
+            );
+            let covered = [0, 1].map(|axis| [low[axis], high[axis].min(2.0)]);
+            is_uniform(&solve(&pressed_beside(&scene(sides), &mesh, covered), 2));
+        }
+    }
+}
