@@ -9,6 +9,7 @@
 mod blocks;
 #[path = "../../../tests/support/close.rs"]
 mod close;
+mod curve;
 mod decompose;
 mod element;
 mod example;
