@@ -18,7 +18,7 @@ fn mesh_of(name: &str, refine: u32) -> Mesh {
 
 /// The examples of the plane whose meshes are made for any cells and size.
 fn adjustable() -> impl Iterator<Item = &'static example::Example> {
-    let names = ["gears", "sphere"];
+    let names = ["gears", "sphere", "cube-crack", "stack3d"];
     EXAMPLES
         .iter()
         .filter(move |example| !names.contains(&example.name))

@@ -1,5 +1,6 @@
 //! Meshes of scenes in space.
 
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 use contact_dd_partition::element::ElementKind;
@@ -62,4 +63,43 @@ fn refinement_follows_the_ball() {
         [0, 1].map(|refine| (volume(&ball(ElementKind::Hexahedron8, refine)) - exact).abs());
     let order = (errors[0] / errors[1]).log2();
     assert!((order - 2.0).abs() < 0.15, "order {order}");
+}
+
+#[test]
+fn blocks_in_space_are_as_large_as_they_are_meant_of_any_cells() {
+    for (name, bodies, exact) in [("cube-crack", 1, 500.0), ("stack3d", 3, 16.0 + 9.0 + 4.0)] {
+        for kind in ElementKind::of_dim(3) {
+            let mesh = example::find(name).unwrap().mesh_of(kind, 0).unwrap();
+            assert!(
+                (volume(&mesh) - exact).abs() < 1e-10 * exact,
+                "{name} {kind:?}"
+            );
+            let topology = Topology::new(&mesh);
+            topology.check_sides(&mesh).unwrap();
+            let pieces = topology.pieces().into_iter().max();
+            assert_eq!(pieces, Some(bodies - 1), "{name} {kind:?}");
+        }
+    }
+}
+
+#[test]
+fn the_sides_of_a_crack_share_its_front_alone() {
+    let mesh = example::find("cube-crack").unwrap().mesh(0).unwrap();
+    let nodes = |side: &str| -> BTreeSet<u32> {
+        let members = mesh.groups[side].members.iter();
+        members
+            .flat_map(|&facet| mesh.facets.nodes_of(facet as usize).to_vec())
+            .collect()
+    };
+    for (crack, tip) in [("left", 3.0), ("right", 7.0)] {
+        let [lower, upper] = ["lower", "upper"].map(|side| nodes(&format!("{crack} crack {side}")));
+        assert_eq!(lower.len(), upper.len());
+        let front = lower
+            .intersection(&upper)
+            .map(|&node| mesh.points[node as usize]);
+        let on_front = |x: [f64; 3]| x[0] == tip || x[1] == 3.0;
+        assert!(front.clone().all(on_front));
+        let all = lower.iter().map(|&node| mesh.points[node as usize]);
+        assert_eq!(front.count(), all.filter(|&x| on_front(x)).count());
+    }
 }
