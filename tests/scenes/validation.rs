@@ -3,7 +3,9 @@
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, problem};
 use crate::support::sorts::sort;
-use crate::support::validation::{beam, crack, hertz, hole, punch, roller, signorini, uniform};
+use crate::support::validation::{
+    beam, crack, hertz, hole, punch, roller, signorini, space, uniform,
+};
 
 #[test]
 fn uniform_compression_passes_through_matching_nodes() {
@@ -53,6 +55,16 @@ fn a_flat_punch_presses_most_at_its_corners() {
 #[test]
 fn a_chosen_solution_with_contact_and_gap_is_found() {
     signorini::case().check();
+}
+
+#[test]
+fn a_ball_on_a_plate_presses_as_hertz_says() {
+    space::ball().check();
+}
+
+#[test]
+fn layers_of_a_thick_sphere_that_do_not_match_converge_to_lame() {
+    space::layers().check();
 }
 
 #[test]

@@ -13,6 +13,7 @@ pub mod punch;
 pub mod raous;
 pub mod roller;
 pub mod signorini;
+pub mod space;
 pub mod uniform;
 
 use contact_dd_partition::element::ElementKind;
@@ -96,6 +97,8 @@ pub fn cases() -> Vec<Case> {
         signorini::case(),
         beam::case(),
         hole::case(),
+        space::ball(),
+        space::layers(),
     ]
 }
 
@@ -129,7 +132,7 @@ pub fn figured(model: &Model, figures: impl Fn(&Solution) -> Vec<Figure>) -> Mea
 
 /// Solves all increments of a model, in as many subdomains as suit its size.
 pub fn figured_steps(model: &Model, figures: impl Fn(&[Solution]) -> Vec<Figure>) -> Measured {
-    let dofs = 2 * model.mesh.points.len();
+    let dofs = model.mesh.dim * model.mesh.points.len();
     let case = solver::Case::new(&solver::problem(model, None));
     let ended = case.run(&[]);
     assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);

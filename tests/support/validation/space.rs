@@ -1,0 +1,181 @@
+//! Bodies in space: a ball on a plate, and a thick sphere in two layers.
+
+use std::f64::consts::{FRAC_PI_4, PI};
+
+use contact_dd_partition::element::ElementKind::{
+    self, Hexahedron8, Hexahedron20, Hexahedron27, Tetrahedron4, Tetrahedron10,
+};
+use contact_dd_partition::element::geometry::{difference, length};
+use contact_dd_partition::example;
+use contact_dd_partition::mesh::Mesh;
+
+use super::super::blocks::joined;
+use super::super::scenes::model;
+use super::super::solids::solid;
+use super::super::solution::Solution;
+use super::{Case, Family, Figure, Gate, Measured, falling, figured, plain};
+
+const BALL: &str = "\
+A ball of radius R = 8, E = 200, ν = 0.3, squeezed between two rigid plates by 0.08 each. With the force P of the
+solution a = (3 P R/(4 E\\*))^(1/3), E\\* = E/(1 − ν²), p₀ = 3 P/(2π a²). *Peak*: the pressure at the pole against p₀.
+*Radius*: the middle between the last closed and the first open node against a, here a tenth of R, which is as far as the
+theory of half spaces reaches.
+
+Source: K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985, chapter 4.
+
+Mesh: the built-in scene `sphere`.
+";
+
+const LAYERS: &str = "\
+A thick sphere under pressure from inside in two layers that only touch, from r = 1 to 1.5 and to 2, E = 200, ν = 0.3,
+p = 1: u = p a³/(E (b³ − a³)) ((1 − 2ν) r + (1 + ν) b³/(2 r²)), pressure p a³/(b³ − a³) (b³/r³ − 1) where they touch.
+*Displacement*: the largest error over the largest displacement; *pressure*: the largest error.
+
+Source: G. Lamé, 1852; S. P. Timoshenko and J. N. Goodier, *Theory of Elasticity*.
+
+Mesh: the part between four planes of symmetry; faces of the layers don't match (`mortar`) and are curved where cells
+are quadratic.
+";
+
+fn solved_ball(kind: ElementKind, level: usize) -> Measured {
+    let example = example::find("sphere").unwrap();
+    let mesh = example.mesh_of(kind, level as u32).unwrap();
+    figured(&model(example.scene, mesh), of_ball)
+}
+
+fn of_ball(solution: &Solution) -> Vec<Figure> {
+    let points = &solution.contacts["plate"];
+    let force: f64 = 4.0 * points.iter().map(|point| point.force).sum::<f64>();
+    let stiffness = 200.0 / (1.0 - 0.3 * 0.3);
+    let radius = (0.75 * force * 8.0 / stiffness).cbrt();
+    let peak = 1.5 * force / (PI * radius * radius);
+    let away = |position: [f64; 3]| position[0].hypot(position[1]);
+    let pole = points
+        .iter()
+        .min_by(|p, q| away(p.position).total_cmp(&away(q.position)));
+    let of = |closed: bool| {
+        let points = points.iter().filter(move |point| point.closed == closed);
+        points.map(|point| away(point.position))
+    };
+    let (last, first) = (
+        of(true).fold(0.0, f64::max),
+        of(false).fold(f64::INFINITY, f64::min),
+    );
+    vec![
+        plain("peak", pole.unwrap().pressure / peak - 1.0),
+        plain("radius", 0.5 * (last + first) / radius - 1.0),
+    ]
+}
+
+/// A ball on a plate.
+pub fn ball() -> Case {
+    let family = |(name, kind, meshes, peak): (&str, ElementKind, [usize; 2], f64)| Family {
+        name: name.into(),
+        run: Box::new(move |level| solved_ball(kind, level)),
+        meshes,
+        gates: vec![Gate::AtMost("peak", peak), Gate::AtMost("radius", 0.15)],
+    };
+    Case {
+        title: "Ball on a plate",
+        text: BALL,
+        families: [
+            ("hexahedron8", Hexahedron8, [1, 2], 2e-2),
+            ("hexahedron20", Hexahedron20, [1, 2], 1e-2),
+            ("hexahedron27", Hexahedron27, [0, 1], 2e-2),
+            ("tetrahedron10", Tetrahedron10, [0, 1], 5e-2),
+        ]
+        .map(family)
+        .into(),
+    }
+}
+
+const SPHERE: &str = "
+    materials.steel = {young = 200, poisson = 0.3}
+    bodies.inner.material = 'steel'
+    bodies.outer.material = 'steel'
+    [[bilateral]]
+    on = ['inner x0', 'inner x1', 'inner y0', 'inner y1', 'outer x0', 'outer x1', 'outer y0', 'outer y1']
+    [[pressure]]
+    on = 'inner z0'
+    value = 1.0
+    [[contact]]
+    name = 'layers'
+    sides = ['inner z1', 'outer z0']
+    gap = 0.0";
+
+/// Radii of the sphere: inside, where the layers touch, outside.
+const RADII: [f64; 3] = [1.0, 1.5, 2.0];
+
+/// A layer between the planes x = 0, y = 0, x = z and y = z.
+fn layer(name: &str, kind: ElementKind, n: usize, deep: usize, [from, to]: [f64; 2]) -> Mesh {
+    solid(name, kind, [n, n, deep], move |[s, t, r]| {
+        let direction = [(FRAC_PI_4 * s).tan(), (FRAC_PI_4 * t).tan(), 1.0];
+        let radius = from * (1.0 - r) + to * r;
+        direction.map(|c| c * radius / length(direction))
+    })
+}
+
+fn solved_layers(kind: ElementKind, level: usize) -> Measured {
+    let [a, c, b] = RADII;
+    let finer = 1 << level;
+    let mesh = joined(
+        layer("inner", kind, 2 * finer, finer, [a, c]),
+        layer("outer", kind, 3 * finer, finer, [c, b]),
+    );
+    let model = model(SPHERE, mesh);
+    let tagged = model.mesh.node_tags.iter().zip(&model.mesh.points);
+    let exact: Vec<(i64, [f64; 3])> = tagged
+        .map(|(&tag, &x)| {
+            let r = length(x);
+            let cube = b.powi(3);
+            let u = a.powi(3) / (200.0 * (cube - a.powi(3))) * (0.4 * r + 0.65 * cube / (r * r));
+            (tag, x.map(|x| u * x / r))
+        })
+        .collect();
+    figured(&model, |solution| {
+        let largest = exact.iter().map(|(_, u)| length(*u)).fold(0.0, f64::max);
+        let off = exact
+            .iter()
+            .map(|(tag, u)| length(difference(solution.displacement[tag], *u)));
+        let pressure = a.powi(3) / (b.powi(3) - a.powi(3)) * ((b / c).powi(3) - 1.0);
+        let points = solution.contacts["layers"].iter();
+        let error = points.map(|point| (point.pressure / pressure - 1.0).abs());
+        vec![
+            falling("displacement", off.fold(0.0, f64::max) / largest),
+            falling("pressure", error.fold(0.0, f64::max)),
+        ]
+    })
+}
+
+/// A thick sphere in two layers.
+pub fn layers() -> Case {
+    let family = |(name, kind, order): (&str, ElementKind, f64)| {
+        let (pressure, tested) = match (kind, kind.is_linear()) {
+            (Tetrahedron4, _) => (0.2, 0),
+            (_, true) => (0.05, 3),
+            _ => (0.03, 2),
+        };
+        Family {
+            name: name.into(),
+            run: Box::new(move |level| solved_layers(kind, level)),
+            meshes: [tested, 3],
+            gates: vec![
+                Gate::Order("displacement", order),
+                Gate::AtMost("pressure", pressure),
+            ],
+        }
+    };
+    Case {
+        title: "Thick sphere in two layers",
+        text: LAYERS,
+        families: [
+            ("tetrahedron4", Tetrahedron4, 1.3),
+            ("tetrahedron10", Tetrahedron10, 2.0),
+            ("hexahedron8", Hexahedron8, 1.7),
+            ("hexahedron20", Hexahedron20, 1.3),
+            ("hexahedron27", Hexahedron27, 2.5),
+        ]
+        .map(family)
+        .into(),
+    }
+}
