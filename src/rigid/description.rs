@@ -2,9 +2,12 @@
 
 use std::collections::BTreeSet;
 
+use faer::Mat;
+
 use super::analysis::BodyState;
 use super::free_motion::FreeMotion;
 use super::kinematics::Kinematics;
+use super::motion::BodyFrame;
 
 /// Motions up to which each is described: more are any basis of what bodies can do together.
 const MOTIONS: usize = 3;
@@ -38,8 +41,64 @@ impl Kinematics {
             };
             listed(taking_part(motion).map(of_body).collect())
         };
-        motions.iter().map(one).collect()
+        simplest(motions, self.dim).iter().map(one).collect()
     }
+}
+
+/// Motions that span the same, as many of them without a rotation as can be, and each of few bodies.
+fn simplest(motions: &[FreeMotion], dim: usize) -> Vec<FreeMotion> {
+    let bodies: BTreeSet<usize> = motions.iter().flat_map(taking_part).collect();
+    let bodies: Vec<usize> = bodies.into_iter().collect();
+    let rigid = BodyFrame::count(dim);
+    let mut rows = Mat::<f64>::zeros(motions.len(), rigid * bodies.len());
+    for (i, motion) in motions.iter().enumerate() {
+        for (b, z) in &motion.bodies {
+            if let Ok(place) = bodies.binary_search(b) {
+                (z.iter().enumerate()).for_each(|(k, z)| rows[(i, rigid * place + k)] = *z);
+            }
+        }
+    }
+    // Rotations first: what is left without one is a translation.
+    let columns = (dim..rigid).chain(0..dim);
+    let columns = columns.flat_map(|k| (0..bodies.len()).map(move |place| rigid * place + k));
+    let (mut done, mut rotations) = (0, 0);
+    for column in columns {
+        let left = done..rows.nrows();
+        let size = |i: usize| rows[(i, column)].abs();
+        let Some(largest) = left.max_by(|&a, &b| size(a).total_cmp(&size(b))) else {
+            break;
+        };
+        if size(largest) < NO_PART {
+            continue;
+        }
+        for j in 0..rows.ncols() {
+            let pivot = rows[(largest, j)];
+            rows[(largest, j)] = rows[(done, j)];
+            rows[(done, j)] = pivot;
+        }
+        let pivot = rows[(done, column)];
+        (0..rows.ncols()).for_each(|j| rows[(done, j)] /= pivot);
+        for i in (0..rows.nrows()).filter(|&i| i != done) {
+            let factor = rows[(i, column)];
+            for j in 0..rows.ncols() {
+                let change = factor * rows[(done, j)];
+                rows[(i, j)] -= change;
+            }
+        }
+        done += 1;
+        rotations += usize::from(column % rigid >= dim);
+    }
+    let motion = |i: usize| {
+        let z = |place: usize| (0..rigid).map(|k| rows[(i, rigid * place + k)]).collect();
+        let bodies = bodies.iter().enumerate();
+        FreeMotion {
+            bodies: bodies.map(|(place, &b)| (b, z(place))).collect(),
+        }
+    };
+    (rotations..rows.nrows())
+        .chain(0..rotations)
+        .map(motion)
+        .collect()
 }
 
 fn taking_part(motion: &FreeMotion) -> impl Iterator<Item = usize> + '_ {
@@ -60,7 +119,6 @@ fn listed(mut names: Vec<String>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rigid::motion::BodyFrame;
 
     /// `n` squares in a row, and one free motion of each, along x.
     fn described(n: usize, motions: Vec<FreeMotion>) -> Vec<String> {
@@ -88,6 +146,17 @@ mod tests {
         assert_eq!(words.len(), 2);
         assert_eq!(words[0], "'brick 0' (translation along (1.0000, 0.0000))");
         assert!(words[1].contains("'brick 1'"), "{}", words[1]);
+    }
+
+    #[test]
+    fn what_slides_and_turns_is_told_in_the_simplest_motions() {
+        let motion = |z: [f64; 3]| FreeMotion {
+            bodies: vec![(1, z.to_vec())],
+        };
+        let words = described(2, vec![motion([0.6, 0.8, 0.4]), motion([0.8, -0.6, 0.8])]);
+        let slides = "'brick 1' (translation along (0.1789, 0.9839))";
+        let turns = "'brick 1' (rotation about (5.91942, 0.50000))";
+        assert_eq!(words, [slides, turns]);
     }
 
     #[test]
