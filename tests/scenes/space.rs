@@ -9,6 +9,8 @@ use contact_dd_partition::model::Model;
 
 use crate::support::blocks::{jittered, joined};
 use crate::support::close::close;
+use crate::support::comparison::compare;
+use crate::support::monolithic::Monolithic;
 use crate::support::scenes::{model, two_block_scene, two_blocks as plane_blocks};
 use crate::support::solids::{SOLIDS, between, moved, shaken, solid, turned};
 use crate::support::solution::Solution;
@@ -305,6 +307,39 @@ fn a_result_does_not_depend_on_the_unit_or_the_direction() {
     is_near(&forces, &other_forces, 1e-10 * force);
     for (u, other) in u.iter().zip(other) {
         is_near(u, &other.map(|c| 1e-3 * c), 1e-10 * size);
+    }
+}
+
+#[test]
+fn a_joint_that_opens_in_part_is_that_of_a_monolithic_solve() {
+    for kind in SOLIDS {
+        let at_once = rocking(kind);
+        let apart = joined(
+            solid("lower", kind, [3, 2, 1], between([0.0; 3], [1.2, 1.0, 0.5])),
+            solid(
+                "upper",
+                kind,
+                [3, 3, 1],
+                between([0.1, 0.0, 0.5], [1.0, 1.0, 1.0]),
+            ),
+        );
+        let meshes = match kind.is_linear() {
+            true => vec![at_once, apart],
+            false => vec![apart],
+        };
+        for mesh in meshes {
+            let model = model(&ROCKING.replace("1.3-1.6*x", "2.0-3.5*x"), mesh);
+            let reference = Monolithic::new(&model);
+            for count in [2, 5] {
+                let solution = solve(&model, count);
+                compare(&model, &reference, &solution);
+                let all = solution.points().count();
+                assert!(
+                    (1..all).contains(&solution.closed()),
+                    "{kind:?}: all or none of {all}"
+                );
+            }
+        }
     }
 }
 

@@ -420,7 +420,7 @@ fn cells(model: &Model) -> Vec<Cell> {
         .map(|((kind, nodes), &material)| {
             let nodes: Vec<usize> = nodes.iter().map(|&node| node as usize).collect();
             let points: Vec<_> = nodes.iter().map(|&node| mesh.points[node]).collect();
-            let stiffness = model.materials[material as usize].stiffness.rows();
+            let stiffness = &model.materials[material as usize].stiffness;
             let reference = (references.entry(kind)).or_insert_with(|| Reference::new(kind));
             Cell::new(reference, &points, nodes, stiffness)
         })

@@ -1,119 +1,154 @@
 //! Elements without any code of the program under test: shape functions from the monomials that
 //! they span, rules of quadrature from tables.
 
-use contact_dd_partition::element::ElementKind::{self, Quad4, Quad8, Quad9, Triangle3, Triangle6};
+use contact_dd_partition::element::ElementKind::{
+    self, Hexahedron8, Hexahedron20, Hexahedron27, Quad4, Quad8, Quad9, Tetrahedron4,
+    Tetrahedron10, Triangle3, Triangle6,
+};
+use contact_dd_partition::stiffness::Stiffness;
 use faer::sparse::Triplet;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// An element at its quadrature points.
 pub struct Cell {
     pub nodes: Vec<usize>,
+    dim: usize,
     /// ∇N of each node and the weight times the Jacobian, of each point.
-    points: Vec<(Vec<[f64; 2]>, f64)>,
-    stiffness: [[f64; 3]; 3],
+    points: Vec<(Vec<[f64; 3]>, f64)>,
+    stiffness: DMatrix<f64>,
 }
 
-/// Reference coordinates of all nodes that a cell of three or four corners may have.
-fn reference(kind: ElementKind) -> Vec<[f64; 2]> {
-    let triangle = [
-        [0.0, 0.0],
-        [1.0, 0.0],
-        [0.0, 1.0],
-        [0.5, 0.0],
-        [0.5, 0.5],
-        [0.0, 0.5],
-    ];
-    let square = [
-        [-1.0, -1.0],
-        [1.0, -1.0],
-        [1.0, 1.0],
-        [-1.0, 1.0],
-        [0.0, -1.0],
-        [1.0, 0.0],
-        [0.0, 1.0],
-        [-1.0, 0.0],
-        [0.0, 0.0],
-    ];
-    match kind {
-        Triangle3 => triangle[..3].to_vec(),
-        Triangle6 => triangle.to_vec(),
-        Quad4 => square[..4].to_vec(),
-        Quad8 => square[..8].to_vec(),
-        Quad9 => square.to_vec(),
+/// The middle of some corners.
+fn middle(corners: &[[f64; 3]], of: &[usize]) -> [f64; 3] {
+    [0, 1, 2].map(|k| of.iter().map(|&i| corners[i][k]).sum::<f64>() / of.len() as f64)
+}
+
+/// Reference coordinates of the nodes.
+fn reference(kind: ElementKind) -> Vec<[f64; 3]> {
+    let simplex = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let (corners, between): (Vec<[f64; 3]>, &[&[usize]]) = match kind {
+        Triangle3 | Triangle6 => (simplex[..3].to_vec(), &[&[0, 1], &[1, 2], &[2, 0]]),
+        Quad4 | Quad8 | Quad9 => (
+            square.map(|[x, y]| [x, y, 0.0]).to_vec(),
+            &[&[0, 1], &[1, 2], &[2, 3], &[3, 0], &[0, 1, 2, 3]],
+        ),
+        Tetrahedron4 | Tetrahedron10 => (
+            simplex.to_vec(),
+            &[&[0, 1], &[1, 2], &[2, 0], &[0, 3], &[1, 3], &[2, 3]],
+        ),
+        Hexahedron8 | Hexahedron20 | Hexahedron27 => (
+            [-1.0, 1.0]
+                .iter()
+                .flat_map(|&z| square.map(|[x, y]| [x, y, z]))
+                .collect(),
+            &[
+                &[0, 1],
+                &[1, 2],
+                &[2, 3],
+                &[3, 0],
+                &[4, 5],
+                &[5, 6],
+                &[6, 7],
+                &[7, 4],
+                &[0, 4],
+                &[1, 5],
+                &[2, 6],
+                &[3, 7],
+                &[0, 3, 7, 4],
+                &[1, 2, 6, 5],
+                &[0, 1, 5, 4],
+                &[3, 2, 6, 7],
+                &[0, 1, 2, 3],
+                &[4, 5, 6, 7],
+                &[0, 1, 2, 3, 4, 5, 6, 7],
+            ],
+        ),
         _ => panic!("{kind:?} is no cell"),
-    }
+    };
+    let others = between.iter().map(|of| middle(&corners, of));
+    corners
+        .iter()
+        .copied()
+        .chain(others)
+        .take(kind.nodes())
+        .collect()
 }
 
-/// Powers of ξ and η that the shape functions span.
-fn powers(kind: ElementKind) -> &'static [[i32; 2]] {
-    match kind {
-        Triangle3 => &[[0, 0], [1, 0], [0, 1]],
-        Triangle6 => &[[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]],
-        Quad4 => &[[0, 0], [1, 0], [0, 1], [1, 1]],
-        Quad8 => &[
-            [0, 0],
-            [1, 0],
-            [0, 1],
-            [2, 0],
-            [1, 1],
-            [0, 2],
-            [2, 1],
-            [1, 2],
-        ],
-        _ => &[
-            [0, 0],
-            [1, 0],
-            [0, 1],
-            [2, 0],
-            [1, 1],
-            [0, 2],
-            [2, 1],
-            [1, 2],
-            [2, 2],
-        ],
-    }
+/// Powers of ξ, η and ζ that the shape functions span.
+fn powers(kind: ElementKind) -> Vec<[i32; 3]> {
+    let all = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9]);
+    let is_of = |powers: &[i32; 3]| {
+        let sum: i32 = powers.iter().sum();
+        // Factors of first degree come on top in serendipity elements.
+        let beyond: i32 = powers.iter().filter(|&&p| p > 1).sum();
+        match kind {
+            Triangle3 | Tetrahedron4 => sum <= 1,
+            Triangle6 | Tetrahedron10 => sum <= 2,
+            Quad4 | Hexahedron8 => beyond == 0,
+            Quad8 | Hexahedron20 => beyond <= 2,
+            _ => true,
+        }
+    };
+    all.filter(|powers| is_of(powers) && (kind.dim() == 3 || powers[2] == 0))
+        .collect()
 }
 
 /// Σ_k V⁻¹_ki of(power k) for every node i, with V_ik = m_k(ξ_i): what a linear function of the
 /// monomials, such as a value or a slope, is of the shape functions N = V⁻ᵀ m.
-fn of_shapes(kind: ElementKind, of: &dyn Fn([i32; 2]) -> f64) -> DVector<f64> {
+fn of_shapes(kind: ElementKind, of: &dyn Fn([i32; 3]) -> f64) -> DVector<f64> {
     let (nodes, powers) = (reference(kind), powers(kind));
     let n = nodes.len();
-    let v = DMatrix::from_fn(n, n, |k, i| {
-        nodes[i][0].powi(powers[k][0]) * nodes[i][1].powi(powers[k][1])
-    });
+    let v = DMatrix::from_fn(n, n, |k, i| monomial(nodes[i], powers[k]));
     let of = DVector::from_fn(n, |k, _| of(powers[k]));
     v.lu().solve(&of).unwrap()
 }
 
+fn monomial(x: [f64; 3], powers: [i32; 3]) -> f64 {
+    (0..3).map(|k| x[k].powi(powers[k])).product()
+}
+
 /// N_i.
-pub fn shapes(kind: ElementKind, [s, t]: [f64; 2]) -> Vec<f64> {
-    let values = of_shapes(kind, &|[p, q]| s.powi(p) * t.powi(q));
+pub fn shapes(kind: ElementKind, xi: [f64; 3]) -> Vec<f64> {
+    let values = of_shapes(kind, &|powers| monomial(xi, powers));
     values.iter().copied().collect()
 }
 
 /// ∂N_i/∂ξ.
-pub fn gradients(kind: ElementKind, [s, t]: [f64; 2]) -> Vec<[f64; 2]> {
-    let slope = |x: f64, p: i32| {
-        if p == 0 {
-            0.0
-        } else {
-            f64::from(p) * x.powi(p - 1)
-        }
-    };
-    let x = of_shapes(kind, &|[p, q]| slope(s, p) * t.powi(q));
-    let y = of_shapes(kind, &|[p, q]| s.powi(p) * slope(t, q));
-    x.iter().zip(&y).map(|(&x, &y)| [x, y]).collect()
+pub fn gradients(kind: ElementKind, xi: [f64; 3]) -> Vec<[f64; 3]> {
+    let slopes = [0, 1, 2].map(|axis| {
+        of_shapes(kind, &|mut powers| match powers[axis] {
+            0 => 0.0,
+            p => {
+                powers[axis] -= 1;
+                f64::from(p) * monomial(xi, powers)
+            }
+        })
+    });
+    (0..kind.nodes())
+        .map(|i| [0, 1, 2].map(|axis| slopes[axis][i]))
+        .collect()
 }
 
-/// Points and weights of the rule by which the stiffness is defined.
-fn rule(kind: ElementKind) -> Vec<([f64; 2], f64)> {
-    let product = |line: &[(f64, f64)]| {
+/// Points and weights of the rule by which the stiffness is defined; of quadratic tetrahedra of one that is as exact
+/// where their edges are straight.
+fn rule(kind: ElementKind) -> Vec<([f64; 3], f64)> {
+    let product = |line: &[(f64, f64)]| -> Vec<([f64; 3], f64)> {
+        let depth = match kind.dim() {
+            2 => vec![(0.0, 1.0)],
+            _ => line.to_vec(),
+        };
         let pairs = line.iter().flat_map(|a| line.iter().map(move |b| (a, b)));
-        pairs.map(|(a, b)| ([a.0, b.0], a.1 * b.1)).collect()
+        pairs
+            .flat_map(|(a, b)| {
+                depth
+                    .iter()
+                    .map(move |c| ([a.0, b.0, c.0], a.1 * b.1 * c.1))
+            })
+            .collect()
     };
     match kind {
-        Triangle3 => vec![([1.0 / 3.0; 2], 0.5)],
+        Triangle3 => vec![([1.0 / 3.0, 1.0 / 3.0, 0.0], 0.5)],
         // Dunavant, Int. J. Numer. Meth. Eng. 21 (1985), degree 4.
         Triangle6 => [
             (0.445_948_490_915_965, 0.223_381_589_678_011),
@@ -122,10 +157,17 @@ fn rule(kind: ElementKind) -> Vec<([f64; 2], f64)> {
         .into_iter()
         .flat_map(|(a, w): (f64, f64)| {
             let b = 1.0 - 2.0 * a;
-            [[a, a], [a, b], [b, a]].map(|at| (at, 0.5 * w))
+            [[a, a, 0.0], [a, b, 0.0], [b, a, 0.0]].map(|at| (at, 0.5 * w))
         })
         .collect(),
-        Quad4 => {
+        Tetrahedron4 => vec![([0.25; 3], 1.0 / 6.0)],
+        Tetrahedron10 => {
+            let (a, b) = (0.138_196_601_125_010_5, 0.585_410_196_624_968_5);
+            [[a, a, a], [b, a, a], [a, b, a], [a, a, b]]
+                .map(|at| (at, 1.0 / 24.0))
+                .to_vec()
+        }
+        Quad4 | Hexahedron8 => {
             let a = 1.0 / 3.0_f64.sqrt();
             product(&[(-a, 1.0), (a, 1.0)])
         }
@@ -137,7 +179,7 @@ fn rule(kind: ElementKind) -> Vec<([f64; 2], f64)> {
 }
 
 /// ∂N_i/∂ξ and weights at the points of a kind's rule.
-pub struct Reference(Vec<(Vec<[f64; 2]>, f64)>);
+pub struct Reference(Vec<(Vec<[f64; 3]>, f64)>);
 
 impl Reference {
     pub fn new(kind: ElementKind) -> Self {
@@ -151,68 +193,74 @@ impl Cell {
         reference: &Reference,
         points: &[[f64; 3]],
         nodes: Vec<usize>,
-        stiffness: [[f64; 3]; 3],
+        stiffness: &Stiffness,
     ) -> Self {
-        let at_point = |(reference, weight): &(Vec<[f64; 2]>, f64)| {
-            let mut j = [[0.0; 2]; 2];
+        let size = stiffness.size();
+        let dim = if size == 3 { 2 } else { 3 };
+        let at_point = |(reference, weight): &(Vec<[f64; 3]>, f64)| {
+            let mut j = Matrix3::zeros();
             for (x, g) in points.iter().zip(reference) {
-                for k in 0..4 {
-                    j[k / 2][k % 2] += x[k / 2] * g[k % 2];
-                }
+                j += Vector3::from(*x) * Vector3::from(*g).transpose();
             }
-            let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-            let slopes = reference.iter().map(|[s, t]| {
-                [
-                    (j[1][1] * s - j[1][0] * t) / det,
-                    (j[0][0] * t - j[0][1] * s) / det,
-                ]
-            });
-            (slopes.collect(), weight * det.abs())
+            if dim == 2 {
+                j[(2, 2)] = 1.0;
+            }
+            let to_space = j.try_inverse().unwrap().transpose();
+            let slopes = reference
+                .iter()
+                .map(|g| (to_space * Vector3::from(*g)).into());
+            (slopes.collect(), weight * j.determinant().abs())
         };
         Self {
             nodes,
+            dim,
             points: reference.0.iter().map(at_point).collect(),
-            stiffness,
+            stiffness: DMatrix::from_row_slice(size, size, stiffness.values()),
         }
     }
 
-    /// aᵀ C b.
-    fn product(&self, a: [f64; 3], b: [f64; 3]) -> f64 {
-        let c = &self.stiffness;
-        (0..9).map(|k| a[k / 3] * c[k / 3][k % 3] * b[k % 3]).sum()
+    /// The strains of a displacement of 1 along an axis, in Voigt's order, of a node with these slopes.
+    fn strain(&self, [x, y, z]: [f64; 3], axis: usize) -> DVector<f64> {
+        let voigt = match axis {
+            0 => [x, 0.0, 0.0, 0.0, z, y],
+            1 => [0.0, y, 0.0, z, 0.0, x],
+            _ => [0.0, 0.0, z, y, x, 0.0],
+        };
+        match self.dim {
+            2 => DVector::from_column_slice(&[voigt[0], voigt[1], voigt[5]]),
+            _ => DVector::from_column_slice(&voigt),
+        }
     }
 
-    /// Σ w Gᵀ C G, G the strains (ε_xx, ε_yy, γ_xy) of each dof.
+    /// Σ w Gᵀ C G, G the strains of each dof.
     pub fn entries(&self) -> Vec<Triplet<usize, usize, f64>> {
-        let n = 2 * self.nodes.len();
-        let strain = |slopes: &[[f64; 2]], i: usize| match (i % 2, slopes[i / 2]) {
-            (0, [x, y]) => [x, 0.0, y],
-            (_, [x, y]) => [0.0, y, x],
-        };
-        let dof = |i: usize| 2 * self.nodes[i / 2] + i % 2;
-        let value = |i: usize, j: usize| {
-            let terms = self.points.iter().map(|(slopes, weight)| {
-                weight * self.product(strain(slopes, i), strain(slopes, j))
-            });
-            terms.sum()
-        };
+        let n = self.dim * self.nodes.len();
+        let mut sum = DMatrix::zeros(n, n);
+        for (slopes, weight) in &self.points {
+            let columns: Vec<_> = (0..n)
+                .map(|i| self.strain(slopes[i / self.dim], i % self.dim))
+                .collect();
+            let strains = DMatrix::from_columns(&columns);
+            sum += strains.transpose() * (&self.stiffness * *weight) * &strains;
+        }
+        let dof = |i: usize| self.dim * self.nodes[i / self.dim] + i % self.dim;
         (0..n * n)
-            .map(|k| Triplet::new(dof(k / n), dof(k % n), value(k / n, k % n)))
+            .map(|k| Triplet::new(dof(k / n), dof(k % n), sum[(k / n, k % n)]))
             .collect()
     }
 
     /// uᵀ K u.
     pub fn energy(&self, u: &[f64]) -> f64 {
-        let energy = |(slopes, weight): &(Vec<[f64; 2]>, f64)| {
-            let mut strain = [0.0; 3];
-            for (node, [x, y]) in self.nodes.iter().zip(slopes).skip(1) {
-                // The slopes add up to 0: against the first node, a translation drops out.
-                let [du, dv] = [0, 1].map(|axis| u[2 * node + axis] - u[2 * self.nodes[0] + axis]);
-                strain[0] += x * du;
-                strain[1] += y * dv;
-                strain[2] += y * du + x * dv;
+        let energy = |(slopes, weight): &(Vec<[f64; 3]>, f64)| {
+            let mut strain = DVector::zeros(self.stiffness.nrows());
+            for (&node, &slope) in self.nodes.iter().zip(slopes).skip(1) {
+                for axis in 0..self.dim {
+                    // The slopes add up to 0: against the first node, a translation drops out.
+                    let du = u[self.dim * node + axis] - u[self.dim * self.nodes[0] + axis];
+                    strain += du * self.strain(slope, axis);
+                }
             }
-            weight * self.product(strain, strain)
+            weight * strain.dot(&(&self.stiffness * &strain))
         };
         self.points.iter().map(energy).sum()
     }

@@ -23,7 +23,7 @@ const GAUSS: [(f64, f64); 6] = [
 pub struct Exact(pub Box<dyn Fn([f64; 2]) -> [f64; 3]>);
 
 /// N, ∂N/∂ξ and the weight at a point of a reference cell.
-type Sample = (Vec<f64>, Vec<[f64; 2]>, f64);
+type Sample = (Vec<f64>, Vec<[f64; 3]>, f64);
 
 fn samples(kind: ElementKind) -> Vec<Sample> {
     let pairs = GAUSS.iter().flat_map(|a| GAUSS.iter().map(move |b| (a, b)));
@@ -31,9 +31,9 @@ fn samples(kind: ElementKind) -> Vec<Sample> {
         // A square whose upper side becomes a corner.
         3 => {
             let [s, t] = [0.5 * (1.0 + a.0), 0.5 * (1.0 + b.0)];
-            ([s * (1.0 - t), t], 0.25 * a.1 * b.1 * (1.0 - t))
+            ([s * (1.0 - t), t, 0.0], 0.25 * a.1 * b.1 * (1.0 - t))
         }
-        _ => ([a.0, b.0], a.1 * b.1),
+        _ => ([a.0, b.0, 0.0], a.1 * b.1),
     });
     at.map(|(xi, weight)| (shapes(kind, xi), gradients(kind, xi), weight))
         .collect()
