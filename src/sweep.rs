@@ -18,7 +18,6 @@ pub use contact_dd_partition::solver::Method;
 
 pub use self::outcome::{IterativeSolves, SweepOutcome, SweepRecord, SweepStatus};
 use crate::contact::friction::Status;
-use crate::contact::pair::ContactEnd;
 use crate::error::Failure;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::{ConState, ConTotals, SCon};
@@ -55,8 +54,6 @@ pub struct Sweeps<'a, 'c> {
     outcome: SweepOutcome,
     /// Whether another method took over from newton: then nothing may refine afterwards.
     has_fallen_back: bool,
-    /// The contact of every pair before the load step; nothing where it is the first.
-    before: Vec<ContactEnd>,
     began: Instant,
     observer: &'a mut dyn FnMut(&SweepRecord),
 }
@@ -77,8 +74,8 @@ pub struct Residual {
 pub enum Start {
     /// At the solution of the bilateral problem, (16)-(17).
     Bilateral,
-    /// At the solution of the load step before: U, and the contact of every pair.
-    Before(Vec<f64>, Vec<ContactEnd>),
+    /// At the solution of the load step before: U, and the statuses of every pair.
+    Before(Vec<f64>, Vec<Vec<Status>>),
 }
 
 impl<'a, 'c> Sweeps<'a, 'c> {
@@ -115,13 +112,10 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         start: Start,
         observer: &'a mut dyn FnMut(&SweepRecord),
     ) -> (Self, Residual) {
-        let (u, before) = match start {
+        let (u, expected) = match start {
             Start::Bilateral => (problem.bilateral_start(), None),
-            Start::Before(u, ends) => (u, Some(ends)),
+            Start::Before(u, statuses) => (u, Some(statuses)),
         };
-        let of_pair = |end: &ContactEnd| end.status.clone();
-        let expected: Option<Vec<Vec<Status>>> =
-            (before.as_ref()).map(|ends| ends.iter().map(of_pair).collect());
         let mut sweeps = Self {
             problem,
             s_con,
@@ -130,7 +124,6 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             began: Instant::now(),
             outcome: SweepOutcome::before(u),
             has_fallen_back: false,
-            before: before.unwrap_or_default(),
             observer,
         };
         let residual = sweeps.evaluate(expected.as_deref());
@@ -160,7 +153,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         SweepOutcome {
             status,
             residual: last.relative,
-            contact: self.state.ends(),
+            statuses: self.state.statuses(),
             ..self.outcome
         }
     }

@@ -15,6 +15,9 @@ use crate::fem::load::BlockLoads;
 use crate::schur::condensed::InterfaceDof;
 use crate::vector::{larger, largest};
 
+/// Normal force, relative to the largest in the group, without which a closed contact is about to open.
+const NO_FORCE: f64 = 1e-12;
+
 /// What is largest in a block, or in several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Most {
@@ -192,6 +195,7 @@ impl Most {
     /// which these are `closed`.
     pub fn at_points(group: &ContactGroup, gaps: &[f64], forces: &[f64], closed: &[bool]) -> Self {
         let mut most = Self::default();
+        let no_force = NO_FORCE * largest(forces);
         for (&gap, &force) in gaps.iter().zip(forces).take(group.points.len()) {
             most.penetration = larger(most.penetration, gap.min(0.0));
             most.tension = larger(most.tension, force.min(0.0));
@@ -205,13 +209,15 @@ impl Most {
         } in group.friction()
         {
             let (force, slip) = (forces[number], -gaps[number]);
+            let is_parting = bound.only_closed && forces[normal] <= no_force;
             let bound = bound.at(forces[normal], closed[normal]);
             most.contact_force = larger(most.contact_force, force);
             most.beyond_bound = larger(most.beyond_bound, (force.abs() - bound).max(0.0));
             if closed[number] {
                 most.astray = larger(most.astray, slip);
             } else {
-                let missing = bound * slip.abs() - force * slip;
+                let least = if is_parting { 0.0 } else { bound };
+                let missing = least * slip.abs() - force * slip;
                 most.not_opposed = larger(most.not_opposed, missing);
             }
         }

@@ -2,13 +2,13 @@
 //! are as long as |λ_t| ≤ b, and slip under λ_t = ±b, against the slip.
 //!
 //! The bound b is given, or grows with the normal force, b = c + μ λ: then the matrix of the slipping ones isn't
-//! symmetric, and no energy has the solution for its minimum. A status for every limit makes the problem linear; the
-//! statuses are exchanged until none is wrong: all wrong ones at once, as semismooth Newton does, and where these
-//! don't become fewer, one at a time until they do (Júdice and Pires, Computers Ops. Res. 21, 1994).
+//! symmetric, and no energy has the solution for its minimum. A status for every limit makes the problem linear; all
+//! wrong statuses are exchanged at once until none is wrong, as semismooth Newton does, and where these don't become
+//! fewer, from those at the end of a path that leads to a solution ([`lemke`]).
 
+mod lemke;
 mod linear;
 mod other;
-mod path;
 
 use serde::{Deserialize, Serialize};
 
@@ -16,12 +16,10 @@ use self::linear::Linear;
 use super::active_set::{FORCE_TOLERANCE, GAP_TOLERANCE, GapProblem, GapSolution};
 use super::limits::TangentialLimit;
 
-/// Exchanges of all wrong statuses in a row without progress before one is exchanged at a time.
+/// Exchanges of all wrong statuses in a row without fewer of them before these are given up.
 const PATIENCE: usize = 8;
-/// Linear systems that a search may solve: whatever the problem, and for each limit, up to so many more.
-const STEPS: usize = 60;
-const STEPS_EACH: usize = 2;
-const MOST_STEPS: usize = 100;
+/// Ways to a solution that are tried then.
+const ATTEMPTS: usize = 3;
 
 /// Round-off of dependent limits, relative to that of others, beyond which they aren't where they should be.
 const ASTRAY: f64 = 1e4;
@@ -70,6 +68,8 @@ pub enum Status {
     Forward,
     /// Slipping against it, under λ_t = −b.
     Backward,
+    /// Slipping while its contact is about to open: without pressure, under what is left of the cohesion.
+    Parting,
 }
 
 impl Status {
@@ -100,7 +100,7 @@ impl Status {
         match self {
             Self::Forward => 1.0,
             Self::Backward => -1.0,
-            Self::Open | Self::Closed => 0.0,
+            Self::Open | Self::Closed | Self::Parting => 0.0,
         }
     }
 }
@@ -125,10 +125,26 @@ impl FrictionProblem<'_> {
             }
             return solution;
         }
+        let start = status.to_vec();
+        let mut solution = self.exchange(status);
+        for attempt in 0..ATTEMPTS {
+            if solution.converged {
+                break;
+            }
+            let before = solution.steps;
+            let (reached, exchanges) = self.follow(attempt);
+            status.copy_from_slice(reached.as_deref().unwrap_or(&start));
+            solution = self.exchange(status);
+            solution.steps += before + exchanges;
+            solution.fell_back = true;
+        }
+        solution
+    }
+
+    /// Exchanges all wrong statuses at once until none is wrong, or they don't become fewer.
+    fn exchange(&self, status: &mut [Status]) -> GapSolution {
         self.settle(status, |_| 0.0);
-        let most = STEPS + (STEPS_EACH * status.len()).min(MOST_STEPS);
-        let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
-        let mut steps = 0;
+        let (mut fewest, mut patience, mut steps) = (usize::MAX, PATIENCE, 0);
         loop {
             steps += 1;
             let linear = Linear::solve(self, status);
@@ -136,16 +152,12 @@ impl FrictionProblem<'_> {
             if wrong.len() < fewest {
                 (fewest, patience) = (wrong.len(), PATIENCE);
             } else {
-                patience = patience.saturating_sub(1);
+                patience -= 1;
             }
-            if wrong.is_empty() || steps >= most {
+            if wrong.is_empty() || patience == 0 {
                 return self.solution(linear, steps, wrong.is_empty());
             }
-            let exchanged = match patience {
-                0 => 1,
-                _ => wrong.len(),
-            };
-            for &(i, right) in &wrong[..exchanged] {
+            for (i, right) in wrong {
                 status[i] = right;
             }
             self.settle(status, |i| -self.way(i, &linear));
@@ -234,6 +246,7 @@ impl FrictionProblem<'_> {
         let pressed = tangent.normal.map_or(0.0, |n| linear.forces[n]);
         let bound = tangent.bound.at(pressed, true);
         let slip = -self.way(i, linear);
+        let is_none = slip.abs() <= self.gap_round_off(i, linear);
         match status[i] {
             Status::Open => Status::Open,
             // The force of its normal says first that this is open.
@@ -247,8 +260,10 @@ impl FrictionProblem<'_> {
                     false => Status::Closed,
                 }
             }
-            Status::Forward if slip < -self.gap_round_off(i, linear) => Status::Closed,
-            Status::Backward if slip > self.gap_round_off(i, linear) => Status::Closed,
+            Status::Forward if slip < 0.0 && !is_none => Status::Closed,
+            Status::Backward if slip > 0.0 && !is_none => Status::Closed,
+            Status::Parting if slip * linear.forces[i] < 0.0 && !is_none => Status::Closed,
+            Status::Parting if linear.forces[i].abs() > bound => Status::of_slip(linear.forces[i]),
             slipping => slipping,
         }
     }

@@ -35,19 +35,6 @@ pub struct PairState {
     contact: GapSolution,
 }
 
-/// Where a load step leaves the contact of a pair.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ContactEnd {
-    /// The status of every jump, then of every linearly dependent constraint.
-    pub status: Vec<Status>,
-    /// t (m).
-    #[serde(with = "crate::bytes")]
-    pub jumps: Vec<f64>,
-    /// c − H t, the forces on the jumps (N/m).
-    #[serde(with = "crate::bytes")]
-    pub forces: Vec<f64>,
-}
-
 /// One evaluation of S_kl.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PairResponse {

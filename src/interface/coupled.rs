@@ -19,7 +19,7 @@ use crate::contact::active_set::GapProblem;
 use crate::contact::dependent::DependentConstraints;
 use crate::contact::friction::{FrictionProblem, Status};
 use crate::contact::limits::TangentialLimit;
-use crate::contact::pair::{CondensedContact, ContactEnd, PairResponse};
+use crate::contact::pair::{CondensedContact, PairResponse};
 use crate::interface::s_con::ConState;
 use crate::rigid::energy::RigidBasis;
 use crate::schur::local::multiply_add;
@@ -121,15 +121,8 @@ impl<'a> CoupledContact<'a> {
         })
     }
 
-    /// The step to the solution from U, where the pairs answered `state` and the residual is `r`; the load step
-    /// before left them where `before` says.
-    pub fn solve(
-        &self,
-        u: &[f64],
-        r: &[f64],
-        state: &ConState,
-        before: &[ContactEnd],
-    ) -> CoupledStep {
+    /// The step to the solution from U, where the pairs answered `state` and the residual is `r`.
+    pub fn solve(&self, u: &[f64], r: &[f64], state: &ConState) -> CoupledStep {
         let all = |of: fn(&PairResponse) -> &Vec<f64>| -> Vec<f64> {
             state.responses.iter().flat_map(of).copied().collect()
         };
@@ -145,7 +138,7 @@ impl<'a> CoupledContact<'a> {
             gap: self.problem(&condensed, &gaps, u),
             tangents: &self.tangents,
         };
-        let solution = problem.solve_along(&self.loads_before(state, before), &mut status);
+        let solution = problem.solve(&mut status);
         let mut step = self.step(r, &condensed, &solution.jumps, solution.forces, &status);
         if !solution.converged && self.has_friction() {
             let mut wrong = vec![false; status.len()];
@@ -194,24 +187,6 @@ impl<'a> CoupledContact<'a> {
         let jumps = all(|p| &p.jumps);
         let largest = |x: &[f64]| x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         problem.other_solution(&vec![0.0; jumps.len()], largest(&jumps).max(largest(u)))
-    }
-
-    /// What loads the jumps in the equilibrium that the load step `before` left, in terms of changes from where the
-    /// pairs are; without friction nothing asks for it.
-    fn loads_before(&self, state: &ConState, before: &[ContactEnd]) -> Vec<f64> {
-        let mut loads = vec![0.0; self.h.nrows()];
-        if self.tangents.is_empty() {
-            return loads;
-        }
-        let jumps = state.responses.iter().flat_map(|pair| &pair.jumps);
-        let mut way: Vec<f64> = jumps.map(|t| -t).collect();
-        for (at, t) in way.iter_mut().zip(before.iter().flat_map(|end| &end.jumps)) {
-            *at += t;
-        }
-        let forces = before.iter().flat_map(|end| &end.forces);
-        loads.iter_mut().zip(forces).for_each(|(l, f)| *l = *f);
-        multiply_add(self.h, &way, &mut loads);
-        loads
     }
 
     /// The change that balances `r` on Γ and `loads` on the normal jumps of every pair where the

@@ -11,7 +11,7 @@ use super::operator::Interface;
 use crate::bytes::Reals;
 use crate::comm::Comm;
 use crate::contact::friction::Status;
-use crate::contact::pair::{ContactEnd, ContactPair, PairResponse};
+use crate::contact::pair::{ContactPair, PairResponse};
 
 /// S_CON = Σ R_kᵀ S_kl R_k, (15), as the root drives it and the other ranks serve it.
 pub struct SCon<'a> {
@@ -229,13 +229,9 @@ impl ConState {
         }
     }
 
-    /// Where the contact of every pair is.
-    pub fn ends(&self) -> Vec<ContactEnd> {
-        let end = |response: &PairResponse| ContactEnd {
-            status: response.status.clone(),
-            jumps: response.jumps.clone(),
-            forces: response.contact_residual.clone(),
-        };
-        self.responses.iter().map(end).collect()
+    /// The statuses of every pair.
+    pub fn statuses(&self) -> Vec<Vec<Status>> {
+        let of_pair = |response: &PairResponse| response.status.clone();
+        self.responses.iter().map(of_pair).collect()
     }
 }

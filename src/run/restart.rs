@@ -12,7 +12,8 @@ use contact_dd_partition::destination::unfinished;
 use serde::{Deserialize, Serialize};
 
 use crate::bytes::Reals;
-use crate::contact::pair::{ContactEnd, PairState};
+use crate::contact::friction::Status;
+use crate::contact::pair::PairState;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::output::vtkhdf::ResultFile;
@@ -27,8 +28,8 @@ struct Kept {
     run: Identity,
     /// The finished load steps.
     steps: Vec<StepTotals>,
-    /// U, and the contact of every cluster in contact.
-    interface: Option<(Vec<f64>, Vec<ContactEnd>)>,
+    /// U, and the statuses of every cluster in contact.
+    interface: Option<(Vec<f64>, Vec<Vec<Status>>)>,
     /// The clusters in contact.
     pairs: Vec<PairState>,
     /// The tangential jumps of every contact group (m).
@@ -196,7 +197,7 @@ pub fn keep(
 struct KeptRef<'a> {
     run: Identity,
     steps: &'a [StepTotals],
-    interface: &'a Option<(Vec<f64>, Vec<ContactEnd>)>,
+    interface: &'a Option<(Vec<f64>, Vec<Vec<Status>>)>,
     pairs: Vec<PairState>,
     slips: Vec<Vec<f64>>,
 }

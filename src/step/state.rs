@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::destination::unfinished;
 
-use crate::contact::pair::{ContactEnd, ContactPair, PairState};
+use crate::contact::friction::Status;
+use crate::contact::pair::{ContactPair, PairState};
 use crate::context::{Context, Loads, Moment};
 use crate::error::Failure;
 use crate::rigid::body_analysis::{RigidBodyAnalysis, analyse_bodies};
@@ -16,8 +17,8 @@ use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
 /// Where a load step leaves the scene: what the next one starts from.
 #[derive(Clone, Debug, Default)]
 pub struct StepState {
-    /// U, and the contact of every cluster in contact; on the root.
-    pub interface: Option<(Vec<f64>, Vec<ContactEnd>)>,
+    /// U, and the statuses of every cluster in contact; on the root.
+    pub interface: Option<(Vec<f64>, Vec<Vec<Status>>)>,
     /// The clusters in contact of this rank, by their place among those.
     pub pairs: BTreeMap<usize, PairState>,
     /// The tangential jumps at the tangential conditions of every contact group of this rank, since the bodies
@@ -40,7 +41,7 @@ impl StepState {
             method != Method::Picard && outcome.status == SweepStatus::Converged
         };
         Self {
-            interface: (outcome.filter(starts)).map(|o| (o.u.clone(), o.contact.clone())),
+            interface: (outcome.filter(starts)).map(|o| (o.u.clone(), o.statuses.clone())),
             pairs: pairs.map(|(p, pair)| (p, pair.into_state())).collect(),
             slips,
         }
@@ -66,7 +67,7 @@ impl StepState {
     /// Where the sweeps of the next step begin; on the root.
     pub fn start(&self) -> Start {
         match &self.interface {
-            Some((u, contact)) => Start::Before(u.clone(), contact.clone()),
+            Some((u, statuses)) => Start::Before(u.clone(), statuses.clone()),
             None => Start::Bilateral,
         }
     }

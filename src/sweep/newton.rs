@@ -34,7 +34,7 @@ impl Sweeps<'_, '_> {
                 let why = format!("newton didn't converge in {limit} sweeps");
                 return self.fall_back(residual, &why);
             }
-            let step = coupled.solve(&self.outcome.u, &residual.r, &self.state, &self.before);
+            let step = coupled.solve(&self.outcome.u, &residual.r, &self.state);
             self.outcome.active_set_iterations += step.steps;
             if step.fell_back {
                 (self.outcome)
@@ -97,7 +97,7 @@ impl Sweeps<'_, '_> {
             let Some(coupled) = CoupledContact::new(self.problem) else {
                 return;
             };
-            let step = coupled.solve(&self.outcome.u, &residual.r, &self.state, &self.before);
+            let step = coupled.solve(&self.outcome.u, &residual.r, &self.state);
             self.outcome.active_set_iterations += step.steps;
             let coarse = self.outcome.u.clone();
             axpy(1.0, &step.u, &mut self.outcome.u);

@@ -1,7 +1,7 @@
 //! What sweeps leave: U, why they ended, and how they got there.
 
 use crate::certificate::Certificate;
-use crate::contact::pair::ContactEnd;
+use crate::contact::friction::Status;
 use crate::interface::s_con::ConTotals;
 use serde::{Deserialize, Serialize};
 
@@ -76,8 +76,8 @@ pub struct SweepOutcome {
     pub residual: f64,
     /// Totals of the last evaluation of S_CON.
     pub totals: ConTotals,
-    /// The contact of every pair then.
-    pub contact: Vec<ContactEnd>,
+    /// The statuses of every pair then.
+    pub statuses: Vec<Vec<Status>>,
     /// Whether active sets were frozen one after the other.
     pub frozen: bool,
     /// What an iterative interface solver took, where there was one.
@@ -103,7 +103,7 @@ impl SweepOutcome {
             fallbacks: Vec::new(),
             residual: f64::INFINITY,
             totals: ConTotals::default(),
-            contact: Vec::new(),
+            statuses: Vec::new(),
             frozen: false,
             iterative: None,
             increments: 1,

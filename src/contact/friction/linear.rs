@@ -108,6 +108,18 @@ impl FrictionProblem<'_> {
         all
     }
 
+    /// The normal limit of every tangential one that slips while its contact is about to open: its force is 0, and the
+    /// other force what that takes.
+    fn parting(&self, status: &[Status]) -> Vec<Option<usize>> {
+        let mut all = vec![None; status.len()];
+        for tangent in self.tangents {
+            if status[tangent.limit] == Status::Parting {
+                all[tangent.limit] = tangent.normal;
+            }
+        }
+        all
+    }
+
     /// c − H t − Dᵀ μ.
     fn free_forces(&self, jumps: &[f64], forces: &[f64]) -> Vec<f64> {
         let mut left = self.gap.c.to_vec();
@@ -122,7 +134,7 @@ impl FrictionProblem<'_> {
     fn left(&self, status: &[Status], jumps: &[f64], forces: &[f64]) -> Vec<f64> {
         let m = jumps.len();
         let free = self.free_forces(jumps, forces);
-        let slipping = self.slipping(status);
+        let (slipping, parting) = (self.slipping(status), self.parting(status));
         let force = |n: usize| if n < m { free[n] } else { forces[n] };
         let allowed = |i: usize| {
             slipping[i].as_ref().map_or(0.0, |slipping| {
@@ -133,6 +145,7 @@ impl FrictionProblem<'_> {
         let unknowns = self.unknowns(status).into_iter();
         unknowns
             .map(|i| match (i < m, status[i].is_closed()) {
+                _ if parting[i].is_some() => parting[i].map_or(0.0, force),
                 (true, _) => free[i] - allowed(i),
                 (false, true) => self.gap.bounds[i] - self.gap.rows.value(i - m, jumps),
                 (false, false) => allowed(i) - forces[i],
@@ -144,8 +157,12 @@ impl FrictionProblem<'_> {
     fn complete(&self, status: &[Status], jumps: &[f64], forces: &mut [f64]) {
         let m = jumps.len();
         let free = self.free_forces(jumps, forces);
-        for i in (0..m).filter(|&i| status[i].is_closed()) {
+        let is_free = |&i: &usize| status[i].is_closed() || status[i] == Status::Parting;
+        for i in (0..m).filter(is_free) {
             forces[i] = free[i];
+        }
+        for n in self.parting(status).into_iter().flatten() {
+            forces[n] = 0.0;
         }
         for (i, slipping) in self.slipping(status).into_iter().enumerate() {
             if let Some(slipping) = slipping {
@@ -159,7 +176,8 @@ impl FrictionProblem<'_> {
     fn unbalanced(&self, status: &[Status], jumps: &[f64], forces: &[f64]) -> f64 {
         let left = self.left(status, jumps, forces);
         let unknowns = self.unknowns(status).into_iter().zip(left);
-        let of_jumps = unknowns.filter(|&(i, left)| i < jumps.len() && left != 0.0);
+        let of_jumps = unknowns
+            .filter(|&(i, left)| i < jumps.len() && status[i] != Status::Parting && left != 0.0);
         let relative = of_jumps.map(|(i, left)| {
             let by_rows = self.gap.rows.iter().zip(&forces[jumps.len()..]);
             let by_rows = by_rows.map(|(row, force)| {
@@ -203,8 +221,18 @@ impl System {
         let scale = |&i: &usize| if i < m { of_jump(i) } else { of_row(i - m) };
         let scale: Vec<f64> = unknowns.iter().map(scale).collect();
         let (mut of_equation, mut springs) = (scale.clone(), vec![SPRING; unknowns.len()]);
-        for (k, &i) in unknowns.iter().enumerate().filter(|(_, i)| **i >= m) {
-            if status[i].is_closed() {
+        let (slipping, parting) = (problem.slipping(status), problem.parting(status));
+        for (k, &i) in unknowns.iter().enumerate() {
+            if let Some(n) = parting[i] {
+                springs[k] = 0.0;
+                of_equation[k] = if n < m {
+                    of_jump(n)
+                } else {
+                    1.0 / of_row(n - m)
+                };
+            } else if i < m {
+                continue;
+            } else if status[i].is_closed() {
                 springs[k] = -YIELD;
             } else {
                 (of_equation[k], springs[k]) = (1.0 / scale[k], 0.0);
@@ -235,9 +263,10 @@ impl System {
                     };
             }
         };
-        let slipping = problem.slipping(status);
         for (k, &i) in unknowns.iter().enumerate() {
-            if i < m {
+            if let Some(n) = parting[i] {
+                subtract(&mut a, k, n, -1.0);
+            } else if i < m {
                 subtract(&mut a, k, i, -1.0);
             } else if status[i].is_closed() {
                 for &(j, c) in gap.rows.row(i - m) {

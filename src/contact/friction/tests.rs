@@ -41,7 +41,7 @@ impl Points {
     }
 
     fn solve(&self, status: &mut [Status]) -> GapSolution {
-        self.with(|problem| problem.solve_along(&vec![0.0; self.c.len()], status))
+        self.with(|problem| problem.solve(status))
     }
 
     fn with<T>(&self, ask: impl FnOnce(&FrictionProblem<'_>) -> T) -> T {
@@ -239,4 +239,52 @@ fn coulomb_s_friction_may_have_several_solutions() {
         let (found, expected) = (other.unwrap_or_default(), opened.unwrap_or_default());
         assert!((found - expected).abs() < 1e-12, "{found}");
     }
+}
+
+/// Exchanges of all wrong statuses at once cycle in some of these.
+#[test]
+fn a_path_leads_where_exchanges_do_not() {
+    let mut alone = 0;
+    for seed in 0..120 {
+        let bound = ForceBound {
+            coefficient: 0.5 + 0.04 * (seed % 50) as f64,
+            cohesion: if seed % 3 == 0 { 0.3 } else { 0.0 },
+            only_closed: seed % 3 != 0,
+        };
+        let mut points = Points::new(6 + seed % 15, 29 * seed + 3, bound);
+        (0..points.c.len()).for_each(|i| points.h[(i, i)] -= 1.9);
+        let mut status = vec![Status::Closed; points.c.len()];
+        let solution = points.solve(&mut status);
+        assert!(solution.converged, "seed {seed}");
+        let violation = points.violation(&solution);
+        assert!(violation < 1e-10, "seed {seed}: {violation}");
+        alone += usize::from(!solution.fell_back);
+        let (reached, _) = points.with(|problem| problem.follow(0));
+        let reached = reached.expect("the path ends");
+        let left = points.with(|problem| problem.unsettled(&reached));
+        assert!(left.is_empty(), "seed {seed}: {left:?}");
+    }
+    assert!(alone < 120, "{alone}");
+}
+
+/// It would open where it sticks or slips under all of its cohesion, and penetrate where it has none.
+#[test]
+fn a_contact_about_to_open_slips_under_part_of_its_cohesion() {
+    let bound = ForceBound {
+        coefficient: 0.0,
+        cohesion: 1.0,
+        only_closed: true,
+    };
+    let mut points = Points::new(1, 3, bound);
+    points.h = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 } else { -0.5 });
+    points.diagonal = vec![1.0; 2];
+    points.bounds = vec![0.0; 2];
+    points.c = vec![-0.75, 2.0];
+    let mut status = vec![Status::Closed; 2];
+    let solution = points.solve(&mut status);
+    assert!(solution.converged);
+    assert_eq!(status, [Status::Closed, Status::Parting]);
+    assert!((solution.jumps[1] - 1.5).abs() < 1e-14);
+    assert_eq!(solution.forces[0], 0.0);
+    assert!((solution.forces[1] - 0.5).abs() < 1e-14);
 }

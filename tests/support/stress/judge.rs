@@ -242,7 +242,11 @@ impl Findings {
             );
             has_friction[tangent.condition] = true;
             self.bound = worse(self.bound, ratio(force.abs() - bounds[k], scale));
-            let lacks = ratio(bounds[k] - force * since.signum(), scale) / FRICTION;
+            // About to open, without pressure, it may have any part of its cohesion.
+            let normal = state.forces[tangent.condition];
+            let is_parting = !tangent.is_given() && normal <= FRICTION * scale;
+            let least_bound = if is_parting { 0.0 } else { bounds[k] };
+            let lacks = ratio(least_bound - force * since.signum(), scale) / FRICTION;
             let slipped = ratio(since.abs(), size) / STUCK;
             self.direction = worse(self.direction, lacks.min(slipped));
             let slip = dot(point.slip, tangent.direction);
@@ -257,7 +261,7 @@ impl Findings {
                 (false, _) => {}
                 (true, false) => self.stuck = worse(self.stuck, slipped),
                 (true, true) => {
-                    let lacks = ratio(bounds[k] - force.abs(), scale) / FRICTION;
+                    let lacks = ratio(least_bound - force.abs(), scale) / FRICTION;
                     self.status = worse(self.status, lacks);
                 }
             }

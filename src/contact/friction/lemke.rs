@@ -1,0 +1,398 @@
+//! The way to a solution from a problem whose solution is known: Lemke's method, on jumps and forces.
+//!
+//! With θ p more on every normal force and θ b more on every given bound, all is closed and sticks where θ is large.
+//! From there θ goes down. Wherever a force or a jump reaches its limit, one status is exchanged, and θ goes on in the
+//! direction, up or down, in which what was at its limit before moves away from it: a path of straight pieces that
+//! never comes back. No piece is endless: along one that is, jumps x would have xᵀ H x ≤ 0. So it gets to θ = 0,
+//! whatever the coefficients of friction, but for round-off; and where motions that nothing resists are driven.
+//!
+//! A. Klarbring, J.-S. Pang, *Existence of solutions to discrete semicoercive frictional contact problems*, SIAM J.
+//! Optim. 8 (1998).
+//!
+//! Closed rows that depend on each other give way a little. A bound that vanishes as the contact opens, c + μ λ, falls
+//! steeply to 0 with the last of the force: what ends there is about to open.
+
+use faer::Mat;
+
+use super::{FrictionProblem, Status, TangentialLimit};
+use crate::contact::open_factor::scale_of;
+use crate::vector::largest;
+
+/// Force, relative to the largest, below which a bound that vanishes with it falls to 0.
+const STEEP: f64 = 1e-6;
+/// How much closed rows that depend on each other give way.
+const YIELD: f64 = 1e-8;
+/// Stiffness of springs on all jumps, for motions that nothing resists.
+const SPRING: f64 = 1e-10;
+/// Force, relative to the largest where all is closed, that nothing exceeds: rows that give way would be far away.
+const MOST_COHESION: f64 = 10.0;
+/// Limits up to which the path is followed: its matrix is dense.
+const MOST_LIMITS: usize = 3000;
+/// Exchanges, whatever the problem and for each limit.
+const EXCHANGES: usize = 200;
+const EXCHANGES_EACH: usize = 8;
+
+/// What is 0 at a limit, or may not be negative there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Quantity {
+    /// The gap, or the way back to where it sticks.
+    Way,
+    /// The normal force, with what θ adds.
+    Force,
+    /// What a tangential force lacks of the bound in the direction of its sign; the steep one of two or not.
+    Bound { sign: f64, steep: bool },
+    /// The slip in the direction of a sign.
+    Slip(f64),
+}
+
+/// A tangential limit in the scale of energies.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tangent {
+    normal: Option<usize>,
+    coefficient: f64,
+    cohesion: f64,
+    /// What θ adds to the bound.
+    added: f64,
+    /// How the bound falls to 0 where it does before the contact opens.
+    steep: Option<f64>,
+    /// Whether it vanishes where the contact is open.
+    only_closed: bool,
+    /// Whether it never holds anything.
+    is_free: bool,
+}
+
+/// Where the path is: all in the scale of energies.
+struct Path {
+    /// The jumps of all limits, then their forces, for a unit of what is 0 at each of the limits.
+    response: Mat<f64>,
+    /// The same where all these are 0: at θ = 0, and for every unit of θ.
+    value: [Vec<f64>; 2],
+    /// What is 0 at each.
+    zero: Vec<Quantity>,
+    bounds: Vec<f64>,
+    /// What θ adds to normal forces.
+    added: Vec<f64>,
+    tangents: Vec<Option<Tangent>>,
+    /// The tangential limits of each normal one that vanish with it.
+    of_normal: Vec<Vec<usize>>,
+}
+
+/// Between half of one and one and a half, so that no two forces vanish at once.
+fn spread(i: usize, attempt: usize) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    0.5 + ((i + 1) as f64 * GOLDEN + attempt as f64 * 0.37).fract()
+}
+
+impl FrictionProblem<'_> {
+    /// The statuses at the end of the path, and the exchanges that it took; `None` where it doesn't get there. Every
+    /// `attempt` goes another way.
+    pub(super) fn follow(&self, attempt: usize) -> (Option<Vec<Status>>, usize) {
+        if self.gap.bounds.len() > MOST_LIMITS {
+            return (None, 0);
+        }
+        let mut path = Path::new(self, attempt);
+        let most = EXCHANGES + EXCHANGES_EACH * self.gap.bounds.len();
+        let (mut theta, mut way) = (f64::INFINITY, -1.0);
+        let mut entered = None;
+        for exchanges in 0..most {
+            if let Some((i, quantity)) = entered {
+                way = path.quantity(i, quantity)[1].signum();
+            }
+            match path.next(theta, way, entered) {
+                Some((at, _, _)) if at <= 0.0 => return (Some(path.statuses()), exchanges),
+                None if way < 0.0 => return (Some(path.statuses()), exchanges),
+                Some((at, i, quantity)) => {
+                    theta = at;
+                    entered = Some(path.exchange(theta, i, quantity));
+                }
+                None => return (None, exchanges),
+            }
+        }
+        (None, most)
+    }
+
+    /// What a limit's jump is multiplied by in the scale of energies, and its force divided.
+    fn scales(&self) -> Vec<f64> {
+        let gap = &self.gap;
+        let of_jump = |j: usize| scale_of(gap.h[(j, j)], gap.diagonal[j]).sqrt();
+        let jumps = (0..gap.c.len()).map(of_jump);
+        let of_row = |row: &[(usize, f64)]| {
+            let squares = row.iter().map(|&(i, c)| (c / of_jump(i)).powi(2));
+            1.0 / squares.sum::<f64>().sqrt()
+        };
+        jumps.chain(gap.rows.iter().map(of_row)).collect()
+    }
+}
+
+impl Path {
+    /// Its beginning, where all is closed.
+    fn new(problem: &FrictionProblem<'_>, attempt: usize) -> Self {
+        let gap = &problem.gap;
+        let (m, count) = (gap.c.len(), gap.bounds.len());
+        let scale = problem.scales();
+        let bounds: Vec<f64> = (gap.bounds.iter().zip(&scale))
+            .map(|(bound, scale)| bound * scale)
+            .collect();
+        let mut response = Mat::zeros(2 * count, count);
+        for j in 0..m {
+            for i in 0..m {
+                response[(count + i, j)] = gap.h[(i, j)] / (scale[i] * scale[j]);
+            }
+        }
+        let force = |response: &Mat<f64>, i: usize| {
+            let held: f64 = (0..count)
+                .map(|j| response[(count + i, j)] * bounds[j])
+                .sum();
+            gap.c.get(i).map_or(0.0, |c| c / scale[i]) - held
+        };
+        let forces: Vec<f64> = (0..m).map(|i| force(&response, i)).collect();
+        let unit = largest(&forces).max(f64::MIN_POSITIVE);
+        // A closed row that gives way has the force (D t − d) / yield.
+        for (k, row) in gap.rows.iter().enumerate() {
+            let row: Vec<(usize, f64)> = (row.iter())
+                .map(|&(i, c)| (i, c * scale[m + k] / scale[i]))
+                .collect();
+            for &(j, b) in &row {
+                for &(i, a) in &row {
+                    response[(count + i, j)] += a * b / YIELD;
+                }
+                response[(count + j, m + k)] -= b / YIELD;
+                response[(count + m + k, j)] -= b / YIELD;
+            }
+            response[(count + m + k, m + k)] = 1.0 / YIELD;
+        }
+        let mut value = [bounds.clone(), vec![0.0; 2 * count]];
+        value[0].extend((0..count).map(|i| force(&response, i)));
+        for i in 0..count {
+            response[(i, i)] = -1.0;
+            if i < m {
+                response[(count + i, i)] += SPRING;
+            }
+        }
+        let mut path = Self {
+            response,
+            value,
+            zero: vec![Quantity::Way; count],
+            bounds,
+            added: (0..count).map(|i| unit * spread(i, attempt)).collect(),
+            tangents: vec![None; count],
+            of_normal: vec![Vec::new(); count],
+        };
+        for limit in problem.tangents {
+            path.add(limit, &scale, unit);
+        }
+        path
+    }
+
+    fn add(&mut self, limit: &TangentialLimit, scale: &[f64], unit: f64) {
+        let (i, bound) = (limit.limit, limit.bound);
+        let coefficient = (limit.normal).map_or(0.0, |n| bound.coefficient * scale[n] / scale[i]);
+        let cohesion = match bound.only_closed && limit.normal.is_none() {
+            true => 0.0,
+            false => (bound.cohesion / scale[i]).min(MOST_COHESION * unit),
+        };
+        let falls = bound.only_closed && cohesion > 0.0;
+        let tangent = Tangent {
+            normal: limit.normal,
+            coefficient,
+            cohesion,
+            added: if cohesion > 0.0 { self.added[i] } else { 0.0 },
+            steep: falls.then(|| coefficient + cohesion / (STEEP * unit)),
+            only_closed: bound.only_closed,
+            is_free: cohesion == 0.0 && coefficient == 0.0,
+        };
+        self.added[i] = 0.0;
+        self.tangents[i] = Some(tangent);
+        if tangent.is_free {
+            let sign = 1.0;
+            self.replace(i, Quantity::Bound { sign, steep: false });
+        } else if let (Some(n), true) = (limit.normal, bound.only_closed) {
+            self.of_normal[n].push(i);
+        }
+    }
+
+    /// A quantity as a sum of jumps and forces, and the rest of it.
+    fn terms(&self, i: usize, quantity: Quantity) -> ([(usize, f64); 2], [f64; 2]) {
+        let count = self.bounds.len();
+        let none = (i, 0.0);
+        match quantity {
+            Quantity::Way => ([(i, -1.0), none], [self.bounds[i], 0.0]),
+            Quantity::Slip(sign) => ([(i, sign), none], [-sign * self.bounds[i], 0.0]),
+            Quantity::Force => ([(count + i, 1.0), none], [0.0, self.added[i]]),
+            Quantity::Bound { sign, steep } => {
+                let tangent = self.tangents[i].unwrap_or_default();
+                let (share, rest) = match (steep, tangent.steep) {
+                    (true, Some(steep)) => (steep, [0.0; 2]),
+                    _ => (tangent.coefficient, [tangent.cohesion, tangent.added]),
+                };
+                // Steep ones are of the size of the others.
+                let size = share.max(1.0);
+                let own = (count + i, -sign / size);
+                match tangent.normal {
+                    Some(n) => {
+                        let rest = [rest[0], rest[1] + share * self.added[n]];
+                        ([own, (count + n, share / size)], rest.map(|x| x / size))
+                    }
+                    None => ([own, none], rest),
+                }
+            }
+        }
+    }
+
+    /// Its value at θ = 0, and how it grows with θ.
+    fn quantity(&self, i: usize, quantity: Quantity) -> [f64; 2] {
+        let (terms, rest) = self.terms(i, quantity);
+        let of = |k: usize| {
+            rest[k]
+                + terms
+                    .iter()
+                    .map(|&(j, c)| c * self.value[k][j])
+                    .sum::<f64>()
+        };
+        [of(0), of(1)]
+    }
+
+    /// Makes another quantity of limit i 0.
+    fn replace(&mut self, i: usize, quantity: Quantity) {
+        let value = self.quantity(i, quantity);
+        let (terms, _) = self.terms(i, quantity);
+        let count = self.bounds.len();
+        let row: Vec<f64> = (0..count)
+            .map(|j| terms.iter().map(|&(k, c)| c * self.response[(k, j)]).sum())
+            .collect();
+        let column: Vec<f64> = (self.response.col_as_slice(i).iter())
+            .map(|x| x / row[i])
+            .collect();
+        for (j, row) in row.iter().enumerate() {
+            if *row != 0.0 && j != i {
+                let of_column = self.response.col_as_slice_mut(j).iter_mut().zip(&column);
+                of_column.for_each(|(x, c)| *x -= c * row);
+            }
+        }
+        for (all, value) in self.value.iter_mut().zip(value) {
+            all.iter_mut()
+                .zip(&column)
+                .for_each(|(x, c)| *x -= c * value);
+        }
+        self.response.col_as_slice_mut(i).copy_from_slice(&column);
+        self.zero[i] = quantity;
+    }
+
+    fn is_open(&self, normal: usize) -> bool {
+        self.zero[normal] == Quantity::Force
+    }
+
+    /// What may not be negative at limit i.
+    fn bounded(&self, i: usize) -> Vec<Quantity> {
+        let Some(tangent) = self.tangents[i] else {
+            return match self.is_open(i) {
+                true => vec![Quantity::Way],
+                false => vec![Quantity::Force],
+            };
+        };
+        if tangent.is_free || tangent.only_closed && tangent.normal.is_some_and(|n| self.is_open(n))
+        {
+            return Vec::new();
+        }
+        let falls = tangent.steep.is_some();
+        let mut bounded = match self.zero[i] {
+            Quantity::Bound { sign, steep } => {
+                let steep = !steep;
+                vec![Quantity::Slip(sign), Quantity::Bound { sign, steep }]
+            }
+            _ => {
+                let all = [(1.0, false), (-1.0, false), (1.0, true), (-1.0, true)];
+                let bound = |(sign, steep)| Quantity::Bound { sign, steep };
+                all.map(bound).to_vec()
+            }
+        };
+        if !falls {
+            bounded.truncate(bounded.len() / 2);
+        }
+        bounded
+    }
+
+    /// Where the path, on its `way` from `theta`, meets the next limit that isn't the one that it has just left.
+    fn next(
+        &self,
+        theta: f64,
+        way: f64,
+        left: Option<(usize, Quantity)>,
+    ) -> Option<(f64, usize, Quantity)> {
+        let mut nearest: Option<(f64, usize, Quantity)> = None;
+        for i in 0..self.bounds.len() {
+            for quantity in self.bounded(i) {
+                let [value, slope] = self.quantity(i, quantity);
+                if slope * way >= 0.0 || slope.is_nan() || left == Some((i, quantity)) {
+                    continue;
+                }
+                // Round-off doesn't turn it back.
+                let at = -value / slope;
+                let at = if way > 0.0 {
+                    at.max(theta)
+                } else {
+                    at.min(theta)
+                };
+                if nearest.is_none_or(|(nearest, _, _)| (at - nearest) * way < 0.0) {
+                    nearest = Some((at, i, quantity));
+                }
+            }
+        }
+        nearest
+    }
+
+    /// Exchanges the status of limit i, one of whose quantities has become 0; what isn't any more.
+    fn exchange(&mut self, theta: f64, i: usize, quantity: Quantity) -> (usize, Quantity) {
+        let was = self.zero[i];
+        let at = |[value, slope]: [f64; 2]| value + theta * slope;
+        // What vanishes with a normal force slips as it opens, and from where it closes towards its slip.
+        if self.tangents[i].is_none() {
+            for k in self.of_normal[i].clone() {
+                let sense = match (quantity, self.zero[k]) {
+                    (Quantity::Force, Quantity::Bound { sign, .. }) => sign,
+                    (Quantity::Force, _) => at(self.quantity(k, Quantity::Force)),
+                    _ => at(self.quantity(k, Quantity::Slip(1.0))),
+                };
+                let right = Quantity::Bound {
+                    sign: sense.signum(),
+                    steep: self.tangents[k].is_some_and(|tangent| tangent.steep.is_some()),
+                };
+                if self.zero[k] != right {
+                    self.replace(k, right);
+                }
+            }
+        }
+        match quantity {
+            Quantity::Slip(_) => self.replace(i, Quantity::Way),
+            _ => self.replace(i, quantity),
+        }
+        match (was, quantity) {
+            (Quantity::Way, Quantity::Bound { sign, .. }) => (i, Quantity::Slip(sign)),
+            _ => (i, was),
+        }
+    }
+
+    /// The statuses here.
+    fn statuses(&self) -> Vec<Status> {
+        let of_limit = |i: usize| match (self.tangents[i], self.zero[i]) {
+            (
+                Some(Tangent {
+                    normal,
+                    only_closed: true,
+                    ..
+                }),
+                _,
+            ) if normal.is_none_or(|n| self.is_open(n)) => Status::Open,
+            (Some(tangent), _) if tangent.is_free => {
+                Status::of_slip(self.quantity(i, Quantity::Slip(1.0))[0])
+            }
+            (Some(Tangent { steep: Some(_), .. }), Quantity::Bound { steep: true, .. }) => {
+                Status::Parting
+            }
+            (_, Quantity::Bound { sign, .. }) => Status::of_slip(sign),
+            (_, Quantity::Force) => Status::Open,
+            _ => Status::Closed,
+        };
+        (0..self.bounds.len()).map(of_limit).collect()
+    }
+}
