@@ -17,7 +17,7 @@ pub mod write;
 
 use crate::contact_point::ContactPoint;
 use crate::element::Elements;
-use crate::element::geometry::dot;
+use crate::element::geometry::{advance, dot};
 use crate::model::{Material, PlaneState, Support};
 use crate::scene::units::Units;
 use crate::solver::SolverSettings;
@@ -127,7 +127,7 @@ pub struct PointNode {
     /// Its number on Γ, if several subdomains have it.
     pub interface: Option<u32>,
     /// Whether supports leave it free along the normal of the point, or nearly so, and where the point has friction
-    /// along its tangents.
+    /// along its tangents, too: one free direction is not enough for two.
     pub is_free: bool,
 }
 
@@ -136,11 +136,16 @@ impl PointNode {
     pub fn new(
         interface: Option<u32>,
         conditions: impl IntoIterator<Item = [f64; 3]>,
-        supports: impl Iterator<Item = [f64; 3]> + Clone,
+        supports: impl Iterator<Item = [f64; 3]>,
     ) -> Self {
+        let mut taken: Vec<[f64; 3]> = supports.collect();
         let is_free = |direction: [f64; 3]| {
-            let held: f64 = supports.clone().map(|d| dot(d, direction).powi(2)).sum();
-            1.0 - held > LEAST_FREE
+            let held: f64 = taken.iter().map(|d| dot(*d, direction).powi(2)).sum();
+            let free = 1.0 - held;
+            let along = |rest, d: &[f64; 3]| advance(rest, -dot(*d, direction), *d);
+            let rest = taken.iter().fold(direction, along);
+            taken.push(rest.map(|x| x / free.sqrt()));
+            free > LEAST_FREE
         };
         Self {
             interface,

@@ -216,8 +216,10 @@ impl Most {
             if closed[number] {
                 most.astray = larger(most.astray, slip);
             } else {
-                let least = if is_parting { 0.0 } else { bound };
-                let missing = least * slip.abs() - force * slip;
+                let missing = match is_parting {
+                    true => (-force * slip).max(0.0),
+                    false => bound * slip.abs() - force * slip,
+                };
                 most.not_opposed = larger(most.not_opposed, missing);
             }
         }

@@ -10,23 +10,17 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::contact_point::Law;
 use contact_dd_partition::model::Model;
-use faer::Mat;
-use faer::Par;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::Lu;
-use faer::sparse::{SparseColMat, Triplet};
+use faer::sparse::Triplet;
 use nalgebra::{DMatrix, DVector};
 
 use super::isoparametric::{Cell, Reference};
 use super::random::Random;
+use super::sparse_system::SparseSystem;
 use super::twofold::Twofold;
 
 /// Compliance of rows in the factorized matrix, relative to the largest entry of K: with it rows
 /// that depend on others do no harm, and refinement against the system without it takes it off.
 const SLACK: f64 = 1e-13;
-
-/// Corrections of a solution at most.
-const REFINEMENTS: usize = 12;
 
 /// A row of a condition: dofs and coefficients.
 pub type Row = Vec<(usize, f64)>;
@@ -301,7 +295,7 @@ impl Assembled {
                 }
             }
         }
-        let x = System::new(n, entries, self.dofs, SLACK * self.scale).solve(&rhs);
+        let x = SparseSystem::new(n, entries, self.dofs, SLACK * self.scale).solve(&rhs);
         let mut forces = vec![0.0; closed.len()];
         for (j, column) in column.iter().enumerate() {
             forces[j] = column.map_or(0.0, |column| x[column] * self.scale);
@@ -343,7 +337,7 @@ impl Assembled {
                 entries.push(Triplet::new(dof, self.dofs + k, c * self.scale));
             }
         }
-        let system = System::new(n, entries, self.dofs, SLACK * self.scale);
+        let system = SparseSystem::new(n, entries, self.dofs, SLACK * self.scale);
         let first = n - jumps.len();
         let forces = |rhs: &[f64]| {
             let x = system.solve(rhs);
@@ -359,57 +353,6 @@ impl Assembled {
             })
             .collect();
         (forces(&rhs), DMatrix::from_columns(&columns))
-    }
-}
-
-/// A sparse matrix with its factor.
-struct System {
-    entries: Vec<Triplet<usize, usize, f64>>,
-    lu: Lu<usize, f64>,
-    n: usize,
-}
-
-impl System {
-    /// Of `n` equations, those from `first` on with `slack` in the factor.
-    fn new(n: usize, entries: Vec<Triplet<usize, usize, f64>>, first: usize, slack: f64) -> Self {
-        faer::set_global_parallelism(Par::Seq);
-        let mut factorized = entries.clone();
-        factorized.extend((first..n).map(|row| Triplet::new(row, row, -slack)));
-        let matrix = SparseColMat::try_new_from_triplets(n, n, &factorized).unwrap();
-        let lu = matrix.sp_lu().unwrap();
-        Self { entries, lu, n }
-    }
-
-    /// The solution, refined.
-    fn solve(&self, rhs: &[f64]) -> Vec<f64> {
-        let n = self.n;
-        let mut x = vec![0.0; n];
-        let mut last = f64::INFINITY;
-        for _ in 0..REFINEMENTS {
-            let mut sums = vec![Twofold::default(); n];
-            for (sum, b) in sums.iter_mut().zip(rhs) {
-                sum.add(*b);
-            }
-            for t in &self.entries {
-                sums[t.row].add_product(-t.val, x[t.col]);
-            }
-            let residual = Mat::from_fn(n, 1, |i, _| sums[i].value());
-            let correction = self.lu.solve(&residual);
-            let largest = |m: f64, x: &f64| m.max(x.abs());
-            let change = (0..n).fold(0.0, |m, i| largest(m, &correction[(i, 0)]));
-            // Where it grows, the matrix is singular to rounding.
-            if !change.is_finite() || change > last {
-                break;
-            }
-            for (i, x) in x.iter_mut().enumerate() {
-                *x += correction[(i, 0)];
-            }
-            if change <= f64::EPSILON * x.iter().fold(0.0, largest) {
-                break;
-            }
-            last = change;
-        }
-        x
     }
 }
 

@@ -21,6 +21,7 @@ pub mod solids;
 pub mod solution;
 pub mod solver;
 pub mod sorts;
+pub mod sparse_system;
 pub mod statics;
 pub mod stress;
 pub mod twofold;

@@ -9,7 +9,8 @@
 use contact_dd_partition::model::Model;
 
 use super::super::assembled::{Along, Assembled, Row, Solved, Tangent};
-use super::super::solution::{ContactPoint, Solution};
+use super::super::solution::Solution;
+use super::answer::{Answer, dot};
 use super::rigid::Bodies;
 
 /// Limits of an answer that is right; the first three stand ten times above what is promised.
@@ -68,65 +69,6 @@ pub struct Findings {
     pub reference_signs: Option<f64>,
 }
 
-/// What the result says of contact, by condition and by tangent.
-struct State<'a> {
-    points: Vec<&'a ContactPoint>,
-    forces: Vec<f64>,
-    tangential: Vec<f64>,
-    /// Tangential jumps now, and since the step before.
-    jumps: Vec<f64>,
-    since: Vec<f64>,
-}
-
-impl<'a> State<'a> {
-    fn new(
-        model: &Model,
-        assembled: &Assembled,
-        solution: &'a Solution,
-        before: Option<&Solution>,
-    ) -> Self {
-        let points = model.contacts.iter().flat_map(|contact| {
-            let points = &solution.contacts[&contact.name];
-            assert_eq!(points.len(), contact.points.len(), "{}", contact.name);
-            points
-        });
-        let points: Vec<&ContactPoint> = points.collect();
-        let jumps = |solution: &Solution| -> Vec<f64> {
-            let u = solution.dofs(model);
-            assembled.tangents.iter().map(|t| t.jump(&u)).collect()
-        };
-        let now = jumps(solution);
-        let past = before.map_or(vec![0.0; now.len()], jumps);
-        let tangents = assembled.tangents.iter();
-        Self {
-            forces: points.iter().map(|point| point.force).collect(),
-            tangential: (tangents)
-                .map(|t| -dot(points[t.condition].tangential_force, t.direction))
-                .collect(),
-            since: now
-                .iter()
-                .zip(&past)
-                .map(|(now, past)| now - past)
-                .collect(),
-            jumps: now,
-            points,
-        }
-    }
-
-    /// The bound of every tangent.
-    fn bounds(&self, assembled: &Assembled) -> Vec<f64> {
-        let bound = |tangent: &Tangent| {
-            let (grows, constant) = tangent.bound(self.points[tangent.condition].closed);
-            grows * self.forces[tangent.condition] + constant
-        };
-        assembled.tangents.iter().map(bound).collect()
-    }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|k| a[k] * b[k]).sum()
-}
-
 impl Findings {
     /// Judges `solution`, against a reference if `compare`; without friction, or of a first load step.
     pub fn new(model: &Model, assembled: &Assembled, solution: &Solution, compare: bool) -> Self {
@@ -142,7 +84,7 @@ impl Findings {
         compare: bool,
     ) -> Self {
         let u = solution.dofs(model);
-        let state = State::new(model, assembled, solution, before);
+        let state = Answer::new(model, assembled, solution, before);
         let mut findings = Self::default();
         let before = before.map_or(0.0, Solution::largest_displacement);
         findings.equilibrium(assembled, &u, &state, before);
@@ -189,7 +131,7 @@ impl Findings {
         }
     }
 
-    fn equilibrium(&mut self, assembled: &Assembled, u: &[f64], state: &State, before: f64) {
+    fn equilibrium(&mut self, assembled: &Assembled, u: &[f64], state: &Answer, before: f64) {
         let forces = &state.forces;
         let mut residual = assembled.residual(u, forces, &state.tangential);
         let mut load_scale = largest(&assembled.load).max(largest(forces));
@@ -230,7 +172,7 @@ impl Findings {
     }
 
     /// The law of friction, with displacements of this size and forces of at least this scale.
-    fn friction(&mut self, assembled: &Assembled, state: &State, size: f64, least: f64) {
+    fn friction(&mut self, assembled: &Assembled, state: &Answer, size: f64, least: f64) {
         let bounds = state.bounds(assembled);
         let scale = largest(&bounds).max(least);
         let mut has_friction = vec![false; state.points.len()];
@@ -277,7 +219,7 @@ impl Findings {
         }
     }
 
-    fn balance(&mut self, model: &Model, assembled: &Assembled, state: &State) {
+    fn balance(&mut self, model: &Model, assembled: &Assembled, state: &Answer) {
         let mut left = assembled.load.clone();
         for ((row, _), force) in assembled.conditions.iter().zip(&state.forces) {
             row.iter().for_each(|&(dof, c)| left[dof] -= c * force);
@@ -295,7 +237,7 @@ impl Findings {
 
     /// Solves with the closed conditions as equations and friction as it is said to be; free motions as the
     /// program has them.
-    fn compare(&mut self, model: &Model, assembled: &Assembled, u: &[f64], state: &State) {
+    fn compare(&mut self, model: &Model, assembled: &Assembled, u: &[f64], state: &Answer) {
         let closed: Vec<bool> = state.points.iter().map(|point| point.closed).collect();
         let along = self.along(assembled, state);
         let bodies = Bodies::new(model);
@@ -347,7 +289,7 @@ impl Findings {
     /// Whether tangents stick or slip, as the status says, or where the bound is there without contact, the
     /// force. What slips has the force that it has: by the law it would depend on the normal forces, which need not
     /// be the only ones where conditions depend on others.
-    fn along(&self, assembled: &Assembled, state: &State) -> Vec<Along> {
+    fn along(&self, assembled: &Assembled, state: &Answer) -> Vec<Along> {
         let bounds = state.bounds(assembled);
         let one = |(k, tangent): (usize, &Tangent)| {
             let (point, force) = (state.points[tangent.condition], state.tangential[k]);

@@ -3,6 +3,7 @@
 //! A seed is a scene: its family, geometry, materials, gaps, loads, subdomains, and whether it has
 //! an equilibrium. Nothing here looks into the program under test.
 
+mod answer;
 mod balance;
 mod beams;
 mod boxes;
