@@ -1,6 +1,6 @@
 //! Contact points of nodes that lie opposite each other.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::ray_search::{Hit, Target};
 use super::sides::{SideNode, Sides, apart};
@@ -81,7 +81,44 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> 
     if points.is_empty() {
         return Err(Unpaired::Apart(apart(any_back_facing)));
     }
+    if let Some(facet) = cut_otherwise(sides, &points) {
+        return Err(Unpaired::Unmatched(format!(
+            "the sides' nodes match, but their facets don't: side b has none opposite that of nodes {}; expected \
+             facets of the same corners on both sides",
+            mesh.tags_of(&facet.nodes)
+        )));
+    }
     Ok(points)
+}
+
+/// A facet of side a whose nodes have partners that aren't those of a facet of side b: in space the same nodes
+/// may be the corners of other triangles, or of a quadrilateral, on which a uniform pressure has other forces.
+fn cut_otherwise<'a>(sides: &Sides<'a>, points: &[ContactPoint<u32>]) -> Option<&'a SurfaceFacet> {
+    if sides.mesh.dim < 3 {
+        return None;
+    }
+    let mut partners: HashMap<u32, Vec<u32>> = HashMap::new();
+    for node in &sides.shared {
+        partners.insert(*node, vec![*node]);
+    }
+    for point in points {
+        let [(a, _), (b, _)] = point.entries[..] else {
+            continue;
+        };
+        partners.entry(a).or_default().push(b);
+    }
+    sides.a.facets.iter().find(|facet| {
+        let of_nodes = facet.nodes.iter().map(|node| partners.get(node));
+        let Some(of_nodes) = of_nodes.collect::<Option<Vec<_>>>() else {
+            return false;
+        };
+        let is_opposite = |other: &SurfaceFacet| {
+            let has = |nodes: &&Vec<u32>| nodes.iter().any(|node| other.nodes.contains(node));
+            other.nodes.len() == facet.nodes.len() && of_nodes.iter().all(has)
+        };
+        let mut near = of_nodes[0].iter().flat_map(|b| &sides.around_b[b]);
+        !near.any(|&other| is_opposite(&sides.b.facets[other]))
+    })
 }
 
 /// A facet of side a around a node, and opposite which of the node's partners a facet of side b lies.

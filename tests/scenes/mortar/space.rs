@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use contact_dd_partition::element::ElementKind::{
-    self, Hexahedron8, Hexahedron20, Hexahedron27, Tetrahedron4,
+    self, Hexahedron8, Hexahedron20, Hexahedron27, Tetrahedron4, Tetrahedron10,
 };
 use contact_dd_partition::element::geometry::dot;
 use contact_dd_partition::mesh::Mesh;
@@ -176,4 +176,37 @@ fn a_uniform_pressure_passes_where_solids_overlap_in_part() {
             is_uniform(&solve(&pressed_beside(&scene(sides), &mesh, covered), 2));
         }
     }
+}
+
+/// The same nodes on both sides are the corners of quadrilaterals here, of triangles there.
+#[test]
+fn a_uniform_pressure_passes_where_nodes_match_but_facets_do_not() {
+    for (lower, upper) in [(Hexahedron8, Tetrahedron4), (Tetrahedron10, Hexahedron27)] {
+        let mesh = joined(
+            solid(
+                "lower",
+                lower,
+                [2, 3, 1],
+                between([0.0; 3], [2.0, 2.0, 1.0]),
+            ),
+            solid(
+                "upper",
+                upper,
+                [2, 3, 1],
+                between([0.0, 0.0, 1.0], [2.0; 3]),
+            ),
+        );
+        is_uniform(&solve(&model(&scene(SIDES[0]), moved(mesh, turned)), 2));
+    }
+    let tetrahedra = |name, low, high| solid(name, Tetrahedron4, [2, 2, 1], between(low, high));
+    let lower = tetrahedra("lower", [0.0; 3], [2.0, 2.0, 1.0]);
+    // Turned by a quarter its diagonals are the others.
+    let upper = moved(
+        tetrahedra("upper", [0.0, 0.0, 1.0], [2.0; 3]),
+        |[x, y, z]| [2.0 - y, x, z],
+    );
+    is_uniform(&solve(
+        &model(&scene(SIDES[0]), moved(joined(lower, upper), turned)),
+        2,
+    ));
 }

@@ -21,6 +21,9 @@ const FLOORS: [f64; 2] = [0.987_65e-3, 0.987_65e-7];
 /// Part of the integral that a node needs that has to be left of it when others have handed theirs over.
 const KEPT: f64 = 0.5;
 
+/// Weight of a node in its own condition, relative to all of side a, that it has to have at least.
+const OWN: f64 = 0.098_765;
+
 /// The weight ψ of a multiplier on a facet.
 pub(super) enum Weight {
     /// ψ = 1.
@@ -35,6 +38,21 @@ impl Weight {
         match self {
             Self::One => cover.measure,
             Self::Combination(c) => c.iter().zip(&cover.integrals).map(|(c, n)| c * n).sum(),
+        }
+    }
+
+    /// ∫ ψ N of a node of the facet over what is covered (m, in space m²).
+    fn at_node(&self, node: u32, on: &Covered) -> f64 {
+        let Some(place) = on.facet.nodes.iter().position(|&own| own == node) else {
+            return 0.0;
+        };
+        match self {
+            Self::One => on.cover.integrals[place],
+            Self::Combination(c) => c
+                .iter()
+                .zip(&on.cover.mass.column(place))
+                .map(|(c, n)| c * n)
+                .sum(),
         }
     }
 }
@@ -72,19 +90,26 @@ pub(super) fn weights(sides: &Sides, covered: &[Covered]) -> Vec<Vec<(u32, Weigh
             }
         }
         let weights: Vec<_> = covered.iter().map(|on| carrying.on(on)).collect();
-        let mut areas: HashMap<u32, f64> = HashMap::new();
+        let mut areas: HashMap<u32, [f64; 2]> = HashMap::new();
         for (on, weights) in covered.iter().zip(&weights) {
             for (node, weight) in weights {
-                *areas.entry(*node).or_default() += weight.integral(&on.cover);
+                let [area, own] = areas.entry(*node).or_default();
+                *area += weight.integral(&on.cover);
+                *own += weight.at_node(*node, on);
             }
         }
-        // What others hand over may be negative where functions of theirs are.
-        areas.retain(|node, area| *area < KEPT * around[node][1]);
-        areas.retain(|node, _| around.remove(node).is_some());
-        if areas.is_empty() {
+        // What others hand over may be negative where functions of theirs are, and may be far from the node.
+        let is_weak =
+            |node: u32, [area, own]: [f64; 2]| area < KEPT * around[&node][1] || own < OWN * area;
+        let weak = areas
+            .into_iter()
+            .filter(|&(node, sums)| is_weak(node, sums));
+        let weak: HashSet<u32> = weak.map(|(node, _)| node).collect();
+        if weak.is_empty() {
             return weights;
         }
-        carrying.nodes.retain(|node| !areas.contains_key(node));
+        around.retain(|node, _| !weak.contains(node));
+        carrying.nodes.retain(|node| !weak.contains(node));
     }
 }
 
