@@ -2,7 +2,6 @@
 
 pub mod bounding_box;
 mod curve;
-mod extruded;
 mod foreign;
 pub mod gmsh;
 mod measure;

@@ -32,6 +32,7 @@ use libtest_mimic::{Arguments, Trial};
 
 use contact_dd_partition::model::Model;
 use support::blocks::jittered;
+use support::extruded::extruded;
 use support::process::{Ended, Running, send};
 use support::scenes::{
     BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks,
@@ -161,9 +162,8 @@ fn same_results(trials: &mut Trials) {
             Case::of(&steps::two_blocks_with_friction(), 6)
         }),
         ("in_space", || {
-            let mesh = sort("quad4")
-                .of(&two_blocks().mesh)
-                .extruded(&[0.0, 0.1, 0.2]);
+            let plane = sort("quad4").of(&two_blocks().mesh);
+            let mesh = extruded(&plane, &[0.0, 0.1, 0.2]);
             let scene = two_block_scene().replace("plane = 'strain'\n", "");
             let held = "[[bilateral]]\non = ['lower back', 'upper back']\n";
             Case::of(&model(&format!("{scene}{held}"), mesh.unwrap()), 9)

@@ -10,6 +10,7 @@ use contact_dd_partition::model::Model;
 use crate::support::blocks::{jittered, joined};
 use crate::support::close::close;
 use crate::support::comparison::compare;
+use crate::support::extruded::extruded;
 use crate::support::monolithic::Monolithic;
 use crate::support::scenes::{model, two_block_scene, two_blocks as plane_blocks};
 use crate::support::solids::{SOLIDS, between, moved, shaken, solid, turned};
@@ -489,7 +490,7 @@ fn an_extruded_scene_is_that_of_plane_strain() {
         let plane = sort(name).of(&plane_blocks().mesh);
         let plane = jittered(plane, 0.01, 3);
         let heights = [0.0, 0.3];
-        let mesh = plane.extruded(&heights).unwrap();
+        let mesh = extruded(&plane, &heights).unwrap();
         assert!(mesh.cells.iter().all(|(kind, _)| kind == solid));
         // The conditions on faces of eight nodes are others than on lines of three: alike where all are closed.
         let all_closed = solid == Hexahedron20;
