@@ -280,3 +280,21 @@ pub struct Problem {
     /// Subdomains.
     pub subdomains: Vec<Subdomain>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_direction_that_a_support_leaves_is_not_enough_for_two_conditions() {
+        let (normal, tangent, up) = ([0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 1.0, 0.0]);
+        let is_free = |conditions: &[[f64; 3]], supports: &[[f64; 3]]| {
+            let conditions = conditions.iter().copied();
+            PointNode::new(None, conditions, supports.iter().copied()).is_free
+        };
+        assert!(is_free(&[normal, tangent], &[]));
+        assert!(is_free(&[normal], &[up]));
+        assert!(!is_free(&[normal, tangent], &[up]));
+        assert!(!is_free(&[normal], &[normal]));
+    }
+}
