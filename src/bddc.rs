@@ -22,10 +22,12 @@ use self::coarse::{Coarse, CoarsePart};
 use self::constraints::{Basis, Side};
 use self::gradients::{Gradients, Vectors};
 use self::local::{Local, Moves, Shared};
+use crate::bytes::Reals;
 use crate::comm::Comm;
 use crate::contact::normal_jump::NoUnknown;
 use crate::context::Context;
 use crate::error::Failure;
+use crate::plan::Plan;
 use crate::schur::condensed::{Condensed, InterfaceDof};
 use crate::vector::dot;
 
@@ -59,6 +61,23 @@ struct Between {
     dofs: Vec<InterfaceDof>,
     /// The clusters that have some of them, ascending.
     clusters: Vec<usize>,
+}
+
+/// How far a solution is iterated.
+#[derive(Clone, Copy, Debug)]
+pub struct Accuracy<'a> {
+    /// What the error in the energy norm is to be below, relative to that of the solution, about.
+    pub tolerance: f64,
+    /// The unknowns of every cluster, by its node, in a solution that isn't far.
+    pub start: Option<&'a BTreeMap<usize, Vec<f64>>>,
+}
+
+impl Accuracy<'_> {
+    /// As far as round-off lets it be, about, from nothing.
+    pub const FULL: Self = Self {
+        tolerance: 1e-12,
+        start: None,
+    };
 }
 
 /// What a load does, on this rank.
@@ -282,7 +301,7 @@ impl Bddc {
         condensed: &BTreeMap<usize, Condensed>,
         loads: &BTreeMap<usize, Vec<f64>>,
         values: &BTreeMap<usize, Vec<f64>>,
-        tolerance: f64,
+        accuracy: Accuracy,
     ) -> BddcSolution {
         let Context { comm, plan, .. } = *context;
         let constants = self.constants(comm, values);
@@ -291,7 +310,7 @@ impl Bddc {
             dofs.map(|dof| constants.get(dof).copied().unwrap_or(0.0))
                 .collect()
         };
-        let (mut own, mut b, mut x) = (Vectors::new(), Vectors::new(), Vectors::new());
+        let (mut own, mut b) = (Vectors::new(), Vectors::new());
         for (&c, local) in &self.locals {
             let mut load = loads[&plan.tops[c]].clone();
             let held = product_of_lower(&condensed[&plan.tops[c]].s, &constants_of(c));
@@ -300,7 +319,6 @@ impl Bddc {
                 .for_each(|(load, held)| *load -= held);
             let (of_own, of_shared) = local.condense(&load);
             own.insert(c, of_own);
-            x.insert(c, vec![0.0; of_shared.len()]);
             b.insert(c, of_shared);
         }
         let gradients = Gradients {
@@ -310,7 +328,8 @@ impl Bddc {
             locals: &self.locals,
             coarse: self.coarse.as_ref(),
         };
-        let iterations = gradients.solve(b, &mut x, tolerance);
+        let start = accuracy.start.map(|known| self.start(comm, known, plan));
+        let (x, iterations) = gradients.solve(b, start, accuracy.tolerance);
         let mut clusters = Vectors::new();
         for (&c, local) in &self.locals {
             let mut all = local.recover(&own[&c], &x[&c]);
@@ -332,6 +351,49 @@ impl Bddc {
             groups,
             iterations,
         }
+    }
+
+    /// What clusters share where their unknowns, by node, are `known`. Collective.
+    fn start(&self, comm: &Comm, known: &BTreeMap<usize, Vec<f64>>, plan: &Plan) -> Vectors {
+        let classes = &self.classes.list;
+        let ends: Vec<(usize, usize)> = (classes.iter().enumerate())
+            .flat_map(|(k, class)| class.clusters.iter().map(move |&c| (k, c)))
+            .collect();
+        let home = |k: usize| self.owners[classes[k].clusters[0]];
+        let mut values: BTreeMap<usize, Vec<Option<f64>>> = BTreeMap::new();
+        comm.route(
+            ends.iter().map(|&(k, c)| (self.owners[c], home(k))),
+            |i| {
+                let (k, c) = ends[i];
+                let of_cluster = &known[&plan.tops[c]];
+                let dofs = classes[k].dofs.iter();
+                let at = dofs.map(|dof| self.dofs[c].binary_search(dof).ok());
+                at.map(|at| at.map(|at| of_cluster[at])).collect::<Vec<_>>()
+            },
+            |i, said| {
+                let of_class = values.entry(ends[i].0).or_insert_with(|| said.clone());
+                of_class
+                    .iter_mut()
+                    .zip(said)
+                    .for_each(|(value, said)| *value = value.or(said));
+            },
+        );
+        let turned = values.into_iter().map(|(k, values)| {
+            let values = values.into_iter().map(Option::unwrap_or_default);
+            (k, classes[k].turn(values.collect()))
+        });
+        let values: BTreeMap<usize, Vec<f64>> = turned.collect();
+        let mut start: Vectors = self.locals.keys().map(|&c| (c, Vec::new())).collect();
+        comm.route(
+            ends.iter().map(|&(k, c)| (home(k), self.owners[c])),
+            |i| Reals(values[&ends[i].0].clone()),
+            // Class after class, as the cluster has them.
+            |i, Reals(values)| start.entry(ends[i].1).or_default().extend(values),
+        );
+        for (c, shared) in &mut start {
+            self.locals[c].turn(shared);
+        }
+        start
     }
 
     /// What tied displacements are beside the terms of others, on all ranks. Collective.

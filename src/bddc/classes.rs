@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::disjoint_sets::DisjointSets;
 use faer::Mat;
+use faer::linalg::solvers::Solve;
 
 use crate::bddc::closed::Ties;
 use crate::schur::condensed::InterfaceDof;
@@ -40,6 +41,16 @@ impl Class {
     /// Number of unknowns that all of its clusters have.
     pub fn size(&self) -> usize {
         (self.turned.as_ref()).map_or(self.dofs.len(), |turned| turned.ends[1])
+    }
+
+    /// The combinations that both of its clusters have, for `values` of its unknowns.
+    pub fn turn(&self, values: Vec<f64>) -> Vec<f64> {
+        let Some(turned) = &self.turned else {
+            return values;
+        };
+        let values = Mat::from_fn(values.len(), 1, |i, _| values[i]);
+        let combinations = turned.q.partial_piv_lu().solve(values);
+        (0..turned.ends[1]).map(|j| combinations[(j, 0)]).collect()
     }
 
     /// Whether all of its unknowns are coarse ones, as those of a vertex.

@@ -34,17 +34,25 @@ pub struct Gradients<'a> {
 }
 
 impl Gradients<'_> {
-    /// Solves S x = b, of which every cluster has a part, from x on; returns the number of iterations. Collective.
+    /// Solves S x = b, of which every cluster has a part, from a `start`, or from 0; returns x and the number of
+    /// iterations. Collective.
     ///
     /// It ends where √(rᵀ M r), with M the preconditioner about the error in the energy norm, is less than the
     /// `tolerance` of that of b.
-    pub fn solve(&self, mut b: Vectors, x: &mut Vectors, tolerance: f64) -> usize {
+    pub fn solve(
+        &self,
+        mut b: Vectors,
+        start: Option<Vectors>,
+        tolerance: f64,
+    ) -> (Vectors, usize) {
         self.add_up(&mut b);
         let scale = self.dot(&b, &self.precondition(&b));
         let enough = tolerance * tolerance * scale;
+        let mut x: Vectors = b.iter().map(|(&c, b)| (c, vec![0.0; b.len()])).collect();
         let mut r = b;
-        if x.values().flatten().any(|x| *x != 0.0) || self.comm.size() > 1 {
-            subtract(&mut r, &self.multiply(x), 1.0);
+        if let Some(start) = start {
+            subtract(&mut r, &self.multiply(&start), 1.0);
+            x = start;
         }
         let mut z = self.precondition(&r);
         let mut p = z.clone();
@@ -57,7 +65,7 @@ impl Gradients<'_> {
                 break;
             }
             let step = rho / curvature;
-            subtract(x, &p, -step);
+            subtract(&mut x, &p, -step);
             subtract(&mut r, &q, step);
             z = self.precondition(&r);
             let before = std::mem::replace(&mut rho, self.dot(&r, &z));
@@ -68,7 +76,7 @@ impl Gradients<'_> {
             }
             iterations += 1;
         }
-        iterations
+        (x, iterations)
     }
 
     /// S x. Collective.

@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+use crate::bddc::Accuracy;
 use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::error::Failure;
@@ -18,6 +19,8 @@ use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
 const PATIENCE: usize = 8;
 /// Most steps.
 const MAX_STEPS: usize = 400;
+/// Tolerance of an iterative solver beside what is wrong with the active set before.
+const LOOSE: f64 = 0.01;
 /// What is none beside the largest force or displacement.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -103,10 +106,30 @@ pub fn solve(
     };
     let mut exchange = Exchange::default();
     let mut changed = None;
+    let (mut last, mut wrong_by) = (FrozenSolution::default(), 1.0_f64);
     loop {
         fronts.freeze(context, &open)?;
-        let solution = fronts.solve(context, loads.clone(), &bounds);
-        let faults = Faults::of(context, &solution, &bounds, &open);
+        let accurate = |tolerance: f64, start: &FrozenSolution| {
+            let accuracy = Accuracy {
+                tolerance,
+                start: (!start.tops.is_empty()).then_some(&start.tops),
+            };
+            let mut solution = fronts.solve(context, loads.clone(), &bounds, accuracy);
+            solution.iterations += start.iterations;
+            let least = ROUND_OFF.max(tolerance);
+            let faults = Faults::of(context, &solution, &bounds, &open, least);
+            (solution, faults)
+        };
+        // No more accurate than the active set, until that seems to be right.
+        let tolerance = match fronts.coarse_dofs() {
+            Some(_) => (LOOSE * wrong_by.min(1.0)).max(Accuracy::FULL.tolerance),
+            None => 0.0,
+        };
+        let (mut solution, mut faults) = accurate(tolerance, &last);
+        if faults.count == 0 && tolerance > Accuracy::FULL.tolerance {
+            (solution, faults) = accurate(Accuracy::FULL.tolerance, &solution);
+        }
+        wrong_by = faults.largest;
         let sweep = outcome.records.len();
         let record = SweepRecord {
             sweep,
@@ -160,6 +183,10 @@ pub fn solve(
                 "interrupted after {sweep} sweeps, before a result was written"
             )));
         }
+        last = FrozenSolution {
+            iterations: 0,
+            ..solution
+        };
         let all = exchange.is_of_all(faults.count);
         for (g, wrong) in &faults.wrong {
             let of_group = open.get_mut(g).into_iter();
@@ -177,12 +204,13 @@ pub fn solve(
 }
 
 impl Faults {
-    /// What is wrong where the conditions that are `open` led to this solution. Collective.
+    /// What is wrong, by more than `least`, where the conditions that are `open` led to this solution. Collective.
     fn of(
         context: &Context<'_>,
         solution: &FrozenSolution,
         bounds: &BTreeMap<usize, Vec<f64>>,
         open: &BTreeMap<usize, Vec<bool>>,
+        least: f64,
     ) -> Self {
         let Context { comm, plan, .. } = *context;
         let largest = |all: &BTreeMap<usize, Vec<f64>>| {
@@ -210,7 +238,7 @@ impl Faults {
                 };
                 active += usize::from(!is_open);
                 largest = largest.max(excess);
-                if excess > ROUND_OFF {
+                if excess > least {
                     wrong.push(j);
                 }
             }

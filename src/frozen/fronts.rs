@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
-use crate::bddc::Bddc;
+use crate::bddc::{Accuracy, Bddc};
 use crate::bytes::Reals;
 use crate::condense::Condensation;
 use crate::context::Context;
@@ -19,9 +19,6 @@ use crate::vector::dot;
 /// The spring on an open normal jump, relative to its diagonal, where some part of the scene moves freely without
 /// the contacts that are open: the next active set closes what stops it.
 const SPRING: f64 = 1e-9;
-
-/// What the error of an iterative solution is less than, in the energy norm.
-const TOLERANCE: f64 = 1e-12;
 
 /// A front whose own normal jumps are open or closed.
 #[derive(Debug)]
@@ -59,7 +56,9 @@ pub struct FrozenSolution {
     pub forces: BTreeMap<usize, Vec<f64>>,
     /// The unknowns on the boundary of every cluster.
     pub boundaries: BTreeMap<usize, Vec<f64>>,
-    /// Iterations between clusters.
+    /// The unknowns of the nodes between which an iterative solver works.
+    pub tops: BTreeMap<usize, Vec<f64>>,
+    /// Its iterations.
     pub iterations: usize,
 }
 
@@ -301,12 +300,13 @@ impl FrozenFronts {
     }
 
     /// Solves for `loads` on the boundaries of the clusters of this rank, by node, where the closed normal jumps of
-    /// every group have the values `prescribed`. Collective.
+    /// every group have the values `prescribed`; an iterative solver goes as far as `accuracy` says. Collective.
     pub fn solve(
         &self,
         context: &Context<'_>,
         mut loads: BTreeMap<usize, Vec<f64>>,
         prescribed: &BTreeMap<usize, Vec<f64>>,
+        accuracy: Accuracy<'_>,
     ) -> FrozenSolution {
         let plan = context.plan;
         let mut condensed: BTreeMap<usize, (CondensedLoad, Vec<f64>)> = BTreeMap::new();
@@ -341,7 +341,8 @@ impl FrozenFronts {
             // Roots keep nothing.
             None => below.extend(plan.tops.iter().map(|&v| (v, Vec::new()))),
             Some(bddc) => {
-                let between = bddc.solve(context, &self.merged, &arrived, prescribed, TOLERANCE);
+                let between = bddc.solve(context, &self.merged, &arrived, prescribed, accuracy);
+                solution.tops = between.clusters.clone();
                 below = between.clusters;
                 solution.iterations = between.iterations;
                 for (g, (jumps, forces)) in between.groups {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::bddc::Accuracy;
 use crate::bytes::Reals;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::substitute::Factors;
@@ -176,7 +177,12 @@ impl<'a> FixedActiveSet<'a> {
         let on_clusters = condensed
             .iter()
             .map(|(&v, load)| (v, load.boundary().to_vec()));
-        let solution = fronts.solve(&self.context, on_clusters.collect(), &missing);
+        let solution = fronts.solve(
+            &self.context,
+            on_clusters.collect(),
+            &missing,
+            Accuracy::FULL,
+        );
         let forces = solution.forces.iter();
         Change {
             forces: forces
