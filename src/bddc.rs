@@ -12,7 +12,7 @@ mod constraints;
 mod gradients;
 mod local;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use faer::Mat;
 
@@ -59,7 +59,7 @@ struct Between {
     owner: usize,
     /// Its unknowns, ascending.
     dofs: Vec<InterfaceDof>,
-    /// The clusters that have some of them, ascending.
+    /// The clusters that have some of them, or what may be tied to some, ascending.
     clusters: Vec<usize>,
 }
 
@@ -134,15 +134,25 @@ impl Bddc {
         let has_some = |c: usize, sought: &[InterfaceDof]| {
             (sought.iter()).any(|dof| dofs[c].binary_search(dof).is_ok())
         };
-        let between = (numbers.iter().zip(group_owners)).zip(of_groups);
-        let between = between.map(|((&number, owner), sought)| Between {
-            number,
-            owner,
-            clusters: (0..dofs.len()).filter(|&c| has_some(c, &sought)).collect(),
-            dofs: sought,
-        });
+        let mut between: Vec<Between> = Vec::new();
+        for ((number, owner), sought) in numbers.into_iter().zip(group_owners).zip(of_groups) {
+            let mut clusters: BTreeSet<usize> =
+                (0..dofs.len()).filter(|&c| has_some(c, &sought)).collect();
+            // What a group below ties may be tied to unknowns of this one.
+            for below in &between {
+                if (below.dofs.iter()).any(|dof| sought.binary_search(dof).is_ok()) {
+                    clusters.extend(&below.clusters);
+                }
+            }
+            between.push(Between {
+                number,
+                owner,
+                dofs: sought,
+                clusters: clusters.into_iter().collect(),
+            });
+        }
         Ok(Self {
-            between: between.collect(),
+            between,
             owners,
             dofs,
             groups,
@@ -412,7 +422,9 @@ impl Bddc {
             |_, of_group| constants.extend(of_group),
         );
         comm.broadcast(&mut constants);
-        constants.into_iter().collect()
+        let mut constants = constants.into_iter().collect();
+        self.ties.resolve(&mut constants);
+        constants
     }
 
     /// Jumps and forces of the contact groups of this rank, for the unknowns of clusters and what is `unbalanced` there.
@@ -426,25 +438,36 @@ impl Bddc {
         let ways: Vec<(usize, usize)> = (self.between.iter().enumerate())
             .flat_map(|(i, group)| group.clusters.iter().map(move |&c| (i, c)))
             .collect();
+        let forces = self.locals.keys().map(|&c| {
+            let at = self.dofs[c]
+                .iter()
+                .copied()
+                .zip(unbalanced[&c].iter().copied());
+            let mut forces = at.collect();
+            self.ties.carry(&mut forces);
+            (c, forces)
+        });
+        let forces: BTreeMap<usize, BTreeMap<InterfaceDof, f64>> = forces.collect();
         let mut of_groups: BTreeMap<usize, [BTreeMap<InterfaceDof, f64>; 2]> = BTreeMap::new();
         comm.route(
             ways.iter()
                 .map(|&(i, c)| (self.owners[c], self.between[i].owner)),
             |way| {
                 let (i, c) = ways[way];
-                let at = |dof: &InterfaceDof| {
-                    let at = self.dofs[c].binary_search(dof).ok()?;
-                    Some((*dof, clusters[&c][at], unbalanced[&c][at]))
-                };
-                let said = self.between[i].dofs.iter().filter_map(at);
+                let said = self.between[i].dofs.iter().map(|dof| {
+                    let at = self.dofs[c].binary_search(dof).ok();
+                    (at.map(|at| clusters[&c][at]), forces[&c].get(dof).copied())
+                });
                 said.collect::<Vec<_>>()
             },
             |way, said| {
-                let number = self.between[ways[way].0].number;
-                let [x, r] = of_groups.entry(number).or_default();
-                for (dof, of_x, of_r) in said {
-                    x.entry(dof).or_insert(of_x);
-                    *r.entry(dof).or_insert(0.0) += of_r;
+                let group = &self.between[ways[way].0];
+                let [x, r] = of_groups.entry(group.number).or_default();
+                for (dof, (of_x, of_r)) in group.dofs.iter().zip(said) {
+                    if let Some(of_x) = of_x {
+                        x.entry(*dof).or_insert(of_x);
+                    }
+                    *r.entry(*dof).or_insert(0.0) += of_r.unwrap_or(0.0);
                 }
             },
         );

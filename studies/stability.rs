@@ -31,6 +31,9 @@ pub struct Arguments {
     /// Runs scenes with friction alone; their seeds count anew.
     #[arg(long, conflicts_with = "markdown")]
     friction: bool,
+    /// Solves with the iterative interface solver between so many clusters, about, scenes without friction.
+    #[arg(long, value_name = "N", conflicts_with_all = ["markdown", "friction"])]
+    clusters: Option<usize>,
     /// Most cells along a side of a block.
     #[arg(long, default_value_t = 12)]
     cells: usize,
@@ -57,6 +60,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         jobs: arguments.jobs,
         limit: Duration::from_secs(arguments.limit),
         keep: arguments.keep.clone(),
+        clusters: arguments.clusters,
     };
     let told = !arguments.only.is_empty();
     let seeds = match told {
@@ -67,7 +71,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         true => Vec::new(),
         false => runs.all(draw, &seeds, told),
     };
-    let with = match told && !arguments.friction {
+    let with = match (told || arguments.clusters.is_some()) && !arguments.friction {
         true => Vec::new(),
         false => runs.all(draw_frictional, &seeds, told),
     };

@@ -68,12 +68,13 @@ impl GroupBetween {
     pub fn ties(&self) -> Ties {
         let of_open = self.terms.iter().zip(&self.open).filter(|(_, open)| **open);
         Ties {
-            terms: (self.replaced.iter())
+            direct: (self.replaced.iter())
                 .map(|replaced| (replaced.dof, replaced.staying.clone()))
                 .collect(),
             open: of_open
                 .flat_map(|(terms, _)| terms.iter().map(|(dof, _)| *dof))
                 .collect(),
+            resolved: BTreeMap::new(),
         }
     }
 
@@ -110,28 +111,66 @@ impl GroupBetween {
 /// What closed conditions tie, on all ranks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ties {
-    /// Tied displacements and what is in their place, but for constants.
-    terms: BTreeMap<InterfaceDof, Vec<(InterfaceDof, f64)>>,
+    /// Tied displacements and what is in their place, but for constants, group by group up the hierarchy: what a group
+    /// ties one above may tie to others.
+    direct: Vec<(InterfaceDof, Terms)>,
+    /// The same in terms of what nothing ties.
+    resolved: BTreeMap<InterfaceDof, Terms>,
     /// Unknowns of open conditions.
     open: Vec<InterfaceDof>,
 }
 
+/// Unknowns and their coefficients.
+type Terms = Vec<(InterfaceDof, f64)>;
+
 impl Ties {
-    /// Those of several groups.
+    /// Those of all groups, in their order.
     pub fn join(all: Vec<Self>) -> Self {
         let mut joined = Self::default();
         for ties in all {
-            joined.terms.extend(ties.terms);
+            joined.direct.extend(ties.direct);
             joined.open.extend(ties.open);
         }
         joined.open.sort_unstable();
+        for (dof, terms) in joined.direct.iter().rev() {
+            let mut resolved: BTreeMap<InterfaceDof, f64> = BTreeMap::new();
+            for (staying, factor) in terms {
+                let own = vec![(*staying, 1.0)];
+                for (dof, c) in joined.resolved.get(staying).unwrap_or(&own) {
+                    *resolved.entry(*dof).or_insert(0.0) += factor * c;
+                }
+            }
+            joined.resolved.insert(*dof, resolved.into_iter().collect());
+        }
         joined
     }
 
     /// What is in the place of an unknown: itself where it isn't tied.
-    pub fn terms(&self, dof: &InterfaceDof) -> Vec<(InterfaceDof, f64)> {
-        let terms = self.terms.get(dof);
+    pub fn terms(&self, dof: &InterfaceDof) -> Terms {
+        let terms = self.resolved.get(dof);
         terms.cloned().unwrap_or_else(|| vec![(*dof, 1.0)])
+    }
+
+    /// Adds to the constants of tied displacements those of what they are tied to.
+    pub fn resolve(&self, constants: &mut BTreeMap<InterfaceDof, f64>) {
+        for (dof, terms) in self.direct.iter().rev() {
+            let staying = terms.iter();
+            let of_others = staying.filter_map(|(dof, c)| Some(c * constants.get(dof)?));
+            let sum: f64 = of_others.sum();
+            *constants.entry(*dof).or_insert(0.0) += sum;
+        }
+    }
+
+    /// Carries forces at tied displacements to what they are tied to, where they stay, too.
+    pub fn carry(&self, forces: &mut BTreeMap<InterfaceDof, f64>) {
+        for (dof, terms) in &self.direct {
+            let Some(&force) = forces.get(dof) else {
+                continue;
+            };
+            for (staying, c) in terms {
+                *forces.entry(*staying).or_insert(0.0) += c * force;
+            }
+        }
     }
 
     /// Whether an open condition has an unknown.

@@ -19,6 +19,8 @@ pub struct Runs {
     pub jobs: usize,
     pub limit: Duration,
     pub keep: Option<PathBuf>,
+    /// Clusters between which the iterative interface solver works, where it is asked for.
+    pub clusters: Option<usize>,
 }
 
 /// A scene that was run; of its model nothing is kept.
@@ -67,7 +69,13 @@ impl Runs {
             println!("{seed:>6} can't be");
             return None;
         };
-        let trial = Trial::of(&drawn, &self.binary, self.limit, self.keep.as_deref());
+        let trial = Trial::with(
+            &drawn,
+            &self.binary,
+            self.limit,
+            self.keep.as_deref(),
+            self.clusters,
+        );
         let ran = Ran::new(&drawn, trial, began);
         if told || ran.trial.verdict != Verdict::Right || ran.is_short() {
             println!("{}", ran.line());

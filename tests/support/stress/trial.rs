@@ -1,6 +1,7 @@
 //! A scene put to the program, and the verdict.
 
 use std::path::Path;
+use std::process::Command;
 use std::time::Duration;
 
 use contact_dd_partition::model::Model;
@@ -112,9 +113,27 @@ fn least(balances: impl Iterator<Item = Balance>) -> Balance {
     balances.max_by_key(rank).unwrap_or(Balance::Holds)
 }
 
+/// What asks for the iterative interface solver.
+const ITERATIVE: [&str; 2] = ["--interface", "iterative"];
+
 impl Trial {
     /// Runs `binary` on a scene, `limit` at most; with `keep` the problem file is copied there.
     pub fn of(drawn: &Drawn, binary: &Path, limit: Duration, keep: Option<&Path>) -> Self {
+        Self::with(drawn, binary, limit, keep, None)
+    }
+
+    /// The same with the iterative interface solver between so many `clusters`, where some are asked for.
+    pub fn with(
+        drawn: &Drawn,
+        binary: &Path,
+        limit: Duration,
+        keep: Option<&Path>,
+        clusters: Option<usize>,
+    ) -> Self {
+        let args = match clusters {
+            Some(_) => &ITERATIVE[..],
+            None => &[],
+        };
         let model = &drawn.model;
         let mut trial = Self {
             verdict: Verdict::Right,
@@ -161,7 +180,12 @@ impl Trial {
             Problem::new(model, &decomposition).map_err(|error| error.to_string())
         });
         let case = match problem {
-            Ok(problem) => Case::new(&problem),
+            Ok(mut problem) => {
+                if clusters.is_some() {
+                    problem.catalog.choose_clusters(clusters);
+                }
+                Case::new(&problem)
+            }
             Err(message) => {
                 trial.ends(Verdict::Refused, message);
                 return trial;
@@ -175,10 +199,11 @@ impl Trial {
             )
             .unwrap();
         }
-        let ended = Running::start(launched(binary, 0).arg(case.problem())).wait(limit);
+        let ended = Running::start(launched(binary, 0).arg(case.problem()).args(args)).wait(limit);
         trial.judge(drawn, &steps, &case, &ended);
         if drawn.ranks > 0 && trial.verdict == Verdict::Right {
-            trial.again(drawn.ranks, binary, limit, &case, &ended);
+            let mut command = launched(binary, drawn.ranks);
+            trial.again(drawn.ranks, command.args(args), limit, &case, &ended);
         }
         trial
     }
@@ -242,11 +267,17 @@ impl Trial {
     }
 
     /// Runs it on `ranks` ranks: the same end, the same bits.
-    fn again(&mut self, ranks: usize, binary: &Path, limit: Duration, case: &Case, first: &Ended) {
+    fn again(
+        &mut self,
+        ranks: usize,
+        command: &mut Command,
+        limit: Duration,
+        case: &Case,
+        first: &Ended,
+    ) {
         let result = case.folder().join("again.vtkhdf");
-        let mut command = launched(binary, ranks);
         command.arg(case.problem()).arg("-o").arg(&result);
-        let ended = Running::start(&mut command).wait(limit);
+        let ended = Running::start(command).wait(limit);
         let code = |ended: &Ended| ended.status.and_then(|status| status.code());
         if ended.status.is_none() {
             return self.ends(Verdict::Hung, format!("on {ranks} ranks"));
