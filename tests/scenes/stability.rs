@@ -134,11 +134,27 @@ fn newton_gives_up_where_it_gets_no_further() {
     }
 }
 
+/// In some of them what one contact group ties another one ties to others.
+#[test]
+fn random_scenes_are_answered_rightly_by_iteration_between_clusters() {
+    for seed in 0..16 {
+        for drawn in [draw(seed, 4), draw_uneven(seed, 4)] {
+            let (verdict, why) = judged_between(drawn, Some(6));
+            assert_eq!(verdict, Verdict::Right, "{seed}: {why}");
+        }
+    }
+}
+
 /// The verdict on a scene, and what to say of it.
-fn judged(mut drawn: Drawn) -> (Verdict, String) {
+fn judged(drawn: Drawn) -> (Verdict, String) {
+    judged_between(drawn, None)
+}
+
+/// The same by iteration between so many clusters.
+fn judged_between(mut drawn: Drawn, clusters: Option<usize>) -> (Verdict, String) {
     // Tests of several ranks stand elsewhere.
     drawn.ranks = 0;
-    let trial = Trial::of(&drawn, built(), Duration::from_secs(60), None);
+    let trial = Trial::with(&drawn, built(), Duration::from_secs(60), None, clusters);
     let why = format!("{}\n{}", trial.reason, drawn.described());
     (trial.verdict, why)
 }
