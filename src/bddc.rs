@@ -13,6 +13,7 @@ mod gradients;
 mod local;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 use faer::Mat;
 
@@ -44,6 +45,8 @@ pub struct Bddc {
     groups: BTreeMap<usize, GroupBetween>,
     ties: Ties,
     classes: Classes,
+    /// The clusters of this rank, onto what they share and in the bases of their classes.
+    shared: BTreeMap<usize, Rc<Shared>>,
     locals: BTreeMap<usize, Local>,
     coarse: Option<Coarse>,
     /// Number of coarse unknowns; on the root.
@@ -158,6 +161,7 @@ impl Bddc {
             groups,
             ties: Ties::default(),
             classes: Classes::default(),
+            shared: BTreeMap::new(),
             locals: BTreeMap::new(),
             coarse: None,
             coarse_dofs: 0,
@@ -166,7 +170,7 @@ impl Bddc {
     }
 
     /// Makes the preconditioner for `condensed` clusters and conditions that are `open`, with a `spring`, relative to
-    /// the diagonal, on what these have let go. Collective.
+    /// the diagonal, on what these have let go; of clusters that aren't `touched` what is as it was is kept. Collective.
     ///
     /// # Errors
     /// A part of the scene can move.
@@ -174,6 +178,7 @@ impl Bddc {
         &mut self,
         context: &Context<'_>,
         condensed: &BTreeMap<usize, Condensed>,
+        touched: &[bool],
         open: &BTreeMap<usize, Vec<bool>>,
         spring: f64,
     ) -> Result<(), Failure> {
@@ -191,28 +196,38 @@ impl Bddc {
             }));
         }
         comm.agree(frozen)?;
-        self.share_ties(comm);
-        self.classes = Classes::new(&self.dofs, &self.ties);
+        let ties = self.ties(comm);
+        let classes = Classes::new(&self.dofs, &ties);
+        let is_as_it_was = |c: usize| {
+            let mut dofs = self.dofs[c].iter();
+            !touched[plan.tops[c]]
+                && classes.are_as_in(&self.classes, c)
+                && dofs.all(|dof| ties.is_as_in(&self.ties, dof))
+        };
+        let changed: Vec<bool> = (0..self.dofs.len()).map(|c| !is_as_it_was(c)).collect();
+        (self.ties, self.classes) = (ties, classes);
 
         let own = self.owners.iter().enumerate();
-        let own = own.filter(|(_, owner)| **owner == comm.rank());
+        let own = own.filter(|(c, owner)| changed[*c] && **owner == comm.rank());
         let shared = own.map(|(c, _)| {
             let of_cluster = &condensed[&plan.tops[c]];
             let shared = Shared::new(c, of_cluster, &self.classes, &self.ties, spring, par);
-            Ok((c, shared.map_err(moves)?))
+            Ok((c, Rc::new(shared.map_err(moves)?)))
         });
-        let shared: BTreeMap<usize, Shared> = comm.agree(shared.collect())?;
-        let mut bases = self.bases(context, &shared)?;
-        let locals = shared.into_iter().map(|(c, shared)| {
-            let of_cluster = bases.remove(&c).unwrap_or_default();
-            Ok((c, Local::new(shared, of_cluster, par).map_err(moves)?))
+        let shared: BTreeMap<usize, Rc<Shared>> = comm.agree(shared.collect())?;
+        self.shared.extend(shared);
+        let bases = self.bases(context, &changed)?;
+        let locals = bases.into_iter().map(|(c, bases)| {
+            let local = Local::new(Rc::clone(&self.shared[&c]), bases, par);
+            Ok((c, local.map_err(moves)?))
         });
-        self.locals = comm.agree(locals.collect())?;
+        let locals: BTreeMap<usize, Local> = comm.agree(locals.collect())?;
+        self.locals.extend(locals);
 
         let mut parts = Vec::new();
         comm.gather(
             &self.owners,
-            |c| CoarsePart::of(&self.locals[&c]),
+            |c| CoarsePart::of(&self.locals[&c], &self.classes.of_clusters[c]),
             |_, part| parts.push(part),
         );
         let coarse = comm.is_root().then(|| Coarse::new(&parts, par));
@@ -229,40 +244,44 @@ impl Bddc {
         self.groups.get(&g).map(|group| &group.open)
     }
 
-    /// Tells all ranks what closed conditions tie. Collective.
-    fn share_ties(&mut self, comm: &Comm) {
+    /// What closed conditions tie, on all ranks. Collective.
+    fn ties(&self, comm: &Comm) -> Ties {
         let mut all = Vec::new();
         comm.gather(
             &self.group_owners(),
             |i| self.groups[&self.between[i].number].ties(),
             |_, ties| all.push(ties),
         );
-        self.ties = Ties::join(all);
-        comm.broadcast(&mut self.ties);
+        let mut ties = Ties::join(all);
+        comm.broadcast(&mut ties);
+        ties
     }
 
     fn group_owners(&self) -> Vec<usize> {
         self.between.iter().map(|group| group.owner).collect()
     }
 
-    /// The bases of the classes of every cluster of this rank: each is made where the first cluster of the class is.
-    /// Collective.
+    /// The bases of the classes of every cluster of this rank that has one with a cluster that `changed`: each is made
+    /// where the first cluster of the class is. Collective.
     fn bases(
         &self,
         context: &Context<'_>,
-        shared: &BTreeMap<usize, Shared>,
+        changed: &[bool],
     ) -> Result<BTreeMap<usize, Vec<Basis>>, Failure> {
         let Context { comm, par, .. } = *context;
-        let adaptive =
-            (self.classes.list.iter().enumerate()).filter(|(_, class)| !class.is_coarse());
-        let ends: Vec<(usize, usize)> = adaptive
-            .flat_map(|(k, class)| class.clusters.iter().map(move |&c| (k, c)))
+        let is_made = |k: usize| {
+            let class = &self.classes.list[k];
+            !class.is_coarse() && class.clusters.iter().any(|&c| changed[c])
+        };
+        let ends: Vec<(usize, usize)> = (0..self.classes.list.len())
+            .filter(|&k| is_made(k))
+            .flat_map(|k| self.classes.list[k].clusters.iter().map(move |&c| (k, c)))
             .collect();
         let mut made = BTreeMap::new();
-        let sides = shared.iter().flat_map(|(&c, shared)| {
-            let classes = shared.classes.iter();
-            let adaptive = classes.filter(|(k, _)| !self.classes.list[*k].is_coarse());
-            adaptive.map(move |(k, range)| ((*k, c), shared.on(range, par)))
+        let sides = self.shared.iter().flat_map(|(&c, shared)| {
+            let classes = self.classes.of_clusters[c].iter().zip(&shared.ranges);
+            let made = classes.filter(|(k, _)| is_made(**k));
+            made.map(move |(&k, range)| ((k, c), shared.on(range, par)))
         });
         let sides = sides.map(|(end, side)| Ok((end, side.map_err(moves)?)));
         let mut sides: BTreeMap<(usize, usize), Side> = comm.agree(sides.collect())?;
@@ -293,14 +312,23 @@ impl Bddc {
             |i| made.remove(&ends[i]),
             |i, basis| of_ends.extend(basis.map(|basis| (ends[i], basis))),
         );
-        let of_cluster = |(&c, shared): (&usize, &Shared)| {
-            let classes = shared.classes.iter().map(|(k, range)| {
-                let coarse = || Basis::coarse(range.len(), self.classes.list[*k].clusters[0] == c);
-                of_ends.remove(&(*k, c)).unwrap_or_else(coarse)
+        let mut bases = BTreeMap::new();
+        for (&c, shared) in &self.shared {
+            let classes = &self.classes.of_clusters[c];
+            if !changed[c] && !classes.iter().any(|&k| is_made(k)) {
+                continue;
+            }
+            let of_classes = classes.iter().enumerate().map(|(at, &k)| {
+                let class = &self.classes.list[k];
+                match (of_ends.remove(&(k, c)), self.locals.get(&c)) {
+                    (Some(basis), _) => basis,
+                    (None, Some(local)) if !changed[c] => local.bases()[at].clone(),
+                    _ => Basis::coarse(shared.ranges[at].len(), class.clusters[0] == c),
+                }
             });
-            (c, classes.collect())
-        };
-        Ok(shared.iter().map(of_cluster).collect())
+            bases.insert(c, of_classes.collect());
+        }
+        Ok(bases)
     }
 
     /// Solves for `loads` on the unknowns of the clusters of this rank, by node, where the closed normal jumps of

@@ -9,6 +9,7 @@
 )]
 
 mod accuracy;
+mod iterations;
 mod stability;
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -35,6 +36,8 @@ enum Study {
     Validation(validation::Arguments),
     /// Measures run time against error on finer and finer meshes.
     Accuracy(accuracy::Arguments),
+    /// Counts the iterations of the interface solver between more and more clusters.
+    Iterations(iterations::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -42,5 +45,6 @@ fn main() -> ExitCode {
         Study::Stability(arguments) => stability::run(&arguments),
         Study::Validation(arguments) => validation::run(&arguments),
         Study::Accuracy(arguments) => accuracy::run(&arguments),
+        Study::Iterations(arguments) => iterations::run(&arguments),
     }
 }

@@ -15,7 +15,7 @@ const SMALL: usize = 4;
 const ROUND_OFF: f64 = 1e-12;
 
 /// Unknowns that the same clusters have.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Class {
     /// The clusters, ascending.
     pub clusters: Vec<usize>,
@@ -29,7 +29,7 @@ pub struct Class {
 ///
 /// Where a closed contact condition has put displacements of another cluster in the place of one of its own, a cluster
 /// has only as many combinations of them as it has conditions.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Turned {
     /// A column each.
     pub q: Mat<f64>,
@@ -71,6 +71,17 @@ pub struct Classes {
 }
 
 impl Classes {
+    /// Whether cluster c has the same unknowns in the same classes as in others.
+    pub fn are_as_in(&self, others: &Self, c: usize) -> bool {
+        let (Some(own), Some(list)) = (others.own.get(c), others.of_clusters.get(c)) else {
+            return false;
+        };
+        let mut pairs = self.of_clusters[c].iter().zip(list);
+        *own == self.own[c]
+            && list.len() == self.of_clusters[c].len()
+            && pairs.all(|(&k, &other)| self.list[k] == others.list[other])
+    }
+
     /// Those of clusters that have these `dofs`, with closed contact conditions that tie some to others.
     pub fn new(dofs: &[Vec<InterfaceDof>], ties: &Ties) -> Self {
         let mut clusters_of: BTreeMap<InterfaceDof, Vec<usize>> = BTreeMap::new();

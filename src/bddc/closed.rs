@@ -173,6 +173,12 @@ impl Ties {
         }
     }
 
+    /// Whether an unknown is tied as in others, and has open conditions where it has some there.
+    pub fn is_as_in(&self, others: &Self, dof: &InterfaceDof) -> bool {
+        self.resolved.get(dof) == others.resolved.get(dof)
+            && self.is_open(dof) == others.is_open(dof)
+    }
+
     /// Whether an open condition has an unknown.
     pub fn is_open(&self, dof: &InterfaceDof) -> bool {
         self.open.binary_search(dof).is_ok()

@@ -21,10 +21,11 @@ pub struct CoarsePart {
 }
 
 impl CoarsePart {
-    /// That of a cluster.
-    pub fn of(local: &Local) -> Self {
+    /// That of a cluster with these classes.
+    pub fn of(local: &Local, classes: &[usize]) -> Self {
+        let counts = local.bases().iter().map(|basis| basis.coarse);
         Self {
-            classes: local.coarse_of_classes().collect(),
+            classes: classes.iter().copied().zip(counts).collect(),
             s: local.coarse.clone(),
         }
     }

@@ -118,9 +118,8 @@ impl Gradients<'_> {
     /// Replaces what every cluster has by the sum over all that share it. Collective.
     fn add_up(&self, v: &mut Vectors) {
         let ranges = |c: usize, k: usize| {
-            let classes = self.locals[&c].classes();
-            let at = classes.binary_search_by_key(&k, |(k, _)| *k);
-            at.map_or(0..0, |at| classes[at].1.clone())
+            let at = self.classes.of_clusters[c].binary_search(&k);
+            at.map_or(0..0, |at| self.locals[&c].ranges()[at].clone())
         };
         let parts: Vec<(usize, usize)> = (self.classes.list.iter().enumerate())
             .flat_map(|(k, class)| class.clusters.iter().map(move |&c| (k, c)))
@@ -156,8 +155,9 @@ impl Gradients<'_> {
         self.comm.gather(
             self.owners,
             |c| {
-                let classes = self.locals[&c].classes().iter();
-                let own = classes.filter(|(k, _)| self.classes.list[*k].clusters[0] == c);
+                let classes = self.classes.of_clusters[c].iter();
+                let classes = classes.zip(self.locals[&c].ranges());
+                let own = classes.filter(|(k, _)| self.classes.list[**k].clusters[0] == c);
                 let of = own.map(|(_, range)| dot(&x[&c][range.clone()], &y[&c][range.clone()]));
                 of.sum::<f64>()
             },

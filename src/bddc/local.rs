@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
+use std::rc::Rc;
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{
@@ -85,8 +86,8 @@ pub struct Shared {
     own: Eliminated,
     /// S on what is shared, both triangles.
     pub s: Mat<f64>,
-    /// Its classes, and where they are.
-    pub classes: Vec<(usize, Range<usize>)>,
+    /// Where its classes are.
+    pub ranges: Vec<Range<usize>>,
 }
 
 impl Shared {
@@ -120,7 +121,7 @@ impl Shared {
                 own += alone.len();
             }
         }
-        let mut of_classes = Vec::new();
+        let mut ranges = Vec::new();
         let mut first = 0;
         for &k in &classes.of_clusters[c] {
             let class = &classes.list[k];
@@ -134,7 +135,7 @@ impl Shared {
                     }
                 }
             }
-            of_classes.push((k, first..first + class.size()));
+            ranges.push(first..first + class.size());
             first += class.size();
         }
         let in_place = |dof: &InterfaceDof| -> Vec<(usize, f64)> {
@@ -158,7 +159,7 @@ impl Shared {
             terms,
             own,
             s,
-            classes: of_classes,
+            ranges,
         })
     }
 
@@ -172,7 +173,7 @@ impl Shared {
         });
         // A class of few unknowns may not hold all motions of the others, and of some the cluster has not all.
         let mut places = order.iter().enumerate().take(free);
-        for (_, of_others) in self.classes.iter().filter(|(_, of)| of != range) {
+        for of_others in self.ranges.iter().filter(|of| *of != range) {
             let largest = of_others
                 .clone()
                 .fold(0.0, |m: f64, i| m.max(self.s[(i, i)]));
@@ -212,7 +213,7 @@ fn transformed(s: &Mat<f64>, terms: &[Vec<(usize, f64)>], n: usize) -> Mat<f64> 
 /// A cluster as conjugate gradients see it, in the basis of coarse and other unknowns of its classes.
 #[derive(Debug)]
 pub struct Local {
-    shared: Shared,
+    shared: Rc<Shared>,
     /// S in that basis.
     s: Mat<f64>,
     /// The basis and the scaling of every class.
@@ -229,10 +230,10 @@ impl Local {
     ///
     /// # Errors
     /// It can move although its coarse unknowns are held.
-    pub fn new(mut shared: Shared, bases: Vec<Basis>, par: Par) -> Result<Self, Moves> {
-        let mut s = std::mem::replace(&mut shared.s, Mat::new());
+    pub fn new(shared: Rc<Shared>, bases: Vec<Basis>, par: Par) -> Result<Self, Moves> {
+        let mut s = shared.s.clone();
         let (mut others, mut coarse) = (Vec::new(), Vec::new());
-        for ((_, range), basis) in shared.classes.iter().zip(&bases) {
+        for (range, basis) in shared.ranges.iter().zip(&bases) {
             if let Some(q) = basis.q() {
                 let (n, len) = (s.nrows(), range.len());
                 let columns = s.submatrix(0, range.start, n, len) * q;
@@ -260,15 +261,14 @@ impl Local {
         })
     }
 
-    /// Its classes, and where they are.
-    pub fn classes(&self) -> &[(usize, Range<usize>)] {
-        &self.shared.classes
+    /// Where its classes are.
+    pub fn ranges(&self) -> &[Range<usize>] {
+        &self.shared.ranges
     }
 
-    /// Number of coarse unknowns of every class.
-    pub fn coarse_of_classes(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let classes = self.shared.classes.iter().map(|(k, _)| *k);
-        classes.zip(self.bases.iter().map(|basis| basis.coarse))
+    /// The bases of its classes.
+    pub fn bases(&self) -> &[Basis] {
+        &self.bases
     }
 
     /// Condenses a load on the cluster's unknowns: what stays on the own ones, and the load on the shared ones.
@@ -307,8 +307,8 @@ impl Local {
     }
 
     fn turns(&self) -> impl Iterator<Item = (&Mat<f64>, Range<usize>)> {
-        let classes = self.shared.classes.iter().zip(&self.bases);
-        classes.filter_map(|((_, range), basis)| Some((basis.q()?, range.clone())))
+        let classes = self.shared.ranges.iter().zip(&self.bases);
+        classes.filter_map(|(range, basis)| Some((basis.q()?, range.clone())))
     }
 
     /// S x.
@@ -319,7 +319,7 @@ impl Local {
     /// The cluster's share of a residual: what stays on the other unknowns, and the load on the coarse ones.
     pub fn share(&self, r: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut scaled = vec![0.0; r.len()];
-        for ((_, range), basis) in self.shared.classes.iter().zip(&self.bases) {
+        for (range, basis) in self.shared.ranges.iter().zip(&self.bases) {
             scaled[range.clone()].copy_from_slice(&basis.scale_back(&r[range.clone()]));
         }
         let mut load: Vec<f64> = self.order.iter().map(|&i| scaled[i]).collect();
@@ -337,7 +337,7 @@ impl Local {
             .iter()
             .zip(others)
             .for_each(|(&i, value)| x[i] = value);
-        for ((_, range), basis) in self.shared.classes.iter().zip(&self.bases) {
+        for (range, basis) in self.shared.ranges.iter().zip(&self.bases) {
             let scaled = basis.scale(&x[range.clone()]);
             x[range.clone()].copy_from_slice(&scaled);
         }

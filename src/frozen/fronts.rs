@@ -170,7 +170,7 @@ impl FrozenFronts {
             Some(bddc) => bddc,
             None => Bddc::new(context, &self.merged)?,
         };
-        bddc.freeze(context, &self.merged, open, self.spring)?;
+        bddc.freeze(context, &self.merged, &touched, open, self.spring)?;
         self.smallest_pivot = self.smallest_pivot.min(bddc.smallest_pivot);
         self.bddc = Some(bddc);
         Ok(())

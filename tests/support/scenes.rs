@@ -5,7 +5,7 @@ use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 use contact_dd_partition::scene::Scene;
 
-use super::blocks::Blocks;
+use super::blocks::{Blocks, jittered};
 
 /// Plane state, materials and bodies of most scenes.
 pub const BODIES: &str = "
@@ -89,4 +89,35 @@ pub fn at_step(model: &Model, k: usize) -> Model {
     at_step.forces.retain(|(_, force)| *force != [0.0; 3]);
     at_step.steps.clear();
     at_step
+}
+
+/// A plate of squares of two materials, 7 along its height, held on the left and pulled on the right.
+pub fn checkerboard(young: [f64; 2], poisson: f64, length: usize, cells: usize) -> Model {
+    let mut blocks = Blocks::new();
+    for i in 0..7 * length {
+        for j in 0..7 {
+            let end = match i {
+                0 => " at the left",
+                i if i + 1 == 7 * length => " at the right",
+                _ => "",
+            };
+            let name = format!("{}{end}", ["even", "odd"][(i + j) % 2]);
+            let side = |i: usize| [i as f64 / 7.0, (i + 1) as f64 / 7.0];
+            blocks = blocks.rectangle(&name, side(i), side(j), [cells, cells]);
+        }
+    }
+    let mesh = blocks.glued(|_, _| true).mesh;
+    let mut scene = String::from("plane = 'strain'\n");
+    for (kind, young) in ["even", "odd"].into_iter().zip(young) {
+        scene += &format!("[materials.{kind}]\nyoung = {young}\npoisson = {poisson}\n");
+        for end in ["", " at the left", " at the right"] {
+            scene += &format!("[bodies.'{kind}{end}']\nmaterial = '{kind}'\n");
+        }
+    }
+    for kind in ["even", "odd"] {
+        scene += &format!("[[displacement]]\non = '{kind} at the left left'\nx = 0.0\ny = 0.0\n");
+        scene += &format!("[[traction]]\non = '{kind} at the right right'\nvalue = [1e2, -2e2]\n");
+    }
+    let step = 1.0 / (7 * cells) as f64;
+    model(&scene, jittered(mesh, 0.2 * step, 3))
 }
