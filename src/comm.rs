@@ -9,6 +9,7 @@ mod on_purpose;
 mod start;
 
 use std::cell::Cell;
+use std::collections::BTreeMap;
 
 use mpi::collective::SystemOperation;
 use mpi::topology::{Process, SimpleCommunicator};
@@ -21,6 +22,7 @@ pub use launcher::{is_first, is_launched};
 use start::current_phase;
 pub use start::{World, is_asked_to_stop, library, phase, start};
 
+use crate::bytes::Reals;
 use crate::error::Failure;
 
 /// The rank that assembles S_0 and writes the results.
@@ -245,6 +247,30 @@ impl Comm {
                 (false, false) => {}
             }
         }
+    }
+
+    /// Brings a list along each of `ways`, from one rank to another, all between two ranks in one message; returns those
+    /// that end here, by the number of their way. Collective.
+    ///
+    /// `make(i)` is called where way `i` begins.
+    pub fn route_lists(
+        &self,
+        ways: &[(usize, usize)],
+        mut make: impl FnMut(usize) -> Vec<f64>,
+    ) -> BTreeMap<usize, Vec<f64>> {
+        let mut bundles: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+        for (i, &way) in ways.iter().enumerate() {
+            bundles.entry(way).or_default().push(i);
+        }
+        let bundles: Vec<_> = bundles.into_iter().collect();
+        let mut arrived = BTreeMap::new();
+        self.route(
+            bundles.iter().map(|(way, _)| *way),
+            |b| -> Vec<Reals> { bundles[b].1.iter().map(|&i| Reals(make(i))).collect() },
+            |b, lists| arrived.extend(bundles[b].1.iter().copied().zip(lists)),
+        );
+        let lists = arrived.into_iter().map(|(i, Reals(list))| (i, list));
+        lists.collect()
     }
 
     /// Brings the value of every rank to the root, which gets them in the order of ranks; the

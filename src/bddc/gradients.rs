@@ -8,8 +8,7 @@ use std::collections::BTreeMap;
 use crate::bddc::classes::Classes;
 use crate::bddc::coarse::Coarse;
 use crate::bddc::local::Local;
-use crate::bytes::Reals;
-use crate::comm::Comm;
+use crate::comm::{Comm, ROOT};
 use crate::vector::dot;
 
 /// Most iterations.
@@ -95,22 +94,17 @@ impl Gradients<'_> {
             others.insert(c, of_others);
             coarse.insert(c, of_coarse);
         }
-        let mut loads = Vec::new();
-        self.comm.gather(
-            self.owners,
-            |c| Reals(coarse.remove(&c).unwrap_or_default()),
-            |_, Reals(load)| loads.push(load),
-        );
+        let to_root: Vec<(usize, usize)> = self.owners.iter().map(|&owner| (owner, ROOT)).collect();
+        let from_root: Vec<(usize, usize)> = to_root.iter().map(|&(a, b)| (b, a)).collect();
+        let loads = (self.comm).route_lists(&to_root, |c| coarse.remove(&c).unwrap_or_default());
+        let loads: Vec<Vec<f64>> = loads.into_values().collect();
         let mut answers = (self.coarse).map_or_else(Vec::new, |coarse| coarse.solve(&loads));
+        let answers = (self.comm).route_lists(&from_root, |c| std::mem::take(&mut answers[c]));
         let mut z = Vectors::new();
-        self.comm.scatter(
-            self.owners,
-            |c| Reals(std::mem::take(&mut answers[c])),
-            |c, Reals(x)| {
-                let others = others.remove(&c).unwrap_or_default();
-                z.insert(c, self.locals[&c].correct(others, &x));
-            },
-        );
+        for (c, x) in answers {
+            let others = others.remove(&c).unwrap_or_default();
+            z.insert(c, self.locals[&c].correct(others, &x));
+        }
         self.add_up(&mut z);
         z
     }
@@ -125,44 +119,43 @@ impl Gradients<'_> {
             .flat_map(|(k, class)| class.clusters.iter().map(move |&c| (k, c)))
             .collect();
         let home = |k: usize| self.owners[self.classes.list[k].clusters[0]];
+        let there: Vec<(usize, usize)> = (parts.iter())
+            .map(|&(k, c)| (self.owners[c], home(k)))
+            .collect();
+        let back: Vec<(usize, usize)> = there.iter().map(|&(a, b)| (b, a)).collect();
+        let own = |i: usize| {
+            let (k, c) = parts[i];
+            v[&c][ranges(c, k)].to_vec()
+        };
         let mut sums: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-        self.comm.route(
-            parts.iter().map(|&(k, c)| (self.owners[c], home(k))),
-            |i| Reals(v[&parts[i].1][ranges(parts[i].1, parts[i].0)].to_vec()),
-            |i, Reals(part)| match sums.get_mut(&parts[i].0) {
+        for (i, part) in self.comm.route_lists(&there, own) {
+            match sums.get_mut(&parts[i].0) {
                 Some(sum) => sum
                     .iter_mut()
                     .zip(part)
                     .for_each(|(sum, part)| *sum += part),
                 None => drop(sums.insert(parts[i].0, part)),
-            },
-        );
-        self.comm.route(
-            parts.iter().map(|&(k, c)| (home(k), self.owners[c])),
-            |i| Reals(sums[&parts[i].0].clone()),
-            |i, Reals(sum)| {
-                let (k, c) = parts[i];
-                if let Some(of_cluster) = v.get_mut(&c) {
-                    of_cluster[ranges(c, k)].copy_from_slice(&sum);
-                }
-            },
-        );
+            }
+        }
+        for (i, sum) in (self.comm).route_lists(&back, |i| sums[&parts[i].0].clone()) {
+            let (k, c) = parts[i];
+            if let Some(of_cluster) = v.get_mut(&c) {
+                of_cluster[ranges(c, k)].copy_from_slice(&sum);
+            }
+        }
     }
 
     /// x·y, every unknown once, on all ranks. Collective.
     fn dot(&self, x: &Vectors, y: &Vectors) -> f64 {
-        let mut sum = 0.0;
-        self.comm.gather(
-            self.owners,
-            |c| {
-                let classes = self.classes.of_clusters[c].iter();
-                let classes = classes.zip(self.locals[&c].ranges());
-                let own = classes.filter(|(k, _)| self.classes.list[**k].clusters[0] == c);
-                let of = own.map(|(_, range)| dot(&x[&c][range.clone()], &y[&c][range.clone()]));
-                of.sum::<f64>()
-            },
-            |_, part| sum += part,
-        );
+        let to_root: Vec<(usize, usize)> = self.owners.iter().map(|&owner| (owner, ROOT)).collect();
+        let parts = self.comm.route_lists(&to_root, |c| {
+            let classes = self.classes.of_clusters[c].iter();
+            let classes = classes.zip(self.locals[&c].ranges());
+            let own = classes.filter(|(k, _)| self.classes.list[**k].clusters[0] == c);
+            let of = own.map(|(_, range)| dot(&x[&c][range.clone()], &y[&c][range.clone()]));
+            vec![of.sum::<f64>()]
+        });
+        let mut sum: f64 = parts.into_values().flatten().sum();
         self.comm.broadcast(&mut sum);
         sum
     }
