@@ -1,12 +1,15 @@
 //! Forces and moments that contacts and supports carry.
 
-use contact_dd_partition::contact_point::ContactPoint;
-use contact_dd_partition::element::geometry::{advance, cross};
+use contact_dd_partition::contact_point::{ContactPoint, Law};
+use contact_dd_partition::element::geometry::{advance, cross, length};
 use contact_dd_partition::problem::Catalog;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::result::ContactState;
+
+/// Part of its cohesion that a point which slips can lack by round-off.
+const ROUND_OFF: f64 = 1e-6;
 
 /// A force and its moment about the origin (N and N m, per metre of thickness in the plane).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -46,6 +49,9 @@ pub struct ContactResultant {
     pub largest_pressure: f64,
     /// What its friction does; `null` where it has none.
     pub friction: Option<Friction>,
+    /// Number of conditions about to open, which slip under a part of their cohesion.
+    #[serde(skip)]
+    pub parting: usize,
 }
 
 /// What friction does in a load step.
@@ -78,11 +84,26 @@ impl ContactResultant {
                 slipping: usize::from(state.status() == 2),
                 dissipated_work: state.dissipated,
             });
+            self.parting += usize::from(is_parting(point, state));
         }
         let force = advance(state.tangential_force, -state.force, point.normal());
         self.resultant.add(point.force_point, force);
         self.largest_pressure = self.largest_pressure.max(state.force / point.area);
     }
+}
+
+/// Whether a point slips below the bound of its law, as one without pressure may under a part of its cohesion.
+fn is_parting(point: &ContactPoint<u32>, state: &ContactState) -> bool {
+    let Law::Coulomb {
+        coefficient,
+        cohesion,
+    } = point.law
+    else {
+        return false;
+    };
+    let bound = coefficient * state.force + cohesion * point.area;
+    state.status() == 2
+        && length(state.tangential_force) < bound - ROUND_OFF * cohesion * point.area
 }
 
 /// What a condition that prescribes displacements exerts on the bodies.
@@ -126,6 +147,19 @@ impl Resultants {
             sum.add(friction);
             sum
         })
+    }
+
+    /// Contacts whose law leaves open what some of their points carry, in words.
+    pub fn warnings(&self) -> Vec<String> {
+        let parting = self.contacts.iter().filter(|contact| contact.parting > 0);
+        let words = parting.map(|contact| {
+            format!(
+                "contact '{}': {} of its points are about to open, without pressure, and slip under a part of their \
+                 cohesion",
+                contact.name, contact.parting
+            )
+        });
+        words.collect()
     }
 }
 
@@ -188,9 +222,41 @@ mod tests {
             dissipated_work: 0.25,
         };
         assert_eq!(contact.friction, Some(sum));
+        assert_eq!(contact.parting, 0);
         let mut all = Resultants::default();
         assert_eq!(all.friction(), None);
         all.contacts = vec![contact.clone(), ContactResultant::default(), contact];
         assert_eq!(all.friction().map(|sum| sum.slipping), Some(2));
+        assert_eq!(all.warnings().len(), 0);
+    }
+
+    #[test]
+    fn what_slips_below_its_bound_is_warned_of() {
+        let point = ContactPoint {
+            area: 0.5,
+            law: Law::coulomb(0.6, 8.0),
+            ..ContactPoint::new(Vec::new(), [0.0, -1.0, 0.0], [0.0; 3], 1)
+        };
+        let slips = |force: f64| ContactState {
+            closed: true,
+            slipping: true,
+            tangential_force: [0.0, force, 0.0],
+            ..ContactState::default()
+        };
+        let mut contact = ContactResultant {
+            name: "joint".into(),
+            friction: Some(Friction::default()),
+            ..ContactResultant::default()
+        };
+        for force in [4.0, 3.0, 0.0] {
+            contact.add(&point, &slips(force));
+        }
+        assert_eq!(contact.parting, 2);
+        let contacts = vec![contact];
+        let all = Resultants {
+            contacts,
+            ..Resultants::default()
+        };
+        assert!(all.warnings()[0].starts_with("contact 'joint': 2 of its points are"));
     }
 }

@@ -62,6 +62,7 @@ impl StepTotals {
             &analysis.motions.warnings[..],
             &solution.minimum_norm.warnings,
             &outcome.notes,
+            &resultants.warnings(),
         ];
         Self {
             active: outcome.totals.active - solution.minimum_norm.opened,
