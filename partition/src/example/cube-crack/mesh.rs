@@ -37,7 +37,11 @@ fn cube(column: usize, part: usize, upper: bool) -> Cube {
             false => r * line,
             true => line * (1.0 - r) + HEIGHT * r,
         };
-        [left * (1.0 - s) + right * s, near * (1.0 - t) + far * t, height]
+        [
+            left * (1.0 - s) + right * s,
+            near * (1.0 - t) + far * t,
+            height,
+        ]
     };
     let crack = match (column, part, upper) {
         (0, 0, false) => Some("left crack lower"),
@@ -57,5 +61,10 @@ fn cube(column: usize, part: usize, upper: bool) -> Cube {
         true => [crack, Some("top")],
     };
     let (columns, depths, rows) = CELLS;
-    Cube::new("block", [columns[column], depths[part], rows], map, [across, along, up])
+    Cube::new(
+        "block",
+        [columns[column], depths[part], rows],
+        map,
+        [across, along, up],
+    )
 }

@@ -9,7 +9,8 @@ use super::cubes::Cube;
 use crate::element::ElementKind;
 use crate::element::geometry::length;
 
-pub(super) const ABOUT: &str = "point contact of a ball with a plate, graded hexahedra, theory of Hertz";
+pub(super) const ABOUT: &str =
+    "point contact of a ball with a plate, graded hexahedra, theory of Hertz";
 pub(super) const SUBDOMAINS: usize = 8;
 pub(super) const SHAPE: Shape = Shape::Cubes {
     cubes,
@@ -49,10 +50,30 @@ fn cubes() -> Vec<Cube> {
     let along_y = |[s, u, r]: [f64; 3]| between([graded(s), 1.0, u], r);
     let sides = |a, b, c| [[a, None], [b, None], c];
     let cubes = [
-        Cube::new("ball", [fine, fine, coarse], core, sides(x, y, [middle, None])),
-        Cube::new("ball", [fine, fine, out], pole, sides(x, y, [None, Some("pole")])),
-        Cube::new("ball", [fine, coarse, out], along_x, sides(y, middle, [None; 2])),
-        Cube::new("ball", [fine, coarse, out], along_y, sides(x, middle, [None; 2])),
+        Cube::new(
+            "ball",
+            [fine, fine, coarse],
+            core,
+            sides(x, y, [middle, None]),
+        ),
+        Cube::new(
+            "ball",
+            [fine, fine, out],
+            pole,
+            sides(x, y, [None, Some("pole")]),
+        ),
+        Cube::new(
+            "ball",
+            [fine, coarse, out],
+            along_x,
+            sides(y, middle, [None; 2]),
+        ),
+        Cube::new(
+            "ball",
+            [fine, coarse, out],
+            along_y,
+            sides(x, middle, [None; 2]),
+        ),
     ];
     cubes.into_iter().map(Cube::curved).collect()
 }

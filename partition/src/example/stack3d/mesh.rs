@@ -4,7 +4,8 @@ use super::Shape;
 use super::cubes::Cube;
 use crate::element::ElementKind;
 
-pub(super) const ABOUT: &str = "three square blocks in space held by contact alone, six free motions";
+pub(super) const ABOUT: &str =
+    "three square blocks in space held by contact alone, six free motions";
 pub(super) const SUBDOMAINS: usize = 6;
 pub(super) const SHAPE: Shape = Shape::Cubes {
     cubes,
@@ -26,7 +27,11 @@ fn cubes() -> Vec<Cube> {
     let block = |(level, (body, up)): (usize, (&str, [&'static str; 2]))| {
         let half = HALF_WIDTHS[level];
         let map = move |[s, t, r]: [f64; 3]| {
-            [(2.0 * s - 1.0) * half, (2.0 * t - 1.0) * half, level as f64 + r]
+            [
+                (2.0 * s - 1.0) * half,
+                (2.0 * t - 1.0) * half,
+                level as f64 + r,
+            ]
         };
         let cells = [2.0 * half, 2.0 * half, 1.0].map(|size| (size * CELLS) as usize);
         Cube::new(body, cells, map, [[None; 2], [None; 2], up.map(Some)])
