@@ -1,9 +1,9 @@
 //! An interface solver that scales: conjugate gradients between clusters, preconditioned by balancing domain
 //! decomposition by constraints (BDDC).
 //!
-//! The clusters are those of the problem file. What they share is sorted into [`classes`]; of each class some
-//! combinations of unknowns, the [coarse](constraints) ones, are the same in all clusters, the others are solved for in
-//! every [cluster](local) by itself. Contact conditions between clusters are [tied](closed) where they are closed.
+//! The clusters are those of the problem file. What they share is sorted into classes; of each class some
+//! combinations of unknowns, the coarse ones, are the same in all clusters, the others are solved for in
+//! every cluster by itself. Contact conditions between clusters are tied where they are closed.
 
 mod classes;
 mod closed;

@@ -4,7 +4,7 @@
 //! The bound b is given, or grows with the normal force, b = c + μ λ: then the matrix of the slipping ones isn't
 //! symmetric, and no energy has the solution for its minimum. A status for every limit makes the problem linear; all
 //! wrong statuses are exchanged at once until none is wrong, as semismooth Newton does, and where these don't become
-//! fewer, from those at the end of a path that leads to a solution ([`lemke`]).
+//! fewer, from those at the end of a path that leads to a solution (Lemke's method).
 
 mod lemke;
 mod linear;
