@@ -12,6 +12,7 @@ pub mod estimate;
 pub mod frame;
 pub mod load;
 pub mod patch;
+pub mod polynomial;
 pub mod prescribed;
 pub mod recovery;
 mod sites;

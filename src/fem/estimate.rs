@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::elasticity::{Voigt, strain, voigt_stress};
-use super::patch::NodalStress;
+use super::polynomial::NodalStress;
 
 /// Squares of energy norms over a cell (N m, in the plane per metre of thickness).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

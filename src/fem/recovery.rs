@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 use contact_dd_partition::element::geometry::difference;
 
 use super::block::{Block, BlockCell};
-use super::patch::{NodalStress, PatchSum, Polynomial, Polynomials};
+use super::patch::PatchSum;
+use super::polynomial::{NodalStress, Polynomial, Polynomials};
 
 /// A block's part of the patches around the vertices in one material, and what comes of them.
 #[derive(Clone, Debug)]

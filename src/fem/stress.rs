@@ -10,7 +10,8 @@ use contact_dd_partition::model::{Material, PlaneState};
 use super::block::{Block, BlockCell};
 use super::elasticity::{MAX_DOFS, MAX_NODES, strain, stress};
 use super::estimate::{CellError, Compliance};
-use super::patch::{NodalStress, PatchSum};
+use super::patch::PatchSum;
+use super::polynomial::NodalStress;
 use super::recovery::Recovery;
 
 /// The stresses of a block.
