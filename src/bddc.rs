@@ -11,26 +11,21 @@ mod coarse;
 mod constraints;
 mod gradients;
 mod local;
+pub mod solution;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
-
-use faer::Mat;
 
 use self::classes::Classes;
 use self::closed::{GroupBetween, Ties};
 use self::coarse::{Coarse, CoarsePart};
 use self::constraints::{Basis, Side};
-use self::gradients::{Gradients, Vectors};
 use self::local::{Local, Moves, Shared};
-use crate::bytes::Reals;
 use crate::comm::Comm;
 use crate::contact::normal_jump::NoUnknown;
 use crate::context::Context;
 use crate::error::Failure;
-use crate::plan::Plan;
 use crate::schur::condensed::{Condensed, InterfaceDof};
-use crate::vector::dot;
 
 /// Clusters and what is between them.
 #[derive(Debug)]
@@ -64,34 +59,6 @@ struct Between {
     dofs: Vec<InterfaceDof>,
     /// The clusters that have some of them, or what may be tied to some, ascending.
     clusters: Vec<usize>,
-}
-
-/// How far a solution is iterated.
-#[derive(Clone, Copy, Debug)]
-pub struct Accuracy<'a> {
-    /// What the error in the energy norm is to be below, relative to that of the solution, about.
-    pub tolerance: f64,
-    /// The unknowns of every cluster, by its node, in a solution that isn't far.
-    pub start: Option<&'a BTreeMap<usize, Vec<f64>>>,
-}
-
-impl Accuracy<'_> {
-    /// As far as round-off lets it be, about, from nothing.
-    pub const FULL: Self = Self {
-        tolerance: 1e-12,
-        start: None,
-    };
-}
-
-/// What a load does, on this rank.
-#[derive(Debug, Default)]
-pub struct BddcSolution {
-    /// The unknowns of every cluster, by its node.
-    pub clusters: BTreeMap<usize, Vec<f64>>,
-    /// The normal jumps of every contact group between clusters (m), and the forces on them, 0 where open (N/m).
-    pub groups: BTreeMap<usize, (Vec<f64>, Vec<f64>)>,
-    /// Iterations that it took.
-    pub iterations: usize,
 }
 
 impl Bddc {
@@ -330,180 +297,6 @@ impl Bddc {
         }
         Ok(bases)
     }
-
-    /// Solves for `loads` on the unknowns of the clusters of this rank, by node, where the closed normal jumps of
-    /// every contact group between them have these `values`. Collective.
-    pub fn solve(
-        &self,
-        context: &Context<'_>,
-        condensed: &BTreeMap<usize, Condensed>,
-        loads: &BTreeMap<usize, Vec<f64>>,
-        values: &BTreeMap<usize, Vec<f64>>,
-        accuracy: Accuracy,
-    ) -> BddcSolution {
-        let Context { comm, plan, .. } = *context;
-        let constants = self.constants(comm, values);
-        let constants_of = |c: usize| -> Vec<f64> {
-            let dofs = self.dofs[c].iter();
-            dofs.map(|dof| constants.get(dof).copied().unwrap_or(0.0))
-                .collect()
-        };
-        let (mut own, mut b) = (Vectors::new(), Vectors::new());
-        for (&c, local) in &self.locals {
-            let mut load = loads[&plan.tops[c]].clone();
-            let held = product_of_lower(&condensed[&plan.tops[c]].s, &constants_of(c));
-            load.iter_mut()
-                .zip(held)
-                .for_each(|(load, held)| *load -= held);
-            let (of_own, of_shared) = local.condense(&load);
-            own.insert(c, of_own);
-            b.insert(c, of_shared);
-        }
-        let gradients = Gradients {
-            comm,
-            owners: &self.owners,
-            classes: &self.classes,
-            locals: &self.locals,
-            coarse: self.coarse.as_ref(),
-        };
-        let start = accuracy.start.map(|known| self.start(comm, known, plan));
-        let (x, iterations) = gradients.solve(b, start, accuracy.tolerance);
-        let mut clusters = Vectors::new();
-        for (&c, local) in &self.locals {
-            let mut all = local.recover(&own[&c], &x[&c]);
-            all.iter_mut()
-                .zip(constants_of(c))
-                .for_each(|(x, constant)| *x += constant);
-            clusters.insert(c, all);
-        }
-        let unbalanced = clusters.iter().map(|(&c, x)| {
-            let mut r = loads[&plan.tops[c]].clone();
-            let s_x = product_of_lower(&condensed[&plan.tops[c]].s, x);
-            r.iter_mut().zip(s_x).for_each(|(r, s_x)| *r -= s_x);
-            (c, r)
-        });
-        let groups = self.answers(comm, &clusters, &unbalanced.collect());
-        let by_node = clusters.into_iter().map(|(c, x)| (plan.tops[c], x));
-        BddcSolution {
-            clusters: by_node.collect(),
-            groups,
-            iterations,
-        }
-    }
-
-    /// What clusters share where their unknowns, by node, are `known`. Collective.
-    fn start(&self, comm: &Comm, known: &BTreeMap<usize, Vec<f64>>, plan: &Plan) -> Vectors {
-        let classes = &self.classes.list;
-        let ends: Vec<(usize, usize)> = (classes.iter().enumerate())
-            .flat_map(|(k, class)| class.clusters.iter().map(move |&c| (k, c)))
-            .collect();
-        let home = |k: usize| self.owners[classes[k].clusters[0]];
-        let mut values: BTreeMap<usize, Vec<Option<f64>>> = BTreeMap::new();
-        comm.route(
-            ends.iter().map(|&(k, c)| (self.owners[c], home(k))),
-            |i| {
-                let (k, c) = ends[i];
-                let of_cluster = &known[&plan.tops[c]];
-                let dofs = classes[k].dofs.iter();
-                let at = dofs.map(|dof| self.dofs[c].binary_search(dof).ok());
-                at.map(|at| at.map(|at| of_cluster[at])).collect::<Vec<_>>()
-            },
-            |i, said| {
-                let of_class = values.entry(ends[i].0).or_insert_with(|| said.clone());
-                of_class
-                    .iter_mut()
-                    .zip(said)
-                    .for_each(|(value, said)| *value = value.or(said));
-            },
-        );
-        let turned = values.into_iter().map(|(k, values)| {
-            let values = values.into_iter().map(Option::unwrap_or_default);
-            (k, classes[k].turn(values.collect()))
-        });
-        let values: BTreeMap<usize, Vec<f64>> = turned.collect();
-        let mut start: Vectors = self.locals.keys().map(|&c| (c, Vec::new())).collect();
-        comm.route(
-            ends.iter().map(|&(k, c)| (home(k), self.owners[c])),
-            |i| Reals(values[&ends[i].0].clone()),
-            // Class after class, as the cluster has them.
-            |i, Reals(values)| start.entry(ends[i].1).or_default().extend(values),
-        );
-        for (c, shared) in &mut start {
-            self.locals[c].turn(shared);
-        }
-        start
-    }
-
-    /// What tied displacements are beside the terms of others, on all ranks. Collective.
-    fn constants(
-        &self,
-        comm: &Comm,
-        values: &BTreeMap<usize, Vec<f64>>,
-    ) -> BTreeMap<InterfaceDof, f64> {
-        let mut constants = Vec::new();
-        comm.gather(
-            &self.group_owners(),
-            |i| {
-                let number = self.between[i].number;
-                self.groups[&number].constants(&values[&number])
-            },
-            |_, of_group| constants.extend(of_group),
-        );
-        comm.broadcast(&mut constants);
-        let mut constants = constants.into_iter().collect();
-        self.ties.resolve(&mut constants);
-        constants
-    }
-
-    /// Jumps and forces of the contact groups of this rank, for the unknowns of clusters and what is `unbalanced` there.
-    /// Collective.
-    fn answers(
-        &self,
-        comm: &Comm,
-        clusters: &Vectors,
-        unbalanced: &Vectors,
-    ) -> BTreeMap<usize, (Vec<f64>, Vec<f64>)> {
-        let ways: Vec<(usize, usize)> = (self.between.iter().enumerate())
-            .flat_map(|(i, group)| group.clusters.iter().map(move |&c| (i, c)))
-            .collect();
-        let forces = self.locals.keys().map(|&c| {
-            let at = self.dofs[c]
-                .iter()
-                .copied()
-                .zip(unbalanced[&c].iter().copied());
-            let mut forces = at.collect();
-            self.ties.carry(&mut forces);
-            (c, forces)
-        });
-        let forces: BTreeMap<usize, BTreeMap<InterfaceDof, f64>> = forces.collect();
-        let mut of_groups: BTreeMap<usize, [BTreeMap<InterfaceDof, f64>; 2]> = BTreeMap::new();
-        comm.route(
-            ways.iter()
-                .map(|&(i, c)| (self.owners[c], self.between[i].owner)),
-            |way| {
-                let (i, c) = ways[way];
-                let said = self.between[i].dofs.iter().map(|dof| {
-                    let at = self.dofs[c].binary_search(dof).ok();
-                    (at.map(|at| clusters[&c][at]), forces[&c].get(dof).copied())
-                });
-                said.collect::<Vec<_>>()
-            },
-            |way, said| {
-                let group = &self.between[ways[way].0];
-                let [x, r] = of_groups.entry(group.number).or_default();
-                for (dof, (of_x, of_r)) in group.dofs.iter().zip(said) {
-                    if let Some(of_x) = of_x {
-                        x.entry(*dof).or_insert(of_x);
-                    }
-                    *r.entry(*dof).or_insert(0.0) += of_r.unwrap_or(0.0);
-                }
-            },
-        );
-        let answers = of_groups.iter();
-        answers
-            .map(|(g, [x, r])| (*g, self.groups[g].answer(x, r)))
-            .collect()
-    }
 }
 
 fn moves(Moves: Moves) -> Failure {
@@ -511,17 +304,4 @@ fn moves(Moves: Moves) -> Failure {
         "a part of the scene can move although every contact that presses is held; expected supports or contact that \
          hold it",
     )
-}
-
-/// S x, where the lower triangle of S counts.
-fn product_of_lower(s: &Mat<f64>, x: &[f64]) -> Vec<f64> {
-    let mut y = vec![0.0; x.len()];
-    for j in 0..x.len() {
-        let column = &s.col_as_slice(j)[j..];
-        y[j] += dot(column, &x[j..]);
-        for (y, s) in y[j + 1..].iter_mut().zip(&column[1..]) {
-            *y += s * x[j];
-        }
-    }
-    y
 }

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use crate::bddc::Accuracy;
+use crate::bddc::solution::Accuracy;
 use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::error::Failure;

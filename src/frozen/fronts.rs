@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
-use crate::bddc::{Accuracy, Bddc};
+use crate::bddc::Bddc;
+use crate::bddc::solution::Accuracy;
 use crate::bytes::Reals;
 use crate::condense::Condensation;
 use crate::context::Context;

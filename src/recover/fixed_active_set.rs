@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::bddc::Accuracy;
+use crate::bddc::solution::Accuracy;
 use crate::bytes::Reals;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::substitute::Factors;
