@@ -22,7 +22,7 @@ use self::coarse::{Coarse, CoarsePart};
 use self::constraints::{Basis, Side};
 use self::local::{Local, Moves, Shared};
 use crate::comm::Comm;
-use crate::contact::normal_jump::NoUnknown;
+use crate::contact::jumps::NoUnknown;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::schur::condensed::{Condensed, InterfaceDof};

@@ -13,7 +13,7 @@ use std::time::Instant;
 use contact_dd_partition::problem::Catalog;
 
 use crate::condense::blocks::{CondensedBlock, CondensedBlocks};
-use crate::contact::normal_jump::{NoUnknown, NormalJumps};
+use crate::contact::jumps::{Jumps, NoUnknown};
 use crate::context::Context;
 use crate::context::Loads;
 use crate::error::Failure;
@@ -81,7 +81,7 @@ impl Condensation<'_> {
         Ok(of_block)
     }
 
-    /// What the normal jumps of the contact group at node v replace; nothing where there is none.
+    /// What the jumps of the contact group at node v replace; nothing where there is none.
     ///
     /// # Errors
     /// A contact point that nothing can be replaced for.
@@ -90,21 +90,17 @@ impl Condensation<'_> {
         let Some((g, group)) = plan.group_of(v).and_then(|g| Some((g, groups.get(&g)?))) else {
             return Ok(Vec::new());
         };
-        Ok(group.replaced(&normal_jumps(&self.context, g, group)?))
+        Ok(group.replaced(&jumps(&self.context, g, group)?))
     }
 }
 
-/// The normal jumps of contact group g of this rank.
+/// The jumps of contact group g of this rank.
 ///
 /// # Errors
 /// A contact point that nothing can be replaced for.
-pub fn normal_jumps(
-    context: &Context<'_>,
-    g: usize,
-    group: &ContactGroup,
-) -> Result<NormalJumps, Failure> {
+pub fn jumps(context: &Context<'_>, g: usize, group: &ContactGroup) -> Result<Jumps, Failure> {
     let node = &context.plan.tree.nodes[context.plan.groups[g].node];
-    group.normal_jumps(&node.eliminated).map_err(|NoUnknown(j)| {
+    group.jumps(&node.eliminated).map_err(|NoUnknown(j)| {
         let number = group.conditions().nth(j).map_or(0, |condition| condition.point);
         let point = &group.points[number];
         let contact = &context.catalog.contacts[point.contact as usize].name;

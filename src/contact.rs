@@ -8,7 +8,7 @@ pub mod dependent;
 pub mod dual;
 pub mod friction;
 pub mod interior_point;
+pub mod jumps;
 pub mod limits;
-pub mod normal_jump;
 pub mod open_factor;
 pub mod pair;

@@ -19,7 +19,7 @@
 //!
 //! > S_i = K_ΓΓ − K_ΓI K_II⁻¹ K_IΓ,   i ∈ T;   (11)
 //!
-//! a pair has [normal jumps](contact::normal_jump) t = b·u in the place of displacements ([`schur::substitution`])
+//! a pair has [normal jumps](contact::jumps) t = b·u in the place of displacements ([`schur::substitution`])
 //! besides, and one common, nonlinear one ([`contact::pair`]),
 //!
 //! > S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ,   t(U) = arg min ½ tᵀ H t − (c − S_tΓ U)ᵀ t   over   t ≤ g.   (12)

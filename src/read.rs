@@ -11,7 +11,7 @@ use contact_dd_partition::problem::copies::NodeCopies;
 use contact_dd_partition::problem::read::ProblemFile;
 
 use crate::comm::Comm;
-use crate::contact::normal_jump::NormalJumpOf;
+use crate::contact::jumps::JumpOf;
 use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::contact_group::{ContactGroup, ContactNode};
@@ -100,8 +100,8 @@ pub fn depend_on_each_other(
 ) -> bool {
     let depends = groups.iter().any(|(&g, group)| {
         let node = &plan.tree.nodes[plan.groups[g].node];
-        let jumps = group.normal_jumps(&node.eliminated);
-        let is_other = |of: &NormalJumpOf| matches!(of, NormalJumpOf::Combination(_));
+        let jumps = group.jumps(&node.eliminated);
+        let is_other = |of: &JumpOf| matches!(of, JumpOf::Combination(_));
         jumps.is_err() || jumps.is_ok_and(|jumps| jumps.of.iter().any(is_other))
     });
     comm.decide(comm.collect(&depends).contains(&true))

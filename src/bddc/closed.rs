@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::condense::normal_jumps;
-use crate::contact::normal_jump::NoUnknown;
+use crate::condense::jumps;
+use crate::contact::jumps::NoUnknown;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::contact_group::{ContactGroup, JumpRows};
@@ -30,7 +30,7 @@ impl GroupBetween {
     /// # Errors
     /// A contact point that nothing can be replaced for.
     pub fn new(context: &Context<'_>, g: usize, group: &ContactGroup) -> Result<Self, Failure> {
-        let rows = group.rows_of(&normal_jumps(context, g, group)?);
+        let rows = group.rows_of(&jumps(context, g, group)?);
         Ok(Self {
             terms: group.terms_of(&rows),
             rows,

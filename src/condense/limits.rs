@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::condense::normal_jumps;
+use crate::condense::jumps;
+use crate::contact::jumps::JumpOf;
 use crate::contact::limits::Limits;
-use crate::contact::normal_jump::NormalJumpOf;
 use crate::context::{Context, Loads};
 use crate::error::Failure;
 use crate::fem::contact_group::{ContactGroup, GroupLoads};
@@ -63,10 +63,10 @@ fn of_group(
     loads: &GroupLoads,
 ) -> Result<Limits, Failure> {
     let scale = loads.largest_prescribed();
-    let jumps = normal_jumps(context, g, group)?;
+    let jumps = jumps(context, g, group)?;
     let bounds = group.bounds(loads);
     for ((point, &bound), of) in group.points.iter().zip(&bounds).zip(&jumps.of) {
-        if *of == NormalJumpOf::Prescribed && bound < -1e-12 * scale {
+        if *of == JumpOf::Prescribed && bound < -1e-12 * scale {
             let contact = &context.catalog.contacts[point.contact as usize].name;
             return Err(Failure::input(format!(
                 "contact '{contact}': nodes {} and {} are prescribed to penetrate by {:.3e}; \

@@ -40,7 +40,7 @@ const MOST_DUAL_STEPS: usize = 1000;
 
 /// The contact problem.
 #[derive(Clone, Copy, Debug)]
-pub struct GapProblem<'a> {
+pub struct ContactProblem<'a> {
     /// H, symmetric positive semidefinite.
     pub h: MatRef<'a, f64>,
     /// The diagonal of the matrix that H is condensed from: what H's round-off is relative to.
@@ -62,7 +62,7 @@ pub struct GapProblem<'a> {
 
 /// Its solution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct GapSolution {
+pub struct ContactSolution {
     /// t ≤ g; exactly g where closed.
     pub jumps: Vec<f64>,
     /// λ ≥ 0, then μ ≥ 0; exactly 0 where open.
@@ -75,7 +75,7 @@ pub struct GapSolution {
     pub converged: bool,
 }
 
-impl GapSolution {
+impl ContactSolution {
     /// Every one of `jumps` closed, before anything is known of the forces of `conditions`.
     pub fn bilateral(jumps: usize, conditions: usize) -> Self {
         Self {
@@ -101,17 +101,17 @@ pub struct Trial {
     unbalanced: f64,
 }
 
-impl GapProblem<'_> {
+impl ContactProblem<'_> {
     /// Solves the problem from the conditions that are `open` at first, and leaves there which
     /// ones are open in the solution.
-    pub fn solve(&self, open: &mut [bool]) -> GapSolution {
+    pub fn solve(&self, open: &mut [bool]) -> ContactSolution {
         let mut set = open.to_vec();
         let mut solution = self.flip(&mut set);
         if !solution.converged {
             let before = solution.steps;
             let (mut named, center, named_in) = self.interior_point();
             // Where nothing resists, bodies are within their gaps there, and not just anywhere.
-            let centered = GapProblem {
+            let centered = ContactProblem {
                 center: &center,
                 ..*self
             };
@@ -153,7 +153,7 @@ impl GapProblem<'_> {
     }
 
     /// Flips all wrong signs until there is none or their number no longer falls.
-    fn flip(&self, open: &mut [bool]) -> GapSolution {
+    fn flip(&self, open: &mut [bool]) -> ContactSolution {
         let mut fewest = usize::MAX;
         let mut patience = PATIENCE;
         let mut steps = 0;
@@ -182,9 +182,9 @@ impl GapProblem<'_> {
     }
 
     /// The solution that `trial` is if all signs are `right`.
-    pub(super) fn solution(&self, trial: &Trial, steps: usize, right: bool) -> GapSolution {
+    pub(super) fn solution(&self, trial: &Trial, steps: usize, right: bool) -> ContactSolution {
         let jumps = trial.jumps.iter().zip(self.bounds);
-        GapSolution {
+        ContactSolution {
             jumps: jumps.map(|(t, g)| t.min(*g)).collect(),
             forces: trial.forces.iter().map(|f| f.max(0.0)).collect(),
             steps,

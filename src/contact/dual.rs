@@ -5,12 +5,12 @@
 //! the way opens. The energy rises with every condition that closes, so that no set comes back.
 
 use super::active_equalities::ActiveEqualities;
-use super::active_set::{FORCE_TOLERANCE, GapProblem, GapSolution, Trial};
+use super::active_set::{ContactProblem, ContactSolution, FORCE_TOLERANCE, Trial};
 
 /// Share of a condition's normal in another's below which there is none.
 const NO_SHARE: f64 = 1e-10;
 
-impl GapProblem<'_> {
+impl ContactProblem<'_> {
     /// Opens the linearly dependent constraints that say nothing beyond closed ones: their gaps are what these
     /// make them.
     pub(super) fn open_redundant(&self, open: &mut [bool], trial: &Trial) {
@@ -90,7 +90,7 @@ impl GapProblem<'_> {
 
     /// Closes violated conditions one by one until there is none, starting from those of the closed
     /// ones that press; gives up once `limit` systems are solved.
-    pub(super) fn dual(&self, open: &mut [bool], limit: usize) -> GapSolution {
+    pub(super) fn dual(&self, open: &mut [bool], limit: usize) -> ContactSolution {
         let mut steps = 0;
         let mut trial = loop {
             steps += 1;

@@ -13,7 +13,7 @@ mod other;
 use serde::{Deserialize, Serialize};
 
 use self::linear::Linear;
-use super::active_set::{FORCE_TOLERANCE, GAP_TOLERANCE, GapProblem, GapSolution};
+use super::active_set::{ContactProblem, ContactSolution, FORCE_TOLERANCE, GAP_TOLERANCE};
 use super::limits::TangentialLimit;
 
 /// Exchanges of all wrong statuses in a row without fewer of them before these are given up.
@@ -109,17 +109,17 @@ impl Status {
 #[derive(Clone, Copy, Debug)]
 pub struct FrictionProblem<'a> {
     /// All limits; those of tangential jumps are where these stick.
-    pub gap: GapProblem<'a>,
+    pub contact: ContactProblem<'a>,
     /// Which are those.
     pub tangents: &'a [TangentialLimit],
 }
 
 impl FrictionProblem<'_> {
     /// Solves the problem from the statuses that its limits have at first, and leaves there those of the solution.
-    pub fn solve(&self, status: &mut [Status]) -> GapSolution {
+    pub fn solve(&self, status: &mut [Status]) -> ContactSolution {
         if self.tangents.is_empty() {
             let mut open: Vec<bool> = status.iter().map(|status| !status.is_closed()).collect();
-            let solution = self.gap.solve(&mut open);
+            let solution = self.contact.solve(&mut open);
             for (status, open) in status.iter_mut().zip(open) {
                 *status = Status::new(open);
             }
@@ -142,7 +142,7 @@ impl FrictionProblem<'_> {
     }
 
     /// Exchanges all wrong statuses at once until none is wrong, or they don't become fewer.
-    fn exchange(&self, status: &mut [Status]) -> GapSolution {
+    fn exchange(&self, status: &mut [Status]) -> ContactSolution {
         self.settle(status, |_| 0.0);
         let (mut fewest, mut patience, mut steps) = (usize::MAX, PATIENCE, 0);
         loop {
@@ -172,7 +172,7 @@ impl FrictionProblem<'_> {
     }
 
     /// The jumps and forces of fixed statuses, all of them right or not.
-    fn solution(&self, linear: Linear, steps: usize, right: bool) -> GapSolution {
+    fn solution(&self, linear: Linear, steps: usize, right: bool) -> ContactSolution {
         let Linear {
             mut jumps,
             mut forces,
@@ -185,10 +185,10 @@ impl FrictionProblem<'_> {
             }
             *force = force.max(0.0);
             if let Some(t) = jumps.get_mut(i) {
-                *t = t.min(self.gap.bounds[i]);
+                *t = t.min(self.contact.bounds[i]);
             }
         }
-        GapSolution {
+        ContactSolution {
             jumps,
             forces,
             steps,
@@ -276,40 +276,41 @@ impl FrictionProblem<'_> {
 
     /// Whether limit i, which is closed, isn't where it should be: what it depends on is held elsewhere.
     fn is_astray(&self, i: usize, linear: &Linear) -> bool {
-        i >= self.gap.c.len() && self.way(i, linear).abs() > ASTRAY * self.gap_round_off(i, linear)
+        i >= self.contact.c.len()
+            && self.way(i, linear).abs() > ASTRAY * self.gap_round_off(i, linear)
     }
 
     /// How far limit i is from its bound: the gap that is left, or the way back to where it sticks (m).
     fn way(&self, i: usize, linear: &Linear) -> f64 {
-        self.gap.bounds[i] - self.value(i, &linear.jumps)
+        self.contact.bounds[i] - self.value(i, &linear.jumps)
     }
 
     /// The jump of limit i where those that are unknowns are these.
     fn value(&self, i: usize, jumps: &[f64]) -> f64 {
         match jumps.get(i) {
             Some(t) => *t,
-            None => self.gap.rows.value(i - jumps.len(), jumps),
+            None => self.contact.rows.value(i - jumps.len(), jumps),
         }
     }
 
     fn gap_round_off(&self, i: usize, linear: &Linear) -> f64 {
-        let m = self.gap.c.len();
+        let m = self.contact.c.len();
         let size = match i < m {
             true => 1.0,
-            false => self.gap.rows.size(i - m).max(1.0),
+            false => self.contact.rows.size(i - m).max(1.0),
         };
         let jumps = linear.jumps.iter();
-        let largest = jumps.fold(self.gap.scale, |m, t| m.max(t.abs()));
+        let largest = jumps.fold(self.contact.scale, |m, t| m.max(t.abs()));
         GAP_TOLERANCE * largest * size
     }
 
     fn force_round_off(&self, i: usize, linear: &Linear) -> f64 {
-        let m = self.gap.c.len();
+        let m = self.contact.c.len();
         let scale = match i < m {
-            true => self.gap.scale_of(i, &linear.jumps),
+            true => self.contact.scale_of(i, &linear.jumps),
             false => {
-                let row = self.gap.rows.row(i - m).iter();
-                let scales = row.map(|&(j, c)| c.abs() * self.gap.scale_of(j, &linear.jumps));
+                let row = self.contact.rows.row(i - m).iter();
+                let scales = row.map(|&(j, c)| c.abs() * self.contact.scale_of(j, &linear.jumps));
                 scales.sum()
             }
         };

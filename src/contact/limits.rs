@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::dependent::DependentConstraints;
 use super::friction::{ForceBound, TangentialCondition};
-use super::normal_jump::{NormalJumpOf, defining_conditions};
+use super::jumps::{JumpOf, defining_conditions};
 
 /// A slip, relative to the displacements that are prescribed, that is none.
 const ROUND_OFF: f64 = 1e-14;
@@ -72,7 +72,7 @@ impl Limits {
     /// ones of `friction`; `scale` bounds the displacements that are prescribed.
     pub fn new(
         jumps: usize,
-        of: &[NormalJumpOf],
+        of: &[JumpOf],
         gaps: &[f64],
         friction: &[TangentialCondition],
         scale: f64,
@@ -91,7 +91,7 @@ impl Limits {
         for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
             match of {
                 // A tangential jump is no bound for others, nor they for it.
-                &NormalJumpOf::Unknown { number, factor }
+                &JumpOf::Unknown { number, factor }
                     if (is_tangential(j) || is_tangential(limits.defining[number]))
                         && limits.defining[number] != j =>
                 {
@@ -99,24 +99,24 @@ impl Limits {
                     limits.bounds.push(*gap);
                     limits.tightest.push((j, 1.0));
                 }
-                &NormalJumpOf::Unknown { number, factor } => {
+                &JumpOf::Unknown { number, factor } => {
                     let bound = gap / factor;
                     if bound < limits.bounds[number] {
                         limits.bounds[number] = bound;
                         limits.tightest[number] = (j, factor);
                     }
                 }
-                NormalJumpOf::Combination(terms) => {
+                JumpOf::Combination(terms) => {
                     limits.rows.push(terms.clone());
                     limits.bounds.push(*gap);
                     limits.tightest.push((j, 1.0));
                 }
-                NormalJumpOf::Prescribed => {}
+                JumpOf::Prescribed => {}
             }
         }
         limits.tangents = limits.tangents_of(friction);
         for tangential in friction {
-            if of[tangential.number] == NormalJumpOf::Prescribed {
+            if of[tangential.number] == JumpOf::Prescribed {
                 let slip = -gaps[tangential.number];
                 limits.prescribed_slips.push(PrescribedSlip {
                     condition: tangential.number,
@@ -272,12 +272,12 @@ impl Limits {
 mod tests {
     use super::*;
 
-    fn unknown(number: usize, factor: f64) -> NormalJumpOf {
-        NormalJumpOf::Unknown { number, factor }
+    fn unknown(number: usize, factor: f64) -> JumpOf {
+        JumpOf::Unknown { number, factor }
     }
 
     fn limits(gap: f64) -> Limits {
-        let combination = NormalJumpOf::Combination(vec![(0, 1.0), (1, -2.0)]);
+        let combination = JumpOf::Combination(vec![(0, 1.0), (1, -2.0)]);
         let of = [
             unknown(0, 1.0),
             combination,

@@ -7,7 +7,7 @@ use std::rc::Rc;
 use faer::Mat;
 use serde::{Deserialize, Serialize};
 
-use super::active_set::{GapProblem, GapSolution};
+use super::active_set::{ContactProblem, ContactSolution};
 use super::dependent::DependentConstraints;
 use super::friction::{FrictionProblem, Status};
 use super::limits::{Limits, TangentialLimit};
@@ -32,7 +32,7 @@ pub struct ContactPair {
 pub struct PairState {
     /// The status of every jump, then of every linearly dependent constraint.
     status: Vec<Status>,
-    contact: GapSolution,
+    contact: ContactSolution,
 }
 
 /// One evaluation of S_kl.
@@ -83,7 +83,7 @@ impl ContactPair {
         Self {
             state: before.unwrap_or_else(|| PairState {
                 status: vec![Status::Closed; bounds],
-                contact: GapSolution::bilateral(condensed.jumps, bounds),
+                contact: ContactSolution::bilateral(condensed.jumps, bounds),
             }),
             condensed,
             limits,
@@ -146,7 +146,7 @@ impl ContactPair {
             }
         }
         let mut status = before.clone();
-        let gap = GapProblem {
+        let problem = ContactProblem {
             h: self.condensed.s_tt(),
             diagonal: self.diagonal(),
             c: &c,
@@ -157,7 +157,7 @@ impl ContactPair {
             scale: u.iter().fold(self.limits.scale, |m, u| m.max(u.abs())),
         };
         let contact = FrictionProblem {
-            gap,
+            contact: problem,
             tangents: &self.limits.tangents,
         }
         .solve(&mut status);

@@ -12,9 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::block::Block;
 use super::frame::{Frame, support_frames};
 use crate::contact::friction::{ForceBound, TangentialCondition};
-use crate::contact::normal_jump::{
-    NoUnknown, NormalJumpRow, NormalJumps, Sum, Variable, defining_conditions,
-};
+use crate::contact::jumps::{JumpRow, Jumps, NoUnknown, Sum, Variable, defining_conditions};
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::substitution::Replaced;
 
@@ -107,7 +105,7 @@ pub struct Condition {
 
 /// The rows of the normal jumps of a contact group.
 #[derive(Clone, Debug)]
-pub struct JumpRows(Vec<NormalJumpRow>);
+pub struct JumpRows(Vec<JumpRow>);
 
 /// What acts on a contact group in a load step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -233,12 +231,12 @@ impl ContactGroup {
     ///
     /// # Errors
     /// A point that no displacement can be replaced for.
-    pub fn normal_jumps(&self, eliminated: &[u32]) -> Result<NormalJumps, NoUnknown> {
+    pub fn jumps(&self, eliminated: &[u32]) -> Result<Jumps, NoUnknown> {
         self.solve_rows(&self.rows(), eliminated)
     }
 
     /// The rows of B on what is free along the axes of the nodes, a condition each.
-    fn rows(&self) -> Vec<NormalJumpRow> {
+    fn rows(&self) -> Vec<JumpRow> {
         let frames = self.frames();
         let conditions = self.conditions();
         conditions
@@ -246,18 +244,14 @@ impl ContactGroup {
             .collect()
     }
 
-    fn solve_rows(
-        &self,
-        rows: &[NormalJumpRow],
-        eliminated: &[u32],
-    ) -> Result<NormalJumps, NoUnknown> {
+    fn solve_rows(&self, rows: &[JumpRow], eliminated: &[u32]) -> Result<Jumps, NoUnknown> {
         let node = |v: u32| &self.nodes[v as usize / self.dim];
         let may_go = |v: u32| eliminated.binary_search(&node(v).interface).is_ok();
-        NormalJumps::new(rows, may_go, |v| node(v).stiffness)
+        Jumps::new(rows, may_go, |v| node(v).stiffness)
     }
 
     /// The rows of normal jumps, t = b·x.
-    pub fn rows_of(&self, jumps: &NormalJumps) -> JumpRows {
+    pub fn rows_of(&self, jumps: &Jumps) -> JumpRows {
         let rows = self.rows();
         let defining = defining_conditions(&jumps.of, jumps.pivots.len());
         JumpRows(defining.into_iter().map(|j| rows[j].clone()).collect())
@@ -274,7 +268,7 @@ impl ContactGroup {
         closed: &[usize],
         eliminated: &[u32],
     ) -> Result<Vec<Replaced>, NoUnknown> {
-        let of_closed: Vec<NormalJumpRow> = closed.iter().map(|&t| rows.0[t].clone()).collect();
+        let of_closed: Vec<JumpRow> = closed.iter().map(|&t| rows.0[t].clone()).collect();
         let jumps = self.solve_rows(&of_closed, eliminated)?;
         let defining = defining_conditions(&jumps.of, jumps.pivots.len());
         let mut replaced = self.replaced(&jumps);
@@ -286,7 +280,7 @@ impl ContactGroup {
 
     /// The terms of every normal jump, in the words of Γ.
     pub fn terms_of(&self, rows: &JumpRows) -> Vec<Vec<(InterfaceDof, f64)>> {
-        let terms = |row: &NormalJumpRow| row.iter().map(|&(v, c)| (self.dof(v), c)).collect();
+        let terms = |row: &JumpRow| row.iter().map(|&(v, c)| (self.dof(v), c)).collect();
         rows.0.iter().map(terms).collect()
     }
 
@@ -299,16 +293,16 @@ impl ContactGroup {
     }
 
     /// What normal jumps replace, in the words of Γ.
-    pub fn replaced(&self, jumps: &NormalJumps) -> Vec<Replaced> {
+    pub fn replaced(&self, jumps: &Jumps) -> Vec<Replaced> {
         let replaced = |pivot: &u32| {
             let Sum { terms } = &jumps.replaced[pivot];
             let staying = terms.iter().filter_map(|&(variable, c)| match variable {
                 Variable::Displacement(v) => Some((self.dof(v), c)),
-                Variable::NormalJump(_) => None,
+                Variable::Jump(_) => None,
             });
             let of_jumps = terms.iter().filter_map(|&(variable, c)| match variable {
                 Variable::Displacement(_) => None,
-                Variable::NormalJump(t) => Some((t as usize, c)),
+                Variable::Jump(t) => Some((t as usize, c)),
             });
             Replaced {
                 dof: self.dof(*pivot),
@@ -347,7 +341,7 @@ impl ContactGroup {
     }
 
     /// The jump of a condition in terms of what is free along the axes of its nodes' frames.
-    fn row(&self, condition: &Condition, frames: &[Frame]) -> NormalJumpRow {
+    fn row(&self, condition: &Condition, frames: &[Frame]) -> JumpRow {
         let mut row: BTreeMap<u32, f64> = BTreeMap::new();
         for (node, push) in self.row_of(condition) {
             let frame = &frames[node as usize];

@@ -15,7 +15,7 @@ use faer::{Mat, MatRef};
 
 use super::operator::{Interface, diagonal_of};
 use super::problem::InterfaceProblem;
-use crate::contact::active_set::GapProblem;
+use crate::contact::active_set::ContactProblem;
 use crate::contact::dependent::DependentConstraints;
 use crate::contact::friction::{FrictionProblem, Status};
 use crate::contact::limits::TangentialLimit;
@@ -135,7 +135,7 @@ impl<'a> CoupledContact<'a> {
         let mut status = self.side_by_side(state.responses.iter().map(|p| &p.status[..]));
         let gaps = self.side_by_side(state.responses.iter().map(|p| &p.gaps[..]));
         let problem = FrictionProblem {
-            gap: self.problem(&condensed, &gaps, u),
+            contact: self.problem(&condensed, &gaps, u),
             tangents: &self.tangents,
         };
         let solution = problem.solve(&mut status);
@@ -181,7 +181,7 @@ impl<'a> CoupledContact<'a> {
         );
         let gaps = self.side_by_side(state.responses.iter().map(|p| &p.gaps[..]));
         let problem = FrictionProblem {
-            gap: self.problem(&condensed, &gaps, u),
+            contact: self.problem(&condensed, &gaps, u),
             tangents: &self.tangents,
         };
         let jumps = all(|p| &p.jumps);
@@ -230,8 +230,8 @@ impl<'a> CoupledContact<'a> {
         condensed: &'b Condensed,
         bounds: &'b [f64],
         u: &[f64],
-    ) -> GapProblem<'b> {
-        GapProblem {
+    ) -> ContactProblem<'b> {
+        ContactProblem {
             h: self.h,
             diagonal: &self.diagonal,
             c: &condensed.c,

@@ -5,7 +5,7 @@ use faer::{Mat, Side};
 
 use super::*;
 
-fn solve(h: &Mat<f64>, c: &[f64], bounds: &[f64]) -> (GapSolution, Vec<bool>) {
+fn solve(h: &Mat<f64>, c: &[f64], bounds: &[f64]) -> (ContactSolution, Vec<bool>) {
     solve_with(h, c, &DependentConstraints::default(), bounds)
 }
 
@@ -14,11 +14,11 @@ fn solve_with(
     c: &[f64],
     rows: &DependentConstraints,
     bounds: &[f64],
-) -> (GapSolution, Vec<bool>) {
+) -> (ContactSolution, Vec<bool>) {
     let mut open = vec![false; bounds.len()];
     let c_scale: Vec<f64> = c.iter().map(|c| c.abs()).collect();
     let diagonal: Vec<f64> = (0..c.len()).map(|j| 1.0 + h[(j, j)]).collect();
-    let problem = GapProblem {
+    let problem = ContactProblem {
         h: h.as_ref(),
         diagonal: &diagonal,
         c,
@@ -37,7 +37,7 @@ fn noise(seed: usize) -> f64 {
     2.0 * (x - x.floor()) - 1.0
 }
 
-fn assert_optimal(h: &Mat<f64>, c: &[f64], bounds: &[f64], solution: &GapSolution) {
+fn assert_optimal(h: &Mat<f64>, c: &[f64], bounds: &[f64], solution: &ContactSolution) {
     assert_optimal_with(h, c, &DependentConstraints::default(), bounds, solution);
 }
 
@@ -47,7 +47,7 @@ fn assert_optimal_with(
     c: &[f64],
     rows: &DependentConstraints,
     bounds: &[f64],
-    solution: &GapSolution,
+    solution: &ContactSolution,
 ) {
     assert!(solution.converged);
     let m = c.len();

@@ -87,11 +87,11 @@ impl FrictionProblem<'_> {
     /// The statuses at the end of the path, and the exchanges that it took; `None` where it doesn't get there. Every
     /// `attempt` goes another way.
     pub(super) fn follow(&self, attempt: usize) -> (Option<Vec<Status>>, usize) {
-        if self.gap.bounds.len() > MOST_LIMITS {
+        if self.contact.bounds.len() > MOST_LIMITS {
             return (None, 0);
         }
         let mut path = Path::new(self, attempt);
-        let most = EXCHANGES + EXCHANGES_EACH * self.gap.bounds.len();
+        let most = EXCHANGES + EXCHANGES_EACH * self.contact.bounds.len();
         let (mut theta, mut way) = (f64::INFINITY, -1.0);
         let mut entered = None;
         for exchanges in 0..most {
@@ -113,7 +113,7 @@ impl FrictionProblem<'_> {
 
     /// What a limit's jump is multiplied by in the scale of energies, and its force divided.
     fn scales(&self) -> Vec<f64> {
-        let gap = &self.gap;
+        let gap = &self.contact;
         let of_jump = |j: usize| scale_of(gap.h[(j, j)], gap.diagonal[j]).sqrt();
         let jumps = (0..gap.c.len()).map(of_jump);
         let of_row = |row: &[(usize, f64)]| {
@@ -127,7 +127,7 @@ impl FrictionProblem<'_> {
 impl Path {
     /// Its beginning, where all is closed.
     fn new(problem: &FrictionProblem<'_>, attempt: usize) -> Self {
-        let gap = &problem.gap;
+        let gap = &problem.contact;
         let (m, count) = (gap.c.len(), gap.bounds.len());
         let scale = problem.scales();
         let bounds: Vec<f64> = (gap.bounds.iter().zip(&scale))

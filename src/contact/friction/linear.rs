@@ -50,7 +50,7 @@ struct System {
 impl Linear {
     /// Solves `problem` for the statuses of its limits.
     pub fn solve(problem: &FrictionProblem<'_>, status: &[Status]) -> Self {
-        let gap = &problem.gap;
+        let gap = &problem.contact;
         let m = gap.c.len();
         let mut jumps: Vec<f64> = (0..m)
             .map(|i| match status[i] {
@@ -83,7 +83,7 @@ impl Linear {
 impl FrictionProblem<'_> {
     /// The limits whose jump or force is unknown.
     fn unknowns(&self, status: &[Status]) -> Vec<usize> {
-        let m = self.gap.c.len();
+        let m = self.contact.c.len();
         let is_unknown = |&i: &usize| match i < m {
             true => !status[i].is_closed(),
             false => status[i] != Status::Open,
@@ -122,9 +122,9 @@ impl FrictionProblem<'_> {
 
     /// c − H t − Dᵀ μ.
     fn free_forces(&self, jumps: &[f64], forces: &[f64]) -> Vec<f64> {
-        let mut left = self.gap.c.to_vec();
-        self.gap.subtract(jumps, &mut left);
-        self.gap
+        let mut left = self.contact.c.to_vec();
+        self.contact.subtract(jumps, &mut left);
+        self.contact
             .rows
             .subtract_transposed(&forces[jumps.len()..], &mut left);
         left
@@ -147,7 +147,7 @@ impl FrictionProblem<'_> {
             .map(|i| match (i < m, status[i].is_closed()) {
                 _ if parting[i].is_some() => parting[i].map_or(0.0, force),
                 (true, _) => free[i] - allowed(i),
-                (false, true) => self.gap.bounds[i] - self.gap.rows.value(i - m, jumps),
+                (false, true) => self.contact.bounds[i] - self.contact.rows.value(i - m, jumps),
                 (false, false) => allowed(i) - forces[i],
             })
             .collect()
@@ -179,12 +179,12 @@ impl FrictionProblem<'_> {
         let of_jumps = unknowns
             .filter(|&(i, left)| i < jumps.len() && status[i] != Status::Parting && left != 0.0);
         let relative = of_jumps.map(|(i, left)| {
-            let by_rows = self.gap.rows.iter().zip(&forces[jumps.len()..]);
+            let by_rows = self.contact.rows.iter().zip(&forces[jumps.len()..]);
             let by_rows = by_rows.map(|(row, force)| {
                 let share = row.iter().find(|&&(jump, _)| jump == i);
                 share.map_or(0.0, |(_, share)| (share * force).abs())
             });
-            left.abs() / (self.gap.scale_of(i, jumps) + by_rows.sum::<f64>())
+            left.abs() / (self.contact.scale_of(i, jumps) + by_rows.sum::<f64>())
         });
         relative.fold(0.0, |m, x| if x.is_nan() { x } else { f64::max(m, x) })
     }
@@ -195,7 +195,7 @@ impl FrictionProblem<'_> {
         let mut unknowns = self.unknowns(status).into_iter().zip(left);
         unknowns.all(|(i, left)| {
             let tolerance = super::FORCE_TOLERANCE;
-            i < m && left.abs() <= tolerance * self.gap.scale_of(i, jumps)
+            i < m && left.abs() <= tolerance * self.contact.scale_of(i, jumps)
         })
     }
 }
@@ -209,7 +209,7 @@ struct Slipping {
 
 impl System {
     fn new(problem: &FrictionProblem<'_>, status: &[Status]) -> Self {
-        let gap = &problem.gap;
+        let gap = &problem.contact;
         let m = gap.c.len();
         let unknowns = problem.unknowns(status);
         let of_jump = |j: usize| scale_of(gap.h[(j, j)], gap.diagonal[j]).sqrt();

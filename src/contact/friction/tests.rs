@@ -40,7 +40,7 @@ impl Points {
         }
     }
 
-    fn solve(&self, status: &mut [Status]) -> GapSolution {
+    fn solve(&self, status: &mut [Status]) -> ContactSolution {
         self.with(|problem| problem.solve(status))
     }
 
@@ -48,7 +48,7 @@ impl Points {
         let m = self.c.len();
         let c_scale: Vec<f64> = self.c.iter().map(|c| c.abs()).collect();
         ask(&FrictionProblem {
-            gap: GapProblem {
+            contact: ContactProblem {
                 h: self.h.as_ref(),
                 diagonal: &self.diagonal,
                 c: &self.c,
@@ -69,7 +69,7 @@ impl Points {
     }
 
     /// The largest violation of equilibrium and of the laws.
-    fn violation(&self, solution: &GapSolution) -> f64 {
+    fn violation(&self, solution: &ContactSolution) -> f64 {
         let (t, forces) = (&solution.jumps, &solution.forces);
         let m = t.len();
         let mut worst: f64 = 0.0;

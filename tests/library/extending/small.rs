@@ -2,8 +2,8 @@
 
 use std::rc::Rc;
 
+use contact_dd_mpi::contact::jumps::JumpOf;
 use contact_dd_mpi::contact::limits::Limits;
-use contact_dd_mpi::contact::normal_jump::NormalJumpOf;
 use contact_dd_mpi::contact::pair::{CondensedContact, ContactPair};
 use contact_dd_mpi::interface::numbering::Numbering;
 use contact_dd_mpi::interface::operator::{Contribution, Interface};
@@ -64,8 +64,8 @@ impl Cluster {
 
     /// The pair that it is.
     pub fn pair(&self) -> ContactPair {
-        let of: Vec<NormalJumpOf> = (0..self.gaps.len())
-            .map(|number| NormalJumpOf::Unknown {
+        let of: Vec<JumpOf> = (0..self.gaps.len())
+            .map(|number| JumpOf::Unknown {
                 number,
                 factor: 1.0,
             })

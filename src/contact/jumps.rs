@@ -1,9 +1,10 @@
-//! Normal jumps t = b·u: contact conditions B u ≤ g as bounds t ≤ g.
+//! Jumps t = b·u: contact conditions B u ≤ g as bounds t ≤ g, and what slips.
 //!
 //! A condition `b·v ≤ g` bounds the normal jump t = b·v of the two sides, less what supports prescribe of it.
 //! Solving that equation for one of its unknowns makes t an unknown in that one's place, so that a pair's
-//! problem has nothing but bounds t ≤ g; t = 0 is the bilateral problem (16). Where more conditions meet than there are
-//! directions, what is left of a condition is a combination of normal jumps.
+//! problem has nothing but bounds t ≤ g; t = 0 is the bilateral problem (16). With friction the tangential jumps become
+//! unknowns in the same way. Where more conditions meet than there are directions, what is left of a condition is a
+//! combination of other jumps.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -13,13 +14,13 @@ const ROUND_OFF: f64 = 1e-10;
 /// Share of its largest coefficient below which a condition is nearly parallel to others.
 const PARALLEL: f64 = 0.1;
 
-/// What a displacement is made of once the normal jumps are unknowns.
+/// What a displacement is made of once the jumps are unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Variable {
     /// A component of a node along an axis of its frame.
     Displacement(u32),
-    /// The normal jump of a condition's two sides.
-    NormalJump(u32),
+    /// The jump of a condition's two sides.
+    Jump(u32),
 }
 
 /// Σ coefficient·variable.
@@ -29,8 +30,8 @@ pub struct Sum {
     pub terms: Vec<(Variable, f64)>,
 }
 
-/// The normal jump of two sides, b·v: unknowns and coefficients.
-pub type NormalJumpRow = Vec<(u32, f64)>;
+/// The jump of two sides, b·v: unknowns and coefficients.
+pub type JumpRow = Vec<(u32, f64)>;
 
 impl Sum {
     fn add(&mut self, variable: Variable, coefficient: f64) {
@@ -44,24 +45,24 @@ impl Sum {
     fn largest_displacement(&self) -> f64 {
         let coefficient = |&(variable, c): &(Variable, f64)| match variable {
             Variable::Displacement(_) => c.abs(),
-            Variable::NormalJump(_) => 0.0,
+            Variable::Jump(_) => 0.0,
         };
         self.terms.iter().map(coefficient).fold(0.0, f64::max)
     }
 
-    /// This in terms of normal jumps alone, if it is so but for round-off.
-    fn of_jumps(&self) -> Option<NormalJumpOf> {
+    /// This in terms of jumps alone, if it is so but for round-off.
+    fn of_jumps(&self) -> Option<JumpOf> {
         let mut terms = Vec::new();
         for &(variable, factor) in self.terms.iter().filter(|(_, c)| c.abs() > ROUND_OFF) {
-            let Variable::NormalJump(number) = variable else {
+            let Variable::Jump(number) = variable else {
                 return None;
             };
             terms.push((number as usize, factor));
         }
         Some(match terms[..] {
-            [] => NormalJumpOf::Prescribed,
-            [(number, factor)] if factor > 0.0 => NormalJumpOf::Unknown { number, factor },
-            _ => NormalJumpOf::Combination(terms),
+            [] => JumpOf::Prescribed,
+            [(number, factor)] if factor > 0.0 => JumpOf::Unknown { number, factor },
+            _ => JumpOf::Combination(terms),
         })
     }
 
@@ -77,28 +78,28 @@ impl Sum {
     }
 }
 
-/// Where the normal jump of a condition is found.
+/// Where the jump of a condition is found.
 #[derive(Clone, Debug, PartialEq)]
-pub enum NormalJumpOf {
-    /// It is `factor`·t of an unknown normal jump t, factor > 0. The condition whose unknown that is
+pub enum JumpOf {
+    /// It is `factor`·t of an unknown jump t, factor > 0. The condition whose unknown that is
     /// has 1; one that says the same again shares it.
     Unknown {
-        /// Number of the normal jump.
+        /// Number of the jump.
         number: usize,
         /// Factor.
         factor: f64,
     },
-    /// It is Σ factor·t of several unknown normal jumps, or a negative multiple of one: numbers and factors.
+    /// It is Σ factor·t of several unknown jumps, or a negative multiple of one: numbers and factors.
     Combination(Vec<(usize, f64)>),
     /// Supports prescribe it on both sides.
     Prescribed,
 }
 
 /// For each of `jumps` the condition that it is the unknown of.
-pub fn defining_conditions(of: &[NormalJumpOf], jumps: usize) -> Vec<usize> {
+pub fn defining_conditions(of: &[JumpOf], jumps: usize) -> Vec<usize> {
     let mut defining = vec![0; jumps];
     for (j, of) in of.iter().enumerate().rev() {
-        if let NormalJumpOf::Unknown {
+        if let JumpOf::Unknown {
             number,
             factor: 1.0,
         } = *of
@@ -113,18 +114,18 @@ pub fn defining_conditions(of: &[NormalJumpOf], jumps: usize) -> Vec<usize> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoUnknown(pub usize);
 
-/// Normal jumps solved for one unknown each.
+/// Jumps solved for one unknown each.
 #[derive(Clone, Debug, Default)]
-pub struct NormalJumps {
-    /// The unknown that each normal jump replaces.
+pub struct Jumps {
+    /// The unknown that each jump replaces.
     pub pivots: Vec<u32>,
     /// These unknowns in terms of those that stay.
     pub replaced: BTreeMap<u32, Sum>,
-    /// Where the normal jump of each condition is found.
-    pub of: Vec<NormalJumpOf>,
+    /// Where the jump of each condition is found.
+    pub of: Vec<JumpOf>,
 }
 
-impl NormalJumps {
+impl Jumps {
     /// Solves each of `rows`, t = b·v, in their order, for one of its unknowns.
     ///
     /// `may_go` tells which unknowns may be replaced (not those that others share), `stiffness` how stiff the body is around them: the softer side follows the stiffer one, because
@@ -135,12 +136,12 @@ impl NormalJumps {
     /// # Errors
     /// The first condition none of whose unknowns may be replaced.
     pub fn new(
-        rows: &[NormalJumpRow],
+        rows: &[JumpRow],
         may_go: impl Fn(u32) -> bool,
         stiffness: impl Fn(u32) -> f64,
     ) -> Result<Self, NoUnknown> {
         let as_given = Self::solve(rows, 0.0, &may_go, &stiffness)?;
-        let depends = |of: &NormalJumpOf| matches!(of, NormalJumpOf::Combination(_));
+        let depends = |of: &JumpOf| matches!(of, JumpOf::Combination(_));
         match as_given.of.iter().any(depends) {
             true => Self::solve(rows, PARALLEL, &may_go, &stiffness),
             false => Ok(as_given),
@@ -150,7 +151,7 @@ impl NormalJumps {
     /// Solves `rows`, those last of which elimination leaves less than a share `least` of their largest
     /// coefficient.
     fn solve(
-        rows: &[NormalJumpRow],
+        rows: &[JumpRow],
         least: f64,
         may_go: &impl Fn(u32) -> bool,
         stiffness: &impl Fn(u32) -> f64,
@@ -162,7 +163,7 @@ impl NormalJumps {
             }
         }
         let mut jumps = Self {
-            of: vec![NormalJumpOf::Prescribed; rows.len()],
+            of: vec![JumpOf::Prescribed; rows.len()],
             ..Self::default()
         };
         let mut waiting: Vec<usize> = (0..rows.len()).filter(|&j| !rows[j].is_empty()).collect();
@@ -184,8 +185,8 @@ impl NormalJumps {
         Ok(jumps)
     }
 
-    /// A condition's normal jump in terms of what isn't replaced so far.
-    fn remainder(&self, row: &NormalJumpRow) -> Sum {
+    /// A condition's jump in terms of what isn't replaced so far.
+    fn remainder(&self, row: &JumpRow) -> Sum {
         let mut rest = Sum {
             terms: Vec::with_capacity(row.len() + 1),
         };
@@ -200,7 +201,7 @@ impl NormalJumps {
         rest
     }
 
-    /// Solves t = `rest` for its best unknown, or finds that normal jumps which are unknowns already
+    /// Solves t = `rest` for its best unknown, or finds that jumps which are unknowns already
     /// make it; `nowhere_else` tells which unknowns no other condition has.
     fn solve_for_one(
         &mut self,
@@ -208,7 +209,7 @@ impl NormalJumps {
         nowhere_else: impl Fn(u32) -> bool,
         may_go: &impl Fn(u32) -> bool,
         stiffness: &impl Fn(u32) -> f64,
-    ) -> Option<NormalJumpOf> {
+    ) -> Option<JumpOf> {
         let candidates = rest.terms.iter().filter_map(|&(v, c)| match v {
             Variable::Displacement(v) if may_go(v) => Some((v, c)),
             _ => None,
@@ -227,7 +228,7 @@ impl NormalJumps {
             })?;
         let number = self.pivots.len();
         self.pivots.push(pivot);
-        rest.add(Variable::NormalJump(number as u32), -1.0);
+        rest.add(Variable::Jump(number as u32), -1.0);
         let gone = Variable::Displacement(pivot);
         rest.terms.retain(|&(v, c)| v != gone && c.abs() > 1e-15);
         for (_, c) in &mut rest.terms {
@@ -239,7 +240,7 @@ impl NormalJumps {
             }
         }
         self.replaced.insert(pivot, rest);
-        Some(NormalJumpOf::Unknown {
+        Some(JumpOf::Unknown {
             number,
             factor: 1.0,
         })
