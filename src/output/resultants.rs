@@ -102,7 +102,8 @@ fn is_parting(point: &ContactPoint<u32>, state: &ContactState) -> bool {
         return false;
     };
     let bound = coefficient * state.force + cohesion * point.area;
-    state.status() == 2
+    cohesion > 0.0
+        && state.status() == 2
         && length(state.tangential_force) < bound - ROUND_OFF * cohesion * point.area
 }
 
@@ -251,6 +252,16 @@ mod tests {
         for force in [4.0, 3.0, 0.0] {
             contact.add(&point, &slips(force));
         }
+        assert_eq!(contact.parting, 2);
+        let without_cohesion = ContactPoint {
+            law: Law::coulomb(0.6, 0.0),
+            ..point
+        };
+        let at_its_bound = ContactState {
+            force: 10.0,
+            ..slips(0.6 * 10.0 * (1.0 - 1e-15))
+        };
+        contact.add(&without_cohesion, &at_its_bound);
         assert_eq!(contact.parting, 2);
         let contacts = vec![contact];
         let all = Resultants {

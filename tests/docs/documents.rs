@@ -1,5 +1,5 @@
 //! The documents: every command on a page runs as printed, every link leads somewhere, and VTK reads
-//! what the pages say it reads.
+//! what the pages say it reads. Beside them the tests of the Python package, which take the same Python.
 //!
 //! A page is run in a fresh folder, its blocks in order:
 //!
@@ -22,6 +22,7 @@
 mod block;
 mod code;
 mod links;
+mod package;
 mod page;
 mod printed;
 mod run;
@@ -65,6 +66,10 @@ pub fn trials() -> Vec<Trial> {
         "failures_that_the_page_hides_fail",
         run::show_failures,
     ));
+    for file in package::tests() {
+        let name = format!("python::{}", file.display());
+        trials.push(needs_python(trial(name, move || package::passes(&file))));
+    }
     for (name, ranks, element, steps) in vtk::CASES {
         let case = move || vtk::reads_the_same(ranks, element, steps);
         trials.push(needs_python(trial(

@@ -79,7 +79,7 @@ fn what_is_no_result_is_not_drawn() {
     let case = solved(0.0);
     let mut command = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/figures"));
     let refused = Running::start(command.arg(case.problem())).wait(4 * LIMIT);
-    assert_eq!(refused.code(), 1);
+    assert_eq!(refused.code(), 2);
     assert!(
         refused.stderr.contains("is a problem file"),
         "{}",

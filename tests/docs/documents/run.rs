@@ -139,7 +139,8 @@ impl Folder {
             .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
             .env("OMPI_MCA_pml", "ob1")
             .env("MPLBACKEND", "Agg")
-            .env("PYTHONDONTWRITEBYTECODE", "1");
+            .env("PYTHONDONTWRITEBYTECODE", "1")
+            .env("PYTHONPATH", root().join("python"));
         Running::start(command).wait(LIMIT)
     }
 

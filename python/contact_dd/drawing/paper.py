@@ -5,8 +5,8 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 
-from drawing.canvas import canvas, legend, lines, save
-from drawing.units import in_units
+from contact_dd.drawing.canvas import canvas, legend, lines
+from contact_dd.drawing.units import in_units
 
 
 def levels(values):
@@ -18,7 +18,7 @@ def levels(values):
     return MaxNLocator(nbins=20, min_n_ticks=10).tick_values(low, high)
 
 
-def contours(result, values, name, unit, path):
+def contours(result, values, name, unit):
     values, unit = in_units(values, unit)
     steps = levels(values)
     signed = steps[0] < 0 < steps[-1] and min(-steps[0], steps[-1]) > 0.1 * max(-steps[0], steps[-1])
@@ -36,10 +36,10 @@ def contours(result, values, name, unit, path):
     axes.tricontour(mesh, values, steps, colors="k", linewidths=0.25, alpha=0.5, linestyles="solid")
     lines(axes, result.points, result.outline, colors="k", linewidths=1.0)
     figure.colorbar(filled, ax=axes, shrink=0.9, label=unit)
-    save(figure, path)
+    return figure
 
 
-def deformation(result, scale, path):
+def deformation(result, scale):
     figure, axes = canvas(f"Deformation, enlarged {scale:g} times", result.units)
     moved = result.deformed(scale)
     fine = len(result.facets) > 60_000
@@ -51,7 +51,7 @@ def deformation(result, scale, path):
     axes.plot([], [], color="k", lw=1.1, label="deformed")
     axes.autoscale()
     legend(axes, 2)
-    save(figure, path)
+    return figure
 
 
 def thinned(centers, size, across):
@@ -64,7 +64,7 @@ def thinned(centers, size, across):
     return order[first], step
 
 
-def principal(result, path):
+def principal(result):
     all_centers = result.centers()
     chosen, step = thinned(all_centers, result.size, across=22)
     centers = all_centers[chosen]
@@ -94,4 +94,4 @@ def principal(result, path):
     axes.plot([], [], color="tab:blue", label="compression →←")
     axes.plot([], [], " ", label=f"longest arm: {shown[0]:.3g} {unit}")
     legend(axes, 3)
-    save(figure, path)
+    return figure

@@ -1,6 +1,6 @@
 """Units of a result, and numbers with them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.ticker import EngFormatter, FuncFormatter
@@ -18,10 +18,10 @@ class Units:
 KNOWN = {"m": Units(), "mm": Units("mm", "MPa", "N/mm")}
 
 
-def units_of(file):
-    """The units of an open result file, by its attribute `units`."""
-    name = file.attrs.get("units", "m")
-    return KNOWN[name.decode() if isinstance(name, bytes) else name]
+def units_of(result):
+    """The symbols of a result's units; forces in the plane are those per thickness."""
+    known = KNOWN[result.units]
+    return replace(known, force="N") if result.is_in_space else known
 
 
 def has_prefix(unit):

@@ -1,51 +1,31 @@
-"""A result file, and its cells cut into triangles fine enough to show curved edges."""
+"""A result in the plane, its cells cut into triangles fine enough to show curved edges."""
 
-import sys
-
-import h5py
 import numpy as np
 
-from drawing import shapes
-from drawing.cells import cells_of
-from drawing.units import units_of
-
-# What of a contact table changes from step to step.
-STATES = ("gap", "force", "pressure", "status", "tangential_force", "slip")
+from contact_dd.drawing import shapes
+from contact_dd.drawing.units import units_of
+from contact_dd.errors import InputError
 
 
-class Result:
-    """What a result file holds, in its units, with the partitions joined; nodes keep their subdomain."""
+class Plane:
+    """A result in the plane, as it is drawn."""
 
-    def __init__(self, path, step=None):
-        with h5py.File(path) as file:
-            self.units = units_of(file)
-            grid = file["VTKHDF"]
-            self.steps = int(grid["Steps"].attrs["NSteps"]) if "Steps" in grid else 1
-            self.step = self.steps if step is None else step
-            if not 1 <= self.step <= self.steps:
-                sys.exit(f"figures: {path}: there is no step {step}; expected 1 to {self.steps}")
-            if "Displacement" not in grid["PointData"]:
-                sys.exit(f"figures: {path}: is a problem file; contact-dd-mpi {path} solves it")
-            if "Stress" not in grid["PointData"]:
-                sys.exit(f"figures: {path}: there are no stresses; expected a run without --no-stress")
-            self.points = grid["Points"][:, :2]
-            self.tags = grid["PointData/GlobalNodeId"][:]
-            self.displacement = of_step(grid, "PointData/Displacement", self.step)[:, :2]
-            self.stress = of_step(grid, "PointData/Stress", self.step)
-            self.cell_stress = of_step(grid, "CellData/Stress", self.step)
-            subdomain = grid["CellData/Subdomain"][:]
-            self.cells = list(cells_of(grid))
-            self.contacts = {
-                name: {key: state(table, key, self.step) for key in table}
-                for name, table in file.get("contact", {}).items()
-            }
-        if not self.cells:
-            sys.exit(f"figures: {path}: there are no cells to draw")
+    def __init__(self, result):
+        if len(result.stress) == 0:
+            raise InputError(f"{result.path}: there are no stresses; expected a run without --no-stress")
+        if not result.cells:
+            raise InputError(f"{result.path}: there are no cells to draw")
+        self.units = units_of(result)
+        self.step, self.steps = result.step, result.steps
+        self.points, self.tags = result.points[:, :2], result.nodes
+        self.displacement, self.stress = result.displacement[:, :2], result.stress
+        self.cells, self.cell_stress = result.cells, result.cell_data["Stress"]
+        self.contacts = result.contacts
         for kind, _, _ in self.cells:
             if kind not in shapes.CELLS:
-                sys.exit(f"figures: {path}: VTK cell type {kind} can't be drawn; plane cells can")
+                raise InputError(f"{result.path}: VTK cell type {kind} can't be drawn; plane cells can")
         self.size = max(np.ptp(self.points, axis=0))
-        self.facets, owner = self.all_facets(subdomain)
+        self.facets, owner = self.all_facets(result.cell_data["Subdomain"])
         self.outline, self.borders = self.outline_and_borders(owner)
         # Linear cells don't bend, and that many quadratic ones show no kinks.
         steps = 3 if len(self.cell_stress) < 20_000 else 2
@@ -112,19 +92,6 @@ class Result:
         middle = self.at_points(self.points)[self.triangles].mean(axis=1)
         np.add.at(sums, self.cell_of_triangle, middle)
         return sums / np.bincount(self.cell_of_triangle, minlength=len(sums))[:, None]
-
-
-def of_step(grid, name, step):
-    """The rows of a step; those of all steps follow each other."""
-    steps = int(grid["Steps"].attrs["NSteps"]) if "Steps" in grid else 1
-    rows = len(grid[name]) // steps
-    return grid[name][(step - 1) * rows : step * rows]
-
-
-def state(table, key, step):
-    """What a contact table has in a step: of what changes there is a row for every step."""
-    changes = table["status"].ndim == 2 and key in STATES
-    return table[key][step - 1] if changes else table[key][:]
 
 
 def curves(points, facets):

@@ -1,23 +1,59 @@
 """Sides a of contacts as curves: contact conditions in their order along the mesh, and the arc length."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from drawing import shapes
-from drawing.cells import cells_of
+from contact_dd.drawing import shapes
 
 DIRECTION = (
     "from left to right, steep sides upwards, closed ones counter-clockwise from the right"
 )
 
 
-def boundary_edges(grid, tags):
+@dataclass
+class Side:
+    """What a contact does along its side a."""
+
+    pieces: list
+    """Of each piece the rows in their order, and the arc length of each."""
+    pressure: np.ndarray
+    status: np.ndarray
+    shear: np.ndarray | None
+    """The tangential force over area along the normal turned by 90°, where there is friction."""
+
+
+def sides_of(result):
+    """The sides of all contacts that have conditions; none in space, where they are surfaces."""
+    tables = {name: table for name, table in result.contacts.items() if len(table)}
+    if not tables or result.is_in_space:
+        return {}
+    edges = boundary_edges(result, np.concatenate([table["node_a"] for table in tables.values()]))
+    return {
+        name: Side(
+            curves_along(table["position"][:, :2], table["node_a"], edges),
+            table["pressure"], table["status"], shear(table),
+        )
+        for name, table in tables.items()
+    }
+
+
+def shear(table):
+    if "tangential_force" not in table.dtype.names:
+        return None
+    # The area is that of force and pressure, so that open conditions have none.
+    force, pressure, forces, normal = (table[name] for name in ("force", "pressure", "tangential_force", "normal"))
+    along = normal[:, 0] * forces[:, 1] - normal[:, 1] * forces[:, 0]
+    return np.divide(along * pressure, force, out=np.zeros(len(force)), where=force > 0)
+
+
+def boundary_edges(result, tags):
     """Pairs of node tags: edges of one cell only, between nodes that are among `tags`."""
-    known = grid["PointData/GlobalNodeId"][:]
     edges = []
-    for kind, _, nodes in cells_of(grid):
+    for kind, _, nodes in result.cells:
         for facet in shapes.CELLS[kind].facets:
             # With a node in the middle a facet is two edges.
-            edges += [known[nodes[:, pair]] for pair in zip(facet, facet[1:])]
+            edges += [result.nodes[nodes[:, pair]] for pair in zip(facet, facet[1:])]
     edges = np.sort(np.concatenate(edges), axis=1)
     edges = edges[np.isin(edges, tags).all(axis=1)]
     edges, count = np.unique(edges, axis=0, return_counts=True)

@@ -9,10 +9,10 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.tri import Triangulation
 
-from drawing.canvas import lines, save, scale_bar
-from drawing.contact import pressed_sides
-from drawing.result import von_mises
-from drawing.units import in_units
+from contact_dd.drawing.canvas import lines, scale_bar
+from contact_dd.drawing.contact import pressed_sides
+from contact_dd.drawing.plane import von_mises
+from contact_dd.drawing.units import in_units
 
 RED = "#d6202c"
 # Where a contact with friction is closed, by its status.
@@ -35,7 +35,7 @@ LEFT, BETWEEN, RIGHT, BELOW, ABOVE = 0.25, 0.2, 0.85, 0.75, 0.5
 MOST_LABELS = 6
 
 
-def overview(result, scale, path):
+def overview(result, scale):
     moved = result.deformed(scale)
     sides = pressed_sides(result, moved)
     part = part_that_presses(sides, result.size)
@@ -73,7 +73,7 @@ def overview(result, scale, path):
     title = f"{what}, deformation × {scale:g}{step}"
     figure.suptitle(title, y=1 - 0.12 / figure.get_figheight(), va="top", fontsize=12)
     key(figure, sides, largest, has_moved, result.units.stress)
-    save(figure, path)
+    return figure
 
 
 def whole(result, moved, sides):

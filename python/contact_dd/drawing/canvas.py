@@ -2,17 +2,14 @@
 
 import io
 
-import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 from PIL import Image
 
-from drawing.result import curves
-from drawing.units import in_units
+from contact_dd.drawing.plane import curves
+from contact_dd.drawing.units import in_units
 
 LARGEST_PNG = 300_000
 

@@ -1,7 +1,7 @@
 """Plane cells by VTK's number: shape functions, facets, and triangles to draw them by."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Callable
 
 import numpy as np
 

@@ -50,7 +50,7 @@ def pressed_sides(result, moved):
                 table["pressure"],
                 along(edges, tags),
                 table["status"],
-                "slip" in table,
+                "slip" in table.dtype.names,
             )
         )
     return sides

@@ -1,23 +1,15 @@
-"""One page on a run, from its result file; run it by scripts/summary."""
+"""One page on a run, a file by itself: status, contacts, convergence, certificate, reactions, time and memory."""
 
-import argparse
-import html
-import io
 import json
 import pathlib
-import signal
-import sys
 
-import matplotlib
-
-matplotlib.use("svg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import EngFormatter, MaxNLocator
 
-from drawing.run import read
-from drawing.sides import DIRECTION
-from drawing.units import formatter, si
+from contact_dd.drawing.html import STYLE, axes_of, escape, section, short, svg, table
+from contact_dd.drawing.sides import DIRECTION, sides_of
+from contact_dd.drawing.units import formatter, si, units_of
 
 PHASES = ["read", "assemble", "factorize", "interface", "sweeps", "recover", "write"]
 COLORS = ["#9aa5b1", "#5b8ff9", "#1f5fa8", "#d62728", "#ff9d4d", "#3a9d5d", "#6b7785"]
@@ -44,73 +36,46 @@ STATES = {
 MOST_CURVES = 12
 MOST_ROWS = 24
 
-STYLE = """
-body { font: 14px/1.45 system-ui, sans-serif; color: #1d2733; max-width: 62em; margin: 2em auto; padding: 0 1.5em }
-h1 { font-size: 1.6em; margin: 0 } h2 { font-size: 1.1em; margin: 2em 0 .5em; border-bottom: 1px solid #d5dbe1 }
-p.sub { color: #5d6b79; margin: .2em 0 1.2em } small, td.note { color: #5d6b79 }
-.badge { font-size: .55em; padding: .2em .7em; border-radius: 1em; vertical-align: middle; margin-left: .6em }
-.good { background: #dff3e4; color: #17682f } .bad { background: #fbe0de; color: #9b1c14 }
-.cards { display: grid; grid-template-columns: repeat(auto-fit, minmax(7.9em, 1fr)); gap: .7em }
-.card { border: 1px solid #d5dbe1; border-radius: .5em; padding: .5em .8em }
-.card b { display: block; font-size: 1.1em; white-space: nowrap } .card span { color: #5d6b79 }
-table { border-collapse: collapse; width: 100% } th { text-align: left; color: #5d6b79; font-weight: 600 }
-th, td { padding: .2em .8em .2em 0; border-bottom: 1px solid #eceff2; vertical-align: top }
-.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
-.key span { margin-right: 1em } .key span::before { content: ""; display: inline-block; width: .8em; height: .8em;
-  background: var(--c); margin-right: .35em }
-svg { max-width: 100%; height: auto } li { margin: .2em 0 }
-ul.warnings li::marker { content: "⚠ "; } code { font-size: .95em }
-@media print { * { print-color-adjust: exact } body { margin: 0; max-width: none; font-size: 11px } section { break-inside: avoid } }
-"""
+FONTS = {
+    "svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans", "Arial", "Helvetica"],
+}
 
 
-def escape(value):
-    return html.escape(str(value))
+def page(result):
+    """The page of a result, in HTML."""
+    report, units = result.report, units_of(result)
+    with plt.rc_context(FONTS):
+        parts = [
+            head(report, result.path.name), warnings(report), steps(report, units),
+            contacts(report, sides_of(result), units), convergence(report, result.convergence), certificate(report),
+            reactions(report, units), ranks(report), rest(report),
+        ]
+    title = escape(pathlib.Path(report["settings"]["problem"]).name)
+    return (
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
+        f"<style>{STYLE}</style></head>\n<body>\n" + "\n".join(parts) + "\n</body></html>\n"
+    )
 
 
 def forces(found, unit):
     """Forces with their units; what is round-off of the largest is nothing."""
     largest = max((abs(f) for one in found for f in one["force"] if f is not None), default=0)
-    return [[si(f if f is None or abs(f) > 1e-9 * largest else 0, unit) for f in one["force"][:2]] for one in found]
+    return [
+        [si(f if f is None or abs(f) > 1e-9 * largest else 0, unit) for f in one["force"][: len(force_head("", found))]]
+        for one in found
+    ]
+
+
+def force_head(first, found):
+    """The names of the components of forces, behind `first`; z in space."""
+    in_space = any(one["force"][2] for one in found)
+    return [f"{first}x", "y", "z"][: 3 if in_space else 2]
 
 
 def more(found, words):
     count = len(found) - MOST_ROWS
     return f"<p><small>and {count} more{words}; the report has all</small></p>" if count > 0 else ""
-
-
-def short(value):
-    """A number small or large, in few digits."""
-    return "–" if value is None else f"{value:.2g}" if value else "0"
-
-
-def table(head, rows, numbers=()):
-    """A table; the columns in `numbers` are set right. Cells are escaped already."""
-    def line(tag, cells):
-        kinds = (' class="number"' if i in numbers else "" for i in range(len(cells)))
-        return "<tr>" + "".join(f"<{tag}{k}>{c}</{tag}>" for k, c in zip(kinds, cells)) + "</tr>"
-
-    return "<table>" + line("th", head) + "".join(line("td", row) for row in rows) + "</table>"
-
-
-def section(title, *content):
-    return f"<section><h2>{escape(title)}</h2>{''.join(content)}</section>"
-
-
-def svg(figure):
-    text = io.StringIO()
-    figure.savefig(text, format="svg", metadata={"Date": None})
-    plt.close(figure)
-    return text.getvalue()[text.getvalue().index("<svg") :]
-
-
-def axes_of(width, height, layout="constrained", **options):
-    figure, axes = plt.subplots(figsize=(width, height), layout=layout, **options)
-    for one in np.ravel(axes):
-        one.spines[["top", "right"]].set_visible(False)
-        one.grid(alpha=0.25, lw=0.5)
-        one.set_axisbelow(True)
-    return figure, axes
 
 
 def head(report, path):
@@ -172,7 +137,8 @@ def convergence(report, rows):
     figure, (left, right) = axes_of(9.2, 2.7, ncols=2)
     style = {"ms": 4, "lw": 1.4, "marker": None if len(sweeps) > 40 else "o"}
     # A line for each load step, which begins anew.
-    starts = [0, *(1 + np.flatnonzero(np.diff(rows["step"]))), len(sweeps)]
+    of_steps = rows.get("step", np.zeros(len(sweeps)))
+    starts = [0, *(1 + np.flatnonzero(np.diff(of_steps))), len(sweeps)]
     for first, last in zip(starts, starts[1:]):
         of_step = slice(first, last)
         left.semilogy(sweeps[of_step], np.maximum(residual[of_step], 1e-18), color="#1f5fa8", **style)
@@ -213,7 +179,8 @@ def steps(report, units):
     ]
     head = ["step", "time", "", "sweeps", "closed", "largest pressure", "equilibrium", *friction_head(report)]
     text = "<p><small>What follows on contacts and reactions is that of the last step.</small></p>"
-    return section("Load steps", svg(figure), table(head, rows, numbers=(1, *range(3, len(head)))), more(found, ""), text)
+    rows = table(head, rows, numbers=(1, *range(3, len(head))))
+    return section("Load steps", svg(figure), rows, more(found, ""), text)
 
 
 def ranks(report):
@@ -248,9 +215,9 @@ def ranks(report):
                    table(["phase", "least", "mean", "largest of a rank", "share"], rows, numbers=(1, 2, 3, 4)))
 
 
-def curve(axes, name, contact, units):
-    pressure, shear, status = contact["pressure"], contact["shear"], contact["status"]
-    for rows, way in contact["pieces"]:
+def curve(axes, name, side, units):
+    pressure, shear, status = side.pressure, side.shear, side.status
+    for rows, way in side.pieces:
         axes.fill_between(way, pressure[rows], color="#5b8ff9", alpha=0.25, lw=0)
         axes.plot(way, pressure[rows], color="#1f5fa8", lw=1.3)
         if len(pressure) <= 60:
@@ -272,11 +239,11 @@ def curve(axes, name, contact, units):
     axes.tick_params(labelsize=7.5)
 
 
-def contacts(report, tables, units):
-    found = sorted(report["contacts"], key=lambda contact: -(contact["largest_pressure"] or 0))
-    if not found:
+def pressures(report, found, sides, units):
+    """The curves of pressures with what they show; none in space."""
+    shown = [contact["name"] for contact in found if contact["name"] in sides][:MOST_CURVES]
+    if not shown:
         return ""
-    shown = [contact["name"] for contact in found if contact["name"] in tables][:MOST_CURVES]
     columns = min(3, len(shown))
     lines = -(-len(shown) // columns)
     height = 1.95 * lines + 0.1
@@ -284,15 +251,9 @@ def contacts(report, tables, units):
     # By hand: constrained_layout takes the room of a long name from the curves.
     figure.subplots_adjust(left=0.07, right=0.99, bottom=0.3 / height, top=1 - 0.25 / height, wspace=0.27, hspace=0.42)
     for name, axes in zip(shown, panels.flat):
-        curve(axes, name, tables[name], units)
+        curve(axes, name, sides[name], units)
     for axes in panels.flat[len(shown) :]:
         axes.set_visible(False)
-    rows = [
-        [escape(c["name"]), f"{c['closed']} of {c['conditions']}", si(c["largest_pressure"], units.stress), *force,
-         *friction_of(c, report)]
-        for c, force in zip(found[:MOST_ROWS], forces(found, units.force))
-    ]
-    head = ["contact", "closed", "largest pressure", "force on side a, x", "y", *friction_head(report)]
     text = f"Pressure over the arc length of side a, undeformed, {DIRECTION}; hollow where it is open. "
     if report.get("friction"):
         text += (
@@ -301,8 +262,21 @@ def contacts(report, tables, units):
         )
     if len(found) > len(shown):
         text += f"The {len(shown)} of {len(found)} contacts with the largest pressures. "
+    return f"<p><small>{text}</small></p>{svg(figure)}"
+
+
+def contacts(report, sides, units):
+    found = sorted(report["contacts"], key=lambda contact: -(contact["largest_pressure"] or 0))
+    if not found:
+        return ""
+    rows = [
+        [escape(c["name"]), f"{c['closed']} of {c['conditions']}", si(c["largest_pressure"], units.stress), *force,
+         *friction_of(c, report)]
+        for c, force in zip(found[:MOST_ROWS], forces(found, units.force))
+    ]
+    head = ["contact", "closed", "largest pressure", *force_head("force on side a, ", found), *friction_head(report)]
     return section(
-        "Contacts", f"<p><small>{text}</small></p>", svg(figure),
+        "Contacts", pressures(report, found, sides, units),
         table(head, rows, numbers=range(1, len(head))),
         more(found, " with lower pressures"),
     )
@@ -325,7 +299,8 @@ def reactions(report, units):
         return ""
     found = report["reactions"]
     rows = [[escape(r["support"]), *force] for r, force in zip(found[:MOST_ROWS], forces(found, units.force))]
-    return section("Reactions of supports", table(["support", "x", "y"], rows, numbers=(1, 2)), more(found, ""))
+    rows = table(["support", *force_head("", found)], rows, numbers=(1, 2, 3))
+    return section("Reactions of supports", rows, more(found, ""))
 
 
 def rest(report):
@@ -342,38 +317,3 @@ def rest(report):
     if report["condition_number"] is not None:
         rows.insert(1, ["condition", f"about {short(report['condition_number'])}"])
     return section("How it was made", table(["", ""], rows))
-
-
-def main():
-    # Where nobody reads on, as behind `| head`, there is nothing more to do.
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
-    parser = argparse.ArgumentParser(prog="summary", description=__doc__.splitlines()[0])
-    parser.add_argument("result", type=pathlib.Path, help="result file of contact-dd-mpi")
-    parser.add_argument("page", type=pathlib.Path, nargs="?", help="default: the result's name with .html")
-    arguments = parser.parse_args()
-    page = arguments.page or arguments.result.with_suffix(".html")
-    if page.suffix not in (".html", ".htm"):
-        # A second result is a likely slip, and would be overwritten.
-        print(f"summary: {page}: isn't the name of a page; expected one that ends in .html", file=sys.stderr)
-        sys.exit(2)
-    plt.rcParams.update({"svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif",
-                         "font.sans-serif": ["DejaVu Sans", "Arial", "Helvetica"]})
-    units, report, sweeps, tables = read(arguments.result)
-    parts = [
-        head(report, arguments.result.name), warnings(report), steps(report, units), contacts(report, tables, units),
-        convergence(report, sweeps), certificate(report), reactions(report, units), ranks(report), rest(report),
-    ]
-    title = escape(pathlib.Path(report["settings"]["problem"]).name)
-    text = (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
-        f"<style>{STYLE}</style></head>\n<body>\n" + "\n".join(parts) + "\n</body></html>\n"
-    )
-    try:
-        page.write_text(text)
-    except OSError as error:
-        print(f"summary: {page}: can't be written: {error.strerror}", file=sys.stderr)
-        sys.exit(5)
-    print(page)
-
-
-main()

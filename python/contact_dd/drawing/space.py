@@ -1,15 +1,14 @@
 """The picture of a result in space: its surface by von Mises stress, and the pressures of a contact."""
 
-import h5py
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.tri import Triangulation
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from drawing.canvas import round_below, save
-from drawing.cells import cells_of
-from drawing.result import of_step, state, von_mises
-from drawing.units import in_units, units_of
+from contact_dd.drawing.canvas import round_below
+from contact_dd.drawing.plane import von_mises
+from contact_dd.drawing.units import in_units, units_of
+from contact_dd.errors import InputError
 
 # Faces of VTK's cells around their corners, with the nodes on edges where there are some.
 TETRAHEDRON = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
@@ -29,11 +28,6 @@ VISIBLE = 0.03
 VIEW = {"elev": 20, "azim": -125}
 # Width of a part that presses, relative to what is shown of it.
 AROUND = 1.3
-
-
-def is_in_space(path):
-    with h5py.File(path) as file:
-        return bool(np.isin(file["VTKHDF/Types"][:], list(CELLS)).any())
 
 
 def outline(kind, face):
@@ -59,23 +53,19 @@ def surface(cells, tags):
     return [faces[k] for k in first[count == 1]]
 
 
-def overview(path, step, scale, picture):
-    with h5py.File(path) as file:
-        units, grid = units_of(file), file["VTKHDF"]
-        points, tags = grid["Points"][:], grid["PointData/GlobalNodeId"][:]
-        displacement, stress = (of_step(grid, f"PointData/{name}", step) for name in ("Displacement", "Stress"))
-        faces = surface(list(cells_of(grid)), tags)
-        contacts = {
-            name: {key: state(table, key, step) for key in ("position", "normal", "pressure")}
-            for name, table in file.get("contact", {}).items()
-        }
+def overview(result, scale):
+    """The deformed surface, enlarged by `scale`, without one until it shows."""
+    if len(result.stress) == 0:
+        raise InputError(f"{result.path}: there are no stresses; expected a run without --no-stress")
+    units, points, displacement, stress = units_of(result), result.points, result.displacement, result.stress
+    faces = surface(result.cells, result.nodes)
     size = np.ptp(points, axis=0).max()
     largest = np.linalg.norm(displacement, axis=1).max()
     scale = scale or (round_below(VISIBLE * size / largest) if largest > 0 else 1.0)
     moved = points + scale * displacement
     (values, unit) = in_units(von_mises(stress), units.stress)
 
-    pressed = {name: table for name, table in contacts.items() if table["pressure"].max(initial=0) > 0}
+    pressed = {name: table for name, table in result.contacts.items() if table["pressure"].max(initial=0) > 0}
     figure = plt.figure(figsize=(9.6 if pressed else 6.4, 4.8), layout="constrained")
     axes = figure.add_subplot(1, 2 if pressed else 1, 1, projection="3d", computed_zorder=False)
     of_face = np.array([values[face].mean() for face in faces])
@@ -95,7 +85,7 @@ def overview(path, step, scale, picture):
     if pressed:
         name = max(pressed, key=lambda name: pressed[name]["pressure"].max())
         pressure_map(figure, name, pressed[name], units)
-    save(figure, picture)
+    return figure
 
 
 def pressure_map(figure, name, table, units):

@@ -1,0 +1,40 @@
+"""Builds contact-dd-partition and contact-dd-mpi, which become scripts of the wheel.
+
+What is missing for that is said by its Debian packages. Where CONTACT_DD_BIN names a folder of built programs, or for an
+editable installation, the wheel is pure Python.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sysconfig
+from pathlib import Path
+from typing import Any
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+NAMES = ["contact-dd-partition", "contact-dd-mpi"]
+
+BUILD = """
+source scripts/environment
+cargo build --release --workspace --bins >&2
+printf '%s' "${CARGO_TARGET_DIR:-$PWD/target}"
+"""
+
+
+class Programs(BuildHookInterface[Any]):
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        if version == "editable" or os.environ.get("CONTACT_DD_BIN"):
+            return
+        repository = Path(self.root).parent
+        check = subprocess.run([repository / "scripts/setup", "--check"], stderr=subprocess.PIPE, text=True)
+        if check.returncode != 0:
+            raise SystemExit(
+                f"the programs can't be built: {check.stderr.strip()}; scripts/setup installs it. For programs that are "
+                "built already name their folder in CONTACT_DD_BIN"
+            )
+        built = subprocess.run(["bash", "-euc", BUILD], cwd=repository, check=True, stdout=subprocess.PIPE, text=True)
+        build_data["shared_scripts"] = {f"{built.stdout}/release/{name}": name for name in NAMES}
+        build_data["pure_python"] = False
+        build_data["tag"] = "py3-none-" + sysconfig.get_platform().replace("-", "_").replace(".", "_")

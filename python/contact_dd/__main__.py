@@ -1,0 +1,5 @@
+"""`python -m contact_dd` is `contact-dd`."""
+
+from contact_dd.command import main
+
+main()

@@ -1,0 +1,42 @@
+"""Cells of a grid in VTKHDF."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Cells(NamedTuple):
+    """The cells of one kind."""
+
+    kind: int
+    """VTK's number."""
+    members: NDArray[np.int64]
+    """Their places among all cells."""
+    nodes: NDArray[np.int64]
+    """Their nodes, a row for each cell."""
+
+
+def cells_of(grid: Any) -> list[Cells]:
+    """Cells of every kind of an open grid, their nodes among all nodes of the file."""
+    types = grid["Types"][:]
+    offsets, connectivity = grid["Offsets"][:], grid["Connectivity"][:]
+    starts, ends, nodes = [], [], []
+    at = {"point": 0, "cell": 0, "id": 0}
+    sizes = (grid[f"NumberOf{name}"][:] for name in ("Points", "Cells", "ConnectivityIds"))
+    for partition, (points, cells, ids) in enumerate(zip(*sizes, strict=True)):
+        # Each partition has an offset more than cells.
+        own = offsets[at["cell"] + partition :][: cells + 1] + at["id"]
+        starts.append(own[:-1])
+        ends.append(own[1:])
+        nodes.append(connectivity[at["id"] :][:ids] + at["point"])
+        at = {"point": at["point"] + points, "cell": at["cell"] + cells, "id": at["id"] + ids}
+    first, last, of_cells = (np.concatenate(part) for part in (starts, ends, nodes))
+    found = []
+    for kind in np.unique(types):
+        members = np.flatnonzero(types == kind)
+        width = last[members[0]] - first[members[0]]
+        found.append(Cells(int(kind), members, of_cells[first[members, None] + np.arange(width)]))
+    return found

@@ -1,0 +1,88 @@
+"""The command `contact-dd`: pictures and pages of results."""
+
+import argparse
+import signal
+import sys
+import warnings
+from pathlib import Path
+
+import matplotlib
+
+from contact_dd.errors import ContactError, InputError, OutputError
+from contact_dd.result import Result
+
+
+def main() -> None:
+    # Where nobody reads on, as behind `| head`, there is nothing more to do.
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    warnings.showwarning = lambda message, *_: print(f"warning: {message}", file=sys.stderr)
+    matplotlib.use("Agg")
+    arguments = parser().parse_args()
+    try:
+        arguments.command(arguments)
+    except ContactError as error:
+        print(f"error: {error}", file=sys.stderr)
+        sys.exit(error.exit_code)
+
+
+def parser() -> argparse.ArgumentParser:
+    top = argparse.ArgumentParser(prog="contact-dd", description="Pictures and pages of results of contact-dd-mpi.")
+    commands = top.add_subparsers(required=True, metavar="COMMAND")
+
+    drawn = commands.add_parser("plot", help="draw pictures of a result", description="Draws pictures of a result.")
+    drawn.add_argument("result", type=Path, help="result file of contact-dd-mpi")
+    drawn.add_argument("outdir", type=Path, nargs="?", help="folder (default: figures beside the result)")
+    drawn.add_argument(
+        "--scale", type=factor, default="auto",
+        help="enlargement of the deformation (default: auto: it shows, and closed contacts don't seem to overlap)",
+    )
+    drawn.add_argument("--only", nargs="+", metavar="PICTURE", help="which to draw (default: all)")
+    drawn.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
+    drawn.set_defaults(command=plot)
+
+    written = commands.add_parser("report", help="write a page on a run", description="Writes a page on a run.")
+    written.add_argument("result", type=Path, help="result file of contact-dd-mpi")
+    written.add_argument("page", type=Path, nargs="?", help="default: the result's name with .html")
+    written.set_defaults(command=report)
+    return top
+
+
+def factor(text: str) -> float | None:
+    if text == "auto":
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' is no enlargement; expected 'auto' or a number above 0")
+    return value
+
+
+def plot(arguments: argparse.Namespace) -> None:
+    from contact_dd.drawing.canvas import save
+    from contact_dd.drawing.pictures import PICTURES, draw
+
+    outdir = arguments.outdir or arguments.result.parent / "figures"
+    for name, figure in draw(Result(arguments.result, arguments.step), arguments.only or PICTURES, arguments.scale):
+        path = outdir / f"{name}.png"
+        try:
+            outdir.mkdir(parents=True, exist_ok=True)
+            save(figure, path)
+        except OSError as error:
+            raise OutputError(f"{path}: can't be written: {error.strerror}") from error
+
+
+def report(arguments: argparse.Namespace) -> None:
+    from contact_dd.drawing.page import page
+
+    path = arguments.page or arguments.result.with_suffix(".html")
+    if path.suffix not in (".html", ".htm"):
+        # A second result is a likely slip, and would be overwritten.
+        raise InputError(f"{path}: isn't the name of a page; expected one that ends in .html")
+    text = page(Result(arguments.result))
+    try:
+        path.write_text(text)
+    except OSError as error:
+        raise OutputError(f"{path}: can't be written: {error.strerror}") from error
+    print(path)

@@ -1,0 +1,65 @@
+"""Pieces of a page in HTML."""
+
+import html
+import io
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+STYLE = """
+body { font: 14px/1.45 system-ui, sans-serif; color: #1d2733; max-width: 62em; margin: 2em auto; padding: 0 1.5em }
+h1 { font-size: 1.6em; margin: 0 } h2 { font-size: 1.1em; margin: 2em 0 .5em; border-bottom: 1px solid #d5dbe1 }
+p.sub { color: #5d6b79; margin: .2em 0 1.2em } small, td.note { color: #5d6b79 }
+.badge { font-size: .55em; padding: .2em .7em; border-radius: 1em; vertical-align: middle; margin-left: .6em }
+.good { background: #dff3e4; color: #17682f } .bad { background: #fbe0de; color: #9b1c14 }
+.cards { display: grid; grid-template-columns: repeat(auto-fit, minmax(7.9em, 1fr)); gap: .7em }
+.card { border: 1px solid #d5dbe1; border-radius: .5em; padding: .5em .8em }
+.card b { display: block; font-size: 1.1em; white-space: nowrap } .card span { color: #5d6b79 }
+table { border-collapse: collapse; width: 100% } th { text-align: left; color: #5d6b79; font-weight: 600 }
+th, td { padding: .2em .8em .2em 0; border-bottom: 1px solid #eceff2; vertical-align: top }
+.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
+.key span { margin-right: 1em } .key span::before { content: ""; display: inline-block; width: .8em; height: .8em;
+  background: var(--c); margin-right: .35em }
+svg { max-width: 100%; height: auto } li { margin: .2em 0 }
+ul.warnings li::marker { content: "⚠ "; } code { font-size: .95em }
+@media print { * { print-color-adjust: exact }
+ body { margin: 0; max-width: none; font-size: 11px } section { break-inside: avoid } }
+"""
+
+
+def escape(value):
+    return html.escape(str(value))
+
+
+def short(value):
+    """A number small or large, in few digits."""
+    return "–" if value is None else f"{value:.2g}" if value else "0"
+
+
+def table(head, rows, numbers=()):
+    """A table; the columns in `numbers` are set right. Cells are escaped already."""
+    def line(tag, cells):
+        kinds = (' class="number"' if i in numbers else "" for i in range(len(cells)))
+        return "<tr>" + "".join(f"<{tag}{k}>{c}</{tag}>" for k, c in zip(kinds, cells)) + "</tr>"
+
+    return "<table>" + line("th", head) + "".join(line("td", row) for row in rows) + "</table>"
+
+
+def section(title, *content):
+    return f"<section><h2>{escape(title)}</h2>{''.join(content)}</section>"
+
+
+def svg(figure):
+    text = io.StringIO()
+    figure.savefig(text, format="svg", metadata={"Date": None})
+    plt.close(figure)
+    return text.getvalue()[text.getvalue().index("<svg") :]
+
+
+def axes_of(width, height, layout="constrained", **options):
+    figure, axes = plt.subplots(figsize=(width, height), layout=layout, **options)
+    for one in np.ravel(axes):
+        one.spines[["top", "right"]].set_visible(False)
+        one.grid(alpha=0.25, lw=0.5)
+        one.set_axisbelow(True)
+    return figure, axes

@@ -1,0 +1,72 @@
+"""The pictures of a result.
+
+`overview` is the deformed shape by von Mises stress with the contact pressures on it; the others are the
+seven pictures of the paper: deformation, u_x, u_y, tau_x, tau_y, tau_xy, principal stresses.
+"""
+
+import warnings
+
+import numpy as np
+
+from contact_dd.drawing import space
+from contact_dd.drawing.canvas import round_below
+from contact_dd.drawing.gaps import honest_scale
+from contact_dd.drawing.overview import overview
+from contact_dd.drawing.paper import contours, deformation, principal
+from contact_dd.drawing.plane import Plane
+from contact_dd.errors import InputError
+
+# The largest displacement over the size, where no scale is given.
+VISIBLE = 0.06
+
+
+def displacement(component, name):
+    def draw(plane, _scale):
+        return contours(plane, plane.displacement[:, component], f"Displacement $u_{name}$", plane.units.length)
+
+    return draw
+
+
+def stress(component, name):
+    def draw(plane, _scale):
+        return contours(plane, plane.stress[:, component], f"Stress $\\tau_{{{name}}}$", plane.units.stress)
+
+    return draw
+
+
+PICTURES = {
+    "overview": overview,
+    "deformation": deformation,
+    "u_x": displacement(0, "x"),
+    "u_y": displacement(1, "y"),
+    "tau_x": stress(0, "x"),
+    "tau_y": stress(1, "y"),
+    "tau_xy": stress(3, "xy"),
+    "principal": lambda plane, _scale: principal(plane),
+}
+
+
+def draw(result, names, scale=None):
+    """Draws pictures by their names, one after the other; in space there is the overview alone."""
+    if result.is_in_space:
+        yield "overview", space.overview(result, scale)
+        return
+    plane = Plane(result)
+    honest = honest_scale(plane)
+    scale = scale or automatic_scale(plane, honest)
+    if scale > honest:
+        warnings.warn(
+            f"× {scale:g} enlarges gaps that close, too, so that bodies that touch are drawn one over the other or "
+            f"apart; × {round_below(honest):g} isn't too much",
+            stacklevel=3,
+        )
+    for name in names:
+        if name not in PICTURES:
+            raise InputError(f"there is no picture {name!r}; expected one of {', '.join(PICTURES)}")
+        yield name, PICTURES[name](plane, scale)
+
+
+def automatic_scale(plane, honest):
+    """The round factor with which the largest displacement is about a twentieth of the size, at most `honest`."""
+    largest = np.linalg.norm(plane.displacement, axis=1).max()
+    return round_below(min(VISIBLE * plane.size / largest, honest)) if largest > 0 else 1.0

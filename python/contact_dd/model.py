@@ -1,0 +1,192 @@
+"""A model: a mesh, and what its groups mean."""
+
+from __future__ import annotations
+
+import tempfile
+import tomllib
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, TypedDict
+
+from contact_dd import programs, toml
+from contact_dd.errors import InputError
+from contact_dd.mesh import MeshSource, msh_of
+from contact_dd.result import Result
+
+Number = float | str
+"""A number, or an expression of position such as `"1e6*(1 - x^2/25)"`."""
+
+Vector = Sequence[Number]
+"""Two numbers, in space three."""
+
+Groups = str | Sequence[str]
+"""The name of a physical group of the mesh, or several."""
+
+
+@dataclass(frozen=True)
+class Material:
+    """A linear elastic material: Young's modulus and Poisson's ratio, or a stiffness matrix in Voigt's notation
+    (in the plane xx, yy, xy, in space xx, yy, zz, yz, xz, xy; engineering shear strains)."""
+
+    young: float | None = None
+    poisson: float | None = None
+    stiffness: Sequence[Sequence[float]] | None = None
+    out_of_plane: Sequence[float] | None = None
+
+
+class Step(TypedDict, total=False):
+    """A load step, as `[[step]]` of a scene: what it doesn't mention is the model's, times `scale`."""
+
+    name: str
+    time: float
+    scale: float | dict[str, float]
+    displacement: list[dict[str, Any]]
+    traction: list[dict[str, Any]]
+    pressure: list[dict[str, Any]]
+    body_force: dict[str, Vector]
+
+
+class Model:
+    """A mesh with materials, supports, loads and contacts on its groups.
+
+    `scene` is what `scene.toml` will say, as nested dictionaries; what has no method here can be set there.
+    """
+
+    def __init__(self, mesh: MeshSource, scene: dict[str, Any]) -> None:
+        self.mesh = msh_of(mesh)
+        self.scene = scene
+
+    @classmethod
+    def from_mesh(
+        cls, mesh: MeshSource, plane: str | None = None, *, units: str = "m", title: str | None = None
+    ) -> Model:
+        """A model without materials, supports, loads and contacts yet.
+
+        `mesh` is a file of Gmsh's or one that meshio reads, a mesh of meshio, or Gmsh's model as it stands
+        (`gmsh.model`). `plane` is "strain" or "stress", in space None; `units` is "m" (m, N, Pa) or "mm" (mm, N, MPa).
+        """
+        return cls(mesh, given(title=title, plane=plane, units=units))
+
+    @classmethod
+    def from_scene(cls, path: str | Path) -> Model:
+        """The model of a `scene.toml`."""
+        path = Path(path)
+        try:
+            scene = tomllib.loads(path.read_text())
+        except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+            raise InputError(f"{path}: {error}") from error
+        if not isinstance(scene.get("mesh"), str):
+            raise InputError(f"{path}: there is no key 'mesh'; expected the name of the mesh file")
+        return cls(path.parent / scene.pop("mesh"), scene)
+
+    def body(self, group: str, material: Material, body_force: Vector | None = None) -> None:
+        """Makes a group of cells a body. `body_force` is a force per volume."""
+        known: dict[str, dict[str, Any]] = self.scene.setdefault("materials", {})
+        keys = given(**asdict(material))
+        name = next((name for name, other in known.items() if other == keys), f"material {len(known) + 1}")
+        known[name] = keys
+        self.scene.setdefault("bodies", {})[group] = given(material=name, body_force=body_force)
+
+    def fix(
+        self, on: Groups, *, x: Number | None = None, y: Number | None = None, z: Number | None = None,
+        normal: bool = False,
+    ) -> None:
+        """Prescribes displacements: the components that are given, all of them as 0 where none is, or with
+        `normal` no displacement along the normal."""
+        components = given(x=x, y=y, z=z)
+        all_fixed = dict.fromkeys("xy" if "plane" in self.scene else "xyz", 0.0)
+        if normal and components:
+            raise InputError("fix: normal=True leaves the other directions free; expected no component beside it")
+        if normal:
+            self._add("bilateral", on=on)
+        else:
+            self._add("displacement", on=on, **(components or all_fixed))
+
+    def load(
+        self, on: Groups, *, pressure: Number | None = None, traction: Vector | None = None,
+        body_force: Vector | None = None,
+    ) -> None:
+        """Adds loads: a pressure, positive into the body; a traction, a force per area in any direction; or the
+        body force of bodies, a force per volume."""
+        if pressure is None and traction is None and body_force is None:
+            raise InputError(f"load on {on!r}: expected a pressure, a traction or a body force")
+        if pressure is not None:
+            self._add("pressure", on=on, value=pressure)
+        if traction is not None:
+            self._add("traction", on=on, value=traction)
+        if body_force is not None:
+            for name in [on] if isinstance(on, str) else on:
+                if name not in self.scene.get("bodies", {}):
+                    raise InputError(f"load: there is no body {name!r}; expected one that `body` has made")
+                self.scene["bodies"][name]["body_force"] = body_force
+
+    def contact(
+        self, a: Groups, b: Groups, *, name: str | None = None, friction: Number | None = None,
+        cohesion: Number | None = None, tresca: Number | None = None, gap: Number | None = None,
+        interference: bool | None = None, pairing: str | None = None,
+    ) -> None:
+        """Two sides that may touch, slide and part. Pressures and normals belong to side `a`, of curved sides best
+        the one with the coarser mesh. The gap is measured from the mesh where it isn't given."""
+        self._add(
+            "contact", name=name or f"{joined(a)} on {joined(b)}", sides=[a, b], friction=friction, cohesion=cohesion,
+            tresca=tresca, gap=gap, interference=interference, pairing=pairing,
+        )
+
+    def obstacle(
+        self, side: Groups, *, point: Sequence[float] | None = None, normal: Sequence[float] | None = None,
+        center: Sequence[float] | None = None, axis: Sequence[float] | None = None, radius: float | None = None,
+        inside: bool | None = None, name: str | None = None, friction: Number | None = None,
+        cohesion: Number | None = None, tresca: Number | None = None, gap: Number | None = None,
+        interference: bool | None = None,
+    ) -> None:
+        """A side that may touch a rigid obstacle: a wall (`point`, `normal` out of the wall), a circle or sphere
+        (`center`, `radius`), in space a cylinder (`point`, `axis`, `radius`); `inside` keeps the body inside it."""
+        self._add(
+            "contact", name=name or f"{joined(side)} on obstacle", sides=[side],
+            obstacle=given(point=point, normal=normal, center=center, axis=axis, radius=radius, inside=inside),
+            friction=friction, cohesion=cohesion, tresca=tresca, gap=gap, interference=interference,
+        )
+
+    def steps(self, *steps: Step) -> None:
+        """Load steps, one after the other."""
+        self.scene.setdefault("step", []).extend(dict(step) for step in steps)
+
+    def write(self, folder: str | Path) -> Path:
+        """Writes `scene.toml` and `mesh.msh` into a folder; returns the path of the scene."""
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "mesh.msh").write_bytes(self.mesh)
+        scene = folder / "scene.toml"
+        scene.write_text(toml.dumps({"mesh": "mesh.msh", **self.scene}))
+        return scene
+
+    def run(
+        self, ranks: int = 2, *, folder: str | Path | None = None, subdomains: int | None = None,
+        options: Sequence[str] = (), progress: bool | Callable[[dict[str, Any]], None] = True,
+    ) -> Result:
+        """Solves the model on `ranks` processes.
+
+        Files stand in `folder`, without one as long as the result is in use. `options` are those of
+        `contact-dd-mpi`. `progress` prints a line now and then; a function gets the events of `--log json` instead.
+
+        Raises the programs' messages as `InputError`, `NotConverged`, `IllPosed` and so on.
+        """
+        temporary = tempfile.TemporaryDirectory(prefix="contact-dd-") if folder is None else None
+        scene = self.write(temporary.name if temporary else folder or ".")
+        problem = programs.partition(scene, subdomains, progress)
+        result = programs.solve(problem, ranks, options, progress)
+        result.folder = temporary
+        return result
+
+    def _add(self, kind: str, **keys: Any) -> None:
+        self.scene.setdefault(kind, []).append(given(**keys))
+
+
+def given(**keys: Any) -> dict[str, Any]:
+    """What isn't None."""
+    return {name: value for name, value in keys.items() if value is not None}
+
+
+def joined(groups: Groups) -> str:
+    return groups if isinstance(groups, str) else ", ".join(groups)

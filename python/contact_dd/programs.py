@@ -1,0 +1,145 @@
+"""The two programs: where they are, and what they say."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sysconfig
+import tempfile
+import warnings
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from contact_dd import errors
+from contact_dd.result import Result
+
+Progress = bool | Callable[[dict[str, Any]], None]
+
+# OpenMPI starts neither as root nor with more ranks than cores unless it is told to; who asks for ranks means it.
+ENVIRONMENT = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+}
+
+
+def find(name: str) -> str:
+    """A program: in the folder CONTACT_DD_BIN, among the scripts of this Python, on the path."""
+    places = [os.environ.get("CONTACT_DD_BIN", ""), sysconfig.get_path("scripts"), os.environ.get("PATH", "")]
+    found = shutil.which(name, path=os.pathsep.join(place for place in places if place))
+    if found is None:
+        raise errors.ContactError(
+            f"there is no {name}: install the package where MPI, HDF5 and Rust are, put the program on the path, or "
+            "name its folder in CONTACT_DD_BIN"
+        )
+    return found
+
+
+def launcher(ranks: int) -> list[str]:
+    """What starts `ranks` processes: MPIEXEC or mpirun; nothing for one."""
+    if ranks < 1:
+        raise errors.InputError(f"ranks={ranks}; expected 1 or more")
+    if ranks == 1:
+        return []
+    named = os.environ.get("MPIEXEC") or "mpirun"
+    found = shutil.which(named)
+    if found is None:
+        raise errors.ContactError(
+            f"there is no {named} to start {ranks} ranks: expected that of the MPI which contact-dd-mpi is built with "
+            "on the path or in MPIEXEC; ranks=1 needs none"
+        )
+    return [found, "-n", str(ranks)]
+
+
+def partition(scene: Path, subdomains: int | None, progress: Progress) -> Path:
+    """Writes the problem file beside a scene."""
+    problem = scene.with_suffix(".h5")
+    number = [] if subdomains is None else ["-n", str(subdomains)]
+
+    def hear(line: str) -> None:
+        word, _, rest = line.partition(" ")
+        if word == "warning":
+            warnings.warn(rest.strip(), stacklevel=5)
+        elif progress is True and word in ("mesh", "contact"):
+            print(line, flush=True)
+
+    run([find("contact-dd-partition"), str(scene), "-o", str(problem), *number], hear)
+    return problem
+
+
+def solve(problem: Path, ranks: int, options: Sequence[str], progress: Progress) -> Result:
+    """Solves a problem file."""
+    output = problem.with_suffix(".vtkhdf")
+
+    def hear(line: str) -> None:
+        event = event_of(line)
+        if event is None:
+            return
+        if event["event"] == "warning":
+            warnings.warn(event["message"], stacklevel=5)
+        if callable(progress):
+            progress(event)
+        elif progress:
+            show(event)
+
+    command = [*launcher(ranks), find("contact-dd-mpi"), str(problem), "-o", str(output), "--log", "json", *options]
+    try:
+        run(command, hear)
+    except errors.NotConverged as error:
+        error.result = Result(output)
+        raise
+    return Result(output)
+
+
+def run(command: Sequence[str], hear: Callable[[str], None]) -> None:
+    """Runs a program, which is heard line by line. Raises its error."""
+    with (
+        tempfile.TemporaryFile("w+") as said,
+        subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=said, text=True, env={**ENVIRONMENT, **os.environ}
+        ) as program,
+    ):
+        try:
+            for line in program.stdout or ():
+                hear(line.rstrip("\n"))
+        except BaseException:
+            program.terminate()
+            raise
+        if program.wait() != 0:
+            said.seek(0)
+            raise error_of(program.returncode, said.read())
+
+
+def error_of(code: int, said: str) -> errors.ContactError:
+    """The error of a program that ended with `code`: the message of its event, or all that it said."""
+    for line in said.splitlines():
+        event = event_of(line)
+        if event is not None and event["event"] == "error":
+            return errors.by_exit_code(event["exit_code"], event["message"])
+    return errors.by_exit_code(code, said.strip().removeprefix("error: "))
+
+
+def event_of(line: str) -> dict[str, Any] | None:
+    """An event of `--log json`; None for what launchers and libraries print."""
+    if not line.startswith('{"event":'):
+        return None
+    event: dict[str, Any] = json.loads(line)
+    return event
+
+
+def show(event: dict[str, Any]) -> None:
+    """Prints a line for an event that people want to see."""
+    match event:
+        case {"event": "problem", "dofs": dofs, "ranks": ranks}:
+            print(f"{dofs} degrees of freedom, {ranks} rank{'s' * (ranks > 1)}", flush=True)
+        case {"event": "phase", "phase": phase, "seconds": seconds}:
+            print(f"{seconds:8.2f} s  {phase}", flush=True)
+        case {"event": "step", "step": step, "steps": steps, "name": name}:
+            print(f"step {step} of {steps}: {name}", flush=True)
+        case {"event": "sweep", "sweep": sweep, "residual": residual, "active": active}:
+            print(f"            sweep {sweep}: residual {residual:.1e}, {active} closed", flush=True)
+        case {"event": "finished", "reason": reason}:
+            print(reason, flush=True)

@@ -1,0 +1,163 @@
+"""The result of a run."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from contact_dd.cells import Cells, cells_of
+from contact_dd.errors import InputError
+
+if TYPE_CHECKING:
+    import pyvista
+    from matplotlib.figure import Figure
+
+Floats = NDArray[np.float64]
+
+# What of a contact table has a row for each load step.
+STATES = ("gap", "force", "pressure", "status", "tangential_force", "slip")
+
+
+class Result:
+    """What a result file holds of one load step, the last one without `step`.
+
+    Every node of the mesh is there once, in the order of the mesh's tags; where the stresses of two materials meet it
+    may be there once for each. In 2-D forces are per unit of thickness.
+    """
+
+    path: Path
+    """The result file."""
+    report: dict[str, Any]
+    """The report of the run."""
+    units: str
+    """"m" (m, N, Pa) or "mm" (mm, N, MPa)."""
+    step: int
+    """The load step, from 1."""
+    steps: int
+    """The number of load steps."""
+    nodes: NDArray[np.int64]
+    """The tags that nodes have in the mesh file."""
+    points: Floats
+    """Where the nodes are, undeformed; (n, 3)."""
+    displacement: Floats
+    """Their displacements; (n, 3)."""
+    stress: Floats
+    """Recovered stresses at nodes, XX YY ZZ XY YZ XZ, positive in tension; (n, 6), without rows after `--no-stress`."""
+    cells: list[Cells]
+    """The cells of each kind, by rows of `points`."""
+    cell_data: dict[str, NDArray[Any]]
+    """Of every cell `Stress`, `PrincipalStress`, `VonMises`, `EnergyError`, `Material`, `Subdomain`."""
+    contacts: dict[str, NDArray[Any]]
+    """A structured array for each contact, a row for each condition: `position`, `normal`, `gap`, `force`, `pressure`,
+    `status` (0 open, 1 closed, 2 slipping), `node_a`, `node_b`; with friction `tangential_force`, `slip`."""
+
+    convergence: dict[str, NDArray[Any]]
+    """A row for each sweep, of each load step the first the bilateral start: `residual`, `active`, `seconds`, with load
+    steps `step`, from 0."""
+
+    def __init__(self, path: str | Path, step: int | None = None) -> None:
+        self.path = Path(path)
+        self.folder: Any = None
+        if not self.path.exists():
+            raise InputError(f"{path}: there is no such file")
+        try:
+            with h5py.File(self.path) as file:
+                self._read(file, step)
+        except (OSError, KeyError) as error:
+            raise InputError(f"{path}: isn't a result of contact-dd-mpi, a file .vtkhdf") from error
+
+    def _read(self, file: h5py.File, step: int | None) -> None:
+        grid = file["VTKHDF"]
+        if "Displacement" not in grid["PointData"]:
+            raise InputError(f"{self.path}: is a problem file; contact-dd-mpi {self.path} solves it")
+        self.report = json.loads(file.attrs["report"])
+        units = file.attrs.get("units", "m")
+        self.units = units.decode() if isinstance(units, bytes) else str(units)
+        self.steps = int(grid["Steps"].attrs["NSteps"]) if "Steps" in grid else 1
+        self.step = self.steps if step is None else step
+        if not 1 <= self.step <= self.steps:
+            raise InputError(f"{self.path}: there is no step {step}; expected 1 to {self.steps}")
+
+        stress = self._of_step(grid, "PointData/Stress") if "Stress" in grid["PointData"] else np.zeros((0, 6))
+        kept, row = unique_nodes(grid["PointData/GlobalNodeId"][:], stress)
+        self.nodes = grid["PointData/GlobalNodeId"][:][kept]
+        self.points = grid["Points"][:][kept]
+        self.displacement = self._of_step(grid, "PointData/Displacement")[kept]
+        self.stress = stress[kept] if len(stress) else stress
+        self.cells = [Cells(kind, members, row[nodes]) for kind, members, nodes in cells_of(grid)]
+        constant = ("Material", "Subdomain")
+        self.cell_data = {
+            name: grid["CellData"][name][:] if name in constant else self._of_step(grid, f"CellData/{name}")
+            for name in grid["CellData"]
+        }
+        self.convergence = {name: column[:] for name, column in file["convergence"].items()}
+        self.contacts = {name: self._contact(table) for name, table in file.get("contact", {}).items()}
+
+    def _of_step(self, grid: h5py.Group, name: str) -> NDArray[Any]:
+        """The rows of this step; those of all steps follow each other."""
+        rows = len(grid[name]) // self.steps
+        values: NDArray[Any] = grid[name][(self.step - 1) * rows : self.step * rows]
+        return values
+
+    def _contact(self, table: h5py.Group) -> NDArray[Any]:
+        has_steps = table["status"].ndim == 2
+        columns = {key: table[key][self.step - 1] if has_steps and key in STATES else table[key][:] for key in table}
+        rows = np.zeros(len(columns["position"]), [(key, of.dtype, of.shape[1:]) for key, of in columns.items()])
+        for key, of in columns.items():
+            rows[key] = of
+        return rows
+
+    def at_step(self, step: int) -> Result:
+        """The result of another load step, from 1."""
+        other = Result(self.path, step)
+        other.folder = self.folder
+        return other
+
+    @property
+    def is_in_space(self) -> bool:
+        """Whether the cells are volumes."""
+        return any(cells.kind in (10, 12, 24, 25, 29) for cells in self.cells)
+
+    def plot(self, picture: str = "overview", scale: float | None = None) -> Figure:
+        """A picture by matplotlib: `overview`, the deformed shape by von Mises stress with the contact pressures; in
+        the plane also `deformation`, `u_x`, `u_y`, `tau_x`, `tau_y`, `tau_xy`, `principal`. Without `scale`
+        displacements are enlarged until they show, unless closed contacts would seem to overlap."""
+        from contact_dd.drawing.pictures import draw
+
+        figure: Figure
+        [(_, figure)] = draw(self, [picture], scale)
+        return figure
+
+    def to_pyvista(self) -> pyvista.UnstructuredGrid:
+        """A grid for PyVista with all fields; `grid.warp_by_vector("Displacement")` deforms it."""
+        import pyvista
+
+        grid = pyvista.UnstructuredGrid({cells.kind: cells.nodes for cells in self.cells}, self.points)
+        grid.point_data["Displacement"] = self.displacement
+        grid.point_data["GlobalNodeId"] = self.nodes
+        if len(self.stress):
+            grid.point_data["Stress"] = self.stress
+        order = np.concatenate([cells.members for cells in self.cells])
+        for name, values in self.cell_data.items():
+            grid.cell_data[name] = values[order]
+        return grid
+
+
+def unique_nodes(tags: NDArray[Any], stress: NDArray[Any]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """The points of a file that stand for nodes, in the order of tags, and for each point which one it is.
+
+    Points of one tag are one node, unless their stresses differ."""
+    order = np.argsort(tags, kind="stable")
+    is_new = np.ones(len(tags), dtype=bool)
+    is_new[1:] = tags[order][1:] != tags[order][:-1]
+    if len(stress):
+        first = order[is_new][np.cumsum(is_new) - 1]
+        is_new |= (stress[order] != stress[first]).any(axis=1)
+    row = np.empty(len(tags), dtype=np.intp)
+    row[order] = np.cumsum(is_new) - 1
+    return order[is_new], row

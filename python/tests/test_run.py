@@ -1,0 +1,138 @@
+"""What a run says, and how it fails."""
+
+import stat
+import tomllib
+
+import numpy as np
+import pytest
+
+from contact_dd import ContactError, IllPosed, InputError, Material, Model, NotConverged, OutputError, Result, toml
+
+
+def test_a_scene_is_read_as_it_was_written(scene):
+    written = tomllib.loads(scene("mindlin").read_text())
+    written["bodies"]["a \"name\" with é"] = {"material": "steel", "body_force": [0.0, -1e-7]}
+    written["step"][0]["pressure"] = [{"on": ["top", "left"], "value": "x"}]
+    written["solver"] = {"tolerance": np.float64(1e-9), "no_stress": True}
+    assert tomllib.loads(toml.dumps(written)) == written
+
+
+def test_messages_are_raised_by_exit_code(scene, tmp_path):
+    path = scene("granite")
+
+    def run(options=(), **changes):
+        model = Model.from_scene(path)
+        model.scene.update(changes)
+        return model.run(options=options, progress=False)
+
+    with pytest.raises(InputError, match="no physical group 'nothing'"):
+        run(bilateral=[{"on": "nothing"}])
+    with pytest.raises(InputError, match="--method"):
+        run(["--method", "luck"])
+    with pytest.raises(IllPosed, match="body 'block' can move freely under its load"):
+        run(displacement=[])
+    with pytest.raises(OutputError, match=str(tmp_path / "no")):
+        run(["--report", str(tmp_path / "no" / "report.json")])
+    with pytest.warns(UserWarning, match="certificate"), pytest.raises(NotConverged) as raised:
+        run(["--method", "picard", "--max-sweeps", "3"])
+    assert raised.value.result.report["status"] == "not_converged"
+    assert len(raised.value.result.points) == 2575
+
+
+def test_a_missing_program_is_named(scene, monkeypatch, tmp_path):
+    model = Model.from_scene(scene("granite"))
+    monkeypatch.setenv("MPIEXEC", "no-such-launcher")
+    with pytest.raises(ContactError, match="there is no no-such-launcher to start 2 ranks"):
+        model.run(progress=False)
+    with pytest.raises(InputError, match="ranks=0"):
+        model.run(ranks=0, progress=False)
+    monkeypatch.setenv("CONTACT_DD_BIN", str(tmp_path))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(ContactError, match="there is no contact-dd-partition: install"):
+        model.run(progress=False)
+
+
+def test_a_launcher_of_another_mpi_is_named(scene, monkeypatch, tmp_path):
+    """One that sets what MPICH's does, and starts each rank by itself."""
+    other = tmp_path / "mpirun"
+    other.write_text('#!/bin/sh\nshift 2\nPMI_RANK=0 PMI_SIZE=2 "$@"\n')
+    other.chmod(other.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv("MPIEXEC", str(other))
+    with pytest.raises(ContactError, match="launcher|MPI"):
+        Model.from_scene(scene("granite")).run(progress=False)
+
+
+def test_progress_is_printed_or_followed(scene, capsys):
+    model = Model.from_scene(scene("granite"))
+    events = []
+    model.run(ranks=1, progress=events.append)
+    assert [event["event"] for event in events][:2] == ["problem", "settings"]
+    assert events[-1]["event"] == "finished"
+    assert capsys.readouterr().out == ""
+    model.run(ranks=1)
+    printed = capsys.readouterr().out
+    assert "5150 degrees of freedom, 1 rank\n" in printed
+    assert "sweep 1: residual" in printed
+
+
+def test_load_steps_are_results_of_their_own(scene, tmp_path):
+    model = Model.from_scene(scene("granite"))
+    model.steps({"scale": 0.5}, {"scale": {"pressure": 2.0}, "name": "twice"})
+    result = model.run(folder=tmp_path / "run", progress=False)
+    assert (result.step, result.steps) == (2, 2)
+    first = result.at_step(1)
+    assert np.allclose(result.displacement, 4 * first.displacement, rtol=1e-6, atol=1e-12)
+    assert np.allclose(result.contacts["left crack"]["pressure"], 4 * first.contacts["left crack"]["pressure"])
+    assert np.allclose(result.cell_data["VonMises"], 4 * first.cell_data["VonMises"])
+    assert result.report["steps"][1]["name"] == "twice"
+    assert Result(tmp_path / "run/scene.vtkhdf", 1).displacement.tobytes() == first.displacement.tobytes()
+    with pytest.raises(InputError, match="there is no step 3; expected 1 to 2"):
+        result.at_step(3)
+    with pytest.raises(InputError, match="is a problem file"):
+        Result(tmp_path / "run/scene.h5")
+    with pytest.raises(InputError, match="isn't a result"):
+        Result(tmp_path / "run/scene.toml")
+
+
+def test_what_a_model_lacks_is_said():
+    triangle = b"$MeshFormat\n"
+    model = Model.__new__(Model)
+    model.mesh, model.scene = triangle, {"plane": "strain"}
+    model.body("block", Material(young=1.0, poisson=0.3))
+    model.body("other", Material(young=1.0, poisson=0.3))
+    assert list(model.scene["materials"]) == ["material 1"]
+    with pytest.raises(InputError, match="there is no body 'brick'"):
+        model.load("brick", body_force=[0, -1])
+    with pytest.raises(InputError, match="expected a pressure, a traction or a body force"):
+        model.load("block")
+    model.load("block", body_force=[0, -1])
+    model.fix("block")
+    assert model.scene["bodies"]["block"]["body_force"] == [0, -1]
+    assert model.scene["displacement"] == [{"on": "block", "x": 0.0, "y": 0.0}]
+
+
+def test_fields_are_those_of_the_file_in_pyvista(scene):
+    import pyvista
+
+    result = Model.from_scene(scene("stack")).run(progress=False)
+    grid = result.to_pyvista()
+    of_file = pyvista.merge(list(pyvista.read(result.path)), merge_points=False)
+    assert grid.n_cells == of_file.n_cells
+    assert np.isclose(grid.compute_cell_sizes()["Area"].sum(), of_file.compute_cell_sizes()["Area"].sum())
+    order = [np.lexsort(mesh.cell_centers().points.round(9).T) for mesh in (grid, of_file)]
+    assert np.array_equal(grid["VonMises"][order[0]], of_file["VonMises"][order[1]])
+    assert np.abs(grid["Displacement"]).max() == np.abs(of_file["Displacement"]).max()
+
+
+def test_a_node_between_two_materials_may_have_two_stresses():
+    from contact_dd.result import unique_nodes
+
+    tags = np.array([7, 5, 7, 7])
+    stress = np.array([[1.0], [2.0], [1.0], [3.0]])
+    kept, row = unique_nodes(tags, stress)
+    assert tags[kept].tolist() == [5, 7, 7]
+    assert stress[kept][row].tolist() == stress.tolist()
+    assert tags[kept][row].tolist() == tags.tolist()
+    kept, row = unique_nodes(tags, np.zeros((0, 6)))
+    assert kept.tolist() == [1, 0]
+    assert row.tolist() == [1, 0, 1, 1]
