@@ -6,6 +6,7 @@ pub mod check;
 
 use std::collections::HashMap;
 
+use contact_dd_partition::model::PlaneState;
 use serde::{Deserialize, Serialize};
 
 use self::check::{BlockCheck, External, Most};
@@ -66,12 +67,13 @@ impl Certificate {
 }
 
 /// The certificate of the whole solution, of what was checked on blocks and at contact points, where Γ has so
-/// many nodes of `dim` components.
+/// many nodes of `dim` components, in a plane state or in space.
 pub fn certificate(
     checks: &[BlockCheck],
     at_points: Most,
     interface_nodes: usize,
     dim: usize,
+    plane: Option<PlaneState>,
 ) -> Certificate {
     let mut most = at_points;
     let mut external = External::default();
@@ -95,6 +97,11 @@ pub fn certificate(
                 jump = larger(jump, a - b);
             }
         }
+    }
+    if plane == Some(PlaneState::Axisymmetric) {
+        // Around the axis all others cancel.
+        external.force = [0.0, external.force[1], 0.0];
+        external.moment = [0.0; 3];
     }
     most.residual = larger(most.residual, largest(&on_interface));
     most.scale = larger(most.scale, largest(&interface_scale));

@@ -78,6 +78,7 @@ pub fn collect_groups(
                 .collect(),
             extent,
             dim: catalog.dim,
+            plane: catalog.plane,
         };
         let mut points = Vec::new();
         for &j in &plan.tree.nodes[of_plan.node].points {

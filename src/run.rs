@@ -9,6 +9,7 @@ mod sweeping;
 use std::cell::RefCell;
 use std::time::Instant;
 
+use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::read::ProblemFile;
 use faer::Par;
 
@@ -152,6 +153,9 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         let result = outputs.as_mut().map(|outputs| &mut outputs.result);
         let contacts = &mut resultants.contacts;
         write_solution(&context, &solved.solution, &solved.slips, result, contacts)?;
+        if catalog.plane == Some(PlaneState::Axisymmetric) {
+            resultants.sum_around_axis();
+        }
         seconds.write += lap.elapsed().as_secs_f64();
         let totals = solved.outcome.clone();
         let totals = totals.map(|o| StepTotals::new(o, &solved.solution, resultants, at_end));

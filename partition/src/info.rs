@@ -7,7 +7,7 @@ use std::path::Path;
 
 use crate::element::geometry::{advance, cross};
 use crate::error::InputError;
-use crate::model::Material;
+use crate::model::{Material, PlaneState};
 use crate::problem::read::ProblemFile;
 use crate::problem::{Catalog, Problem, VERSION};
 
@@ -85,6 +85,9 @@ impl Info {
         let resultant = |step: usize| {
             let Catalog { dim, units, .. } = self.problem.catalog;
             let (force, moment) = self.load(step);
+            if self.problem.catalog.plane == Some(PlaneState::Axisymmetric) {
+                return format!("{} N in sum along the axis", rounded(force[1]));
+            }
             let (force, moment) = (&force[..dim], &moment[if dim == 2 { 2 } else { 0 }..]);
             let listed = |of: &[f64]| {
                 of.iter()

@@ -29,14 +29,15 @@ use crate::scene::units::Units;
 use crate::solver::SolverSettings;
 use crate::stiffness::Stiffness;
 
-/// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane; xx, yy, zz, yz, xz, xy in space).
+/// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane; xx, yy, zz, xy around an axis; xx, yy, zz,
+/// yz, xz, xy in space).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Name in the scene.
     pub name: String,
     /// C, symmetric positive definite, for the scene's plane state (Pa).
     pub stiffness: Stiffness,
-    /// Row of σ_zz against (ε_xx, ε_yy, γ_xy) (Pa); `None` where the user didn't give it, and in space.
+    /// Row of σ_zz against (ε_xx, ε_yy, γ_xy) (Pa); `None` where the user didn't give it, around an axis and in space.
     pub out_of_plane: Option<[f64; 3]>,
     /// Poisson's ratio of an isotropic material.
     pub poisson: Option<f64>,
@@ -117,7 +118,7 @@ impl Model {
         let topology = Topology::new(&bodies.mesh);
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
         let loads = steps::Loads::new(scene, &bodies, &topology)?;
-        let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads, scene.units);
+        let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads, scene);
         let contacts = (0..)
             .zip(&scene.contact)
             .map(|(number, keys)| sides.contact(number, keys, &mut warnings))
@@ -164,7 +165,8 @@ impl Model {
 fn plane_state(scene: &Scene, mesh: &Mesh) -> Result<Option<PlaneState>, InputError> {
     let fault = match (mesh.dim, scene.plane) {
         (2, None) => {
-            "the key 'plane' is missing: the mesh has 2 dimensions; expected plane = \"strain\" or \"stress\""
+            "the key 'plane' is missing: the mesh has 2 dimensions; expected plane = \"strain\", \
+             \"stress\" or \"axisymmetric\""
         }
         (3, Some(_)) => {
             "the key 'plane' is of plane scenes: the mesh has 3 dimensions; expected none"

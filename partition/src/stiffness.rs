@@ -9,11 +9,6 @@ use crate::magnitude::SMALLEST_STIFFNESS;
 /// How far a stiffness may be from its transpose, relative to its largest entry.
 const SYMMETRY_TOLERANCE: f64 = 1e-10;
 
-/// The number of components of a strain in `dim` dimensions: xx, yy, xy in the plane, xx, yy, zz, yz, xz, xy in space.
-pub const fn components(dim: usize) -> usize {
-    dim * (dim + 1) / 2
-}
-
 /// C of σ = C ε (Pa), a row for each component of a stress.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stiffness {
@@ -22,13 +17,8 @@ pub struct Stiffness {
 }
 
 impl Stiffness {
-    /// The matrix of `values`, row by row, in `dim` dimensions.
-    pub fn new(dim: usize, values: &[f64]) -> Self {
-        Self::square(components(dim), values)
-    }
-
-    /// The matrix of `values` with so many rows.
-    pub(crate) fn square(size: usize, values: &[f64]) -> Self {
+    /// The matrix of `values`, row by row, with so many rows.
+    pub fn new(size: usize, values: &[f64]) -> Self {
         Self {
             size,
             values: values.to_vec(),

@@ -1,9 +1,11 @@
 //! Linear elasticity of one element: K_e = ∫ Bᵀ C B dx, (2).
 //!
 //! ε = B u holds in Voigt's order ε_xx, ε_yy, γ_xy in the plane and ε_xx, ε_yy, ε_zz, γ_yz, γ_xz, γ_xy in space, with
-//! γ = 2 ε, from the gradients of the shape functions; σ = C ε.
+//! γ = 2 ε, from the gradients of the shape functions; σ = C ε. Around the axis x = 0 it is ε_xx, ε_yy, ε_zz, γ_xy with
+//! the strain of the hoop ε_zz = u_x/x, and dx is 2πx dx dy. The number of components tells which.
 
 use std::array::from_fn;
+use std::f64::consts::PI;
 
 use contact_dd_partition::element::geometry::cross;
 use contact_dd_partition::element::quadrature::TabulatedPoint;
@@ -14,29 +16,44 @@ use nalgebra::Matrix3;
 
 /// Most nodes that an element has.
 pub const MAX_NODES: usize = 27;
+/// Components of a strain around an axis.
+const RING: usize = 4;
 /// Most nodes that one of the plane has.
 const MAX_PLANE_NODES: usize = 9;
 /// Most dofs that an element has.
 pub const MAX_DOFS: usize = 3 * MAX_NODES;
 
-/// A strain or stress in Voigt's order; in the plane the first three components count.
+/// A strain or stress in Voigt's order; in the plane the first three components count, around an axis four.
 pub type Voigt = [f64; 6];
 
-/// The place of γ_ab in Voigt's order.
-const fn shear(dim: usize, a: usize, b: usize) -> usize {
-    if dim == 2 { 2 } else { 6 - a - b }
+/// The place of γ_ab in Voigt's order of so many components.
+const fn shear(components: usize, a: usize, b: usize) -> usize {
+    match components {
+        6 => 6 - a - b,
+        _ => components - 1,
+    }
 }
 
-/// Gradients of the shape functions at a point of an element with up to N nodes in D dimensions, and the weight of
-/// that point.
-struct PointGradients<const D: usize, const N: usize> {
+/// The points at which a cell's stiffness is integrated where a strain has so many components.
+pub fn stiffness_points(element: &ReferenceElement, components: usize) -> &[TabulatedPoint] {
+    match components {
+        RING => element.points_around_axis(),
+        _ => element.stiffness_points(),
+    }
+}
+
+/// Gradients of the shape functions at a point of an element with up to N nodes in D dimensions, where a strain has V
+/// components, and the weight of that point.
+struct PointGradients<const D: usize, const V: usize, const N: usize> {
     /// ∂N_i/∂x_d (1/m).
     gradients: [[f64; D]; N],
+    /// N_i/x around an axis (1/m).
+    hoop: [f64; N],
     /// Quadrature weight times Jacobian (m², m³).
     weight: f64,
 }
 
-impl<const D: usize, const N: usize> PointGradients<D, N> {
+impl<const D: usize, const V: usize, const N: usize> PointGradients<D, V, N> {
     /// The gradients at one point of the element with the nodes at `points`.
     #[inline(always)]
     fn new(reference: &TabulatedPoint, points: &[[f64; 3]]) -> Self {
@@ -57,10 +74,20 @@ impl<const D: usize, const N: usize> PointGradients<D, N> {
                 *component = terms.reduce(|sum, term| sum + term).unwrap_or_default() / det;
             }
         }
-        Self {
+        let mut point = Self {
             gradients,
+            hoop: [0.0; N],
             weight: det * reference.weight,
+        };
+        if V == RING {
+            let parts = reference.shape.iter().zip(points);
+            let radius: f64 = parts.map(|(n, x)| n * x[0]).sum();
+            for (hoop, n) in point.hoop.iter_mut().zip(&reference.shape) {
+                *hoop = n / radius;
+            }
+            point.weight *= 2.0 * PI * radius;
         }
+        point
     }
 
     /// ε at the point for nodal displacements `u`.
@@ -70,9 +97,13 @@ impl<const D: usize, const N: usize> PointGradients<D, N> {
             for a in 0..D {
                 strain[a] += g[a] * u[a];
                 for b in a + 1..D {
-                    strain[shear(D, a, b)] += g[b] * u[a] + g[a] * u[b];
+                    strain[shear(V, a, b)] += g[b] * u[a] + g[a] * u[b];
                 }
             }
+        }
+        if V == RING {
+            let u_x = u.iter().step_by(D);
+            strain[2] = self.hoop.iter().zip(u_x).map(|(h, u)| h * u).sum();
         }
         strain
     }
@@ -96,16 +127,25 @@ fn cofactors<const D: usize>(j: &[[f64; D]; D]) -> ([[f64; D]; D], f64) {
     (cofactors, det)
 }
 
-/// ε at a point of the element with the nodes at `points` for their displacements `u`, and the weight of the point,
-/// that of quadrature times the Jacobian (m², m³).
-pub fn strain(reference: &TabulatedPoint, points: &[[f64; 3]], u: &[f64]) -> (Voigt, f64) {
-    match u.len() == 2 * points.len() {
-        true => {
-            let point = PointGradients::<2, MAX_PLANE_NODES>::new(reference, points);
+/// ε, of so many components, at a point of the element with the nodes at `points` for their displacements `u`, and the
+/// weight of the point, that of quadrature times the Jacobian (m², m³).
+pub fn strain(
+    reference: &TabulatedPoint,
+    points: &[[f64; 3]],
+    u: &[f64],
+    components: usize,
+) -> (Voigt, f64) {
+    match components {
+        3 => {
+            let point = PointGradients::<2, 3, MAX_PLANE_NODES>::new(reference, points);
             (point.strain(u), point.weight)
         }
-        false => {
-            let point = PointGradients::<3, MAX_NODES>::new(reference, points);
+        RING => {
+            let point = PointGradients::<2, RING, MAX_PLANE_NODES>::new(reference, points);
+            (point.strain(u), point.weight)
+        }
+        _ => {
+            let point = PointGradients::<3, 6, MAX_NODES>::new(reference, points);
             (point.strain(u), point.weight)
         }
     }
@@ -113,14 +153,13 @@ pub fn strain(reference: &TabulatedPoint, points: &[[f64; 3]], u: &[f64]) -> (Vo
 
 /// σ = (XX, YY, ZZ, XY, YZ, XZ) for a strain (Pa).
 ///
-/// In the plane σ_zz follows from the material's row out of the plane; where that isn't known it is 0.
+/// Around an axis ZZ is the stress of the hoop. In the plane σ_zz follows from the material's row out of the plane; where that isn't known it is 0.
 pub fn stress(material: &Material, plane: Option<PlaneState>, strain: &Voigt) -> [f64; 6] {
     let s = voigt_stress(material, strain);
-    let Some(plane) = plane else {
-        return result_order(&s);
-    };
     let zz = match (plane, &material.out_of_plane) {
-        (PlaneState::Strain, Some(out_of_plane)) => product(out_of_plane, strain),
+        (None, _) => return result_order(&s),
+        (Some(PlaneState::Axisymmetric), _) => return [s[0], s[1], s[2], s[3], 0.0, 0.0],
+        (Some(PlaneState::Strain), Some(out_of_plane)) => product(out_of_plane, strain),
         _ => 0.0,
     };
     [s[0], s[1], zz, s[2], 0.0, 0.0]
@@ -175,7 +214,8 @@ impl ElementMatrix {
         (0..self.order).map(|i| self.row(i))
     }
 
-    /// Becomes K_e = ∫ Bᵀ C B over an element, in the plane of unit thickness (Pa; in space N/m), dofs node by node.
+    /// Becomes K_e = ∫ Bᵀ C B over an element, in the plane of unit thickness (Pa; around an axis and in space N/m), dofs
+    /// node by node.
     pub fn set(&mut self, element: &ReferenceElement, points: &[[f64; 3]], c: &Stiffness) {
         if element.dim() == 3 {
             let c = &c.rows::<6>();
@@ -184,6 +224,11 @@ impl ElementMatrix {
                 8 => self.integrate::<3, 6, 8>(8, element, points, c),
                 nodes => self.integrate::<3, 6, MAX_NODES>(nodes, element, points, c),
             };
+        }
+        if c.size() == RING {
+            let c = &c.rows::<RING>();
+            let nodes = element.nodes();
+            return self.integrate::<2, RING, MAX_PLANE_NODES>(nodes, element, points, c);
         }
         let c = &c.rows::<3>();
         // The compiler unrolls what it knows the size of.
@@ -209,8 +254,8 @@ impl ElementMatrix {
         let order = D * nodes;
         self.order = order;
         self.values[..order * order].fill(0.0);
-        for reference in element.stiffness_points() {
-            let point = PointGradients::<D, N>::new(reference, &points[..nodes]);
+        for reference in stiffness_points(element, V) {
+            let point = PointGradients::<D, V, N>::new(reference, &points[..nodes]);
             self.add_lower(nodes, &point, c);
         }
         // Symmetric to the last bit, so that assembling one triangle is assembling both.
@@ -226,7 +271,7 @@ impl ElementMatrix {
     fn add_lower<const D: usize, const V: usize, const N: usize>(
         &mut self,
         nodes: usize,
-        point: &PointGradients<D, N>,
+        point: &PointGradients<D, V, N>,
         c: &[[f64; V]; V],
     ) {
         let order = D * nodes;
@@ -236,7 +281,11 @@ impl ElementMatrix {
             let stresses: [[f64; V]; D] = from_fn(|a| {
                 from_fn(|r| {
                     let others = (0..D).filter(|&b| b != a);
-                    others.fold(c[r][a] * g[a], |sum, b| sum + c[r][shear(D, a, b)] * g[b])
+                    let s = others.fold(c[r][a] * g[a], |sum, b| sum + c[r][shear(V, a, b)] * g[b]);
+                    match V == RING && a == 0 {
+                        true => s + c[r][2] * point.hoop[j],
+                        false => s,
+                    }
                 })
             });
             for i in j..nodes {
@@ -245,8 +294,11 @@ impl ElementMatrix {
                     let k = &mut self.values[D * i * order + D * j + component..];
                     for a in 0..D {
                         let others = (0..D).filter(|&b| b != a);
-                        let force =
-                            others.fold(g[a] * s[a], |sum, b| sum + g[b] * s[shear(D, a, b)]);
+                        let mut force =
+                            others.fold(g[a] * s[a], |sum, b| sum + g[b] * s[shear(V, a, b)]);
+                        if V == RING && a == 0 {
+                            force += point.hoop[i] * s[2];
+                        }
                         k[a * order] += point.weight * force;
                     }
                 }
@@ -305,6 +357,10 @@ mod tests {
         (kind.dim() == 2).then_some(PlaneState::Strain)
     }
 
+    fn size(kind: ElementKind) -> usize {
+        if kind.dim() == 2 { 3 } else { 6 }
+    }
+
     fn cells() -> impl Iterator<Item = ElementKind> {
         [2, 3].into_iter().flat_map(ElementKind::of_dim)
     }
@@ -356,7 +412,7 @@ mod tests {
                 STRAIN
             };
             for point in kind.stiffness_points() {
-                let (e, _) = strain(point, &points, &u);
+                let (e, _) = strain(point, &points, &u, size(kind));
                 for (e, exact) in e.iter().zip(exact) {
                     assert!((e - exact).abs() < 1e-14, "{kind:?}");
                 }
@@ -431,7 +487,7 @@ mod tests {
             let energy: f64 = forces.zip(&u).map(|(force, u)| force * u).sum();
             let exact: f64 = (kind.stiffness_points().iter())
                 .map(|point| {
-                    let (e, weight) = strain(point, &points(kind), &u);
+                    let (e, weight) = strain(point, &points(kind), &u, size(kind));
                     weight * product(&voigt_stress(&material, &e), &e)
                 })
                 .sum();

@@ -5,10 +5,10 @@
 
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::model::Material;
-use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3, Vector4, Vector6};
 use serde::{Deserialize, Serialize};
 
-use super::elasticity::{Voigt, strain, voigt_stress};
+use super::elasticity::{Voigt, stiffness_points, strain, voigt_stress};
 use super::polynomial::NodalStress;
 
 /// Squares of energy norms over a cell (N m, in the plane per metre of thickness).
@@ -41,6 +41,8 @@ impl CellError {
 pub enum Compliance {
     /// In the plane.
     Plane(Matrix3<f64>),
+    /// Around an axis.
+    Ring(Matrix4<f64>),
     /// In space.
     Solid(Box<Matrix6<f64>>),
 }
@@ -53,6 +55,10 @@ impl Compliance {
             3 => {
                 let c = Matrix3::from_fn(|i, j| c[i][j]);
                 Self::Plane(c.try_inverse().unwrap_or_default())
+            }
+            4 => {
+                let c = Matrix4::from_fn(|i, j| c[i][j]);
+                Self::Ring(c.try_inverse().unwrap_or_default())
             }
             _ => {
                 let c = Matrix6::from_fn(|i, j| c[i][j]);
@@ -68,6 +74,10 @@ impl Compliance {
                 let s = Vector3::new(s[0], s[1], s[2]);
                 s.dot(&(inverse * s))
             }
+            Self::Ring(inverse) => {
+                let s = Vector4::new(s[0], s[1], s[2], s[3]);
+                s.dot(&(inverse * s))
+            }
             Self::Solid(inverse) => {
                 let s = Vector6::from(*s);
                 s.dot(&(inverse.as_ref() * s))
@@ -79,6 +89,7 @@ impl Compliance {
     fn voigt(&self, &[xx, yy, zz, xy, yz, xz]: &NodalStress) -> Voigt {
         match self {
             Self::Plane(_) => [xx, yy, xy, 0.0, 0.0, 0.0],
+            Self::Ring(_) => [xx, yy, zz, xy, 0.0, 0.0],
             Self::Solid(_) => [xx, yy, zz, yz, xz, xy],
         }
     }
@@ -110,8 +121,9 @@ impl Compliance {
         material: &Material,
     ) -> CellError {
         let mut sum = CellError::default();
-        for reference in kind.stiffness_points() {
-            let (strain, weight) = strain(reference, points, u);
+        let components = material.stiffness.size();
+        for reference in stiffness_points(&kind, components) {
+            let (strain, weight) = strain(reference, points, u, components);
             let stress = voigt_stress(material, &strain);
             let mut smooth = [0.0; 6];
             for (n, at_node) in reference.shape.iter().zip(recovered) {

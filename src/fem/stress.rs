@@ -8,7 +8,7 @@ use contact_dd_partition::element::reference::Domain;
 use contact_dd_partition::model::{Material, PlaneState};
 
 use super::block::{Block, BlockCell};
-use super::elasticity::{MAX_DOFS, MAX_NODES, strain, stress};
+use super::elasticity::{MAX_DOFS, MAX_NODES, stiffness_points, strain, stress};
 use super::estimate::{CellError, Compliance};
 use super::patch::PatchSum;
 use super::polynomial::NodalStress;
@@ -67,7 +67,7 @@ impl BlockStress {
             }
             for point in cell.kind.stress_points() {
                 let at = local.place(point);
-                let sigma = match is_uniform(cell.kind) {
+                let sigma = match is_uniform(cell.kind, material) {
                     true => mean,
                     false => local.stress(point, material, plane),
                 };
@@ -105,7 +105,7 @@ impl BlockStress {
             local.take(block, &cell, u);
             recovered.clear();
             recovered.extend(cell.nodes().map(|node| at_nodes[node as usize]));
-            if is_uniform(cell.kind) {
+            if is_uniform(cell.kind, &materials[cell.material]) {
                 let measure = cell.kind.measure(&local.points);
                 errors.push(compliance.simplex(measure, stress, &recovered));
                 continue;
@@ -139,9 +139,10 @@ impl RecoveredStress {
     }
 }
 
-/// Whether the stress is the same everywhere in a cell: that of a linear triangle or tetrahedron.
-fn is_uniform(kind: ElementKind) -> bool {
-    kind.is_linear() && matches!(kind.domain(), Domain::Triangle | Domain::Tetrahedron)
+/// Whether the stress is the same everywhere in a cell: that of a linear triangle or tetrahedron, but not around an axis.
+fn is_uniform(kind: ElementKind, material: &Material) -> bool {
+    let is_ring = material.stiffness.size() == 4;
+    !is_ring && kind.is_linear() && matches!(kind.domain(), Domain::Triangle | Domain::Tetrahedron)
 }
 
 /// A cell with its nodes, their coordinates and displacements.
@@ -178,8 +179,9 @@ impl LocalCell {
     /// The mean stress.
     fn mean(&self, material: &Material, plane: Option<PlaneState>) -> [f64; 6] {
         let (mut sum, mut measure) = ([0.0; 6], 0.0);
-        for point in self.kind.stiffness_points() {
-            let (strain, weight) = strain(point, &self.points, &self.u);
+        let components = material.stiffness.size();
+        for point in stiffness_points(&self.kind, components) {
+            let (strain, weight) = strain(point, &self.points, &self.u, components);
             let sigma = stress(material, plane, &strain);
             for (sum, s) in sum.iter_mut().zip(sigma) {
                 *sum += weight * s;
@@ -207,7 +209,8 @@ impl LocalCell {
         material: &Material,
         plane: Option<PlaneState>,
     ) -> [f64; 6] {
-        let (strain, _) = strain(point, &self.points, &self.u);
+        let components = material.stiffness.size();
+        let (strain, _) = strain(point, &self.points, &self.u, components);
         stress(material, plane, &strain)
     }
 

@@ -11,7 +11,8 @@ use super::result::ContactState;
 /// Part of its cohesion that a point which slips can lack by round-off.
 const ROUND_OFF: f64 = 1e-6;
 
-/// A force and its moment about the origin (N and N m, per metre of thickness in the plane).
+/// A force and its moment about the origin (N and N m, per metre of thickness in the plane; around an axis the force
+/// along it).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Resultant {
     /// Force.
@@ -138,6 +139,22 @@ impl Resultants {
         Self {
             contacts: contacts.collect(),
             reactions,
+        }
+    }
+
+    /// Makes them those of forces all around an axis: what isn't along it cancels, and so do moments.
+    pub fn sum_around_axis(&mut self) {
+        let contacts = self
+            .contacts
+            .iter_mut()
+            .map(|contact| &mut contact.resultant);
+        let reactions = self
+            .reactions
+            .iter_mut()
+            .map(|reaction| &mut reaction.resultant);
+        for Resultant { force, moment } in contacts.chain(reactions) {
+            *force = [0.0, force[1], 0.0];
+            *moment = [0.0; 3];
         }
     }
 

@@ -105,6 +105,7 @@ fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate
             at_points,
             plan.tree.interface_nodes,
             fixed.context.catalog.dim,
+            fixed.context.catalog.plane,
         ),
         None => Certificate::default(),
     }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::element::geometry::{cross, difference, length};
 use contact_dd_partition::mesh::bounding_box::BoundingBox;
+use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::{Catalog, Subdomain};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -54,7 +55,7 @@ pub(super) fn body_states(
         .iter()
         .map(|&frame| BodyState {
             frame,
-            supports: Vec::new(),
+            supports: held_by_symmetry(catalog),
             load: vec![0.0; modes],
             load_scale: 0.0,
             candidates: Vec::new(),
@@ -79,6 +80,16 @@ pub(super) fn body_states(
     );
     states.iter_mut().for_each(BodyState::drop_round_off);
     states
+}
+
+/// The rows of rigid motions that no body has: around an axis all but the translation along it.
+fn held_by_symmetry(catalog: &Catalog) -> Vec<Vec<f64>> {
+    match catalog.plane {
+        Some(PlaneState::Axisymmetric) => {
+            vec![vec![1.0, 0.0, 0.0, 0.0], vec![0.0, 0.0, 1.0, 0.0]]
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// What a subdomain adds to its body.

@@ -123,7 +123,7 @@ type Solved = OnceLock<(Case, BTreeMap<String, Vec<u64>>)>;
 
 /// One problem file has one answer: the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
-    let cases: [(&str, MakeCase); 21] = [
+    let cases: [(&str, MakeCase); 22] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
         ("granite_in_one_subdomain", || {
             Case::of(&built_in_model("granite", 0), 1)
@@ -167,6 +167,12 @@ fn same_results(trials: &mut Trials) {
             let scene = two_block_scene().replace("plane = 'strain'\n", "");
             let held = "[[bilateral]]\non = ['lower back', 'upper back']\n";
             Case::of(&model(&format!("{scene}{held}"), mesh.unwrap()), 9)
+        }),
+        ("around_an_axis", || {
+            let scene = two_block_scene().replace("'strain'", "'axisymmetric'");
+            let scene = scene.replace("name = 'joint'", "name = 'joint'\nfriction = 0.3");
+            let scene = scene.replace("1.9*x", "1.6*x");
+            Case::of(&model(&scene, sort("quad9").of(&two_blocks().mesh)), 9)
         }),
         ("raous", || Case::of(&built_in_model("raous", 0), 7)),
         ("incline", || Case::of(&built_in_model("incline", 0), 4)),

@@ -4,7 +4,7 @@ use crate::support::solution::Solution;
 use crate::support::solver::{Case, problem};
 use crate::support::sorts::sort;
 use crate::support::validation::{
-    beam, crack, hertz, hole, punch, roller, signorini, space, uniform,
+    beam, crack, hertz, hole, punch, ring, roller, signorini, space, uniform,
 };
 
 #[test]
@@ -50,6 +50,21 @@ fn a_closed_crack_slips_as_much_as_it_should() {
 #[test]
 fn a_flat_punch_presses_most_at_its_corners() {
     punch::case().check();
+}
+
+#[test]
+fn a_ball_around_its_axis_converges_to_hertz() {
+    ring::ball().check();
+}
+
+#[test]
+fn balls_around_their_axis_whose_nodes_do_not_match_converge_to_hertz() {
+    ring::balls().check();
+}
+
+#[test]
+fn a_round_flat_punch_goes_as_deep_as_it_should() {
+    ring::punch().check();
 }
 
 #[test]

@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::contact_point::Law;
-use contact_dd_partition::model::Model;
+use contact_dd_partition::model::{Model, PlaneState};
 use faer::sparse::Triplet;
 use nalgebra::{DMatrix, DVector};
 
@@ -358,13 +358,15 @@ impl Assembled {
 
 fn cells(model: &Model) -> Vec<Cell> {
     let mesh = &model.mesh;
+    let is_ring = model.plane == Some(PlaneState::Axisymmetric);
     let mut references = BTreeMap::new();
     (mesh.cells.iter().zip(&model.cell_material))
         .map(|((kind, nodes), &material)| {
             let nodes: Vec<usize> = nodes.iter().map(|&node| node as usize).collect();
             let points: Vec<_> = nodes.iter().map(|&node| mesh.points[node]).collect();
             let stiffness = &model.materials[material as usize].stiffness;
-            let reference = (references.entry(kind)).or_insert_with(|| Reference::new(kind));
+            let reference =
+                (references.entry(kind)).or_insert_with(|| Reference::new(kind, is_ring));
             Cell::new(reference, &points, nodes, stiffness)
         })
         .collect()

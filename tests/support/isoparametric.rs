@@ -8,13 +8,17 @@ use contact_dd_partition::element::ElementKind::{
 use contact_dd_partition::stiffness::Stiffness;
 use faer::sparse::Triplet;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use std::f64::consts::PI;
+
+/// ∇N of a node, and around an axis N over the radius.
+type Slope = ([f64; 3], f64);
 
 /// An element at its quadrature points.
 pub struct Cell {
     pub nodes: Vec<usize>,
     dim: usize,
-    /// ∇N of each node and the weight times the Jacobian, of each point.
-    points: Vec<(Vec<[f64; 3]>, f64)>,
+    /// Slopes of each node and the weight times the Jacobian, around an axis times the circumference, of each point.
+    points: Vec<(Vec<Slope>, f64)>,
     stiffness: DMatrix<f64>,
 }
 
@@ -132,7 +136,7 @@ pub fn gradients(kind: ElementKind, xi: [f64; 3]) -> Vec<[f64; 3]> {
 
 /// Points and weights of the rule by which the stiffness is defined; of quadratic tetrahedra of one that is as exact
 /// where their edges are straight.
-fn rule(kind: ElementKind) -> Vec<([f64; 3], f64)> {
+fn rule(kind: ElementKind, is_ring: bool) -> Vec<([f64; 3], f64)> {
     let product = |line: &[(f64, f64)]| -> Vec<([f64; 3], f64)> {
         let depth = match kind.dim() {
             2 => vec![(0.0, 1.0)],
@@ -148,6 +152,12 @@ fn rule(kind: ElementKind) -> Vec<([f64; 3], f64)> {
             .collect()
     };
     match kind {
+        Triangle3 if is_ring => {
+            let (a, b) = (1.0 / 6.0, 2.0 / 3.0);
+            [[a, a, 0.0], [a, b, 0.0], [b, a, 0.0]]
+                .map(|at| (at, 1.0 / 6.0))
+                .to_vec()
+        }
         Triangle3 => vec![([1.0 / 3.0, 1.0 / 3.0, 0.0], 0.5)],
         // Dunavant, Int. J. Numer. Meth. Eng. 21 (1985), degree 4.
         Triangle6 => [
@@ -178,13 +188,15 @@ fn rule(kind: ElementKind) -> Vec<([f64; 3], f64)> {
     }
 }
 
-/// ∂N_i/∂ξ and weights at the points of a kind's rule.
-pub struct Reference(Vec<(Vec<[f64; 3]>, f64)>);
+/// N_i, ∂N_i/∂ξ and weights at the points of a kind's rule.
+pub struct Reference(Vec<(Vec<f64>, Vec<[f64; 3]>, f64)>);
 
 impl Reference {
-    pub fn new(kind: ElementKind) -> Self {
-        let points = rule(kind).into_iter();
-        Self(points.map(|(xi, w)| (gradients(kind, xi), w)).collect())
+    /// Of cells around an axis or not.
+    pub fn new(kind: ElementKind, is_ring: bool) -> Self {
+        let points = rule(kind, is_ring).into_iter();
+        let of_point = |(xi, w)| (shapes(kind, xi), gradients(kind, xi), w);
+        Self(points.map(of_point).collect())
     }
 }
 
@@ -196,8 +208,8 @@ impl Cell {
         stiffness: &Stiffness,
     ) -> Self {
         let size = stiffness.size();
-        let dim = if size == 3 { 2 } else { 3 };
-        let at_point = |(reference, weight): &(Vec<[f64; 3]>, f64)| {
+        let dim = if size < 6 { 2 } else { 3 };
+        let at_point = |(shapes, reference, weight): &(Vec<f64>, Vec<[f64; 3]>, f64)| {
             let mut j = Matrix3::zeros();
             for (x, g) in points.iter().zip(reference) {
                 j += Vector3::from(*x) * Vector3::from(*g).transpose();
@@ -206,10 +218,13 @@ impl Cell {
                 j[(2, 2)] = 1.0;
             }
             let to_space = j.try_inverse().unwrap().transpose();
+            let radius: f64 = points.iter().zip(shapes).map(|(x, n)| x[0] * n).sum();
+            let around = if size == 4 { 2.0 * PI * radius } else { 1.0 };
             let slopes = reference
                 .iter()
-                .map(|g| (to_space * Vector3::from(*g)).into());
-            (slopes.collect(), weight * j.determinant().abs())
+                .zip(shapes)
+                .map(|(g, n)| ((to_space * Vector3::from(*g)).into(), n / radius));
+            (slopes.collect(), weight * j.determinant().abs() * around)
         };
         Self {
             nodes,
@@ -220,14 +235,18 @@ impl Cell {
     }
 
     /// The strains of a displacement of 1 along an axis, in Voigt's order, of a node with these slopes.
-    fn strain(&self, [x, y, z]: [f64; 3], axis: usize) -> DVector<f64> {
+    fn strain(&self, ([x, y, z], hoop): Slope, axis: usize) -> DVector<f64> {
         let voigt = match axis {
             0 => [x, 0.0, 0.0, 0.0, z, y],
             1 => [0.0, y, 0.0, z, 0.0, x],
             _ => [0.0, 0.0, z, y, x, 0.0],
         };
-        match self.dim {
-            2 => DVector::from_column_slice(&[voigt[0], voigt[1], voigt[5]]),
+        match self.stiffness.nrows() {
+            3 => DVector::from_column_slice(&[voigt[0], voigt[1], voigt[5]]),
+            4 => {
+                let hoop = if axis == 0 { hoop } else { 0.0 };
+                DVector::from_column_slice(&[voigt[0], voigt[1], hoop, voigt[5]])
+            }
             _ => DVector::from_column_slice(&voigt),
         }
     }
@@ -251,13 +270,17 @@ impl Cell {
 
     /// uᵀ K u.
     pub fn energy(&self, u: &[f64]) -> f64 {
-        let energy = |(slopes, weight): &(Vec<[f64; 3]>, f64)| {
+        let energy = |(slopes, weight): &(Vec<Slope>, f64)| {
             let mut strain = DVector::zeros(self.stiffness.nrows());
+            if self.stiffness.nrows() == 4 {
+                let radial = self.nodes.iter().map(|&node| u[self.dim * node]);
+                strain[2] = radial.zip(slopes).map(|(u, (_, hoop))| u * hoop).sum();
+            }
             for (&node, &slope) in self.nodes.iter().zip(slopes).skip(1) {
                 for axis in 0..self.dim {
                     // The slopes add up to 0: against the first node, a translation drops out.
                     let du = u[self.dim * node + axis] - u[self.dim * self.nodes[0] + axis];
-                    strain += du * self.strain(slope, axis);
+                    strain += du * self.strain((slope.0, 0.0), axis);
                 }
             }
             weight * strain.dot(&(&self.stiffness * &strain))

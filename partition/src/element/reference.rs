@@ -128,6 +128,9 @@ pub struct CellRules {
     pub cubic_load: usize,
 }
 
+/// The degree that the stiffness around an axis needs: in linear triangles, too, the strain of the hoop varies.
+const AROUND_AXIS: usize = 2;
+
 /// A reference element.
 #[derive(Debug)]
 pub struct ReferenceElement {
@@ -142,6 +145,7 @@ struct Tables {
     corners_around: Vec<Vec<usize>>,
     edges_at: Vec<Vec<(usize, Option<usize>)>>,
     stiffness: Vec<TabulatedPoint>,
+    around_axis: Vec<TabulatedPoint>,
     stress: Vec<TabulatedPoint>,
     lattice: Lattice,
 }
@@ -243,6 +247,11 @@ impl ReferenceElement {
         &self.tables().stiffness
     }
 
+    /// The same where the cell goes all around an axis.
+    pub fn points_around_axis(&self) -> &[TabulatedPoint] {
+        &self.tables().around_axis
+    }
+
     /// The points of a cell at which stresses are taken for their recovery; facets have none.
     pub fn stress_points(&self) -> &[TabulatedPoint] {
         &self.tables().stress
@@ -273,6 +282,7 @@ impl ReferenceElement {
                     .map(|corner| self.find_edges(corner))
                     .collect(),
                 stiffness: rule(|rules| rules.stiffness),
+                around_axis: rule(|rules| rules.stiffness.max(AROUND_AXIS)),
                 stress: rule(|rules| rules.stress),
                 lattice: Lattice::new(self),
             }

@@ -1,5 +1,6 @@
-//! Quadratic facets of space without a node in the middle: ∫ N of their corners isn't positive, so that a pressure
-//! pulls there. With functions of which each corner takes a part from the nodes on its edges all forces push.
+//! Quadratic facets whose corners have no positive ∫ N, so that a pressure pulls there or doesn't push: in space those
+//! without a node in the middle, around an axis those that end on it. With functions of which such a corner takes a
+//! part from the nodes on its edges all forces push.
 
 use nalgebra::DMatrix;
 
@@ -11,38 +12,70 @@ use crate::element::ElementKind;
 pub(super) const TAKEN: f64 = 0.2;
 
 /// Whether ∫ N of corners isn't positive.
-pub(super) fn has_weightless_corners(kind: ElementKind) -> bool {
+fn has_weightless_corners(kind: ElementKind) -> bool {
     kind.dim() > 1 && kind.nodes() == 2 * kind.corners()
 }
 
-/// The functions of the first `count` nodes when each of a node on an edge hands the part `taken` to either
-/// end of the edge. All of it handed over leaves the functions of the linear facet; there a node
-/// in the middle hands its own to all corners.
-pub(super) fn blend(kind: ElementKind, count: usize, taken: f64) -> DMatrix<f64> {
+/// The functions of the corners alone: each node on an edge hands half of its own to either end, a node in the
+/// middle hands its own to all.
+pub(super) fn of_corners(kind: ElementKind) -> DMatrix<f64> {
     let (nodes, corners) = (kind.nodes(), kind.corners());
-    let mut basis = DMatrix::identity(count, nodes);
+    let mut basis = DMatrix::identity(corners, nodes);
     for (_, edge) in kind.facets() {
         let &[start, end, middle] = *edge else {
             continue;
         };
-        basis[(start, middle)] += taken;
-        basis[(end, middle)] += taken;
-        if middle < count {
-            basis[(middle, middle)] = 1.0 - 2.0 * taken;
-        }
+        basis[(start, middle)] += 0.5;
+        basis[(end, middle)] += 0.5;
     }
-    if count == corners {
-        for middle in 2 * corners..nodes {
-            (0..corners).for_each(|corner| basis[(corner, middle)] = 1.0 / corners as f64);
-        }
+    for middle in 2 * corners..nodes {
+        (0..corners).for_each(|corner| basis[(corner, middle)] = 1.0 / corners as f64);
     }
     basis
 }
 
-/// The functions of a facet with positive integrals, as rows of coefficients of its shape functions.
-pub(super) fn positive(kind: ElementKind) -> DMatrix<f64> {
-    match has_weightless_corners(kind) {
-        true => blend(kind, kind.nodes(), TAKEN),
-        false => DMatrix::identity(kind.nodes(), kind.nodes()),
+/// Which corners of a facet take a part of the functions of which nodes on its edges.
+#[derive(Clone, Debug)]
+pub(super) struct Blending {
+    nodes: usize,
+    /// Nodes on edges, each with the corners that take a part.
+    pub takers: Vec<(usize, Vec<usize>)>,
+}
+
+impl Blending {
+    /// That of a facet of a kind, one corner of which may lie on the axis that it goes around: there a line of three
+    /// nodes has ∫ N dS = 0.
+    pub fn new(kind: ElementKind, on_axis: Option<usize>) -> Self {
+        let takers = match (has_weightless_corners(kind), on_axis) {
+            (true, _) => {
+                let edges = kind.facets().iter();
+                edges
+                    .map(|(_, edge)| (edge[2], edge[..2].to_vec()))
+                    .collect()
+            }
+            (false, Some(corner)) => vec![(2, vec![corner])],
+            (false, None) => Vec::new(),
+        };
+        Self {
+            nodes: kind.nodes(),
+            takers,
+        }
+    }
+
+    /// Whether no corner takes any.
+    pub fn is_none(&self) -> bool {
+        self.takers.is_empty()
+    }
+
+    /// The functions with positive integrals, as rows of coefficients of the shape functions.
+    pub fn positive(&self) -> DMatrix<f64> {
+        let mut basis = DMatrix::identity(self.nodes, self.nodes);
+        for (middle, corners) in &self.takers {
+            for &corner in corners {
+                basis[(corner, *middle)] += TAKEN;
+            }
+            basis[(*middle, *middle)] = 1.0 - corners.len() as f64 * TAKEN;
+        }
+        basis
     }
 }

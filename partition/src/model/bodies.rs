@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::{Material, PlaneState, groups};
 use crate::element::Elements;
 use crate::error::InputError;
+use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::{Group, Mesh};
 use crate::scene::Scene;
 use crate::scene::condition::{Body, Contact, Names};
@@ -13,6 +14,9 @@ use crate::stiffness::Stiffness;
 
 /// Poisson's ratio from which on linear cells lock: too stiff by 7 % in energy at 0.499.
 const LOCKING: f64 = 0.49;
+
+/// Distance from the axis, relative to the bodies' extent, that is round-off.
+const AXIS: f64 = 1e-10;
 
 /// The mesh of the bodies alone, and body and material of its cells.
 pub(super) struct Bodies {
@@ -48,6 +52,9 @@ impl Bodies {
         let cell_material: Vec<u32> = (cell_body.iter())
             .map(|&body| material_of_body[body as usize])
             .collect();
+        if scene.plane == Some(PlaneState::Axisymmetric) {
+            take_radii(&mut mesh, &cell_body, &names)?;
+        }
         warn_of_locking(scene, &mesh, &cell_material, warnings);
         Ok(Self {
             mesh,
@@ -70,6 +77,29 @@ pub(super) fn prescribed_subdomains(mesh: &Mesh, names: &Names) -> Result<Vec<u3
         )));
     }
     Ok(owner.into_iter().flatten().collect())
+}
+
+/// Takes x for the radius: what is round-off of the axis lies on it.
+///
+/// # Errors
+/// A node on its other side, by its body.
+fn take_radii(mesh: &mut Mesh, cell_body: &[u32], names: &[&str]) -> Result<(), InputError> {
+    let axis = AXIS * BoundingBox::around(&mesh.points).extent();
+    for ((_, nodes), &body) in mesh.cells.iter().zip(cell_body) {
+        for &node in nodes {
+            let x = mesh.points[node as usize][0];
+            if x < -axis {
+                return Err(InputError::new(format!(
+                    "body '{}': node {} lies at x = {x}; expected x ≥ 0, as x is the radius where plane = \
+                     \"axisymmetric\"",
+                    names[body as usize], mesh.node_tags[node as usize]
+                )));
+            }
+        }
+    }
+    let near = mesh.points.iter_mut().filter(|x| x[0].abs() <= axis);
+    near.for_each(|x| x[0] = 0.0);
+    Ok(())
 }
 
 /// Warns of linear cells of a material that hardly changes its volume.
@@ -122,7 +152,7 @@ fn material(name: &str, elasticity: &Elasticity, plane: Option<PlaneState>) -> M
         out_of_plane: match plane {
             Some(PlaneState::Strain) => out_of_plane,
             Some(PlaneState::Stress) => Some([0.0; 3]),
-            None => None,
+            Some(PlaneState::Axisymmetric) | None => None,
         },
         poisson,
     }
@@ -133,25 +163,22 @@ fn isotropic(young: f64, poisson: f64, plane: Option<PlaneState>) -> (Stiffness,
     let shear = young / (2.0 * (1.0 + poisson));
     let lambda = match plane {
         Some(PlaneState::Stress) => 2.0 * shear * poisson / (1.0 - poisson),
-        Some(PlaneState::Strain) | None => 2.0 * shear * poisson / (1.0 - 2.0 * poisson),
+        _ => 2.0 * shear * poisson / (1.0 - 2.0 * poisson),
     };
     let axial = lambda + 2.0 * shear;
-    let stiffness = match plane {
-        Some(_) => Stiffness::from([
-            [axial, lambda, 0.0],
-            [lambda, axial, 0.0],
-            [0.0, 0.0, shear],
-        ]),
-        None => Stiffness::from(std::array::from_fn::<_, 6, _>(|i| {
-            std::array::from_fn::<_, 6, _>(|j| match (i < 3, j < 3) {
-                (true, true) if i == j => axial,
-                (true, true) => lambda,
-                _ if i == j => shear,
-                _ => 0.0,
-            })
-        })),
+    let size = PlaneState::components(plane);
+    // Those of the axes come first.
+    let axes = if size == 3 { 2 } else { 3 };
+    let entry = |i: usize, j: usize| match (i < axes, j < axes) {
+        (true, true) if i == j => axial,
+        (true, true) => lambda,
+        _ if i == j => shear,
+        _ => 0.0,
     };
-    (stiffness, [lambda, lambda, 0.0])
+    let values: Vec<f64> = (0..size * size)
+        .map(|k| entry(k / size, k % size))
+        .collect();
+    (Stiffness::new(size, &values), [lambda, lambda, 0.0])
 }
 
 /// Groups of cells that are no body, to end a message with; empty where there is none.

@@ -2,12 +2,11 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::blend::has_weightless_corners;
 use super::node_pairs::Unpaired;
 use super::sides::{Sides, side_nodes};
 use super::steps::Loads;
 use super::supports::PARALLEL;
-use super::surface::{CORNER, Surface};
+use super::surface::{CORNER, Surface, SurfaceFacet};
 use super::{Contact, groups, mortar, node_pairs, obstacle};
 use crate::contact_point::{ContactPoint, Law};
 use crate::element::geometry::{advance, dot, length};
@@ -15,7 +14,9 @@ use crate::error::InputError;
 use crate::magnitude::short;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
+use crate::scene::Scene;
 use crate::scene::condition::{self, Names, Pairing, Partner};
+use crate::scene::material::PlaneState;
 use crate::scene::units::Units;
 
 /// Gaps are exact to this fraction of the scene's coordinates.
@@ -47,11 +48,12 @@ pub(super) struct Contacts<'a> {
     supports: HashMap<u32, Vec<Held>>,
     /// The largest coordinate (m).
     size: f64,
+    plane: Option<PlaneState>,
     units: Units,
 }
 
 impl<'a> Contacts<'a> {
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, loads: &Loads, units: Units) -> Self {
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, loads: &Loads, scene: &Scene) -> Self {
         let mut by_node: HashMap<u32, Vec<Held>> = HashMap::new();
         for (i, support) in loads.supports.iter().enumerate() {
             by_node.entry(support.node).or_default().push(Held {
@@ -65,7 +67,8 @@ impl<'a> Contacts<'a> {
             topology,
             supports: by_node,
             size: coordinates.map(|c| c.abs()).fold(0.0, f64::max),
-            units,
+            plane: scene.plane,
+            units: scene.units,
         }
     }
 
@@ -218,7 +221,14 @@ impl<'a> Contacts<'a> {
     fn side(&self, names: &Names, what: &str) -> Result<(Vec<u32>, Surface), InputError> {
         let facets = groups::facets(self.mesh, names, what)?;
         let what = format!("{what}, side {names}");
-        let surface = Surface::new(self.mesh, self.topology, &facets, &what)?;
+        let surface = Surface::new(self.mesh, self.topology, self.plane, &facets, &what)?;
+        let on_axis = |facet: &&SurfaceFacet| facet.area() == 0.0;
+        if let Some(facet) = surface.facets.iter().find(on_axis) {
+            return Err(InputError::new(format!(
+                "{what}: the facet of nodes {} lies on the axis; expected sides off it",
+                self.mesh.tags_of(&facet.nodes)
+            )));
+        }
         Ok((facets, surface))
     }
 
@@ -232,15 +242,12 @@ impl<'a> Contacts<'a> {
     ) -> Result<Vec<ContactPoint<u32>>, InputError> {
         let refused = InputError::about(what);
         let sides = Sides::new(self.mesh, side_a, side_b, what)?;
-        let are_weightless = side_a
-            .facets
-            .iter()
-            .any(|facet| has_weightless_corners(facet.kind));
+        let are_weightless = (side_a.facets.iter()).any(|facet| !facet.blending().is_none());
         let matched = match pairing {
             Some(Pairing::Nodes) if are_weightless => {
                 return Err(refused(
-                    "nodes can't be paired on quadratic faces without a node in the middle, whose corners would pull; \
-                     expected pairing = \"mortar\", or none"
+                    "nodes can't be paired on quadratic faces without a node in the middle, whose corners would pull, nor \
+                     on quadratic cells at an axis, where one would carry nothing; expected pairing = \"mortar\", or none"
                         .into(),
                 ));
             }

@@ -10,12 +10,15 @@ use crate::error::InputError;
 use crate::magnitude;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
+use crate::scene::material::PlaneState;
 use crate::scene::number::Vector;
 use crate::scene::step::Loading;
 
 /// Degree of exactness on lines and faces: a cubic pressure along a curved quadratic one times a shape
 /// function and n dS needs 9 and 11.
 const FACET_DEGREES: [usize; 2] = [9, 11];
+/// What the radius adds to a degree.
+const RADIUS: [usize; 2] = [1, 2];
 
 /// The nodal forces of a loading of `scene`, node by node.
 pub(super) fn forces(
@@ -30,13 +33,20 @@ pub(super) fn forces(
     for (body, (name, force)) in scene.bodies.keys().zip(&loading.body_force).enumerate() {
         let Some(force) = force else { continue };
         let what = loading.body_force_label(name);
-        body_force(bodies, body as u32, force, scale.body_force, &mut forces)
-            .map_err(InputError::about(&what))?;
+        body_force(
+            bodies,
+            body as u32,
+            force,
+            scale.body_force,
+            scene.plane,
+            &mut forces,
+        )
+        .map_err(InputError::about(&what))?;
     }
     for (index, traction) in loading.traction.iter().enumerate() {
         let what = loading.traction_label(index, &traction.on);
         let facets = groups::facets(mesh, &traction.on, &what)?;
-        let surface = Surface::new(mesh, topology, &facets, &what)?;
+        let surface = Surface::new(mesh, topology, scene.plane, &facets, &what)?;
         surface_load(&surface, &mut forces, |x, area| {
             let traction = traction.value.at(x)?;
             Ok(traction.map(|c| scale.traction * c * length(area)))
@@ -46,7 +56,7 @@ pub(super) fn forces(
     for (index, pressure) in loading.pressure.iter().enumerate() {
         let what = loading.pressure_label(index, &pressure.on);
         let facets = groups::facets(mesh, &pressure.on, &what)?;
-        let surface = Surface::new(mesh, topology, &facets, &what)?;
+        let surface = Surface::new(mesh, topology, scene.plane, &facets, &what)?;
         surface_load(&surface, &mut forces, |x, area| {
             let pressure = scale.pressure * pressure.value.at(x)?;
             Ok(area.map(|c| -pressure * c))
@@ -65,12 +75,21 @@ pub(super) fn forces(
     Ok(forces)
 }
 
+/// The degree of a rule that is exact with the radius as a factor, where the scene is axisymmetric.
+fn around(plane: Option<PlaneState>, degree: usize, is_linear: bool) -> usize {
+    match plane {
+        Some(PlaneState::Axisymmetric) => degree + RADIUS[usize::from(!is_linear)],
+        _ => degree,
+    }
+}
+
 /// Adds ∫ N_i b dx over the cells of a body, b a `factor` of the force.
 fn body_force(
     bodies: &Bodies,
     body: u32,
     force: &Vector,
     factor: f64,
+    plane: Option<PlaneState>,
     forces: &mut [[f64; 3]],
 ) -> Result<(), String> {
     let mesh = &bodies.mesh;
@@ -84,14 +103,19 @@ fn body_force(
                 true => rules.constant_load,
                 false => rules.cubic_load,
             });
-            degree.map_or_else(Vec::new, |degree| kind.tabulate(degree))
+            degree.map_or_else(Vec::new, |degree| {
+                kind.tabulate(around(plane, degree, kind.is_linear()))
+            })
         });
         let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
         for point in rule.iter() {
             let shape = point.shape.iter();
             let x = (shape.clone().zip(&at)).fold([0.0; 3], |sum, (&n, &p)| advance(sum, n, p));
             let load = force.at(x)?;
-            let weight = factor * point.weight * kind.determinant(&point.gradients, &at);
+            let weight = factor
+                * point.weight
+                * kind.determinant(&point.gradients, &at)
+                * PlaneState::thickness(plane, x);
             for (&node, value) in nodes.iter().zip(shape) {
                 let sum = &mut forces[node as usize];
                 *sum = advance(*sum, weight * value, load);
@@ -108,8 +132,12 @@ fn surface_load(
     load: impl Fn([f64; 3], [f64; 3]) -> Result<[f64; 3], String>,
 ) -> Result<(), String> {
     for facet in &surface.facets {
-        for (xi, weight) in facet.kind.quadrature(FACET_DEGREES[facet.kind.dim() - 1]) {
+        let degree = FACET_DEGREES[facet.kind.dim() - 1];
+        for (xi, weight) in
+            (facet.kind).quadrature(around(facet.plane, degree, facet.kind.is_linear()))
+        {
             let x = facet.kind.position(&facet.at, xi);
+            let weight = weight * PlaneState::thickness(facet.plane, x);
             let load = load(x, facet.kind.area_vector(&facet.at, xi))?;
             for (&node, value) in facet.nodes.iter().zip(facet.kind.shape(xi)) {
                 let sum = &mut forces[node as usize];

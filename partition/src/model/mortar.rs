@@ -73,8 +73,9 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, String> {
             rows.entry(node).or_default().add(on, sides.b, &weight);
         }
     }
+    let plane = sides.a.facets.first().and_then(|facet| facet.plane);
     let points: Vec<ContactPoint<u32>> = (sides.nodes_a.iter())
-        .filter_map(|a| Some(rows.remove(&a.node)?.point(a, sides.mesh)))
+        .filter_map(|a| Some(rows.remove(&a.node)?.point(a, sides.mesh, plane)))
         .collect();
     if points.is_empty() {
         return Err(apart(any_back_facing));

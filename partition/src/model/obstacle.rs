@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::blend::{TAKEN, has_weightless_corners};
+use super::blend::TAKEN;
 use super::ray_search::FACING;
 use super::sides::SideNode;
 use super::surface::Surface;
@@ -61,24 +61,24 @@ pub(super) fn points(
     Ok(points)
 }
 
-/// On quadratic faces without a node in the middle: with functions of which corners take a part from the nodes on
+/// On quadratic facets whose corners carry nothing else: with functions of which corners take a part from the nodes on
 /// their edges, N_e = (Ñ_e + …)/(1 − Σ taken), the condition of such a node is
 ///
 /// > (u_e − Σ taken·u_c)·n/(1 − Σ taken) ≤ (g_e − Σ taken·g_c)/(1 − Σ taken),   c the ends of its edge
 fn blend_corners(side: &Surface, points: &mut [ContactPoint<u32>], place: &HashMap<u32, usize>) {
     let plain = points.to_vec();
-    for facet in side
-        .facets
-        .iter()
-        .filter(|facet| has_weightless_corners(facet.kind))
-    {
-        for (_, edge) in facet.kind.facets() {
-            let [a, b, middle] = [0, 1, 2].map(|i| place.get(&facet.nodes[edge[i]]).copied());
-            let Some(middle) = middle.filter(|&middle| points[middle].entries.len() == 1) else {
+    for facet in &side.facets {
+        for (middle, corners) in facet.blending().takers {
+            let at = |local: usize| place.get(&facet.nodes[local]).copied();
+            let Some(middle) = at(middle).filter(|&middle| points[middle].entries.len() == 1)
+            else {
                 continue;
             };
-            let ends: Vec<&ContactPoint<u32>> =
-                [a, b].into_iter().flatten().map(|c| &plain[c]).collect();
+            let ends: Vec<&ContactPoint<u32>> = corners
+                .into_iter()
+                .filter_map(at)
+                .map(|c| &plain[c])
+                .collect();
             let left = 1.0 - TAKEN * ends.len() as f64;
             let point = &mut points[middle];
             point.entries[0].1 = 1.0 / left;

@@ -62,7 +62,7 @@ impl Loads {
             forces: at_loaded(forces),
         });
         Ok(Self {
-            names: supports::names(scene, &loadings[0]),
+            names: supports::names(scene, &loadings[0], &bodies.mesh),
             steps: steps.collect(),
             forces: (loaded.iter().copied().zip(at_loaded(&all[0].1))).collect(),
             supports: all.swap_remove(0).0,

@@ -9,6 +9,7 @@ use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
+use crate::scene::material::PlaneState;
 use crate::scene::step::Loading;
 
 /// Relative difference up to which two prescribed values of one component agree.
@@ -29,12 +30,22 @@ struct Row {
 
 /// The names of the conditions that prescribe displacements in a loading of `scene`, displacements before
 /// bilateral ones.
-pub(super) fn names(scene: &Scene, loading: &Loading) -> Vec<String> {
+pub(super) fn names(scene: &Scene, loading: &Loading, mesh: &Mesh) -> Vec<String> {
     let displacement = (loading.displacement.iter().enumerate())
         .map(|(i, condition)| loading.displacement_label(i, &condition.on));
     let bilateral = (scene.bilateral.iter().enumerate())
         .map(|(i, condition)| format!("bilateral[{}] on {}", i + 1, condition.on));
-    displacement.chain(bilateral).collect()
+    let axis = on_axis(scene, mesh)
+        .next()
+        .map(|_| "axis of symmetry".into());
+    displacement.chain(bilateral).chain(axis).collect()
+}
+
+/// The nodes on the axis of an axisymmetric scene, which can't leave it.
+fn on_axis(scene: &Scene, mesh: &Mesh) -> impl Iterator<Item = u32> {
+    let is_ring = scene.plane == Some(PlaneState::Axisymmetric);
+    let nodes = (0..).zip(&mesh.points);
+    nodes.filter_map(move |(node, x)| (is_ring && x[0] == 0.0).then_some(node))
 }
 
 /// The supports of a loading of `scene`, ascending by node, the rows of one node orthonormal.
@@ -44,7 +55,7 @@ pub(super) fn supports(
     mesh: &Mesh,
     topology: &Topology,
 ) -> Result<Vec<Support>, InputError> {
-    let names = names(scene, loading);
+    let names = names(scene, loading, mesh);
     let mut numbered = names.iter().enumerate();
     let mut rows: BTreeMap<u32, Vec<Row>> = BTreeMap::new();
     let mut add = |node, direction, value, condition| {
@@ -68,14 +79,17 @@ pub(super) fn supports(
             }
         }
     }
-    for (keys, (condition, label)) in scene.bilateral.iter().zip(numbered) {
+    for (keys, (condition, label)) in scene.bilateral.iter().zip(&mut numbered) {
         let facets = groups::facets(mesh, &keys.on, label)?;
-        let surface = Surface::new(mesh, topology, &facets, label)?;
+        let surface = Surface::new(mesh, topology, scene.plane, &facets, label)?;
         for (node, facets) in surface.around() {
             for direction in corner_normals(&surface, node, facets) {
                 add(node, direction, 0.0, condition);
             }
         }
+    }
+    if let Some((axis, _)) = numbered.next() {
+        on_axis(scene, mesh).for_each(|node| add(node, [1.0, 0.0, 0.0], 0.0, axis));
     }
     let mut supports = Vec::new();
     for (node, rows) in rows {

@@ -2,13 +2,14 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::blend::{has_weightless_corners, positive};
+use super::blend::Blending;
 use crate::element::ElementKind;
 use crate::element::geometry::{advance, cross, dot, length};
 use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::Topology;
+use crate::scene::material::PlaneState;
 
 /// Degree of exactness with which curved facets are measured.
 const CURVED_DEGREE: usize = 9;
@@ -28,11 +29,18 @@ pub(super) struct SurfaceFacet {
     pub normal: [f64; 3],
     /// Length or area.
     pub measure: f64,
+    /// Plane state; `None` in space.
+    pub plane: Option<PlaneState>,
 }
 
 impl SurfaceFacet {
     /// A facet of `nodes` at `at`.
-    pub fn new(kind: ElementKind, nodes: Vec<u32>, at: Vec<[f64; 3]>) -> Self {
+    pub fn new(
+        kind: ElementKind,
+        nodes: Vec<u32>,
+        at: Vec<[f64; 3]>,
+        plane: Option<PlaneState>,
+    ) -> Self {
         let area = integrate(kind, |xi| kind.area_vector(&at, xi));
         let chord = length(area);
         let measure = match kind.is_linear() {
@@ -45,7 +53,36 @@ impl SurfaceFacet {
             normal: area.map(|c| c / chord),
             measure,
             at,
+            plane,
         }
+    }
+
+    /// dS at ξ: length, area, or area all around the axis (m, m²).
+    pub fn density(&self, xi: [f64; 3]) -> f64 {
+        let x = self.kind.position(&self.at, xi);
+        PlaneState::thickness(self.plane, x) * length(self.kind.area_vector(&self.at, xi))
+    }
+
+    /// ∫ dS (m, m²).
+    pub fn area(&self) -> f64 {
+        match self.plane {
+            Some(PlaneState::Axisymmetric) => {
+                integrate(self.kind, |xi| [self.density(xi), 0.0, 0.0])[0]
+            }
+            _ => self.measure,
+        }
+    }
+
+    /// The corner of a line of three nodes that lies on the axis of an axisymmetric scene.
+    pub fn corner_on_axis(&self) -> Option<usize> {
+        let is_ring = self.plane == Some(PlaneState::Axisymmetric);
+        let corner = || (self.at.iter().take(self.kind.corners())).position(|x| x[0] == 0.0);
+        (is_ring && !self.kind.is_linear()).then(corner).flatten()
+    }
+
+    /// Its functions with positive integrals.
+    pub fn blending(&self) -> Blending {
+        Blending::new(self.kind, self.corner_on_axis())
     }
 
     /// Its diameter, by the order of magnitude (m).
@@ -79,15 +116,15 @@ impl SurfaceFacet {
         let Some(place) = self.nodes.iter().position(|&own| own == node) else {
             return 0.0;
         };
-        let blended = has_weightless_corners(self.kind).then(|| positive(self.kind));
+        let blending = self.blending();
+        let blended = (!blending.is_none()).then(|| blending.positive());
         let area = integrate(self.kind, |xi| {
             let shape = self.kind.shape(xi);
             let weight = match &blended {
                 None => shape[place],
                 Some(basis) => basis.row(place).iter().zip(shape).map(|(b, n)| b * n).sum(),
             };
-            let measure = length(self.kind.area_vector(&self.at, xi));
-            [weight * measure, 0.0, 0.0]
+            [weight * self.density(xi), 0.0, 0.0]
         });
         area[0]
     }
@@ -160,10 +197,11 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// The surface of `facets` of the mesh, each of exactly one cell. `what` names the key.
+    /// The surface of `facets` of the mesh, each of exactly one cell, in a plane state or in space. `what` names the key.
     pub fn new(
         mesh: &Mesh,
         topology: &Topology,
+        plane: Option<PlaneState>,
         facets: &[u32],
         what: &str,
     ) -> Result<Self, InputError> {
@@ -189,7 +227,7 @@ impl Surface {
             let (kind, local) = kind.facets()[cell_facet.facet as usize];
             let nodes: Vec<u32> = local.iter().map(|&i| cell[i]).collect();
             let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
-            Ok(SurfaceFacet::new(kind, nodes, at))
+            Ok(SurfaceFacet::new(kind, nodes, at, plane))
         };
         let facets = facets.iter().map(facet_of).collect::<Result<_, _>>()?;
         Ok(Self { facets })
@@ -199,9 +237,14 @@ impl Surface {
     pub fn nodes(&self) -> HashMap<u32, SurfaceNode> {
         let mut nodes: HashMap<u32, SurfaceNode> = HashMap::new();
         for facet in &self.facets {
-            for &node in &facet.nodes {
+            let is_ring = facet.plane == Some(PlaneState::Axisymmetric);
+            for (&node, at) in facet.nodes.iter().zip(&facet.at) {
                 let sum = nodes.entry(node).or_default();
                 sum.area = advance(sum.area, facet.measure, facet.normal_at(node));
+                if is_ring && at[0] == 0.0 {
+                    // On the axis what is all around has no normal but along it.
+                    sum.area[0] = 0.0;
+                }
                 sum.measure += facet.measure;
                 sum.tributary_area += facet.tributary_area(node);
             }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::contact_point::ContactPoint;
 use crate::element::geometry::{advance, difference, length, shown};
 use crate::error::InputError;
+use crate::model::PlaneState;
 use crate::problem::SubdomainNode;
 
 /// How far the sum of weights may be from what it should be, relative to the largest of them.
@@ -38,6 +39,8 @@ pub struct Places {
     pub extent: f64,
     /// Dimension of space.
     pub dim: usize,
+    /// Plane state; `None` in space.
+    pub plane: Option<PlaneState>,
 }
 
 impl Places {
@@ -56,7 +59,9 @@ impl Places {
     /// What is wrong with a point, and in which dataset.
     fn fault(&self, point: &Point) -> Option<(&'static str, String)> {
         let extent = self.extent;
-        if point.area > LARGEST_AREA * extent.powi(self.dim as i32 - 1) {
+        let around =
+            PlaneState::thickness(self.plane, [point.position[0].abs() + extent, 0.0, 0.0]);
+        if point.area > LARGEST_AREA * extent.powi(self.dim as i32 - 1) * around {
             let what = format!(
                 "{:e}; expected a part of a side of subdomains whose extent is {extent:e}",
                 point.area
@@ -66,8 +71,9 @@ impl Places {
         let weights = point.entries.iter().map(|&(_, weight)| weight);
         let scale = weights.clone().fold(0.0, |m: f64, w| m.max(w.abs()));
         let sum: f64 = weights.sum();
-        // On some quadratic faces the ends of a node's edge count, too.
-        let is_blended = self.dim == 3 && point.tag_b == -1 && (sum - 1.0).abs() <= WEIGHT * scale;
+        // On some quadratic facets the ends of a node's edge count, too.
+        let may_blend = matches!(self.plane, None | Some(PlaneState::Axisymmetric));
+        let is_blended = may_blend && point.tag_b == -1 && (sum - 1.0).abs() <= WEIGHT * scale;
         let (expected, why) = match point.entries.len() == 1 || is_blended {
             true => (1.0, "1, that of a node against an obstacle"),
             false => (0.0, "0: those of side a to 1, those of side b to -1"),

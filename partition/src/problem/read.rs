@@ -55,7 +55,7 @@ impl ProblemFile {
                 ))
             })?;
         let header = Header::read(&file)?;
-        let contents = Contents::open(&file, header.dim)?;
+        let contents = Contents::open(&file, header.dim, header.plane)?;
         let catalog = catalog::read(&file, header, &contents)?;
         Ok(Self {
             path: path.to_path_buf(),
@@ -121,6 +121,7 @@ impl ProblemFile {
             nodes: named.map(place).collect(),
             extent: BoundingBox::around(subdomains.iter().flat_map(|s| &s.points)).extent(),
             dim: self.catalog.dim,
+            plane: self.catalog.plane,
         };
         for (row, point) in self.catalog.points.iter().enumerate() {
             (places.check(point, row)).map_err(|error| self.refuse(error))?;

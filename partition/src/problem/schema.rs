@@ -110,7 +110,10 @@ pub const LETTERS: &[(char, &str)] = &[
     ('E', "entries of contact points"),
     ('W', "warnings"),
     ('d', "dimensions of space, 2 or 3"),
-    ('v', "components of a strain, 3 in the plane, 6 in space"),
+    (
+        'v',
+        "components of a strain, 3 in the plane, 4 around an axis, 6 in space",
+    ),
 ];
 
 /// Groups that may be empty where there is nothing to say. All but `/support` may be absent, too.
@@ -128,7 +131,7 @@ pub const ATTRIBUTES: &[Attribute] = &[
     attribute("/", "units",
         "`\"m\"` (m, N, Pa) or `\"mm\"` (mm, N, MPa), what messages and pictures call them; optional"),
     attribute("/", "dimension", "2 or 3"),
-    attribute("/", "plane", "`\"strain\"` or `\"stress\"`; absent in 3 dimensions"),
+    attribute("/", "plane", "`\"strain\"`, `\"stress\"` or `\"axisymmetric\"` (x the radius, y the axis x = 0, zz the hoop); absent in 3 dimensions"),
     attribute("/VTKHDF", "Version", "`[2, 0]`; optional"),
     attribute("/VTKHDF", "Type",
         "`\"UnstructuredGrid\"`: ParaView's reader needs a string of 16 bytes, null-padded, \
@@ -169,10 +172,10 @@ pub const FIELDS: &[Field] = &[
     optional("/VTKHDF/CellData/Subdomain", "C", Integers, "for ParaView; not read"),
     field("/materials/name", "M", Names, ""),
     field("/materials/stiffness", "M, v, v", Numbers,
-        "maps (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy) for the plane state of the file [Pa], in space in the order \
-         xx, yy, zz, yz, xz, xy; symmetric positive definite"),
+        "maps (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy) for the plane state of the file [Pa], around an axis in the \
+         order xx, yy, zz, xy, in space xx, yy, zz, yz, xz, xy; symmetric positive definite"),
     optional("/materials/out_of_plane", "M, v", NumbersOrNan,
-        "in the plane: maps the same strains to σ_zz; rows of NaN where it isn't known"),
+        "in plane strain and stress: maps the same strains to σ_zz; rows of NaN where it isn't known"),
     optional("/materials/poisson", "M", NumbersOrNan, "Poisson's ratio; NaN where it isn't known"),
     field("/bodies/name", "B", Names,
         "a body is what hangs together through shared nodes, its subdomains through Γ"),

@@ -11,6 +11,7 @@ use super::schema::{Counts, FIELDS};
 use super::{FORMAT, Problem, Subdomain, VERSION, vtkhdf};
 use crate::destination::Destination;
 use crate::error::OutputError;
+use crate::model::PlaneState;
 
 impl Problem {
     /// Writes the problem under a temporary name and renames it when it is whole.
@@ -31,7 +32,7 @@ impl Problem {
             .create(path)?;
         let mut datasets = Datasets {
             file: &file,
-            counts: Counts::new(self.catalog.dim),
+            counts: Counts::new(self.catalog.dim, self.catalog.plane),
         };
         self.write_attributes(&file)?;
         self.write_catalog(&mut datasets)?;
@@ -79,7 +80,7 @@ impl Problem {
         datasets.strings("/materials/name", names)?;
         let stiffness = materials.iter().flat_map(|m| m.stiffness.values()).copied();
         datasets.put("/materials/stiffness", stiffness)?;
-        if catalog.plane.is_some() {
+        if matches!(catalog.plane, Some(PlaneState::Strain | PlaneState::Stress)) {
             let planes = materials.iter();
             let planes = planes.flat_map(|m| m.out_of_plane.unwrap_or([f64::NAN; 3]));
             datasets.put("/materials/out_of_plane", planes)?;

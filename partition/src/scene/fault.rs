@@ -3,12 +3,11 @@
 use std::collections::HashMap;
 
 use super::condition::{Displacement, Partner, Pressure, Traction};
-use super::material::Elasticity;
+use super::material::{Elasticity, PlaneState};
 use super::place::{self, Step};
 use super::{Scene, suggest};
 use crate::error::InputError;
 use crate::name;
-use crate::stiffness::components;
 
 /// The key at which something is wrong, and what.
 type Fault = (Vec<Step>, String);
@@ -105,12 +104,19 @@ impl Scene {
             else {
                 continue;
             };
-            let rows = components(dim);
+            let (rows, place, others) = match self.plane {
+                Some(PlaneState::Axisymmetric) => (
+                    4,
+                    "around an axis",
+                    Some("around an axis it is row 3 of 'stiffness'"),
+                ),
+                Some(_) => (3, "in 2 dimensions", None),
+                None => (6, "in 3 dimensions", Some("a scene in space has none")),
+            };
             let fault = (stiffness.size() != rows)
-                .then(|| format!("expected {rows} rows of {rows} numbers in {dim} dimensions"));
+                .then(|| format!("expected {rows} rows of {rows} numbers {place}"));
             check(at(["materials", name, "stiffness"]), fault);
-            let fault =
-                (dim == 3 && out_of_plane.is_some()).then(|| "a scene in space has none".into());
+            let fault = out_of_plane.and(others).map(String::from);
             check(at(["materials", name, "out_of_plane"]), fault);
         }
         for (name, body) in &self.bodies {

@@ -1,5 +1,7 @@
 //! Materials as a scene gives them, and its plane state.
 
+use std::f64::consts::PI;
+
 use nalgebra::DMatrix;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
@@ -21,8 +23,8 @@ pub enum Elasticity {
     },
     /// Any stiffness.
     Anisotropic {
-        /// C: (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy), in space in the order xx, yy, zz, yz, xz, xy; symmetric positive
-        /// definite (Pa).
+        /// C: (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy), around an axis in the order xx, yy, zz, xy, in space xx, yy, zz, yz,
+        /// xz, xy; symmetric positive definite (Pa).
         stiffness: Stiffness,
         /// (ε_xx, ε_yy, γ_xy) to σ_zz in plane strain (Pa).
         out_of_plane: Option<[f64; 3]>,
@@ -37,17 +39,38 @@ pub enum PlaneState {
     Strain,
     /// σ_zz = 0.
     Stress,
+    /// Everything is the same all around the axis x = 0: x is the radius, zz the direction of the hoop.
+    Axisymmetric,
 }
 
 impl PlaneState {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Strain, Self::Stress];
+    /// All.
+    pub const ALL: [Self; 3] = [Self::Strain, Self::Stress, Self::Axisymmetric];
 
     /// Its name in scenes and problem files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Strain => "strain",
             Self::Stress => "stress",
+            Self::Axisymmetric => "axisymmetric",
+        }
+    }
+
+    /// The number of components of a strain: xx, yy, xy, around an axis xx, yy, zz, xy; in space, which has no plane
+    /// state, xx, yy, zz, yz, xz, xy.
+    pub fn components(plane: Option<Self>) -> usize {
+        match plane {
+            Some(Self::Strain | Self::Stress) => 3,
+            Some(Self::Axisymmetric) => 4,
+            None => 6,
+        }
+    }
+
+    /// What a unit of length or area at `x` stands for: one metre of thickness, or all around the axis 2πx; 1 in space.
+    pub fn thickness(plane: Option<Self>, x: [f64; 3]) -> f64 {
+        match plane {
+            Some(Self::Axisymmetric) => 2.0 * PI * x[0],
+            _ => 1.0,
         }
     }
 }
@@ -112,9 +135,9 @@ where
 {
     let rows = Vec::<Vec<Constant>>::deserialize(deserializer)?;
     let size = rows.len();
-    if !matches!(size, 3 | 6) || rows.iter().any(|row| row.len() != size) {
+    if !matches!(size, 3 | 4 | 6) || rows.iter().any(|row| row.len() != size) {
         return Err(D::Error::custom(
-            "expected 3 rows of 3 numbers in the plane, or 6 of 6 in space",
+            "expected 3 rows of 3 numbers in the plane, 4 of 4 around an axis, or 6 of 6 in space",
         ));
     }
     let given = DMatrix::from_fn(size, size, |i, j| rows[i][j].0);
@@ -135,7 +158,7 @@ where
     let eigenvalues = (&symmetric / scale).symmetric_eigenvalues() * scale;
     let (least, largest) = (eigenvalues.min(), eigenvalues.max());
     match least > 1e-15 * largest && scale >= SMALLEST_STIFFNESS {
-        true => Ok(Some(Stiffness::square(size, symmetric.as_slice()))),
+        true => Ok(Some(Stiffness::new(size, symmetric.as_slice()))),
         false => Err(D::Error::custom(format!(
             "the stiffness isn't positive definite: its eigenvalues reach from {least:.3e} to {largest:.3e}"
         ))),

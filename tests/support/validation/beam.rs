@@ -45,7 +45,7 @@ fn solved(name: &str, n: usize) -> Measured {
         3.0 * POISSON * LENGTH,
     );
     let mut model = model(&text, mesh);
-    let exact = Exact(Box::new(|[x, y]: [f64; 2]| {
+    let exact = Exact::Plane(Box::new(|[x, y]: [f64; 2]| {
         [
             -(LENGTH - x) * y / INERTIA,
             0.0,

@@ -61,7 +61,7 @@ fn shears(friction: f64) -> [f64; 2] {
 fn exact(friction: f64) -> Exact {
     let [sin, cos] = inclination();
     let [carried, slipping] = shears(friction);
-    Exact(Box::new(move |[x, y]: [f64; 2]| {
+    Exact::Plane(Box::new(move |[x, y]: [f64; 2]| {
         let z = Complex::new(x, y);
         let root = (z - 1.0).sqrt() * (z + 1.0).sqrt();
         let shear = -slipping;

@@ -1,10 +1,11 @@
 //! An exact field of stress: the loads that it asks for, and how far a solution is from it.
 
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::model::Model;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector};
 
 use super::super::isoparametric::{gradients, shapes};
 use super::super::solution::Solution;
@@ -19,8 +20,13 @@ const GAUSS: [(f64, f64); 6] = [
     (0.932_469_514_203_152, 0.171_324_492_379_170),
 ];
 
-/// A field of stress (σ_xx, σ_yy, σ_xy).
-pub struct Exact(pub Box<dyn Fn([f64; 2]) -> [f64; 3]>);
+/// A field of stress.
+pub enum Exact {
+    /// (σ_xx, σ_yy, σ_xy).
+    Plane(Box<dyn Fn([f64; 2]) -> [f64; 3]>),
+    /// (σ_xx, σ_yy, σ_zz, σ_xy) around an axis.
+    Ring(Box<dyn Fn([f64; 2]) -> [f64; 4]>),
+}
 
 /// N, ∂N/∂ξ and the weight at a point of a reference cell.
 type Sample = (Vec<f64>, Vec<[f64; 3]>, f64);
@@ -40,6 +46,22 @@ fn samples(kind: ElementKind) -> Vec<Sample> {
 }
 
 impl Exact {
+    /// σ at a point in Voigt's order.
+    pub fn at(&self, x: [f64; 2]) -> DVector<f64> {
+        match self {
+            Self::Plane(stress) => DVector::from_column_slice(&stress(x)),
+            Self::Ring(stress) => DVector::from_column_slice(&stress(x)),
+        }
+    }
+
+    /// What a unit of area or length stands for.
+    fn around(&self, x: [f64; 2]) -> f64 {
+        match self {
+            Self::Plane(_) => 1.0,
+            Self::Ring(_) => 2.0 * PI * x[0],
+        }
+    }
+
     /// ‖σ_h − σ‖ over ‖σ‖, both in the norm of C⁻¹, σ_h by the displacements of the solution.
     pub fn energy_error(&self, model: &Model, solution: &Solution) -> f64 {
         let mesh = &model.mesh;
@@ -47,8 +69,9 @@ impl Exact {
         let (mut error, mut energy) = (0.0, 0.0);
         for ((kind, nodes), &material) in mesh.cells.iter().zip(&model.cell_material) {
             let stiffness = &model.materials[material as usize].stiffness;
-            let stiffness = Matrix3::from_fn(|i, j| stiffness[i][j]);
-            let compliance = stiffness.try_inverse().unwrap();
+            let size = stiffness.size();
+            let stiffness = DMatrix::from_fn(size, size, |i, j| stiffness[i][j]);
+            let compliance = stiffness.clone().try_inverse().unwrap();
             let at: Vec<[f64; 3]> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
             let displaced = nodes
                 .iter()
@@ -66,11 +89,20 @@ impl Exact {
                 };
                 let ([xx, xy], [yx, yy]) = (slope(0), slope(1));
                 let x = [0, 1].map(|i| at.iter().zip(shape.iter()).map(|(p, n)| p[i] * n).sum());
-                let stress = Vector3::from((self.0)(x));
-                let strain = compliance * stress;
-                let difference = Vector3::new(xx, yy, xy + yx) - strain;
-                error += *weight * det.abs() * difference.dot(&(stiffness * difference));
-                energy += *weight * det.abs() * strain.dot(&stress);
+                let stress = self.at(x);
+                let strain = &compliance * &stress;
+                let found = match self {
+                    Self::Plane(_) => DVector::from_column_slice(&[xx, yy, xy + yx]),
+                    Self::Ring(_) => {
+                        let radial = displaced.iter().zip(shape.iter()).map(|(u, n)| u[0] * n);
+                        let hoop = radial.sum::<f64>() / x[0];
+                        DVector::from_column_slice(&[xx, yy, hoop, xy + yx])
+                    }
+                };
+                let difference = found - &strain;
+                let weight = *weight * det.abs() * self.around(x);
+                error += weight * difference.dot(&(&stiffness * &difference));
+                energy += weight * strain.dot(&stress);
             }
         }
         (error / energy).sqrt()
@@ -92,8 +124,11 @@ impl Exact {
                     };
                     let (tx, ty) = (sum(&slope, 0), sum(&slope, 1));
                     let side = (ty * outward[0] - tx * outward[1]).signum() * weight;
+                    let x = [sum(&shape, 0), sum(&shape, 1)];
+                    let side = side * self.around(x);
                     let (nx, ny) = (side * ty, -side * tx);
-                    let [xx, yy, xy] = (self.0)([sum(&shape, 0), sum(&shape, 1)]);
+                    let stress = self.at(x);
+                    let (xx, yy, xy) = (stress[0], stress[1], stress[stress.len() - 1]);
                     for (&node, n) in nodes.iter().zip(&shape) {
                         let force = forces.entry(node).or_default();
                         force[0] += n * (xx * nx + xy * ny);

@@ -76,7 +76,7 @@ pub fn half_plane([x, y]: [f64; 2]) -> [f64; 3] {
 }
 
 fn exact() -> Exact {
-    Exact(Box::new(|[x, y]: [f64; 2]| {
+    Exact::Plane(Box::new(|[x, y]: [f64; 2]| {
         let [xx, yy, xy] = half_plane([x, y]);
         [xx, yy, if y > 0.0 { -xy } else { xy }]
     }))

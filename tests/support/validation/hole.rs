@@ -31,7 +31,7 @@ const SCENE: &str = "
     on = 'vertical axis'";
 
 fn exact() -> Exact {
-    Exact(Box::new(|[x, y]: [f64; 2]| {
+    Exact::Plane(Box::new(|[x, y]: [f64; 2]| {
         let angle = y.atan2(x);
         let q = RADIUS * RADIUS / (x * x + y * y);
         let ((s2, c2), (s4, c4)) = ((2.0 * angle).sin_cos(), (4.0 * angle).sin_cos());

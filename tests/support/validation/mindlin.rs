@@ -88,7 +88,7 @@ fn potentials(z: Complex<f64>, w: f64) -> [Complex<f64>; 3] {
 /// The stress in both half planes.
 fn exact(step: usize) -> Exact {
     let shears = shears(step);
-    Exact(Box::new(move |[x, y]: [f64; 2]| {
+    Exact::Plane(Box::new(move |[x, y]: [f64; 2]| {
         // The upper one is the lower one turned by half a turn.
         let [x, y] = if y > 0.0 { [-x, -y] } else { [x, y] };
         let mut stress = super::hertz::half_plane([x, y]);

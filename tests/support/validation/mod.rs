@@ -11,6 +11,7 @@ pub mod hole;
 pub mod mindlin;
 pub mod punch;
 pub mod raous;
+pub mod ring;
 pub mod roller;
 pub mod signorini;
 pub mod space;
@@ -94,6 +95,9 @@ pub fn cases() -> Vec<Case> {
         raous::case(),
         mindlin::case(),
         punch::case(),
+        ring::ball(),
+        ring::balls(),
+        ring::punch(),
         signorini::case(),
         beam::case(),
         hole::case(),

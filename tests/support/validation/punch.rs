@@ -37,7 +37,7 @@ const SCENE: &str = "
     obstacle = {point = [0, 0], normal = [0, -1]}";
 
 fn exact() -> Exact {
-    Exact(Box::new(|[x, y]: [f64; 2]| {
+    Exact::Plane(Box::new(|[x, y]: [f64; 2]| {
         let z = Complex::new(x, y);
         let root = (Complex::from(1.0) - z * z).sqrt();
         let value = -(LOAD / PI) / root;

@@ -38,7 +38,7 @@ fn b(x: f64) -> [f64; 2] {
 
 fn exact() -> Exact {
     let [l, m] = lame();
-    Exact(Box::new(move |[x, y]: [f64; 2]| {
+    Exact::Plane(Box::new(move |[x, y]: [f64; 2]| {
         let bending = -y * (-4e-3 * (2.0 * x).cos());
         let [b, slope] = b(x);
         [

@@ -55,7 +55,7 @@ fn pressure_error(solution: &Solution, p: f64) -> Vec<Figure> {
 }
 
 fn compression() -> Exact {
-    Exact(Box::new(|_| [-1e6, -1e6, 0.0]))
+    Exact::Plane(Box::new(|_| [-1e6, -1e6, 0.0]))
 }
 
 fn gates() -> Vec<Gate> {
@@ -118,7 +118,7 @@ pub fn uneven() -> Case {
         run: Box::new(move |level| {
             let n = [3, 7].map(|n| n << level);
             let model = two_sorts([lower, upper].map(sort), n, 3 << level, ANGLE, false);
-            let exact = Exact(Box::new(|_| turned_pressure(ANGLE)));
+            let exact = Exact::Plane(Box::new(|_| turned_pressure(ANGLE)));
             measured(model, exact, |solution| pressure_error(solution, PRESSURE))
         }),
         meshes: if lower == upper { [2, 3] } else { [1, 1] },

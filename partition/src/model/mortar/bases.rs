@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
-use super::super::blend::{blend, positive};
+use super::super::blend::{Blending, of_corners};
 use super::super::surface::SurfaceFacet;
 use crate::element::ElementKind;
 
@@ -13,6 +13,9 @@ use crate::element::ElementKind;
 /// be next to nothing. Wholly covered, nodes of straight lines have a half. No round number: where sides
 /// overlap by a fifth of a facet, round-off would decide.
 const LEAST: f64 = 0.098_765;
+
+/// The kind of a facet, and its corner on the axis.
+pub(super) type Kind = (ElementKind, Option<usize>);
 
 /// The functions of the facets of a kind, as rows of coefficients of its shape functions. Those of a basis sum
 /// to 1, as their duals do.
@@ -26,17 +29,23 @@ pub(super) struct Bases {
 
 impl Bases {
     /// Those of every kind of facets.
-    pub fn new<'a>(facets: impl Iterator<Item = &'a SurfaceFacet>) -> BTreeMap<ElementKind, Self> {
+    pub fn new<'a>(facets: impl Iterator<Item = &'a SurfaceFacet>) -> BTreeMap<Kind, Self> {
         let mut bases = BTreeMap::new();
         for facet in facets {
-            (bases.entry(facet.kind)).or_insert_with(|| Self::of(facet.kind));
+            let kind = Self::kind(facet);
+            (bases.entry(kind)).or_insert_with(|| Self::of(kind));
         }
         bases
     }
 
-    fn of(kind: ElementKind) -> Self {
+    /// Which of them are those of a facet.
+    pub fn kind(facet: &SurfaceFacet) -> Kind {
+        (facet.kind, facet.corner_on_axis())
+    }
+
+    fn of((kind, on_axis): Kind) -> Self {
         let nodes = kind.nodes();
-        let each = positive(kind);
+        let each = Blending::new(kind, on_axis).positive();
         let whole = || -> Vec<f64> {
             let mut sums = vec![0.0; nodes];
             for (xi, weight) in kind.quadrature(4) {
@@ -57,7 +66,7 @@ impl Bases {
         };
         let mut levels = vec![each];
         if kind.dim() > 1 && !kind.is_linear() {
-            levels.push(blend(kind, kind.corners(), 0.5));
+            levels.push(of_corners(kind));
         }
         Self { levels, least }
     }
@@ -82,7 +91,7 @@ mod tests {
     #[test]
     fn functions_sum_to_one_and_have_positive_integrals() {
         for kind in [Line2, Line3, Triangle3, Triangle6, Quad4, Quad8, Quad9] {
-            let bases = Bases::of(kind);
+            let bases = Bases::of((kind, None));
             assert!(bases.least.iter().all(|&least| least > 0.005), "{kind:?}");
             for basis in &bases.levels {
                 for column in basis.column_iter() {
@@ -95,7 +104,7 @@ mod tests {
     #[test]
     fn corners_of_quadratic_facets_have_the_functions_of_linear_ones() {
         for (kind, linear) in [(Triangle6, Triangle3), (Quad8, Quad4), (Quad9, Quad4)] {
-            let bases = Bases::of(kind);
+            let bases = Bases::of((kind, None));
             for (xi, _) in kind.quadrature(3) {
                 let found = lift(&bases.levels[1], &kind.shape(xi));
                 for (found, expected) in found.iter().zip(linear.shape(xi)) {

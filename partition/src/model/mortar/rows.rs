@@ -8,6 +8,7 @@ use super::weights::Weight;
 use crate::contact_point::{ContactPoint, LocalFrame};
 use crate::element::geometry::{advance, difference, dot};
 use crate::mesh::Mesh;
+use crate::scene::material::PlaneState;
 
 /// Weight below which a node of side b has no part in a point: round-off of shape
 /// functions that are orthogonal.
@@ -129,10 +130,10 @@ impl Row {
     ///
     /// It is so already where the sides are straight. Without it, the ragged facets of round bodies
     /// would keep them from turning against each other.
-    fn balance(&mut self, a: &SideNode, mesh: &Mesh) {
+    fn balance(&mut self, a: &SideNode, mesh: &Mesh, plane: Option<PlaneState>) {
         // In multiples of the size of its part of side a, so that no square of a length overflows.
         let size = if mesh.dim == 2 {
-            self.area
+            self.area / PlaneState::thickness(plane, self.force_point(a, mesh))
         } else {
             self.area.sqrt()
         };
@@ -198,8 +199,13 @@ impl Row {
     ///
     /// ψ changes its sign, so that the weighted gap of uneven surfaces may be less than any of their gaps. No
     /// point starts out violated more than they are: bodies that only touch carry no force without a load.
-    pub fn point(mut self, a: &SideNode, mesh: &Mesh) -> ContactPoint<u32> {
-        self.balance(a, mesh);
+    pub fn point(
+        mut self,
+        a: &SideNode,
+        mesh: &Mesh,
+        plane: Option<PlaneState>,
+    ) -> ContactPoint<u32> {
+        self.balance(a, mesh, plane);
         let force_point = self.force_point(a, mesh);
         let mut terms = self.side_a;
         for (node, value) in self.side_b {

@@ -5,7 +5,7 @@ use super::super::surface::SurfaceFacet;
 use super::cover::{Cover, Opposite, Pieces, Sample};
 use super::field::{Field, ahead, beside, cross};
 use super::root::{ENDS, root};
-use crate::element::geometry::{difference, length};
+use crate::element::geometry::difference;
 
 /// Degree to which a segment is integrated. The product of two straight facets' shape functions
 /// has degree 2; projections between facets that aren't parallel are rational.
@@ -115,7 +115,7 @@ impl Samples {
             let xi = [xi, 0.0, 0.0];
             self.least_gap = self.least_gap.min(gap);
             self.list.push(Sample {
-                weight: weight * half * length(a.kind.area_vector(&a.at, xi)),
+                weight: weight * half * a.density(xi),
                 shape: a.kind.shape(xi),
                 opposite: found,
                 opposite_shape: b.kind.shape([eta, 0.0, 0.0]),

@@ -99,7 +99,7 @@ impl Space {
                 .iter()
                 .map(|&n| self.mesh.points[n as usize])
                 .collect();
-            SurfaceFacet::new(*kind, nodes.clone(), at)
+            SurfaceFacet::new(*kind, nodes.clone(), at, None)
         };
         Surface {
             facets: self.sides[side].iter().map(facet).collect(),

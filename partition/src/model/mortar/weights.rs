@@ -6,10 +6,9 @@ use nalgebra::DMatrix;
 
 use super::super::sides::Sides;
 use super::Covered;
-use super::bases::{Bases, lift};
+use super::bases::{Bases, Kind, lift};
 use super::cover::Cover;
 use super::dual::dual_basis;
-use crate::element::ElementKind;
 
 /// Share of a line with less of which covered its shape functions can't be told apart reliably. No round number:
 /// round-off would decide.
@@ -62,7 +61,7 @@ impl Weight {
 /// is integrated is lost nowhere, and a uniform pressure passes exactly.
 struct Carrying {
     nodes: HashSet<u32>,
-    bases: BTreeMap<ElementKind, Bases>,
+    bases: BTreeMap<Kind, Bases>,
 }
 
 /// The weights of the multipliers on each facet, by the nodes that carry them.
@@ -70,7 +69,7 @@ pub(super) fn weights(sides: &Sides, covered: &[Covered]) -> Vec<Vec<(u32, Weigh
     let bases = Bases::new(covered.iter().map(|on| on.facet));
     let mut around: HashMap<u32, [f64; 2]> = HashMap::new();
     for Covered { facet, cover } in covered {
-        let Bases { levels, least } = &bases[&facet.kind];
+        let Bases { levels, least } = &bases[&Bases::kind(facet)];
         let integrals = lift(&levels[0], &cover.integrals);
         for (i, &node) in facet.nodes.iter().enumerate() {
             let [own, needed] = around.entry(node).or_default();
@@ -117,13 +116,13 @@ impl Carrying {
     /// The weights on a facet of those of its nodes that carry a multiplier.
     fn on(&self, covered: &Covered) -> Vec<(u32, Weight)> {
         let Covered { facet, cover } = covered;
-        let levels = &self.bases[&facet.kind].levels;
+        let levels = &self.bases[&Bases::kind(facet)].levels;
         let carries = |&i: &usize| self.nodes.contains(&facet.nodes[i]);
         let is_line = facet.kind.dim() == 1;
         for (basis, floor) in levels.iter().zip(FLOORS) {
             let own: Vec<usize> = (0..basis.nrows()).filter(carries).collect();
             let (is_told_apart, floor) = match is_line {
-                true => (cover.measure >= SLIVER * facet.measure, 0.0),
+                true => (cover.measure >= SLIVER * facet.area(), 0.0),
                 // The functions of linear facets are those of corners.
                 false if facet.kind.is_linear() => (true, FLOORS[1]),
                 false => (true, floor),

@@ -15,7 +15,7 @@ pub(super) fn read(
     header: Header,
     contents: &Contents,
 ) -> Result<Catalog, InputError> {
-    let materials = materials::read(contents, header.dim)?;
+    let materials = materials::read(contents, header.plane)?;
     let bodies = contents.strings("/bodies/name")?;
     let interface = read_interface(contents)?;
     let groups = contents.sizes('R');

@@ -8,6 +8,7 @@ use hdf5::LinkType;
 use super::dataset::Dataset;
 use super::slice::Slice;
 use crate::error::InputError;
+use crate::model::PlaneState;
 use crate::name;
 use crate::problem::schema::{self, Counts, FIELDS, FREE, Field, Kind, MAY_BE_EMPTY};
 use crate::scene::suggest::nearest;
@@ -23,13 +24,17 @@ pub(super) struct Contents {
 }
 
 impl Contents {
-    /// Opens all datasets of a file in `dim` dimensions.
+    /// Opens all datasets of a file in `dim` dimensions, those of the plane in this state.
     ///
     /// # Errors
     /// The first name that isn't known, or the dataset that is missing or not as it should be.
-    pub fn open(file: &hdf5::File, dim: usize) -> Result<Self, InputError> {
+    pub fn open(
+        file: &hdf5::File,
+        dim: usize,
+        plane: Option<PlaneState>,
+    ) -> Result<Self, InputError> {
         check_names(file)?;
-        let mut counts = Counts::new(dim);
+        let mut counts = Counts::new(dim, plane);
         let mut datasets = BTreeMap::new();
         if !file.link_exists("support") {
             return Err(InputError::new(

@@ -40,7 +40,11 @@ impl Header {
         let plane = PlaneState::ALL.into_iter().find(|p| p.name() == named);
         match dim {
             2 if plane.is_none() => {
-                return Err(unexpected(file, "plane", "\"strain\" or \"stress\""));
+                return Err(unexpected(
+                    file,
+                    "plane",
+                    "\"strain\", \"stress\" or \"axisymmetric\"",
+                ));
             }
             3 if !named.is_empty() => {
                 return Err(unexpected(file, "plane", "none in 3 dimensions"));

@@ -3,11 +3,14 @@
 use super::contents::Contents;
 use super::slice::Slice;
 use crate::error::InputError;
-use crate::model::Material;
+use crate::model::{Material, PlaneState};
 use crate::stiffness::Stiffness;
 
 /// Reads and checks all materials.
-pub(super) fn read(contents: &Contents, dim: usize) -> Result<Vec<Material>, InputError> {
+pub(super) fn read(
+    contents: &Contents,
+    plane: Option<PlaneState>,
+) -> Result<Vec<Material>, InputError> {
     let names = contents.strings("/materials/name")?;
     let rows = 0..names.len();
     let stiffnesses = contents.numbers("/materials/stiffness", rows.clone())?;
@@ -23,7 +26,7 @@ pub(super) fn read(contents: &Contents, dim: usize) -> Result<Vec<Material>, Inp
         .into_iter()
         .enumerate()
         .map(|(m, name)| {
-            let stiffness = Stiffness::new(dim, stiffnesses.of(m..m + 1));
+            let stiffness = Stiffness::new(PlaneState::components(plane), stiffnesses.of(m..m + 1));
             if !stiffness.is_elastic() {
                 let what = format!("the stiffness of \"{name}\" isn't symmetric positive definite");
                 return Err(stiffnesses.error(m, &what));

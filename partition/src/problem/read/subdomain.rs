@@ -10,7 +10,7 @@ use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::magnitude::SMALLEST_AREA;
 use crate::mesh::topology::Facets;
-use crate::model::Support;
+use crate::model::{PlaneState, Support};
 use crate::problem::{InterfaceNode, StepLoads, Subdomain, UNIT_TOLERANCE};
 
 /// What indices of nodes are, in messages.
@@ -119,11 +119,16 @@ impl ProblemFile {
         let points = slices.points.vectors(rows);
         let dim = self.catalog.dim;
         let beside = |p: &[f64; 3]| p[dim..].iter().any(|&x| x != 0.0);
-        match points.iter().position(beside) {
-            Some(row) => Err(slices.points.error(
-                start + row,
-                &format!("expected 0 beyond the first {dim} coordinates"),
-            )),
+        if let Some(row) = points.iter().position(beside) {
+            let what = format!("expected 0 beyond the first {dim} coordinates");
+            return Err(slices.points.error(start + row, &what));
+        }
+        let is_ring = self.catalog.plane == Some(PlaneState::Axisymmetric);
+        match points.iter().position(|p| is_ring && p[0] < 0.0) {
+            Some(row) => {
+                let what = format!("x = {}; expected a radius ≥ 0", points[row][0]);
+                Err(slices.points.error(start + row, &what))
+            }
             None => Ok(points),
         }
     }

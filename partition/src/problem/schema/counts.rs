@@ -3,18 +3,18 @@
 use std::collections::BTreeMap;
 
 use super::{Field, noun};
-use crate::stiffness::components;
+use crate::model::PlaneState;
 
 /// How many there are of what letters count.
 #[derive(Clone, Debug, Default)]
 pub struct Counts(BTreeMap<char, usize>);
 
 impl Counts {
-    /// What the dimension of space says.
-    pub fn new(dim: usize) -> Self {
+    /// What the dimension of space and the plane state say.
+    pub fn new(dim: usize, plane: Option<PlaneState>) -> Self {
         let mut counts = Self::default();
         counts.set('d', dim);
-        counts.set('v', components(dim));
+        counts.set('v', PlaneState::components(plane));
         counts
     }
 

@@ -58,7 +58,7 @@ fn isotropic_stiffness_is_hookes_in_both_plane_states() {
         match model.plane {
             Some(PlaneState::Strain) => close(strain_z, 0.0, 1e-16),
             Some(PlaneState::Stress) => assert_eq!(stress_z, 0.0),
-            None => panic!("a scene of the plane"),
+            _ => panic!("a scene of plane strain or stress"),
         }
     }
 }

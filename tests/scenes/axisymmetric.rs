@@ -1,0 +1,460 @@
+//! Scenes that are the same all around an axis.
+
+use std::f64::consts::PI;
+
+use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::model::Model;
+use contact_dd_partition::scene::Scene;
+
+use crate::support::blocks::{Blocks, jittered, joined};
+use crate::support::close::close;
+use crate::support::comparison::{compare, compare_friction};
+use crate::support::frictional::Frictional;
+use crate::support::monolithic::Monolithic;
+use crate::support::scenes::model;
+use crate::support::solution::Solution;
+use crate::support::solver::{Case, problem, solve, solve_steps};
+use crate::support::sorts::{SORTS, sort};
+
+const YOUNG: f64 = 20e9;
+const POISSON: f64 = 0.25;
+
+const BODY: &str = "
+plane = 'axisymmetric'
+materials.rock = {young = 20e9, poisson = 0.25}
+bodies.ring.material = 'rock'
+";
+
+fn rectangle(name: &str, x: [f64; 2], y: [f64; 2], n: [usize; 2]) -> Mesh {
+    Blocks::new().rectangle(name, x, y, n).mesh
+}
+
+/// Fails unless cells and nodes have this stress.
+#[track_caller]
+fn is_stressed(solution: &Solution, stress: [f64; 6], slack: f64) {
+    let cells = solution.cells.iter().map(|(_, stress)| stress);
+    for found in cells.chain(solution.nodal_stress.values()) {
+        (found.iter().zip(stress)).for_each(|(found, exact)| close(*found, exact, slack));
+    }
+}
+
+/// u_r = a r, u_y = b y under tractions that are the same on each face.
+#[test]
+fn a_uniform_strain_is_exact_on_and_off_the_axis_in_all_cells() {
+    let (a, b) = (3e-5, -5e-5);
+    let shear = YOUNG / (2.0 * (1.0 + POISSON));
+    let lambda = 2.0 * shear * POISSON / (1.0 - 2.0 * POISSON);
+    let radial = lambda * (2.0 * a + b) + 2.0 * shear * a;
+    let axial = lambda * (2.0 * a + b) + 2.0 * shear * b;
+    for inner in [0.0, 0.5] {
+        let mesh = rectangle("ring", [inner, inner + 1.0], [0.0, 1.0], [6, 5]);
+        for sort in SORTS {
+            let mut text = format!(
+                "{BODY}
+[[bilateral]]
+on = 'ring bottom'
+[[pressure]]
+on = 'ring right'
+value = {}
+[[traction]]
+on = 'ring top'
+value = [0.0, {axial}]\n",
+                -radial
+            );
+            if inner > 0.0 {
+                text += &format!("[[pressure]]\non = 'ring left'\nvalue = {}\n", -radial);
+            }
+            let mesh = jittered(sort.of(&jittered(mesh.clone(), 0.03, 3)), 0.01, 4);
+            let model = model(&text, mesh);
+            for count in [1, 4] {
+                let solution = solve(&model, count);
+                let stress = [radial, axial, radial, 0.0, 0.0, 0.0];
+                is_stressed(&solution, stress, 1e-10 * axial.abs());
+                for (tag, x) in model.mesh.node_tags.iter().zip(&model.mesh.points) {
+                    let u = solution.displacement[tag];
+                    close(u[0], a * x[0], 1e-10 * a);
+                    close(u[1], b * x[1], 1e-10 * a);
+                }
+                // The force of the floor is that of the disc above it.
+                let reaction = &solution.report["reactions"][0]["force"];
+                let area = PI * ((inner + 1.0).powi(2) - inner * inner);
+                close(
+                    reaction[1].as_f64().unwrap(),
+                    -axial * area,
+                    1e-10 * axial.abs() * area,
+                );
+                assert_eq!(reaction[0].as_f64(), Some(0.0));
+            }
+        }
+    }
+}
+
+/// Two bodies on a floor, all around pressed alike, with `text` for the joint between them.
+fn pressed(upper: &str) -> String {
+    format!(
+        "
+plane = 'axisymmetric'
+materials.rock = {{young = 20e9, poisson = 0.25}}
+bodies.lower.material = 'rock'
+bodies.upper.material = 'rock'
+[[pressure]]
+on = ['upper top', 'lower right', 'upper right'{upper}]
+value = 1e6
+[[contact]]
+name = 'joint'
+sides = ['lower top', 'upper bottom']
+[[contact]]
+name = 'floor'
+sides = ['lower bottom']
+obstacle = {{point = [0, 0], normal = [0, 1]}}
+"
+    )
+}
+
+#[test]
+fn uniform_compression_goes_through_conical_joints_of_all_cells() {
+    let strain = -1e6 * (1.0 - 2.0 * POISSON) / YOUNG;
+    for (inner, slope) in [(0.0, 0.0), (0.5, 0.0), (0.5, 0.3)] {
+        let height = |s: f64| 1.0 + slope * s;
+        let block = |name: &str, n, ends: [f64; 2]| {
+            let blocks = Blocks::new().mapped(name, n, |[s, t]| {
+                let (low, high) = if ends[0] == 0.0 {
+                    (0.0, height(s))
+                } else {
+                    (height(s), 2.0)
+                };
+                [inner + s, low * (1.0 - t) + high * t]
+            });
+            jittered(blocks.mesh, 0.02, 5)
+        };
+        let inside = if inner > 0.0 {
+            ", 'lower left', 'upper left'"
+        } else {
+            ""
+        };
+        for sort in SORTS {
+            for upper in [5, 8] {
+                let lower = sort.of(&block("lower", [5, 4], [0.0, 1.0]));
+                let upper = sort.of(&block("upper", [upper, 4], [1.0, 2.0]));
+                let model = model(&pressed(inside), joined(lower, upper));
+                let solution = solve(&model, 4);
+                is_stressed(&solution, [-1e6, -1e6, -1e6, 0.0, 0.0, 0.0], 1e-10 * 1e6);
+                for (tag, x) in model.mesh.node_tags.iter().zip(&model.mesh.points) {
+                    let u = solution.displacement[tag];
+                    (0..2).for_each(|k| close(u[k], strain * x[k], 1e-10 * strain.abs()));
+                }
+                for point in solution.points() {
+                    assert!(point.closed, "{point:?}");
+                    close(point.pressure, 1e6, 1e-9 * 1e6);
+                }
+                let area = PI * ((inner + 1.0).powi(2) - inner * inner);
+                for contact in solution.report["contacts"].as_array().unwrap() {
+                    let found = contact["force"].as_array().unwrap();
+                    close(found[0].as_f64().unwrap(), 0.0, 0.0);
+                    close(found[1].as_f64().unwrap().abs(), 1e6 * area, 1e-4 * area);
+                }
+            }
+        }
+    }
+}
+
+/// A thick shell from radius 1 to 2 under a pressure p from inside: a cylinder between smooth plates, or a sphere, of
+/// which a quarter turns around the axis.
+fn lame(sphere: bool, name: &str, n: usize) -> [f64; 2] {
+    let p = 1e6;
+    let mapped = Blocks::new().mapped("ring", [n, n], |[s, t]| match sphere {
+        false => [1.0 + s, t],
+        // Counter-clockwise from the floor to the axis.
+        true => {
+            let angle = 0.5 * PI * t;
+            [(1.0 + s) * angle.cos(), (1.0 + s) * angle.sin()]
+        }
+    });
+    let sort = sort(name);
+    let mut mesh = sort.of(&mapped.mesh);
+    if sphere && sort.is_quadratic {
+        // Onto the spheres through what lies between their nodes.
+        for point in &mut mesh.points {
+            let [x, y, _] = *point;
+            let (r, cell) = (x.hypot(y), 1.0 / n as f64);
+            let layer = (2.0 * (r - 1.0) / cell).round() * 0.5 * cell + 1.0;
+            *point = [x * layer / r, y * layer / r, 0.0];
+        }
+    }
+    let text = format!(
+        "{BODY}
+[[pressure]]
+on = 'ring left'
+value = {p}
+[[bilateral]]
+on = [{}]
+",
+        if sphere {
+            "'ring bottom'"
+        } else {
+            "'ring bottom', 'ring top'"
+        }
+    );
+    let model = model(&text, mesh);
+    let solution = solve(&model, 3);
+    let power = if sphere { 3 } else { 2 };
+    let (mut displacement, mut stress) = (0.0_f64, 0.0_f64);
+    for (tag, &[x, y, _]) in model.mesh.node_tags.iter().zip(&model.mesh.points) {
+        let r = if sphere { x.hypot(y) } else { x };
+        let c = p / (2.0_f64.powi(power) - 1.0);
+        let far = (2.0 / r).powi(power);
+        let (exact, hoop) = match sphere {
+            true => (
+                c * r * ((1.0 - 2.0 * POISSON) + 0.5 * (1.0 + POISSON) * far) / YOUNG,
+                c * (1.0 + 0.5 * far),
+            ),
+            false => (
+                c * r * (1.0 + POISSON) * ((1.0 - 2.0 * POISSON) + far) / YOUNG,
+                c * (1.0 + far),
+            ),
+        };
+        let u = solution.displacement[tag];
+        let along = if sphere {
+            (u[0] * x + u[1] * y) / r
+        } else {
+            u[0]
+        };
+        displacement = displacement.max((along / exact - 1.0).abs());
+        stress = stress.max((solution.nodal_stress[tag][2] / hoop - 1.0).abs());
+    }
+    [displacement, stress]
+}
+
+#[test]
+fn thick_cylinders_and_spheres_converge_to_lame() {
+    for sphere in [false, true] {
+        for (name, orders, most) in [
+            ("triangle3", [1.6, 0.9], 2e-2),
+            ("quad4", [1.6, 0.9], 2e-2),
+            ("triangle6", [2.7, 1.7], 1e-3),
+            ("quad8", [2.7, 1.7], 1e-3),
+            ("quad9", [2.7, 1.7], 1e-3),
+        ] {
+            let [coarse, fine] = [6, 12].map(|n| lame(sphere, name, n));
+            for k in 0..2 {
+                let order = (coarse[k] / fine[k]).log2();
+                assert!(
+                    order > orders[k],
+                    "{name}, {sphere}, {k}: order {order}, {fine:?}"
+                );
+            }
+            assert!(fine[0] < most, "{name}: {fine:?}");
+        }
+    }
+}
+
+/// The pressure between rings that were pressed into each other, of which each is free to expand along the axis or not.
+fn fit(delta: f64, [inner, joint, outer]: [f64; 3], held: bool) -> f64 {
+    let (young, poisson) = match held {
+        true => (YOUNG / (1.0 - POISSON * POISSON), POISSON / (1.0 - POISSON)),
+        false => (YOUNG, POISSON),
+    };
+    let ratio = |a: f64, b: f64| (b * b + a * a) / (b * b - a * a);
+    delta * young / joint / (ratio(joint, outer) + poisson + ratio(inner, joint) - poisson)
+}
+
+fn shrunk(count: [usize; 2], name: &str, friction: &str) -> Model {
+    let sort = sort(name);
+    let inner = sort.of(&rectangle("inner", [1.0, 2.0], [0.0, 0.5], [12, count[0]]));
+    let outer = sort.of(&rectangle("outer", [2.0, 3.0], [0.0, 0.5], [12, count[1]]));
+    let text = format!(
+        "
+plane = 'axisymmetric'
+materials.rock = {{young = {YOUNG}, poisson = {POISSON}}}
+bodies.inner.material = 'rock'
+bodies.outer.material = 'rock'
+[[bilateral]]
+on = ['inner bottom', 'inner top', 'outer bottom', 'outer top']
+[[contact]]
+name = 'fit'
+sides = ['inner right', 'outer left']
+gap = -1e-4
+interference = true
+{friction}"
+    );
+    model(&text, joined(inner, outer))
+}
+
+#[test]
+fn rings_pressed_into_each_other_press_as_lame_says() {
+    let exact = fit(1e-4, [1.0, 2.0, 3.0], true);
+    for (name, slack) in [("quad4", 1e-3), ("triangle6", 5e-4), ("quad9", 1e-5)] {
+        for count in [[4, 4], [3, 5]] {
+            let solution = solve(&shrunk(count, name, ""), 4);
+            for point in solution.points() {
+                close(point.pressure, exact, slack * exact);
+            }
+        }
+    }
+}
+
+/// A ring in a rigid tube that is too narrow by δ, pushed along the axis: friction holds it up to μ times the force.
+#[test]
+fn friction_holds_a_ring_in_a_tube_up_to_its_bound() {
+    let mesh = || sort("quad9").of(&rectangle("ring", [1.0, 2.0], [0.0, 0.5], [8, 6]));
+    let text = |push: f64| {
+        format!(
+            "{BODY}
+[[contact]]
+name = 'tube'
+sides = ['ring right']
+obstacle = {{point = [1.999, 0], normal = [-1, 0]}}
+interference = true
+friction = 0.2
+[[traction]]
+on = 'ring top'
+value = [0.0, {push}]
+"
+        )
+    };
+    let quiet = solve(&model(&text(0.0), mesh()), 3);
+    let normal: f64 = quiet.points().map(|point| point.force).sum();
+    // As a free ring under plane stress would be: without friction the pressure is the same along it.
+    let area = PI * (4.0 - 1.0);
+    for share in [0.3, 0.9] {
+        let push = share * 0.2 * normal / area;
+        let model = model(&text(push), mesh());
+        let solution = solve(&model, 3);
+        let up: f64 = solution
+            .points()
+            .map(|point| point.tangential_force[1])
+            .sum();
+        close(up, -push * area, 1e-10 * push * area);
+        compare_friction(&model, &Frictional::steps(&model), &solve_steps(&model, 2));
+    }
+    let pushed = Case::of(&model(&text(2.0 * 0.2 * normal / area), mesh()), 3).run(&[]);
+    assert_ne!(pushed.code(), 0);
+}
+
+/// A ring on a wider disc, pressed on a part of its top: the joint is partly open.
+fn partly_open(name: &str, upper: usize) -> Model {
+    let sort = sort(name);
+    let lower = sort.of(&rectangle("lower", [0.0, 2.0], [0.0, 1.0], [8, 4]));
+    let upper = sort.of(&rectangle("upper", [0.0, 1.5], [1.0, 2.0], [upper, 5]));
+    let text = "
+plane = 'axisymmetric'
+materials.rock = {young = 20e9, poisson = 0.25}
+materials.wood = {stiffness = [[3e9, 1e9, 0.5e9, 0], [1e9, 5e9, 1e9, 0], [0.5e9, 1e9, 4e9, 0], [0, 0, 0, 1e9]]}
+bodies.lower.material = 'rock'
+bodies.lower.body_force = ['1e3*x', -2e4]
+bodies.upper.material = 'wood'
+[[displacement]]
+on = 'lower bottom'
+x = 0.0
+y = 0.0
+[[pressure]]
+on = 'upper top'
+value = '1e6*(1.3-x)'
+[[contact]]
+name = 'joint'
+sides = ['upper bottom', 'lower top']
+";
+    model(text, joined(lower, jittered(upper, 0.02, 7)))
+}
+
+#[test]
+fn partly_open_joints_around_an_axis_are_the_monolithic_solution() {
+    for (name, upper) in [
+        ("triangle3", 6),
+        ("quad4", 7),
+        ("triangle6", 7),
+        ("quad8", 6),
+        ("quad9", 5),
+    ] {
+        let model = partly_open(name, upper);
+        let solution = solve(&model, 5);
+        let closed = solution.closed();
+        assert!(0 < closed && closed < solution.points().count(), "{name}");
+        compare(&model, &Monolithic::new(&model), &solution);
+        assert!(
+            model.contacts[0]
+                .points
+                .iter()
+                .all(|point| point.area > 0.0),
+            "{name}"
+        );
+        // On the axis they can only approach along it.
+        let on_axis = solution
+            .points()
+            .find(|point| point.position[0] == 0.0)
+            .unwrap();
+        assert_eq!(on_axis.normal, [0.0, -1.0, 0.0], "{name}");
+    }
+}
+
+#[test]
+fn a_free_ring_has_no_motion_but_along_the_axis() {
+    let scene = |loads: &str| {
+        let mesh = rectangle("ring", [1.0, 2.0], [0.0, 1.0], [4, 4]);
+        model(&format!("{BODY}{loads}"), mesh)
+    };
+    let inside = "[[pressure]]\non = 'ring left'\nvalue = 1e6\n";
+    let solution = solve(&scene(inside), 2);
+    let warnings = solution.report["warnings"].as_array().unwrap();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(
+        warnings[0]
+            .as_str()
+            .unwrap()
+            .contains("translation along (0.0000, 1.0000)")
+    );
+    let mean: f64 = solution.displacement.values().map(|u| u[1]).sum();
+    close(mean, 0.0, 1e-12 * solution.largest_displacement());
+    let ended = Case::of(
+        &scene("[[traction]]\non = 'ring top'\nvalue = [0, 1e5]\n"),
+        2,
+    )
+    .run(&[]);
+    assert_eq!(ended.code(), 4, "{}", ended.stderr);
+    let expected = "body 'ring' can move freely under its load: translation along (0.0000, 1.0000)";
+    assert!(ended.stderr.contains(expected), "{}", ended.stderr);
+}
+
+#[test]
+fn the_axis_is_no_place_to_cross_or_to_leave() {
+    let refused = |text: &str, x: [f64; 2]| {
+        let text = format!("mesh = 'here.msh'\n{BODY}{text}");
+        let scene = Scene::parse(&text).unwrap();
+        let mesh = rectangle("ring", x, [0.0, 1.0], [4, 4]);
+        Model::new(&scene, mesh)
+            .err()
+            .map(|e| e.to_string())
+            .unwrap_or_default()
+    };
+    let across = refused("", [-0.5, 1.0]);
+    assert!(
+        across.contains("body 'ring': node 1 lies at x = -0.5; expected x ≥ 0"),
+        "{across}"
+    );
+    let left = refused("[[displacement]]\non = 'ring left'\nx = 1e-3\n", [0.0, 1.0]);
+    assert!(
+        left.contains("axis of symmetry says 0 for the displacement along (1, 0, 0)"),
+        "{left}"
+    );
+    let contact = "[[contact]]\nname = 'c'\nsides = ['ring left']\nobstacle = {point = [0, 0], normal = [1, 0]}\n";
+    let on_axis = refused(contact, [0.0, 1.0]);
+    assert!(
+        on_axis.contains("lies on the axis; expected sides off it"),
+        "{on_axis}"
+    );
+    assert_eq!(refused("", [-1e-14, 1.0]), "");
+}
+
+#[test]
+fn a_problem_file_has_no_node_on_the_other_side_of_the_axis() {
+    let mesh = rectangle("ring", [0.0, 1.0], [0.0, 1.0], [4, 4]);
+    let mut problem = problem(&model(BODY, mesh), Some(2));
+    problem.subdomains[1].points[0][0] = -0.01;
+    let ended = Case::new(&problem).run(&[]);
+    assert_eq!(ended.code(), 2, "{}", ended.stderr);
+    assert!(
+        ended.stderr.contains("x = -0.01; expected a radius ≥ 0"),
+        "{}",
+        ended.stderr
+    );
+}
