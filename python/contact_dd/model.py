@@ -27,7 +27,8 @@ Groups = str | Sequence[str]
 @dataclass(frozen=True)
 class Material:
     """A linear elastic material: Young's modulus and Poisson's ratio, or a stiffness matrix in Voigt's notation
-    (in the plane xx, yy, xy, in space xx, yy, zz, yz, xz, xy; engineering shear strains)."""
+    (in the plane xx, yy, xy, around an axis xx, yy, zz, xy, in space xx, yy, zz, yz, xz, xy; engineering shear
+    strains)."""
 
     young: float | None = None
     poisson: float | None = None
@@ -64,7 +65,8 @@ class Model:
         """A model without materials, supports, loads and contacts yet.
 
         `mesh` is a file of Gmsh's or one that meshio reads, a mesh of meshio, or Gmsh's model as it stands
-        (`gmsh.model`). `plane` is "strain" or "stress", in space None; `units` is "m" (m, N, Pa) or "mm" (mm, N, MPa).
+        (`gmsh.model`). `plane` is "strain", "stress" or "axisymmetric", in space None; `units` is "m" (m, N, Pa) or
+        "mm" (mm, N, MPa).
         """
         return cls(mesh, given(title=title, plane=plane, units=units))
 

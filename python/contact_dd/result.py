@@ -27,7 +27,8 @@ class Result:
     """What a result file holds of one load step, the last one without `step`.
 
     Every node of the mesh is there once, in the order of the mesh's tags; where the stresses of two materials meet it
-    may be there once for each. In 2-D forces are per unit of thickness.
+    may be there once for each. In 2-D forces are per unit of thickness, around an axis of the whole
+    ring.
     """
 
     path: Path
@@ -36,6 +37,8 @@ class Result:
     """The report of the run."""
     units: str
     """"m" (m, N, Pa) or "mm" (mm, N, MPa)."""
+    plane: str | None
+    """"strain", "stress" or "axisymmetric"; None in space, and of files that don't say."""
     step: int
     """The load step, from 1."""
     steps: int
@@ -76,8 +79,9 @@ class Result:
         if "Displacement" not in grid["PointData"]:
             raise InputError(f"{self.path}: is a problem file; contact-dd-mpi {self.path} solves it")
         self.report = json.loads(file.attrs["report"])
-        units = file.attrs.get("units", "m")
-        self.units = units.decode() if isinstance(units, bytes) else str(units)
+        text = {name: value.decode() if isinstance(value, bytes) else value for name, value in file.attrs.items()}
+        self.units = text.get("units", "m")
+        self.plane = text.get("plane")
         self.steps = int(grid["Steps"].attrs["NSteps"]) if "Steps" in grid else 1
         self.step = self.steps if step is None else step
         if not 1 <= self.step <= self.steps:

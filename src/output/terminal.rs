@@ -147,7 +147,7 @@ pub fn closing(reason: &str, report: &Report, result: &Path) -> String {
     }
     if let Some(FrictionOfStep { friction, .. }) = report.friction {
         lines.push(format!(
-            "friction     {} conditions stick, {} slip; work {:.4e} J/m",
+            "friction     {} conditions stick, {} slip; work {:.4e}",
             friction.sticking, friction.slipping, friction.dissipated_work
         ));
     }

@@ -12,6 +12,7 @@ use std::path::Path;
 
 use contact_dd_partition::destination::{self, Destination};
 use contact_dd_partition::error::OutputError;
+use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::{Catalog, ContactSummary};
 use contact_dd_partition::scene::units::Units;
 use hdf5::types::VarLenUnicode;
@@ -35,6 +36,8 @@ pub struct Layout {
     pub stress: bool,
     /// The units that its numbers are meant in.
     pub units: Units,
+    /// Plane state; `None` in space.
+    pub plane: Option<PlaneState>,
 }
 
 impl Layout {
@@ -53,6 +56,7 @@ impl Layout {
             times: catalog.steps.iter().map(|step| step.time).collect(),
             stress,
             units: catalog.units,
+            plane: catalog.plane,
         }
     }
 }
@@ -128,6 +132,9 @@ impl ResultFile {
         let make = || {
             let file = open(without_locks(), destination.temporary())?;
             attribute(&file, "units", layout.units.length())?;
+            if let Some(plane) = layout.plane {
+                attribute(&file, "plane", plane.name())?;
+            }
             let grid = Grid::create(&file, layout)?;
             let contacts = ContactTables::create(&file, &layout.contacts, layout.times.len())?;
             Ok((file, grid, contacts))

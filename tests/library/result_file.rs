@@ -87,6 +87,7 @@ fn layout(cells: &[usize], conditions: &[usize]) -> Layout {
         times: Vec::new(),
         stress: true,
         units: Units::Millimetre,
+        plane: None,
     }
 }
 

@@ -68,6 +68,7 @@ fn every_mesh_covers_its_scene_exactly_at_every_refinement() {
         ("raous", 0.0016),
         ("mindlin", 400.0),
         ("granite-friction", 100.0),
+        ("shrink-fit", 120.0 * 50.0 + 80.0 * 50.0),
     ] {
         for refine in 0..2 {
             let area = area(&mesh_of(name, refine));
@@ -141,7 +142,11 @@ fn examples_of_any_cells_are_the_same_scene() {
                 let share = |c: &Contact| c.points.iter().map(|r| r.area).sum::<f64>();
                 assert!(contact.points.len() >= other.points.len());
                 // At a crack tip there is no condition, and its share is smaller.
-                assert!(share(contact) > share(other) - 1e-12, "{}", example.name);
+                assert!(
+                    share(contact) > (1.0 - 1e-12) * share(other),
+                    "{}",
+                    example.name
+                );
             }
         }
     }
@@ -190,6 +195,7 @@ fn meshes_are_conforming_and_their_sides_lie_on_the_boundary() {
             "incline" => 8.0,
             "raous" => 0.16,
             "mindlin" => 120.0,
+            "shrink-fit" => 340.0 + 260.0,
             _ => continue,
         };
         assert!((boundary / exact - 1.0).abs() < 1e-12, "{}", example.name);
@@ -243,6 +249,7 @@ fn bodies_hang_together_and_are_never_glued() {
         ("raous", 1),
         ("mindlin", 2),
         ("granite-friction", 1),
+        ("shrink-fit", 2),
     ] {
         let mesh = mesh_of(name, 0);
         let pieces: BTreeSet<u32> = Topology::new(&mesh).pieces().into_iter().collect();

@@ -174,7 +174,7 @@ def steps(report, units):
     rows = [
         [escape(step["name"]), f"{step['time']:g}", escape(step["status"].replace("_", " ")), step["sweeps"],
          step["active_contacts"], si(pressure, units.stress), short(step["certificate"]["equilibrium"]),
-         *friction_of(step, report)]
+         *friction_of(step, report, units)]
         for step, pressure in zip(found[:MOST_ROWS], pressures)
     ]
     head = ["step", "time", "", "sweeps", "closed", "largest pressure", "equilibrium", *friction_head(report)]
@@ -271,7 +271,7 @@ def contacts(report, sides, units):
         return ""
     rows = [
         [escape(c["name"]), f"{c['closed']} of {c['conditions']}", si(c["largest_pressure"], units.stress), *force,
-         *friction_of(c, report)]
+         *friction_of(c, report, units)]
         for c, force in zip(found[:MOST_ROWS], forces(found, units.force))
     ]
     head = ["contact", "closed", "largest pressure", *force_head("force on side a, ", found), *friction_head(report)]
@@ -286,11 +286,11 @@ def friction_head(report):
     return ["slipping", "work of friction"] if report.get("friction") else []
 
 
-def friction_of(part, report):
+def friction_of(part, report, units):
     """How many conditions of a contact or a step slip, and friction's work, where any contact has friction."""
     friction = part.get("friction")
     if friction:
-        return [friction["slipping"], si(friction["dissipated_work"], "J/m")]
+        return [friction["slipping"], si(friction["dissipated_work"], units.work)]
     return ["–", "–"] if report.get("friction") else []
 
 

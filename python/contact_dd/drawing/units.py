@@ -13,19 +13,21 @@ class Units:
     length: str = "m"
     stress: str = "Pa"
     force: str = "N/m"
+    work: str = "J/m"
 
 
 KNOWN = {"m": Units(), "mm": Units("mm", "MPa", "N/mm")}
 
 
 def units_of(result):
-    """The symbols of a result's units; forces in the plane are those per thickness."""
+    """The symbols of a result's units; forces in the plane are those per thickness, but not around an axis."""
     known = KNOWN[result.units]
-    return replace(known, force="N") if result.is_in_space else known
+    whole = result.is_in_space or result.plane == "axisymmetric"
+    return replace(known, force="N", work={"m": "J", "mm": "mJ"}[known.length]) if whole else known
 
 
 def has_prefix(unit):
-    return unit in ("mm", "MPa", "N/mm")
+    return unit in ("mm", "MPa", "N/mm", "mJ")
 
 
 def in_units(values, unit):
