@@ -1,7 +1,7 @@
 """Builds contact-dd-partition and contact-dd-mpi, which become scripts of the wheel.
 
-What is missing for that is said by its Debian packages. Where CONTACT_DD_BIN names a folder of built programs, or for an
-editable installation, the wheel is pure Python.
+What is missing for that is said by its Debian packages. Where CONTACT_DD_BIN names a folder of built programs, or for
+an editable installation, the wheel is pure Python.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ class Programs(BuildHookInterface[Any]):
         check = subprocess.run([repository / "scripts/setup", "--check"], stderr=subprocess.PIPE, text=True)
         if check.returncode != 0:
             raise SystemExit(
-                f"the programs can't be built: {check.stderr.strip()}; scripts/setup installs it. For programs that are "
-                "built already name their folder in CONTACT_DD_BIN"
+                f"the programs can't be built: {check.stderr.strip()}; scripts/setup installs it. For programs that "
+                "are built already name their folder in CONTACT_DD_BIN"
             )
         built = subprocess.run(["bash", "-euc", BUILD], cwd=repository, check=True, stdout=subprocess.PIPE, text=True)
         build_data["shared_scripts"] = {f"{built.stdout}/release/{name}": name for name in NAMES}

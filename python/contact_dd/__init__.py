@@ -11,11 +11,12 @@
     result.plot()
 """
 
+from contact_dd.adaptivity import adapt
 from contact_dd.errors import ContactError, IllPosed, InputError, NotConverged, OutputError, Stopped
 from contact_dd.model import Material, Model, Step
 from contact_dd.result import Result
 
 __all__ = [
     "ContactError", "IllPosed", "InputError", "Material", "Model", "NotConverged", "OutputError", "Result", "Step",
-    "Stopped",
+    "Stopped", "adapt",
 ]

@@ -1,4 +1,4 @@
-"""The command `contact-dd`: pictures and pages of results."""
+"""The command `contact-dd`: pictures and pages of results, and meshes that adapt."""
 
 import argparse
 import signal
@@ -8,7 +8,9 @@ from pathlib import Path
 
 import matplotlib
 
+from contact_dd.adaptivity import adapt as solve_adapted
 from contact_dd.errors import ContactError, InputError, OutputError
+from contact_dd.model import Model, scene_of
 from contact_dd.result import Result
 
 
@@ -26,7 +28,8 @@ def main() -> None:
 
 
 def parser() -> argparse.ArgumentParser:
-    top = argparse.ArgumentParser(prog="contact-dd", description="Pictures and pages of results of contact-dd-mpi.")
+    what = "Draws and reports results of contact-dd-mpi, and adapts meshes."
+    top = argparse.ArgumentParser(prog="contact-dd", description=what)
     commands = top.add_subparsers(required=True, metavar="COMMAND")
 
     drawn = commands.add_parser("plot", help="draw pictures of a result", description="Draws pictures of a result.")
@@ -44,6 +47,15 @@ def parser() -> argparse.ArgumentParser:
     written.add_argument("result", type=Path, help="result file of contact-dd-mpi")
     written.add_argument("page", type=Path, nargs="?", help="default: the result's name with .html")
     written.set_defaults(command=report)
+
+    what = "Meshes and solves until the estimated error is as small as asked."
+    adapted = commands.add_parser("adapt", help="mesh and solve until the error is small", description=what)
+    adapted.add_argument("scene", type=Path, help="scene.toml")
+    adapted.add_argument("--error", type=float, required=True, help="relative, in the energy norm: 1e-2 is 1 %%")
+    adapted.add_argument("--geometry", type=Path, help="file that Gmsh meshes (default: the scene's mesh with .geo)")
+    adapted.add_argument("--ranks", type=int, default=2, help="how many processes solve (default: 2)")
+    adapted.add_argument("--folder", type=Path, help="of mesh and result (default: the scene's stem + -adapted)")
+    adapted.set_defaults(command=adapt)
     return top
 
 
@@ -86,3 +98,12 @@ def report(arguments: argparse.Namespace) -> None:
     except OSError as error:
         raise OutputError(f"{path}: can't be written: {error.strerror}") from error
     print(path)
+
+
+def adapt(arguments: argparse.Namespace) -> None:
+    scene, mesh = scene_of(arguments.scene)
+    geometry = arguments.geometry or mesh.with_suffix(".geo")
+    folder = arguments.folder or arguments.scene.with_name(arguments.scene.stem + "-adapted")
+    # A mesh is made first of all.
+    result, _ = solve_adapted(Model(b"", scene), arguments.error, geometry, ranks=arguments.ranks, folder=folder)
+    print(result.path)

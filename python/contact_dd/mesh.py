@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import meshio
 
 MeshSource = Any
-"""A file, a mesh of meshio, or Gmsh's model."""
+"""A file, its content in Gmsh's format, a mesh of meshio, or Gmsh's model."""
 
 # Facets of meshio's cells by their corners, and the kind that a facet is.
 FACETS: dict[str, tuple[str, list[tuple[int, ...]]]] = {
@@ -43,6 +43,8 @@ CORNERS = {"line": 2, "line3": 2, "triangle": 3, "triangle6": 3, "quad": 4, "qua
 
 def msh_of(source: MeshSource) -> bytes:
     """The content of a file of Gmsh's that holds the mesh with its named groups."""
+    if isinstance(source, bytes):
+        return source
     if isinstance(source, str | Path):
         return of_file(Path(source))
     if hasattr(source, "getPhysicalGroups") or hasattr(source, "model"):
@@ -80,7 +82,7 @@ def of_gmsh() -> bytes:
 
     if not gmsh.model.getPhysicalGroups():
         raise InputError("Gmsh's model has no physical groups; bodies and sides need names")
-    if gmsh.model.mesh.getMaxElementTag() == 0:
+    if len(gmsh.model.mesh.getElementTypes()) == 0:
         raise InputError("Gmsh's model has no mesh; gmsh.model.mesh.generate makes one")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "mesh.msh")

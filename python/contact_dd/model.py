@@ -73,14 +73,8 @@ class Model:
     @classmethod
     def from_scene(cls, path: str | Path) -> Model:
         """The model of a `scene.toml`."""
-        path = Path(path)
-        try:
-            scene = tomllib.loads(path.read_text())
-        except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-            raise InputError(f"{path}: {error}") from error
-        if not isinstance(scene.get("mesh"), str):
-            raise InputError(f"{path}: there is no key 'mesh'; expected the name of the mesh file")
-        return cls(path.parent / scene.pop("mesh"), scene)
+        scene, mesh = scene_of(Path(path))
+        return cls(mesh, scene)
 
     def body(self, group: str, material: Material, body_force: Vector | None = None) -> None:
         """Makes a group of cells a body. `body_force` is a force per volume."""
@@ -183,6 +177,17 @@ class Model:
 
     def _add(self, kind: str, **keys: Any) -> None:
         self.scene.setdefault(kind, []).append(given(**keys))
+
+
+def scene_of(path: Path) -> tuple[dict[str, Any], Path]:
+    """What a `scene.toml` says, and its mesh file."""
+    try:
+        scene = tomllib.loads(path.read_text())
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise InputError(f"{path}: {error}") from error
+    if not isinstance(scene.get("mesh"), str):
+        raise InputError(f"{path}: there is no key 'mesh'; expected the name of the mesh file")
+    return scene, path.parent / scene.pop("mesh")
 
 
 def given(**keys: Any) -> dict[str, Any]:

@@ -1,0 +1,59 @@
+"""Meshes that adapt: solve, see where the error is, mesh again, until it is as small as asked."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from contact_dd.errors import InputError, NotConverged
+from contact_dd.geometry import meshed
+from contact_dd.model import Model
+from contact_dd.result import Result
+from contact_dd.sizes import relative_errors, sizes_for
+
+MOST_ROUNDS = 12
+
+
+@dataclass(frozen=True)
+class Round:
+    """A mesh on the way."""
+
+    dofs: int
+    error: float
+    """Estimated, relative, in the energy norm."""
+    seconds: float
+    """Since the first mesh was begun."""
+
+
+def adapt(
+    model: Model, error: float, geometry: str | Path | None = None, *, ranks: int = 2,
+    folder: str | Path | None = None, progress: bool = True,
+) -> tuple[Result, list[Round]]:
+    """Meshes and solves a model until the estimated error, relative and in the energy norm, is at most `error`, in
+    every load step.
+
+    `geometry` is a file that Gmsh meshes, with the groups of the model; without one it is Gmsh's current model. The
+    first mesh has the sizes that the geometry asks for; the last one is that of the model then. Cells are quadratic.
+
+    Raises `NotConverged` where the error is still larger after 12 rounds.
+    """
+    if not 0 < error < 1:
+        raise InputError(f"an error of {error}; expected one above 0 and below 1")
+    path = None if geometry is None else Path(geometry)
+    start, sizes, rounds = time.perf_counter(), None, list[Round]()
+    while True:
+        model.mesh = meshed(path, sizes)
+        result = model.run(ranks, folder=folder, progress=False)
+        found, _ = relative_errors(result)
+        rounds.append(Round(result.report["dofs"], found, time.perf_counter() - start))
+        if progress:
+            last = rounds[-1]
+            print(f"round {len(rounds)}: {last.dofs:8} dofs, error {found:.2%}, {last.seconds:.1f} s", flush=True)
+        if found <= error:
+            return result, rounds
+        if len(rounds) == MOST_ROUNDS:
+            late = NotConverged(f"after {MOST_ROUNDS} meshes the error is {found:.2g}, above {error:g}")
+            late.result = result
+            raise late
+        sizes = sizes_for(result, error)
