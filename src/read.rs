@@ -87,7 +87,7 @@ pub fn collect_groups(
             points.push(point.rename(|at| of_plan.numbers.get(&at).copied()));
         }
         let dim = catalog.dim;
-        Ok((g, ContactGroup { points, nodes, dim }))
+        Ok((g, ContactGroup::new(points, nodes, dim)))
     };
     let groups: Result<_, InputError> = described.into_iter().map(group).collect();
     comm.agree(groups.map_err(|error| Failure::from(file.refuse(error))))

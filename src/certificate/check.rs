@@ -202,26 +202,30 @@ impl Most {
             most.contact_force = larger(most.contact_force, force);
             most.complementarity = larger(most.complementarity, gap * force);
         }
-        for TangentialCondition {
-            number,
-            normal,
-            bound,
-        } in group.friction()
-        {
-            let (force, slip) = (forces[number], -gaps[number]);
+        let friction = group.friction();
+        for of_point in friction.chunk_by(|a, b| a.normal == b.normal) {
+            let TangentialCondition { normal, bound, .. } = of_point[0];
+            let both = |value: &dyn Fn(usize) -> f64| {
+                let second = of_point.get(1).map_or(0.0, |second| value(second.number));
+                [value(of_point[0].number), second]
+            };
+            let (force, stuck) = (
+                both(&|j| forces[j]),
+                both(&|j| if closed[j] { gaps[j] } else { 0.0 }),
+            );
+            let slip = both(&|j| if closed[j] { 0.0 } else { -gaps[j] });
+            let [size, way] = [force, slip].map(|[a, b]: [f64; 2]| a.hypot(b));
             let is_parting = bound.only_closed && forces[normal] <= no_force;
             let bound = bound.at(forces[normal], closed[normal]);
-            most.contact_force = larger(most.contact_force, force);
-            most.beyond_bound = larger(most.beyond_bound, (force.abs() - bound).max(0.0));
-            if closed[number] {
-                most.astray = larger(most.astray, slip);
-            } else {
-                let missing = match is_parting {
-                    true => (-force * slip).max(0.0),
-                    false => bound * slip.abs() - force * slip,
-                };
-                most.not_opposed = larger(most.not_opposed, missing);
-            }
+            most.contact_force = larger(most.contact_force, size);
+            most.beyond_bound = larger(most.beyond_bound, (size - bound).max(0.0));
+            most.astray = larger(most.astray, stuck[0].hypot(stuck[1]));
+            let work = force[0] * slip[0] + force[1] * slip[1];
+            let missing = match is_parting {
+                true => 0.5 * (size * way - work),
+                false => bound * way - work,
+            };
+            most.not_opposed = larger(most.not_opposed, missing);
         }
         most
     }

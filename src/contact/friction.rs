@@ -6,6 +6,7 @@
 //! wrong statuses are exchanged at once until none is wrong, as semismooth Newton does, and where these don't become
 //! fewer, from those at the end of a path that leads to a solution (Lemke's method).
 
+mod discs;
 mod lemke;
 mod linear;
 mod other;
@@ -68,6 +69,8 @@ pub enum Status {
     Forward,
     /// Slipping against it, under λ_t = −b.
     Backward,
+    /// Slipping along a direction in space.
+    Slipping,
     /// Slipping while its contact is about to open: without pressure, under what is left of the cohesion.
     Parting,
 }
@@ -100,7 +103,7 @@ impl Status {
         match self {
             Self::Forward => 1.0,
             Self::Backward => -1.0,
-            Self::Open | Self::Closed | Self::Parting => 0.0,
+            Self::Open | Self::Closed | Self::Slipping | Self::Parting => 0.0,
         }
     }
 }
@@ -124,6 +127,9 @@ impl FrictionProblem<'_> {
                 *status = Status::new(open);
             }
             return solution;
+        }
+        if self.has_discs() {
+            return self.solve_discs(status);
         }
         let start = status.to_vec();
         let mut solution = self.exchange(status);
@@ -166,6 +172,9 @@ impl FrictionProblem<'_> {
 
     /// The limits whose status is wrong where they have these.
     pub fn unsettled(&self, status: &[Status]) -> Vec<usize> {
+        if self.has_discs() {
+            return self.unsettled_discs(status);
+        }
         let linear = Linear::solve(self, status);
         let wrong = self.wrong(status, &linear).into_iter();
         wrong.map(|(i, _)| i).collect()

@@ -20,6 +20,20 @@ pub struct TangentialLimit {
     pub normal: Option<usize>,
     /// What bounds its force.
     pub bound: ForceBound,
+    /// What its point has along the other tangent.
+    pub beside: Beside,
+}
+
+/// What a point has along the other one of its tangents.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Beside {
+    /// No slip: the plane has but one tangent, or supports let nothing move along the other.
+    #[default]
+    Nothing,
+    /// This limit.
+    Limit(usize),
+    /// A slip in the load step that supports prescribe (m).
+    Prescribed(f64),
 }
 
 /// A tangential jump that supports prescribe on both sides: its force moves nothing.
@@ -30,8 +44,28 @@ struct PrescribedSlip {
     normal: usize,
     /// What bounds its force.
     bound: ForceBound,
-    /// The slip in the load step (m).
+    /// The slip in the load step (m), and that along the other tangent of the point if it is prescribed, too.
     slip: f64,
+    beside: f64,
+    /// The condition along the other tangent if supports leave that free.
+    other: Option<usize>,
+}
+
+impl PrescribedSlip {
+    /// The force that opposes it, where those of other conditions are known.
+    fn force(&self, forces: &[f64]) -> f64 {
+        let normal = forces[self.normal];
+        let bound = self.bound.at(normal, normal > 0.0);
+        let size = match self.other {
+            Some(other) => {
+                let along = forces[other].abs().min(bound);
+                ((bound - along) * (bound + along)).sqrt()
+            }
+            None if self.beside == 0.0 => bound,
+            None => bound * (self.slip.abs() / self.slip.hypot(self.beside)),
+        };
+        size.copysign(self.slip)
+    }
 }
 
 impl TangentialLimit {
@@ -40,8 +74,12 @@ impl TangentialLimit {
     pub fn renamed(&self, number: impl Fn(usize) -> usize) -> Self {
         Self {
             limit: number(self.limit),
-            normal: self.normal.map(number),
+            normal: self.normal.map(&number),
             bound: self.bound,
+            beside: match self.beside {
+                Beside::Limit(limit) => Beside::Limit(number(limit)),
+                known => known,
+            },
         }
     }
 }
@@ -114,32 +152,43 @@ impl Limits {
                 JumpOf::Prescribed => {}
             }
         }
-        limits.tangents = limits.tangents_of(friction);
-        for tangential in friction {
-            if of[tangential.number] == JumpOf::Prescribed {
-                let slip = -gaps[tangential.number];
+        let prescribed = |j: usize| {
+            let slip = -gaps[j];
+            let slips = slip.abs() > ROUND_OFF * scale;
+            (of[j] == JumpOf::Prescribed).then_some(if slips { slip } else { 0.0 })
+        };
+        limits.tangents = limits.tangents_of(friction, prescribed);
+        for (tangential, other) in with_other(friction) {
+            if let Some(slip) = prescribed(tangential.number) {
                 limits.prescribed_slips.push(PrescribedSlip {
                     condition: tangential.number,
                     normal: tangential.normal,
                     bound: tangential.bound,
-                    slip: if slip.abs() > ROUND_OFF * scale {
-                        slip
-                    } else {
-                        0.0
-                    },
+                    slip,
+                    beside: other.and_then(prescribed).unwrap_or(0.0),
+                    other: other.filter(|&other| prescribed(other).is_none()),
                 });
             }
         }
         limits
     }
 
-    /// The limits of these tangential conditions.
-    fn tangents_of(&self, friction: &[TangentialCondition]) -> Vec<TangentialLimit> {
+    /// The limits of these tangential conditions, of which some slips are `prescribed`.
+    fn tangents_of(
+        &self,
+        friction: &[TangentialCondition],
+        prescribed: impl Fn(usize) -> Option<f64>,
+    ) -> Vec<TangentialLimit> {
         let of_condition: BTreeMap<usize, (usize, f64)> = (self.tightest.iter().enumerate())
             .map(|(limit, &(condition, factor))| (condition, (limit, factor)))
             .collect();
-        let mut tangents: Vec<TangentialLimit> = (friction.iter())
-            .filter_map(|tangential| {
+        let beside = |other: usize| match (of_condition.get(&other), prescribed(other)) {
+            (Some(&(limit, _)), _) => Beside::Limit(limit),
+            (None, Some(slip)) if slip != 0.0 => Beside::Prescribed(slip),
+            _ => Beside::Nothing,
+        };
+        let mut tangents: Vec<TangentialLimit> = with_other(friction)
+            .filter_map(|(tangential, other)| {
                 let normal = of_condition.get(&tangential.normal).copied();
                 let (limit, _) = *of_condition.get(&tangential.number)?;
                 Some(TangentialLimit {
@@ -150,6 +199,7 @@ impl Limits {
                             / normal.map_or(1.0, |(_, factor)| factor),
                         ..tangential.bound
                     },
+                    beside: other.map_or(Beside::Nothing, beside),
                 })
             })
             .collect();
@@ -220,6 +270,7 @@ impl Limits {
             (all.prescribed_slips).extend(prescribed.map(|prescribed| PrescribedSlip {
                 condition: all.conditions + prescribed.condition,
                 normal: all.conditions + prescribed.normal,
+                other: prescribed.other.map(|other| all.conditions + other),
                 ..*prescribed
             }));
             all.conditions += group.conditions;
@@ -238,9 +289,7 @@ impl Limits {
             forces[condition] = force / factor;
         }
         for prescribed in self.prescribed_slips.iter().filter(|p| p.slip != 0.0) {
-            let normal = forces[prescribed.normal];
-            let bound = prescribed.bound.at(normal, normal > 0.0);
-            forces[prescribed.condition] = bound.copysign(prescribed.slip);
+            forces[prescribed.condition] = prescribed.force(&forces);
         }
         forces
     }
@@ -266,6 +315,18 @@ impl Limits {
         };
         self.tightest.iter().map(of_condition).unzip()
     }
+}
+
+/// Tangential conditions, each with the number of the other one of its point, which stands beside it.
+fn with_other(
+    friction: &[TangentialCondition],
+) -> impl Iterator<Item = (&TangentialCondition, Option<usize>)> {
+    friction.iter().enumerate().map(|(k, own)| {
+        let neighbours = [k.checked_sub(1), Some(k + 1)].into_iter().flatten();
+        let mut others = neighbours.filter_map(|k| friction.get(k));
+        let other = others.find(|other| other.normal == own.normal);
+        (own, other.map(|other| other.number))
+    })
 }
 
 #[cfg(test)]

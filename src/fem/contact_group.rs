@@ -1,7 +1,7 @@
 //! A contact group: the contact points that belong to one node of the hierarchy, where all that have one of
 //! their nodes come together, and what they need to know of these nodes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use contact_dd_partition::contact_point::{ContactPoint, Law};
 use contact_dd_partition::element::geometry::{dot, length};
@@ -15,6 +15,9 @@ use crate::contact::friction::{ForceBound, TangentialCondition};
 use crate::contact::jumps::{JumpRow, Jumps, NoUnknown, Sum, Variable, defining_conditions};
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::substitution::Replaced;
+
+/// Square of a row, relative to that of another one, that is round-off.
+const NO_ROW: f64 = 1e-28;
 
 /// A node of contact points, as its subdomain describes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -150,6 +153,34 @@ impl GroupLoads {
 }
 
 impl ContactGroup {
+    /// The group of these points. Where supports let what has friction slip in but one direction of a plane, that is
+    /// the first tangent, so that there is no condition along the second.
+    pub fn new(points: Vec<ContactPoint<u32>>, nodes: Vec<ContactNode>, dim: usize) -> Self {
+        let mut group = Self { points, nodes, dim };
+        let frames = group.frames();
+        for point in 0..group.points.len() {
+            let tangents = group.points[point].tangents(dim);
+            if let [first, second] = *tangents {
+                let [a, b] = [first, second].map(|direction| {
+                    group.row(
+                        &Condition {
+                            point,
+                            direction,
+                            is_tangential: true,
+                        },
+                        &frames,
+                    )
+                });
+                if let Some((cos, sin)) = only_direction(&a, &b) {
+                    let turned =
+                        |x: f64, y: f64| std::array::from_fn(|k| x * first[k] + y * second[k]);
+                    group.points[point].frame.tangents = [turned(cos, sin), turned(-sin, cos)];
+                }
+            }
+        }
+        group
+    }
+
     /// Its conditions: the normal one of every point, then the tangential ones of the points that have friction.
     pub fn conditions(&self) -> impl Iterator<Item = Condition> + '_ {
         let normal = |(point, of_point): (usize, &ContactPoint<u32>)| Condition {
@@ -356,4 +387,23 @@ impl ContactGroup {
         row.retain(|_, c| c.abs() > 1e-14 * scale);
         row.into_iter().collect()
     }
+}
+
+/// Cosine and sine of the angle by which rows are to be turned so that the second is nothing; `None` where both are
+/// needed or nothing already, or one is.
+fn only_direction(a: &JumpRow, b: &JumpRow) -> Option<(f64, f64)> {
+    if a.is_empty() || b.is_empty() {
+        return None;
+    }
+    let b: BTreeMap<u32, f64> = b.iter().copied().collect();
+    let a: BTreeMap<u32, f64> = a.iter().copied().collect();
+    let at = |row: &BTreeMap<u32, f64>, v: &u32| row.get(v).copied().unwrap_or(0.0);
+    let sum = |term: &dyn Fn(f64, f64) -> f64| -> f64 {
+        let all: BTreeSet<&u32> = a.keys().chain(b.keys()).collect();
+        all.into_iter().map(|v| term(at(&a, v), at(&b, v))).sum()
+    };
+    let product = sum(&|a, b| a * b);
+    let (sin, cos) = (0.5 * (2.0 * product).atan2(sum(&|a, b| a * a - b * b))).sin_cos();
+    let rest = sum(&|a, b| (cos * b - sin * a).powi(2));
+    (rest <= NO_ROW * sum(&|a, b| a * a + b * b)).then_some((cos, sin))
 }

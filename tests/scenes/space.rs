@@ -1,6 +1,7 @@
 //! Scenes in space.
 
 mod contact;
+mod friction;
 
 use std::collections::HashMap;
 

@@ -128,15 +128,15 @@ impl Assembled {
         let conditions = model.contacts.iter().flat_map(|c| &c.points);
         let tangents =
             (conditions.clone().enumerate()).filter(|(_, point)| point.law.has_friction());
-        let tangents = tangents.map(|(condition, point)| {
-            let direction = point.frame.tangents[0];
-            Tangent {
+        let tangents = tangents.flat_map(|(condition, point)| {
+            let directions = point.frame.tangents.iter().take(dim - 1);
+            directions.map(move |&direction| Tangent {
                 condition,
                 row: row(&point.row_along(direction).collect::<Vec<_>>()),
                 direction,
                 law: point.law,
                 area: point.area,
-            }
+            })
         });
         Self {
             tangents: tangents.collect(),

@@ -63,13 +63,10 @@ impl Friction {
                 cohesion.as_ref().map(|cohesion| ("cohesion", cohesion)),
             ],
         };
-        numbers.into_iter().flatten().find_map(|(key, number)| {
-            let fault = match dim {
-                3 => Some("friction isn't supported in three dimensions".into()),
-                _ => number.fault(dim),
-            };
-            Some((key, fault?))
-        })
+        numbers
+            .into_iter()
+            .flatten()
+            .find_map(|(key, number)| Some((key, number.fault(dim)?)))
     }
 
     /// The law at a point (m).

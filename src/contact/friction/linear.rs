@@ -17,9 +17,9 @@ use crate::contact::open_factor::scale_of;
 /// Pivot of the scaled matrix below which it is taken as singular.
 const SINGULAR_PIVOT: f64 = 1e-13;
 /// Stiffness of the springs that make it regular then, in that scale.
-const SPRING: f64 = 1e-12;
+pub(super) const SPRING: f64 = 1e-12;
 /// How much closed rows that depend on each other give way, in that scale: their forces share what one could carry.
-const YIELD: f64 = 1e-6;
+pub(super) const YIELD: f64 = 1e-6;
 /// Most refinements of a solution that springs have bent.
 const MAX_REFINEMENTS: usize = 40;
 
@@ -35,16 +35,16 @@ pub(super) struct Linear {
 }
 
 /// A x = b in the scale of energies.
-struct System {
-    a: Mat<f64>,
+pub(super) struct System {
+    pub a: Mat<f64>,
     /// Which limits the unknowns are of: jumps that aren't closed, then rows that are closed or slip.
-    unknowns: Vec<usize>,
+    pub unknowns: Vec<usize>,
     /// What an unknown is in that scale: jump or force times this.
-    scale: Vec<f64>,
+    pub scale: Vec<f64>,
     /// What an equation is divided by.
-    of_equation: Vec<f64>,
+    pub of_equation: Vec<f64>,
     /// A spring on every jump, and what gives way in every closed row, where A is singular.
-    springs: Vec<f64>,
+    pub springs: Vec<f64>,
 }
 
 impl Linear {
@@ -297,7 +297,7 @@ impl System {
     }
 
     /// A⁻¹ b, 0 where A is singular and b `is_balanced`.
-    fn solve(&self, b: Vec<f64>, is_balanced: impl Fn() -> bool) -> Vec<f64> {
+    pub fn solve(&self, b: Vec<f64>, is_balanced: impl Fn() -> bool) -> Vec<f64> {
         let n = b.len();
         let mut lu = self.a.partial_piv_lu();
         let is_singular = (0..n).any(|k| lu.U()[(k, k)].abs() <= SINGULAR_PIVOT);

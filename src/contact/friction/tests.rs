@@ -2,6 +2,7 @@ use faer::Mat;
 
 use super::*;
 use crate::contact::dependent::DependentConstraints;
+use crate::contact::limits::Beside;
 
 /// Points with a normal and a tangential jump each, normals first, on a random stiffness.
 struct Points {
@@ -29,6 +30,7 @@ impl Points {
             limit: points + p,
             normal: Some(p),
             bound,
+            beside: Beside::Nothing,
         };
         Self {
             diagonal: (0..m).map(|i| h[(i, i)]).collect(),

@@ -176,34 +176,46 @@ impl Findings {
         let bounds = state.bounds(assembled);
         let scale = largest(&bounds).max(least);
         let mut has_friction = vec![false; state.points.len()];
-        for (k, tangent) in assembled.tangents.iter().enumerate() {
-            let (point, force, since) = (
-                state.points[tangent.condition],
-                state.tangential[k],
-                state.since[k],
-            );
+        let all: Vec<(usize, &Tangent)> = assembled.tangents.iter().enumerate().collect();
+        for of_point in all.chunk_by(|(_, a), (_, b)| a.condition == b.condition) {
+            let (k, tangent) = of_point[0];
+            let point = state.points[tangent.condition];
+            let vector = |values: &[f64]| {
+                let parts = of_point
+                    .iter()
+                    .map(|&(k, tangent)| (values[k], tangent.direction));
+                parts.fold([0.0; 3], |sum, (x, t)| [0, 1, 2].map(|i| sum[i] + x * t[i]))
+            };
+            let (force, since) = (vector(&state.tangential), vector(&state.since));
+            let [size_of_force, way] = [force, since].map(|v| dot(v, v).sqrt());
             has_friction[tangent.condition] = true;
-            self.bound = worse(self.bound, ratio(force.abs() - bounds[k], scale));
+            self.bound = worse(self.bound, ratio(size_of_force - bounds[k], scale));
             // About to open, without pressure, it may have any part of its cohesion.
             let normal = state.forces[tangent.condition];
             let is_parting = !tangent.is_given() && normal <= FRICTION * scale;
-            let least_bound = if is_parting { 0.0 } else { bounds[k] };
-            let lacks = ratio(least_bound - force * since.signum(), scale) / FRICTION;
-            let slipped = ratio(since.abs(), size) / STUCK;
+            let opposing = ratio(dot(force, since), way);
+            let least_bound = if is_parting { size_of_force } else { bounds[k] };
+            let lacks = ratio(least_bound - opposing, scale) / FRICTION;
+            let slipped = ratio(way, size) / STUCK;
             self.direction = worse(self.direction, lacks.min(slipped));
-            let slip = dot(point.slip, tangent.direction);
-            self.slip = worse(self.slip, ratio((slip - state.jumps[k]).abs(), size));
+            for &(k, tangent) in of_point {
+                let slip = dot(point.slip, tangent.direction);
+                self.slip = worse(self.slip, ratio((slip - state.jumps[k]).abs(), size));
+            }
             for (vector, scale) in [(point.tangential_force, scale), (point.slip, size)] {
-                let along = dot(vector, tangent.direction);
-                let off = (0..3).map(|i| vector[i] - along * tangent.direction[i]);
-                let off = off.fold(0.0, |m: f64, x| worse(m, x.abs()));
+                let off = of_point.iter().fold(vector, |rest, (_, tangent)| {
+                    let along = dot(vector, tangent.direction);
+                    [0, 1, 2].map(|i| rest[i] - along * tangent.direction[i])
+                });
+                let off = off.iter().fold(0.0, |m: f64, x| worse(m, x.abs()));
                 self.off_tangent = worse(self.off_tangent, ratio(off, scale));
             }
             match (point.closed, point.slipping) {
                 (false, _) => {}
                 (true, false) => self.stuck = worse(self.stuck, slipped),
                 (true, true) => {
-                    let lacks = ratio(least_bound - force.abs(), scale) / FRICTION;
+                    let least_bound = if is_parting { 0.0 } else { bounds[k] };
+                    let lacks = ratio(least_bound - size_of_force, scale) / FRICTION;
                     self.status = worse(self.status, lacks);
                 }
             }
@@ -293,8 +305,9 @@ impl Findings {
         let bounds = state.bounds(assembled);
         let one = |(k, tangent): (usize, &Tangent)| {
             let (point, force) = (state.points[tangent.condition], state.tangential[k]);
+            let whole = dot(point.tangential_force, point.tangential_force).sqrt();
             let slips = match tangent.is_given() && !point.closed {
-                true => force.abs() >= (1.0 - FRICTION) * bounds[k],
+                true => whole >= (1.0 - FRICTION) * bounds[k],
                 false => point.slipping,
             };
             match (slips, point.closed || tangent.is_given()) {

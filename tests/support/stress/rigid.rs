@@ -6,15 +6,13 @@ use nalgebra::{DMatrix, DVector};
 /// Singular value, relative to the largest, that counts as none.
 const NOTHING: f64 = 1e-9;
 
-/// Motions of a body in the plane: along x, along y, around its middle.
-const MODES: usize = 3;
-
 /// Bodies, each what hangs together through nodes, with their rigid motions.
 pub struct Bodies {
+    dim: usize,
     /// Body of every node.
     of_node: Vec<usize>,
     /// Middle and size of every body (m).
-    frames: Vec<([f64; 2], f64)>,
+    frames: Vec<([f64; 3], f64)>,
     points: Vec<[f64; 3]>,
 }
 
@@ -40,62 +38,82 @@ impl Bodies {
             }
         }
         let mut number = vec![usize::MAX; root.len()];
-        let mut boxes: Vec<[[f64; 2]; 2]> = Vec::new();
+        let mut boxes: Vec<[[f64; 3]; 2]> = Vec::new();
         let mut of_node = Vec::with_capacity(root.len());
         for node in 0..root.len() {
             let top = find(&mut root, node);
             let p = mesh.points[node];
             if number[top] == usize::MAX {
                 number[top] = boxes.len();
-                boxes.push([[p[0], p[1]]; 2]);
+                boxes.push([p; 2]);
             }
             let [low, high] = &mut boxes[number[top]];
-            for axis in 0..2 {
+            for axis in 0..3 {
                 low[axis] = low[axis].min(p[axis]);
                 high[axis] = high[axis].max(p[axis]);
             }
             of_node.push(number[top]);
         }
-        let frame = |[low, high]: [[f64; 2]; 2]| {
-            let size = (high[0] - low[0]).max(high[1] - low[1]);
-            ([0, 1].map(|i| (low[i] + high[i]) / 2.0), size)
+        let frame = |[low, high]: [[f64; 3]; 2]| {
+            let sizes = [0, 1, 2].map(|i| high[i] - low[i]);
+            let size = sizes.into_iter().fold(0.0, f64::max);
+            ([0, 1, 2].map(|i| (low[i] + high[i]) / 2.0), size)
         };
         Self {
+            dim: mesh.dim,
             of_node,
             frames: boxes.into_iter().map(frame).collect(),
             points: mesh.points.clone(),
         }
     }
 
+    /// Number of rigid motions of a body: along every axis, around its middle.
+    fn modes(&self) -> usize {
+        if self.dim == 2 { 3 } else { 6 }
+    }
+
     /// Number of rigid motions.
     pub fn motions(&self) -> usize {
-        MODES * self.frames.len()
+        self.modes() * self.frames.len()
+    }
+
+    /// The displacement of a node in each motion of its body.
+    fn moves(&self, node: usize) -> Vec<[f64; 3]> {
+        let [x, y, z] = self.arm(node);
+        let along = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let around = [[-y, x, 0.0], [0.0, -z, y], [z, 0.0, -x]];
+        let turns = if self.dim == 2 { 1 } else { 3 };
+        [&along[..self.dim], &around[..turns]].concat()
     }
 
     /// What a row of coefficients, by dof, does to each rigid motion.
     pub fn act(&self, row: &[(usize, f64)]) -> DVector<f64> {
         let mut sums = DVector::zeros(self.motions());
         for &(dof, c) in row {
-            let (node, axis) = (dof / 2, dof % 2);
-            let (first, arm) = (MODES * self.of_node[node], self.arm(node));
-            sums[first + axis] += c;
-            sums[first + 2] += c * [-arm[1], arm[0]][axis];
+            let (node, axis) = (dof / self.dim, dof % self.dim);
+            let first = self.modes() * self.of_node[node];
+            for (k, moved) in self.moves(node).iter().enumerate() {
+                sums[first + k] += c * moved[axis];
+            }
         }
         sums
     }
 
-    fn arm(&self, node: usize) -> [f64; 2] {
+    fn arm(&self, node: usize) -> [f64; 3] {
         let (middle, size) = self.frames[self.of_node[node]];
         let p = self.points[node];
-        [0, 1].map(|i| (p[i] - middle[i]) / size)
+        [0, 1, 2].map(|i| (p[i] - middle[i]) / size)
     }
 
     /// The displacement of all nodes in the motion with these coefficients.
     pub fn displacement(&self, motion: &[f64]) -> Vec<f64> {
         (0..self.of_node.len())
             .flat_map(|node| {
-                let (z, arm) = (&motion[MODES * self.of_node[node]..], self.arm(node));
-                [z[0] - z[2] * arm[1], z[1] + z[2] * arm[0]]
+                let z = &motion[self.modes() * self.of_node[node]..];
+                let moves = self.moves(node);
+                let sum =
+                    |axis: usize| z.iter().zip(&moves).map(|(z, moved)| z * moved[axis]).sum();
+                (0..self.dim).map(sum).collect::<Vec<f64>>()
             })
             .collect()
     }

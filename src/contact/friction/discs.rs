@@ -1,0 +1,594 @@
+//! Friction in space, where a point has two tangents: a force within a disc, |λ_t| ≤ b, against the slip s.
+//!
+//! Whatever stiffness r > 0, the laws of a point are
+//!
+//! ```text
+//! λ = max(0, ξ)                 with ξ = λ + r (t − g)
+//! λ_t = ξ_t min(1, b / |ξ_t|)   with ξ_t = λ_t + r s,   b = c + μ λ
+//! ```
+//!
+//! Semismooth Newton: where ξ and ξ_t are says what is open, closed, sticks or slips, and a linear problem follows
+//! ([`linear`]). What is missed of the laws is the merit of a step, which is halved as long as it doesn't lessen that.
+//! Where this gets no further, dashpots at all jumps make the problem easier, the slower things move the less.
+//!
+//! P. Alart, A. Curnier, *A mixed formulation for frictional contact problems prone to Newton like solution methods*,
+//! Comput. Methods Appl. Mech. Engrg 92 (1991); S. Hüeber, G. Stadler, B. Wohlmuth, *A primal-dual active set algorithm
+//! for three-dimensional contact problems with Coulomb friction*, SIAM J. Sci. Comput. 30 (2008).
+
+mod linear;
+
+use super::{FrictionProblem, Status};
+use crate::contact::active_set::{ContactProblem, ContactSolution, FORCE_TOLERANCE};
+use crate::contact::limits::{Beside, TangentialLimit};
+use crate::contact::open_factor::scale_of;
+
+/// Most steps of Newton's method.
+const STEPS: usize = 40;
+/// The same between two changes of dashpots.
+const DAMPED_STEPS: usize = 15;
+/// Part of a step that is too small.
+const SMALLEST: f64 = 1e-3;
+/// Part of the merit, for every part of a step, by which that has to lessen it.
+const LESSENS: f64 = 1e-4;
+/// What is missed that can't be less.
+const ROUND_OFF: f64 = 1e-15;
+/// Dashpots, relative to stiffness and time: the first, the weakest and the strongest ones.
+const DASHPOTS: [f64; 3] = [0.1, 1e-4, 10.0];
+/// Part of the way before that isn't less, and how often that may be.
+const SLOWER: f64 = 0.9;
+const PATIENCE: usize = 3;
+/// Most changes of dashpots.
+const CHANGES: usize = 40;
+
+/// A point with friction: its limits and what bounds its force.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    normal: Option<usize>,
+    /// The tangential limits, the second of which may not be one.
+    tangents: [Option<usize>; 2],
+    /// Slip along the second tangent if that is prescribed.
+    prescribed: f64,
+    own: TangentialLimit,
+}
+
+impl Point {
+    /// κ, of which there is none where nothing can slip but along one line.
+    fn across(&self, stiffness: f64) -> f64 {
+        match self.tangents[1].is_some() || self.prescribed != 0.0 {
+            true => stiffness,
+            false => 0.0,
+        }
+    }
+}
+
+/// What a point does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Act {
+    /// It is open.
+    Rests,
+    Sticks,
+    /// It slips along e, under λ_t = b e, and κ times what of the slip is across it.
+    Slips {
+        e: [f64; 2],
+        across: f64,
+    },
+}
+
+/// What all limits do.
+#[derive(Clone, Debug)]
+struct State {
+    /// Of every limit that isn't tangential whether it is closed.
+    closed: Vec<bool>,
+    points: Vec<Act>,
+}
+
+/// Jumps and forces.
+#[derive(Clone, Debug)]
+struct Place {
+    /// t.
+    jumps: Vec<f64>,
+    /// λ = c − H t − Dᵀ μ, then μ.
+    forces: Vec<f64>,
+}
+
+/// How right a place is.
+struct Look {
+    /// What all limits should do there.
+    state: State,
+    /// What is missed of the laws: in the norm of energies, and of any of them at most, relative to its forces.
+    merit: f64,
+    missed: f64,
+}
+
+/// A problem whose points have discs.
+struct Discs<'a> {
+    contact: ContactProblem<'a>,
+    points: Vec<Point>,
+    is_tangential: Vec<bool>,
+    /// r of every limit.
+    stiffness: Vec<f64>,
+}
+
+/// Where Newton's method ends.
+struct Found {
+    place: Place,
+    state: State,
+    missed: f64,
+    steps: usize,
+}
+
+impl Found {
+    fn converged(&self) -> bool {
+        self.missed <= FORCE_TOLERANCE
+    }
+}
+
+impl FrictionProblem<'_> {
+    /// Whether a point slips in a plane.
+    pub(super) fn has_discs(&self) -> bool {
+        let beside = |tangent: &TangentialLimit| tangent.beside != Beside::Nothing;
+        self.tangents.iter().any(beside)
+    }
+
+    /// Solves the problem from the statuses that its limits have at first, and leaves there those of the solution.
+    pub(super) fn solve_discs(&self, status: &mut [Status]) -> ContactSolution {
+        let discs = Discs::new(self);
+        let (found, fell_back) = discs.solve(status);
+        discs.tell(&found.state, status);
+        let (jumps, forces) = discs.exact(&found);
+        ContactSolution {
+            jumps,
+            forces,
+            steps: found.steps,
+            fell_back,
+            converged: found.converged(),
+        }
+    }
+
+    /// The limits whose law isn't fulfilled one step after they had these statuses.
+    pub(super) fn unsettled_discs(&self, status: &[Status]) -> Vec<usize> {
+        let discs = Discs::new(self);
+        let start = discs.start();
+        let place = discs.step(&start, &discs.begin(status, &start));
+        let missed = discs.missed(&place, &discs.look(&place, None).state);
+        let is_wrong =
+            |&i: &usize| missed[i].abs() > FORCE_TOLERANCE * discs.force_scale(i, &place);
+        (0..missed.len()).filter(is_wrong).collect()
+    }
+}
+
+impl<'a> Discs<'a> {
+    fn new(problem: &FrictionProblem<'a>) -> Self {
+        let contact = problem.contact;
+        let m = contact.c.len();
+        let of_jump = |i: usize| scale_of(contact.h[(i, i)], contact.diagonal[i]);
+        let compliance =
+            |row: &[(usize, f64)]| -> f64 { row.iter().map(|&(i, c)| c * c / of_jump(i)).sum() };
+        let rows = contact.rows.iter().map(|row| 1.0 / compliance(row));
+        let mut stiffness: Vec<f64> = (0..m).map(of_jump).chain(rows).collect();
+        let mut is_tangential = vec![false; stiffness.len()];
+        let mut points = Vec::new();
+        for tangent in problem.tangents {
+            is_tangential[tangent.limit] = true;
+            let (second, prescribed) = match tangent.beside {
+                Beside::Limit(other) if other < tangent.limit => continue,
+                Beside::Limit(other) => (Some(other), 0.0),
+                Beside::Prescribed(slip) => (None, slip),
+                Beside::Nothing => (None, 0.0),
+            };
+            // The same along both tangents, however they are turned.
+            let mean = second.map_or(stiffness[tangent.limit], |other| {
+                0.5 * (stiffness[tangent.limit] + stiffness[other])
+            });
+            let tangents = [Some(tangent.limit), second];
+            for i in tangents.into_iter().flatten() {
+                stiffness[i] = mean;
+            }
+            points.push(Point {
+                normal: tangent.normal,
+                tangents,
+                prescribed,
+                own: *tangent,
+            });
+        }
+        Self {
+            contact,
+            points,
+            is_tangential,
+            stiffness,
+        }
+    }
+
+    /// The solution, found from where these statuses are right, and whether that took dashpots.
+    fn solve(&self, status: &[Status]) -> (Found, bool) {
+        let start = self.start();
+        let state = self.begin(status, &start);
+        let at_once = self.newton(&start, &state, STEPS);
+        match at_once.converged() {
+            true => (at_once, false),
+            false => (self.with_dashpots(&start, &state, at_once), true),
+        }
+    }
+
+    /// The place from which open jumps go where the load drives them.
+    fn start(&self) -> Place {
+        let rows = self.contact.rows.len();
+        self.place(self.contact.center.to_vec(), vec![0.0; rows])
+    }
+
+    /// Goes from one position to the next of a problem with dashpots, which weaken as long as that is found; to no end
+    /// where things slide on and on.
+    fn with_dashpots(&self, start: &Place, state: &State, failed: Found) -> Found {
+        let [mut dashpots, weakest, strongest] = DASHPOTS;
+        let (mut place, mut state) = (start.clone(), state.clone());
+        let mut steps = failed.steps;
+        let (mut last, mut sliding) = (f64::INFINITY, 0);
+        for _ in 0..CHANGES {
+            let found = self.damped(dashpots, &place, &state);
+            steps += found.steps;
+            if !found.converged() {
+                if dashpots >= strongest {
+                    break;
+                }
+                dashpots = (4.0 * dashpots).min(strongest);
+                continue;
+            }
+            let ways = found.place.jumps.iter().zip(&place.jumps);
+            let way = ways.fold(0.0, |most: f64, (to, from)| most.max((to - from).abs()));
+            if dashpots <= weakest && way > SLOWER * last {
+                sliding += 1;
+                if sliding == PATIENCE {
+                    break;
+                }
+            }
+            let slows = way < last;
+            last = way;
+            dashpots = (0.5 * dashpots).max(weakest);
+            let of_rows = found.place.forces[self.contact.c.len()..].to_vec();
+            place = self.place(found.place.jumps, of_rows);
+            state = found.state;
+            if !slows {
+                continue;
+            }
+            let free = self.newton(&place, &state, DAMPED_STEPS);
+            steps += free.steps;
+            if free.converged() {
+                return Found { steps, ..free };
+            }
+        }
+        Found { steps, ..failed }
+    }
+
+    /// The solution where every jump is held by a dashpot at where it is.
+    fn damped(&self, dashpots: f64, place: &Place, state: &State) -> Found {
+        let contact = &self.contact;
+        let mut h = contact.h.to_owned();
+        let (mut c, mut c_scale) = (contact.c.to_vec(), contact.c_scale.to_vec());
+        for (i, t) in place.jumps.iter().enumerate() {
+            let own = dashpots * self.stiffness[i];
+            h[(i, i)] += own;
+            c[i] += own * t;
+            c_scale[i] += (own * t).abs();
+        }
+        let damped = Discs {
+            contact: ContactProblem {
+                h: h.as_ref(),
+                c: &c,
+                c_scale: &c_scale,
+                ..*contact
+            },
+            points: self.points.clone(),
+            is_tangential: self.is_tangential.clone(),
+            stiffness: self.stiffness.clone(),
+        };
+        damped.newton(place, state, DAMPED_STEPS)
+    }
+
+    /// Newton's method from a place where limits do this.
+    fn newton(&self, start: &Place, state: &State, most: usize) -> Found {
+        let mut place = start.clone();
+        let mut state = state.clone();
+        let mut merit = f64::INFINITY;
+        let mut best: Option<Found> = None;
+        for steps in 1..=most {
+            let target = self.step(&place, &state);
+            let look = self.look(&target, Some(&state));
+            if let Some(found) = &mut best
+                && look.missed > 0.5 * found.missed
+            {
+                found.steps = steps;
+                break;
+            }
+            if look.missed <= FORCE_TOLERANCE {
+                let found = Found {
+                    place: target.clone(),
+                    state: state.clone(),
+                    missed: look.missed,
+                    steps,
+                };
+                let exact = found.missed <= ROUND_OFF;
+                best = Some(found);
+                if exact {
+                    break;
+                }
+            }
+            (place, merit, state) = self.part_of_way(place, merit, target, look);
+        }
+        best.unwrap_or(Found {
+            place,
+            state,
+            missed: f64::INFINITY,
+            steps: most,
+        })
+    }
+
+    /// The part of the way from a place with this `merit` to a `target` that lessens it; the whole way if none does.
+    fn part_of_way(
+        &self,
+        place: Place,
+        merit: f64,
+        target: Place,
+        whole: Look,
+    ) -> (Place, f64, State) {
+        let lessens = |look: &Look, part: f64| look.merit <= (1.0 - LESSENS * part) * merit;
+        if merit == f64::INFINITY || lessens(&whole, 1.0) {
+            return (target, whole.merit, whole.state);
+        }
+        let m = place.jumps.len();
+        let mut part = 0.5;
+        while part >= SMALLEST {
+            let between = |a: &[f64], b: &[f64]| -> Vec<f64> {
+                a.iter().zip(b).map(|(a, b)| a + part * (b - a)).collect()
+            };
+            let jumps = between(&place.jumps, &target.jumps);
+            let there = self.place(jumps, between(&place.forces[m..], &target.forces[m..]));
+            let look = self.look(&there, None);
+            if lessens(&look, part) {
+                return (there, look.merit, look.state);
+            }
+            part *= 0.5;
+        }
+        (target, whole.merit, whole.state)
+    }
+
+    /// The place with these jumps and forces of dependent rows.
+    fn place(&self, jumps: Vec<f64>, mut of_rows: Vec<f64>) -> Place {
+        let mut forces = self.contact.c.to_vec();
+        self.contact.subtract(&jumps, &mut forces);
+        self.contact.rows.subtract_transposed(&of_rows, &mut forces);
+        forces.append(&mut of_rows);
+        Place { jumps, forces }
+    }
+
+    /// How far limit i is beyond its bound, or has slipped (m).
+    fn beyond(&self, i: usize, place: &Place) -> f64 {
+        let m = place.jumps.len();
+        let value = match place.jumps.get(i) {
+            Some(t) => *t,
+            None => self.contact.rows.value(i - m, &place.jumps),
+        };
+        value - self.contact.bounds[i]
+    }
+
+    /// Slip and force of a point.
+    fn tangential(&self, point: &Point, place: &Place) -> [[f64; 2]; 2] {
+        let slip = |i: usize| self.beyond(i, place);
+        [
+            [
+                point.tangents[0].map_or(0.0, slip),
+                point.tangents[1].map_or(point.prescribed, slip),
+            ],
+            point
+                .tangents
+                .map(|tangent| tangent.map_or(0.0, |i| place.forces[i])),
+        ]
+    }
+
+    /// The bound of a point's force.
+    fn bound(&self, point: &Point, place: &Place, closed: &[bool]) -> f64 {
+        let is_closed = point.normal.is_some_and(|n| closed[n]);
+        let pressed = point.normal.filter(|_| is_closed);
+        point
+            .own
+            .bound
+            .at(pressed.map_or(0.0, |n| place.forces[n]), is_closed)
+    }
+
+    /// ξ_t of a point with this bound. Along what is prescribed the force is what the bound leaves.
+    fn reach(&self, point: &Point, place: &Place, bound: f64) -> [f64; 2] {
+        let [slip, mut force] = self.tangential(point, place);
+        if point.prescribed != 0.0 {
+            let along = force[0].abs().min(bound);
+            force[1] = ((bound - along) * (bound + along))
+                .sqrt()
+                .copysign(point.prescribed);
+        }
+        let r = self.stiffness[point.own.limit];
+        [0, 1].map(|k| force[k] + r * slip[k])
+    }
+
+    /// What a point with this ξ_t and this bound does.
+    fn act(&self, point: &Point, xi: [f64; 2], bound: f64, slack: f64) -> Act {
+        let size = xi[0].hypot(xi[1]);
+        if size <= bound + slack && point.prescribed == 0.0 {
+            return Act::Sticks;
+        }
+        let r = self.stiffness[point.own.limit];
+        let rest = (size - bound).max(f64::EPSILON * size);
+        Act::Slips {
+            e: xi.map(|x| x / size),
+            across: point.across(r * bound / rest),
+        }
+    }
+
+    /// What limits with these statuses do at a place.
+    fn begin(&self, status: &[Status], place: &Place) -> State {
+        let closed: Vec<bool> = status.iter().map(|status| status.is_closed()).collect();
+        let act = |point: &Point| {
+            let own = status[point.own.limit];
+            let is_closed = point.normal.is_some_and(|n| closed[n]);
+            if !is_closed && point.own.bound.only_closed {
+                return Act::Rests;
+            }
+            let [slip, _] = self.tangential(point, place);
+            let size = slip[0].hypot(slip[1]);
+            if size == 0.0 || own.is_closed() && point.prescribed == 0.0 {
+                return Act::Sticks;
+            }
+            let bound = self.bound(point, place, &closed);
+            Act::Slips {
+                e: slip.map(|s| s / size),
+                across: point.across(bound / size),
+            }
+        };
+        State {
+            points: self.points.iter().map(act).collect(),
+            closed,
+        }
+    }
+
+    /// How right a place is, which within round-off stays what it was `before`.
+    fn look(&self, place: &Place, before: Option<&State>) -> Look {
+        let scales: Vec<f64> = (0..place.forces.len())
+            .map(|i| self.force_scale(i, place))
+            .collect();
+        let slack = |i: usize, was: Option<bool>| match was {
+            Some(true) => FORCE_TOLERANCE * scales[i],
+            Some(false) => -FORCE_TOLERANCE * scales[i],
+            None => 0.0,
+        };
+        let closed: Vec<bool> = (0..place.forces.len())
+            .map(|i| {
+                let xi = place.forces[i] + self.stiffness[i] * self.beyond(i, place);
+                !self.is_tangential[i] && xi > -slack(i, before.map(|before| before.closed[i]))
+            })
+            .collect();
+        let act = |(k, point): (usize, &Point)| {
+            let is_closed = point.normal.is_some_and(|n| closed[n]);
+            if !is_closed && point.own.bound.only_closed {
+                return Act::Rests;
+            }
+            let stuck = before.map(|before| before.points[k] == Act::Sticks);
+            let bound = self.bound(point, place, &closed);
+            let xi = self.reach(point, place, bound);
+            self.act(point, xi, bound, slack(point.own.limit, stuck))
+        };
+        let state = State {
+            points: self.points.iter().enumerate().map(act).collect(),
+            closed,
+        };
+        let missed = self.missed(place, &state);
+        let squares = missed.iter().zip(&self.stiffness);
+        let relative = missed.iter().zip(&scales);
+        Look {
+            merit: squares.map(|(x, r)| x * x / r).sum::<f64>().sqrt(),
+            missed: relative.fold(0.0, |most: f64, (x, scale)| match x / scale {
+                _ if *x == 0.0 => most,
+                x if x.is_nan() => f64::INFINITY,
+                x => most.max(x.abs()),
+            }),
+            state,
+        }
+    }
+
+    /// What every limit misses of its law, as a force.
+    fn missed(&self, place: &Place, state: &State) -> Vec<f64> {
+        let normal = |i: usize| match state.closed[i] {
+            true => -self.stiffness[i] * self.beyond(i, place),
+            false => place.forces[i],
+        };
+        let mut missed: Vec<f64> = (0..place.forces.len()).map(normal).collect();
+        for (point, act) in self.points.iter().zip(&state.points) {
+            let bound = self.bound(point, place, &state.closed);
+            let xi = self.reach(point, place, bound);
+            for (k, i) in point.tangents.into_iter().enumerate() {
+                let Some(i) = i else { continue };
+                let right = match act {
+                    Act::Rests => 0.0,
+                    Act::Sticks => xi[k],
+                    Act::Slips { e, .. } => bound * e[k],
+                };
+                missed[i] = place.forces[i] - right;
+            }
+        }
+        missed
+    }
+
+    /// The terms that the force of limit i is a sum of.
+    fn force_scale(&self, i: usize, place: &Place) -> f64 {
+        let m = place.jumps.len();
+        let of_jump = |j: usize| {
+            let by_rows = self.contact.rows.iter().zip(&place.forces[m..]);
+            let by_rows = by_rows.map(|(row, force)| {
+                let share = row.iter().find(|&&(jump, _)| jump == j);
+                share.map_or(0.0, |(_, share)| (share * force).abs())
+            });
+            self.contact.scale_of(j, &place.jumps) + by_rows.sum::<f64>()
+        };
+        match i < m {
+            true => of_jump(i),
+            false => {
+                let row = self.contact.rows.row(i - m).iter();
+                row.map(|&(j, c)| c.abs() * of_jump(j)).sum()
+            }
+        }
+    }
+
+    /// The statuses of all limits.
+    fn tell(&self, state: &State, status: &mut [Status]) {
+        for (status, &closed) in status.iter_mut().zip(&state.closed) {
+            *status = Status::new(!closed);
+        }
+        for (point, act) in self.points.iter().zip(&state.points) {
+            for i in point.tangents.into_iter().flatten() {
+                status[i] = match act {
+                    Act::Rests => Status::Open,
+                    Act::Sticks => Status::Closed,
+                    Act::Slips { .. } => Status::Slipping,
+                };
+            }
+        }
+    }
+
+    /// Jumps and forces with exactly what limits do: nothing beyond bounds, no force where open.
+    fn exact(&self, found: &Found) -> (Vec<f64>, Vec<f64>) {
+        let Found { place, state, .. } = found;
+        let (mut jumps, mut forces) = (place.jumps.clone(), place.forces.clone());
+        for i in (0..forces.len()).filter(|&i| !self.is_tangential[i]) {
+            forces[i] = if state.closed[i] {
+                forces[i].max(0.0)
+            } else {
+                0.0
+            };
+            if let Some(t) = jumps.get_mut(i) {
+                *t = t.min(self.contact.bounds[i]);
+            }
+        }
+        let cut = Place { jumps, forces };
+        let mut forces = cut.forces.clone();
+        for (point, act) in self.points.iter().zip(&state.points) {
+            let bound = self.bound(point, &cut, &state.closed);
+            let [slip, _] = self.tangential(point, place);
+            let force = match act {
+                Act::Rests => [0.0; 2],
+                Act::Sticks => continue,
+                Act::Slips { .. } if bound == 0.0 => [0.0; 2],
+                Act::Slips { e, across } => {
+                    let along = e[0] * slip[0] + e[1] * slip[1];
+                    let pull = [0, 1].map(|k| bound * e[k] + across * (slip[k] - along * e[k]));
+                    let size = pull[0].hypot(pull[1]);
+                    pull.map(|pull| bound * (pull / size))
+                }
+            };
+            for (i, force) in point.tangents.into_iter().zip(force) {
+                if let Some(i) = i {
+                    forces[i] = force;
+                }
+            }
+        }
+        (cut.jumps, forces)
+    }
+}
+
+#[cfg(test)]
+mod tests;

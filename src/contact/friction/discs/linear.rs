@@ -1,0 +1,233 @@
+//! The linear problem where it is known what is open, closed, sticks and slips.
+//!
+//! With the jumps of what is closed or sticks known,
+//!
+//! ```text
+//! λ = 0 where open,    D t = d where closed,    M λ_t = b(λ) e + κ M P s where a point slips along e
+//! ```
+//!
+//! with P = I − e eᵀ and M = e eᵀ + w P, where w = r / (r + κ) keeps the equations as large as others.
+
+use faer::Mat;
+
+use super::{Act, Discs, Place, Point, State};
+use crate::contact::active_set::FORCE_TOLERANCE;
+use crate::contact::friction::linear::{SPRING, System, YIELD};
+
+/// An equation while it is put together: Σ factor·force + Σ factor·jump = constant, all of limits.
+#[derive(Default)]
+struct Equation {
+    forces: Vec<(usize, f64)>,
+    /// The way beyond its bound.
+    ways: Vec<(usize, f64)>,
+    constant: f64,
+    /// What it is divided by, and the spring that keeps it regular.
+    scale: f64,
+    spring: f64,
+}
+
+impl Discs<'_> {
+    /// Where the linear problem of a `state` is solved, from a place nearby.
+    pub(super) fn step(&self, place: &Place, state: &State) -> Place {
+        let m = place.jumps.len();
+        let (mut jumps, mut of_rows) = (place.jumps.clone(), place.forces[m..].to_vec());
+        let mut equations: Vec<Option<Equation>> = (0..place.forces.len())
+            .map(|i| self.normal(i, state.closed[i]))
+            .collect();
+        for (point, act) in self.points.iter().zip(&state.points) {
+            for (k, i) in point.tangents.into_iter().enumerate() {
+                if let Some(i) = i {
+                    equations[i] = self.slides(point, k, i, act, &state.closed);
+                }
+            }
+        }
+        for (i, equation) in equations.iter().enumerate() {
+            match (equation, i < m) {
+                (None, true) => jumps[i] = self.contact.bounds[i],
+                (None, false) => of_rows[i - m] = 0.0,
+                _ => {}
+            }
+        }
+        let start = self.place(jumps, of_rows);
+        let system = self.system(&equations);
+        let left: Vec<f64> = (equations.iter().flatten())
+            .map(|equation| {
+                let forces = equation.forces.iter().map(|&(i, c)| c * start.forces[i]);
+                let ways = equation
+                    .ways
+                    .iter()
+                    .map(|&(i, c)| c * self.beyond(i, &start));
+                (equation.constant - forces.sum::<f64>() - ways.sum::<f64>()) / equation.scale
+            })
+            .collect();
+        // Where motions without resistance are balanced already, round-off mustn't drive them.
+        let rests = |system: &System, left: &[f64]| {
+            system.unknowns.iter().zip(left).all(|(&i, left)| {
+                let scale = self.force_scale(i, &start) / self.stiffness[i].sqrt();
+                i < m && left.abs() <= FORCE_TOLERANCE * scale
+            })
+        };
+        let is_balanced = rests(&system, &left);
+        let x = system.solve(left, || is_balanced);
+        let (mut jumps, mut of_rows) = (start.jumps, start.forces[m..].to_vec());
+        for ((&i, x), scale) in system.unknowns.iter().zip(x).zip(&system.scale) {
+            match jumps.get_mut(i) {
+                Some(t) => *t += x / scale,
+                None => of_rows[i - m] += x / scale,
+            }
+        }
+        self.place(jumps, of_rows)
+    }
+
+    /// The equation of a limit that isn't tangential; `None` where its jump or force is known.
+    fn normal(&self, i: usize, closed: bool) -> Option<Equation> {
+        let of_jump = i < self.contact.c.len();
+        match (of_jump, closed) {
+            (true, false) => Some(self.force_is(i)),
+            (false, true) => Some(self.way_is_none(i)),
+            _ => None,
+        }
+    }
+
+    /// λ = 0, to which more may be added.
+    fn force_is(&self, i: usize) -> Equation {
+        Equation {
+            forces: vec![(i, 1.0)],
+            scale: self.stiffness[i].sqrt(),
+            spring: SPRING,
+            ..Equation::default()
+        }
+    }
+
+    fn way_is_none(&self, i: usize) -> Equation {
+        Equation {
+            ways: vec![(i, 1.0)],
+            scale: 1.0 / self.stiffness[i].sqrt(),
+            spring: -YIELD,
+            ..Equation::default()
+        }
+    }
+
+    /// The equation of limit i, which is a point's tangential one number k.
+    fn slides(
+        &self,
+        point: &Point,
+        k: usize,
+        i: usize,
+        act: &Act,
+        closed: &[bool],
+    ) -> Option<Equation> {
+        let of_jump = i < self.contact.c.len();
+        let (e, across) = match *act {
+            Act::Rests => return of_jump.then(|| self.force_is(i)),
+            Act::Sticks => return (!of_jump).then(|| self.way_is_none(i)),
+            Act::Slips { e, across } => (e, across),
+        };
+        let mut equation = self.force_is(i);
+        equation.forces.clear();
+        if !of_jump {
+            equation.spring = 0.0;
+        }
+        let weight = self.stiffness[i] / (self.stiffness[i] + across);
+        let unit = |a: usize, b: usize| if a == b { 1.0 } else { 0.0 };
+        // Where the other force isn't an unknown, the law of this one stands alone.
+        let alone = point.tangents[1].is_none();
+        for (l, other) in point.tangents.into_iter().enumerate() {
+            let project = unit(k, l) - e[k] * e[l];
+            let of_way = -weight * across * project;
+            let Some(other) = other else {
+                equation.constant -= of_way * point.prescribed;
+                continue;
+            };
+            let of_force = match alone {
+                true => weight,
+                false => e[k] * e[l] + weight * project,
+            };
+            equation.forces.push((other, of_force));
+            equation.ways.push((other, of_way));
+        }
+        let share = e[k] * if alone { weight } else { 1.0 };
+        let bound = &point.own.bound;
+        let pressed = point.normal.filter(|&n| closed[n]);
+        if pressed.is_some() || !bound.only_closed {
+            equation.constant += share * bound.cohesion;
+        }
+        if let Some(n) = pressed {
+            equation.forces.push((n, -share * bound.coefficient));
+        }
+        Some(equation)
+    }
+
+    /// The equations of all unknown jumps and forces.
+    fn system(&self, equations: &[Option<Equation>]) -> System {
+        let (contact, m) = (&self.contact, self.contact.c.len());
+        let unknowns: Vec<usize> = (0..equations.len())
+            .filter(|&i| equations[i].is_some())
+            .collect();
+        let mut column = vec![None; equations.len()];
+        for (k, &i) in unknowns.iter().enumerate() {
+            column[i] = Some(k);
+        }
+        let n = unknowns.len();
+        let mut a = Mat::<f64>::zeros(n, n);
+        for (k, equation) in equations.iter().flatten().enumerate() {
+            for &(i, factor) in &equation.forces {
+                if i >= m {
+                    if let Some(own) = column[i] {
+                        a[(k, own)] += factor;
+                    }
+                    continue;
+                }
+                for (l, &j) in unknowns.iter().enumerate() {
+                    let response = match j < m {
+                        true => contact.h[(i, j)],
+                        false => {
+                            let own = contact.rows.row(j - m).iter().find(|(jump, _)| *jump == i);
+                            own.map_or(0.0, |(_, c)| *c)
+                        }
+                    };
+                    a[(k, l)] -= factor * response;
+                }
+            }
+            for &(i, factor) in &equation.ways {
+                let one = [(i, 1.0)];
+                let row = if i < m {
+                    &one[..]
+                } else {
+                    contact.rows.row(i - m)
+                };
+                for &(j, c) in row {
+                    if let Some(own) = column[j] {
+                        a[(k, own)] += factor * c;
+                    }
+                }
+            }
+        }
+        let scale: Vec<f64> = (unknowns.iter())
+            .map(|&i| match i < m {
+                true => self.stiffness[i].sqrt(),
+                false => 1.0 / self.stiffness[i].sqrt(),
+            })
+            .collect();
+        let of_equation: Vec<f64> = equations.iter().flatten().map(|e| e.scale).collect();
+        for (l, of_unknown) in scale.iter().enumerate() {
+            for (k, of_equation) in of_equation.iter().enumerate() {
+                a[(k, l)] /= of_equation * of_unknown;
+            }
+        }
+        // The forces of jumps fall with these.
+        let springs = (equations
+            .iter()
+            .zip(0..)
+            .filter_map(|(e, i)| Some((e.as_ref()?, i))))
+        .map(|(e, i): (_, usize)| if i < m { -e.spring } else { e.spring })
+        .collect();
+        System {
+            a,
+            unknowns,
+            scale,
+            of_equation,
+            springs,
+        }
+    }
+}
