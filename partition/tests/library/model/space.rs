@@ -68,11 +68,6 @@ fn a_body_force_is_that_of_the_volume_and_a_polynomial_one_is_exact() {
 #[test]
 fn what_has_no_place_in_space_is_refused_in_words() {
     let obstacle = |keys: &str| format!("[[contact]]\nname = 'c'\nsides = ['inner']\n{keys}");
-    let plane = |keys: &str| {
-        obstacle(&format!(
-            "obstacle = {{point = [0, 0, 0], normal = [1, 0, 0]}}\n{keys}"
-        ))
-    };
     let identity = "[[1,0,0],[0,1,0],[0,0,1]]";
     for (text, words) in [
         ("plane = 'strain'".to_owned(), "'plane' is of plane scenes"),
@@ -91,14 +86,6 @@ fn what_has_no_place_in_space_is_refused_in_words() {
         (
             obstacle("obstacle = {center = [0, 0], radius = 1}"),
             "contact[1].obstacle: a scene in space",
-        ),
-        (
-            plane("friction = 0.5"),
-            "contact[1].friction: friction isn't supported in three dimensions",
-        ),
-        (
-            plane("tresca = '1+z'"),
-            "contact[1].tresca: friction isn't supported in three dimensions",
         ),
         (
             format!("materials.wood.stiffness = {identity}"),
