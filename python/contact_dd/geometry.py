@@ -33,6 +33,7 @@ def meshed(path: Path | None, sizes: SizeField | None) -> bytes:
         found = of_gmsh()
         if view is not None:
             gmsh.view.remove(view[0])
+            gmsh.model.mesh.field.remove(view[1])
         return found
 
 

@@ -23,15 +23,8 @@ KINDS = {
     10: ("S", 1), 24: ("S", 2), 12: ("H", 1), 25: ("H", 2), 29: ("H", 2),
 }
 
-# A round divides the error by no more than this: where fields are singular the order of convergence is lost, and
-# many small rounds find that out at less cost than one large one.
-MOST_PER_ROUND = 8.0
-
-# What of the error that is asked is aimed at, from afar and where less than half of it is missing.
-AIM, CLOSE_AIM = 0.9, 0.85
-
-# A cell with that many times the mean of squared errors lies at a singularity: smooth errors are about equal after the
-# first round.
+# A cell with that many times the mean of squared errors lies at a singularity, after the first round: there smooth
+# errors are about equal.
 SINGULAR = 4.0
 
 # Bounds of a cell's size after a round over that before, and of the change of sizes along a length.
@@ -62,22 +55,20 @@ def relative_errors(result: Result) -> tuple[float, Floats]:
     return largest, of_cells
 
 
-def sizes_for(result: Result, error: float) -> SizeField:
-    """The sizes with which the error is about `error`, relative, with as few cells as can be, or a part of the way.
+def sizes_for(result: Result, aim: float, is_first: bool) -> SizeField:
+    """The sizes with which the error is about `aim`, relative, with as few cells as can be.
 
     After Li and Bettess: with r the size after over that before, p the order, d the dimension, cells are Σ r^−d and
-    their errors Σ e² r^2p = η²; the fewest cells have r^(2p+d) = μ/e². At a singularity a cell's squared error falls
-    like its size, whatever its order."""
-    found, errors = relative_errors(result)
+    their errors Σ e² r^2p = η²; the fewest cells have r^(2p+d) = μ/e². At a singularity, which shows on an
+    adapted mesh, a cell's squared error falls like its size, whatever its order."""
+    _, errors = relative_errors(result)
     d = 3 if result.is_in_space else 2
     p = max(KINDS[cells.kind][1] for cells in result.cells)
-    aim = (AIM if found > 2 * error else CLOSE_AIM) * max(error, found / MOST_PER_ROUND)
     squares = np.maximum(errors**2, 1e-24 * (errors**2).sum())
     q = 2 * p + d
-    mu = (aim**2 / (squares ** (d / q)).sum()) ** (q / (2 * p))
-    ratio = (mu / squares) ** (1 / q)
-    excess = np.maximum(squares / squares.mean() / SINGULAR, 1.0)
-    ratio = np.clip(ratio * excess ** (1 / q - 1.0), LEAST, MOST)
+    smooth = squares if is_first else np.minimum(squares, SINGULAR * squares.mean())
+    mu = (aim**2 / (smooth ** (d / q)).sum()) ** (q / (2 * p))
+    ratio = np.clip((mu / smooth) ** (1 / q) * smooth / squares, LEAST, MOST)
     sizes = at_nodes(result, ratio)
     asked = SizeField([])
     for cells in result.cells:

@@ -86,7 +86,8 @@ def test_the_model_that_gmsh_has_is_meshed_again():
         assert rounds[0].error > rounds[-1].error
         assert result.cells[0].kind == 24
         assert gmsh.model.getCurrent() == "block"
-        assert len(gmsh.view.getTags()) == 0
+        assert len(gmsh.view.getTags()) == len(gmsh.model.mesh.field.list()) == 0
+        gmsh.model.mesh.generate(3)
     finally:
         gmsh.finalize()
 
