@@ -30,6 +30,10 @@ const DAMPED_STEPS: usize = 15;
 const SMALLEST: f64 = 1e-3;
 /// Part of the merit, for every part of a step, by which that has to lessen it.
 const LESSENS: f64 = 1e-4;
+/// Force, relative to its terms, up to which a limit does what it did.
+const STAYS: f64 = 1e-15;
+/// What may be missed of the law, relative to what acts.
+const LAW: f64 = 1e-9;
 /// What is missed that can't be less.
 const ROUND_OFF: f64 = 1e-15;
 /// Dashpots, relative to stiffness and time: the first, the weakest and the strongest ones.
@@ -38,7 +42,7 @@ const DASHPOTS: [f64; 3] = [0.1, 1e-4, 10.0];
 const SLOWER: f64 = 0.9;
 const PATIENCE: usize = 3;
 /// Most changes of dashpots.
-const CHANGES: usize = 40;
+const CHANGES: usize = 24;
 
 /// A point with friction: its limits and what bounds its force.
 #[derive(Clone, Copy, Debug)]
@@ -107,6 +111,8 @@ struct Discs<'a> {
     is_tangential: Vec<bool>,
     /// r of every limit.
     stiffness: Vec<f64>,
+    /// The norm of energies of the forces that act before anything moves.
+    acting: f64,
 }
 
 /// Where Newton's method ends.
@@ -191,7 +197,9 @@ impl<'a> Discs<'a> {
                 own: *tangent,
             });
         }
+        let acting = |i: usize| contact.scale_of(i, &vec![0.0; m]).powi(2) / stiffness[i];
         Self {
+            acting: (0..m).map(acting).sum::<f64>().sqrt(),
             contact,
             points,
             is_tangential,
@@ -243,7 +251,7 @@ impl<'a> Discs<'a> {
             }
             let slows = way < last;
             last = way;
-            dashpots = (0.5 * dashpots).max(weakest);
+            dashpots = (0.25 * dashpots).max(weakest);
             let of_rows = found.place.forces[self.contact.c.len()..].to_vec();
             place = self.place(found.place.jumps, of_rows);
             state = found.state;
@@ -280,6 +288,7 @@ impl<'a> Discs<'a> {
             points: self.points.clone(),
             is_tangential: self.is_tangential.clone(),
             stiffness: self.stiffness.clone(),
+            acting: self.acting,
         };
         damped.newton(place, state, DAMPED_STEPS)
     }
@@ -447,15 +456,17 @@ impl<'a> Discs<'a> {
         }
     }
 
-    /// How right a place is, which within round-off stays what it was `before`.
+    /// How right a place is, which within round-off stays what it was `before`; only its merit counts where that isn't
+    /// known.
     fn look(&self, place: &Place, before: Option<&State>) -> Look {
-        let scales: Vec<f64> = (0..place.forces.len())
-            .map(|i| self.force_scale(i, place))
-            .collect();
-        let slack = |i: usize, was: Option<bool>| match was {
-            Some(true) => FORCE_TOLERANCE * scales[i],
-            Some(false) => -FORCE_TOLERANCE * scales[i],
-            None => 0.0,
+        let scales: Option<Vec<f64>> = before.map(|_| {
+            let all = 0..place.forces.len();
+            all.map(|i| self.force_scale(i, place)).collect()
+        });
+        let slack = |i: usize, was: Option<bool>| match (was, &scales) {
+            (Some(true), Some(scales)) => STAYS * scales[i],
+            (Some(false), Some(scales)) => -STAYS * scales[i],
+            _ => 0.0,
         };
         let closed: Vec<bool> = (0..place.forces.len())
             .map(|i| {
@@ -479,14 +490,16 @@ impl<'a> Discs<'a> {
         };
         let missed = self.missed(place, &state);
         let squares = missed.iter().zip(&self.stiffness);
-        let relative = missed.iter().zip(&scales);
+        let merit = squares.map(|(x, r)| x * x / r).sum::<f64>().sqrt();
+        // What slides away has forces that are small beside the terms of its way.
+        let scales = scales.filter(|_| merit <= LAW * self.acting);
+        let relative = scales.map(|scales| {
+            let all = missed.iter().zip(scales).filter(|(x, _)| **x != 0.0);
+            all.map(|(x, scale)| x.abs() / scale).fold(0.0, f64::max)
+        });
         Look {
-            merit: squares.map(|(x, r)| x * x / r).sum::<f64>().sqrt(),
-            missed: relative.fold(0.0, |most: f64, (x, scale)| match x / scale {
-                _ if *x == 0.0 => most,
-                x if x.is_nan() => f64::INFINITY,
-                x => most.max(x.abs()),
-            }),
+            merit,
+            missed: relative.unwrap_or(f64::INFINITY),
             state,
         }
     }
@@ -568,22 +581,17 @@ impl<'a> Discs<'a> {
         let mut forces = cut.forces.clone();
         for (point, act) in self.points.iter().zip(&state.points) {
             let bound = self.bound(point, &cut, &state.closed);
-            let [slip, _] = self.tangential(point, place);
-            let force = match act {
-                Act::Rests => [0.0; 2],
+            // Small slips know their direction less well than what balances the bodies.
+            let [_, [first, second]] = self.tangential(point, place);
+            let size = first.hypot(second);
+            let part = match act {
                 Act::Sticks => continue,
-                Act::Slips { .. } if bound == 0.0 => [0.0; 2],
-                Act::Slips { e, across } => {
-                    let along = e[0] * slip[0] + e[1] * slip[1];
-                    let pull = [0, 1].map(|k| bound * e[k] + across * (slip[k] - along * e[k]));
-                    let size = pull[0].hypot(pull[1]);
-                    pull.map(|pull| bound * (pull / size))
-                }
+                Act::Slips { .. } if size > 0.0 && point.prescribed == 0.0 => bound / size,
+                Act::Slips { .. } => 1.0,
+                Act::Rests => 0.0,
             };
-            for (i, force) in point.tangents.into_iter().zip(force) {
-                if let Some(i) = i {
-                    forces[i] = force;
-                }
+            for i in point.tangents.into_iter().flatten() {
+                forces[i] = part * place.forces[i];
             }
         }
         (cut.jumps, forces)

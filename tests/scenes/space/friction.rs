@@ -9,12 +9,14 @@ use contact_dd_partition::model::Model;
 
 use super::{BODY, is_near};
 use crate::support::assembled::Assembled;
-use crate::support::blocks::joined;
+use crate::support::blocks::{Blocks, joined};
 use crate::support::close::close;
-use crate::support::scenes::{at_step, model};
+use crate::support::extruded::extruded;
+use crate::support::scenes::{at_step, built_in, model, two_block_scene, two_blocks};
 use crate::support::solids::{SOLIDS, between, moved, solid, turned};
-use crate::support::solution::Solution;
+use crate::support::solution::{ContactPoint, Solution};
 use crate::support::solver::{Case, solve, solve_steps};
+use crate::support::sorts::sort;
 use crate::support::stress::judge::Findings;
 
 /// A vector as a scene has it.
@@ -293,6 +295,67 @@ fn an_answer_turns_with_its_scene() {
         }
         let faults = Findings::new(&model, &Assembled::new(&model), &other, true).faults();
         assert!(faults.is_empty(), "{faults:?}");
+    }
+}
+
+/// Between planes that hold it along z, nodes within it free: plane strain is exact.
+#[test]
+fn extruded_scenes_with_friction_have_the_answers_of_the_plane() {
+    let (raous, _) = built_in("raous", 0);
+    let sides = [
+        ("axis", "right"),
+        ("top", "top"),
+        ("side", "left"),
+        ("base", "bottom"),
+    ];
+    let raous = sides.iter().fold(raous.to_owned(), |text, (from, to)| {
+        text.replace(&format!("\"{from}\""), &format!("\"plate {to}\""))
+    });
+    let plate = Blocks::new().rectangle("plate", [0.0, 0.04], [0.0, 0.04], [12, 12]);
+    let floor = "point = [0.0, 0.0], normal = [0.0, 1.0]";
+    let blocks = two_block_scene();
+    let law = |law: &str| format!("{blocks}\n{law}\n");
+    let joint = two_blocks().mesh;
+    let (plate_ends, block_ends) = (
+        "['plate back', 'plate front']",
+        "['lower back', 'lower front', 'upper back', 'upper front']",
+    );
+    for (text, plane, ends) in [
+        (raous, plate.mesh, plate_ends),
+        (law("friction = 0.15"), joint.clone(), block_ends),
+        (
+            law("friction = 0.05\ncohesion = 1e4"),
+            joint.clone(),
+            block_ends,
+        ),
+        (law("tresca = 5e4"), joint, block_ends),
+    ] {
+        let plane = sort("quad4").of(&plane);
+        let solid = extruded(&plane, &[0.0, 0.1, 0.3]).unwrap();
+        let deep = text
+            .replace("plane = 'strain'", "")
+            .replace("plane = \"strain\"", "")
+            .replace(floor, "point = [0, 0, 0], normal = [0, 1, 0]");
+        let deep = model(&format!("{deep}\n[[bilateral]]\non = {ends}\n"), solid);
+        let flat = solve(&model(&text, plane), 4);
+        let deep = solve(&deep, 6);
+        let (force, size) = (flat.largest_force(), flat.largest_displacement());
+        assert!(flat.slipping() > 0);
+        for point in flat.points() {
+            let same = |p: &&ContactPoint| (0..2).all(|k| p.position[k] == point.position[k]);
+            let there: Vec<&ContactPoint> = deep.points().filter(same).collect();
+            assert_eq!(there.len(), 3);
+            let sum: f64 = there.iter().map(|p| p.force).sum();
+            close(sum, 0.3 * point.force, 1e-10 * force);
+            for p in there {
+                is_near(&p.slip, &point.slip, 1e-10 * size);
+                let share = p.force / sum;
+                if sum > 1e-3 * force {
+                    let expected = point.tangential_force.map(|f| 0.3 * share * f);
+                    is_near(&p.tangential_force, &expected, 1e-10 * force);
+                }
+            }
+        }
     }
 }
 
