@@ -139,8 +139,23 @@ impl FrictionProblem<'_> {
             }
             let before = solution.steps;
             let (reached, exchanges) = self.follow(attempt);
-            status.copy_from_slice(reached.as_deref().unwrap_or(&start));
-            solution = self.exchange(status);
+            let center = match &reached {
+                Some(end) => {
+                    status.copy_from_slice(&end.status);
+                    &end.jumps
+                }
+                None => {
+                    status.copy_from_slice(&start);
+                    self.contact.center
+                }
+            };
+            // Where nothing resists, what slips both ways is between both there, and not just anywhere.
+            let contact = ContactProblem {
+                center,
+                ..self.contact
+            };
+            let tangents = self.tangents;
+            solution = FrictionProblem { contact, tangents }.exchange(status);
             solution.steps += before + exchanges;
             solution.fell_back = true;
         }

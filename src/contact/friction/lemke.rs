@@ -13,13 +13,15 @@
 //! steeply to 0 with the last of the force: what ends there is about to open.
 
 use faer::Mat;
+use faer::linalg::solvers::Solve;
 
-use super::{FrictionProblem, Status, TangentialLimit};
+use super::{ATTEMPTS, FrictionProblem, Status, TangentialLimit};
 use crate::contact::open_factor::scale_of;
 use crate::vector::largest;
 
-/// Force, relative to the largest, below which a bound that vanishes with it falls to 0.
-const STEEP: f64 = 1e-6;
+/// Force, relative to the largest, below which a bound that vanishes with it falls to 0, one attempt after the other:
+/// where it is steep the path ends at the solution, but has further to go.
+const STEEP: [f64; ATTEMPTS] = [1e-10, 1e-6, 1e-8];
 /// How much closed rows that depend on each other give way.
 const YIELD: f64 = 1e-8;
 /// Stiffness of springs on all jumps, for motions that nothing resists.
@@ -28,6 +30,8 @@ const SPRING: f64 = 1e-10;
 const MOST_COHESION: f64 = 10.0;
 /// Limits up to which the path is followed: its matrix is dense.
 const MOST_LIMITS: usize = 3000;
+/// Exchanges between which its round-off may grow, but for that of large problems.
+const MOST_UPDATES: usize = 20;
 /// Exchanges, whatever the problem and for each limit.
 const EXCHANGES: usize = 200;
 const EXCHANGES_EACH: usize = 8;
@@ -67,9 +71,16 @@ struct Path {
     response: Mat<f64>,
     /// The same where all these are 0: at θ = 0, and for every unit of θ.
     value: [Vec<f64>; 2],
+    /// Both for the ways of independent jumps and the forces of dependent rows, whatever θ is.
+    start: Mat<f64>,
+    at_start: Vec<f64>,
+    /// Number of independent jumps.
+    independent: usize,
     /// What is 0 at each.
     zero: Vec<Quantity>,
     bounds: Vec<f64>,
+    /// What jumps are multiplied by in that scale.
+    scale: Vec<f64>,
     /// What θ adds to normal forces.
     added: Vec<f64>,
     tangents: Vec<Option<Tangent>>,
@@ -83,10 +94,17 @@ fn spread(i: usize, attempt: usize) -> f64 {
     0.5 + ((i + 1) as f64 * GOLDEN + attempt as f64 * 0.37).fract()
 }
 
+/// The end of the path.
+pub(super) struct End {
+    pub status: Vec<Status>,
+    /// The jumps there (m).
+    pub jumps: Vec<f64>,
+}
+
 impl FrictionProblem<'_> {
-    /// The statuses at the end of the path, and the exchanges that it took; `None` where it doesn't get there. Every
-    /// `attempt` goes another way.
-    pub(super) fn follow(&self, attempt: usize) -> (Option<Vec<Status>>, usize) {
+    /// The end of the path, and the exchanges that it took; `None` where it doesn't get there. Every `attempt` goes
+    /// another way.
+    pub(super) fn follow(&self, attempt: usize) -> (Option<End>, usize) {
         if self.contact.bounds.len() > MOST_LIMITS {
             return (None, 0);
         }
@@ -94,13 +112,17 @@ impl FrictionProblem<'_> {
         let most = EXCHANGES + EXCHANGES_EACH * self.contact.bounds.len();
         let (mut theta, mut way) = (f64::INFINITY, -1.0);
         let mut entered = None;
+        let often = (self.contact.bounds.len() / 4).max(MOST_UPDATES);
         for exchanges in 0..most {
+            if exchanges % often == often - 1 {
+                path.refresh();
+            }
             if let Some((i, quantity)) = entered {
                 way = path.quantity(i, quantity)[1].signum();
             }
             match path.next(theta, way, entered) {
-                Some((at, _, _)) if at <= 0.0 => return (Some(path.statuses()), exchanges),
-                None if way < 0.0 => return (Some(path.statuses()), exchanges),
+                Some((at, _, _)) if at <= 0.0 => return (Some(path.end()), exchanges),
+                None if way < 0.0 => return (Some(path.end()), exchanges),
                 Some((at, i, quantity)) => {
                     theta = at;
                     entered = Some(path.exchange(theta, i, quantity));
@@ -127,64 +149,56 @@ impl FrictionProblem<'_> {
 impl Path {
     /// Its beginning, where all is closed.
     fn new(problem: &FrictionProblem<'_>, attempt: usize) -> Self {
-        let gap = &problem.contact;
-        let (m, count) = (gap.c.len(), gap.bounds.len());
+        let contact = &problem.contact;
+        let (m, count) = (contact.c.len(), contact.bounds.len());
         let scale = problem.scales();
-        let bounds: Vec<f64> = (gap.bounds.iter().zip(&scale))
+        let bounds: Vec<f64> = (contact.bounds.iter().zip(&scale))
             .map(|(bound, scale)| bound * scale)
             .collect();
-        let mut response = Mat::zeros(2 * count, count);
-        for j in 0..m {
-            for i in 0..m {
-                response[(count + i, j)] = gap.h[(i, j)] / (scale[i] * scale[j]);
-            }
+        let mut start = Mat::zeros(2 * count, count);
+        let mut at_start = vec![0.0; 2 * count];
+        at_start[..m].copy_from_slice(&bounds[..m]);
+        for i in 0..m {
+            let stiffness = |j: usize| contact.h[(i, j)] / (scale[i] * scale[j]);
+            let held: f64 = (0..m).map(|j| stiffness(j) * bounds[j]).sum();
+            at_start[count + i] = contact.c[i] / scale[i] - held;
+            (0..m).for_each(|j| start[(count + i, j)] = stiffness(j));
+            start[(count + i, i)] += SPRING;
+            start[(i, i)] = -1.0;
         }
-        let force = |response: &Mat<f64>, i: usize| {
-            let held: f64 = (0..count)
-                .map(|j| response[(count + i, j)] * bounds[j])
-                .sum();
-            gap.c.get(i).map_or(0.0, |c| c / scale[i]) - held
-        };
-        let forces: Vec<f64> = (0..m).map(|i| force(&response, i)).collect();
-        let unit = largest(&forces).max(f64::MIN_POSITIVE);
-        // A closed row that gives way has the force (D t − d) / yield.
-        for (k, row) in gap.rows.iter().enumerate() {
-            let row: Vec<(usize, f64)> = (row.iter())
-                .map(|&(i, c)| (i, c * scale[m + k] / scale[i]))
-                .collect();
-            for &(j, b) in &row {
-                for &(i, a) in &row {
-                    response[(count + i, j)] += a * b / YIELD;
-                }
-                response[(count + j, m + k)] -= b / YIELD;
-                response[(count + m + k, j)] -= b / YIELD;
+        let unit = largest(&at_start[count..]).max(f64::MIN_POSITIVE);
+        for (k, row) in (m..).zip(contact.rows.iter()) {
+            for &(i, c) in row {
+                let c = c * scale[k] / scale[i];
+                at_start[k] += c * bounds[i];
+                start[(k, i)] -= c;
+                start[(count + i, k)] -= c;
             }
-            response[(count + m + k, m + k)] = 1.0 / YIELD;
-        }
-        let mut value = [bounds.clone(), vec![0.0; 2 * count]];
-        value[0].extend((0..count).map(|i| force(&response, i)));
-        for i in 0..count {
-            response[(i, i)] = -1.0;
-            if i < m {
-                response[(count + i, i)] += SPRING;
-            }
+            start[(k, k)] = -YIELD;
+            start[(count + k, k)] = 1.0;
         }
         let mut path = Self {
-            response,
-            value,
+            response: Mat::new(),
+            value: [Vec::new(), Vec::new()],
+            start,
+            at_start,
+            independent: m,
             zero: vec![Quantity::Way; count],
             bounds,
             added: (0..count).map(|i| unit * spread(i, attempt)).collect(),
             tangents: vec![None; count],
             of_normal: vec![Vec::new(); count],
+            scale,
         };
         for limit in problem.tangents {
-            path.add(limit, &scale, unit);
+            path.add(limit, unit, attempt);
         }
+        path.refresh();
         path
     }
 
-    fn add(&mut self, limit: &TangentialLimit, scale: &[f64], unit: f64) {
+    fn add(&mut self, limit: &TangentialLimit, unit: f64, attempt: usize) {
+        let scale = &self.scale;
         let (i, bound) = (limit.limit, limit.bound);
         let coefficient = (limit.normal).map_or(0.0, |n| bound.coefficient * scale[n] / scale[i]);
         let cohesion = match bound.only_closed && limit.normal.is_none() {
@@ -197,15 +211,15 @@ impl Path {
             coefficient,
             cohesion,
             added: if cohesion > 0.0 { self.added[i] } else { 0.0 },
-            steep: falls.then(|| coefficient + cohesion / (STEEP * unit)),
+            steep: falls.then(|| coefficient + cohesion / (STEEP[attempt] * unit)),
             only_closed: bound.only_closed,
             is_free: cohesion == 0.0 && coefficient == 0.0,
         };
         self.added[i] = 0.0;
         self.tangents[i] = Some(tangent);
         if tangent.is_free {
-            let sign = 1.0;
-            self.replace(i, Quantity::Bound { sign, steep: false });
+            let (sign, steep) = (1.0, false);
+            self.zero[i] = Quantity::Bound { sign, steep };
         } else if let (Some(n), true) = (limit.normal, bound.only_closed) {
             self.of_normal[n].push(i);
         }
@@ -250,6 +264,48 @@ impl Path {
                     .sum::<f64>()
         };
         [of(0), of(1)]
+    }
+
+    /// Computes responses and values anew from the start, without the round-off of exchanges.
+    fn refresh(&mut self) {
+        let count = self.bounds.len();
+        self.value = [self.at_start.clone(), vec![0.0; 2 * count]];
+        let is_given = |i: usize| i < self.independent && self.zero[i] == Quantity::Way;
+        let unknown: Vec<usize> = (0..count).filter(|&i| !is_given(i)).collect();
+        // For every quantity that is 0, and for both values.
+        let mut change = Mat::zeros(unknown.len(), count + 2);
+        let mut matrix = Mat::zeros(unknown.len(), unknown.len());
+        for (k, &i) in unknown.iter().enumerate() {
+            let (terms, _) = self.terms(i, self.zero[i]);
+            let of = |j: usize| {
+                terms
+                    .iter()
+                    .map(|&(t, c)| c * self.start[(t, j)])
+                    .sum::<f64>()
+            };
+            (unknown.iter().enumerate()).for_each(|(l, &j)| matrix[(k, l)] = of(j));
+            (0..count)
+                .filter(|&j| is_given(j))
+                .for_each(|j| change[(k, j)] = -of(j));
+            change[(k, i)] = 1.0;
+            let value = self.quantity(i, self.zero[i]);
+            change[(k, count)] = -value[0];
+            change[(k, count + 1)] = -value[1];
+        }
+        matrix.partial_piv_lu().solve_in_place(&mut change);
+        let of_unknown = Mat::from_fn(2 * count, unknown.len(), |i, l| self.start[(i, unknown[l])]);
+        let mut all = of_unknown * change;
+        for (k, value) in self.value.iter_mut().enumerate() {
+            let change = all.col_as_slice(count + k).iter();
+            value.iter_mut().zip(change).for_each(|(x, dx)| *x += dx);
+        }
+        for j in (0..count).filter(|&j| is_given(j)) {
+            let own = self.start.col_as_slice(j).iter();
+            let column = all.col_as_slice_mut(j).iter_mut();
+            column.zip(own).for_each(|(x, own)| *x += own);
+        }
+        all.resize_with(2 * count, count, |_, _| 0.0);
+        self.response = all;
     }
 
     /// Makes another quantity of limit i 0.
@@ -372,8 +428,8 @@ impl Path {
         }
     }
 
-    /// The statuses here.
-    fn statuses(&self) -> Vec<Status> {
+    /// The statuses and jumps at θ = 0.
+    fn end(&self) -> End {
         let of_limit = |i: usize| match (self.tangents[i], self.zero[i]) {
             (
                 Some(Tangent {
@@ -393,6 +449,10 @@ impl Path {
             (_, Quantity::Force) => Status::Open,
             _ => Status::Closed,
         };
-        (0..self.bounds.len()).map(of_limit).collect()
+        let jumps = self.value[0].iter().zip(&self.scale).take(self.independent);
+        End {
+            status: (0..self.bounds.len()).map(of_limit).collect(),
+            jumps: jumps.map(|(jump, scale)| jump / scale).collect(),
+        }
     }
 }

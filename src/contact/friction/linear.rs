@@ -13,9 +13,10 @@ use faer::{Conj, Mat, MatMut};
 
 use super::{FrictionProblem, Status};
 use crate::contact::open_factor::scale_of;
+use crate::vector::largest;
 
-/// Pivot of the scaled matrix below which it is taken as singular.
-const SINGULAR_PIVOT: f64 = 1e-13;
+/// Pivot of the scaled matrix, or size of what it makes of something of size 1, below which it is taken as singular.
+const SINGULAR: f64 = 1e-13;
 /// Stiffness of the springs that make it regular then, in that scale.
 pub(super) const SPRING: f64 = 1e-12;
 /// How much closed rows that depend on each other give way, in that scale: their forces share what one could carry.
@@ -300,7 +301,7 @@ impl System {
     pub fn solve(&self, b: Vec<f64>, is_balanced: impl Fn() -> bool) -> Vec<f64> {
         let n = b.len();
         let mut lu = self.a.partial_piv_lu();
-        let is_singular = (0..n).any(|k| lu.U()[(k, k)].abs() <= SINGULAR_PIVOT);
+        let is_singular = is_singular(&lu, n);
         if is_singular {
             if is_balanced() {
                 return vec![0.0; n];
@@ -334,6 +335,18 @@ impl System {
         }
         x
     }
+}
+
+/// Whether A is singular but for round-off. Where what is unresisted has little of the last unknowns, no pivot says so,
+/// but it is most of A⁻¹ times anything.
+fn is_singular(lu: &PartialPivLu<f64>, n: usize) -> bool {
+    if (0..n).any(|k| lu.U()[(k, k)].abs() <= SINGULAR) {
+        return true;
+    }
+    let mut x: Vec<f64> = (0..n).map(|i| (1.0 + 12.9898 * i as f64).sin()).collect();
+    let size = largest(&x);
+    apply(lu, &mut x);
+    size <= SINGULAR * largest(&x)
 }
 
 fn apply(lu: &PartialPivLu<f64>, x: &mut [f64]) {
