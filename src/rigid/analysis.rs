@@ -162,6 +162,24 @@ impl Scene {
         }
         Ok(motions)
     }
+
+    /// The failure of bodies that only friction could hold, where it turns out that it doesn't: where elastic bodies
+    /// aren't pressed as much as rigid ones could be.
+    pub fn unheld(&self) -> Option<Failure> {
+        let normals = self.rows.iter().filter(|row| row.friction.is_none());
+        let normals: Vec<RigidRow> = normals.cloned().collect();
+        let kinematics = Kinematics::new(self.dim, &self.bodies);
+        let load = kinematics.load(&self.bodies);
+        let scale: f64 = self.bodies.iter().map(|body| body.load_scale).sum();
+        let b = kinematics.rows(&normals);
+        let free = null_space(&b);
+        let driven = &free * (free.transpose() * &load);
+        let held = &load - &driven;
+        let left = Forces::new(&normals, |_| true).residual(&b, &held, UNDECIDED * scale);
+        let unbalanced = driven + left;
+        (unbalanced.norm() > BALANCE_TOLERANCE * scale)
+            .then(|| kinematics.sliding(&self.bodies, &self.names, &unbalanced))
+    }
 }
 
 impl Kinematics {

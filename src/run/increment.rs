@@ -17,6 +17,7 @@ use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
 use crate::recover::{Slips, recover, substitute_back};
 use crate::report::log::RunLog;
+use crate::rigid::analysis::Scene;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::run::sweeping::{sweep, sweep_frozen};
 use crate::settings::Settings;
@@ -77,6 +78,9 @@ impl Increments<'_> {
         }
         let slips = before.slips.clone();
         let Some(in_parts) = self.in_halves(k, analyses, before, seconds)? else {
+            let moves_freely = at_once.outcome.as_ref().is_some_and(|o| o.moves_freely);
+            let unheld = (at_end.scene.as_ref().filter(|_| moves_freely)).and_then(Scene::unheld);
+            self.context.comm.agree(unheld.map_or(Ok(()), Err))?;
             return Ok(at_once);
         };
         // Its end may be a solution of the whole load step, too.

@@ -86,6 +86,8 @@ pub struct SweepOutcome {
     pub increments: usize,
     /// Whether another solution with friction was found, where it was looked for.
     pub other_solution: Option<bool>,
+    /// Whether an active set was found under which something moves freely, so that forces aren't balanced.
+    pub moves_freely: bool,
     /// The conditions of every pair whose status cycles, where friction keeps sweeps from converging.
     pub unsettled: Vec<Vec<usize>>,
 }
@@ -108,6 +110,7 @@ impl SweepOutcome {
             iterative: None,
             increments: 1,
             other_solution: None,
+            moves_freely: false,
             unsettled: Vec::new(),
         }
     }
@@ -177,6 +180,7 @@ impl SweepOutcome {
         }
         let failed = unbalanced || penetration > limit || equilibrium.is_nan();
         if failed && self.status == SweepStatus::Converged {
+            self.moves_freely = equilibrium_of_load > NOT_BALANCED_OF_LOAD;
             self.status = SweepStatus::NotConverged(format!(
                 "the forces on the nodes are balanced to {equilibrium:.1e} of their terms and \
                  {equilibrium_of_load:.1e} of the largest load, and contacts penetrate by \
