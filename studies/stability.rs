@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
+use crate::support::stress::space::draw_in_space;
 use crate::support::stress::trial::Verdict;
 use crate::support::stress::{draw, draw_frictional};
 
@@ -31,6 +32,9 @@ pub struct Arguments {
     /// Runs scenes with friction alone; their seeds count anew.
     #[arg(long, conflicts_with = "markdown")]
     friction: bool,
+    /// Runs scenes in space alone; their seeds count anew.
+    #[arg(long, conflicts_with_all = ["markdown", "friction"])]
+    space: bool,
     /// Solves with the iterative interface solver between so many clusters, about, scenes without friction.
     #[arg(long, value_name = "N", conflicts_with_all = ["markdown", "friction"])]
     clusters: Option<usize>,
@@ -69,24 +73,34 @@ pub fn run(arguments: &Arguments) -> ExitCode {
     };
     let without = match arguments.friction {
         true => Vec::new(),
+        false if arguments.space => Vec::new(),
         false => runs.all(draw, &seeds, told),
     };
-    let with = match (told || arguments.clusters.is_some()) && !arguments.friction {
+    let in_space = match (arguments.space, &arguments.markdown) {
+        (true, _) => runs.all(draw_in_space, &seeds, told),
+        (false, Some(_)) => runs.all(draw_in_space, &seeds[..seeds.len() / 4], told),
+        (false, None) => Vec::new(),
+    };
+    let alone = told || arguments.clusters.is_some() || arguments.space;
+    let with = match alone && !arguments.friction {
         true => Vec::new(),
         false => runs.all(draw_frictional, &seeds, told),
     };
     if let Some(path) = &arguments.markdown {
         let rows = axes::table(&runs);
-        let text = document::document(arguments.first, &without, &with, &rows);
+        let text = document::document(arguments.first, [&without, &in_space, &with], &rows);
         std::fs::write(path, text).unwrap();
     }
-    for ran in [&without, &with] {
+    for ran in [&without, &in_space, &with] {
         random::summary(ran);
     }
     if !with.is_empty() && !told {
         print!("{}", document::friction(arguments.first, &with));
     }
-    let mut all = without.iter().chain(&with);
+    if !in_space.is_empty() && !told {
+        print!("{}", document::in_space(arguments.first, &in_space));
+    }
+    let mut all = without.iter().chain(&in_space).chain(&with);
     match all.all(|one| one.trial.verdict == Verdict::Right) {
         true => ExitCode::SUCCESS,
         false => ExitCode::FAILURE,

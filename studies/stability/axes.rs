@@ -7,7 +7,6 @@ use contact_dd_partition::model::Model;
 use super::random::{Ran, Runs};
 use crate::support::blocks::{Blocks, moved};
 use crate::support::scenes::{built_in_model, model};
-use crate::support::sorts::sort;
 use crate::support::stress::trial::Trial;
 use crate::support::stress::{Drawn, scale};
 
@@ -181,7 +180,7 @@ impl Table<'_> {
         let drawn = Drawn {
             seed: 0,
             family: axis,
-            sort: sort("triangle3"),
+            cells: "triangle3",
             text: String::new(),
             manufactured: false,
             factor: 1.0,

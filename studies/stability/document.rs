@@ -8,8 +8,8 @@ pub use self::friction::chapter as friction;
 
 use super::axes::Row;
 use super::random::Ran;
-use crate::support::stress::FAMILIES;
 use crate::support::stress::trial::Verdict;
+use crate::support::stress::{FAMILIES, space};
 
 /// How many of the worst cases are shown.
 const WORST: usize = 3;
@@ -56,7 +56,7 @@ with the condition number.
 ";
 
 /// The whole document.
-pub fn document(first: u64, ran: &[Ran], frictional: &[Ran], rows: &[Row]) -> String {
+pub fn document(first: u64, [ran, in_space, frictional]: [&[Ran]; 3], rows: &[Row]) -> String {
     let without = ran
         .iter()
         .filter(|one| one.trial.equilibrium == Some(false))
@@ -83,7 +83,36 @@ usual, up to 30 subdomains.
     distributions(&mut text, ran);
     worst(&mut text, ran);
     axes(&mut text, rows);
-    text + &friction(first, frictional)
+    text + &self::in_space(first, in_space) + &friction(first, frictional)
+}
+
+/// The chapter on scenes in space.
+pub fn in_space(first: u64, ran: &[Ran]) -> String {
+    let count = |of: &dyn Fn(&Ran) -> bool| ran.iter().filter(|one| of(one)).count();
+    let mut text = format!(
+        "
+## In space
+
+{} random scenes in space, seeds {first} to {} (`scripts/stress --space --only SEED`): tetrahedra and hexahedra of all
+kinds, nodes that match or don't, three of ten scenes askew; {} without equilibrium, {} manufactured solutions, {} also
+run on 2 to 4 ranks. Without friction.
+
+",
+        ran.len(),
+        ran.iter().map(|one| one.seed).max().unwrap_or(first),
+        count(&|one| one.trial.equilibrium == Some(false)),
+        count(&|one| one.manufactured),
+        count(&|one| one.ranks > 0),
+    );
+    verdict_columns(&mut text);
+    for family in space::FAMILIES {
+        let of = |one: &Ran| one.family == family.name;
+        verdict_line(&mut text, ran, family.name, &of);
+    }
+    verdict_line(&mut text, ran, "**all**", &|_| true);
+    text.push('\n');
+    figures(&mut text, ran, &FIGURES);
+    text
 }
 
 /// The head of a table of verdicts.

@@ -100,7 +100,7 @@ impl Ran {
         Self {
             seed: drawn.seed,
             family: drawn.family,
-            cells: drawn.sort.name,
+            cells: drawn.cells,
             manufactured: drawn.manufactured,
             ranks: drawn.ranks,
             friction: drawn.friction,

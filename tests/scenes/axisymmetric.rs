@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use contact_dd_partition::element::ElementKind::Hexahedron27;
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 use contact_dd_partition::scene::Scene;
@@ -12,6 +13,7 @@ use crate::support::comparison::{compare, compare_friction};
 use crate::support::frictional::Frictional;
 use crate::support::monolithic::Monolithic;
 use crate::support::scenes::model;
+use crate::support::solids::solid;
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, problem, solve, solve_steps};
 use crate::support::sorts::{SORTS, sort};
@@ -457,4 +459,83 @@ fn a_problem_file_has_no_node_on_the_other_side_of_the_axis() {
         "{}",
         ended.stderr
     );
+}
+
+/// The same rings as half a section and as a sector of 30° in space, whose curved faces quadratic cells follow nearly.
+#[test]
+fn a_section_is_what_a_sector_in_space_is() {
+    let scene = |top: &str, supports: &str| {
+        format!(
+            "
+materials.rock = {{young = 20e9, poisson = 0.25}}
+bodies.lower.material = 'rock'
+bodies.upper.material = 'rock'
+{supports}
+[[pressure]]
+on = '{top}'
+value = '1e6*(1.28-hypot(x,{}))'
+",
+            if top == "upper z1" { "y" } else { "0" }
+        )
+    };
+    let section = {
+        let lower = rectangle("lower", [1.0, 2.0], [0.0, 1.0], [6, 4]);
+        let upper = rectangle("upper", [1.0, 1.5], [1.0, 2.0], [3, 4]);
+        let text = scene("upper top", "[[bilateral]]\non = 'lower bottom'\n");
+        let joint = "[[contact]]\nname = 'joint'\nsides = ['upper bottom', 'lower top']\n";
+        let text = format!("plane = 'axisymmetric'\n{text}{joint}");
+        model(&text, sort("quad9").of(&joined(lower, upper)))
+    };
+    let sector = {
+        let ring = |name, n: [usize; 3], outer: f64, low: f64| {
+            solid(name, Hexahedron27, n, move |[s, t, h]| {
+                let (r, angle) = (1.0 + s * (outer - 1.0), t * PI / 6.0);
+                [r * angle.cos(), r * angle.sin(), low + h]
+            })
+        };
+        let meshes = joined(
+            ring("lower", [6, 3, 4], 2.0, 0.0),
+            ring("upper", [3, 3, 4], 1.5, 1.0),
+        );
+        let sides =
+            "[[bilateral]]\non = ['lower z0', 'lower y0', 'lower y1', 'upper y0', 'upper y1']\n";
+        let joint = "[[contact]]\nname = 'joint'\nsides = ['upper z0', 'lower z1']\n";
+        model(&format!("{}{joint}", scene("upper z1", sides)), meshes)
+    };
+    let (flat, full) = (solve(&section, 3), solve(&sector, 4));
+    let mut of_section = Vec::new();
+    for point in flat.points() {
+        of_section.push((point.position[0], point.pressure, point.closed));
+    }
+    let largest = of_section.iter().map(|of| of.1).fold(0.0, f64::max);
+    let mut closed = 0;
+    for point in full.points() {
+        let [x, y, _] = point.position;
+        let (_, pressure, is_closed) = (of_section.iter())
+            .find(|of| (of.0 - x.hypot(y)).abs() < 1e-9)
+            .unwrap();
+        assert_eq!(point.closed, *is_closed, "{point:?}");
+        close(point.pressure, *pressure, 1e-2 * largest);
+        closed += usize::from(point.closed);
+    }
+    assert!(0 < closed && closed < full.points().count(), "{closed}");
+    let [area, sum] = [&flat, &full].map(|s| s.points().map(|p| p.force).sum::<f64>());
+    close(12.0 * sum, area, 1e-3 * area);
+    let nodes: Vec<([f64; 3], [f64; 3])> = (section.mesh.node_tags.iter())
+        .zip(&section.mesh.points)
+        .map(|(tag, &x)| (x, flat.displacement[tag]))
+        .collect();
+    let size = flat.largest_displacement();
+    for (tag, &[x, y, z]) in sector.mesh.node_tags.iter().zip(&sector.mesh.points) {
+        let r = x.hypot(y);
+        let u = full.displacement[tag];
+        let radial = (u[0] * x + u[1] * y) / r;
+        let there = nodes
+            .iter()
+            .filter(|(at, _)| (at[0] - r).hypot(at[1] - z) < 1e-9);
+        // At the joint there are two.
+        let off = there.map(|(_, of)| (of[0] - radial).hypot(of[1] - u[2]));
+        let off = off.fold(f64::INFINITY, f64::min);
+        assert!(off < 1e-3 * size, "{x} {y} {z}: {off:e} of {size:e}");
+    }
 }

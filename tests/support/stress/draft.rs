@@ -1,5 +1,7 @@
 //! A random scene in the making: its text and its mesh.
 
+use contact_dd_partition::element::ElementKind;
+
 use super::super::blocks::Blocks;
 use super::super::random::Random;
 use super::friction::Friction;
@@ -31,6 +33,9 @@ pub struct Draft {
     pub friction: Option<Friction>,
     /// Whether the resultants of all contacts follow from statics.
     pub determined: bool,
+    /// The cells of a scene in space, and whether it stands askew.
+    pub kind: ElementKind,
+    pub tilted: bool,
 }
 
 impl Draft {
@@ -53,8 +58,28 @@ impl Draft {
             contacts: 0,
             friction: None,
             determined: false,
+            kind: ElementKind::Hexahedron8,
+            tilted: false,
             random,
         }
+    }
+
+    /// The same in space, of cells of a kind.
+    pub fn in_space(random: Random, kind: ElementKind, cells: usize) -> Self {
+        let mut draft = Self::new(random, cells);
+        draft.head.clear();
+        draft.kind = kind;
+        // Only statics knows.
+        draft.equilibrium = None;
+        draft.tilted = draft.random.chance(0.3);
+        draft.matching = draft.random.chance(0.5);
+        draft.blocks.mesh.dim = 3;
+        draft
+    }
+
+    /// Adds a part of the scene's text.
+    pub fn add(&mut self, text: &str) {
+        self.tables += text;
     }
 
     /// A load step, its keys as a scene has them.
@@ -108,14 +133,12 @@ impl Draft {
     }
 
     /// Makes one body of a material of its own of `groups`.
-    pub fn body(&mut self, name: &str, groups: &[&str], force: [f64; 2]) {
+    pub fn body<const D: usize>(&mut self, name: &str, groups: &[&str], force: [f64; D]) {
         let (young, poisson) = self.material();
-        let [x, y] = force;
         self.head += &format!("materials.'{name}' = {{young = {young:e}, poisson = {poisson}}}\n");
         for group in groups {
-            self.head += &format!(
-                "bodies.'{group}' = {{material = '{name}', body_force = [{x:e}, {y:e}]}}\n"
-            );
+            self.head +=
+                &format!("bodies.'{group}' = {{material = '{name}', body_force = {force:?}}}\n");
         }
     }
 

@@ -1,5 +1,6 @@
 //! Scenes whose solution is known: chosen first, and the loads and gaps from it.
 
+use contact_dd_partition::element::geometry::padded;
 use contact_dd_partition::model::Model;
 
 use super::super::assembled::Assembled;
@@ -11,14 +12,16 @@ pub fn manufacture(model: &mut Model, random: &mut Random) {
     let assembled = Assembled::new(model);
     let dim = model.mesh.dim;
     let size = random.magnitude(-9.0, 0.0);
-    let wave = [0; 6].map(|_: i32| random.within(0.1, 3.0));
+    let mut wave = || -> Vec<f64> { (0..dim + 1).map(|_| random.within(0.1, 3.0)).collect() };
+    let waves: Vec<Vec<f64>> = (0..dim).map(|_| wave()).collect();
     let u: Vec<f64> = (model.mesh.points.iter())
         .flat_map(|p| {
-            let along = |a: f64, b: f64, c: f64| size * (a * p[0] + b * p[1] + c).sin();
-            [
-                along(wave[0], wave[1], wave[2]),
-                along(wave[3], wave[4], wave[5]),
-            ]
+            let along = |wave: &Vec<f64>| {
+                let (slopes, shift) = wave.split_at(dim);
+                let phase: f64 = slopes.iter().zip(p).map(|(a, x)| a * x).sum();
+                size * (phase + shift[0]).sin()
+            };
+            waves.iter().map(along).collect::<Vec<f64>>()
         })
         .collect();
     let mut force = assembled.times(&u);
@@ -42,6 +45,6 @@ pub fn manufacture(model: &mut Model, random: &mut Random) {
         support.value = row.iter().map(|&(dof, c)| c * u[dof]).sum();
     }
     model.forces = (force.chunks(dim).enumerate())
-        .map(|(node, f)| (node as u32, [f[0], f[1], 0.0]))
+        .map(|(node, f)| (node as u32, padded(f)))
         .collect();
 }

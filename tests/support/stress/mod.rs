@@ -15,19 +15,21 @@ pub mod judge;
 pub mod manufactured;
 mod obstacles;
 pub mod rigid;
+pub mod space;
 mod towers;
 pub mod trial;
 mod walls;
 
 use contact_dd_partition::contact_point;
 use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 
 use self::draft::Draft;
 use self::friction::{Friction, Law};
 use super::random::Random;
 use super::scenes::model;
-use super::sorts::{SORTS, Sort};
+use super::sorts::SORTS;
 
 pub use self::balance::Balance;
 
@@ -90,8 +92,8 @@ const FINE: usize = 10;
 pub struct Drawn {
     pub seed: u64,
     pub family: &'static str,
-    /// Its cells.
-    pub sort: Sort,
+    /// The name of its cells.
+    pub cells: &'static str,
     /// Its scene file.
     pub text: String,
     /// Whether its gaps, loads and prescribed displacements were replaced by those of a solution
@@ -116,7 +118,7 @@ pub struct Drawn {
 impl Drawn {
     /// Its scene file, and what was changed behind it.
     pub fn described(&self) -> String {
-        let mut text = format!("# {} in {}\n{}", self.family, self.sort.name, self.text);
+        let mut text = format!("# {} in {}\n{}", self.family, self.cells, self.text);
         if self.manufactured {
             text += "# gaps and loads replaced by those of a known solution\n";
         }
@@ -166,10 +168,18 @@ fn draw_from(families: &[Family], seed: u64, cells: usize) -> Drawn {
     if family.frictional {
         draft.equilibrium = None;
     }
+    let mesh = sort.of(&draft.blocks.mesh);
+    drawn(seed, family.name, sort.name, draft, mesh)
+}
+
+/// What comes of a draft on its mesh.
+#[track_caller]
+fn drawn(seed: u64, family: &'static str, cells: &'static str, draft: Draft, mesh: Mesh) -> Drawn {
     let text = draft.text();
-    let mut model = model(&text, sort.of(&draft.blocks.mesh));
+    let mut model = model(&text, mesh);
     let mut random = draft.random;
-    let manufactured = draft.equilibrium == Some(true) && random.chance(0.15);
+    let may_be = draft.equilibrium == Some(true) || model.mesh.dim == 3;
+    let manufactured = may_be && random.chance(0.15);
     if manufactured {
         manufactured::manufacture(&mut model, &mut random);
     }
@@ -186,8 +196,8 @@ fn draw_from(families: &[Family], seed: u64, cells: usize) -> Drawn {
     };
     Drawn {
         seed,
-        family: family.name,
-        sort,
+        family,
+        cells,
         text,
         manufactured,
         factor,
