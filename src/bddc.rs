@@ -14,7 +14,6 @@ mod local;
 pub mod solution;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::rc::Rc;
 
 use self::classes::Classes;
 use self::closed::{GroupBetween, Ties};
@@ -40,9 +39,11 @@ pub struct Bddc {
     groups: BTreeMap<usize, GroupBetween>,
     ties: Ties,
     classes: Classes,
-    /// The clusters of this rank, onto what they share and in the bases of their classes.
-    shared: BTreeMap<usize, Rc<Shared>>,
+    /// The clusters of this rank: what their classes are to them, and in the bases of these.
+    sides: BTreeMap<usize, Vec<Option<Side>>>,
     locals: BTreeMap<usize, Local>,
+    /// The clusters whose S isn't any more what their part of the preconditioner was made of, on all ranks.
+    stale: Vec<bool>,
     coarse: Option<Coarse>,
     /// Number of coarse unknowns; on the root.
     pub coarse_dofs: usize,
@@ -122,13 +123,14 @@ impl Bddc {
             });
         }
         Ok(Self {
+            stale: vec![true; dofs.len()],
             between,
             owners,
             dofs,
             groups,
             ties: Ties::default(),
             classes: Classes::default(),
-            shared: BTreeMap::new(),
+            sides: BTreeMap::new(),
             locals: BTreeMap::new(),
             coarse: None,
             coarse_dofs: 0,
@@ -136,8 +138,9 @@ impl Bddc {
         })
     }
 
-    /// Makes the preconditioner for `condensed` clusters and conditions that are `open`, with a `spring`, relative to
-    /// the diagonal, on what these have let go; of clusters that aren't `touched` what is as it was is kept. Collective.
+    /// Freezes which conditions are `open`, for `condensed` clusters some of which were `touched` by that, with a
+    /// `spring`, relative to the diagonal, on what they have let go. The preconditioner is made anew where clusters
+    /// share other unknowns than before, and wherever S has changed if it is to be `renewed`. Collective.
     ///
     /// # Errors
     /// A part of the scene can move.
@@ -148,6 +151,7 @@ impl Bddc {
         touched: &[bool],
         open: &BTreeMap<usize, Vec<bool>>,
         spring: f64,
+        renewed: bool,
     ) -> Result<(), Failure> {
         let Context {
             comm, plan, par, ..
@@ -165,31 +169,53 @@ impl Bddc {
         comm.agree(frozen)?;
         let ties = self.ties(comm);
         let classes = Classes::new(&self.dofs, &ties);
-        let is_as_it_was = |c: usize| {
+        let shares_the_same = |c: usize| {
             let mut dofs = self.dofs[c].iter();
-            !touched[plan.tops[c]]
-                && classes.are_as_in(&self.classes, c)
-                && dofs.all(|dof| ties.is_as_in(&self.ties, dof))
+            classes.are_as_in(&self.classes, c) && dofs.all(|dof| ties.is_as_in(&self.ties, dof))
         };
-        let changed: Vec<bool> = (0..self.dofs.len()).map(|c| !is_as_it_was(c)).collect();
-        (self.ties, self.classes) = (ties, classes);
+        let is_touched = |c: usize| self.stale[c] || touched[plan.tops[c]];
+        let is_changed = |c: usize| !shares_the_same(c) || renewed && is_touched(c);
+        let changed: Vec<bool> = (0..self.dofs.len()).map(is_changed).collect();
+        self.stale = (0..changed.len())
+            .map(|c| !changed[c] && is_touched(c))
+            .collect();
+        let before = std::mem::replace(&mut self.classes, classes);
+        self.ties = ties;
 
+        let shared = |c: usize| {
+            let of_cluster = &condensed[&plan.tops[c]];
+            Shared::new(c, of_cluster, &self.classes, &self.ties, spring, par)
+        };
         let own = self.owners.iter().enumerate();
         let own = own.filter(|(c, owner)| changed[*c] && **owner == comm.rank());
-        let shared = own.map(|(c, _)| {
-            let of_cluster = &condensed[&plan.tops[c]];
-            let shared = Shared::new(c, of_cluster, &self.classes, &self.ties, spring, par);
-            Ok((c, Rc::new(shared.map_err(moves)?)))
+        let sides = own.map(|(c, _)| {
+            let classes = &self.classes.of_clusters[c];
+            let is_adaptive = |at: usize| !self.classes.list[classes[at]].is_coarse();
+            let sides = shared(c).and_then(|(shared, s)| shared.sides(&s, is_adaptive, par));
+            Ok((c, sides.map_err(moves)?))
         });
-        let shared: BTreeMap<usize, Rc<Shared>> = comm.agree(shared.collect())?;
-        self.shared.extend(shared);
-        let bases = self.bases(context, &changed)?;
+        let sides: BTreeMap<usize, Vec<Option<Side>>> = comm.agree(sides.collect())?;
+        self.sides.extend(sides);
+        let bases = self.bases(context, &before, &changed, renewed)?;
         let locals = bases.into_iter().map(|(c, bases)| {
-            let local = Local::new(Rc::clone(&self.shared[&c]), bases, par);
+            let local = shared(c).and_then(|shared| Local::new(shared, bases, par));
             Ok((c, local.map_err(moves)?))
         });
         let locals: BTreeMap<usize, Local> = comm.agree(locals.collect())?;
+        let is_new = |c: &usize| locals.contains_key(c);
+        let others = self.locals.keys().copied().filter(|c| !is_new(c));
+        let touched = others.filter(|&c| touched[plan.tops[c]] && self.locals[&c].own() > 0);
+        let refreshed = touched.map(|c| Ok((c, shared(c).map_err(moves)?.0)));
+        let refreshed: BTreeMap<usize, Shared> = comm.agree(refreshed.collect())?;
+        for (c, shared) in refreshed {
+            self.locals
+                .entry(c)
+                .and_modify(|local| local.shared = shared);
+        }
         self.locals.extend(locals);
+        if !changed.contains(&true) {
+            return Ok(());
+        }
 
         let mut parts = Vec::new();
         comm.gather(
@@ -197,13 +223,19 @@ impl Bddc {
             |c| CoarsePart::of(&self.locals[&c], &self.classes.of_clusters[c]),
             |_, part| parts.push(part),
         );
-        let coarse = comm.is_root().then(|| Coarse::new(&parts, par));
+        let order = || self.classes.order(&plan.tree, &plan.tops);
+        let coarse = comm.is_root().then(|| Coarse::new(&parts, &order(), par));
         self.coarse = comm.agree(coarse.transpose())?;
         if let Some(coarse) = &self.coarse {
             self.coarse_dofs = coarse.len();
             self.smallest_pivot = coarse.smallest_pivot();
         }
         Ok(())
+    }
+
+    /// Whether S of a cluster isn't any more what the preconditioner was made of; the same on all ranks.
+    pub fn is_stale(&self) -> bool {
+        self.stale.contains(&true)
     }
 
     /// Which conditions of contact group g of this rank, between clusters, are open.
@@ -228,48 +260,47 @@ impl Bddc {
         self.between.iter().map(|group| group.owner).collect()
     }
 
-    /// The bases of the classes of every cluster of this rank that has one with a cluster that `changed`: each is made
-    /// where the first cluster of the class is. Collective.
+    /// The bases of the classes of every cluster of this rank whose part of the preconditioner is to be made: of classes
+    /// that were there `before` those that they had, unless they are to be `renewed` because a cluster has changed. Each
+    /// is made where the first cluster of the class is. Collective.
     fn bases(
         &self,
         context: &Context<'_>,
+        before: &Classes,
         changed: &[bool],
+        renewed: bool,
     ) -> Result<BTreeMap<usize, Vec<Basis>>, Failure> {
-        let Context { comm, par, .. } = *context;
+        let comm = context.comm;
         let is_made = |k: usize| {
             let class = &self.classes.list[k];
-            !class.is_coarse() && class.clusters.iter().any(|&c| changed[c])
+            let has_changed = || class.clusters.iter().any(|&c| changed[c]);
+            !class.is_coarse() && (before.place_of(class).is_none() || renewed && has_changed())
         };
         let ends: Vec<(usize, usize)> = (0..self.classes.list.len())
             .filter(|&k| is_made(k))
             .flat_map(|k| self.classes.list[k].clusters.iter().map(move |&c| (k, c)))
             .collect();
-        let mut made = BTreeMap::new();
-        let sides = self.shared.iter().flat_map(|(&c, shared)| {
-            let classes = self.classes.of_clusters[c].iter().zip(&shared.ranges);
-            let made = classes.filter(|(k, _)| is_made(**k));
-            made.map(move |(&k, range)| ((k, c), shared.on(range, par)))
-        });
-        let sides = sides.map(|(end, side)| Ok((end, side.map_err(moves)?)));
-        let mut sides: BTreeMap<(usize, usize), Side> = comm.agree(sides.collect())?;
         let home = |k: usize| self.owners[self.classes.list[k].clusters[0]];
         let mut arrived: BTreeMap<usize, Vec<Side>> = BTreeMap::new();
         comm.route(
             ends.iter().map(|&(k, c)| (self.owners[c], home(k))),
-            |i| sides.remove(&ends[i]),
+            |i| {
+                let (k, c) = ends[i];
+                let at = self.classes.of_clusters[c].binary_search(&k).ok()?;
+                self.sides[&c][at].clone()
+            },
             |i, side| arrived.entry(ends[i].0).or_default().extend(side),
         );
         let mut result = Ok(());
+        let mut made = BTreeMap::new();
         for (k, sides) in arrived {
-            if let [a, b] = &sides[..] {
-                match Basis::adaptive([a, b]) {
-                    Ok(bases) => {
-                        let clusters = &self.classes.list[k].clusters;
-                        let ends = clusters.iter().map(|&c| (k, c));
-                        made.extend(ends.zip(bases));
-                    }
-                    Err(Moves) => result = Err(moves(Moves)),
+            match Basis::adaptive(&sides) {
+                Ok(bases) => {
+                    let clusters = &self.classes.list[k].clusters;
+                    let ends = clusters.iter().map(|&c| (k, c));
+                    made.extend(ends.zip(bases));
                 }
+                Err(Moves) => result = Err(moves(Moves)),
             }
         }
         comm.agree(result)?;
@@ -280,18 +311,20 @@ impl Bddc {
             |i, basis| of_ends.extend(basis.map(|basis| (ends[i], basis))),
         );
         let mut bases = BTreeMap::new();
-        for (&c, shared) in &self.shared {
+        for &c in self.sides.keys() {
             let classes = &self.classes.of_clusters[c];
             if !changed[c] && !classes.iter().any(|&k| is_made(k)) {
                 continue;
             }
-            let of_classes = classes.iter().enumerate().map(|(at, &k)| {
+            let of_classes = classes.iter().map(|&k| {
                 let class = &self.classes.list[k];
-                match (of_ends.remove(&(k, c)), self.locals.get(&c)) {
-                    (Some(basis), _) => basis,
-                    (None, Some(local)) if !changed[c] => local.bases()[at].clone(),
-                    _ => Basis::coarse(shared.ranges[at].len(), class.clusters[0] == c),
-                }
+                let kept = || {
+                    let at = before.of_clusters.get(c)?;
+                    let at = at.binary_search(&before.place_of(class)?).ok()?;
+                    Some(self.locals.get(&c)?.bases()[at].clone())
+                };
+                let made = of_ends.remove(&(k, c)).or_else(kept);
+                made.unwrap_or_else(|| Basis::coarse(class.size(), class.clusters[0] == c))
             });
             bases.insert(c, of_classes.collect());
         }

@@ -16,3 +16,4 @@ mod panel;
 pub mod pattern;
 pub mod substitution;
 mod supernodes;
+pub mod symmetric;

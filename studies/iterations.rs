@@ -9,7 +9,7 @@ use contact_dd_partition::model::Model;
 use serde_json::Value;
 
 use crate::support::process::Running;
-use crate::support::scenes::{built_in_model, checkerboard};
+use crate::support::scenes::{built_in_model, checkerboard, columns};
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, problem, program};
 
@@ -21,7 +21,7 @@ const MOST_IN_ALL: f64 = 4.0;
 /// Counts the iterations of the interface solver between more and more clusters.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Levels of clusters: 16, 64, 256.
+    /// Levels of clusters: 16, 64, 256, in space 8, 64, 512.
     #[arg(long, value_name = "N", default_value_t = 3)]
     levels: u32,
     /// Writes the results as markdown.
@@ -47,6 +47,18 @@ const LINEAR: [Scene; 4] = [
     }),
 ];
 
+const IN_SPACE: [Scene; 3] = [
+    ("columns in space", |level| {
+        columns([1e9, 1e9], 0.3, 2 << level, 14 << level)
+    }),
+    ("columns in space, contrast 1e6", |level| {
+        columns([1e9, 1e3], 0.3, 2 << level, 14 << level)
+    }),
+    ("columns in space, Poisson's ratio 0.4999", |level| {
+        columns([1e9, 1e9], 0.4999, 2 << level, 14 << level)
+    }),
+];
+
 const CONTACT: [Scene; 2] = [
     ("`granite`", |level| built_in_model("granite", 1 + level)),
     ("`stack`, held by contact alone", |level| {
@@ -65,13 +77,13 @@ struct Taken {
 }
 
 pub fn run(arguments: &Arguments) -> ExitCode {
-    let rows = |scenes: &[Scene]| -> Vec<(&str, Taken)> {
+    let rows = |scenes: &[Scene], clusters: fn(u32) -> usize| -> Vec<(&str, Taken)> {
         let levels = 0..arguments.levels;
         let all = scenes
             .iter()
             .flat_map(|&scene| levels.clone().map(move |level| (scene, level)));
         all.map(|((name, model), level)| {
-            let taken = taken(&model(level), 16 << (2 * level));
+            let taken = taken(&model(level), clusters(level));
             println!(
                 "{name}: {} clusters, {:?}",
                 taken.clusters, taken.iterations
@@ -80,7 +92,10 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         })
         .collect()
     };
-    let (linear, contact) = (rows(&LINEAR), rows(&CONTACT));
+    let in_plane = |level| 16usize << (2 * level);
+    let mut linear = rows(&LINEAR, in_plane);
+    linear.extend(rows(&IN_SPACE, |level| 8 << (3 * level)));
+    let contact = rows(&CONTACT, in_plane);
     let text = document(&linear, &contact);
     match &arguments.markdown {
         Some(path) => std::fs::write(path, text).unwrap(),

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::disjoint_sets::DisjointSets;
+use contact_dd_partition::problem::tree::Tree;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
@@ -21,7 +22,9 @@ pub struct Class {
     pub clusters: Vec<usize>,
     /// The unknowns, ascending.
     pub dofs: Vec<InterfaceDof>,
-    /// Unknowns in the place of these of which one of the clusters has only some.
+    /// Whether one of the clusters has only some combinations of them.
+    is_partial: bool,
+    /// Unknowns in the place of these where one of two clusters has only some.
     pub turned: Option<Turned>,
 }
 
@@ -55,14 +58,14 @@ impl Class {
 
     /// Whether all of its unknowns are coarse ones, as those of a vertex.
     pub fn is_coarse(&self) -> bool {
-        self.clusters.len() > 2 || self.size() <= SMALL
+        self.is_partial && self.clusters.len() > 2 || self.size() <= SMALL
     }
 }
 
 /// All classes.
 #[derive(Clone, Debug, Default)]
 pub struct Classes {
-    /// Those that several clusters have.
+    /// Those that several clusters have, by these in ascending order.
     pub list: Vec<Class>,
     /// For every cluster the numbers of these, ascending.
     pub of_clusters: Vec<Vec<usize>>,
@@ -71,6 +74,12 @@ pub struct Classes {
 }
 
 impl Classes {
+    /// The number of a class, if it is one of these.
+    pub fn place_of(&self, class: &Class) -> Option<usize> {
+        let at = (self.list).binary_search_by(|other| other.clusters.cmp(&class.clusters));
+        at.ok().filter(|&k| self.list[k] == *class)
+    }
+
     /// Whether cluster c has the same unknowns in the same classes as in others.
     pub fn are_as_in(&self, others: &Self, c: usize) -> bool {
         let (Some(own), Some(list)) = (others.own.get(c), others.of_clusters.get(c)) else {
@@ -80,6 +89,19 @@ impl Classes {
         *own == self.own[c]
             && list.len() == self.of_clusters[c].len()
             && pairs.all(|(&k, &other)| self.list[k] == others.list[other])
+    }
+
+    /// The order in which they are eliminated where clusters are the `nodes` of a tree: each class at the lowest node
+    /// above all of its clusters.
+    pub fn order(&self, tree: &Tree, nodes: &[usize]) -> Vec<usize> {
+        let home = |class: &Class| {
+            let clusters = class.clusters.iter().map(|&c| nodes[c]);
+            clusters.reduce(|v, w| tree.lowest_above(v, w))
+        };
+        let homes: Vec<Option<usize>> = self.list.iter().map(home).collect();
+        let mut order: Vec<usize> = (0..homes.len()).collect();
+        order.sort_by_key(|&k| homes[k]);
+        order
     }
 
     /// Those of clusters that have these `dofs`, with closed contact conditions that tie some to others.
@@ -113,12 +135,17 @@ impl Classes {
             for &c in &clusters {
                 classes.of_clusters[c].push(classes.list.len());
             }
+            let has = |dof: &InterfaceDof| {
+                let mut clusters = clusters.iter();
+                clusters.all(|&c| dofs[c].binary_search(dof).is_ok())
+            };
             let mut class = Class {
+                is_partial: !of_class.iter().all(has),
                 clusters,
                 dofs: of_class,
                 turned: None,
             };
-            if !class.is_coarse() {
+            if class.is_partial && !class.is_coarse() {
                 class.turned = turned(&class, dofs, ties);
             }
             classes.list.push(class);
@@ -127,18 +154,11 @@ impl Classes {
     }
 }
 
-/// The combinations of the unknowns of a class that its two clusters have, where one doesn't have all.
+/// The combinations of the unknowns of a class that its two clusters have, of which one doesn't have all.
 fn turned(class: &Class, dofs: &[Vec<InterfaceDof>], ties: &Ties) -> Option<Turned> {
     let [a, b] = class.clusters[..] else {
         return None;
     };
-    let has_all = |c: usize| {
-        let mut own = class.dofs.iter();
-        own.all(|dof| dofs[c].binary_search(dof).is_ok())
-    };
-    if has_all(a) && has_all(b) {
-        return None;
-    }
     // What each has, in terms of the class.
     let n = class.dofs.len();
     let row = |dof: &InterfaceDof| -> Vec<(usize, f64)> {

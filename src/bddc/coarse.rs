@@ -5,10 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::bddc::local::Local;
 use crate::error::Failure;
-use crate::interface::numbering::Numbering;
-use crate::schur::condensed::InterfaceDof;
 use crate::schur::factor::BoundaryLastCholesky;
-use crate::schur::pattern::{LowerPattern, SparseSymmetric};
+use crate::schur::pattern::{Cliques, LowerPattern, SparseSymmetric};
 
 /// What a cluster says of its coarse unknowns.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -41,37 +39,37 @@ pub struct Coarse {
 }
 
 impl Coarse {
-    /// Adds up what all clusters say, in their order, and factorizes it.
+    /// Adds up what all clusters say, in their order, and factorizes it; `order` is that in which their classes are
+    /// eliminated.
     ///
     /// # Errors
     /// A part of the scene can move.
-    pub fn new(parts: &[CoarsePart], par: Par) -> Result<Self, Failure> {
-        // A class stands for a node, as its unknowns belong to the same clusters.
-        let unknowns = |part: &CoarsePart| -> Vec<InterfaceDof> {
-            let of_class = |&(k, count): &(usize, usize)| {
-                let axes = 0..count as u32;
-                axes.map(move |axis| InterfaceDof {
-                    node: k as u32,
-                    axis,
-                })
-            };
-            part.classes.iter().flat_map(of_class).collect()
+    pub fn new(parts: &[CoarsePart], order: &[usize], par: Par) -> Result<Self, Failure> {
+        let mut counts = vec![0; order.len()];
+        for &(k, count) in parts.iter().flat_map(|part| &part.classes) {
+            counts[k] = count;
+        }
+        let (mut first, mut n) = (vec![0; order.len()], 0);
+        for &k in order {
+            first[k] = n as u32;
+            n += counts[k];
+        }
+        let numbers_of = |part: &CoarsePart| -> Vec<u32> {
+            let classes = part.classes.iter();
+            let numbers = classes.flat_map(|&(k, count)| first[k]..first[k] + count as u32);
+            numbers.collect()
         };
-        let dofs: Vec<Vec<InterfaceDof>> = parts.iter().map(unknowns).collect();
-        let classes = |part: &CoarsePart| part.classes.iter().map(|&(k, _)| k as u32).collect();
-        let classes: Vec<Vec<u32>> = parts.iter().map(classes).collect();
-        let numbering = Numbering::new(
-            &dofs.iter().map(Vec::as_slice).collect::<Vec<_>>(),
-            &classes.iter().map(Vec::as_slice).collect::<Vec<_>>(),
-            &vec![false; parts.len()],
-        )?;
-        let n = numbering.len;
+        let numbers: Vec<Vec<u32>> = parts.iter().map(numbers_of).collect();
+        let mut cliques = Cliques::default();
+        for of_cluster in &numbers {
+            cliques.push(of_cluster.iter().copied());
+        }
         let too_large = || {
             Failure::internal("the coarse problem has more than 2^32 entries: use fewer clusters")
         };
-        let pattern = LowerPattern::new(n, &numbering.cliques(0..parts.len()));
+        let pattern = LowerPattern::new(n, &cliques);
         let mut sum = SparseSymmetric::zeros(pattern.ok_or_else(too_large)?);
-        for (part, numbers) in parts.iter().zip(&numbering.interface_dofs) {
+        for (part, numbers) in parts.iter().zip(&numbers) {
             sum.add_large(numbers, part.s.as_ref());
         }
         let factor = BoundaryLastCholesky::new(&sum, n, par).map_err(|error| {
@@ -82,7 +80,7 @@ impl Coarse {
         })?;
         Ok(Self {
             factor,
-            numbers: numbering.interface_dofs,
+            numbers,
             len: n,
         })
     }

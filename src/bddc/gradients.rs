@@ -5,6 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use faer::Mat;
+
 use crate::bddc::classes::Classes;
 use crate::bddc::coarse::Coarse;
 use crate::bddc::local::Local;
@@ -13,6 +15,8 @@ use crate::vector::dot;
 
 /// Most iterations.
 const MAX_ITERATIONS: usize = 500;
+/// The same with a preconditioner that can be made better.
+const MAX_WITH_STALE: usize = 30;
 
 /// A vector on what clusters share, by cluster.
 pub type Vectors = BTreeMap<usize, Vec<f64>>;
@@ -28,13 +32,17 @@ pub struct Gradients<'a> {
     pub classes: &'a Classes,
     /// The clusters of this rank.
     pub locals: &'a BTreeMap<usize, Local>,
+    /// S of every cluster; none of those of other ranks.
+    pub matrices: &'a [Option<&'a Mat<f64>>],
     /// The coarse problem, on the root.
     pub coarse: Option<&'a Coarse>,
+    /// Whether the preconditioner is that of other matrices.
+    pub is_stale: bool,
 }
 
 impl Gradients<'_> {
-    /// Solves S x = b, of which every cluster has a part, from a `start`, or from 0; returns x and the number of
-    /// iterations. Collective.
+    /// Solves S x = b, of which every cluster has a part, from a `start`, or from 0; returns x, the number of
+    /// iterations and whether x is it. Collective.
     ///
     /// It ends where √(rᵀ M r), with M the preconditioner about the error in the energy norm, is less than the
     /// `tolerance` of that of b.
@@ -43,7 +51,7 @@ impl Gradients<'_> {
         mut b: Vectors,
         start: Option<Vectors>,
         tolerance: f64,
-    ) -> (Vectors, usize) {
+    ) -> (Vectors, usize, bool) {
         self.add_up(&mut b);
         let scale = self.dot(&b, &self.precondition(&b));
         let enough = tolerance * tolerance * scale;
@@ -56,8 +64,12 @@ impl Gradients<'_> {
         let mut z = self.precondition(&r);
         let mut p = z.clone();
         let mut rho = self.dot(&r, &z);
+        let most = match self.is_stale {
+            true => MAX_WITH_STALE,
+            false => MAX_ITERATIONS,
+        };
         let mut iterations = 0;
-        while rho > enough && iterations < MAX_ITERATIONS {
+        while rho > enough && iterations < most {
             let q = self.multiply(&p);
             let curvature = self.dot(&p, &q);
             if curvature <= 0.0 || curvature.is_nan() {
@@ -75,20 +87,21 @@ impl Gradients<'_> {
             }
             iterations += 1;
         }
-        (x, iterations)
+        (x, iterations, rho <= enough)
     }
 
     /// S x. Collective.
     fn multiply(&self, x: &Vectors) -> Vectors {
-        let of = |(&c, local): (&usize, &Local)| (c, local.multiply(&x[&c]));
-        let mut y = self.locals.iter().map(of).collect();
+        let of =
+            |(&c, local): (&usize, &Local)| Some((c, local.multiply(self.matrices[c]?, &x[&c])));
+        let mut y = self.locals.iter().filter_map(of).collect();
         self.add_up(&mut y);
         y
     }
 
     /// M r. Collective.
     fn precondition(&self, r: &Vectors) -> Vectors {
-        let (mut others, mut coarse) = (Vectors::new(), Vectors::new());
+        let (mut others, mut coarse) = (BTreeMap::new(), Vectors::new());
         for (&c, local) in self.locals {
             let (of_others, of_coarse) = local.share(&r[&c]);
             others.insert(c, of_others);

@@ -2,20 +2,21 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
-use std::rc::Rc;
 
 use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_inverse::invert_lower_triangular;
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::traits::RealField;
+use faer::{Accum, Mat, MatMut, MatRef, Par, Side::Lower};
 
 use crate::bddc::classes::Classes;
 use crate::bddc::closed::Ties;
 use crate::bddc::constraints::{Basis, Side};
 use crate::schur::condensed::{Condensed, InterfaceDof};
 use crate::schur::front::partial_cholesky;
-use crate::schur::local::multiply_add;
+use crate::schur::symmetric::product_of_lower;
 
 /// A cluster can move although what it shares with others is held.
 #[derive(Clone, Copy, Debug)]
@@ -23,12 +24,12 @@ pub struct Moves;
 
 /// A matrix some of whose unknowns, the first ones, are eliminated.
 #[derive(Debug)]
-pub struct Eliminated {
+pub struct Eliminated<T> {
     /// L above P.
-    columns: Mat<f64>,
+    columns: Mat<T>,
 }
 
-impl Eliminated {
+impl Eliminated<f64> {
     /// Eliminates the first `count` unknowns of a symmetric matrix, both of whose triangles are given, and returns
     /// what they leave to the others, its lower triangle.
     pub fn new(matrix: MatRef<'_, f64>, count: usize, par: Par) -> Result<(Self, Mat<f64>), Moves> {
@@ -40,16 +41,29 @@ impl Eliminated {
         Ok((Self { columns }, s))
     }
 
+    /// The same in single precision, which is enough for a preconditioner.
+    fn in_single_precision(&self) -> Eliminated<f32> {
+        let mut single = Mat::zeros(self.columns.nrows(), self.columns.ncols());
+        for j in 0..single.ncols() {
+            let column = self.columns.col_as_slice(j);
+            let pairs = single.col_as_slice_mut(j).iter_mut().zip(column);
+            pairs.for_each(|(single, value)| *single = *value as f32);
+        }
+        Eliminated { columns: single }
+    }
+}
+
+impl<T: RealField + Copy> Eliminated<T> {
     /// Carries a load on the first unknowns to the others.
-    fn forward(&self, x: &mut [f64]) {
+    fn forward(&self, x: &mut [T]) {
         let (l, p) = self.columns.as_ref().split_at_row(self.columns.ncols());
         let (mut first, others) = column_of(x).split_at_row_mut(l.ncols());
         solve_lower_triangular_in_place(l, first.as_mut(), Par::Seq);
-        matmul(others, Accum::Add, p, first, -1.0, Par::Seq);
+        matmul(others, Accum::Add, p, first, -T::one_impl(), Par::Seq);
     }
 
     /// Solves for the first unknowns where the others are known.
-    fn backward(&self, x: &mut [f64]) {
+    fn backward(&self, x: &mut [T]) {
         let (l, p) = self.columns.as_ref().split_at_row(self.columns.ncols());
         let (mut first, others) = column_of(x).split_at_row_mut(l.ncols());
         matmul(
@@ -57,14 +71,14 @@ impl Eliminated {
             Accum::Add,
             p.transpose(),
             others,
-            -1.0,
+            -T::one_impl(),
             Par::Seq,
         );
         solve_upper_triangular_in_place(l.transpose(), first, Par::Seq);
     }
 }
 
-fn column_of(x: &mut [f64]) -> MatMut<'_, f64> {
+fn column_of<T>(x: &mut [T]) -> MatMut<'_, T> {
     let rows = x.len();
     MatMut::from_column_major_slice_mut(x, rows, 1)
 }
@@ -78,20 +92,21 @@ pub fn fill_upper_triangle(s: &mut Mat<f64>) {
     }
 }
 
-/// A cluster condensed onto what it shares with others, class after class.
+/// What a cluster shares with others, class after class.
 #[derive(Debug)]
 pub struct Shared {
     /// What each unknown of the cluster is in terms of [own | shared], but for constants.
     terms: Vec<Vec<(usize, f64)>>,
-    own: Eliminated,
-    /// S on what is shared, both triangles.
-    pub s: Mat<f64>,
+    own: Eliminated<f64>,
     /// Where its classes are.
-    pub ranges: Vec<Range<usize>>,
+    ranges: Vec<Range<usize>>,
+    /// The spring on each unknown of the cluster; none where nothing has one.
+    springs: Vec<f64>,
 }
 
 impl Shared {
-    /// Cluster c, with a `spring`, relative to the diagonal, on what open conditions have let go.
+    /// Cluster c, with a `spring`, relative to the diagonal, on what open conditions have let go, and its S on what is
+    /// shared, both triangles.
     ///
     /// # Errors
     /// It can move although what it shares is held.
@@ -102,7 +117,7 @@ impl Shared {
         ties: &Ties,
         spring: f64,
         par: Par,
-    ) -> Result<Self, Moves> {
+    ) -> Result<(Self, Mat<f64>), Moves> {
         let mut places: HashMap<InterfaceDof, Vec<(usize, f64)>> = HashMap::new();
         let mut own = classes.own[c].len();
         for (i, &dof) in classes.own[c].iter().enumerate() {
@@ -145,82 +160,105 @@ impl Shared {
                 .collect()
         };
         let terms: Vec<_> = condensed.interface_dofs.iter().map(in_place).collect();
-        let mut s = transformed(&condensed.s, &terms, own + first);
-        for (i, dof) in condensed.interface_dofs.iter().enumerate() {
-            if spring > 0.0 && ties.is_open(dof) {
-                for &(a, c) in &terms[i] {
-                    s[(a, a)] += c * c * spring * condensed.diagonal[i];
-                }
-            }
+        let mut springs = Vec::new();
+        if spring > 0.0 {
+            let dofs = condensed.interface_dofs.iter().zip(&condensed.diagonal);
+            let springs_on = dofs.map(|(dof, d)| spring * d * f64::from(ties.is_open(dof)));
+            springs.extend(springs_on);
         }
+        let s = transformed(&condensed.s, &springs, &terms, own + first);
         let (own, mut s) = Eliminated::new(s.as_ref(), own, par)?;
         fill_upper_triangle(&mut s);
-        Ok(Self {
+        let shared = Self {
             terms,
             own,
-            s,
             ranges,
-        })
+            springs,
+        };
+        Ok((shared, s))
     }
 
-    /// S on a class, and what is left of S there where all else that is shared is free.
-    pub fn on(&self, range: &Range<usize>, par: Par) -> Result<Side, Moves> {
-        let others = (0..self.s.nrows()).filter(|i| !range.contains(i));
-        let order: Vec<usize> = others.chain(range.clone()).collect();
-        let free = order.len() - range.len();
-        let mut s = Mat::from_fn(order.len(), order.len(), |i, j| {
-            self.s[(order[i], order[j])]
-        });
-        // A class of few unknowns may not hold all motions of the others, and of some the cluster has not all.
-        let mut places = order.iter().enumerate().take(free);
-        for of_others in self.ranges.iter().filter(|of| *of != range) {
-            let largest = of_others
-                .clone()
-                .fold(0.0, |m: f64, i| m.max(self.s[(i, i)]));
-            for (place, _) in places.by_ref().take(of_others.len()) {
-                s[(place, place)] += HOLD * largest;
-            }
+    /// What each class that `is_chosen`, by its place, is where all else that is shared is held, and where it is free.
+    pub fn sides(
+        &self,
+        s: &Mat<f64>,
+        is_chosen: impl Fn(usize) -> bool,
+        par: Par,
+    ) -> Result<Vec<Option<Side>>, Moves> {
+        let n = s.nrows();
+        // It may move as a whole, and of some classes it has not all unknowns.
+        let mut held = s.clone();
+        for range in &self.ranges {
+            hold(held.as_mut(), range.clone(), HOLD);
         }
-        let of_class = s.submatrix(free, free, range.len(), range.len()).to_owned();
-        let (_, mut left) = Eliminated::new(s.as_ref(), free, par)?;
-        fill_upper_triangle(&mut left);
-        Ok(Side { s: of_class, left })
+        let factor = held.llt(Lower).map_err(|_| Moves)?;
+        let mut inverse = Mat::zeros(n, n);
+        invert_lower_triangular(inverse.as_mut(), factor.L(), par);
+        let side = |(at, range): (usize, &Range<usize>)| {
+            is_chosen(at).then(|| {
+                let (first, len) = (range.start, range.len());
+                let columns = inverse.submatrix(first, first, n - first, len);
+                // It may also move where all but this class is held; what does becomes coarse.
+                let mut s = s.submatrix(first, first, len, len).to_owned();
+                hold(s.as_mut(), 0..len, MORE_HOLD);
+                Side {
+                    s,
+                    compliance: columns.transpose() * columns,
+                }
+            })
+        };
+        Ok(self.ranges.iter().enumerate().map(side).collect())
     }
 }
 
-/// Share of the diagonal that is added where unknowns may be free.
+/// Share of the largest diagonal entry that is added where unknowns may be free.
 const HOLD: f64 = 1e-11;
+/// The same where it has to be far above that.
+const MORE_HOLD: f64 = 1e-9;
 
-/// Tᵀ S T, of which the lower triangle is given and both are returned; T has a row of terms for every unknown of S.
-fn transformed(s: &Mat<f64>, terms: &[Vec<(usize, f64)>], n: usize) -> Mat<f64> {
+/// Adds a share of the largest entry to those of the diagonal.
+fn hold(mut s: MatMut<'_, f64>, range: Range<usize>, share: f64) {
+    let largest = range.clone().fold(0.0, |m: f64, i| m.max(s[(i, i)]));
+    range.for_each(|i| s[(i, i)] += share * largest);
+}
+
+/// Tᵀ S T, S with `springs` on its diagonal, of which the lower triangle is given and both are returned; T has a row of
+/// terms for every unknown of S.
+fn transformed(s: &Mat<f64>, springs: &[f64], terms: &[Vec<(usize, f64)>], n: usize) -> Mat<f64> {
+    // Half of it: the other half is its transpose.
     let mut new = Mat::<f64>::zeros(n, n);
     for j in 0..s.ncols() {
-        for i in j..s.nrows() {
-            for &(a, c) in &terms[i] {
-                for &(b, d) in &terms[j] {
-                    let value = c * d * s[(i, j)];
-                    new[(a, b)] += value;
-                    if i != j {
-                        new[(b, a)] += value;
-                    }
-                }
+        let column = &s.col_as_slice(j)[j..];
+        for &(b, d) in &terms[j] {
+            let below = terms[j + 1..].iter().zip(&column[1..]);
+            let to = new.col_as_slice_mut(b);
+            let half = 0.5 * (column[0] + springs.get(j).unwrap_or(&0.0));
+            terms[j].iter().for_each(|&(a, c)| to[a] += c * d * half);
+            for (terms, s) in below {
+                terms.iter().for_each(|&(a, c)| to[a] += c * d * s);
             }
+        }
+    }
+    for j in 0..n {
+        for i in 0..=j {
+            let sum = new[(i, j)] + new[(j, i)];
+            (new[(i, j)], new[(j, i)]) = (sum, sum);
         }
     }
     new
 }
 
-/// A cluster as conjugate gradients see it, in the basis of coarse and other unknowns of its classes.
+/// A cluster as conjugate gradients see it, and its part of the preconditioner, in the basis of coarse and other
+/// unknowns of its classes.
 #[derive(Debug)]
 pub struct Local {
-    shared: Rc<Shared>,
-    /// S in that basis.
-    s: Mat<f64>,
+    /// What it shares.
+    pub shared: Shared,
     /// The basis and the scaling of every class.
     bases: Vec<Basis>,
     /// Where [others | coarse] are found.
     order: Vec<usize>,
-    others: Eliminated,
+    others: Eliminated<f32>,
     /// What the others leave to the coarse unknowns.
     pub coarse: Mat<f64>,
 }
@@ -230,8 +268,11 @@ impl Local {
     ///
     /// # Errors
     /// It can move although its coarse unknowns are held.
-    pub fn new(shared: Rc<Shared>, bases: Vec<Basis>, par: Par) -> Result<Self, Moves> {
-        let mut s = shared.s.clone();
+    pub fn new(
+        (shared, mut s): (Shared, Mat<f64>),
+        bases: Vec<Basis>,
+        par: Par,
+    ) -> Result<Self, Moves> {
         let (mut others, mut coarse) = (Vec::new(), Vec::new());
         for (range, basis) in shared.ranges.iter().zip(&bases) {
             if let Some(q) = basis.q() {
@@ -248,15 +289,19 @@ impl Local {
         others.extend(coarse);
         let order = others;
         let n = order.len();
-        let permuted = Mat::from_fn(n, n, |i, j| s[(order[i], order[j])]);
+        let mut permuted = Mat::zeros(n, n);
+        for j in 0..n {
+            let from = s.col_as_slice(order[j]);
+            let lower = permuted.col_as_slice_mut(j)[j..].iter_mut();
+            lower.zip(&order[j..]).for_each(|(to, &i)| *to = from[i]);
+        }
         let (others, mut coarse) = Eliminated::new(permuted.as_ref(), count, par)?;
         fill_upper_triangle(&mut coarse);
         Ok(Self {
             shared,
-            s,
             bases,
             order,
-            others,
+            others: others.in_single_precision(),
             coarse,
         })
     }
@@ -273,72 +318,69 @@ impl Local {
 
     /// Condenses a load on the cluster's unknowns: what stays on the own ones, and the load on the shared ones.
     pub fn condense(&self, load: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let own = self.shared.own.columns.ncols();
-        let mut f = vec![0.0; own + self.s.nrows()];
-        for (terms, load) in self.shared.terms.iter().zip(load) {
-            terms.iter().for_each(|&(i, c)| f[i] += c * load);
-        }
+        let mut f = self.gather(load);
         self.shared.own.forward(&mut f);
-        let mut shared = f.split_off(own);
-        self.turn(&mut shared);
+        let shared = f.split_off(self.own());
         (f, shared)
     }
 
     /// The unknowns of the cluster, but for constants, for the shared ones.
     pub fn recover(&self, own: &[f64], shared: &[f64]) -> Vec<f64> {
-        let mut shared = shared.to_vec();
-        for (q, range) in self.turns() {
-            let turned = product(q.as_ref(), &shared[range.clone()]);
-            shared[range].copy_from_slice(&turned);
-        }
-        let mut x = own.to_vec();
-        x.extend(shared);
+        let mut x = [own, shared].concat();
         self.shared.own.backward(&mut x);
         let of = |terms: &Vec<(usize, f64)>| terms.iter().map(|&(i, c)| c * x[i]).sum();
         self.shared.terms.iter().map(of).collect()
     }
 
-    /// Turns a vector on the shared unknowns into the basis of the classes.
-    pub fn turn(&self, shared: &mut [f64]) {
-        for (q, range) in self.turns() {
-            let turned = product(q.transpose(), &shared[range.clone()]);
-            shared[range].copy_from_slice(&turned);
+    /// S x on what is shared, where `s` is that of the cluster's unknowns.
+    pub fn multiply(&self, s: &Mat<f64>, x: &[f64]) -> Vec<f64> {
+        let x = self.recover(&vec![0.0; self.own()], x);
+        let mut y = product_of_lower(s, &x);
+        let springs = self.shared.springs.iter().zip(&x);
+        y.iter_mut()
+            .zip(springs)
+            .for_each(|(y, (k, x))| *y += k * x);
+        let mut y = self.gather(&y);
+        y.split_off(self.own())
+    }
+
+    /// Number of unknowns that no other cluster has.
+    pub fn own(&self) -> usize {
+        self.shared.own.columns.ncols()
+    }
+
+    /// A load on the cluster's unknowns on [own | shared].
+    fn gather(&self, load: &[f64]) -> Vec<f64> {
+        let mut f = vec![0.0; self.shared.own.columns.nrows()];
+        for (terms, load) in self.shared.terms.iter().zip(load) {
+            terms.iter().for_each(|&(i, c)| f[i] += c * load);
         }
-    }
-
-    fn turns(&self) -> impl Iterator<Item = (&Mat<f64>, Range<usize>)> {
-        let classes = self.shared.ranges.iter().zip(&self.bases);
-        classes.filter_map(|(range, basis)| Some((basis.q()?, range.clone())))
-    }
-
-    /// S x.
-    pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
-        product(self.s.as_ref(), x)
+        f
     }
 
     /// The cluster's share of a residual: what stays on the other unknowns, and the load on the coarse ones.
-    pub fn share(&self, r: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    pub fn share(&self, r: &[f64]) -> (Vec<f32>, Vec<f64>) {
         let mut scaled = vec![0.0; r.len()];
         for (range, basis) in self.shared.ranges.iter().zip(&self.bases) {
-            scaled[range.clone()].copy_from_slice(&basis.scale_back(&r[range.clone()]));
+            scaled[range.clone()].copy_from_slice(&basis.share(&r[range.clone()]));
         }
-        let mut load: Vec<f64> = self.order.iter().map(|&i| scaled[i]).collect();
+        let mut load: Vec<f32> = self.order.iter().map(|&i| scaled[i] as f32).collect();
         self.others.forward(&mut load);
         let coarse = load.split_off(self.others.columns.ncols());
-        (load, coarse)
+        (load, coarse.into_iter().map(f64::from).collect())
     }
 
     /// The cluster's share of a correction, where its coarse unknowns are known.
-    pub fn correct(&self, mut others: Vec<f64>, coarse: &[f64]) -> Vec<f64> {
-        others.extend(coarse);
+    pub fn correct(&self, mut others: Vec<f32>, coarse: &[f64]) -> Vec<f64> {
+        others.extend(coarse.iter().map(|&x| x as f32));
         self.others.backward(&mut others);
         let mut x = vec![0.0; others.len()];
         self.order
             .iter()
             .zip(others)
-            .for_each(|(&i, value)| x[i] = value);
+            .for_each(|(&i, value)| x[i] = f64::from(value));
         for (range, basis) in self.shared.ranges.iter().zip(&self.bases) {
-            let scaled = basis.scale(&x[range.clone()]);
+            let scaled = basis.correct(&x[range.clone()]);
             x[range.clone()].copy_from_slice(&scaled);
         }
         x
@@ -348,6 +390,7 @@ impl Local {
 /// A x.
 pub fn product(a: MatRef<'_, f64>, x: &[f64]) -> Vec<f64> {
     let mut y = vec![0.0; a.nrows()];
-    multiply_add(a, x, &mut y);
+    let x = MatRef::from_column_major_slice(x, x.len(), 1);
+    matmul(column_of(&mut y), Accum::Replace, a, x, 1.0, Par::Seq);
     y
 }

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use faer::Mat;
-
 use crate::bddc::Bddc;
 use crate::bddc::gradients::{Gradients, Vectors};
 use crate::bytes::Reals;
@@ -11,7 +9,7 @@ use crate::comm::Comm;
 use crate::context::Context;
 use crate::plan::Plan;
 use crate::schur::condensed::{Condensed, InterfaceDof};
-use crate::vector::dot;
+use crate::schur::symmetric::product_of_lower;
 
 /// How far a solution is iterated.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +37,8 @@ pub struct BddcSolution {
     pub groups: BTreeMap<usize, (Vec<f64>, Vec<f64>)>,
     /// Iterations that it took.
     pub iterations: usize,
+    /// Whether they sufficed.
+    pub is_solved: bool,
 }
 
 impl Bddc {
@@ -75,10 +75,13 @@ impl Bddc {
             owners: &self.owners,
             classes: &self.classes,
             locals: &self.locals,
+            matrices: &(plan.tops.iter().map(|v| condensed.get(v).map(|of| &of.s)))
+                .collect::<Vec<_>>(),
             coarse: self.coarse.as_ref(),
+            is_stale: self.is_stale(),
         };
         let start = accuracy.start.map(|known| self.start(comm, known, plan));
-        let (x, iterations) = gradients.solve(b, start, accuracy.tolerance);
+        let (x, iterations, is_solved) = gradients.solve(b, start, accuracy.tolerance);
         let mut clusters = Vectors::new();
         for (&c, local) in &self.locals {
             let mut all = local.recover(&own[&c], &x[&c]);
@@ -99,6 +102,7 @@ impl Bddc {
             clusters: by_node.collect(),
             groups,
             iterations,
+            is_solved,
         }
     }
 
@@ -139,9 +143,6 @@ impl Bddc {
             // Class after class, as the cluster has them.
             |i, Reals(values)| start.entry(ends[i].1).or_default().extend(values),
         );
-        for (c, shared) in &mut start {
-            self.locals[c].turn(shared);
-        }
         start
     }
 
@@ -215,17 +216,4 @@ impl Bddc {
             .map(|(g, [x, r])| (*g, self.groups[g].answer(x, r)))
             .collect()
     }
-}
-
-/// S x, where the lower triangle of S counts.
-fn product_of_lower(s: &Mat<f64>, x: &[f64]) -> Vec<f64> {
-    let mut y = vec![0.0; x.len()];
-    for j in 0..x.len() {
-        let column = &s.col_as_slice(j)[j..];
-        y[j] += dot(column, &x[j..]);
-        for (y, s) in y[j + 1..].iter_mut().zip(&column[1..]) {
-            *y += s * x[j];
-        }
-    }
-    y
 }

@@ -109,25 +109,26 @@ pub fn solve(
     let (mut last, mut wrong_by) = (FrozenSolution::default(), 1.0_f64);
     loop {
         fronts.freeze(context, &open)?;
-        let accurate = |tolerance: f64, start: &FrozenSolution| {
+        let accurate = |fronts: &mut FrozenFronts, tolerance: f64, start: &FrozenSolution| {
             let accuracy = Accuracy {
                 tolerance,
                 start: (!start.tops.is_empty()).then_some(&start.tops),
             };
-            let mut solution = fronts.solve(context, loads.clone(), &bounds, accuracy);
+            let mut solution = fronts.solve(context, &open, loads, &bounds, accuracy)?;
             solution.iterations += start.iterations;
             let least = ROUND_OFF.max(tolerance);
             let faults = Faults::of(context, &solution, &bounds, &open, least);
-            (solution, faults)
+            Ok::<_, Failure>((solution, faults))
         };
         // No more accurate than the active set, until that seems to be right.
         let tolerance = match fronts.coarse_dofs() {
             Some(_) => (LOOSE * wrong_by.min(1.0)).max(Accuracy::FULL.tolerance),
             None => 0.0,
         };
-        let (mut solution, mut faults) = accurate(tolerance, &last);
+        let (mut solution, mut faults) = accurate(fronts, tolerance, &last)?;
         if faults.count == 0 && tolerance > Accuracy::FULL.tolerance {
-            (solution, faults) = accurate(Accuracy::FULL.tolerance, &solution);
+            fronts.renew(context, &open)?;
+            (solution, faults) = accurate(fronts, Accuracy::FULL.tolerance, &solution)?;
         }
         wrong_by = faults.largest;
         let sweep = outcome.records.len();

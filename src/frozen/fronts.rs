@@ -61,6 +61,8 @@ pub struct FrozenSolution {
     pub tops: BTreeMap<usize, Vec<f64>>,
     /// Its iterations.
     pub iterations: usize,
+    /// Whether a preconditioner that was made for another active set was too bad.
+    pub is_too_far: bool,
 }
 
 impl FrozenFronts {
@@ -145,12 +147,36 @@ impl FrozenFronts {
         context: &Context<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
     ) -> Result<(), Failure> {
+        self.make(context, open, false)
+    }
+
+    /// Makes the preconditioner that of the active set, where there is one that isn't. Collective.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely even where open contacts have springs.
+    pub fn renew(
+        &mut self,
+        context: &Context<'_>,
+        open: &BTreeMap<usize, Vec<bool>>,
+    ) -> Result<(), Failure> {
+        match self.bddc.as_ref().is_some_and(Bddc::is_stale) {
+            true => self.make(context, open, true),
+            false => Ok(()),
+        }
+    }
+
+    fn make(
+        &mut self,
+        context: &Context<'_>,
+        open: &BTreeMap<usize, Vec<bool>>,
+        renewed: bool,
+    ) -> Result<(), Failure> {
         let is_known = self.fronts_known(context);
-        if self.factorize(context, open, is_known).is_ok() {
+        if self.factorize(context, open, is_known, renewed).is_ok() {
             return Ok(());
         }
         self.spring = SPRING;
-        self.factorize(context, open, false)
+        self.factorize(context, open, false, true)
     }
 
     /// Eliminates what is touched, and makes the preconditioner between clusters. Collective.
@@ -159,19 +185,21 @@ impl FrozenFronts {
         context: &Context<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
         is_known: bool,
+        renewed: bool,
     ) -> Result<(), Failure> {
         let Context { comm, plan, .. } = *context;
         let touched = self.touched(context, open, is_known);
         let result = self.eliminate(context, open, &touched);
         comm.agree(result)?;
-        if !touched.contains(&true) || plan.has_one_cluster() {
+        if plan.has_one_cluster() || !renewed && !touched.contains(&true) {
             return Ok(());
         }
         let mut bddc = match self.bddc.take() {
             Some(bddc) => bddc,
             None => Bddc::new(context, &self.merged)?,
         };
-        bddc.freeze(context, &self.merged, &touched, open, self.spring)?;
+        let renewed = renewed || !is_known;
+        bddc.freeze(context, &self.merged, &touched, open, self.spring, renewed)?;
         self.smallest_pivot = self.smallest_pivot.min(bddc.smallest_pivot);
         self.bddc = Some(bddc);
         Ok(())
@@ -301,8 +329,34 @@ impl FrozenFronts {
     }
 
     /// Solves for `loads` on the boundaries of the clusters of this rank, by node, where the closed normal jumps of
-    /// every group have the values `prescribed`; an iterative solver goes as far as `accuracy` says. Collective.
+    /// every group have the values `prescribed` and others are `open`, as is frozen; an iterative solver goes as far as
+    /// `accuracy` says. Collective.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely even where open contacts have springs.
     pub fn solve(
+        &mut self,
+        context: &Context<'_>,
+        open: &BTreeMap<usize, Vec<bool>>,
+        loads: &BTreeMap<usize, Vec<f64>>,
+        prescribed: &BTreeMap<usize, Vec<f64>>,
+        accuracy: Accuracy<'_>,
+    ) -> Result<FrozenSolution, Failure> {
+        let solution = self.solve_as_it_is(context, loads.clone(), prescribed, accuracy);
+        if !solution.is_too_far {
+            return Ok(solution);
+        }
+        self.renew(context, open)?;
+        let from_there = Accuracy {
+            start: Some(&solution.tops),
+            ..accuracy
+        };
+        let mut nearer = self.solve_as_it_is(context, loads.clone(), prescribed, from_there);
+        nearer.iterations += solution.iterations;
+        Ok(nearer)
+    }
+
+    fn solve_as_it_is(
         &self,
         context: &Context<'_>,
         mut loads: BTreeMap<usize, Vec<f64>>,
@@ -346,6 +400,7 @@ impl FrozenFronts {
                 solution.tops = between.clusters.clone();
                 below = between.clusters;
                 solution.iterations = between.iterations;
+                solution.is_too_far = bddc.is_stale() && !between.is_solved;
                 for (g, (jumps, forces)) in between.groups {
                     solution.jumps.insert(g, jumps);
                     solution.forces.insert(g, forces);

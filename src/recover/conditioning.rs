@@ -5,6 +5,9 @@ use std::collections::BTreeMap;
 use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
 
+/// Accuracy of the inverse iteration where it is iterated for.
+const ACCURACY: f64 = 1e-3;
+
 /// Estimates κ = λ_max / λ_min of A = D^(−1/2) K D^(−1/2), K the stiffness of the whole scene with its
 /// contacts fixed as they are, D its diagonal: round-off makes a relative error of about
 /// κ · 10⁻¹⁶ in displacements.
@@ -26,7 +29,7 @@ pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
         (b, load.collect())
     };
     let loads: BTreeMap<usize, Vec<f64>> = fixed.condensed.blocks.keys().map(start).collect();
-    let answer = fixed.solve(loads.clone(), solution, &BTreeMap::new());
+    let answer = fixed.solve(loads.clone(), solution, &BTreeMap::new(), ACCURACY);
     let answer = answer.blocks;
 
     // xᵀ D x and xᵀ K x, summed block by block so that ranks make no difference.

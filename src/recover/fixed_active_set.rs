@@ -128,12 +128,13 @@ impl<'a> FixedActiveSet<'a> {
 
     /// The change that `loads` on the unknowns of the blocks of this rank, and those on the others', make where
     /// the points of `solution` stay open or closed and the closed ones still have to close by `missing`, nothing
-    /// where a group isn't named. Collective.
+    /// where a group isn't named; an iterative solver goes as far as the `tolerance`. Collective.
     pub fn solve(
         &self,
         loads: BTreeMap<usize, Vec<f64>>,
         solution: &DiscreteSolution,
         missing: &BTreeMap<usize, Vec<f64>>,
+        tolerance: f64,
     ) -> Change {
         let factors = self.factors();
         let conditions = solution.groups.iter().map(|(g, of_group)| {
@@ -142,7 +143,7 @@ impl<'a> FixedActiveSet<'a> {
             (*g, of_group.closed.iter().copied().zip(missing).collect())
         });
         if let Some(frozen) = self.frozen {
-            return self.solve_frozen(frozen, loads, conditions.collect());
+            return self.solve_frozen(frozen, loads, conditions.collect(), tolerance);
         }
         let limits = self.limits(factors.collect_conditions(conditions.collect()));
         let condensed = factors.condense(loads);
@@ -159,6 +160,7 @@ impl<'a> FixedActiveSet<'a> {
         (fronts, limits): Frozen<'_>,
         loads: BTreeMap<usize, Vec<f64>>,
         conditions: BTreeMap<usize, Vec<(bool, f64)>>,
+        tolerance: f64,
     ) -> Change {
         let factors = self.factors();
         let (mut open, mut missing) = (BTreeMap::new(), BTreeMap::new());
@@ -177,12 +179,14 @@ impl<'a> FixedActiveSet<'a> {
         let on_clusters = condensed
             .iter()
             .map(|(&v, load)| (v, load.boundary().to_vec()));
-        let solution = fronts.solve(
-            &self.context,
-            on_clusters.collect(),
-            &missing,
-            Accuracy::FULL,
-        );
+        let accuracy = Accuracy {
+            tolerance,
+            start: None,
+        };
+        let loads = on_clusters.collect();
+        let Ok(solution) = fronts.solve(&self.context, &open, &loads, &missing, accuracy) else {
+            return Change::default();
+        };
         let forces = solution.forces.iter();
         Change {
             forces: forces

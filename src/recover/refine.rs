@@ -17,6 +17,8 @@ const LIMIT: f64 = 4e-15;
 const LIMIT_OF_LOAD: f64 = 1e-11;
 /// Equilibrium and penetration that are good enough.
 const GOOD: f64 = 1e-14;
+/// Accuracy of a correction where it is iterated for.
+const CORRECTION: f64 = 1e-6;
 /// Most refinements.
 const MAX_REFINEMENTS: usize = 3;
 
@@ -130,7 +132,7 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     let loads = residuals.into_iter().filter_map(on_unknowns).collect();
     let missing = solution.groups.iter();
     let missing = missing.map(|(&g, of_group)| (g, of_group.gaps.clone()));
-    let change = fixed.solve(loads, solution, &missing.collect());
+    let change = fixed.solve(loads, solution, &missing.collect(), CORRECTION);
     for (b, x) in change.blocks {
         let block = fixed.condensed.blocks.get(&b);
         if let (Some(of_block), Some(block)) = (solution.blocks.get_mut(&b), block) {

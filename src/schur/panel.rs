@@ -161,8 +161,9 @@ impl WithSimd for TransposedProduct<'_> {
     }
 }
 
+/// The products of x with the columns that `column` gives, each as long as x.
 #[inline(always)]
-fn dot_columns<'a, S: Simd, const N: usize>(
+pub(super) fn dot_columns<'a, S: Simd, const N: usize>(
     simd: S,
     x: &[f64],
     column: impl Fn(usize) -> &'a [f64],

@@ -30,13 +30,15 @@ use std::time::{Duration, Instant};
 
 use libtest_mimic::{Arguments, Trial};
 
+use contact_dd_partition::element::ElementKind::Hexahedron8;
 use contact_dd_partition::model::Model;
-use support::blocks::jittered;
+use support::blocks::{jittered, joined};
 use support::extruded::extruded;
 use support::process::{Ended, Running, send};
 use support::scenes::{
     BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks,
 };
+use support::solids::{between, solid};
 use support::solution::{Solution, datasets};
 use support::solver::{Case, LIMIT, program};
 use support::sorts::sort;
@@ -181,7 +183,29 @@ fn same_results(trials: &mut Trials) {
     for (name, make) in cases {
         same_bits(trials, name, make, &[]);
     }
-    let iterative: [(&str, MakeCase); 4] = [
+    let iterative: [(&str, MakeCase); 5] = [
+        ("between_clusters::in_space", || {
+            let lower = solid(
+                "lower",
+                Hexahedron8,
+                [4, 3, 2],
+                between([0.0; 3], [1.0, 1.0, 0.5]),
+            );
+            let upper = between([0.0, 0.0, 0.5], [0.8, 1.0, 1.0]);
+            let upper = solid("upper", Hexahedron8, [3, 3, 2], upper);
+            let scene = two_block_scene()
+                .replace("plane = 'strain'\n", "")
+                .replace("bottom", "z0")
+                .replace("top", "z1")
+                .replace("left", "x0")
+                .replace("y = 0.0\n", "y = 0.0\nz = 0.0\n");
+            let held = "[[displacement]]\non = 'upper y0'\ny = 0.0\n";
+            Case::in_clusters(
+                &model(&format!("{scene}{held}"), joined(lower, upper)),
+                9,
+                6,
+            )
+        }),
         ("between_clusters::plain", || {
             Case::in_clusters(&built_in_model("plain", 0), 20, 9)
         }),

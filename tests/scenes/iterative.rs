@@ -1,6 +1,11 @@
 //! The iterative interface solver between clusters of subdomains.
 
-use crate::support::scenes::{built_in_model, checkerboard};
+use contact_dd_partition::element::ElementKind::{Hexahedron8, Tetrahedron10};
+
+use crate::space::contact::rocking_scene;
+use crate::support::blocks::joined;
+use crate::support::scenes::{built_in_model, checkerboard, columns, model};
+use crate::support::solids::{between, solid};
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, problem};
 
@@ -34,6 +39,52 @@ fn displacements_and_contacts_are_those_of_the_direct_solver() {
         assert_eq!(direct.closed(), iterative.closed(), "{name}");
         let most = iterations(&iterative).into_iter().max();
         assert!(most.is_some_and(|most| most > 1), "{name}: {most:?}");
+    }
+}
+
+#[test]
+fn displacements_and_contacts_are_those_of_the_direct_solver_in_space() {
+    // Sides whose nodes match, and sides one of which is wider than the other.
+    for (kind, wide, upper) in [
+        (Hexahedron8, [0.0, 1.0], [6, 4, 3]),
+        (Hexahedron8, [0.0, 1.2], [7, 4, 3]),
+        (Tetrahedron10, [-0.1, 1.0], [3, 2, 1]),
+    ] {
+        let below = between([wide[0], 0.0, 0.0], [wide[1], 1.0, 0.5]);
+        let above = between([0.0, 0.0, 0.5], [1.0, 1.0, 1.0]);
+        let lower = if kind == Hexahedron8 {
+            [6, 4, 3]
+        } else {
+            [4, 2, 1]
+        };
+        let mesh = joined(
+            solid("lower", kind, lower, below),
+            solid("upper", kind, upper, above),
+        );
+        let model = model(&rocking_scene().replace("1.3-1.6*x", "2.0-3.5*x"), mesh);
+        let case = Case::in_clusters(&model, 10, 7);
+        let (direct, iterative) = (case.solve(&[]), case.solve(&ITERATIVE));
+        let difference = difference(&direct, &iterative);
+        assert!(difference < 1e-10, "{kind:?}: {difference:e}");
+        assert_eq!(direct.closed(), iterative.closed());
+        assert!(
+            (1..direct.points().count()).contains(&direct.closed()),
+            "{kind:?}"
+        );
+        assert!(iterations(&iterative).into_iter().max() > Some(1));
+    }
+}
+
+#[test]
+fn contrast_and_nearly_incompressible_columns_take_few_more_iterations() {
+    for (name, young, poisson, most) in [
+        ("uniform", [1e9, 1e9], 0.3, 20),
+        ("contrast", [1e9, 1e3], 0.3, 30),
+        ("incompressible", [1e9, 1e9], 0.4999, 60),
+    ] {
+        let case = Case::in_clusters(&columns(young, poisson, 1, 6), 12, 8);
+        let taken = iterations(&case.solve(&ITERATIVE))[0];
+        assert!(taken <= most, "{name}: {taken}");
     }
 }
 

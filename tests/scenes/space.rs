@@ -1,6 +1,6 @@
 //! Scenes in space.
 
-mod contact;
+pub mod contact;
 mod friction;
 
 use std::collections::HashMap;

@@ -6,6 +6,8 @@ use contact_dd_partition::model::Model;
 use contact_dd_partition::scene::Scene;
 
 use super::blocks::{Blocks, jittered};
+use super::extruded::extruded;
+use super::sorts::sort;
 
 /// Plane state, materials and bodies of most scenes.
 pub const BODIES: &str = "
@@ -93,6 +95,12 @@ pub fn at_step(model: &Model, k: usize) -> Model {
 
 /// A plate of squares of two materials, 7 along its height, held on the left and pulled on the right.
 pub fn checkerboard(young: [f64; 2], poisson: f64, length: usize, cells: usize) -> Model {
+    let (scene, mesh) = squares(young, poisson, length, cells);
+    model(&scene, mesh)
+}
+
+/// Its scene and its mesh.
+fn squares(young: [f64; 2], poisson: f64, length: usize, cells: usize) -> (String, Mesh) {
     let mut blocks = Blocks::new();
     for i in 0..7 * length {
         for j in 0..7 {
@@ -119,5 +127,16 @@ pub fn checkerboard(young: [f64; 2], poisson: f64, length: usize, cells: usize) 
         scene += &format!("[[traction]]\non = '{kind} at the right right'\nvalue = [1e2, -2e2]\n");
     }
     let step = 1.0 / (7 * cells) as f64;
-    model(&scene, jittered(mesh, 0.2 * step, 3))
+    (scene, jittered(mesh, 0.2 * step, 3))
+}
+
+/// The same in space, held all over on the left: columns, so many layers of cells long.
+pub fn columns(young: [f64; 2], poisson: f64, cells: usize, layers: usize) -> Model {
+    let (scene, mesh) = squares(young, poisson, 1, cells);
+    let heights: Vec<f64> = (0..=layers).map(|k| k as f64 / layers as f64).collect();
+    let scene = (scene.replace("plane = 'strain'\n", ""))
+        .replace("y = 0.0\n", "y = 0.0\nz = 0.0\n")
+        .replace("-2e2]", "-2e2, 1e2]");
+    let mesh = extruded(&sort("quad4").of(&mesh), &heights);
+    model(&scene, mesh.unwrap())
 }

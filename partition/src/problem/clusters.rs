@@ -6,6 +6,8 @@ use super::Catalog;
 
 /// Most dofs of a cluster where the user doesn't say how many there should be.
 const DOFS: usize = 24_000;
+/// The same in space, where a cluster shares a larger part of its unknowns with others.
+const DOFS_IN_SPACE: usize = 5_000;
 
 impl Catalog {
     /// Chooses the clusters: from the roots on the largest one is split, until there are `count`, or none that can be
@@ -23,6 +25,7 @@ impl Catalog {
                 children[parent].push(v);
             }
         }
+        let most = if self.dim == 3 { DOFS_IN_SPACE } else { DOFS };
         let roots = (0..parents.len()).filter(|&v| parents[v].is_none());
         let mut clusters: Vec<usize> = roots.collect();
         loop {
@@ -30,7 +33,7 @@ impl Catalog {
             let largest = can_be_split.max_by_key(|&c| dofs[clusters[c]]);
             let wanted = |&c: &usize| match count {
                 Some(count) => clusters.len() < count,
-                None => dofs[clusters[c]] > DOFS,
+                None => dofs[clusters[c]] > most,
             };
             let Some(largest) = largest.filter(wanted) else {
                 break;

@@ -217,7 +217,7 @@ impl Tree {
     }
 
     /// The lowest node above both, or one of them.
-    fn lowest_above(&self, mut v: usize, mut w: usize) -> usize {
+    pub fn lowest_above(&self, mut v: usize, mut w: usize) -> usize {
         while v != w {
             let lower = if v < w { &mut v } else { &mut w };
             match self.nodes[*lower].parent {

@@ -41,7 +41,7 @@ sides = ['upper z0', 'lower z1']
 ";
 
 /// The same, pushed so that it rocks: a part of the joint opens.
-fn rocking_scene() -> String {
+pub fn rocking_scene() -> String {
     format!(
         "{RESTING}[[displacement]]
 on = 'upper y0'

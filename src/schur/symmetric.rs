@@ -1,0 +1,70 @@
+//! Products with a symmetric matrix whose lower triangle counts.
+
+use faer::Mat;
+use pulp::{Arch, Simd, WithSimd};
+
+use super::panel::{add_columns, dot_columns};
+
+/// Columns that are multiplied together, so that each is read from memory once for both triangles.
+const WIDTH: usize = 4;
+
+/// S x, where the lower triangle of S counts.
+pub fn product_of_lower(s: &Mat<f64>, x: &[f64]) -> Vec<f64> {
+    let mut y = vec![0.0; x.len()];
+    Arch::new().dispatch(Product { s, x, y: &mut y });
+    y
+}
+
+/// y ← y + S x.
+struct Product<'a> {
+    s: &'a Mat<f64>,
+    x: &'a [f64],
+    y: &'a mut [f64],
+}
+
+impl WithSimd for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let n = self.x.len();
+        for j in (0..n).step_by(WIDTH) {
+            let below = (j + WIDTH).min(n);
+            for p in j..below {
+                let column = &self.s.col_as_slice(p)[p..below];
+                self.y[p] += column[0] * self.x[p];
+                for (i, s) in (p + 1..below).zip(&column[1..]) {
+                    self.y[i] += s * self.x[p];
+                    self.y[p] += s * self.x[i];
+                }
+            }
+            if below == n {
+                break;
+            }
+            let (of_block, of_others) = self.y.split_at_mut(below);
+            let column = |p: usize| &self.s.col_as_slice(j + p)[below..n];
+            let sums = dot_columns::<S, WIDTH>(simd, &self.x[below..], column);
+            for (y, sum) in of_block[j..].iter_mut().zip(sums) {
+                *y += sum;
+            }
+            add_columns::<S, WIDTH>(simd, of_others, |p| (self.x[j + p], column(p)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_upper_triangle_is_that_of_the_lower_one() {
+        for n in [0, 1, 4, 5, 23, 40] {
+            let entry = |i: usize, j: usize| ((i.max(j) * 31 + i.min(j) * 7) % 17) as f64 - 8.0;
+            let s = Mat::from_fn(n, n, |i, j| if i < j { f64::NAN } else { entry(i, j) });
+            let x: Vec<f64> = (0..n).map(|i| (i % 5) as f64 - 2.0).collect();
+            let expected = |i: usize| (0..n).map(|j| entry(i, j) * x[j]).sum::<f64>();
+            let expected: Vec<f64> = (0..n).map(expected).collect();
+            assert_eq!(product_of_lower(&s, &x), expected);
+        }
+    }
+}
