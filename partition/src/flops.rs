@@ -30,18 +30,25 @@ impl Front {
     }
 
     /// The same where it stands for a subdomain that is condensed.
-    pub fn time_to_condense(&self) -> f64 {
+    pub fn time_to_condense(&self, dim: usize) -> f64 {
         let (eliminated, kept) = (self.eliminated as f64, self.kept as f64);
         let beside = PER_UNKNOWN * eliminated + PER_ENTRY_OF_SUBDOMAIN * kept * kept;
-        beside + condensation(eliminated, kept)
+        beside + condensation(eliminated, kept, dim)
     }
 }
 
-/// Estimated flops to condense a planar mesh by nested dissection, with `interior` dofs to be
-/// eliminated and `kept` on its boundary: 829/84 n^1.5 multiplications, and as many additions, for
-/// n nodes of one dof (George 1973), eight times as many with two; and the boundary carried
-/// through fronts as large as the separators.
-pub fn condensation(interior: f64, kept: f64) -> f64 {
-    let separator = (2.0 * interior).sqrt();
-    56.0 * interior.powf(1.5) + separator * kept * kept + 2.0 * interior * kept
+/// Estimated flops to condense a mesh by nested dissection, with `interior` dofs to be eliminated and `kept` on its
+/// boundary: the interior by itself, and the boundary carried through fronts as large as the separators.
+///
+/// In the plane 829/84 n^1.5 multiplications, and as many additions, for n nodes of one dof (George 1973), eight times
+/// as many with two. In space eight times what the first separator takes, of 3 (n/3)^(2/3) dofs in a cube.
+pub fn condensation(interior: f64, kept: f64, dim: usize) -> f64 {
+    let (alone, separator) = match dim {
+        2 => (56.0 * interior.powf(1.5), (2.0 * interior).sqrt()),
+        _ => (
+            24.0 * interior.powi(2),
+            3.0 * (interior / 3.0).powf(2.0 / 3.0),
+        ),
+    };
+    alone + separator * kept * kept + 2.0 * interior * kept
 }

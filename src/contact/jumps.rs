@@ -176,9 +176,10 @@ impl Jumps {
                     waiting.push(j);
                     continue;
                 }
-                let nowhere_else = |v: u32| uses[&v] == 1 && terms.iter().any(|&(own, _)| own == v);
+                let elsewhere =
+                    |v: u32| uses[&v] - usize::from(terms.iter().any(|&(own, _)| own == v));
                 jumps.of[j] = jumps
-                    .solve_for_one(rest, nowhere_else, may_go, stiffness)
+                    .solve_for_one(rest, elsewhere, may_go, stiffness)
                     .ok_or(NoUnknown(j))?;
             }
         }
@@ -202,11 +203,12 @@ impl Jumps {
     }
 
     /// Solves t = `rest` for its best unknown, or finds that jumps which are unknowns already
-    /// make it; `nowhere_else` tells which unknowns no other condition has.
+    /// make it. What the fewest other conditions have is best, `elsewhere` tells how many: there it is replaced, too,
+    /// and where these had to be solved for what others have every condition would end up with the unknowns of all.
     fn solve_for_one(
         &mut self,
         mut rest: Sum,
-        nowhere_else: impl Fn(u32) -> bool,
+        elsewhere: impl Fn(u32) -> usize,
         may_go: &impl Fn(u32) -> bool,
         stiffness: &impl Fn(u32) -> f64,
     ) -> Option<JumpOf> {
@@ -221,8 +223,7 @@ impl Jumps {
         let (pivot, coefficient) = candidates
             .filter(|(_, c)| c.abs() >= 0.5 * largest)
             .min_by(|&(v, _), &(w, _)| {
-                (!nowhere_else(v))
-                    .cmp(&!nowhere_else(w))
+                (elsewhere(v).cmp(&elsewhere(w)))
                     .then(stiffness(v).total_cmp(&stiffness(w)))
                     .then(v.cmp(&w))
             })?;
@@ -234,7 +235,7 @@ impl Jumps {
         for (_, c) in &mut rest.terms {
             *c /= -coefficient;
         }
-        if !nowhere_else(pivot) {
+        if elsewhere(pivot) > 0 {
             for other in self.replaced.values_mut() {
                 other.substitute(gone, &rest);
             }

@@ -27,7 +27,7 @@ const PER_PAIR_OF_CONDITIONS: f64 = 33.0;
 pub(super) fn weight(tree: &Tree, v: usize, dim: usize, merging: Merging) -> f64 {
     let front = front(tree, v, dim, merging);
     match merging {
-        _ if v < tree.subdomains => front.time_to_condense(),
+        _ if v < tree.subdomains => front.time_to_condense(dim),
         _ if merging.is_frozen() && tree.nodes[v].conditions > 0 => ACTIVE_SETS * front.time(),
         _ => front.time(),
     }
@@ -85,7 +85,7 @@ impl Plan {
             let front = front(&self.tree, v, catalog.dim, self.merging);
             let estimate = &mut estimates[owner];
             estimate.flops += match v < self.blocks() {
-                true => condensation(front.eliminated as f64, front.kept as f64),
+                true => condensation(front.eliminated as f64, front.kept as f64, catalog.dim),
                 false => front.flops(),
             };
             if let Some(subdomain) = catalog.subdomains.get(v) {

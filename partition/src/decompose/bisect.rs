@@ -56,7 +56,7 @@ pub(super) fn bisect(graph: &Graph, aim: Aim) -> Vec<bool> {
         let (clump, clumps) = graph.clumps(CLUMP);
         let coarse = graph.contracted(&clump, clumps);
         let left = bisect(&coarse, aim);
-        refined(graph, &coarse, &clump, &left).into()
+        refined(graph, &coarse, &clump, left, aim)
     } else if count > EXHAUSTIVE {
         let mut candidates = geometric(graph, aim);
         candidates.extend(
@@ -77,8 +77,15 @@ pub(super) fn bisect(graph: &Graph, aim: Aim) -> Vec<bool> {
     best.map_or_else(in_halves, |cut| cut.left)
 }
 
-/// The cheapest cuts near one between clumps.
-fn refined(graph: &Graph, coarse: &Graph, clump: &[u32], left: &[bool]) -> [Vec<bool>; 2] {
+/// A cut between clumps, and the cheapest ones near it: so near that neither side loses more than may be.
+fn refined(
+    graph: &Graph,
+    coarse: &Graph,
+    clump: &[u32],
+    left: Vec<bool>,
+    aim: Aim,
+) -> Vec<Vec<bool>> {
+    let most = aim.slack * coarse.size();
     let mut distance = vec![u32::MAX; coarse.len()];
     let is_at_cut = |vertex: usize| {
         let edges = coarse.edges(vertex).iter();
@@ -90,11 +97,14 @@ fn refined(graph: &Graph, coarse: &Graph, clump: &[u32], left: &[bool]) -> [Vec<
         .filter(|&vertex| is_at_cut(vertex))
         .collect();
     near.iter().for_each(|&vertex| distance[vertex] = 1);
+    let mut given = [0.0; 2];
     let mut at = 0;
     while at < near.len() {
         let vertex = near[at];
         at += 1;
-        if distance[vertex] >= LAYERS {
+        let given = &mut given[usize::from(left[vertex])];
+        *given += f64::from(coarse.dofs[vertex]);
+        if distance[vertex] >= LAYERS || *given > most {
             continue;
         }
         for edge in coarse.edges(vertex) {
@@ -111,7 +121,9 @@ fn refined(graph: &Graph, coarse: &Graph, clump: &[u32], left: &[bool]) -> [Vec<
         _ => Place::Between,
     };
     let places: Vec<Place> = clump.iter().map(place).collect();
-    cheapest_cuts(graph, &places)
+    let mut cuts: Vec<Vec<bool>> = cheapest_cuts(graph, &places).into();
+    cuts.push(clump.iter().map(|&clump| left[clump as usize]).collect());
+    cuts
 }
 
 impl Cut {
@@ -139,7 +151,7 @@ impl Cut {
         let below: f64 = [0, 1]
             .map(|side| {
                 let kept = graph.dofs_of(outside[side] + cut);
-                condensation((dofs[side] - kept).max(0.0), kept)
+                condensation((dofs[side] - kept).max(0.0), kept, graph.dim)
             })
             .iter()
             .sum();

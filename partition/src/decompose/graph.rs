@@ -5,7 +5,7 @@ use crate::lists::Lists;
 use crate::model::Model;
 
 /// Weight of a node that a cut lets both sides share.
-const NODE: u32 = 8;
+const NODE: u32 = 256;
 
 /// Nodes that a contact point adds to the front that merges its sides: one of each side.
 const NODES_OF_POINT: u32 = 2;
@@ -313,11 +313,21 @@ impl Graph {
     }
 }
 
-/// What it costs to cut a facet of a cell: its nodes but one, as facets in a row share their ends.
+/// What it costs to cut a facet of a cell: its nodes, each shared with the facets around it on the surface of the cut,
+/// those on an edge with one, those at a corner with five triangles or three quadrilaterals, or with one line.
 fn facet_weight(model: &Model, cell: usize) -> u32 {
     let facets = model.mesh.cells.kind(cell).facets();
-    let nodes = facets.first().map_or(1, |(facet, _)| facet.nodes());
-    NODE * (nodes - 1).max(1) as u32
+    let Some((facet, _)) = facets.first() else {
+        return NODE;
+    };
+    let (nodes, corners) = (facet.nodes() as u32, facet.corners() as u32);
+    let (around, on_edges) = match corners {
+        2 => (2, 0),
+        3 => (6, (nodes - corners).min(corners)),
+        _ => (4, (nodes - corners).min(corners)),
+    };
+    let inside = nodes - corners - on_edges;
+    corners * NODE / around + on_edges * NODE / 2 + inside * NODE
 }
 
 /// Pairs of cells of two pieces of the mesh that share a node but no facet, and the weight of that.

@@ -164,26 +164,24 @@ impl Tree {
             })
             .collect();
         let systems = interface.systems(catalog);
-        let homes: Vec<usize> = systems
-            .iter()
-            .map(|points| {
-                let nodes = points
-                    .iter()
-                    .flat_map(|&j| &interface.of_points[j as usize]);
-                let mut ends = nodes.map(|&number| ends[number as usize]);
-                let first = ends.next().unwrap_or_default();
-                ends.fold(first, |v, w| self.lowest_above(v, w))
-            })
-            .collect();
-        for (points, &home) in systems.iter().zip(&homes) {
-            for &number in points
-                .iter()
-                .flat_map(|&j| &interface.of_points[j as usize])
-            {
+        let mut homes = vec![0; interface.of_points.len()];
+        for system in &systems {
+            let points = || system.points.iter().map(|&j| j as usize);
+            let of_nodes = points().flat_map(|j| &interface.of_points[j]);
+            let of_nodes = of_nodes.map(|&number| ends[number as usize]);
+            let of_others = system.above.iter().map(|&j| homes[j as usize]);
+            let all = of_nodes.chain(of_others);
+            let home = all
+                .reduce(|v, w| self.lowest_above(v, w))
+                .unwrap_or_default();
+            points().for_each(|j| homes[j] = home);
+            self.nodes[home].points.extend(&system.points);
+        }
+        for (numbers, &home) in interface.of_points.iter().zip(&homes) {
+            for &number in numbers {
                 let end = &mut ends[number as usize];
                 *end = self.lowest_above(*end, home);
             }
-            self.nodes[home].points.extend(points);
         }
         for (number, &end) in (0..).zip(&ends) {
             self.nodes[end].eliminated.push(number);
@@ -279,7 +277,7 @@ impl Tree {
     pub fn flops(&self, v: usize, dim: usize) -> f64 {
         let front = self.front(v, dim);
         match v < self.subdomains {
-            true => condensation(front.eliminated as f64, front.kept as f64),
+            true => condensation(front.eliminated as f64, front.kept as f64, dim),
             false => front.flops(),
         }
     }

@@ -29,7 +29,7 @@ impl Work {
             false => tree.front(v, dim),
         };
         let time = |v: usize| match v < tree.subdomains {
-            true => front(v).time_to_condense(),
+            true => front(v).time_to_condense(dim),
             false if is_frozen && tree.nodes[v].conditions > 0 => ACTIVE_SETS * front(v).time(),
             false => front(v).time(),
         };

@@ -1,6 +1,6 @@
 //! The nodes of Γ and the contact points on them, as the catalog names them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use crate::contact_point::ContactPoint;
 use crate::disjoint_sets::DisjointSets;
@@ -17,6 +17,18 @@ pub(super) struct Interface {
     pub unshared: Vec<(SubdomainNode, u32)>,
     /// Those of every contact point, entry by entry.
     pub of_points: Vec<Vec<u32>>,
+}
+
+/// Share of a point's largest weight that a node has at least whose displacement may be told by others.
+const LEADING: f64 = 0.5;
+
+/// Contact points whose jumps take the place of displacements at once.
+pub(super) struct System {
+    /// The points, ascending.
+    pub points: Vec<u32>,
+    /// Other points that have what is replaced, in systems before this one: the node of the tree where this one
+    /// belongs is none under theirs.
+    pub above: Vec<u32>,
 }
 
 impl Interface {
@@ -50,32 +62,82 @@ impl Interface {
         }
     }
 
-    /// Sets of contact points whose normal jumps take the place of displacements at once, every point in one
-    /// of them: a point that has a node to itself which supports leave free along the normal is one, others
-    /// are together with all that share their nodes.
-    pub fn systems(&self, catalog: &Catalog) -> Vec<Vec<u32>> {
+    /// The contact points in an order in which their jumps can take the place of displacements, each in one system.
+    ///
+    /// A point that has a node to itself is a system: no other needs what it replaces there. So is one all of whose
+    /// nodes are shared, but one that counts only with systems before it. Points without such a node are together with
+    /// those that share their nodes and have none either.
+    pub fn systems(&self, catalog: &Catalog) -> Vec<System> {
         let on = (0..).zip(&self.of_points);
         let on = on.flat_map(|(j, list)| list.iter().map(move |&number| (number, j)));
-        let mut points = Lists::new(self.subdomains.len(), on);
-        points.sort();
-        points.dedup();
-        let mut sets = DisjointSets::new(self.of_points.len());
-        for (j, numbers) in self.of_points.iter().enumerate() {
-            let mut nodes = numbers.iter().zip(&catalog.point_nodes[j]);
-            let is_own = |&number: &u32| points.of(number as usize).len() == 1;
-            if nodes.any(|(number, node)| node.is_free && is_own(number)) {
+        let mut users = Lists::new(self.subdomains.len(), on);
+        users.sort();
+        users.dedup();
+        let mut systems = Vec::new();
+        let mut is_waiting = vec![true; self.of_points.len()];
+        let mut waiting: Vec<usize> = users.iter().map(<[u32]>::len).collect();
+        let mut next: VecDeque<u32> = (0..self.of_points.len() as u32).collect();
+        while let Some(j) = next.pop_front() {
+            let entries = &catalog.points[j as usize].entries;
+            let largest = entries.iter().fold(0.0, |m: f64, (_, w)| m.max(w.abs()));
+            let can_go = |&(i, &number): &(usize, &u32)| {
+                let (users, (_, weight)) = (users.of(number as usize).len(), entries[i]);
+                catalog.point_nodes[j as usize][i].is_free
+                    && waiting[number as usize] == 1
+                    && (users == 1 || weight.abs() >= LEADING * largest)
+            };
+            let mut numbers = self.of_points[j as usize].iter().enumerate();
+            let Some((_, &goes)) = numbers.find(can_go).filter(|_| is_waiting[j as usize]) else {
                 continue;
-            }
-            for &number in numbers {
-                for &other in points.of(number as usize) {
-                    sets.unite(j as u32, other);
+            };
+            systems.push(System {
+                points: vec![j],
+                above: others(users.of(goes as usize), &[j]),
+            });
+            is_waiting[j as usize] = false;
+            let mut numbers = self.of_points[j as usize].clone();
+            numbers.sort_unstable();
+            numbers.dedup();
+            for number in numbers {
+                waiting[number as usize] -= 1;
+                if waiting[number as usize] == 1 {
+                    next.extend(
+                        users
+                            .of(number as usize)
+                            .iter()
+                            .filter(|&&k| is_waiting[k as usize]),
+                    );
                 }
             }
         }
-        let mut systems: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for j in 0..self.of_points.len() as u32 {
-            systems.entry(sets.find(j)).or_default().push(j);
+        let mut sets = DisjointSets::new(self.of_points.len());
+        for users in users.iter() {
+            let mut stuck = users.iter().copied().filter(|&j| is_waiting[j as usize]);
+            if let Some(first) = stuck.next() {
+                stuck.for_each(|other| sets.unite(first, other));
+            }
         }
-        systems.into_values().collect()
+        let mut stuck: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for j in (0..self.of_points.len() as u32).filter(|&j| is_waiting[j as usize]) {
+            stuck.entry(sets.find(j)).or_default().push(j);
+        }
+        systems.extend(stuck.into_values().map(|points| {
+            let numbers = points.iter().flat_map(|&j| &self.of_points[j as usize]);
+            let users = numbers.flat_map(|&number| users.of(number as usize));
+            let mut users: Vec<u32> = users.copied().collect();
+            users.sort_unstable();
+            users.dedup();
+            System {
+                above: others(&users, &points),
+                points,
+            }
+        }));
+        systems
     }
+}
+
+/// Those of `users` that are not among `points`, both ascending.
+fn others(users: &[u32], points: &[u32]) -> Vec<u32> {
+    let is_other = |j: &&u32| points.binary_search(j).is_err();
+    users.iter().filter(is_other).copied().collect()
 }
