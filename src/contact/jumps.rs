@@ -26,8 +26,8 @@ pub enum Variable {
 /// Σ coefficient·variable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sum {
-    /// Terms, a variable once.
-    pub terms: Vec<(Variable, f64)>,
+    /// The coefficient of every variable.
+    pub terms: BTreeMap<Variable, f64>,
 }
 
 /// The jump of two sides, b·v: unknowns and coefficients.
@@ -35,15 +35,12 @@ pub type JumpRow = Vec<(u32, f64)>;
 
 impl Sum {
     fn add(&mut self, variable: Variable, coefficient: f64) {
-        match self.terms.iter_mut().find(|(v, _)| *v == variable) {
-            Some((_, c)) => *c += coefficient,
-            None => self.terms.push((variable, coefficient)),
-        }
+        *self.terms.entry(variable).or_default() += coefficient;
     }
 
     /// The largest coefficient of a displacement.
     fn largest_displacement(&self) -> f64 {
-        let coefficient = |&(variable, c): &(Variable, f64)| match variable {
+        let coefficient = |(variable, c): (&Variable, &f64)| match variable {
             Variable::Displacement(_) => c.abs(),
             Variable::Jump(_) => 0.0,
         };
@@ -53,7 +50,7 @@ impl Sum {
     /// This in terms of jumps alone, if it is so but for round-off.
     fn of_jumps(&self) -> Option<JumpOf> {
         let mut terms = Vec::new();
-        for &(variable, factor) in self.terms.iter().filter(|(_, c)| c.abs() > ROUND_OFF) {
+        for (&variable, &factor) in self.terms.iter().filter(|(_, c)| c.abs() > ROUND_OFF) {
             let Variable::Jump(number) = variable else {
                 return None;
             };
@@ -68,11 +65,10 @@ impl Sum {
 
     /// Puts `value` in the place of `variable`.
     fn substitute(&mut self, variable: Variable, value: &Self) {
-        let Some(place) = self.terms.iter().position(|(v, _)| *v == variable) else {
+        let Some(factor) = self.terms.remove(&variable) else {
             return;
         };
-        let (_, factor) = self.terms.swap_remove(place);
-        for &(v, c) in &value.terms {
+        for (&v, c) in &value.terms {
             self.add(v, factor * c);
         }
     }
@@ -188,9 +184,7 @@ impl Jumps {
 
     /// A condition's jump in terms of what isn't replaced so far.
     fn remainder(&self, row: &JumpRow) -> Sum {
-        let mut rest = Sum {
-            terms: Vec::with_capacity(row.len() + 1),
-        };
+        let mut rest = Sum::default();
         for &(v, c) in row {
             rest.add(Variable::Displacement(v), c);
         }
@@ -212,7 +206,7 @@ impl Jumps {
         may_go: &impl Fn(u32) -> bool,
         stiffness: &impl Fn(u32) -> f64,
     ) -> Option<JumpOf> {
-        let candidates = rest.terms.iter().filter_map(|&(v, c)| match v {
+        let candidates = rest.terms.iter().filter_map(|(&v, &c)| match v {
             Variable::Displacement(v) if may_go(v) => Some((v, c)),
             _ => None,
         });
@@ -231,10 +225,8 @@ impl Jumps {
         self.pivots.push(pivot);
         rest.add(Variable::Jump(number as u32), -1.0);
         let gone = Variable::Displacement(pivot);
-        rest.terms.retain(|&(v, c)| v != gone && c.abs() > 1e-15);
-        for (_, c) in &mut rest.terms {
-            *c /= -coefficient;
-        }
+        rest.terms.retain(|&v, c| v != gone && c.abs() > 1e-15);
+        rest.terms.values_mut().for_each(|c| *c /= -coefficient);
         if elsewhere(pivot) > 0 {
             for other in self.replaced.values_mut() {
                 other.substitute(gone, &rest);

@@ -327,11 +327,11 @@ impl ContactGroup {
     pub fn replaced(&self, jumps: &Jumps) -> Vec<Replaced> {
         let replaced = |pivot: &u32| {
             let Sum { terms } = &jumps.replaced[pivot];
-            let staying = terms.iter().filter_map(|&(variable, c)| match variable {
+            let staying = terms.iter().filter_map(|(&variable, &c)| match variable {
                 Variable::Displacement(v) => Some((self.dof(v), c)),
                 Variable::Jump(_) => None,
             });
-            let of_jumps = terms.iter().filter_map(|&(variable, c)| match variable {
+            let of_jumps = terms.iter().filter_map(|(&variable, &c)| match variable {
                 Variable::Displacement(_) => None,
                 Variable::Jump(t) => Some((t as usize, c)),
             });

@@ -3,9 +3,13 @@
 //! With u_p = Σ β u_s + Σ γ t the displacements p that normal jumps t replace in terms of those s that stay,
 //! x = T y where y has t in the place of u_p. The front becomes Tᵀ A T, a load Tᵀ f.
 
-use faer::Mat;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, Par};
 
 use super::condensed::InterfaceDof;
+
+/// Columns of a front that are changed at a time.
+const AT_A_TIME: usize = 256;
 
 /// A displacement that a normal jump replaces.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,47 +45,62 @@ impl Substitution {
     }
 
     /// A ← Tᵀ A T.
+    ///
+    /// With P the places of what is replaced, x_P = B y, and E what sets these to 0, T = E + P B and
+    /// Tᵀ A T = E A E + W B + Bᵀ Wᵀ, W = E A P + ½ Bᵀ (Pᵀ A P).
     pub fn transform(&self, a: &mut Front<'_>) {
-        let n = a.len();
-        for (&p, staying) in self.places.iter().zip(&self.staying) {
-            for &(s, beta) in staying {
-                let (of_both, of_p) = (a.get(s, p), a.get(p, p));
-                for i in (0..n).filter(|&i| i != s && i != p) {
-                    let change = beta * a.get(i, p);
-                    a.add(i, s, change);
-                }
-                a.add(p, s, beta * of_p);
-                a.add(s, s, beta * (2.0 * of_both + beta * of_p));
+        let (n, m) = (a.len(), self.places.len());
+        let mut columns: Vec<usize> = self.rows().flatten().map(|(place, _)| place).collect();
+        columns.sort_unstable();
+        columns.dedup();
+        let mut b = Mat::<f64>::zeros(m, columns.len());
+        for (k, row) in self.rows().enumerate() {
+            for (place, coefficient) in row {
+                // Every place of a row is among the columns.
+                let column = columns.partition_point(|&column| column < place);
+                b[(k, column)] += coefficient;
             }
         }
-        let m = self.places.len();
-        let columns = Mat::from_fn(n, m, |i, k| a.get(i, self.places[k]));
-        let mut turned = Mat::<f64>::zeros(n, m);
-        for (k, jumps) in self.jumps.iter().enumerate() {
-            for &(l, gamma) in jumps {
-                for i in 0..n {
-                    turned[(i, l)] += gamma * columns[(i, k)];
-                }
+        let mut w = Mat::from_fn(n, m, |i, k| a.get(i, self.places[k]));
+        let of_places = Mat::from_fn(m, m, |k, l| w[(self.places[k], l)]);
+        for &place in &self.places {
+            (0..m).for_each(|k| w[(place, k)] = 0.0);
+            (0..n).for_each(|i| a.set(i, place, 0.0));
+        }
+        let mut beside = Mat::<f64>::zeros(columns.len(), m);
+        matmul(
+            &mut beside,
+            Accum::Replace,
+            b.transpose(),
+            &of_places,
+            0.5,
+            Par::Seq,
+        );
+        for (row, &place) in columns.iter().enumerate() {
+            (0..m).for_each(|k| w[(place, k)] += beside[(row, k)]);
+        }
+        let mut change = Mat::<f64>::zeros(n, AT_A_TIME.min(columns.len()));
+        for (part, places) in columns.chunks(AT_A_TIME).enumerate() {
+            let of_part = b.subcols(part * AT_A_TIME, places.len());
+            let mut change = change.subcols_mut(0, places.len());
+            matmul(&mut change, Accum::Replace, &w, of_part, 1.0, Par::Seq);
+            for (column, &place) in places.iter().enumerate() {
+                let change = change.as_ref().col(column);
+                (0..n).for_each(|i| a.add(i, place, change[i]));
+                a.add(place, place, change[place]);
             }
         }
-        let mut both = Mat::<f64>::zeros(m, m);
-        for (k, jumps) in self.jumps.iter().enumerate() {
-            for &(j, gamma) in jumps {
-                for l in 0..m {
-                    both[(j, l)] += gamma * turned[(self.places[k], l)];
-                }
-            }
-        }
-        for (l, &p) in self.places.iter().enumerate() {
-            for i in 0..n {
-                a.set(i, p, turned[(i, l)]);
-            }
-        }
-        for (l, &p) in self.places.iter().enumerate() {
-            for (j, &q) in self.places.iter().enumerate().skip(l) {
-                a.set(q, p, both[(j, l)]);
-            }
-        }
+    }
+
+    /// For everything that is replaced the places that make it, and how much of each.
+    fn rows(&self) -> impl Iterator<Item = impl Iterator<Item = (usize, f64)>> {
+        self.staying
+            .iter()
+            .zip(&self.jumps)
+            .map(|(staying, jumps)| {
+                let of_jumps = jumps.iter().map(|&(l, gamma)| (self.places[l], gamma));
+                staying.iter().copied().chain(of_jumps)
+            })
     }
 
     /// f ← Tᵀ f.

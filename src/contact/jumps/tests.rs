@@ -9,7 +9,7 @@ fn row(terms: &[(u32, f64)]) -> JumpRow {
 /// b·v for v given by the unknowns that stay and the normal jumps `t`.
 fn jump(row: &JumpRow, jumps: &Jumps, v: impl Fn(u32) -> f64, t: &[f64]) -> f64 {
     let replaced = |a: &Sum| {
-        let term = |&(variable, c): &(Variable, f64)| match variable {
+        let term = |(&variable, &c): (&Variable, &f64)| match variable {
             Variable::Displacement(i) => {
                 assert!(!jumps.replaced.contains_key(&i));
                 c * v(i)
@@ -53,6 +53,26 @@ fn conditions_of_mortar_are_solved_for_what_each_has_alone() {
             // Nothing but its own condition's.
             assert_eq!(jumps.replaced[&i].terms.len(), 4);
         }
+    }
+}
+
+#[test]
+fn conditions_of_quadratic_facets_keep_to_their_neighbours() {
+    // Even conditions are at corners: what they have of side a the conditions beside them have, too. Side b is soft.
+    let on_side_b = |i: u32| [(100 + i, -0.6), (101 + i, -0.4)];
+    let at_node = |i: u32| match i % 2 {
+        0 => [vec![(i, 1.0)], on_side_b(i).to_vec()].concat(),
+        _ => [
+            vec![(i - 1, -0.3), (i, 1.6), (i + 1, -0.3)],
+            on_side_b(i).to_vec(),
+        ]
+        .concat(),
+    };
+    let rows: Vec<JumpRow> = (0..41).map(at_node).collect();
+    let stiffness = |v: u32| if v < 100 { 1e6 } else { 1.0 };
+    let jumps = Jumps::new(&rows, |_| true, stiffness).unwrap();
+    for sum in jumps.replaced.values() {
+        assert!(sum.terms.len() <= 9, "{sum:?}");
     }
 }
 
