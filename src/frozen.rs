@@ -6,3 +6,4 @@
 
 pub mod active_set;
 pub mod fronts;
+pub mod solution;

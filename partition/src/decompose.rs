@@ -8,6 +8,7 @@ mod graph;
 pub mod hierarchy;
 mod metis;
 pub mod summary;
+mod ties;
 
 use self::dissect::{Wanted, dissect};
 use self::graph::Graph;

@@ -11,7 +11,8 @@ use crate::bddc::solution::Accuracy;
 use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::error::Failure;
-use crate::frozen::fronts::{FrozenFronts, FrozenSolution};
+use crate::frozen::fronts::FrozenFronts;
+use crate::frozen::solution::FrozenSolution;
 use crate::interface::s_con::ConTotals;
 use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
 

@@ -1,0 +1,199 @@
+//! What a load does where the active set is frozen.
+
+use std::collections::BTreeMap;
+
+use super::fronts::{FrozenFront, FrozenFronts};
+use crate::bddc::solution::Accuracy;
+use crate::bytes::Reals;
+use crate::context::Context;
+use crate::error::Failure;
+use crate::schur::local::CondensedLoad;
+use crate::vector::dot;
+
+/// What a load does where the active set is frozen, on this rank.
+#[derive(Clone, Debug, Default)]
+pub struct FrozenSolution {
+    /// The normal jumps of every contact group (m).
+    pub jumps: BTreeMap<usize, Vec<f64>>,
+    /// The forces on them, 0 where open (N/m).
+    pub forces: BTreeMap<usize, Vec<f64>>,
+    /// The unknowns on the boundary of every cluster.
+    pub boundaries: BTreeMap<usize, Vec<f64>>,
+    /// The unknowns of the nodes between which an iterative solver works.
+    pub tops: BTreeMap<usize, Vec<f64>>,
+    /// Its iterations.
+    pub iterations: usize,
+    /// Whether a preconditioner that was made for another active set was too bad.
+    pub is_too_far: bool,
+}
+
+impl FrozenFronts {
+    /// Solves for `loads` on the boundaries of the clusters of this rank, by node, where the closed normal jumps of
+    /// every group have the values `prescribed` and others are `open`, as is frozen; an iterative solver goes as far as
+    /// `accuracy` says. Collective.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely even where open contacts have springs.
+    pub fn solve(
+        &mut self,
+        context: &Context<'_>,
+        open: &BTreeMap<usize, Vec<bool>>,
+        loads: &BTreeMap<usize, Vec<f64>>,
+        prescribed: &BTreeMap<usize, Vec<f64>>,
+        accuracy: Accuracy<'_>,
+    ) -> Result<FrozenSolution, Failure> {
+        let solution = self.solve_as_it_is(context, loads.clone(), prescribed, accuracy);
+        if !solution.is_too_far {
+            return Ok(solution);
+        }
+        self.renew(context, open)?;
+        let from_there = Accuracy {
+            start: Some(&solution.tops),
+            ..accuracy
+        };
+        let mut nearer = self.solve_as_it_is(context, loads.clone(), prescribed, from_there);
+        nearer.iterations += solution.iterations;
+        Ok(nearer)
+    }
+
+    fn solve_as_it_is(
+        &self,
+        context: &Context<'_>,
+        mut loads: BTreeMap<usize, Vec<f64>>,
+        prescribed: &BTreeMap<usize, Vec<f64>>,
+        accuracy: Accuracy<'_>,
+    ) -> FrozenSolution {
+        let plan = context.plan;
+        let mut condensed: BTreeMap<usize, (CondensedLoad, Vec<f64>)> = BTreeMap::new();
+        // What arrives at the owner of the node above.
+        let mut arrived: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        for cluster in &plan.clusters {
+            let load = loads.remove(&cluster.node);
+            carry(context, cluster.node, load, &mut arrived, Direction::Up);
+        }
+        for &v in &self.nodes {
+            let passed = self.fronts.get(&v).map(|front| {
+                let children = plan.tree.nodes[v].children.iter();
+                let of_children: Vec<&[f64]> = children.map(|child| &arrived[child][..]).collect();
+                let load = front.merge.condense(&of_children);
+                let values = front.closed_values(plan.group_of(v).map(|g| &prescribed[&g][..]));
+                let closed = values.len();
+                let mut kept = load.boundary()[closed..].to_vec();
+                for (j, value) in values.iter().enumerate() {
+                    let column = &front.held.col_as_slice(j)[closed..];
+                    for (kept, s) in kept.iter_mut().zip(column) {
+                        *kept -= s * value;
+                    }
+                }
+                condensed.insert(v, (load, values));
+                kept
+            });
+            carry(context, v, passed, &mut arrived, Direction::Up);
+        }
+        let mut solution = FrozenSolution::default();
+        let mut below: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        match &self.bddc {
+            // Roots keep nothing.
+            None => below.extend(plan.tops.iter().map(|&v| (v, Vec::new()))),
+            Some(bddc) => {
+                let between = bddc.solve(context, &self.merged, &arrived, prescribed, accuracy);
+                solution.tops = between.clusters.clone();
+                below = between.clusters;
+                solution.iterations = between.iterations;
+                solution.is_too_far = bddc.is_stale() && !between.is_solved;
+                for (g, (jumps, forces)) in between.groups {
+                    solution.jumps.insert(g, jumps);
+                    solution.forces.insert(g, forces);
+                }
+            }
+        }
+        for &v in self.nodes.iter().rev() {
+            let mut of_children: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+            if let (Some(front), Some((load, values)), Some(x)) =
+                (self.fronts.get(&v), condensed.get(&v), below.remove(&v))
+            {
+                let mut boundary = values.clone();
+                boundary.extend(x);
+                if let Some(g) = plan.group_of(v) {
+                    solution.forces.insert(g, front.forces(load, &boundary));
+                }
+                let (x, jumps) = front.merge.recover(load, &boundary);
+                of_children.extend(plan.tree.nodes[v].children.iter().copied().zip(x));
+                if let Some(g) = plan.group_of(v) {
+                    solution.jumps.insert(g, jumps);
+                }
+            }
+            for &child in &plan.tree.nodes[v].children {
+                let x = of_children.remove(&child);
+                carry(context, child, x, &mut below, Direction::Down);
+            }
+        }
+        below.retain(|&v, _| plan.node_owners[v] == context.comm.rank());
+        solution.boundaries = below;
+        solution
+    }
+}
+
+/// Carries a vector of node v between its owner and that of the node above. Collective.
+fn carry(
+    context: &Context<'_>,
+    v: usize,
+    mut vector: Option<Vec<f64>>,
+    into: &mut BTreeMap<usize, Vec<f64>>,
+    direction: Direction,
+) {
+    let Context { comm, plan, .. } = *context;
+    let Some(parent) = plan.merged_into(v) else {
+        into.extend(vector.map(|vector| (v, vector)));
+        return;
+    };
+    let (here, above) = (plan.node_owners[v], plan.node_owners[parent]);
+    let way = match direction {
+        Direction::Up => (here, above),
+        Direction::Down => (above, here),
+    };
+    comm.route(
+        [way],
+        |_| Reals(vector.take().unwrap_or_default()),
+        |_, Reals(arrived)| {
+            into.insert(v, arrived);
+        },
+    );
+}
+
+impl FrozenFront {
+    /// The values of its closed normal jumps, of those that all of its own would have.
+    fn closed_values(&self, prescribed: Option<&[f64]>) -> Vec<f64> {
+        let all = prescribed.unwrap_or_default().iter().zip(&self.open);
+        all.filter(|(_, open)| !**open)
+            .map(|(value, _)| *value)
+            .collect()
+    }
+
+    /// The forces on its own normal jumps, 0 where open: what the load leaves of them at the unknowns `boundary`,
+    /// closed normal jumps and what is kept.
+    fn forces(&self, load: &CondensedLoad, boundary: &[f64]) -> Vec<f64> {
+        let closed = self.held.ncols();
+        let mut of_closed = load.boundary()[..closed].to_vec();
+        for j in 0..closed {
+            let column = &self.held.col_as_slice(j)[j..];
+            of_closed[j] -= dot(column, &boundary[j..]);
+            for (force, s) in of_closed[j..].iter_mut().zip(column).skip(1) {
+                *force -= s * boundary[j];
+            }
+        }
+        let mut of_closed = of_closed.into_iter();
+        let of_jump = |open: &bool| match open {
+            true => 0.0,
+            false => of_closed.next().unwrap_or_default(),
+        };
+        self.open.iter().map(of_jump).collect()
+    }
+}
+
+/// Along the hierarchy.
+#[derive(Clone, Copy)]
+enum Direction {
+    Up,
+    Down,
+}
