@@ -8,7 +8,6 @@ use faer::linalg::triangular_inverse::invert_lower_triangular;
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
-use faer::traits::RealField;
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side::Lower};
 
 use crate::bddc::classes::Classes;
@@ -24,12 +23,12 @@ pub struct Moves;
 
 /// A matrix some of whose unknowns, the first ones, are eliminated.
 #[derive(Debug)]
-pub struct Eliminated<T> {
+pub struct Eliminated {
     /// L above P.
-    columns: Mat<T>,
+    columns: Mat<f64>,
 }
 
-impl Eliminated<f64> {
+impl Eliminated {
     /// Eliminates the first `count` unknowns of a symmetric matrix, both of whose triangles are given, and returns
     /// what they leave to the others, its lower triangle.
     pub fn new(matrix: MatRef<'_, f64>, count: usize, par: Par) -> Result<(Self, Mat<f64>), Moves> {
@@ -41,29 +40,16 @@ impl Eliminated<f64> {
         Ok((Self { columns }, s))
     }
 
-    /// The same in single precision, which is enough for a preconditioner.
-    fn in_single_precision(&self) -> Eliminated<f32> {
-        let mut single = Mat::zeros(self.columns.nrows(), self.columns.ncols());
-        for j in 0..single.ncols() {
-            let column = self.columns.col_as_slice(j);
-            let pairs = single.col_as_slice_mut(j).iter_mut().zip(column);
-            pairs.for_each(|(single, value)| *single = *value as f32);
-        }
-        Eliminated { columns: single }
-    }
-}
-
-impl<T: RealField + Copy> Eliminated<T> {
     /// Carries a load on the first unknowns to the others.
-    fn forward(&self, x: &mut [T]) {
+    fn forward(&self, x: &mut [f64]) {
         let (l, p) = self.columns.as_ref().split_at_row(self.columns.ncols());
         let (mut first, others) = column_of(x).split_at_row_mut(l.ncols());
         solve_lower_triangular_in_place(l, first.as_mut(), Par::Seq);
-        matmul(others, Accum::Add, p, first, -T::one_impl(), Par::Seq);
+        matmul(others, Accum::Add, p, first, -1.0, Par::Seq);
     }
 
     /// Solves for the first unknowns where the others are known.
-    fn backward(&self, x: &mut [T]) {
+    fn backward(&self, x: &mut [f64]) {
         let (l, p) = self.columns.as_ref().split_at_row(self.columns.ncols());
         let (mut first, others) = column_of(x).split_at_row_mut(l.ncols());
         matmul(
@@ -71,14 +57,14 @@ impl<T: RealField + Copy> Eliminated<T> {
             Accum::Add,
             p.transpose(),
             others,
-            -T::one_impl(),
+            -1.0,
             Par::Seq,
         );
         solve_upper_triangular_in_place(l.transpose(), first, Par::Seq);
     }
 }
 
-fn column_of<T>(x: &mut [T]) -> MatMut<'_, T> {
+fn column_of(x: &mut [f64]) -> MatMut<'_, f64> {
     let rows = x.len();
     MatMut::from_column_major_slice_mut(x, rows, 1)
 }
@@ -97,7 +83,7 @@ pub fn fill_upper_triangle(s: &mut Mat<f64>) {
 pub struct Shared {
     /// What each unknown of the cluster is in terms of [own | shared], but for constants.
     terms: Vec<Vec<(usize, f64)>>,
-    own: Eliminated<f64>,
+    own: Eliminated,
     /// Where its classes are.
     ranges: Vec<Range<usize>>,
     /// The spring on each unknown of the cluster; none where nothing has one.
@@ -187,11 +173,14 @@ impl Shared {
     ) -> Result<Vec<Option<Side>>, Moves> {
         let n = s.nrows();
         // It may move as a whole, and of some classes it has not all unknowns.
-        let mut held = s.clone();
-        for range in &self.ranges {
-            hold(held.as_mut(), range.clone(), HOLD);
-        }
-        let factor = held.llt(Lower).map_err(|_| Moves)?;
+        let held_by = |share: f64| {
+            let mut held = s.clone();
+            for range in &self.ranges {
+                hold(held.as_mut(), range.clone(), share);
+            }
+            held.llt(Lower).ok()
+        };
+        let factor = HOLDS.into_iter().find_map(held_by).ok_or(Moves)?;
         let mut inverse = Mat::zeros(n, n);
         invert_lower_triangular(inverse.as_mut(), factor.L(), par);
         let side = |(at, range): (usize, &Range<usize>)| {
@@ -211,8 +200,9 @@ impl Shared {
     }
 }
 
-/// Share of the largest diagonal entry that is added where unknowns may be free.
-const HOLD: f64 = 1e-11;
+/// Shares of the largest diagonal entry of which the least is added that round-off leaves definite, where unknowns may be
+/// free.
+const HOLDS: [f64; 3] = [1e-11, 1e-9, 1e-7];
 /// The same where it has to be far above that.
 const MORE_HOLD: f64 = 1e-9;
 
@@ -258,7 +248,7 @@ pub struct Local {
     bases: Vec<Basis>,
     /// Where [others | coarse] are found.
     order: Vec<usize>,
-    others: Eliminated<f32>,
+    others: Eliminated,
     /// What the others leave to the coarse unknowns.
     pub coarse: Mat<f64>,
 }
@@ -301,7 +291,7 @@ impl Local {
             shared,
             bases,
             order,
-            others: others.in_single_precision(),
+            others,
             coarse,
         })
     }
@@ -359,26 +349,26 @@ impl Local {
     }
 
     /// The cluster's share of a residual: what stays on the other unknowns, and the load on the coarse ones.
-    pub fn share(&self, r: &[f64]) -> (Vec<f32>, Vec<f64>) {
+    pub fn share(&self, r: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut scaled = vec![0.0; r.len()];
         for (range, basis) in self.shared.ranges.iter().zip(&self.bases) {
             scaled[range.clone()].copy_from_slice(&basis.share(&r[range.clone()]));
         }
-        let mut load: Vec<f32> = self.order.iter().map(|&i| scaled[i] as f32).collect();
+        let mut load: Vec<f64> = self.order.iter().map(|&i| scaled[i]).collect();
         self.others.forward(&mut load);
         let coarse = load.split_off(self.others.columns.ncols());
-        (load, coarse.into_iter().map(f64::from).collect())
+        (load, coarse)
     }
 
     /// The cluster's share of a correction, where its coarse unknowns are known.
-    pub fn correct(&self, mut others: Vec<f32>, coarse: &[f64]) -> Vec<f64> {
-        others.extend(coarse.iter().map(|&x| x as f32));
+    pub fn correct(&self, mut others: Vec<f64>, coarse: &[f64]) -> Vec<f64> {
+        others.extend(coarse);
         self.others.backward(&mut others);
         let mut x = vec![0.0; others.len()];
         self.order
             .iter()
             .zip(others)
-            .for_each(|(&i, value)| x[i] = f64::from(value));
+            .for_each(|(&i, value)| x[i] = value);
         for (range, basis) in self.shared.ranges.iter().zip(&self.bases) {
             let scaled = basis.correct(&x[range.clone()]);
             x[range.clone()].copy_from_slice(&scaled);
