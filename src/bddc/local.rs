@@ -88,6 +88,8 @@ pub struct Shared {
     ranges: Vec<Range<usize>>,
     /// The spring on each unknown of the cluster; none where nothing has one.
     springs: Vec<f64>,
+    /// What is sure to be more than the round-off of S.
+    round_off: f64,
 }
 
 impl Shared {
@@ -160,6 +162,7 @@ impl Shared {
             own,
             ranges,
             springs,
+            round_off: ROUND_OFF * condensed.diagonal.iter().copied().fold(0.0, f64::max),
         };
         Ok((shared, s))
     }
@@ -176,7 +179,7 @@ impl Shared {
         let held_by = |share: f64| {
             let mut held = s.clone();
             for range in &self.ranges {
-                hold(held.as_mut(), range.clone(), share);
+                hold(held.as_mut(), range.clone(), share, self.round_off);
             }
             held.llt(Lower).ok()
         };
@@ -189,7 +192,7 @@ impl Shared {
                 let columns = inverse.submatrix(first, first, n - first, len);
                 // It may also move where all but this class is held; what does becomes coarse.
                 let mut s = s.submatrix(first, first, len, len).to_owned();
-                hold(s.as_mut(), 0..len, MORE_HOLD);
+                hold(s.as_mut(), 0..len, MORE_HOLD, self.round_off);
                 Side {
                     s,
                     compliance: columns.transpose() * columns,
@@ -200,16 +203,18 @@ impl Shared {
     }
 }
 
+/// Share of the stiffest unknown of a cluster that is sure to be more than the round-off of its S.
+const ROUND_OFF: f64 = 1e-14;
 /// Shares of the largest diagonal entry of which the least is added that round-off leaves definite, where unknowns may be
 /// free.
 const HOLDS: [f64; 3] = [1e-11, 1e-9, 1e-7];
 /// The same where it has to be far above that.
 const MORE_HOLD: f64 = 1e-9;
 
-/// Adds a share of the largest entry to those of the diagonal.
-fn hold(mut s: MatMut<'_, f64>, range: Range<usize>, share: f64) {
+/// Adds a share of the largest entry to those of the diagonal, and what is sure to be more than their round-off.
+fn hold(mut s: MatMut<'_, f64>, range: Range<usize>, share: f64, round_off: f64) {
     let largest = range.clone().fold(0.0, |m: f64, i| m.max(s[(i, i)]));
-    range.for_each(|i| s[(i, i)] += share * largest);
+    range.for_each(|i| s[(i, i)] += share * largest + round_off);
 }
 
 /// Tᵀ S T, S with `springs` on its diagonal, of which the lower triangle is given and both are returned; T has a row of
