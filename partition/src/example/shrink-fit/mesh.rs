@@ -4,7 +4,8 @@ use super::Shape;
 use super::pattern::Pattern;
 use super::squares::{Square, quadrilateral};
 
-pub(super) const ABOUT: &str = "a hub shrunk onto a shaft and pushed along it, around an axis, partial slip";
+pub(super) const ABOUT: &str =
+    "a hub shrunk onto a shaft and pushed along it, around an axis, partial slip";
 pub(super) const SUBDOMAINS: usize = 6;
 pub(super) const SHAPE: Shape = Shape::Squares(squares);
 
@@ -21,13 +22,28 @@ const SIZE: f64 = 5.0;
 fn rectangle(body: &str, x: [f64; 2], y: [f64; 2], sides: [Option<&str>; 4]) -> Square {
     let corners = [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]];
     let [columns, rows] = [x, y].map(|[from, to]| ((to - from) / SIZE) as usize);
-    Square::new(body, Pattern::Grid(columns, rows), quadrilateral(corners), sides)
+    Square::new(
+        body,
+        Pattern::Grid(columns, rows),
+        quadrilateral(corners),
+        sides,
+    )
 }
 
 fn squares() -> Vec<Square> {
     let [bore, outside] = RADII;
-    let of_shaft = [Some("shaft bottom"), Some("shaft surface"), Some("shaft top"), None];
-    let of_hub = [Some("hub bottom"), Some("hub outside"), Some("hub top"), Some("bore")];
+    let of_shaft = [
+        Some("shaft bottom"),
+        Some("shaft surface"),
+        Some("shaft top"),
+        None,
+    ];
+    let of_hub = [
+        Some("hub bottom"),
+        Some("hub outside"),
+        Some("hub top"),
+        Some("bore"),
+    ];
     vec![
         rectangle("shaft", [0.0, bore], [0.0, SHAFT], of_shaft),
         rectangle("hub", [bore, outside], HUB, of_hub),
