@@ -17,7 +17,9 @@ const LOADED: f64 = 1e-2;
 /// Violation of the law of friction of an answer that isn't one.
 const AGAINST_FRICTION: f64 = 1e-9;
 /// Equilibrium relative to the load of an answer that says nothing.
-const NOT_BALANCED_OF_LOAD: f64 = 1e-2;
+const NOT_BALANCED_OF_LOAD: f64 = 1e-3;
+/// The same where what isn't balanced moves.
+const MOVES: f64 = 1e-2;
 
 /// Most contact points that are named.
 const MOST_NAMES: usize = 5;
@@ -180,7 +182,7 @@ impl SweepOutcome {
         }
         let failed = unbalanced || penetration > limit || equilibrium.is_nan();
         if failed && self.status == SweepStatus::Converged {
-            self.moves_freely = equilibrium_of_load > NOT_BALANCED_OF_LOAD;
+            self.moves_freely = equilibrium_of_load > MOVES;
             self.status = SweepStatus::NotConverged(format!(
                 "the forces on the nodes are balanced to {equilibrium:.1e} of their terms and \
                  {equilibrium_of_load:.1e} of the largest load, and contacts penetrate by \
