@@ -8,6 +8,8 @@ use faer::{Accum, Mat, Par};
 
 use super::condensed::InterfaceDof;
 
+/// Displacements that stay, for each that is replaced, up to which single columns take no longer than dense products.
+const FEW_TERMS: usize = 16;
 /// Columns of a front that are changed at a time.
 const AT_A_TIME: usize = 256;
 
@@ -44,11 +46,61 @@ impl Substitution {
         }
     }
 
-    /// A ← Tᵀ A T.
-    ///
+    /// A ← Tᵀ A T, column by column where there are few terms, as in the plane, else by dense products.
+    pub fn transform(&self, a: &mut Front<'_>) {
+        let terms: usize = self.staying.iter().map(Vec::len).sum();
+        match terms <= FEW_TERMS * self.places.len() {
+            true => self.transform_columns(a),
+            false => self.multiply(a),
+        }
+    }
+
+    fn transform_columns(&self, a: &mut Front<'_>) {
+        let n = a.len();
+        for (&p, staying) in self.places.iter().zip(&self.staying) {
+            for &(s, beta) in staying {
+                let (of_both, of_p) = (a.get(s, p), a.get(p, p));
+                for i in (0..n).filter(|&i| i != s && i != p) {
+                    let change = beta * a.get(i, p);
+                    a.add(i, s, change);
+                }
+                a.add(p, s, beta * of_p);
+                a.add(s, s, beta * (2.0 * of_both + beta * of_p));
+            }
+        }
+        let m = self.places.len();
+        let columns = Mat::from_fn(n, m, |i, k| a.get(i, self.places[k]));
+        let mut turned = Mat::<f64>::zeros(n, m);
+        for (k, jumps) in self.jumps.iter().enumerate() {
+            for &(l, gamma) in jumps {
+                for i in 0..n {
+                    turned[(i, l)] += gamma * columns[(i, k)];
+                }
+            }
+        }
+        let mut both = Mat::<f64>::zeros(m, m);
+        for (k, jumps) in self.jumps.iter().enumerate() {
+            for &(j, gamma) in jumps {
+                for l in 0..m {
+                    both[(j, l)] += gamma * turned[(self.places[k], l)];
+                }
+            }
+        }
+        for (l, &p) in self.places.iter().enumerate() {
+            for i in 0..n {
+                a.set(i, p, turned[(i, l)]);
+            }
+        }
+        for (l, &p) in self.places.iter().enumerate() {
+            for (j, &q) in self.places.iter().enumerate().skip(l) {
+                a.set(q, p, both[(j, l)]);
+            }
+        }
+    }
+
     /// With P the places of what is replaced, x_P = B y, and E what sets these to 0, T = E + P B and
     /// Tᵀ A T = E A E + W B + Bᵀ Wᵀ, W = E A P + ½ Bᵀ (Pᵀ A P).
-    pub fn transform(&self, a: &mut Front<'_>) {
+    fn multiply(&self, a: &mut Front<'_>) {
         let (n, m) = (a.len(), self.places.len());
         let mut columns: Vec<usize> = self.rows().flatten().map(|(place, _)| place).collect();
         columns.sort_unstable();
@@ -210,23 +262,25 @@ mod tests {
         let noise = |i: usize, j: usize| ((7 * i * j + i + j) as f64).sin();
         let a = Mat::from_fn(5, 5, noise);
         let expected = t.transpose() * &a * &t;
-        let (mut columns, mut s) = (Mat::zeros(5, 2), Mat::zeros(3, 3));
-        for j in 0..5 {
-            for i in j..5 {
-                match j < 2 {
-                    true => columns[(i, j)] = a[(i, j)],
-                    false => s[(i - 2, j - 2)] = a[(i, j)],
+        for transform in [Substitution::transform_columns, Substitution::multiply] {
+            let (mut columns, mut s) = (Mat::zeros(5, 2), Mat::zeros(3, 3));
+            for j in 0..5 {
+                for i in j..5 {
+                    match j < 2 {
+                        true => columns[(i, j)] = a[(i, j)],
+                        false => s[(i - 2, j - 2)] = a[(i, j)],
+                    }
                 }
             }
-        }
-        let mut front = Front {
-            columns: &mut columns,
-            s: &mut s,
-        };
-        substitution.transform(&mut front);
-        for j in 0..5 {
-            for i in j..5 {
-                assert!((front.get(i, j) - expected[(i, j)]).abs() < 1e-14);
+            let mut front = Front {
+                columns: &mut columns,
+                s: &mut s,
+            };
+            transform(&substitution, &mut front);
+            for j in 0..5 {
+                for i in j..5 {
+                    assert!((front.get(i, j) - expected[(i, j)]).abs() < 1e-14);
+                }
             }
         }
         let f = Mat::from_fn(5, 1, |i, _| noise(i, 3));
