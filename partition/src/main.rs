@@ -15,7 +15,7 @@ use contact_dd_partition::error::{InputError, OutputError};
 use contact_dd_partition::example::{self, EXAMPLES};
 use contact_dd_partition::info::Info;
 use contact_dd_partition::manual::Answer;
-use contact_dd_partition::mesh::{Mesh, gmsh};
+use contact_dd_partition::mesh::{self, Mesh};
 use contact_dd_partition::message::{self, WARNING};
 use contact_dd_partition::model::Model;
 use contact_dd_partition::problem::Problem;
@@ -132,7 +132,7 @@ fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
         keep(path, &output)?;
         keep(&scene.mesh, &output)?;
         return Ok(Some(Source {
-            mesh: gmsh::read(&scene.mesh)?.along_curve(),
+            mesh: mesh::read(&scene.mesh)?.along_curve(),
             scene,
             subdomains: args.subdomains,
             output,

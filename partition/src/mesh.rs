@@ -1,5 +1,6 @@
 //! A mesh: points, cells, facets, and the physical groups that name them.
 
+mod abaqus;
 pub mod bounding_box;
 mod curve;
 mod foreign;
@@ -8,8 +9,10 @@ mod measure;
 pub mod topology;
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use crate::element::Elements;
+use crate::error::InputError;
 
 /// A mesh as a mesher made it, without orphan nodes and with every cell positively oriented.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,6 +31,19 @@ pub struct Mesh {
     pub facets: Elements,
     /// Physical groups by name.
     pub groups: BTreeMap<String, Group>,
+    /// What a user should know of how the file was read.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a mesh: a deck of Abaqus or CalculiX where its name ends with `.inp`, else Gmsh's format.
+///
+/// # Errors
+/// What is wrong with the file and where.
+pub fn read(path: &Path) -> Result<Mesh, InputError> {
+    match path.extension() {
+        Some(ending) if ending.eq_ignore_ascii_case("inp") => abaqus::read(path),
+        _ => gmsh::read(path),
+    }
 }
 
 impl Mesh {
@@ -38,6 +54,11 @@ impl Mesh {
             .map(|&n| self.node_tags[n as usize].to_string());
         tags.collect::<Vec<_>>().join(", ")
     }
+}
+
+/// The name of a group where groups of several dimensions have it.
+fn name_of_dim(name: &str, dim: usize) -> String {
+    format!("{name} ({})", ["point", "curve", "surface", "volume"][dim])
 }
 
 /// A physical group.

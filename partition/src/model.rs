@@ -113,7 +113,7 @@ impl Model {
     /// Groups that don't exist, conditions that contradict each other, sides that don't match.
     pub fn new(scene: &Scene, mesh: Mesh) -> Result<Self, InputError> {
         let plane = plane_state(scene, &mesh)?;
-        let mut warnings = Vec::new();
+        let mut warnings = mesh.warnings.clone();
         let bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
         let topology = Topology::new(&bodies.mesh);
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;

@@ -56,6 +56,12 @@ def msh_of(source: MeshSource) -> bytes:
     )
 
 
+def deck_of(source: MeshSource) -> Path | None:
+    """The file of a deck of Abaqus or CalculiX, which the programs read themselves."""
+    path = Path(source) if isinstance(source, str | Path) else None
+    return path.resolve() if path and path.suffix.lower() == ".inp" else None
+
+
 def of_file(path: Path) -> bytes:
     if path.suffix == ".msh":
         try:

@@ -11,7 +11,7 @@ from typing import Any, TypedDict
 
 from contact_dd import programs, toml
 from contact_dd.errors import InputError
-from contact_dd.mesh import MeshSource, msh_of
+from contact_dd.mesh import MeshSource, deck_of, msh_of
 from contact_dd.result import Result
 
 Number = float | str
@@ -55,7 +55,7 @@ class Model:
     """
 
     def __init__(self, mesh: MeshSource, scene: dict[str, Any]) -> None:
-        self.mesh = msh_of(mesh)
+        self.mesh: bytes | Path = deck_of(mesh) or msh_of(mesh)
         self.scene = scene
 
     @classmethod
@@ -64,7 +64,7 @@ class Model:
     ) -> Model:
         """A model without materials, supports, loads and contacts yet.
 
-        `mesh` is a file of Gmsh's or one that meshio reads, a mesh of meshio, or Gmsh's model as it stands
+        `mesh` is a file of Gmsh's, a deck of Abaqus or CalculiX (`.inp`) or a file that meshio reads, a mesh of meshio, or Gmsh's model as it stands
         (`gmsh.model`). `plane` is "strain", "stress" or "axisymmetric", in space None; `units` is "m" (m, N, Pa) or
         "mm" (mm, N, MPa).
         """
@@ -149,12 +149,14 @@ class Model:
         self.scene.setdefault("step", []).extend(dict(step) for step in steps)
 
     def write(self, folder: str | Path) -> Path:
-        """Writes `scene.toml` and `mesh.msh` into a folder; returns the path of the scene."""
+        """Writes `scene.toml` and `mesh.msh` into a folder; returns the path of the scene. A deck stays where it is."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "mesh.msh").write_bytes(self.mesh)
+        mesh = self.mesh if isinstance(self.mesh, Path) else Path("mesh.msh")
+        if isinstance(self.mesh, bytes):
+            (folder / mesh).write_bytes(self.mesh)
         scene = folder / "scene.toml"
-        scene.write_text(toml.dumps({"mesh": "mesh.msh", **self.scene}))
+        scene.write_text(toml.dumps({"mesh": str(mesh), **self.scene}))
         return scene
 
     def run(

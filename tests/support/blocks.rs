@@ -244,6 +244,7 @@ pub fn shuffled(mesh: &Mesh, seed: u64) -> (Mesh, BTreeMap<i64, i64>) {
         cells,
         facets,
         groups,
+        warnings: Vec::new(),
     };
     (shuffled, old_tags)
 }

@@ -15,8 +15,11 @@ enum Converter {
     Meshio,
 }
 
+/// What else is read.
+const INP: &str = "a deck of Abaqus or CalculiX whose name ends with .inp";
+
 /// Formats: name, endings of files, converter.
-const FORMATS: [(&str, &[&str], Converter); 12] = [
+const FORMATS: [(&str, &[&str], Converter); 11] = [
     ("a STEP geometry", &["step", "stp"], Converter::Mesher),
     (
         "a Gmsh geometry",
@@ -24,7 +27,6 @@ const FORMATS: [(&str, &[&str], Converter); 12] = [
         Converter::Mesher,
     ),
     ("a geometry", &["brep", "iges", "igs"], Converter::Mesher),
-    ("an Abaqus mesh", &["inp"], Converter::Meshio),
     ("an Exodus mesh", &["e", "exo"], Converter::Meshio),
     ("an XDMF mesh", &["xdmf"], Converter::Meshio),
     ("a VTU mesh", &["vtu"], Converter::Meshio),
@@ -53,7 +55,9 @@ pub(super) fn refusal(path: &Path) -> InputError {
             .any(|&known| Some(known) == ending.as_deref())
     };
     let Some((name, _, converter)) = FORMATS.iter().find(|(_, endings, _)| is_of(endings)) else {
-        return InputError::new("this isn't a Gmsh mesh: expected $MeshFormat in the first line");
+        return InputError::new(format!(
+            "this isn't a Gmsh mesh: expected $MeshFormat in the first line, or {INP}"
+        ));
     };
     let from = path.display();
     let to = path.with_extension("msh");
@@ -64,7 +68,7 @@ pub(super) fn refusal(path: &Path) -> InputError {
         Converter::Meshio => format!("meshio convert {from} {to} --output-format gmsh22"),
     };
     InputError::new(format!(
-        "is {name}; expected a mesh in Gmsh's format with physical groups: {command}"
+        "is {name}; expected a mesh in Gmsh's format with physical groups, or {INP}: {command}"
     ))
 }
 
@@ -77,7 +81,8 @@ mod tests {
         for (name, expected) in [
             ("p.step", "gmsh -2 p.step -o p.msh"),
             ("p.geo", "gmsh -2 p.geo -o p.msh"),
-            ("p.INP", "meshio convert p.INP p.msh --output-format gmsh22"),
+            ("p.vtu", "meshio convert p.vtu p.msh --output-format gmsh22"),
+            ("p.vtu", "ends with .inp"),
             ("p.unv", "gmsh -save p.unv -o p.msh"),
             ("p.med", "perhaps a MED mesh"),
             ("p.msh", "isn't a Gmsh mesh"),

@@ -8,6 +8,9 @@ use crate::magnitude::SMALLEST_AREA;
 /// Measure over the square (in space: the cube) of the largest edge below which a cell is flat.
 const FLAT: f64 = 1e-13;
 
+/// z that counts as constant, relative to the extent of the mesh.
+const PLANE: f64 = 1e-9;
+
 impl Mesh {
     /// Signed measure of a cell, in m² or m³: negative where its nodes run the wrong way round.
     pub fn measure(&self, cell: usize) -> f64 {
@@ -64,6 +67,33 @@ impl Mesh {
             shown(fold.position, self.dim),
             self.node_tags[nodes[fold.node] as usize]
         )))
+    }
+
+    /// Sets the components behind the mesh's dimension to zero.
+    ///
+    /// # Errors
+    /// A node outside the plane of the others.
+    pub(super) fn flatten(&mut self) -> Result<(), InputError> {
+        let first = self.points[0];
+        let mut extent: f64 = 0.0;
+        for point in &self.points {
+            for (a, b) in point.iter().zip(first) {
+                extent = extent.max((a - b).abs());
+            }
+        }
+        for (point, tag) in self.points.iter_mut().zip(&self.node_tags) {
+            for component in self.dim..point.len() {
+                if (point[component] - first[component]).abs() > PLANE * extent {
+                    return Err(InputError::new(format!(
+                        "node {tag} has z = {}, node {} has z = {}: a mesh of plane cells has to lie in \
+                         a plane of constant z",
+                        point[component], self.node_tags[0], first[component]
+                    )));
+                }
+                point[component] = 0.0;
+            }
+        }
+        Ok(())
     }
 
     fn longest_edge(&self, cell: usize) -> f64 {

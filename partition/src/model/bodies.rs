@@ -263,6 +263,7 @@ fn restrict(mesh: Mesh, kept: &[bool], used: &BTreeSet<&str>) -> Result<Mesh, St
         cell_tags: chosen(&mesh.cell_tags, kept),
         facets: pick(&mesh.facets, &facet_held),
         groups,
+        warnings: mesh.warnings,
     })
 }
 

@@ -163,6 +163,7 @@ impl Blocks {
                 cell_tags: mesh.cell_tags.iter().rev().copied().collect(),
                 facets: backwards(&mesh.facets),
                 groups,
+                ..Mesh::default()
             },
         }
     }

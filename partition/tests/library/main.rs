@@ -6,6 +6,7 @@
     reason = "a test that can't go on has failed"
 )]
 
+mod abaqus;
 mod blocks;
 #[path = "../../../tests/support/close.rs"]
 mod close;

@@ -4,7 +4,7 @@
     reason = "each test binary uses its own part of these scenes"
 )]
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::ops::Range;
 
 use contact_dd_partition::contact_point::ContactPoint;
@@ -87,8 +87,7 @@ impl Builder {
             points: self.points.clone(),
             cell_tags: (0..self.cells.len() as i64).map(|c| 1000 + c).collect(),
             cells: self.cells,
-            facets: Elements::default(),
-            groups: BTreeMap::new(),
+            ..Mesh::default()
         };
         Model {
             units: Units::default(),

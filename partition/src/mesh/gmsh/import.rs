@@ -9,9 +9,6 @@ use crate::error::InputError;
 use crate::lists::Lists;
 use crate::mesh::{Group, Mesh};
 
-/// z that counts as constant, relative to the extent of the mesh.
-const PLANE: f64 = 1e-9;
-
 /// An element of a file.
 #[derive(Clone, Copy)]
 struct Listed<'a> {
@@ -187,32 +184,8 @@ fn keep_nodes(
         mesh.points.push(nodes.points[node]);
         mesh.node_tags.push(nodes.tags[node]);
     }
-    flatten(mesh)?;
+    mesh.flatten()?;
     Ok(index)
-}
-
-/// Sets the components behind the mesh's dimension to zero.
-fn flatten(mesh: &mut Mesh) -> Result<(), InputError> {
-    let first = mesh.points[0];
-    let mut extent: f64 = 0.0;
-    for point in &mesh.points {
-        for (a, b) in point.iter().zip(first) {
-            extent = extent.max((a - b).abs());
-        }
-    }
-    for (point, tag) in mesh.points.iter_mut().zip(&mesh.node_tags) {
-        for component in mesh.dim..point.len() {
-            if (point[component] - first[component]).abs() > PLANE * extent {
-                return Err(InputError::new(format!(
-                    "node {tag} has z = {}, node {} has z = {}: a mesh of plane cells has to lie in \
-                     a plane of constant z",
-                    point[component], mesh.node_tags[0], first[component]
-                )));
-            }
-            point[component] = 0.0;
-        }
-    }
-    Ok(())
 }
 
 fn renumbered(nodes: &[u32], index: &[Option<u32>]) -> Vec<u32> {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::cursor::Cursor;
 use crate::error::InputError;
-use crate::name;
+use crate::{mesh, name};
 
 /// Reads the body of `$PhysicalNames`: names by dimension and number.
 pub(super) fn read(cursor: &mut Cursor) -> Result<BTreeMap<(usize, i64), String>, InputError> {
@@ -68,7 +68,7 @@ pub(super) fn by_name(
             )));
         }
         if dims[&name].len() > 1 {
-            name = format!("{name} ({})", ["point", "curve", "surface", "volume"][dim]);
+            name = mesh::name_of_dim(&name, dim);
         }
         named.insert(name, (dim, members));
     }

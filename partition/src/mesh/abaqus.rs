@@ -1,0 +1,30 @@
+//! Input decks of Abaqus and CalculiX, `.inp`: the mesh in them.
+//!
+//! Read it so: the elements of the highest dimension are the cells. A set of elements is a group of cells; a
+//! surface is a group of facets, and so are elements of one dimension less; a set of nodes is the group of
+//! those facets of the boundary all of whose nodes are in it, and where these miss one of its nodes, a group of
+//! points. Names are compared without regard to case, and stand as the deck first writes them. The sets of an
+//! instance are called `instance.set`, where no other set has that name just `set`. What isn't mesh is left out,
+//! with a warning; what would change the mesh in a way that isn't read is refused.
+
+mod assembly;
+mod blocks;
+mod deck;
+mod element_type;
+mod import;
+mod sets;
+
+use std::path::Path;
+
+use super::Mesh;
+use crate::error::InputError;
+
+/// Reads the mesh of a deck, with the files that it includes.
+///
+/// # Errors
+/// What is wrong with the deck, with file and line.
+pub fn read(path: &Path) -> Result<Mesh, InputError> {
+    let source = blocks::Source::read(path)?;
+    let (deck, warnings) = assembly::Assembly::read(&source)?;
+    import::mesh(&deck, warnings).map_err(|error| error.in_file(path))
+}

@@ -1,0 +1,237 @@
+//! The text of a deck: keywords with their parameters, and the lines of data behind each.
+
+use std::io::Read as _;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use crate::error::InputError;
+use crate::{magnitude, source};
+
+/// Files that may include each other, one in the other: those of a deck that includes itself have no end.
+const DEEPEST: usize = 5;
+
+/// The largest number of a node or an element: several of them added up are still numbers.
+const LARGEST_TAG: i64 = 1 << 50;
+
+/// Keywords whose data a parameter `INPUT` takes from another file.
+const WITH_INPUT: [&str; 4] = ["NODE", "ELEMENT", "NSET", "ELSET"];
+
+/// A line of a file.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    file: usize,
+    line: usize,
+}
+
+/// A line of data.
+pub(super) struct Data {
+    pub(super) place: Place,
+    text: Range<usize>,
+}
+
+/// A keyword and its data.
+pub(super) struct Block {
+    /// In capitals, with single blanks.
+    pub(super) keyword: String,
+    /// Names in capitals, and values.
+    parameters: Vec<(String, String)>,
+    pub(super) place: Place,
+    pub(super) data: Vec<Data>,
+}
+
+impl Block {
+    /// The value of a parameter, empty where it has none.
+    pub(super) fn parameter(&self, name: &str) -> Option<&str> {
+        let found = self.parameters.iter().find(|(key, _)| key == name);
+        found.map(|(_, value)| value.as_str())
+    }
+}
+
+/// All files of a deck.
+pub(super) struct Source {
+    files: Vec<(PathBuf, String)>,
+    pub(super) blocks: Vec<Block>,
+}
+
+impl Source {
+    /// Reads a deck and what it includes.
+    pub(super) fn read(path: &Path) -> Result<Self, InputError> {
+        let mut source = Self {
+            files: Vec::new(),
+            blocks: Vec::new(),
+        };
+        source.add(path, DEEPEST)?;
+        Ok(source)
+    }
+
+    /// The deck that includes all other files.
+    pub(super) fn path(&self) -> &Path {
+        &self.files[0].0
+    }
+
+    /// An error at a line.
+    pub(super) fn error(&self, at: Place, message: impl std::fmt::Display) -> InputError {
+        InputError::new(format!("line {}: {message}", at.line)).in_file(&self.files[at.file].0)
+    }
+
+    /// What stands between the commas of a line of data, but nothing behind the last one.
+    pub(super) fn items(&self, data: &Data) -> impl Iterator<Item = &str> {
+        let text = self.files[data.place.file].1[data.text.clone()].trim();
+        let text = text.strip_suffix(',').unwrap_or(text);
+        text.split(',').map(|item| unquoted(item.trim()))
+    }
+
+    /// A number of an element or node.
+    pub(super) fn tag(&self, at: Place, item: &str, what: &str) -> Result<i64, InputError> {
+        let number = item.parse().ok();
+        number
+            .filter(|tag| (1..=LARGEST_TAG).contains(tag))
+            .ok_or_else(|| {
+                let found = item.escape_debug();
+                self.error(
+                    at,
+                    format!("expected {what}, a positive integer, found `{found}`"),
+                )
+            })
+    }
+
+    /// A real number, with `e` or Fortran's `d` before the exponent; nothing is 0.
+    pub(super) fn real(&self, at: Place, item: &str, what: &str) -> Result<f64, InputError> {
+        let item = if item.is_empty() { "0" } else { item };
+        let value: f64 = item.replace(['d', 'D'], "e").parse().map_err(|_| {
+            self.error(
+                at,
+                format!("expected {what}, a number, found `{}`", item.escape_debug()),
+            )
+        })?;
+        magnitude::check(value)
+            .map_err(|expected| self.error(at, format!("{what} is {item}; expected {expected}")))
+    }
+
+    /// The value of a parameter that has to be there.
+    pub(super) fn required<'a>(&self, block: &'a Block, name: &str) -> Result<&'a str, InputError> {
+        let value = block.parameter(name).filter(|value| !value.is_empty());
+        value.ok_or_else(|| {
+            self.error(
+                block.place,
+                format!("*{} has no {name}; expected {name}=…", block.keyword),
+            )
+        })
+    }
+
+    /// Appends a file; `depth` more may be included in each other.
+    fn add(&mut self, path: &Path, depth: usize) -> Result<(), InputError> {
+        let file = self.files.len();
+        self.files.push((path.to_path_buf(), text(path)?));
+        let lines = lines(&self.files[file].1);
+        let mut next = 0;
+        while let Some((line, range)) = lines.get(next).cloned() {
+            next += 1;
+            let place = Place { file, line };
+            let text = &self.files[file].1[range.clone()];
+            let Some(head) = text.strip_prefix('*') else {
+                let Some(block) = self.blocks.last_mut() else {
+                    let message = "expected a keyword, such as *NODE: this isn't a deck of Abaqus or CalculiX";
+                    return Err(self.error(place, message));
+                };
+                block.data.push(Data { place, text: range });
+                continue;
+            };
+            let mut head = head.to_owned();
+            while head.ends_with(',') {
+                let Some((_, more)) = lines.get(next) else {
+                    break;
+                };
+                let more = &self.files[file].1[more.clone()];
+                if !more.starts_with(char::is_alphabetic) {
+                    break;
+                }
+                head.push_str(more);
+                next += 1;
+            }
+            let block = block(&head, place);
+            let includes = block.keyword == "INCLUDE";
+            let input = match includes {
+                true => Some(self.required(&block, "INPUT")?.to_owned()),
+                false if WITH_INPUT.contains(&block.keyword.as_str()) => {
+                    block.parameter("INPUT").map(str::to_owned)
+                }
+                false => None,
+            };
+            if !includes {
+                self.blocks.push(block);
+            }
+            if let Some(input) = input {
+                let Some(depth) = depth.checked_sub(1) else {
+                    let message = format!("more than {DEEPEST} files are included in each other");
+                    return Err(self.error(place, message));
+                };
+                // As Abaqus does, relative to the deck that includes all others.
+                let folder = self.files[0].0.parent().unwrap_or(Path::new(""));
+                self.add(&folder.join(input), depth)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn text(path: &Path) -> Result<String, InputError> {
+    let mut bytes = Vec::new();
+    let read = |mut file: std::fs::File| {
+        let read = file.read_to_end(&mut bytes);
+        read.map_err(|error| InputError::new(format!("the mesh can't be read: {error}")))
+    };
+    (source::open(path, "a deck of Abaqus or CalculiX").and_then(read))
+        .map_err(|error| error.in_file(path))?;
+    // Comments and names may be in any encoding.
+    Ok(match String::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(other) => String::from_utf8_lossy(other.as_bytes()).into_owned(),
+    })
+}
+
+/// The numbers and the trimmed texts of lines that are neither blank nor a comment.
+fn lines(text: &str) -> Vec<(usize, Range<usize>)> {
+    let mut start = 0;
+    let mut lines = Vec::new();
+    for (number, line) in (1..).zip(text.split('\n')) {
+        let trimmed = line.trim();
+        if !trimmed.is_empty() && !trimmed.starts_with("**") {
+            let at = start + (line.len() - line.trim_start().len());
+            lines.push((number, at..at + trimmed.len()));
+        }
+        start += line.len() + 1;
+    }
+    lines
+}
+
+/// A keyword with its parameters and no data yet; `head` is what stands behind the asterisk.
+fn block(head: &str, place: Place) -> Block {
+    let mut quoted = false;
+    let mut words = head.split(|c| {
+        quoted ^= c == '"';
+        c == ',' && !quoted
+    });
+    let capitals = |text: &str| {
+        let words: Vec<&str> = text.split_whitespace().collect();
+        words.join(" ").to_uppercase()
+    };
+    let keyword = capitals(words.next().unwrap_or_default());
+    let parameters = words.filter(|word| !word.trim().is_empty()).map(|word| {
+        let (name, value) = word.split_once('=').unwrap_or((word, ""));
+        (capitals(name), unquoted(value.trim()).to_owned())
+    });
+    Block {
+        keyword,
+        parameters: parameters.collect(),
+        place,
+        data: Vec::new(),
+    }
+}
+
+fn unquoted(item: &str) -> &str {
+    let inner = item
+        .strip_prefix('"')
+        .and_then(|rest| rest.strip_suffix('"'));
+    inner.unwrap_or(item)
+}

@@ -1,0 +1,82 @@
+//! Names of element types, and the faces of elements by their numbers.
+
+use crate::element::ElementKind::{self, *};
+
+/// Types and what they are; their nodes come in VTK's order.
+const TYPES: [(&[&str], ElementKind); 12] = [
+    (&["C3D4"], Tetrahedron4),
+    (&["C3D10"], Tetrahedron10),
+    (&["C3D8"], Hexahedron8),
+    (&["C3D20"], Hexahedron20),
+    (&["CPE3", "CPS3", "CAX3"], Triangle3),
+    (&["CPE6", "CPS6", "CAX6"], Triangle6),
+    (&["CPE4", "CPS4", "CAX4"], Quad4),
+    (&["CPE8", "CPS8", "CAX8"], Quad8),
+    // What follows can be a side and nothing else.
+    (&["S3", "M3D3", "SFM3D3"], Triangle3),
+    (&["S6", "STRI65", "M3D6", "SFM3D6"], Triangle6),
+    (&["S4", "M3D4", "SFM3D4"], Quad4),
+    (&["S8", "M3D8", "SFM3D8"], Quad8),
+];
+
+/// Types of lines, by the number of their nodes.
+const LINES: [(&[&str], ElementKind); 2] = [(&["T2D2", "T3D2"], Line2), (&["T2D3", "T3D3"], Line3)];
+
+/// Types in [`TYPES`] that cells are of.
+const OF_CELLS: usize = 8;
+
+/// What may follow the name of a type: reduced integration, incompatible modes, the modified and the hybrid
+/// formulation, temperature.
+const FORMULATIONS: [char; 6] = ['R', 'I', 'M', 'H', 'S', 'T'];
+
+/// What a type is.
+pub(super) struct ElementType {
+    pub(super) kind: ElementKind,
+    /// It has no volume, or in the plane no area, of its own.
+    pub(super) is_side: bool,
+    /// The type of the same shape whose formulation is the one that all elements have here, if this is another.
+    pub(super) plain: Option<&'static str>,
+}
+
+/// What the type `name` is; `None` where it isn't supported.
+pub(super) fn find(name: &str) -> Option<ElementType> {
+    let name = name.to_uppercase();
+    let types = TYPES.iter().chain(&LINES).enumerate();
+    let mut named =
+        types.flat_map(|(place, (names, kind))| names.iter().map(move |n| (place, n, *kind)));
+    // C3D20R begins with no other type's name, so the first that leaves a formulation is it.
+    let (place, plain, kind) = named.find(|(_, known, _)| {
+        (name.strip_prefix(**known))
+            .is_some_and(|rest| rest.chars().all(|c| FORMULATIONS.contains(&c)))
+    })?;
+    Some(ElementType {
+        kind,
+        is_side: place >= OF_CELLS,
+        plain: (*plain != name).then_some(*plain),
+    })
+}
+
+/// The types of cells, to say what is expected.
+pub(super) fn known() -> String {
+    let names = TYPES[..OF_CELLS].iter().flat_map(|(names, _)| *names);
+    names.copied().collect::<Vec<_>>().join(", ")
+}
+
+/// The corners of the face `number`, from 1, of an element: S1 to S6.
+pub(super) fn face(kind: ElementKind, number: usize) -> Option<&'static [usize]> {
+    let faces: &[&[usize]] = match kind {
+        Triangle3 | Triangle6 => &[&[0, 1], &[1, 2], &[2, 0]],
+        Quad4 | Quad8 => &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
+        Tetrahedron4 | Tetrahedron10 => &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]],
+        Hexahedron8 | Hexahedron20 => &[
+            &[0, 1, 2, 3],
+            &[4, 7, 6, 5],
+            &[0, 4, 5, 1],
+            &[1, 5, 6, 2],
+            &[2, 6, 7, 3],
+            &[3, 7, 4, 0],
+        ],
+        _ => &[],
+    };
+    faces.get(number.checked_sub(1)?).copied()
+}

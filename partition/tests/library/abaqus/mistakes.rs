@@ -1,0 +1,129 @@
+//! What is wrong with a deck, by file and line.
+
+use super::{SQUARES, read, read_all};
+
+#[test]
+fn a_mistake_is_named_with_its_line() {
+    for (more, expected) in [
+        ("*NODE\n1, 5., 5.", "line 20: the node 1 occurs twice"),
+        (
+            "*NODE\n7, a",
+            "line 20: expected the x coordinate, a number, found `a`",
+        ),
+        (
+            "*NODE\n-7, 1.",
+            "line 20: expected the number of a node, a positive integer",
+        ),
+        ("*NODE\n7, 1e300", "line 20: the x coordinate is 1e300"),
+        (
+            "*NODE, SYSTEM=C\n7, 1.",
+            "line 19: *NODE has SYSTEM=C; expected Cartesian",
+        ),
+        (
+            "*ELEMENT, TYPE=CPE4\n3, 1, 2, 5",
+            "line 20: element 3 has 3 nodes; expected 4",
+        ),
+        (
+            "*ELEMENT, TYPE=CPE3\n3, 1, 2, 5, 4",
+            "line 20: element 3 of type CPE3 has more than 3",
+        ),
+        (
+            "*ELEMENT, TYPE=CPE4\n3, 1, 2, 5, 77",
+            "line 20: element 3 has the node 77",
+        ),
+        (
+            "*ELEMENT, TYPE=CPE4\n3, 1, 2, 5, 5",
+            "line 20: element 3 has the node 5 twice",
+        ),
+        (
+            "*ELEMENT, TYPE=CPE4\n1, 1, 2, 5, 4",
+            "line 20: the element 1 occurs twice",
+        ),
+        (
+            "*ELEMENT, TYPE=C3D6\n3, 1, 2, 5",
+            "line 19: elements of type C3D6 aren't supported; expected one of C3D4",
+        ),
+        (
+            "*ELEMENT\n3, 1, 2, 5",
+            "line 19: *ELEMENT has no TYPE; expected TYPE=",
+        ),
+        (
+            "*NSET, NSET=a\nb",
+            "line 20: there is no node and no set of nodes 'b'",
+        ),
+        (
+            "*ELSET, ELSET=a\n7",
+            "line 20: there is no element and no set of elements '7'",
+        ),
+        (
+            "*ELSET, ELSET=a, GENERATE\n1, 2, 0",
+            "line 20: expected first, last and increment, a positive integer",
+        ),
+        (
+            "*ELSET, ELSET=a, INSTANCE=i\n1",
+            "line 20: there is no instance 'i'",
+        ),
+        (
+            "*SURFACE, NAME=a\nLeft, S5",
+            "line 20: element 1, a quadrilateral of 4 nodes, has no face `S5`; expected S1 to S4",
+        ),
+        ("*SURFACE, NAME=a\nLeft, SPOS", "has no face `SPOS`"),
+        (
+            "*SURFACE, NAME=a, TYPE=CUTTING SURFACE\n1",
+            "line 19: the surface 'a' isn't made of faces",
+        ),
+        (
+            "*NGEN\n1, 3, 1",
+            "line 19: *NGEN isn't read; expected a deck that lists all nodes",
+        ),
+        ("*INSTANCE, NAME=a, PART=b", "line 19: there is no part 'b'"),
+        ("*PART, NAME=b", "the deck ends within the part 'B'"),
+        ("*INCLUDE, INPUT=none.inp", "none.inp: can't be read"),
+        (
+            "*INCLUDE, INPUT=part.inp",
+            "files are included in each other",
+        ),
+    ] {
+        let said = read(&format!("{SQUARES}{more}\n")).unwrap_err();
+        assert!(said.contains(expected), "{more}: {said}");
+    }
+    for (deck, expected) in [
+        (
+            "12 4 1 0 0\n1 0 0 0\n",
+            "part.inp: line 1: expected a keyword, such as *NODE",
+        ),
+        (
+            "",
+            "part.inp: the deck has no cells; expected *ELEMENT of type C3D4",
+        ),
+        (
+            "*NODE\n1, 0., 0.\n2, 1., 0.\n*ELEMENT, TYPE=T2D2\n1, 1, 2\n",
+            "has no cells",
+        ),
+    ] {
+        let said = read(deck).unwrap_err();
+        assert!(said.contains(expected), "{said}");
+    }
+    let said = read_all(&[
+        ("a.inp", "*INCLUDE, INPUT=b.inp"),
+        ("b.inp", "** \n*NODE\n1, x"),
+    ])
+    .unwrap_err();
+    assert!(said.starts_with("b.inp: line 3: "), "{said}");
+}
+
+#[test]
+fn no_damage_makes_the_reader_panic() {
+    let deck = format!("{SQUARES}*NSET, NSET=n, GENERATE\n1, 3, 1\n*SURFACE, NAME=s\nLeft, S1\n");
+    for cut in (0..deck.len()).filter(|&cut| deck.is_char_boundary(cut)) {
+        let _ = read(&deck[..cut]);
+        let changed = format!("{}9{}", &deck[..cut], &deck[cut..]);
+        let _ = read(&changed);
+        let lost = format!(
+            "{}{}",
+            &deck[..cut],
+            deck.get(cut + 1..).unwrap_or_default()
+        );
+        let _ = read(&lost);
+    }
+}
