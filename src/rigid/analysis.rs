@@ -187,13 +187,16 @@ impl Kinematics {
     /// all loads are `scale`; if not, it takes longer to find out.
     fn rests(&self, rows: &[RigidRow], load: &DVector<f64>, scale: f64) -> bool {
         let bodies = |rows: &mut dyn Iterator<Item = &RigidRow>| {
-            ManyBodies::new(self.len, rows.map(|row| self.sparse_row(row)).collect())
+            ManyBodies::new(
+                &self.centers,
+                rows.map(|row| self.sparse_row(row)).collect(),
+            )
         };
         let mut normals = rows.iter().filter(|row| row.friction.is_none());
-        let pressing = bodies(&mut normals);
-        let rest = pressing.rest(load.as_slice(), &vec![0.0; pressing.len()]);
+        let rest = bodies(&mut normals)
+            .and_then(|pressing| pressing.rest(load.as_slice(), &vec![0.0; pressing.len()]));
         rest.is_some_and(|rest| rest.unbalanced <= UNDECIDED * scale)
-            && bodies(&mut rows.iter()).hold_all()
+            && bodies(&mut rows.iter()).is_some_and(|all| all.hold_all())
     }
 
     fn ill_posed(

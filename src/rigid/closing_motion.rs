@@ -186,7 +186,7 @@ fn rest(
                 (sparse, if *left <= touching { 0.0 } else { *left })
             })
             .unzip();
-        let rest = ManyBodies::new(load.len(), rows).rest(load.as_slice(), &gaps);
+        let rest = ManyBodies::new(&kinematics.centers, rows)?.rest(load.as_slice(), &gaps);
         rest.filter(|rest| rest.unbalanced <= missing * load.norm())
     };
     match with(touching, BALANCED) {

@@ -20,6 +20,8 @@ pub(super) struct Kinematics {
     bases: Vec<DMatrix<f64>>,
     /// First unknown of each body.
     first: Vec<usize>,
+    /// The center of the body of each unknown (m).
+    pub centers: Vec<[f64; 3]>,
     /// Number of unknowns.
     pub len: usize,
 }
@@ -59,16 +61,17 @@ impl Kinematics {
             })
             .collect();
         let mut first = Vec::with_capacity(bases.len());
-        let mut len = 0;
-        for basis in &bases {
-            first.push(len);
-            len += basis.ncols();
+        let mut centers = Vec::new();
+        for (body, basis) in bodies.iter().zip(&bases) {
+            first.push(centers.len());
+            centers.extend(std::iter::repeat_n(body.frame.center, basis.ncols()));
         }
         Self {
             dim,
             bases,
             first,
-            len,
+            len: centers.len(),
+            centers,
         }
     }
 

@@ -5,8 +5,11 @@
 //!
 //! is how the bodies come to rest: the forces λ ≥ 0 on its conditions balance the load up to ε y, Bᵀ λ = f − ε y.
 
-use std::collections::{BTreeSet, VecDeque};
+use faer::Par;
 
+use crate::schur::factor::BoundaryLastCholesky;
+use crate::schur::ordering::nested_dissection;
+use crate::schur::pattern::{Cliques, LowerPattern, SparseSymmetric};
 use crate::vector::{dot, largest};
 
 /// Motions from which on there are many.
@@ -25,18 +28,18 @@ const HELD: f64 = 1e-12;
 /// Steps of inverse iteration that find it within a factor of some few.
 const ITERATIONS: usize = 12;
 
-/// A row of B, by ascending unknowns.
+/// A row of B.
 pub(super) type SparseRow = Vec<(usize, f64)>;
 
 /// Conditions against the motions of many bodies.
 #[derive(Debug)]
 pub(super) struct ManyBodies {
-    /// B, its unknowns in an order that leaves the envelope of BᵀB small.
+    /// B, its unknowns in the order in which they are eliminated.
     rows: Vec<SparseRow>,
     /// Where that order has every unknown.
     place: Vec<usize>,
-    /// First unknown that shares a condition with each one, in that order.
-    first: Vec<usize>,
+    /// BᵀB's.
+    pattern: LowerPattern,
 }
 
 /// How bodies come to rest.
@@ -49,19 +52,22 @@ pub(super) struct Rest {
 }
 
 impl ManyBodies {
-    /// The conditions `rows` against `n` unknown motions.
-    pub fn new(n: usize, mut rows: Vec<SparseRow>) -> Self {
-        let place = order(n, &rows);
-        let mut first: Vec<usize> = (0..n).collect();
-        for row in &mut rows {
-            row.iter_mut().for_each(|(i, _)| *i = place[*i]);
-            row.sort_unstable_by_key(|&(i, _)| i);
-            if let Some(&(lowest, _)) = row.first() {
-                row.iter()
-                    .for_each(|&(i, _)| first[i] = first[i].min(lowest));
-            }
+    /// The conditions `rows` against unknown motions of bodies at these `points`; `None` where they are too many for
+    /// a sparse matrix.
+    pub fn new(points: &[[f64; 3]], mut rows: Vec<SparseRow>) -> Option<Self> {
+        let order = nested_dissection(points, &cliques(&rows));
+        let mut place = vec![0; points.len()];
+        for (at, &i) in order.iter().enumerate() {
+            place[i as usize] = at;
         }
-        Self { rows, place, first }
+        for (i, _) in rows.iter_mut().flatten() {
+            *i = place[*i];
+        }
+        Some(Self {
+            pattern: LowerPattern::new(points.len(), &cliques(&rows))?,
+            rows,
+            place,
+        })
     }
 
     /// Number of conditions.
@@ -71,24 +77,23 @@ impl ManyBodies {
 
     /// Whether the conditions certainly hold every motion, were they all closed; if not, some may be free.
     pub fn hold_all(&self) -> bool {
-        let mut gram = Envelope::zeros(&self.first);
-        gram.add_products(&self.rows, |_| 1.0);
-        let size = gram.norm();
-        if !gram.factorize(HELD) {
+        let n = self.place.len();
+        let gram = self.products(|_| 1.0, 0.0);
+        let mut row_sums = vec![0.0; n];
+        gram.multiply_add_absolute(&vec![1.0; n], &mut row_sums);
+        let Some(factor) = factorized(&gram).filter(|factor| factor.smallest_pivot() > HELD) else {
             return false;
-        }
+        };
         // No motion is orthogonal to this one for a reason.
-        let mut x: Vec<f64> = (0..self.first.len())
-            .map(|i| 1.0 + (12.9898 * i as f64).sin())
-            .collect();
+        let mut x: Vec<f64> = (0..n).map(|i| 1.0 + (12.9898 * i as f64).sin()).collect();
         let mut smallest = f64::INFINITY;
         for _ in 0..ITERATIONS {
             let before = dot(&x, &x).sqrt();
             x.iter_mut().for_each(|x| *x /= before);
-            gram.solve(&mut x);
+            factor.solve(&mut x);
             smallest = 1.0 / dot(&x, &x).sqrt();
         }
-        smallest > HELD * size
+        smallest > HELD * largest(&row_sums)
     }
 
     /// How the bodies come to rest under `load` where the conditions have these `gaps`; nothing if that wasn't found.
@@ -140,12 +145,8 @@ impl ManyBodies {
                     unbalanced: force * missing.map(|r| r * r).sum::<f64>().sqrt(),
                 });
             }
-            let mut matrix = Envelope::zeros(&self.first);
-            matrix.add_products(&self.rows, |j| point.lambda[j] / point.left[j]);
-            matrix.add_to_diagonal(SPRING);
-            if !matrix.factorize(0.0) {
-                return None;
-            }
+            let matrix = self.products(|j| point.lambda[j] / point.left[j], SPRING);
+            let matrix = factorized(&matrix)?;
             let products = point.left.iter().zip(&point.lambda).map(|(s, l)| -s * l);
             let aim: Vec<f64> = products.collect();
             let predicted = point.change(self, &matrix, &residual, &aim);
@@ -162,9 +163,23 @@ impl ManyBodies {
         None
     }
 
+    /// Bᵀ diag(`weight`) B, and a `spring` on its diagonal.
+    fn products(&self, weight: impl Fn(usize) -> f64, spring: f64) -> SparseSymmetric {
+        let mut matrix = SparseSymmetric::zeros(self.pattern.clone());
+        for (j, row) in self.rows.iter().enumerate() {
+            let unknowns: Vec<u32> = row.iter().map(|&(i, _)| i as u32).collect();
+            let weight = weight(j);
+            matrix.add(&unknowns, |a, b| weight * row[a].1 * row[b].1);
+        }
+        for i in 0..self.place.len() as u32 {
+            matrix.add(&[i], |_, _| spring);
+        }
+        matrix
+    }
+
     /// Bᵀ λ.
     fn actions(&self, lambda: &[f64]) -> Vec<f64> {
-        let mut actions = vec![0.0; self.first.len()];
+        let mut actions = vec![0.0; self.place.len()];
         for (row, lambda) in self.rows.iter().zip(lambda) {
             row.iter().for_each(|&(i, b)| actions[i] += b * lambda);
         }
@@ -178,45 +193,15 @@ impl ManyBodies {
     }
 }
 
-/// An order of `n` unknowns in which those that share a row are near each other, by Cuthill and McKee: where each is.
-fn order(n: usize, rows: &[SparseRow]) -> Vec<usize> {
-    let mut neighbours: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); n];
-    for row in rows {
-        for &(i, _) in row {
-            neighbours[i].extend(row.iter().map(|&(j, _)| j));
-        }
-    }
-    const NOWHERE: usize = usize::MAX;
-    let mut place = vec![NOWHERE; n];
-    let mut placed = 0;
-    for seed in 0..n {
-        if place[seed] != NOWHERE {
-            continue;
-        }
-        // What is farthest from anything is at an end.
-        let end = *walk(&neighbours, seed).last().unwrap_or(&seed);
-        for i in walk(&neighbours, end) {
-            place[i] = placed;
-            placed += 1;
-        }
-    }
-    place
+/// The unknowns that rows share.
+fn cliques(rows: &[SparseRow]) -> Cliques {
+    let mut cliques = Cliques::default();
+    (rows.iter()).for_each(|row| cliques.push(row.iter().map(|&(i, _)| i as u32)));
+    cliques
 }
 
-/// All that is connected with `start`, the nearest first.
-fn walk(neighbours: &[BTreeSet<usize>], start: usize) -> Vec<usize> {
-    let mut is_known = vec![false; neighbours.len()];
-    is_known[start] = true;
-    let (mut queue, mut all) = (VecDeque::from([start]), Vec::new());
-    while let Some(i) = queue.pop_front() {
-        all.push(i);
-        for &j in &neighbours[i] {
-            if !std::mem::replace(&mut is_known[j], true) {
-                queue.push_back(j);
-            }
-        }
-    }
-    all
+fn factorized(matrix: &SparseSymmetric) -> Option<BoundaryLastCholesky> {
+    BoundaryLastCholesky::new(matrix, matrix.pattern.n(), Par::Seq).ok()
 }
 
 /// An interior point, or a change of one.
@@ -255,7 +240,7 @@ impl Point {
     fn change(
         &self,
         bodies: &ManyBodies,
-        matrix: &Envelope<'_>,
+        matrix: &BoundaryLastCholesky,
         residual: &Residual,
         aim: &[f64],
     ) -> Self {
@@ -296,92 +281,6 @@ impl Point {
         ];
         for (x, dx) in lists {
             x.iter_mut().zip(dx).for_each(|(x, dx)| *x += part * dx);
-        }
-    }
-}
-
-/// A symmetric matrix, each row from its first entry that isn't 0 to the diagonal; or its Cholesky factor.
-struct Envelope<'a> {
-    first: &'a [usize],
-    rows: Vec<Vec<f64>>,
-}
-
-impl<'a> Envelope<'a> {
-    fn zeros(first: &'a [usize]) -> Self {
-        let row = |(i, &first): (usize, &usize)| vec![0.0; i - first + 1];
-        let rows = first.iter().enumerate().map(row).collect();
-        Self { first, rows }
-    }
-
-    /// Adds Bᵀ diag(`weight`) B.
-    fn add_products(&mut self, rows: &[SparseRow], weight: impl Fn(usize) -> f64) {
-        for (number, row) in rows.iter().enumerate() {
-            let weight = weight(number);
-            for (k, &(i, b_i)) in row.iter().enumerate() {
-                for &(j, b_j) in &row[..=k] {
-                    self.rows[i][j - self.first[i]] += weight * b_i * b_j;
-                }
-            }
-        }
-    }
-
-    fn add_to_diagonal(&mut self, value: f64) {
-        for row in &mut self.rows {
-            row.iter_mut()
-                .next_back()
-                .into_iter()
-                .for_each(|d| *d += value);
-        }
-    }
-
-    /// A bound of the largest eigenvalue.
-    fn norm(&self) -> f64 {
-        let mut sums = vec![0.0; self.rows.len()];
-        for (i, row) in self.rows.iter().enumerate() {
-            for (j, a) in (self.first[i]..).zip(row) {
-                sums[i] += a.abs();
-                if j < i {
-                    sums[j] += a.abs();
-                }
-            }
-        }
-        largest(&sums)
-    }
-
-    /// A = L Lᵀ; whether all pivots are more than `least` of the diagonal.
-    fn factorize(&mut self, least: f64) -> bool {
-        for i in 0..self.rows.len() {
-            let (before, rest) = self.rows.split_at_mut(i);
-            let (first, row) = (self.first[i], &mut rest[0]);
-            for j in first..i {
-                let common = first.max(self.first[j]);
-                let of_column = &before[j][common - self.first[j]..];
-                let known = dot(&row[common - first..j - first], &of_column[..j - common]);
-                row[j - first] = (row[j - first] - known) / of_column[j - common];
-            }
-            let diagonal = row[i - first];
-            let pivot = diagonal - dot(&row[..i - first], &row[..i - first]);
-            if pivot.is_nan() || pivot <= least * diagonal {
-                return false;
-            }
-            row[i - first] = pivot.sqrt();
-        }
-        true
-    }
-
-    /// x ← A⁻¹ x.
-    fn solve(&self, x: &mut [f64]) {
-        for (i, row) in self.rows.iter().enumerate() {
-            let (off, first) = (row.len() - 1, self.first[i]);
-            x[i] = (x[i] - dot(&row[..off], &x[first..i])) / row[off];
-        }
-        for (i, row) in self.rows.iter().enumerate().rev() {
-            let (off, first) = (row.len() - 1, self.first[i]);
-            x[i] /= row[off];
-            let x_i = x[i];
-            for (x, l) in x[first..i].iter_mut().zip(row) {
-                *x -= l * x_i;
-            }
         }
     }
 }

@@ -50,7 +50,8 @@ impl Scene {
         if free.is_empty() && kinematics.len >= MANY {
             let held = (0..conditions.len()).filter(|&j| self.holds(j, conditions));
             let rows = held.map(|j| kinematics.sparse_row(&self.rows[j]));
-            if ManyBodies::new(kinematics.len, rows.collect()).hold_all() {
+            let bodies = ManyBodies::new(&kinematics.centers, rows.collect());
+            if bodies.is_some_and(|bodies| bodies.hold_all()) {
                 return ReleasedModes::default();
             }
         }
