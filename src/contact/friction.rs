@@ -10,6 +10,8 @@ mod discs;
 mod lemke;
 mod linear;
 mod other;
+#[cfg(test)]
+mod points;
 
 use serde::{Deserialize, Serialize};
 

@@ -261,11 +261,6 @@ impl CondensedContact {
         self.diagonal.len()
     }
 
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.diagonal.is_empty()
-    }
-
     /// The law of a cluster in contact.
     pub fn new(condensed: &Condensed, limits: &Limits) -> Self {
         Self {

@@ -1,115 +1,7 @@
 use faer::Mat;
 
+use super::points::{COULOMB, GIVEN, Points};
 use super::*;
-use crate::contact::dependent::DependentConstraints;
-use crate::contact::limits::Beside;
-
-/// Points with a normal and a tangential jump each, normals first, on a random stiffness.
-struct Points {
-    h: Mat<f64>,
-    diagonal: Vec<f64>,
-    c: Vec<f64>,
-    bounds: Vec<f64>,
-    rows: DependentConstraints,
-    tangents: Vec<TangentialLimit>,
-}
-
-fn noise(seed: usize) -> f64 {
-    2.0 * ((seed as f64 * 78.233).sin() * 43758.5453).fract().abs() - 1.0
-}
-
-impl Points {
-    fn new(points: usize, seed: usize, bound: ForceBound) -> Self {
-        let m = 2 * points;
-        let a = Mat::from_fn(m, m, |i, j| noise(seed + 7 * i + 131 * j));
-        let mut h = a.transpose() * &a;
-        for i in 0..m {
-            h[(i, i)] += 2.0;
-        }
-        let tangent = |p: usize| TangentialLimit {
-            limit: points + p,
-            normal: Some(p),
-            bound,
-            beside: Beside::Nothing,
-        };
-        Self {
-            diagonal: (0..m).map(|i| h[(i, i)]).collect(),
-            h,
-            c: (0..m).map(|i| 3.0 * noise(seed + 1000 + i)).collect(),
-            bounds: (0..m).map(|i| 0.1 * noise(seed + 2000 + i)).collect(),
-            rows: DependentConstraints::default(),
-            tangents: (0..points).map(tangent).collect(),
-        }
-    }
-
-    fn solve(&self, status: &mut [Status]) -> ContactSolution {
-        self.with(|problem| problem.solve(status))
-    }
-
-    fn with<T>(&self, ask: impl FnOnce(&FrictionProblem<'_>) -> T) -> T {
-        let m = self.c.len();
-        let c_scale: Vec<f64> = self.c.iter().map(|c| c.abs()).collect();
-        ask(&FrictionProblem {
-            contact: ContactProblem {
-                h: self.h.as_ref(),
-                diagonal: &self.diagonal,
-                c: &self.c,
-                c_scale: &c_scale,
-                rows: &self.rows,
-                bounds: &self.bounds,
-                center: &vec![0.0; m],
-                scale: 1.0,
-            },
-            tangents: &self.tangents,
-        })
-    }
-
-    /// The value of every limit: jumps, then dependent rows.
-    fn values(&self, jumps: &[f64]) -> Vec<f64> {
-        let rows = (0..self.rows.len()).map(|j| self.rows.value(j, jumps));
-        jumps.iter().copied().chain(rows).collect()
-    }
-
-    /// The largest violation of equilibrium and of the laws.
-    fn violation(&self, solution: &ContactSolution) -> f64 {
-        let (t, forces) = (&solution.jumps, &solution.forces);
-        let m = t.len();
-        let mut worst: f64 = 0.0;
-        let mut left = self.c.clone();
-        self.rows.subtract_transposed(&forces[m..], &mut left);
-        for i in 0..m {
-            let held: f64 = (0..m).map(|j| self.h[(i, j)] * t[j]).sum();
-            worst = worst.max((left[i] - held - forces[i]).abs());
-        }
-        let values = self.values(t);
-        let is_tangential = |i: usize| self.tangents.iter().find(|tangent| tangent.limit == i);
-        for (i, (&value, &force)) in values.iter().zip(forces).enumerate() {
-            let gap = self.bounds[i] - value;
-            let violation = match is_tangential(i) {
-                None => (-gap).max(-force).max((gap * force).abs()),
-                Some(tangent) => {
-                    let normal = tangent.normal.map_or(0.0, |n| forces[n]);
-                    let bound = tangent.bound.at(normal, normal > 0.0);
-                    let opposed = bound * gap.abs() + force * gap;
-                    (force.abs() - bound).max(opposed.abs())
-                }
-            };
-            worst = worst.max(violation);
-        }
-        worst
-    }
-}
-
-const COULOMB: ForceBound = ForceBound {
-    coefficient: 0.3,
-    cohesion: 0.0,
-    only_closed: true,
-};
-const GIVEN: ForceBound = ForceBound {
-    coefficient: 0.0,
-    cohesion: 0.4,
-    only_closed: false,
-};
 
 #[test]
 fn equilibrium_and_every_law_hold_at_random_points() {
@@ -117,11 +9,7 @@ fn equilibrium_and_every_law_hold_at_random_points() {
     for seed in 0..200 {
         let bound = [COULOMB, GIVEN][seed % 2];
         let points = Points::new(1 + seed % 9, 17 * seed, bound);
-        let mut status = vec![Status::Closed; points.c.len()];
-        let solution = points.solve(&mut status);
-        assert!(solution.converged, "seed {seed}");
-        let violation = points.violation(&solution);
-        assert!(violation < 1e-11, "seed {seed}: {violation}");
+        let (_, status) = points.solved(&format!("seed {seed}"), 1e-11);
         for status in &status[points.tangents.len()..] {
             seen[*status as usize] += 1;
         }
@@ -141,11 +29,7 @@ fn cohesion_holds_what_is_pressed() {
         for c in &mut points.c[..1 + seed % 9] {
             *c += 12.0;
         }
-        let mut status = vec![Status::Closed; points.c.len()];
-        let solution = points.solve(&mut status);
-        assert!(solution.converged, "seed {seed}");
-        let violation = points.violation(&solution);
-        assert!(violation < 1e-11, "seed {seed}: {violation}");
+        points.solved(&format!("seed {seed}"), 1e-11);
     }
 }
 
@@ -185,17 +69,13 @@ fn laws_of_dependent_jumps_hold_too() {
     let mut slipping = 0;
     for seed in 0..100 {
         let mut points = Points::new(2, 13 * seed, COULOMB);
-        points.h = points.h.submatrix(0, 0, 2, 2).to_owned();
-        points.diagonal.truncate(2);
+        let h = points.h.clone();
+        points.set_stiffness(2, |i, j| h[(i, j)]);
         points.c.truncate(2);
         points.rows.push(vec![(1, -1.0)]);
         points.rows.push(vec![(0, 1.0)]);
         points.bounds.fill(0.0);
-        let mut status = vec![Status::Closed; 4];
-        let solution = points.solve(&mut status);
-        assert!(solution.converged, "seed {seed}");
-        let violation = points.violation(&solution);
-        assert!(violation < 1e-9, "seed {seed}: {violation}");
+        let (_, status) = points.solved(&format!("seed {seed}"), 1e-9);
         let slips = |status: &&Status| status.sign() != 0.0;
         slipping += status.iter().filter(slips).count();
     }
@@ -205,8 +85,7 @@ fn laws_of_dependent_jumps_hold_too() {
 #[test]
 fn a_block_slides_where_the_slope_is_steeper_than_its_friction() {
     let mut points = Points::new(1, 3, COULOMB);
-    points.h = Mat::from_fn(2, 2, |i, j| if i == j { 10.0 } else { 0.0 });
-    points.diagonal = vec![10.0; 2];
+    points.set_stiffness(2, |i, j| if i == j { 10.0 } else { 0.0 });
     points.bounds = vec![0.0; 2];
     for (pull, expected) in [
         (0.3 - 1e-10, Status::Closed),
@@ -229,8 +108,7 @@ fn coulomb_s_friction_may_have_several_solutions() {
     };
     for (coupling, opened) in [(0.9, Some(0.5 / 0.19)), (0.3, None)] {
         let mut points = Points::new(1, 3, strong);
-        points.h = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 } else { coupling });
-        points.diagonal = vec![1.0; 2];
+        points.set_stiffness(2, |i, j| if i == j { 1.0 } else { coupling });
         points.bounds = vec![0.0; 2];
         points.c = vec![1.0, 1.4];
         let mut status = vec![Status::Closed; 2];
@@ -255,11 +133,7 @@ fn a_path_leads_where_exchanges_do_not() {
         };
         let mut points = Points::new(6 + seed % 15, 29 * seed + 3, bound);
         (0..points.c.len()).for_each(|i| points.h[(i, i)] -= 1.9);
-        let mut status = vec![Status::Closed; points.c.len()];
-        let solution = points.solve(&mut status);
-        assert!(solution.converged, "seed {seed}");
-        let violation = points.violation(&solution);
-        assert!(violation < 1e-10, "seed {seed}: {violation}");
+        let (solution, _) = points.solved(&format!("seed {seed}"), 1e-10);
         alone += usize::from(!solution.fell_back);
         let (reached, _) = points.with(|problem| problem.follow(0));
         let reached = reached.expect("the path ends");
@@ -278,8 +152,7 @@ fn a_contact_about_to_open_slips_under_part_of_its_cohesion() {
         only_closed: true,
     };
     let mut points = Points::new(1, 3, bound);
-    points.h = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 } else { -0.5 });
-    points.diagonal = vec![1.0; 2];
+    points.set_stiffness(2, |i, j| if i == j { 1.0 } else { -0.5 });
     points.bounds = vec![0.0; 2];
     points.c = vec![-0.75, 2.0];
     let mut status = vec![Status::Closed; 2];
