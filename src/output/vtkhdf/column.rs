@@ -1,8 +1,8 @@
 //! One dataset: an array with a row for each node, cell or condition.
 
 use bytemuck::Pod;
-use hdf5::{Dataset, Group, H5Type, Result};
-use ndarray::{ArrayView1, ArrayView2};
+use hdf5::{Dataset, Group, H5Type, Hyperslab, Result, SliceOrIndex};
+use ndarray::ArrayViewD;
 
 /// A row of a dataset: a number, or some.
 pub(crate) trait Row: Pod {
@@ -54,11 +54,11 @@ impl<R: Row> List for Vec<R> {
     }
 
     fn empty(&self, group: &Group, name: &str, rows: usize) -> Result<Dataset> {
-        empty::<R>(group, name, rows)
+        empty::<R>(group, name, 0, rows)
     }
 
     fn fill(&self, dataset: &Dataset, start: usize) -> Result<()> {
-        fill(dataset, start, self)
+        fill(dataset, 0, start, self)
     }
 }
 
@@ -70,35 +70,20 @@ pub(super) fn group(parent: &Group, name: &str) -> Result<Group> {
     }
 }
 
-/// A dataset of `rows` rows to be filled later, or that of an earlier run.
-pub(super) fn empty<R: Row>(group: &Group, name: &str, rows: usize) -> Result<Dataset> {
-    let new = || group.new_dataset::<R::Number>();
-    match R::WIDTH {
-        _ if group.link_exists(name) => group.dataset(name),
-        None => new().shape(rows).create(name),
-        Some(width) => new().shape((rows, width)).create(name),
-    }
-}
-
-/// A dataset of `rows` rows for each of some load `steps`, (steps, rows) or (steps, rows, width); a plain one
-/// where there are none.
-pub(super) fn empty_by_step<R: Row>(
+/// A dataset of `rows` rows to be filled later, or that of an earlier run; (steps, rows) or (steps, rows, width) where
+/// there are load `steps`.
+pub(super) fn empty<R: Row>(
     group: &Group,
     name: &str,
     steps: usize,
     rows: usize,
 ) -> Result<Dataset> {
-    match steps {
-        0 => empty::<R>(group, name, rows),
-        _ if group.link_exists(name) => group.dataset(name),
-        _ => {
-            let new = group.new_dataset::<R::Number>();
-            match R::WIDTH {
-                None => new.shape((steps, rows)).create(name),
-                Some(width) => new.shape((steps, rows, width)).create(name),
-            }
-        }
+    if group.link_exists(name) {
+        return group.dataset(name);
     }
+    let steps = (steps > 0).then_some(steps).into_iter();
+    let shape: Vec<usize> = steps.chain([rows]).chain(R::WIDTH).collect();
+    group.new_dataset::<R::Number>().shape(shape).create(name)
 }
 
 /// A column that is filled at once.
@@ -108,40 +93,19 @@ pub(super) fn whole<R: Row>(
     values: impl Iterator<Item = R>,
 ) -> Result<()> {
     let values: Vec<R> = values.collect();
-    fill(&empty::<R>(group, name, values.len())?, 0, &values)
+    fill(&empty::<R>(group, name, 0, values.len())?, 0, 0, &values)
 }
 
-/// Fills a dataset from row `start` on.
-pub(super) fn fill<R: Row>(dataset: &Dataset, start: usize, rows: &[R]) -> Result<()> {
+/// Fills what a dataset has of a load step from row `start` on; all of it where it has no steps.
+pub(super) fn fill<R: Row>(dataset: &Dataset, step: usize, start: usize, rows: &[R]) -> Result<()> {
     let numbers: &[R::Number] = bytemuck::cast_slice(rows);
-    let range = start..start + rows.len();
-    match R::WIDTH {
-        None => dataset.write_slice(ArrayView1::from(numbers), range),
-        Some(width) => {
-            let table = ArrayView2::from_shape((rows.len(), width), numbers);
-            dataset.write_slice(table.map_err(|why| why.to_string())?, (range, ..))
-        }
-    }
-}
-
-/// Fills what a dataset has of a load step from row `start` on; all of it where there are no steps.
-pub(super) fn fill_by_step<R: Row>(
-    dataset: &Dataset,
-    step: usize,
-    start: usize,
-    rows: &[R],
-) -> Result<()> {
-    let plain = 1 + usize::from(R::WIDTH.is_some());
-    if dataset.ndim() == plain {
-        return fill(dataset, start, rows);
-    }
-    let numbers: &[R::Number] = bytemuck::cast_slice(rows);
-    let range = start..start + rows.len();
-    match R::WIDTH {
-        None => dataset.write_slice(ArrayView1::from(numbers), (step, range)),
-        Some(width) => {
-            let table = ArrayView2::from_shape((rows.len(), width), numbers);
-            dataset.write_slice(table.map_err(|why| why.to_string())?, (step, range, ..))
-        }
-    }
+    let shape: Vec<usize> = [rows.len()].into_iter().chain(R::WIDTH).collect();
+    let step = (dataset.ndim() > shape.len()).then_some(SliceOrIndex::from(step));
+    let of_row = R::WIDTH.map(|_| SliceOrIndex::from(..));
+    let place = step
+        .into_iter()
+        .chain([SliceOrIndex::from(start..start + rows.len())]);
+    let place: Vec<SliceOrIndex> = place.chain(of_row).collect();
+    let values = ArrayViewD::from_shape(shape, numbers)?;
+    dataset.write_slice(values, Hyperslab::from(place))
 }

@@ -23,15 +23,9 @@ struct Table {
     force: Dataset,
     pressure: Dataset,
     status: Dataset,
-    /// Where the contact has friction.
-    friction: Option<FrictionColumns>,
+    /// Tangential force and slip, where the contact has friction.
+    friction: Option<[Dataset; 2]>,
     written: Vec<bool>,
-}
-
-#[derive(Debug)]
-struct FrictionColumns {
-    tangential_force: Dataset,
-    slip: Dataset,
 }
 
 impl ContactTables {
@@ -80,16 +74,11 @@ impl Table {
         let (name, rows) = (&contact.name, contact.conditions);
         let group =
             column::group(parent, name).map_err(|error| format!("contact '{name}': {error}"))?;
-        let tags = |name| column::empty::<i64>(&group, name, rows);
-        let vectors = |name| column::empty::<[f64; 3]>(&group, name, rows);
-        let states = |name| column::empty_by_step::<f64>(&group, name, steps, rows);
-        let jumps = |name| column::empty_by_step::<[f64; 3]>(&group, name, steps, rows);
-        let friction = || -> Result<FrictionColumns> {
-            Ok(FrictionColumns {
-                tangential_force: jumps("tangential_force")?,
-                slip: jumps("slip")?,
-            })
-        };
+        let tags = |name| column::empty::<i64>(&group, name, 0, rows);
+        let vectors = |name| column::empty::<[f64; 3]>(&group, name, 0, rows);
+        let states = |name| column::empty::<f64>(&group, name, steps, rows);
+        let jumps = |name| column::empty::<[f64; 3]>(&group, name, steps, rows);
+        let friction = || -> Result<_> { Ok([jumps("tangential_force")?, jumps("slip")?]) };
         Ok(Self {
             name: name.clone(),
             node_a: tags("node_a")?,
@@ -99,7 +88,7 @@ impl Table {
             gap: states("gap")?,
             force: states("force")?,
             pressure: states("pressure")?,
-            status: column::empty_by_step::<u8>(&group, "status", steps, rows)?,
+            status: column::empty::<u8>(&group, "status", steps, rows)?,
             friction: contact.has_friction.then(friction).transpose()?,
             written: vec![false; rows],
         })
@@ -114,13 +103,13 @@ impl Table {
             return Err(format!("contact '{name}' has {rows} conditions, none at {last}").into());
         };
         let tags = |column, of: fn(&ContactRow) -> i64| {
-            column::fill(column, start, &run.iter().map(of).collect::<Vec<_>>())
+            column::fill(column, 0, start, &run.iter().map(of).collect::<Vec<_>>())
         };
         let vectors = |table, of: fn(&ContactRow) -> [f64; 3]| {
-            column::fill(table, start, &run.iter().map(of).collect::<Vec<_>>())
+            column::fill(table, 0, start, &run.iter().map(of).collect::<Vec<_>>())
         };
         let reals = |column, of: fn(&ContactRow) -> f64| {
-            column::fill_by_step(column, step, start, &run.iter().map(of).collect::<Vec<_>>())
+            column::fill(column, step, start, &run.iter().map(of).collect::<Vec<_>>())
         };
         if step == 0 {
             tags(&self.node_a, |(point, _)| point.tag_a)?;
@@ -132,12 +121,12 @@ impl Table {
         reals(&self.force, |(_, state)| state.force)?;
         reals(&self.pressure, |(point, state)| state.force / point.area)?;
         let status: Vec<u8> = run.iter().map(|(_, state)| state.status()).collect();
-        column::fill_by_step(&self.status, step, start, &status)?;
-        if let Some(friction) = &self.friction {
+        column::fill(&self.status, step, start, &status)?;
+        if let Some([tangential_force, slip]) = &self.friction {
             let forces: Vec<_> = run.iter().map(|row| row.1.tangential_force).collect();
-            column::fill_by_step(&friction.tangential_force, step, start, &forces)?;
-            let slip: Vec<_> = run.iter().map(|row| row.1.slip).collect();
-            column::fill_by_step(&friction.slip, step, start, &slip)?;
+            column::fill(tangential_force, step, start, &forces)?;
+            let slips: Vec<_> = run.iter().map(|row| row.1.slip).collect();
+            column::fill(slip, step, start, &slips)?;
         }
         written.fill(true);
         Ok(())

@@ -58,7 +58,7 @@ impl Grid {
         }
         column::group(&group, "PointData")?;
         let subdomains = column::group(&group, "CellData")?;
-        let subdomains = column::empty::<i32>(&subdomains, "Subdomain", total.cells)?;
+        let subdomains = column::empty::<i32>(&subdomains, "Subdomain", 0, total.cells)?;
         let steps = layout.times.len().max(1);
         let none = SubdomainResults::default();
         let create = |(field, list): (Field, &dyn List)| {
@@ -130,7 +130,7 @@ impl Grid {
             let numbers: Vec<i32> = numbers
                 .flat_map(|(s, size)| repeat_n(s, size.cells))
                 .collect();
-            column::fill(&self.subdomains, size.cells, &numbers)?;
+            column::fill(&self.subdomains, 0, size.cells, &numbers)?;
         }
         self.written[first..end].fill(true);
         Ok(())
