@@ -20,37 +20,22 @@ impl Factors<'_> {
     /// Condenses `loads` on the blocks up to the clusters; returns the load of every node of this rank.
     /// Collective.
     pub fn condense(&self, mut loads: BTreeMap<usize, Vec<f64>>) -> BTreeMap<usize, CondensedLoad> {
-        let (plan, condensed) = (self.context.plan, self.condensed);
+        let (context, condensed) = (&self.context, self.condensed);
         let mut of_nodes: BTreeMap<usize, CondensedLoad> = BTreeMap::new();
+        let mut arrived = BTreeMap::new();
         for v in self.nodes() {
+            let children = &context.plan.tree.nodes[v].children;
+            for &child in children {
+                let load = of_nodes.get(&child).map(|load| load.boundary().to_vec());
+                carry(context, child, Some(v), load, &mut arrived, Direction::Up);
+            }
             if let Some(block) = condensed.blocks.get(&v) {
                 let load = loads.remove(&v).unwrap_or_default();
                 of_nodes.insert(v, block.factor.condense(load));
-                continue;
-            }
-            let mut arrived = BTreeMap::new();
-            self.exchange(
-                v,
-                |child| {
-                    of_nodes
-                        .get(&child)
-                        .map_or_else(Vec::new, |l| l.boundary().to_vec())
-                },
-                |child, load| {
-                    arrived.insert(child, load);
-                },
-                Direction::Up,
-            );
-            if let Some(merge) = condensed.merges.get(&v) {
-                let children = plan.tree.nodes[v].children.iter();
-                let of_children: Vec<&[f64]> = children
-                    .map(|child| match (of_nodes.get(child), arrived.get(child)) {
-                        (Some(own), _) => own.boundary(),
-                        (None, load) => load.map_or(&[][..], Vec::as_slice),
-                    })
-                    .collect();
-                let load = merge.condense(&of_children);
-                of_nodes.insert(v, load);
+            } else if let Some(merge) = condensed.merges.get(&v) {
+                let of_children: Vec<&[f64]> =
+                    children.iter().map(|child| &arrived[child][..]).collect();
+                of_nodes.insert(v, merge.condense(&of_children));
             }
         }
         of_nodes
@@ -63,34 +48,23 @@ impl Factors<'_> {
         loads: &BTreeMap<usize, CondensedLoad>,
         mut boundaries: BTreeMap<usize, Vec<f64>>,
     ) -> BTreeMap<usize, Vec<f64>> {
-        let (plan, condensed) = (self.context.plan, self.condensed);
+        let (context, condensed) = (&self.context, self.condensed);
         let mut of_blocks = BTreeMap::new();
         for v in self.nodes().into_iter().rev() {
-            let own = boundaries.remove(&v);
-            if let (Some(block), Some(x), Some(load)) =
-                (condensed.blocks.get(&v), &own, loads.get(&v))
-            {
-                of_blocks.insert(v, block.factor.recover(load, x));
-                continue;
-            }
             let mut of_children: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-            if let (Some(merge), Some(x), Some(load)) =
-                (condensed.merges.get(&v), &own, loads.get(&v))
-            {
-                let children = plan.tree.nodes[v].children.iter().copied();
-                of_children.extend(children.zip(merge.recover(load, x).0));
+            let children = &context.plan.tree.nodes[v].children;
+            if let (Some(x), Some(load)) = (boundaries.remove(&v), loads.get(&v)) {
+                if let Some(block) = condensed.blocks.get(&v) {
+                    of_blocks.insert(v, block.factor.recover(load, &x));
+                } else if let Some(merge) = condensed.merges.get(&v) {
+                    let x = merge.recover(load, &x).0;
+                    of_children.extend(children.iter().copied().zip(x));
+                }
             }
-            let mut arrived = Vec::new();
-            self.exchange(
-                v,
-                |child| of_children.get(&child).cloned().unwrap_or_default(),
-                |child, x| arrived.push((child, x)),
-                Direction::Down,
-            );
-            let me = self.context.comm.rank();
-            of_children.retain(|&child, _| plan.node_owners[child] == me);
-            boundaries.extend(of_children);
-            boundaries.extend(arrived);
+            for &child in children {
+                let x = of_children.remove(&child);
+                carry(context, child, Some(v), x, &mut boundaries, Direction::Down);
+            }
         }
         of_blocks
     }
@@ -102,34 +76,42 @@ impl Factors<'_> {
             .flat_map(|c| self.context.plan.tree.subtree(c.node))
             .collect()
     }
+}
 
-    /// Sends what `make` makes for every child of v along the edge between them if it joins two ranks,
-    /// and `take`s it at the other end. Collective.
-    fn exchange(
-        &self,
-        v: usize,
-        make: impl Fn(usize) -> Vec<f64>,
-        mut take: impl FnMut(usize, Vec<f64>),
-        direction: Direction,
-    ) {
-        let owners = &self.context.plan.node_owners;
-        let across = self.context.plan.tree.nodes[v].children.iter().copied();
-        let across: Vec<usize> = across.filter(|&child| owners[child] != owners[v]).collect();
-        let ways = across.iter().map(|&child| match direction {
-            Direction::Up => (owners[child], owners[v]),
-            Direction::Down => (owners[v], owners[child]),
-        });
-        self.context.comm.route(
-            ways,
-            |i| Reals(make(across[i])),
-            |i, Reals(list)| take(across[i], list),
-        );
-    }
+/// Carries a vector of node v between its owner and that of its `parent`; where it has none, the owner keeps it.
+/// Collective.
+pub fn carry(
+    context: &Context<'_>,
+    v: usize,
+    parent: Option<usize>,
+    mut vector: Option<Vec<f64>>,
+    into: &mut BTreeMap<usize, Vec<f64>>,
+    direction: Direction,
+) {
+    let Context { comm, plan, .. } = *context;
+    let Some(parent) = parent else {
+        into.extend(vector.map(|vector| (v, vector)));
+        return;
+    };
+    let (here, above) = (plan.node_owners[v], plan.node_owners[parent]);
+    let way = match direction {
+        Direction::Up => (here, above),
+        Direction::Down => (above, here),
+    };
+    comm.route(
+        [way],
+        |_| Reals(vector.take().unwrap_or_default()),
+        |_, Reals(arrived)| {
+            into.insert(v, arrived);
+        },
+    );
 }
 
 /// Along the hierarchy.
-#[derive(Clone, Copy)]
-enum Direction {
+#[derive(Clone, Copy, Debug)]
+pub enum Direction {
+    /// From a node to the one that it is merged into.
     Up,
+    /// Back.
     Down,
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::fronts::{FrozenFront, FrozenFronts};
 use crate::bddc::solution::Accuracy;
-use crate::bytes::Reals;
+use crate::condense::substitute::{Direction, carry};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::schur::local::CondensedLoad;
@@ -69,7 +69,15 @@ impl FrozenFronts {
         let mut arrived: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         for cluster in &plan.clusters {
             let load = loads.remove(&cluster.node);
-            carry(context, cluster.node, load, &mut arrived, Direction::Up);
+            let parent = plan.merged_into(cluster.node);
+            carry(
+                context,
+                cluster.node,
+                parent,
+                load,
+                &mut arrived,
+                Direction::Up,
+            );
         }
         for &v in &self.nodes {
             let passed = self.fronts.get(&v).map(|front| {
@@ -88,7 +96,14 @@ impl FrozenFronts {
                 condensed.insert(v, (load, values));
                 kept
             });
-            carry(context, v, passed, &mut arrived, Direction::Up);
+            carry(
+                context,
+                v,
+                plan.merged_into(v),
+                passed,
+                &mut arrived,
+                Direction::Up,
+            );
         }
         let mut solution = FrozenSolution::default();
         let mut below: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
@@ -125,40 +140,13 @@ impl FrozenFronts {
             }
             for &child in &plan.tree.nodes[v].children {
                 let x = of_children.remove(&child);
-                carry(context, child, x, &mut below, Direction::Down);
+                carry(context, child, Some(v), x, &mut below, Direction::Down);
             }
         }
         below.retain(|&v, _| plan.node_owners[v] == context.comm.rank());
         solution.boundaries = below;
         solution
     }
-}
-
-/// Carries a vector of node v between its owner and that of the node above. Collective.
-fn carry(
-    context: &Context<'_>,
-    v: usize,
-    mut vector: Option<Vec<f64>>,
-    into: &mut BTreeMap<usize, Vec<f64>>,
-    direction: Direction,
-) {
-    let Context { comm, plan, .. } = *context;
-    let Some(parent) = plan.merged_into(v) else {
-        into.extend(vector.map(|vector| (v, vector)));
-        return;
-    };
-    let (here, above) = (plan.node_owners[v], plan.node_owners[parent]);
-    let way = match direction {
-        Direction::Up => (here, above),
-        Direction::Down => (above, here),
-    };
-    comm.route(
-        [way],
-        |_| Reals(vector.take().unwrap_or_default()),
-        |_, Reals(arrived)| {
-            into.insert(v, arrived);
-        },
-    );
 }
 
 impl FrozenFront {
@@ -189,11 +177,4 @@ impl FrozenFront {
         };
         self.open.iter().map(of_jump).collect()
     }
-}
-
-/// Along the hierarchy.
-#[derive(Clone, Copy)]
-enum Direction {
-    Up,
-    Down,
 }
