@@ -145,11 +145,6 @@ impl Dofs {
         self.interior + self.interface_dofs.len()
     }
 
-    /// Whether there is no unknown.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// The terms of a component of a node's displacement: unknown and coefficient.
     pub fn terms(&self, node: u32, component: usize) -> &[(u32, f64)] {
         let row = node as usize * self.dim + component;

@@ -40,12 +40,6 @@ impl BlockLoads {
         }
     }
 
-    /// The largest displacement that is prescribed (m).
-    pub fn largest_prescribed(&self) -> f64 {
-        let prescribed = self.supports.iter().map(|support| support.value.abs());
-        prescribed.fold(0.0, f64::max)
-    }
-
     /// The forces, node by node.
     pub fn nodal_forces(&self, block: &Block) -> Vec<f64> {
         let mut f = vec![0.0; block.nodes() * block.dim];

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::coupled::condense_laws;
 use super::numbering::Numbering;
-use super::solver::{DirectSolver, InterfaceSolver};
+use super::solver::DirectSolver;
 use crate::contact::pair::CondensedContact;
 use crate::error::Failure;
 use crate::rigid::energy::RigidBasis;
@@ -54,7 +54,7 @@ pub struct Interface {
     /// Which clusters are in contact.
     pub in_contact: Vec<bool>,
     /// What solves the bilateral problem.
-    pub solver: Box<dyn InterfaceSolver>,
+    pub solver: DirectSolver,
     condensed_laws: OnceCell<Mat<f64>>,
     smallest_pivot: f64,
     par: Par,
@@ -114,7 +114,7 @@ impl Interface {
             bilateral: sum,
             in_contact: in_contact.to_vec(),
             smallest_pivot: smallest_pivot.min(factor.smallest_pivot()),
-            solver: Box::new(DirectSolver::new(factor, par)),
+            solver: DirectSolver::new(factor, par),
             condensed_laws: OnceCell::new(),
             par,
         })

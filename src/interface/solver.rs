@@ -1,46 +1,9 @@
 //! The linear interface solve: A x = b with A = S_0 + S_CON' of the bilateral problem (16).
-//!
-//! All that sweeps know of it is [`InterfaceSolver`]; another solver is another file.
-
-use std::fmt::Debug;
 
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, MatMut, Par};
 
 use crate::schur::factor::BoundaryLastCholesky;
-
-/// What one solve takes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SolveCost {
-    /// Floating-point operations.
-    pub flops: f64,
-    /// Bytes that are kept for it.
-    pub bytes: f64,
-}
-
-/// Solves A x = b. On the root.
-pub trait InterfaceSolver: Debug {
-    /// x ← A⁻¹ x.
-    fn solve(&self, x: &mut [f64]);
-
-    /// X ← A⁻¹ X.
-    fn solve_many(&self, mut x: MatMut<'_, f64>) {
-        for j in 0..x.ncols() {
-            let mut column: Vec<f64> = x.as_ref().col(j).iter().copied().collect();
-            self.solve(&mut column);
-            for (x, solved) in x.as_mut().col_mut(j).iter_mut().zip(column) {
-                *x = solved;
-            }
-        }
-    }
-
-    /// H ← H − Wᵀ A⁻¹ W, of which the lower triangle counts; W has rows for the last unknowns only, the others
-    /// are 0.
-    fn condense(&self, w: Mat<f64>, h: MatMut<'_, f64>);
-
-    /// What a solve takes.
-    fn cost(&self) -> SolveCost;
-}
 
 /// A = L Lᵀ.
 #[derive(Debug)]
@@ -54,14 +17,15 @@ impl DirectSolver {
     pub fn new(factor: BoundaryLastCholesky, par: Par) -> Self {
         Self { factor, par }
     }
-}
 
-impl InterfaceSolver for DirectSolver {
-    fn solve(&self, x: &mut [f64]) {
+    /// x ← A⁻¹ x.
+    pub fn solve(&self, x: &mut [f64]) {
         self.factor.solve(x);
     }
 
-    fn condense(&self, mut w: Mat<f64>, h: MatMut<'_, f64>) {
+    /// H ← H − Wᵀ A⁻¹ W, of which the lower triangle counts; W has rows for the last unknowns only, the others
+    /// are 0.
+    pub fn condense(&self, mut w: Mat<f64>, h: MatMut<'_, f64>) {
         // Wᵀ A⁻¹ W = (L⁻¹ W)ᵀ L⁻¹ W takes half of a solve; rows above those of W stay 0.
         self.factor.forward_boundary(w.as_mut(), self.par);
         triangular::matmul(
@@ -75,14 +39,6 @@ impl InterfaceSolver for DirectSolver {
             -1.0,
             self.par,
         );
-    }
-
-    fn cost(&self) -> SolveCost {
-        let entries = self.factor.entries() as f64;
-        SolveCost {
-            flops: 4.0 * entries,
-            bytes: 8.0 * entries,
-        }
     }
 }
 
@@ -123,7 +79,7 @@ mod tests {
         solver().condense(w.clone(), h.as_mut());
         let whole = Mat::from_fn(N, 2, |i, j| if i < 2 { 0.0 } else { w[(i - 2, j)] });
         let mut x = whole.clone();
-        solver().solve_many(x.as_mut());
+        (0..2).for_each(|j| solver().solve(x.col_as_slice_mut(j)));
         let expected = whole.transpose() * x;
         for (i, j) in [(0, 0), (1, 0), (1, 1)] {
             assert!((h[(i, j)] + expected[(i, j)]).abs() < 1e-11, "{h:?}");

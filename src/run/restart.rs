@@ -177,10 +177,10 @@ pub fn keep(
         |_, Reals(of_group)| slips.push(of_group),
     );
     let write = |result: &mut ResultFile| -> Result<(), Failure> {
-        let kept = KeptRef {
+        let kept = Kept {
             run: Identity::new(settings)?,
-            steps,
-            interface: &state.interface,
+            steps: steps.to_vec(),
+            interface: state.interface.clone(),
             pairs,
             slips,
         };
@@ -190,14 +190,4 @@ pub fn keep(
         Ok(result.keep(&bytes)?)
     };
     context.comm.agree(result.map_or(Ok(()), write))
-}
-
-/// [`Kept`] as it is written.
-#[derive(Serialize)]
-struct KeptRef<'a> {
-    run: Identity,
-    steps: &'a [StepTotals],
-    interface: &'a Option<(Vec<f64>, Vec<Vec<Status>>)>,
-    pairs: Vec<PairState>,
-    slips: Vec<Vec<f64>>,
 }

@@ -133,11 +133,6 @@ impl BoundaryLastCholesky {
         }
     }
 
-    /// Number of entries of L.
-    pub fn entries(&self) -> usize {
-        self.values.len()
-    }
-
     /// X ← L_BB⁻¹ X, where X has a row for every unknown of B. Only where B was factorized.
     pub fn forward_boundary(&self, mut x: MatMut<'_, f64>, par: Par) {
         for panel in self.panels() {

@@ -31,23 +31,9 @@ impl Cliques {
         self.offsets.len() - 1
     }
 
-    /// Whether there is no list.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// List `c`.
     pub fn get(&self, c: usize) -> &[u32] {
         &self.members[self.offsets[c]..self.offsets[c + 1]]
-    }
-
-    /// The same lists with every unknown renamed.
-    #[must_use]
-    pub fn renamed(&self, name: impl Fn(u32) -> u32) -> Self {
-        Self {
-            offsets: self.offsets.clone(),
-            members: self.members.iter().map(|&i| name(i)).collect(),
-        }
     }
 
     /// For each of `n` unknowns the lists that hold it, as offsets and list numbers.
@@ -139,11 +125,6 @@ impl LowerPattern {
     /// Number of entries.
     pub fn len(&self) -> usize {
         self.rows.len()
-    }
-
-    /// Whether it has no entry.
-    pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
     }
 
     /// The places of column `j` among all entries.
