@@ -6,7 +6,7 @@ use crate::support::assembled::Assembled;
 use crate::support::blocks::Blocks;
 use crate::support::close::close;
 use crate::support::random::Random;
-use crate::support::scenes::{BODIES, JOINT, built_in_model, model};
+use crate::support::scenes::{BODIES, HELD, JOINT, built_in_model, model};
 use crate::support::solution::{ContactPoint, Solution};
 use crate::support::solver::solve;
 use crate::support::stress::judge::Findings;
@@ -113,11 +113,7 @@ fn a_body_whose_load_is_in_balance_stays_where_it_is() {
             .rectangle("lower", [0.0, 2.0], [0.0, 1.0], [8, 4])
             .rectangle("upper", [0.5, 1.5], [1.0, 2.0], [4, 7]);
         let text = format!(
-            "{BODIES}
-            [[displacement]]
-            on = 'lower bottom'
-            x = 0.0
-            y = 0.0
+            "{BODIES}{HELD}
             [[pressure]]
             on = 'lower left'
             value = 1e6

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use crate::support::blocks::{Blocks, moved};
 use crate::support::close::close;
-use crate::support::scenes::{BODIES, built_in_model, model, two_block_scene, two_blocks};
+use crate::support::scenes::{BODIES, HELD, built_in_model, model, two_block_scene, two_blocks};
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, solve};
 
@@ -80,11 +80,7 @@ fn a_body_between_load_supports_and_contact_is_balanced() {
         let mesh = moved(blocks.mesh, |[x, y]| [cos * x - sin * y, sin * x + cos * y]);
         for sides in ["'upper bottom', 'lower top'", "'lower top', 'upper bottom'"] {
             let text = format!(
-                "{BODIES}
-                [[displacement]]
-                on = 'lower bottom'
-                x = 0.0
-                y = 0.0
+                "{BODIES}{HELD}
                 [[bilateral]]
                 on = 'upper left'
                 [[pressure]]

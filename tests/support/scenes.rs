@@ -18,7 +18,15 @@ bodies.lower.material = 'rock'
 bodies.upper.material = 'steel'
 ";
 
-/// The lower block held at its bottom, the upper one at its left side against sliding.
+/// The lower block held at its bottom.
+pub const HELD: &str = "
+[[displacement]]
+on = 'lower bottom'
+x = 0.0
+y = 0.0
+";
+
+/// The same, the upper one at its left side against sliding.
 pub const SUPPORTS: &str = "
 [[displacement]]
 on = 'lower bottom'

@@ -9,6 +9,9 @@ use std::collections::BTreeMap;
 use contact_dd_partition::mesh::{Mesh, gmsh};
 use file::{FORMS, Form, version_2_2, version_4_1};
 use proptest::prelude::*;
+
+use crate::table::cases;
+
 fn groups(mesh: &Mesh) -> BTreeMap<&str, (usize, &[u32])> {
     let groups = mesh.groups.iter();
     groups
@@ -86,82 +89,48 @@ fn complaint(from: &str, to: &str) -> String {
     gmsh::parse(damaged.as_bytes()).unwrap_err().to_string()
 }
 
+const WRONG: &str = r#"
+4.1 0 8 => 4 0 8
+    line 2 in $MeshFormat: MSH version 4 isn't
+$MeshFormat => $Nodes
+    expected $MeshFormat first, found $Nodes
+90 8 10 40 => 90 8 11 40
+    line 24 in $Elements: element 90 names node 11
+90 8 10 40 => 90 8 8 40
+    element 90 has no area: its nodes 8, 8, 40
+90 8 10 40 => 20 8 10 40
+    the element tag 20 occurs twice
+2 2 2 1 90 => 2 2 21 1 90
+    element 90 is of type 21, of third
+2 2 2 1 90 => 2 2 2 8000000000 90
+    it is truncated
+40 8 1 1 0.25 => 8 8 1 1 0.25
+    line 18 in $Nodes: the node tag 8 occurs twice
+0.5 0 0 0.25 => 0.5 NaN 0 0.25
+    the x coordinate is NaN
+0.5 0 0 0.25 => 0.5 0 inf 0.25
+    the y coordinate is inf
+0.5 0 0 0.25 => 0.5 0 0 0.5
+    node 8 has z = 0.5
+0.5 0 0 0.25 => 0.5 0 oh 0.25
+    expected the y coordinate, a number, found `oh`
+2 5 8 77 => 2 6 8 77
+    expected 6 nodes as declared, found 5
+2 5 8 77 => 2 99999999999 8 77
+    number of nodes is 99999999999, but the file ends
+2 5 8 77 => 2 -5 8 77
+    expected the number of nodes, a whole number, found `-5`
+0 5 "corner" => 0 5 corner
+    line 9 in $PhysicalNames: expected dimension
+"upper half" => "block"
+    two physical groups of dimension 2 are called "block"
+"#;
+
 #[test]
 fn what_is_wrong_with_a_file_is_said_with_its_place() {
-    let cases = [
-        (
-            "4.1 0 8",
-            "4 0 8",
-            "line 2 in $MeshFormat: MSH version 4 isn't",
-        ),
-        (
-            "$MeshFormat",
-            "$Nodes",
-            "expected $MeshFormat first, found $Nodes",
-        ),
-        (
-            "90 8 10 40",
-            "90 8 11 40",
-            "line 24 in $Elements: element 90 names node 11",
-        ),
-        (
-            "90 8 10 40",
-            "90 8 8 40",
-            "element 90 has no area: its nodes 8, 8, 40",
-        ),
-        (
-            "90 8 10 40",
-            "20 8 10 40",
-            "the element tag 20 occurs twice",
-        ),
-        (
-            "2 2 2 1 90",
-            "2 2 21 1 90",
-            "element 90 is of type 21, of third",
-        ),
-        ("2 2 2 1 90", "2 2 2 8000000000 90", "it is truncated"),
-        (
-            "40 8 1 1 0.25",
-            "8 8 1 1 0.25",
-            "line 18 in $Nodes: the node tag 8 occurs twice",
-        ),
-        ("0.5 0 0 0.25", "0.5 NaN 0 0.25", "the x coordinate is NaN"),
-        ("0.5 0 0 0.25", "0.5 0 inf 0.25", "the y coordinate is inf"),
-        ("0.5 0 0 0.25", "0.5 0 0 0.5", "node 8 has z = 0.5"),
-        (
-            "0.5 0 0 0.25",
-            "0.5 0 oh 0.25",
-            "expected the y coordinate, a number, found `oh`",
-        ),
-        (
-            "2 5 8 77",
-            "2 6 8 77",
-            "expected 6 nodes as declared, found 5",
-        ),
-        (
-            "2 5 8 77",
-            "2 99999999999 8 77",
-            "number of nodes is 99999999999, but the file ends",
-        ),
-        (
-            "2 5 8 77",
-            "2 -5 8 77",
-            "expected the number of nodes, a whole number, found `-5`",
-        ),
-        (
-            "0 5 \"corner\"",
-            "0 5 corner",
-            "line 9 in $PhysicalNames: expected dimension",
-        ),
-        (
-            "\"upper half\"",
-            "\"block\"",
-            "two physical groups of dimension 2 are called \"block\"",
-        ),
-    ];
-    for (from, to, expected) in cases {
-        let said = complaint(from, to);
-        assert!(said.contains(expected), "{from} → {to}: {said}");
+    for (from, to, expected) in cases(WRONG) {
+        let said = complaint(&from, &to);
+        assert!(said.contains(&expected), "{from} → {to}: {said}");
     }
 }
 

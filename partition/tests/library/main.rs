@@ -20,3 +20,4 @@ mod model;
 mod problem;
 mod problem_scenes;
 mod scene;
+mod table;

@@ -5,25 +5,19 @@ use contact_dd_partition::model::Model;
 use crate::support::assembled::Assembled;
 use crate::support::blocks::Blocks;
 use crate::support::close::close;
-use crate::support::scenes::{BODIES, at_step, model};
+use crate::support::scenes::{BODIES, HELD, JOINT, at_step, model};
 use crate::support::solution::Solution;
 use crate::support::solver::solve_steps;
 
 /// A block that is pressed on another one and moved to and fro by its top, so many steps a quarter.
 fn driven(law: &str, largest: f64, steps: usize, cycles: usize) -> Model {
     let mut text = format!(
-        "{BODIES}
-        [[displacement]]
-        on = 'lower bottom'
-        x = 0.0
-        y = 0.0
+        "{BODIES}{HELD}
         [[displacement]]
         on = 'upper top'
         x = 0.0
         y = -2e-5
-        [[contact]]
-        name = 'joint'
-        sides = ['upper bottom', 'lower top']
+        {JOINT}
         gap = 0.0
         {law}\n"
     );

@@ -5,7 +5,7 @@ use contact_dd_partition::model::Model;
 use crate::support::assembled::Assembled;
 use crate::support::blocks::Blocks;
 use crate::support::frictional::Frictional;
-use crate::support::scenes::{BODIES, at_step, model};
+use crate::support::scenes::{BODIES, HELD, JOINT, at_step, model};
 use crate::support::solution::ContactPoint;
 use crate::support::stress::Balance;
 use crate::support::stress::judge::Findings;
@@ -13,20 +13,14 @@ use crate::support::stress::judge::Findings;
 /// A block that is pushed to and fro on another one.
 fn pushed(law: &str) -> Model {
     let text = format!(
-        "{BODIES}
-        [[displacement]]
-        on = 'lower bottom'
-        x = 0.0
-        y = 0.0
+        "{BODIES}{HELD}
         [[pressure]]
         on = 'upper top'
         value = '1e6*(1.6-x)'
         [[traction]]
         on = 'upper top'
         value = [1e5, 0.0]
-        [[contact]]
-        name = 'joint'
-        sides = ['upper bottom', 'lower top']
+        {JOINT}
         gap = '1e-5*(x-0.5)^4'
         {law}
         [[step]]

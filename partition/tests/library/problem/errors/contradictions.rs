@@ -11,11 +11,30 @@ use contact_dd_partition::problem::Problem;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::scene::Scene;
 
-use super::{Defect, problem, refuse, refuses, replace, set, write, write_two_joints};
+use super::{
+    Defect, problem, refuse, refuses, refuses_values, replace, set, write, write_two_joints,
+};
 
 fn integers(file: &hdf5::File, name: &str) -> Vec<i64> {
     file.dataset(name).unwrap().read_raw().unwrap()
 }
+
+const VALUES: &str = "
+number beyond all measure: /contact/gap[1] = -1e300
+    /contact/gap, row 1: -1e300; expected a number of at most 1e120
+no share: /contact/area[0] = 0.0
+    /contact/area, row 0 … positive
+share of more than there is: /contact/area[0] = 1e6
+    /contact/area, row 0: 1e6 … extent
+place beside the node: /contact/position[0] = 77.0
+    /contact/position, row 0: (77, 3); expected (0, 3), where node
+force beside the node: /contact/force_point[0] = 77.0
+    /contact/force_point, row 0: (77, 3) … side a
+side b that doesn't take what side a gives: /contact/entry_weight[1] = -0.5
+    /contact/entry_weight, row 0 … sum to 0.5
+name of a node that isn't there: /contact/node_b[2] = 999999
+    /contact/node_b, row 2: 999999 … GlobalNodeId
+";
 
 #[test]
 fn every_contradiction_is_named() {
@@ -75,41 +94,6 @@ fn every_contradiction_is_named() {
             &["/subdomains/body", "don't hang together"],
         ),
         (
-            "number beyond all measure",
-            |f| set(f, "/contact/gap", 1, -1e300),
-            &["/contact/gap, row 1: -1e300; expected a number of at most 1e120"],
-        ),
-        (
-            "no share",
-            |f| set(f, "/contact/area", 0, 0.0),
-            &["/contact/area, row 0", "positive"],
-        ),
-        (
-            "share of more than there is",
-            |f| set(f, "/contact/area", 0, 1e6),
-            &["/contact/area, row 0: 1e6", "extent"],
-        ),
-        (
-            "place beside the node",
-            |f| set(f, "/contact/position", 0, 77.0),
-            &["/contact/position, row 0: (77, 3); expected (0, 3), where node"],
-        ),
-        (
-            "force beside the node",
-            |f| set(f, "/contact/force_point", 0, 77.0),
-            &["/contact/force_point, row 0: (77, 3)", "side a"],
-        ),
-        (
-            "side b that doesn't take what side a gives",
-            |f| set(f, "/contact/entry_weight", 1, -0.5),
-            &["/contact/entry_weight, row 0", "sum to 0.5"],
-        ),
-        (
-            "name of a node that isn't there",
-            |f| set(f, "/contact/node_b", 2, 999_999i64),
-            &["/contact/node_b, row 2: 999999", "GlobalNodeId"],
-        ),
-        (
             "node of side b on side a",
             |f| {
                 let b = integers(f, "/contact/node_b");
@@ -134,6 +118,7 @@ fn every_contradiction_is_named() {
         ),
     ];
     refuses(write, defects);
+    refuses_values(write, VALUES);
 }
 
 /// Writes the stack of blocks with Coulomb's friction at its first contact point, given friction at its second.
@@ -144,49 +129,28 @@ fn write_rough(path: &Path) {
     problem.write(path).unwrap();
 }
 
+const FRICTION: &str = "
+law that isn't known: /contact/law[1] = 3
+    /contact/law, row 1: 3 is no law of friction; expected 0 to 2
+law below zero: /contact/law[1] = -1
+    /contact/law, row 1: -1 is no law of friction
+coefficient below zero: /contact/friction[0] = -0.5
+    /contact/friction, row 0: -0.5; expected 0 or more
+coefficient that isn't finite: /contact/friction[0] = nan
+    /contact/friction, row 0 … expected a finite number
+bound below zero: /contact/shear_bound[1] = -1.0
+    /contact/shear_bound, row 1: -1; expected 0 or more
+bound that isn't finite: /contact/shear_bound[1] = inf
+    /contact/shear_bound, row 1: inf; expected a finite number
+coefficient of given friction: /contact/friction[1] = 0.5
+    /contact/friction, row 1: 0.5 at a point of law 1; expected 0
+bound without friction: /contact/shear_bound[2] = 1e5
+    /contact/shear_bound, row 2: 100000 at a point of law 0; expected 0
+";
+
 #[test]
 fn friction_that_cannot_be_is_named() {
     let defects: &[Defect] = &[
-        (
-            "law that isn't known",
-            |f| set(f, "/contact/law", 1, 3i64),
-            &["/contact/law, row 1: 3 is no law of friction; expected 0 to 2"],
-        ),
-        (
-            "law below zero",
-            |f| set(f, "/contact/law", 1, -1i64),
-            &["/contact/law, row 1: -1 is no law of friction"],
-        ),
-        (
-            "coefficient below zero",
-            |f| set(f, "/contact/friction", 0, -0.5),
-            &["/contact/friction, row 0: -0.5; expected 0 or more"],
-        ),
-        (
-            "coefficient that isn't finite",
-            |f| set(f, "/contact/friction", 0, f64::NAN),
-            &["/contact/friction, row 0", "expected a finite number"],
-        ),
-        (
-            "bound below zero",
-            |f| set(f, "/contact/shear_bound", 1, -1.0),
-            &["/contact/shear_bound, row 1: -1; expected 0 or more"],
-        ),
-        (
-            "bound that isn't finite",
-            |f| set(f, "/contact/shear_bound", 1, f64::INFINITY),
-            &["/contact/shear_bound, row 1: inf; expected a finite number"],
-        ),
-        (
-            "coefficient of given friction",
-            |f| set(f, "/contact/friction", 1, 0.5),
-            &["/contact/friction, row 1: 0.5 at a point of law 1; expected 0"],
-        ),
-        (
-            "bound without friction",
-            |f| set(f, "/contact/shear_bound", 2, 1e5),
-            &["/contact/shear_bound, row 2: 100000 at a point of law 0; expected 0"],
-        ),
         (
             "law without its numbers",
             |f| f.unlink("/contact/friction").unwrap(),
@@ -199,6 +163,7 @@ fn friction_that_cannot_be_is_named() {
         ),
     ];
     refuses(write_rough, defects);
+    refuses_values(write_rough, FRICTION);
 }
 
 #[test]

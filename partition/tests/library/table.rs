@@ -1,0 +1,12 @@
+//! Tables of what is replaced in a text and what is said of it then.
+
+/// What is replaced, by what, and in the line below what is said; `\n` is the end of a line.
+pub fn cases(table: &str) -> impl Iterator<Item = (String, String, String)> {
+    let lines: Vec<&str> = table.trim().lines().collect();
+    let pairs: Vec<_> = lines.as_chunks::<2>().0.to_vec();
+    pairs.into_iter().map(|[replaced, expected]| {
+        let (from, to) = replaced.split_once(" =>").unwrap();
+        let texts = [from, to.trim_start(), expected.trim()];
+        texts.map(|text| text.replace("\\n", "\n")).into()
+    })
+}
