@@ -1,6 +1,7 @@
 //! What a straight line meets of a surface.
 
-use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree, SelectionFunction};
 
 use super::surface::Surface;
 use crate::element::geometry::{advance, difference, dot, length};
@@ -32,19 +33,8 @@ pub(super) enum Hit {
     },
 }
 
-struct Leaf {
-    facet: usize,
-    low: [f64; 3],
-    high: [f64; 3],
-}
-
-impl RTreeObject for Leaf {
-    type Envelope = AABB<[f64; 3]>;
-
-    fn envelope(&self) -> Self::Envelope {
-        AABB::from_corners(self.low, self.high)
-    }
-}
+/// The box around a facet.
+type Leaf = GeomWithData<Rectangle<[f64; 3]>, usize>;
 
 /// The boxes in which a search looks further.
 struct Boxes<F>(F);
@@ -55,7 +45,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> bool> SelectionFunction<Leaf> for Boxes<F> {
     }
 
     fn should_unpack_leaf(&self, leaf: &Leaf) -> bool {
-        self.0(leaf.low, leaf.high)
+        self.0(leaf.geom().lower(), leaf.geom().upper())
     }
 }
 
@@ -91,11 +81,8 @@ impl<'a> Target<'a> {
                     })
                     .map(|c| c + margin)
             };
-            Leaf {
-                facet,
-                low: bound(f64::min, -margin),
-                high: bound(f64::max, margin),
-            }
+            let (low, high) = (bound(f64::min, -margin), bound(f64::max, margin));
+            Leaf::new(Rectangle::from_corners(low, high), facet)
         };
         let leaves = surface.facets.iter().enumerate().map(leaf).collect();
         Self {
@@ -108,7 +95,7 @@ impl<'a> Target<'a> {
     /// so; it must do so of every box that holds one of them.
     pub fn facets(&self, may_hold: impl Fn([f64; 3], [f64; 3]) -> bool) -> Vec<usize> {
         let found = self.tree.locate_with_selection_function(Boxes(may_hold));
-        found.map(|leaf| leaf.facet).collect()
+        found.map(|leaf| leaf.data).collect()
     }
 
     /// What the line from `start` along the unit vector `direction` meets first, either way but
@@ -126,7 +113,7 @@ impl<'a> Target<'a> {
         let mut crossed: Option<(usize, f64)> = None;
         let mut back_facing = false;
         for leaf in self.tree.locate_with_selection_function(boxes) {
-            let facet = &self.surface.facets[leaf.facet];
+            let facet = &self.surface.facets[leaf.data];
             let slack = ASIDE * facet.size();
             let faces = dot(facet.normal, direction) <= -FACING;
             let mut at_node = false;
@@ -156,7 +143,7 @@ impl<'a> Target<'a> {
             }
             back_facing |= !faces;
             if faces && crossed.is_none_or(|(_, other)| ahead.abs() < other.abs()) {
-                crossed = Some((leaf.facet, ahead));
+                crossed = Some((leaf.data, ahead));
             }
         }
         let nearest = nodes
