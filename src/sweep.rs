@@ -235,10 +235,3 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         ))
     }
 }
-
-/// y ← y + a x.
-fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y += a * x;
-    }
-}

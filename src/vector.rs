@@ -5,6 +5,14 @@ pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
+/// y ← y + a x, over the components that both have.
+#[inline]
+pub fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += a * x;
+    }
+}
+
 /// ‖x‖∞; not a number where x has one.
 pub fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |most, &x| larger(most, x))

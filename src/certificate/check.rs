@@ -13,7 +13,7 @@ use crate::fem::contact_group::ContactGroup;
 use crate::fem::frame::{Frame, support_frames};
 use crate::fem::load::BlockLoads;
 use crate::schur::condensed::InterfaceDof;
-use crate::vector::{larger, largest};
+use crate::vector::{axpy, larger, largest};
 
 /// Normal force, relative to the largest in the group, without which a closed contact is about to open.
 const NO_FORCE: f64 = 1e-12;
@@ -163,9 +163,7 @@ impl BlockCheck {
                 let along = dot(*axes, residual);
                 let along_scale: f64 = axes.iter().zip(&scale).map(|(a, s)| a.abs() * s).sum();
                 if frame.prescribed[axis].is_some() {
-                    for (f, a) in force.iter_mut().zip(axes) {
-                        *f -= along * a;
-                    }
+                    axpy(-along, axes, &mut force);
                     self.external.force_scale += along.abs();
                     self.most.external = larger(self.most.external, along);
                 } else if is_shared {

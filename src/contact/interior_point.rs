@@ -9,6 +9,8 @@ use faer::linalg::solvers::SolveCore;
 use faer::{Conj, Mat, MatMut, MatRef, Side};
 
 use super::dependent::DependentConstraints;
+use crate::schur::local::multiply_add;
+use crate::vector::axpy;
 
 /// Most steps.
 const MAX_STEPS: usize = 60;
@@ -94,14 +96,8 @@ impl Scaled {
     fn missing(&self, point: &Point) -> Vec<f64> {
         let n = self.q.len();
         let mut missing = self.q.clone();
-        for (column, &s) in self.h.col_iter().zip(&point.s) {
-            for (missing, h) in missing.iter_mut().zip(column.iter()) {
-                *missing += h * s;
-            }
-        }
-        for (missing, w) in missing.iter_mut().zip(&point.w) {
-            *missing -= w;
-        }
+        multiply_add(self.h.as_ref(), &point.s, &mut missing);
+        axpy(-1.0, &point.w, &mut missing);
         self.rows.subtract_transposed(&point.w[n..], &mut missing);
         for (j, e) in self.e.iter().enumerate() {
             missing.push(e + self.rows.value(j, &point.s) - point.s[n + j]);

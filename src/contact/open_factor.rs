@@ -7,6 +7,7 @@ use faer::{Conj, Mat, MatMut, MatRef, Side};
 
 use super::active_equalities::ActiveEqualities;
 use super::dependent::DependentConstraints;
+use crate::vector::axpy;
 
 /// Pivot relative to its diagonal entry below which H is taken as singular.
 const SINGULAR_PIVOT: f64 = 1e-13;
@@ -137,9 +138,7 @@ impl OpenFactor {
             }
             last = size;
             apply(&mut left);
-            for (x, dx) in x.iter_mut().zip(left) {
-                *x += dx;
-            }
+            axpy(1.0, &left, x);
         }
     }
 }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::elasticity::{Voigt, stiffness_points, strain, voigt_stress};
 use super::polynomial::NodalStress;
+use crate::vector::axpy;
 
 /// Squares of energy norms over a cell (N m, in the plane per metre of thickness).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -127,9 +128,7 @@ impl Compliance {
             let stress = voigt_stress(material, &strain);
             let mut smooth = [0.0; 6];
             for (n, at_node) in reference.shape.iter().zip(recovered) {
-                for (s, v) in smooth.iter_mut().zip(at_node) {
-                    *s += n * v;
-                }
+                axpy(*n, at_node, &mut smooth);
             }
             sum.energy += weight * self.norm(&stress);
             sum.error += weight * self.norm(&difference(&self.voigt(&smooth), &stress));

@@ -7,6 +7,7 @@ use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::polynomial::{NodalStress, Polynomial, TERMS, components, monomials, terms};
+use crate::vector::axpy;
 
 /// Entries of the lower triangle of the normal equations.
 const GRAM: usize = TERMS * (TERMS + 1) / 2;
@@ -131,9 +132,7 @@ impl PatchSum {
                 self.gram[entry] += terms[i] * b;
                 entry += 1;
             }
-            for (sum, s) in self.load[C * i..C * (i + 1)].iter_mut().zip(stress) {
-                *sum += terms[i] * s;
-            }
+            axpy(terms[i], stress, &mut self.load[C * i..C * (i + 1)]);
         }
     }
 
@@ -228,12 +227,8 @@ impl PatchSum {
         self.has_linear |= other.has_linear;
         self.has_quadratic |= other.has_quadratic;
         let (gram, load) = self.parts();
-        for (a, b) in self.gram.iter_mut().zip(&other.gram[..gram]) {
-            *a += b;
-        }
-        for (a, b) in self.load.iter_mut().zip(&other.load[..load]) {
-            *a += b;
-        }
+        axpy(1.0, &other.gram[..gram], &mut self.gram);
+        axpy(1.0, &other.load[..load], &mut self.load);
     }
 }
 

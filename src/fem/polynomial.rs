@@ -1,5 +1,6 @@
 //! Stresses that vary as polynomials of the place.
 
+use crate::vector::axpy;
 use serde::{Deserialize, Serialize};
 
 /// A stress at a node: XX, YY, ZZ, XY, YZ, XZ; in the plane the last two are 0.
@@ -75,9 +76,7 @@ impl Polynomial {
         let mut value = [0.0; 6];
         let monomials: [f64; TERMS] = monomials(at, self.dim);
         for (term, coefficients) in monomials.iter().zip(self.rows()) {
-            for (v, c) in value.iter_mut().zip(coefficients) {
-                *v += term * c;
-            }
+            axpy(*term, coefficients, &mut value);
         }
         value
     }
@@ -101,9 +100,7 @@ impl Polynomial {
     /// Adds a multiple of another one that is seen from the same point.
     pub fn add(&mut self, factor: f64, other: &Self) {
         let others = &other.coefficients[..components(self.dim) * terms(self.dim)];
-        for (a, b) in self.coefficients.iter_mut().zip(others) {
-            *a += factor * b;
-        }
+        axpy(factor, others, &mut self.coefficients);
     }
 }
 

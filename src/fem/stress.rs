@@ -13,6 +13,7 @@ use super::estimate::{CellError, Compliance};
 use super::patch::PatchSum;
 use super::polynomial::NodalStress;
 use super::recovery::Recovery;
+use crate::vector::axpy;
 
 /// The stresses of a block.
 #[derive(Clone, Debug)]
@@ -183,9 +184,7 @@ impl LocalCell {
         for point in stiffness_points(&self.kind, components) {
             let (strain, weight) = strain(point, &self.points, &self.u, components);
             let sigma = stress(material, plane, &strain);
-            for (sum, s) in sum.iter_mut().zip(sigma) {
-                *sum += weight * s;
-            }
+            axpy(weight, &sigma, &mut sum);
             measure += weight;
         }
         sum.map(|s| s / measure)
@@ -195,9 +194,7 @@ impl LocalCell {
     fn place(&self, point: &TabulatedPoint) -> [f64; 3] {
         let mut at = [0.0; 3];
         for (n, x) in point.shape.iter().zip(&self.points) {
-            for (at, x) in at.iter_mut().zip(x) {
-                *at += n * x;
-            }
+            axpy(*n, x, &mut at);
         }
         at
     }

@@ -8,7 +8,7 @@ use crate::condense::substitute::{Direction, carry};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::schur::local::CondensedLoad;
-use crate::vector::dot;
+use crate::vector::{axpy, dot};
 
 /// What a load does where the active set is frozen, on this rank.
 #[derive(Clone, Debug, Default)]
@@ -89,9 +89,7 @@ impl FrozenFronts {
                 let mut kept = load.boundary()[closed..].to_vec();
                 for (j, value) in values.iter().enumerate() {
                     let column = &front.held.col_as_slice(j)[closed..];
-                    for (kept, s) in kept.iter_mut().zip(column) {
-                        *kept -= s * value;
-                    }
+                    axpy(-value, column, &mut kept);
                 }
                 condensed.insert(v, (load, values));
                 kept

@@ -1,5 +1,6 @@
 //! A QR factorization whose columns come and go.
 
+use crate::vector::axpy;
 use nalgebra::{DMatrix, DVector};
 
 /// Part of a column that is new, relative to it, below which it depends on the others.
@@ -72,9 +73,7 @@ impl Columns {
             let r = &self.r[k];
             x[k] /= r[k];
             let x_k = x[k];
-            for (x, r) in x[..k].iter_mut().zip(r) {
-                *x -= r * x_k;
-            }
+            axpy(-x_k, r, &mut x[..k]);
         }
         x
     }

@@ -7,7 +7,7 @@
 use faer::Mat;
 use serde::{Deserialize, Serialize};
 
-use crate::vector::dot;
+use crate::vector::{axpy, dot};
 
 /// Part of a motion, relative to all of it, that is new.
 const INDEPENDENT: f64 = 1e-8;
@@ -66,9 +66,7 @@ impl RigidBasis {
                 for (q, load_of_q) in basis.q.iter().zip(&basis.load) {
                     let along = dot(&v, q);
                     load -= along * load_of_q;
-                    for (v, q) in v.iter_mut().zip(q) {
-                        *v -= along * q;
-                    }
+                    axpy(-along, q, &mut v);
                 }
             }
             let left = dot(&v, &v).sqrt();

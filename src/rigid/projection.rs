@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::vector::dot;
+use crate::vector::{axpy, dot};
 
 /// Sums over nodes of the products of rigid motions with each other and with a field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,12 +42,8 @@ impl MotionProducts {
 
     /// Adds the sums over other nodes.
     pub fn add(&mut self, other: &Self) {
-        for (a, b) in self.gram.iter_mut().zip(&other.gram) {
-            *a += b;
-        }
-        for (a, b) in self.field.iter_mut().zip(&other.field) {
-            *a += b;
-        }
+        axpy(1.0, &other.gram, &mut self.gram);
+        axpy(1.0, &other.field, &mut self.field);
     }
 
     /// Adds what a body has, `of_body` with its own rigid motions, where `shares` are those of each
@@ -58,9 +54,7 @@ impl MotionProducts {
             self.field[i] += dot(z_i, &of_body.field);
             let mut row = vec![0.0; modes];
             for (z, of_mode) in z_i.iter().zip(of_body.gram.chunks(modes)) {
-                for (sum, g) in row.iter_mut().zip(of_mode) {
-                    *sum += z * g;
-                }
+                axpy(*z, of_mode, &mut row);
             }
             for (j, z_j) in shares.iter().enumerate() {
                 self.gram[i * n + j] += dot(&row, z_j);

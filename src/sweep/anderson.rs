@@ -4,8 +4,9 @@ use std::collections::VecDeque;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Residual, SweepStatus, Sweeps, axpy};
+use super::{Residual, SweepStatus, Sweeps};
 use crate::error::Failure;
+use crate::vector::axpy;
 
 /// Steps that are remembered.
 const DEPTH: usize = 5;

@@ -5,9 +5,10 @@
 //! whose sets may peel off one condition a sweep; keeping the law as it stands, λ ≥ 0, t ≤ g, gives
 //! a [`CoupledContact`] whose solution is U: one sweep gets there, the next ones take off round-off.
 
-use super::{ROUND_OFF, Residual, SweepStatus, Sweeps, axpy};
+use super::{ROUND_OFF, Residual, SweepStatus, Sweeps};
 use crate::error::Failure;
 use crate::interface::coupled::CoupledContact;
+use crate::vector::axpy;
 
 /// Sweeps before another method takes over.
 const MAX_SWEEPS: usize = 20;

@@ -5,10 +5,10 @@
 //! θ < 2 / (1 + λ), λ the largest eigenvalue of S_0⁻¹ S_CON'. Where S_0 is singular, a share of the pairs' bilateral
 //! Schur complements is moved from S_CON to it: U^k stays what it solves for.
 
-use super::{Residual, SweepStatus, Sweeps, axpy};
+use super::{Residual, SweepStatus, Sweeps};
 use crate::error::Failure;
 use crate::schur::factor::BoundaryLastCholesky;
-use crate::vector::{dot, largest};
+use crate::vector::{axpy, dot, largest};
 
 /// Sweeps before it gives up.
 const MAX_SWEEPS: usize = 2000;
