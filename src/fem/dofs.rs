@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::block::Block;
-use super::frame::{Frame, NodeFrames};
+use super::frame::{Frame, support_frames};
 use super::load::BlockLoads;
 use super::sites::{Sites, elimination_order};
 use crate::schur::condensed::InterfaceDof;
@@ -41,10 +41,10 @@ impl Dofs {
         if block.nodes() * dim >= u32::MAX as usize {
             return Err(TooManyUnknowns);
         }
-        let frames = NodeFrames::new(block, loads);
+        let frames = support_frames(&loads.supports, dim);
         let on_interface = block.is_on_interface();
         let mut is_free = vec![true; block.nodes() * dim];
-        for (node, frame) in frames.special() {
+        for (&node, frame) in &frames {
             for axis in 0..dim {
                 is_free[node as usize * dim + axis] = frame.prescribed[axis].is_none();
             }
@@ -92,7 +92,7 @@ impl Dofs {
         };
         dofs.offsets.push(0);
         for node in 0..block.nodes() as u32 {
-            match frames.of(node) {
+            match frames.get(&node) {
                 None => dofs.push_direct(node, &number),
                 Some(frame) => dofs.push_node(node, frame, &number),
             }

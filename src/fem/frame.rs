@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::vector::axpy;
 use contact_dd_partition::element::geometry::{dot, length};
 use contact_dd_partition::model::Support;
-
-use super::block::Block;
-use super::load::BlockLoads;
 
 /// An orthonormal frame of a node. Its displacement is u = Σ v_k·axis_k.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,9 +53,7 @@ impl Frame {
         for _ in 0..2 {
             for a in &self.axes[..filled] {
                 let along = dot(*a, axis);
-                for (x, a) in axis.iter_mut().zip(a) {
-                    *x -= along * a;
-                }
+                axpy(-along, a, &mut axis);
             }
         }
         let norm = length(axis);
@@ -81,40 +77,6 @@ pub fn support_frames(supports: &[Support], dim: usize) -> BTreeMap<u32, Frame> 
             (node, frame)
         })
         .collect()
-}
-
-/// The frames of those nodes that have one of their own.
-#[derive(Clone, Debug)]
-pub struct NodeFrames {
-    nodes: Vec<u32>,
-    frames: Vec<Frame>,
-    place: Vec<u32>,
-}
-
-impl NodeFrames {
-    /// Frames of supported nodes.
-    pub fn new(block: &Block, loads: &BlockLoads) -> Self {
-        let frames = support_frames(&loads.supports, block.dim);
-        let mut place = vec![u32::MAX; block.nodes()];
-        for (k, &node) in frames.keys().enumerate() {
-            place[node as usize] = k as u32;
-        }
-        Self {
-            place,
-            nodes: frames.keys().copied().collect(),
-            frames: frames.into_values().collect(),
-        }
-    }
-
-    /// The nodes with a frame of their own, ascending, and the frames.
-    pub fn special(&self) -> impl Iterator<Item = (u32, &Frame)> {
-        self.nodes.iter().copied().zip(&self.frames)
-    }
-
-    /// The frame of a node; `None` where that is the coordinates', free.
-    pub fn of(&self, node: u32) -> Option<&Frame> {
-        self.frames.get(self.place[node as usize] as usize)
-    }
 }
 
 #[cfg(test)]

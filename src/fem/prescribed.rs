@@ -2,8 +2,9 @@
 
 use super::block::Block;
 use super::dofs::Dofs;
-use super::frame::NodeFrames;
+use super::frame::support_frames;
 use super::load::BlockLoads;
+use crate::vector::axpy;
 
 /// What supports prescribe in a load step.
 #[derive(Clone, Debug)]
@@ -18,13 +19,11 @@ impl Prescribed {
     pub fn new(block: &Block, loads: &BlockLoads) -> Self {
         let dim = block.dim;
         let mut constants = vec![0.0; dim * block.nodes()];
-        for (node, frame) in NodeFrames::new(block, loads).special() {
+        for (node, frame) in support_frames(&loads.supports, dim) {
             for axis in 0..dim {
                 if let Some(value) = frame.prescribed[axis] {
                     let of_node = &mut constants[node as usize * dim..][..dim];
-                    for (constant, along) in of_node.iter_mut().zip(frame.axes[axis]) {
-                        *constant += along * value;
-                    }
+                    axpy(value, &frame.axes[axis], of_node);
                 }
             }
         }
