@@ -9,6 +9,7 @@ use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::motion::BodyFrame;
 use crate::rigid::projection::MotionProducts;
+use crate::vector::axpy;
 
 /// What blocks know of a field on a node that several of them have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,38 +55,35 @@ impl<'a> Motions<'a> {
         kind: Field,
         fields: &BTreeMap<usize, &mut Vec<f64>>,
     ) -> MotionProducts {
-        let dim = fixed.context.catalog.dim;
-        let modes = BodyFrame::count(dim);
-        let first_of = first_blocks(fixed.context.catalog);
-        let mut of_bodies: BTreeMap<usize, MotionProducts> = BTreeMap::new();
+        let catalog = fixed.context.catalog;
+        let dim = catalog.dim;
+        let first_of = first_blocks(catalog);
+        let zeros = || MotionProducts::zeros(BodyFrame::count(dim));
+        let mut of_bodies: Vec<MotionProducts> = self.frames.iter().map(|_| zeros()).collect();
         fixed.context.comm.gather(
             fixed.context.plan.owners(),
             |b| {
-                let mut of_block: BTreeMap<usize, MotionProducts> = BTreeMap::new();
-                if let (Some(owned), Some(field)) = (fixed.context.blocks.get(&b), fields.get(&b)) {
-                    let is_first = first_in(owned, b, &first_of);
-                    visit(owned, |node, body, x| {
-                        let products = of_body(&mut of_block, body, modes);
-                        let moves = self.frames[body].moves(dim, x);
+                let mut products = zeros();
+                if let (Some(block), Some(field)) = (fixed.context.blocks.get(&b), fields.get(&b)) {
+                    let is_first = first_in(block, b, &first_of);
+                    let frame = &self.frames[block.subdomain.body];
+                    for (node, x) in block.points().iter().enumerate() {
+                        let moves = frame.moves(dim, x);
                         if is_first[node] {
                             products.add_node(&moves);
                         }
                         if is_first[node] || kind == Field::Summed {
                             products.add_value(&moves, &field[node * dim..(node + 1) * dim]);
                         }
-                    });
+                    }
                 }
-                of_block
+                products
             },
-            |_, of_block| {
-                for (body, products) in of_block {
-                    of_body(&mut of_bodies, body, modes).add(&products);
-                }
-            },
+            |b, products| of_bodies[catalog.subdomains[b].body].add(&products),
         );
         let mut total = MotionProducts::zeros(self.list.len());
-        for (body, products) in &of_bodies {
-            total.add_body(&self.shares(*body), products);
+        for (body, products) in of_bodies.iter().enumerate() {
+            total.add_body(&self.shares(body), products);
         }
         total
     }
@@ -100,32 +98,22 @@ impl<'a> Motions<'a> {
     ) {
         let dim = fixed.context.catalog.dim;
         let first_of = first_blocks(fixed.context.catalog);
-        let taken: Vec<Vec<f64>> = (0..self.frames.len())
-            .map(|body| {
-                let mut sum = vec![0.0; BodyFrame::count(dim)];
-                for (share, c) in self.shares(body).iter().zip(coefficients) {
-                    for (sum, z) in sum.iter_mut().zip(*share) {
-                        *sum += c * z;
-                    }
-                }
-                sum
-            })
-            .collect();
         for (b, field) in fields {
-            let Some(owned) = fixed.context.blocks.get(&b) else {
+            let Some(block) = fixed.context.blocks.get(&b) else {
                 continue;
             };
-            let is_first = first_in(owned, b, &first_of);
-            visit(owned, |node, body, x| {
-                if kind == Field::Summed && !is_first[node] {
-                    return;
+            let body = block.subdomain.body;
+            let mut taken = vec![0.0; BodyFrame::count(dim)];
+            for (share, c) in self.shares(body).iter().zip(coefficients) {
+                axpy(*c, share, &mut taken);
+            }
+            let is_first = first_in(block, b, &first_of);
+            for (node, x) in block.points().iter().enumerate() {
+                if kind == Field::Shared || is_first[node] {
+                    let moved = self.frames[body].displacement(dim, x, &taken);
+                    axpy(-1.0, &moved, &mut field[node * dim..(node + 1) * dim]);
                 }
-                let z = &taken[body];
-                let moved = self.frames[body].displacement(dim, x, z);
-                for (v, z) in field[node * dim..(node + 1) * dim].iter_mut().zip(moved) {
-                    *v -= z;
-                }
-            });
+            }
         }
     }
 
@@ -136,22 +124,6 @@ impl<'a> Motions<'a> {
             own.map_or(&[][..], |(_, z)| z)
         };
         self.list.iter().map(of_motion).collect()
-    }
-}
-
-/// The products of a body, zero before the first of its nodes.
-fn of_body(
-    products: &mut BTreeMap<usize, MotionProducts>,
-    body: usize,
-    modes: usize,
-) -> &mut MotionProducts {
-    (products.entry(body)).or_insert_with(|| MotionProducts::zeros(modes))
-}
-
-/// Calls `at` with every node of a block, its body and its place.
-fn visit(block: &Block, mut at: impl FnMut(usize, usize, &[f64; 3])) {
-    for (node, x) in block.points().iter().enumerate() {
-        at(node, block.subdomain.body, x);
     }
 }
 

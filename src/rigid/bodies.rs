@@ -1,33 +1,27 @@
 //! What the analysis of rigid motions needs of bodies, from the ranks that have their subdomains.
 
-use std::collections::BTreeMap;
-
 use contact_dd_partition::element::geometry::{cross, difference, length};
 use contact_dd_partition::mesh::bounding_box::BoundingBox;
 use contact_dd_partition::model::PlaneState;
-use contact_dd_partition::problem::{Catalog, Subdomain};
+use contact_dd_partition::problem::Catalog;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::analysis::BodyState;
 use super::motion::BodyFrame;
-use crate::comm::Comm;
-use crate::context::Loads;
+use crate::context::{Context, Loads};
 use crate::fem::load::BlockLoads;
+use crate::vector::axpy;
 
 /// The frame of every body. Collective; what is asked of a subdomain is asked on its owner, which has
 /// read it.
-pub(super) fn body_frames(
-    comm: &Comm,
-    subdomains: &BTreeMap<usize, &Subdomain>,
-    catalog: &Catalog,
-    owners: &[usize],
-) -> Vec<BodyFrame> {
+pub(super) fn body_frames(context: &Context<'_>) -> Vec<BodyFrame> {
+    let Context { comm, catalog, .. } = *context;
     let mut bounds = vec![BoundingBox::EMPTY; catalog.bodies.len()];
     comm.gather(
-        owners,
+        context.plan.owners(),
         |s| {
-            let BoundingBox { low, high } = BoundingBox::around(&subdomains[&s].points);
+            let BoundingBox { low, high } = BoundingBox::around(context.blocks[&s].points());
             (low, high)
         },
         |s, (low, high)| {
@@ -42,13 +36,11 @@ pub(super) fn body_frames(
 
 /// Every body as the analysis sees it under `loads`, on the root. Collective.
 pub(super) fn body_states(
-    comm: &Comm,
-    subdomains: &BTreeMap<usize, &Subdomain>,
-    catalog: &Catalog,
-    owners: &[usize],
+    context: &Context<'_>,
     frames: &[BodyFrame],
     loads: &Loads,
 ) -> Vec<BodyState> {
+    let Context { comm, catalog, .. } = *context;
     let dim = catalog.dim;
     let modes = BodyFrame::count(dim);
     let mut states: Vec<BodyState> = frames
@@ -62,17 +54,15 @@ pub(super) fn body_states(
         })
         .collect();
     comm.gather(
-        owners,
+        context.plan.owners(),
         |s| {
             let frame = &frames[catalog.subdomains[s].body];
-            of_subdomain(subdomains[&s], &loads.blocks[&s], dim, frame)
+            of_subdomain(context.blocks[&s].points(), &loads.blocks[&s], dim, frame)
         },
         |s, part| {
             let state = &mut states[catalog.subdomains[s].body];
             state.supports.extend(part.supports);
-            for (sum, part) in state.load.iter_mut().zip(part.load) {
-                *sum += part;
-            }
+            axpy(1.0, &part.load, &mut state.load);
             state.load_scale += part.load_scale;
             let candidates = part.candidates.into_iter();
             (state.candidates).extend(candidates.map(|(node, x)| (s as u32, node, x)));
@@ -102,13 +92,12 @@ struct BodyPart {
 }
 
 fn of_subdomain(
-    subdomain: &Subdomain,
+    points: &[[f64; 3]],
     loads: &BlockLoads,
     dim: usize,
     frame: &BodyFrame,
 ) -> BodyPart {
     let modes = BodyFrame::count(dim);
-    let points = &subdomain.points;
     let rows: Vec<Vec<f64>> = (loads.supports.iter())
         .map(|s| {
             let mut row = frame.action(dim, &points[s.node as usize], &s.direction);
@@ -120,9 +109,7 @@ fn of_subdomain(
     let mut load_scale = 0.0;
     for (node, force) in &loads.forces {
         let action = frame.action(dim, &points[*node as usize], force);
-        for (sum, part) in load.iter_mut().zip(action) {
-            *sum += part;
-        }
+        axpy(1.0, &action, &mut load);
         load_scale += force.iter().map(|f| f.abs()).sum::<f64>();
     }
     let candidates = extreme_nodes(points, dim).into_iter();

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::problem::Subdomain;
 use serde::{Deserialize, Serialize};
 
 use super::analysis::{RigidMotions, Scene};
@@ -51,22 +50,12 @@ pub fn analyse_bodies(
     loads: &Loads,
     before: &[Vec<f64>],
 ) -> Result<RigidBodyAnalysis, Failure> {
-    let Context {
-        comm,
-        catalog,
-        plan,
-        blocks,
-        groups,
-        ..
-    } = *context;
-    let subdomains: BTreeMap<usize, &Subdomain> =
-        (blocks.iter().map(|(&b, block)| (b, &block.subdomain))).collect();
-    let owners = plan.owners();
-    let frames = body_frames(comm, &subdomains, catalog, owners);
-    let (rows, conditions) = rigid_rows(comm, groups, plan, &frames);
+    let Context { comm, catalog, .. } = *context;
+    let frames = body_frames(context);
+    let (rows, conditions) = rigid_rows(context, &frames);
     let scene = Scene {
         dim: catalog.dim,
-        bodies: body_states(comm, &subdomains, catalog, owners, &frames, loads),
+        bodies: body_states(context, &frames, loads),
         names: catalog.bodies.iter().map(|b| b.name.clone()).collect(),
         rows,
         conditions,
@@ -85,7 +74,7 @@ pub fn analyse_bodies(
         closing_motions,
     } = found.unwrap_or_default();
     Ok(RigidBodyAnalysis {
-        cluster_modes: cluster_modes(comm, &scene, &motions.fixing_dofs, catalog, plan),
+        cluster_modes: cluster_modes(context, &scene, &motions.fixing_dofs),
         motions,
         movable,
         closing_motions,

@@ -2,14 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::problem::Catalog;
 use faer::Mat;
 
 use super::analysis::{FixingDof, RigidRow, Scene};
 use super::energy::RigidModes;
 use super::kinematics::{Kinematics, null_space};
-use crate::comm::Comm;
-use crate::plan::Plan;
+use crate::context::Context;
 
 /// How far a motion moves a condition, relative to others, that is none.
 const ROUND_OFF: f64 = 1e-9;
@@ -89,12 +87,11 @@ impl Scene {
 /// For every cluster in contact of this rank, its conditions against the motions of the bodies wholly
 /// in it that leave the `fixing_dofs` where they are. Collective; `scene` counts on the root alone.
 pub(super) fn cluster_modes(
-    comm: &Comm,
+    context: &Context<'_>,
     scene: &Scene,
     fixing_dofs: &[FixingDof],
-    catalog: &Catalog,
-    plan: &Plan,
 ) -> BTreeMap<usize, RigidModes> {
+    let Context { catalog, plan, .. } = *context;
     let mut home: Vec<Option<usize>> = vec![None; catalog.bodies.len()];
     let mut elsewhere = vec![false; catalog.bodies.len()];
     let clusters = plan.clusters_of_blocks();
@@ -104,7 +101,7 @@ pub(super) fn cluster_modes(
     }
     let kinematics = Kinematics::new(scene.dim, &scene.bodies);
     let mut motions = BTreeMap::new();
-    comm.scatter(
+    context.comm.scatter(
         &plan.contact_owners(),
         |p| {
             let cluster = plan.contact[p];

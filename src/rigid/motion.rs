@@ -3,6 +3,8 @@
 use contact_dd_partition::element::geometry::{cross, dot, length};
 use serde::{Deserialize, Serialize};
 
+use crate::vector::axpy;
+
 /// The frame in which the rigid motions of a body are written.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyFrame {
@@ -47,11 +49,8 @@ impl BodyFrame {
     /// The displacement at `x` of the rigid motion with coefficients `z`.
     pub fn displacement(&self, dim: usize, x: &[f64; 3], z: &[f64]) -> [f64; 3] {
         let mut u = [0.0; 3];
-        for (component, u) in u.iter_mut().enumerate().take(dim) {
-            let mut unit = [0.0; 3];
-            unit[component] = 1.0;
-            let action = self.action(dim, x, &unit);
-            *u = action.iter().zip(z).map(|(a, z)| a * z).sum();
+        for (moves, z) in self.moves(dim, x).iter().zip(z) {
+            axpy(*z, moves, &mut u);
         }
         u
     }

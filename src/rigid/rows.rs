@@ -1,28 +1,23 @@
 //! What the analysis of rigid motions needs of contact conditions, from the ranks that have them.
 
-use std::collections::BTreeMap;
-
 use super::analysis::RigidRow;
 use super::forces::Friction;
 use super::motion::BodyFrame;
-use crate::comm::Comm;
 use crate::contact::friction::TangentialCondition;
+use crate::context::Context;
 use crate::fem::contact_group::{Condition, ContactGroup};
-use crate::plan::Plan;
 
 /// The conditions against the rigid motions of the bodies, group by group, and how many each group has;
 /// on the root. Collective.
 pub(super) fn rigid_rows(
-    comm: &Comm,
-    groups: &BTreeMap<usize, ContactGroup>,
-    plan: &Plan,
+    context: &Context<'_>,
     frames: &[BodyFrame],
 ) -> (Vec<RigidRow>, Vec<usize>) {
     let mut rows = Vec::new();
     let mut conditions = Vec::new();
-    comm.gather(
-        &plan.group_owners(),
-        |g| of_group(&groups[&g], frames),
+    context.comm.gather(
+        &context.plan.group_owners(),
+        |g| of_group(&context.groups[&g], frames),
         |_, mut of_group: Vec<RigidRow>| {
             for friction in of_group.iter_mut().filter_map(|row| row.friction.as_mut()) {
                 friction.normal += rows.len();
