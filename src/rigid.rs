@@ -29,3 +29,5 @@ pub mod nonnegative;
 pub mod projection;
 pub mod released_modes;
 mod rows;
+#[cfg(test)]
+mod squares;

@@ -119,18 +119,14 @@ fn listed(mut names: Vec<String>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rigid::analysis::Scene;
+    use crate::rigid::squares::{body, scene};
 
     /// `n` squares in a row, and one free motion of each, along x.
     fn described(n: usize, motions: Vec<FreeMotion>) -> Vec<String> {
-        let state = |b: usize| BodyState {
-            frame: BodyFrame::new([b as f64, 0.0, 0.0], [b as f64 + 1.0, 1.0, 0.0]),
-            supports: Vec::new(),
-            load: vec![0.0; 3],
-            load_scale: 0.0,
-            candidates: Vec::new(),
-        };
-        let bodies: Vec<BodyState> = (0..n).map(state).collect();
-        let names: Vec<String> = (0..n).map(|b| format!("brick {b}")).collect();
+        let state = |b: f64| body([b, 0.0, 0.0], [b + 1.0, 1.0, 0.0], &[0.0; 3]);
+        let bodies = (0..n).map(|b| state(b as f64)).collect();
+        let Scene { bodies, names, .. } = scene(2, bodies, Vec::new());
         Kinematics::new(2, &bodies).described(&bodies, &names, &motions)
     }
 

@@ -143,8 +143,7 @@ impl ReleasedModes {
 mod tests {
     use super::*;
     use crate::contact::friction::ForceBound;
-    use crate::rigid::analysis::{BodyState, RigidRow};
-    use crate::rigid::motion::BodyFrame;
+    use crate::rigid::squares::{coulomb, scene, square};
 
     /// A displacement of one node along two motions, x and y.
     fn products(u: [f64; 2]) -> MotionProducts {
@@ -197,32 +196,14 @@ mod tests {
     /// A square on a floor below its corners: what is left to it where their normal and tangential conditions carry
     /// force or not, and are closed or not.
     fn motions_left(bound: Option<ForceBound>, carrying: [bool; 2], closed: bool) -> usize {
-        let frame = BodyFrame::new([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]);
-        let body = BodyState {
-            frame,
-            supports: vec![],
-            load: vec![0.0; 3],
-            load_scale: 0.0,
-            candidates: vec![],
-        };
-        let row = |x: f64, along: [f64; 3], friction| RigidRow {
-            bodies: vec![(0, frame.action(2, &[x, -1.0, 0.0], &along))],
-            gap: 0.0,
-            friction,
-        };
-        let down = [0.0, -1.0, 0.0];
-        let mut rows = vec![row(-1.0, down, None), row(1.0, down, None)];
-        for (normal, x) in [-1.0, 1.0].into_iter().enumerate() {
-            let friction = bound.map(|bound| Friction { normal, bound });
-            rows.extend(friction.map(|friction| row(x, [1.0, 0.0, 0.0], Some(friction))));
+        let body = square([0.0; 3]);
+        let corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0]];
+        let mut rows = corners.map(|x| body.row(0, x, [0.0, -1.0, 0.0])).to_vec();
+        for (normal, x) in corners.into_iter().enumerate() {
+            let along = body.row(0, x, [1.0, 0.0, 0.0]);
+            rows.extend(bound.map(|bound| along.rough(normal, bound)));
         }
-        let scene = Scene {
-            dim: 2,
-            bodies: vec![body],
-            names: vec!["square".into()],
-            conditions: vec![rows.len()],
-            rows,
-        };
+        let scene = scene(2, vec![body], rows);
         let condition = |j: usize| ConditionState {
             carrying: carrying[j / 2],
             closed,
@@ -236,9 +217,8 @@ mod tests {
     fn what_friction_can_hold_is_not_released() {
         let coulomb = |coefficient, cohesion| {
             Some(ForceBound {
-                coefficient,
                 cohesion,
-                only_closed: true,
+                ..coulomb(coefficient)
             })
         };
         let given = Some(ForceBound {

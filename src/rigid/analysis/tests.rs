@@ -1,58 +1,40 @@
 //! Scenes of a few blocks, judged by hand.
 
 use super::*;
+use crate::rigid::squares::{body, scene};
 
-fn square(at: f64, load: [f64; 3], supports: Vec<Vec<f64>>) -> BodyState {
-    let frame = BodyFrame::new([at, 0.0, 0.0], [at + 1.0, 1.0, 0.0]);
-    BodyState {
-        frame,
-        supports,
-        load: load.to_vec(),
-        load_scale: load.iter().map(|f| f.abs()).sum(),
-        candidates: vec![(0, 0, [at, 0.0, 0.0]), (0, 1, [at + 1.0, 1.0, 0.0])],
-    }
+const DOWN: [f64; 3] = [0.0, -1.0, 0.0];
+
+/// The unit square.
+fn square(load: [f64; 3]) -> BodyState {
+    body([0.0; 3], [1.0, 1.0, 0.0], &load)
 }
 
-fn floor(body: &BodyState, b: usize, xs: &[f64]) -> Vec<RigidRow> {
-    xs.iter()
-        .map(|&x| {
-            let action = body.frame.action(2, &[x, 0.0, 0.0], &[0.0, -1.0, 0.0]);
-            RigidRow {
-                bodies: vec![(b, action)],
-                gap: 0.0,
-                friction: None,
-            }
-        })
-        .collect()
+fn floor(body: &BodyState, xs: &[f64]) -> Vec<RigidRow> {
+    let row = |&x: &f64| body.row(0, [x, 0.0, 0.0], DOWN);
+    xs.iter().map(row).collect()
 }
 
 fn analyse(body: BodyState, rows: Vec<RigidRow>) -> Result<RigidMotions, Failure> {
-    let scene = Scene {
-        dim: 2,
-        bodies: vec![body],
-        names: vec!["block".into()],
-        conditions: vec![rows.len()],
-        rows,
-    };
-    scene.analyse()
+    scene(2, vec![body], rows).analyse()
 }
 
 #[test]
 fn a_block_on_the_floor_slides_freely_and_is_pinned_once() {
-    let block = square(0.0, [0.0, -3.0, 0.0], vec![]);
-    let rows = floor(&block, 0, &[0.0, 0.5, 1.0]);
+    let block = square([0.0, -3.0, 0.0]);
+    let rows = floor(&block, &[0.0, 0.5, 1.0]);
     let motions = analyse(block, rows).unwrap();
     assert_eq!(motions.fixing_dofs.len(), 1);
     assert_eq!(motions.fixing_dofs[0].component, 0);
-    assert!(motions.warnings[0].contains("'block'"));
+    assert!(motions.warnings[0].contains("'brick 0'"));
 }
 
 #[test]
 fn a_pushed_block_slides_and_is_named() {
-    let block = square(0.0, [0.1, -3.0, 0.0], vec![]);
-    let rows = floor(&block, 0, &[0.0, 1.0]);
+    let block = square([0.1, -3.0, 0.0]);
+    let rows = floor(&block, &[0.0, 1.0]);
     let failure = analyse(block, rows).unwrap_err();
-    assert!(failure.message.contains("'block'"), "{failure}");
+    assert!(failure.message.contains("'brick 0'"), "{failure}");
     assert!(
         failure
             .message
@@ -62,12 +44,12 @@ fn a_pushed_block_slides_and_is_named() {
 
 #[test]
 fn a_lifted_block_and_a_toppling_one_have_no_equilibrium() {
-    let lifted = square(0.0, [0.0, 1.0, 0.0], vec![]);
-    let rows = floor(&lifted, 0, &[0.0, 1.0]);
+    let lifted = square([0.0, 1.0, 0.0]);
+    let rows = floor(&lifted, &[0.0, 1.0]);
     assert!(analyse(lifted, rows.clone()).is_err());
-    let toppling = square(0.0, [0.0, -1.0, -3.0], vec![]);
+    let toppling = square([0.0, -1.0, -3.0]);
     assert!(analyse(toppling, rows.clone()).is_err());
-    let steady = square(0.0, [0.0, -1.0, -0.5], vec![]);
+    let steady = square([0.0, -1.0, -0.5]);
     assert!(analyse(steady, rows).is_ok());
 }
 
@@ -75,18 +57,12 @@ fn a_lifted_block_and_a_toppling_one_have_no_equilibrium() {
 /// about `slope` up and down by turns; each is pushed aside by a part of what its joint can hold.
 fn tower(count: usize, slope: f64, unit: f64, push: f64) -> Scene {
     let state = |i: usize| {
-        let frame = BodyFrame::new(
-            [0.0, i as f64 * unit, 0.0],
-            [2.0 * unit, (i as f64 + 1.0) * unit, 0.0],
-        );
+        let (low, high) = (i as f64 * unit, (i as f64 + 1.0) * unit);
         let aside = slope * push * if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         let load = [aside, -1.0, 0.0];
         BodyState {
-            frame,
-            supports: vec![],
-            load: load.to_vec(),
             load_scale: 1.0,
-            candidates: vec![(i as u32, 0, frame.center)],
+            ..body([0.0, low, 0.0], [2.0 * unit, high, 0.0], &load)
         }
     };
     let bodies: Vec<BodyState> = (0..count).map(state).collect();
@@ -101,22 +77,15 @@ fn tower(count: usize, slope: f64, unit: f64, push: f64) -> Scene {
         let tilt = slope * if node % 2 == 0 { 1.0 } else { -1.0 };
         let normal = [tilt, -1.0, 0.0].map(|c| c / tilt.hypot(1.0));
         let back = normal.map(|c| -c);
-        let above = (i, bodies[i].frame.action(2, &at, &normal));
-        let below = (i > 0).then(|| (i - 1, bodies[i - 1].frame.action(2, &at, &back)));
-        RigidRow {
-            bodies: std::iter::once(above).chain(below).collect(),
-            gap: 0.0,
-            friction: None,
+        let mut row = bodies[i].row(i, at, normal);
+        if i > 0 {
+            let below = bodies[i - 1].row(i - 1, at, back);
+            row.bodies.extend(below.bodies);
         }
+        row
     };
     let rows: Vec<RigidRow> = (0..count * nodes).map(row).collect();
-    Scene {
-        dim: 2,
-        names: (0..count).map(|i| i.to_string()).collect(),
-        conditions: vec![rows.len()],
-        bodies,
-        rows,
-    }
+    scene(2, bodies, rows)
 }
 
 #[test]
@@ -148,17 +117,8 @@ fn rough_joints_hold_a_tower_however_high_and_in_any_unit() {
 #[test]
 fn a_load_that_contact_hardly_fails_to_hold_is_told() {
     for (beyond, told) in [(0.0, false), (3e-10, true)] {
-        let block = square(0.0, [2e-5 + beyond, -1.0, 0.0], vec![]);
-        let row = |slope: f64| RigidRow {
-            bodies: vec![(
-                0,
-                block
-                    .frame
-                    .action(2, &block.frame.center, &[slope, -1.0, 0.0]),
-            )],
-            gap: 0.0,
-            friction: None,
-        };
+        let block = square([2e-5 + beyond, -1.0, 0.0]);
+        let row = |slope: f64| block.row(0, block.frame.center, [slope, -1.0, 0.0]);
         let rows = vec![row(1e-5), row(2e-5)];
         let warnings = analyse(block, rows).unwrap().warnings;
         let found = warnings.iter().any(|w| w.contains("of all loads"));
@@ -168,18 +128,11 @@ fn a_load_that_contact_hardly_fails_to_hold_is_told() {
 
 #[test]
 fn a_supported_body_is_left_alone() {
-    let frame = BodyFrame::new([0.0; 3], [1.0, 1.0, 0.0]);
-    let rows = [([0.0; 3], 0), ([0.0; 3], 1), ([1.0, 0.0, 0.0], 1)];
-    let supports = (rows.iter())
-        .map(|(x, axis)| {
-            let mut direction = [0.0; 3];
-            direction[*axis] = 1.0;
-            let mut row = frame.action(2, x, &direction);
-            row.push(0.0);
-            row
-        })
-        .collect();
-    let body = square(0.0, [5.0, 1.0, 2.0], supports);
+    let ([x, y], origin) = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [0.0; 3]);
+    let body = square([5.0, 1.0, 2.0])
+        .held(origin, x, 0.0)
+        .held(origin, y, 0.0)
+        .held(x, y, 0.0);
     let motions = analyse(body, vec![]).unwrap();
     assert_eq!(motions, RigidMotions::default());
 }

@@ -1,28 +1,14 @@
 //! Squares that come to rest, judged by hand.
 
 use super::*;
-use crate::contact::friction::ForceBound;
+use crate::rigid::squares::{coulomb, square};
 
-fn square(load: [f64; 3], supports: Vec<Vec<f64>>) -> BodyState {
-    BodyState {
-        frame: BodyFrame::new([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]),
-        supports,
-        load: load.to_vec(),
-        load_scale: load.iter().map(|f| f.abs()).sum(),
-        candidates: Vec::new(),
-    }
-}
+const DOWN: [f64; 3] = [0.0, -1.0, 0.0];
+const UP: [f64; 3] = [0.0, 1.0, 0.0];
 
 /// A floor below the lower corners of a square, with these gaps.
 fn floor(body: &BodyState, gaps: [f64; 2]) -> Vec<RigidRow> {
-    let row = |(x, gap): (f64, f64)| {
-        let action = body.frame.action(2, &[x, -1.0, 0.0], &[0.0, -1.0, 0.0]);
-        RigidRow {
-            bodies: vec![(0, action)],
-            gap,
-            friction: None,
-        }
-    };
+    let row = |(x, gap): (f64, f64)| body.row(0, [x, -1.0, 0.0], DOWN).open(gap);
     [(-1.0, gaps[0]), (1.0, gaps[1])].map(row).to_vec()
 }
 
@@ -35,7 +21,7 @@ fn close(found: &[f64], expected: &[f64]) {
 
 #[test]
 fn a_square_falls_onto_an_uneven_floor_and_leans_on_it() {
-    let body = square([0.0, -2.0, 0.1], vec![]);
+    let body = square([0.0, -2.0, 0.1]);
     let rows = floor(&body, [0.1, 0.3]);
     let z = closing_motions(2, std::slice::from_ref(&body), &rows, &[]).remove(0);
     let motions = [z.clone()];
@@ -46,17 +32,14 @@ fn a_square_falls_onto_an_uneven_floor_and_leans_on_it() {
 
 #[test]
 fn what_rests_stays() {
-    let body = square([0.0, -2.0, 0.1], vec![]);
+    let body = square([0.0, -2.0, 0.1]);
     let rows = floor(&body, [0.0, 0.0]);
     close(&closing_motions(2, &[body], &rows, &[])[0], &[0.0; 3]);
 }
 
 #[test]
 fn supports_push_no_body_into_another() {
-    let frame = BodyFrame::new([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]);
-    let mut support = frame.action(2, &[0.0; 3], &[0.0, 1.0, 0.0]);
-    support.push(-0.4);
-    let body = square([0.0; 3], vec![support]);
+    let body = square([0.0; 3]).held([0.0; 3], UP, -0.4);
     let rows = floor(&body, [0.1, 0.3]);
     close(
         &closing_motions(2, &[body], &rows, &[])[0],
@@ -66,38 +49,25 @@ fn supports_push_no_body_into_another() {
 
 #[test]
 fn a_body_follows_its_supports() {
-    let frame = BodyFrame::new([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]);
-    let support = |x: f64| {
-        let mut row = frame.action(2, &[x, 0.0, 0.0], &[0.0, 1.0, 0.0]);
-        row.push(0.3 + 0.1 * x);
-        row
-    };
-    let body = square([0.0, 5.0, 0.0], vec![support(-1.0), support(1.0)]);
-    close(
-        &closing_motions(2, &[body], &[], &[])[0],
-        &[0.0, 0.3, 0.1 * frame.size],
-    );
+    let body = square([0.0, 5.0, 0.0])
+        .held([-1.0, 0.0, 0.0], UP, 0.2)
+        .held([1.0, 0.0, 0.0], UP, 0.4);
+    let turned = 0.1 * body.frame.size;
+    let found = closing_motions(2, &[body], &[], &[]);
+    close(&found[0], &[0.0, 0.3, turned]);
 }
 
 #[test]
 fn a_body_without_load_is_pushed_by_the_one_that_falls_on_it() {
-    let bodies = [square([0.0, -1.0, 0.0], vec![]), square([0.0; 3], vec![])];
-    let row = |entries: &[(usize, f64)], x: f64, gap: f64| RigidRow {
-        bodies: (entries.iter())
-            .map(|&(b, n)| (b, bodies[b].frame.action(2, &[x, 0.0, 0.0], &[0.0, n, 0.0])))
-            .collect(),
-        gap,
-        friction: None,
-    };
-    let rows: Vec<RigidRow> = [-1.0, 1.0]
-        .into_iter()
-        .flat_map(|x| {
-            [
-                row(&[(0, -1.0), (1, 1.0)], x, 0.5),
-                row(&[(1, -1.0)], x, 0.25),
-            ]
-        })
-        .collect();
+    let bodies = [square([0.0, -1.0, 0.0]), square([0.0; 3])];
+    let rows = [-1.0, 1.0].map(|x| {
+        let mut between = bodies[0].row(0, [x, 0.0, 0.0], DOWN).open(0.5);
+        between
+            .bodies
+            .extend(bodies[1].row(1, [x, 0.0, 0.0], UP).bodies);
+        [between, bodies[1].row(1, [x, 0.0, 0.0], DOWN).open(0.25)]
+    });
+    let rows = rows.concat();
     let motions = closing_motions(2, &bodies, &rows, &[]);
     close(&motions[0], &[0.0, -0.75, 0.0]);
     close(&motions[1], &[0.0, -0.25, 0.0]);
@@ -106,32 +76,20 @@ fn a_body_without_load_is_pushed_by_the_one_that_falls_on_it() {
 /// A floor below the lower corners with a wall on the right, and friction on the floor.
 fn rough_floor(body: &BodyState, gap: f64, wall: f64, friction: f64) -> Vec<RigidRow> {
     let mut rows = floor(body, [gap; 2]);
-    rows.push(RigidRow {
-        bodies: vec![(0, body.frame.action(2, &[1.0, 0.0, 0.0], &[1.0, 0.0, 0.0]))],
-        gap: wall,
-        friction: None,
-    });
+    let right = [1.0, 0.0, 0.0];
+    rows.push(body.row(0, right, right).open(wall));
     for (normal, x) in [-1.0, 1.0].into_iter().enumerate() {
-        let action = body.frame.action(2, &[x, -1.0, 0.0], &[1.0, 0.0, 0.0]);
-        let bound = ForceBound {
-            coefficient: friction,
-            cohesion: 0.0,
-            only_closed: true,
-        };
-        rows.push(RigidRow {
-            bodies: vec![(0, action)],
-            gap: 0.0,
-            friction: Some(Friction { normal, bound }),
-        });
+        let along = body.row(0, [x, -1.0, 0.0], right);
+        rows.push(along.rough(normal, coulomb(friction)));
     }
     rows
 }
 
 /// A push on the base, where it topples nothing.
 fn pushed(push: f64) -> BodyState {
-    let frame = BodyFrame::new([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]);
+    let frame = square([0.0; 3]).frame;
     let action = frame.action(2, &[0.0, -1.0, 0.0], &[push, -2.0, 0.0]);
-    square([action[0], action[1], action[2]], vec![])
+    square([action[0], action[1], action[2]])
 }
 
 #[test]
@@ -165,22 +123,15 @@ fn a_body_goes_on_from_where_the_step_before_left_it() {
         close(&found[0], &[0.7, -0.1, 0.0]);
     }
     let mut both = rows.clone();
-    let action = body.frame.action(2, &[-1.0, 0.0, 0.0], &[-1.0, 0.0, 0.0]);
-    both.push(RigidRow {
-        bodies: vec![(0, action)],
-        gap: 0.2,
-        friction: None,
-    });
+    let left = [-1.0, 0.0, 0.0];
+    both.push(body.row(0, left, left).open(0.2));
     let found = closing_motions(2, &[pushed(-1.1)], &both, &there);
     close(&found[0], &[-0.2, -0.1, 0.0]);
 }
 
 #[test]
 fn supports_go_on_from_where_the_step_before_left_them() {
-    let frame = BodyFrame::new([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]);
-    let mut support = frame.action(2, &[0.0; 3], &[0.0, 1.0, 0.0]);
-    support.push(0.4);
-    let body = square([0.0; 3], vec![support]);
+    let body = square([0.0; 3]).held([0.0; 3], UP, 0.4);
     let rows = rough_floor(&body, 0.0, 0.7, 0.5);
     let before = [vec![0.3, 0.1, 0.0]];
     close(

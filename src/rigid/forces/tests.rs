@@ -7,17 +7,12 @@ use contact_dd_partition::contact_point::LocalFrame;
 use crate::contact::friction::ForceBound;
 use crate::error::Failure;
 use crate::rigid::analysis::{BodyState, RigidMotions, RigidRow, Scene};
-use crate::rigid::forces::Friction;
-use crate::rigid::motion::BodyFrame;
+use crate::rigid::squares::{self, body};
 
 const FRICTIONLESS: Option<ForceBound> = None;
 
 fn coulomb(coefficient: f64) -> Option<ForceBound> {
-    Some(ForceBound {
-        coefficient,
-        cohesion: 0.0,
-        only_closed: true,
-    })
+    Some(squares::coulomb(coefficient))
 }
 
 /// A bound at every point (N).
@@ -31,37 +26,20 @@ fn given(cohesion: f64) -> Option<ForceBound> {
 /// A unit square about the origin or, with a third dimension, a cube.
 fn block(load: &[f64]) -> BodyState {
     let z = if load.len() == 6 { 0.5 } else { 0.0 };
-    BodyState {
-        frame: BodyFrame::new([-0.5, -0.5, -z], [0.5, 0.5, z]),
-        supports: vec![],
-        load: load.to_vec(),
-        load_scale: load.iter().map(|f| f.abs()).sum(),
-        candidates: vec![(0, 0, [-0.5, -0.5, -z]), (0, 1, [0.5, 0.5, z])],
-    }
+    body([-0.5, -0.5, -z], [0.5, 0.5, z], load)
 }
 
 /// Points of the block, each with a normal against an obstacle.
 fn scene(body: BodyState, points: &[([f64; 3], [f64; 3])], bound: Option<ForceBound>) -> Scene {
     let dim = if body.load.len() == 6 { 3 } else { 2 };
-    let row = |at: &[f64; 3], along: &[f64; 3], friction| RigidRow {
-        bodies: vec![(0, body.frame.action(dim, at, along))],
-        gap: 0.0,
-        friction,
-    };
-    let mut rows: Vec<RigidRow> = points.iter().map(|(at, n)| row(at, n, None)).collect();
-    for (j, (at, n)) in points.iter().enumerate() {
-        let friction = bound.map(|bound| Friction { normal: j, bound });
-        for tangent in &LocalFrame::new(*n).tangents[..dim - 1] {
-            rows.extend(friction.map(|friction| row(at, tangent, Some(friction))));
+    let normal = |&(at, n): &([f64; 3], [f64; 3])| body.row(0, at, n);
+    let mut rows: Vec<RigidRow> = points.iter().map(normal).collect();
+    for (j, &(at, n)) in points.iter().enumerate() {
+        for &tangent in &LocalFrame::new(n).tangents[..dim - 1] {
+            rows.extend(bound.map(|bound| body.row(0, at, tangent).rough(j, bound)));
         }
     }
-    Scene {
-        dim,
-        bodies: vec![body],
-        names: vec!["block".into()],
-        conditions: vec![rows.len()],
-        rows,
-    }
+    squares::scene(dim, vec![body], rows)
 }
 
 const DOWN: [f64; 3] = [0.0, -1.0, 0.0];
@@ -74,7 +52,7 @@ fn on_floor(load: [f64; 3], bound: Option<ForceBound>) -> Result<RigidMotions, F
 #[track_caller]
 fn slides(found: Result<RigidMotions, Failure>, along: &str) {
     let failure = found.unwrap_err();
-    let expected = format!("'block' slides along {along}");
+    let expected = format!("'brick 0' slides along {along}");
     assert!(failure.message.contains(&expected), "{failure}");
     assert_eq!(failure.exit_code(), 4.into());
 }
@@ -107,7 +85,7 @@ fn a_block_on_an_incline_slides_from_the_friction_angle_on() {
                 let (found, [x, y, _]) = at(coefficient * above);
                 let failure = found.unwrap_err();
                 assert!(
-                    failure.message.contains("'block' slides along"),
+                    failure.message.contains("'brick 0' slides along"),
                     "{failure}"
                 );
                 if above > 1.0 + 1e-9 {

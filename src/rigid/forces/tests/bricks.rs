@@ -11,9 +11,7 @@ fn wall(rows: usize, columns: usize, coefficient: f64, push: impl Fn(usize) -> f
     };
     let state = |b: usize| {
         let (x, y) = place(b);
-        let mut body = block(&[push(b), -1.0, 0.0]);
-        body.frame = BodyFrame::new([x, y, 0.0], [x + 1.0, y + 0.3, 0.0]);
-        body
+        body([x, y, 0.0], [x + 1.0, y + 0.3, 0.0], &[push(b), -1.0, 0.0])
     };
     let bodies: Vec<BodyState> = (0..rows * columns).map(state).collect();
     let (mut normals, mut tangents) = (Vec::new(), Vec::new());
@@ -31,34 +29,24 @@ fn wall(rows: usize, columns: usize, coefficient: f64, push: impl Fn(usize) -> f
             let to = lower.map_or(x + 1.0, |b| (place(b).0 + 1.0).min(x + 1.0));
             for k in 0..5 {
                 let at = [from + (to - from) * k as f64 / 4.0, y, 0.0];
-                let row = |along: [f64; 3], friction| {
-                    let of = |b: usize, sign: f64| {
-                        let along = along.map(|c| sign * c);
-                        (b, bodies[b].frame.action(2, &at, &along))
-                    };
-                    RigidRow {
-                        bodies: std::iter::once(of(upper, 1.0))
-                            .chain(lower.map(|b| of(b, -1.0)))
-                            .collect(),
-                        gap: 0.0,
-                        friction,
-                    }
+                let row = |along: [f64; 3]| {
+                    let mut row = bodies[upper].row(upper, at, along);
+                    let back = along.map(|c| -c);
+                    (row.bodies).extend(
+                        lower
+                            .into_iter()
+                            .flat_map(|b| bodies[b].row(b, at, back).bodies),
+                    );
+                    row
                 };
-                let normal = normals.len();
-                let friction = coulomb(coefficient).map(|bound| Friction { normal, bound });
-                normals.push(row(DOWN, None));
-                tangents.push(row([1.0, 0.0, 0.0], friction));
+                let bound = squares::coulomb(coefficient);
+                tangents.push(row([1.0, 0.0, 0.0]).rough(normals.len(), bound));
+                normals.push(row(DOWN));
             }
         }
     }
     normals.extend(tangents);
-    Scene {
-        dim: 2,
-        names: (0..bodies.len()).map(|b| format!("brick {b}")).collect(),
-        conditions: vec![normals.len()],
-        bodies,
-        rows: normals,
-    }
+    squares::scene(2, bodies, normals)
 }
 
 #[test]

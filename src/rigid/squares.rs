@@ -1,0 +1,75 @@
+//! Squares and cubes for tests.
+
+use super::analysis::{BodyState, RigidRow, Scene};
+use super::forces::Friction;
+use super::motion::BodyFrame;
+use crate::contact::friction::ForceBound;
+
+/// A body within these bounds, of the plane where its load has three components, in space where it has six.
+pub fn body(low: [f64; 3], high: [f64; 3], load: &[f64]) -> BodyState {
+    BodyState {
+        frame: BodyFrame::new(low, high),
+        supports: Vec::new(),
+        load: load.to_vec(),
+        load_scale: load.iter().map(|f| f.abs()).sum(),
+        candidates: vec![(0, 0, low), (0, 1, high)],
+    }
+}
+
+/// A square with sides of 2 about the origin.
+pub fn square(load: [f64; 3]) -> BodyState {
+    body([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0], &load)
+}
+
+impl BodyState {
+    /// The same, held at `x` along an axis, where that is displaced by `value`.
+    pub fn held(mut self, x: [f64; 3], along: [f64; 3], value: f64) -> Self {
+        let mut row = self.frame.action(2, &x, &along);
+        row.push(value);
+        self.supports.push(row);
+        self
+    }
+
+    /// A closed condition of it, body number `b`, along a direction at `x`.
+    pub fn row(&self, b: usize, x: [f64; 3], along: [f64; 3]) -> RigidRow {
+        let dim = if self.load.len() == 6 { 3 } else { 2 };
+        RigidRow {
+            bodies: vec![(b, self.frame.action(dim, &x, &along))],
+            gap: 0.0,
+            friction: None,
+        }
+    }
+}
+
+impl RigidRow {
+    /// The same with a gap.
+    pub fn open(self, gap: f64) -> Self {
+        Self { gap, ..self }
+    }
+
+    /// The same along a tangent of the point whose normal one has this number.
+    pub fn rough(self, normal: usize, bound: ForceBound) -> Self {
+        let friction = Some(Friction { normal, bound });
+        Self { friction, ..self }
+    }
+}
+
+/// Bodies, called brick 0, brick 1 and so on, with their conditions.
+pub fn scene(dim: usize, bodies: Vec<BodyState>, rows: Vec<RigidRow>) -> Scene {
+    Scene {
+        dim,
+        names: (0..bodies.len()).map(|b| format!("brick {b}")).collect(),
+        conditions: vec![rows.len()],
+        bodies,
+        rows,
+    }
+}
+
+/// Coulomb's bound.
+pub fn coulomb(coefficient: f64) -> ForceBound {
+    ForceBound {
+        coefficient,
+        cohesion: 0.0,
+        only_closed: true,
+    }
+}
