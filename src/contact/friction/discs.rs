@@ -17,34 +17,17 @@
 
 mod law;
 mod linear;
+mod newton;
 
 use super::{FrictionProblem, Status};
 use crate::contact::active_set::{ContactProblem, ContactSolution, FORCE_TOLERANCE};
 use crate::contact::limits::{Beside, TangentialLimit};
 use crate::contact::open_factor::scale_of;
 
-/// Most steps of Newton's method.
-const STEPS: usize = 40;
-/// The same between two changes of dashpots.
-const DAMPED_STEPS: usize = 15;
-/// Part of a step that is too small.
-const SMALLEST: f64 = 1e-3;
-/// Part of the merit, for every part of a step, by which that has to lessen it.
-const LESSENS: f64 = 1e-4;
 /// Force, relative to its terms, up to which a limit does what it did.
 const STAYS: f64 = 1e-15;
 /// What may be missed of the law, relative to what acts.
 const LAW: f64 = 1e-9;
-/// What is missed that can't be less.
-const ROUND_OFF: f64 = 1e-15;
-/// Dashpots, relative to stiffness and time: the first, the weakest and the strongest ones.
-const DASHPOTS: [f64; 3] = [0.1, 1e-4, 10.0];
-/// Part of the way before that isn't less, and how often that may be.
-const SLOWER: f64 = 0.9;
-const PATIENCE: usize = 3;
-/// Most changes of dashpots.
-const CHANGES: usize = 24;
-
 /// A point with friction: its limits and what bounds its force.
 #[derive(Clone, Copy, Debug)]
 struct Point {
@@ -206,159 +189,6 @@ impl<'a> Discs<'a> {
             is_tangential,
             stiffness,
         }
-    }
-
-    /// The solution, found from where these statuses are right, and whether that took dashpots.
-    fn solve(&self, status: &[Status]) -> (Found, bool) {
-        let start = self.start();
-        let state = self.begin(status, &start);
-        let at_once = self.newton(&start, &state, STEPS);
-        match at_once.converged() {
-            true => (at_once, false),
-            false => (self.with_dashpots(&start, &state, at_once), true),
-        }
-    }
-
-    /// The place from which open jumps go where the load drives them.
-    fn start(&self) -> Place {
-        let rows = self.contact.rows.len();
-        self.place(self.contact.center.to_vec(), vec![0.0; rows])
-    }
-
-    /// Goes from one position to the next of a problem with dashpots, which weaken as long as that is found; to no end
-    /// where things slide on and on.
-    fn with_dashpots(&self, start: &Place, state: &State, failed: Found) -> Found {
-        let [mut dashpots, weakest, strongest] = DASHPOTS;
-        let (mut place, mut state) = (start.clone(), state.clone());
-        let mut steps = failed.steps;
-        let (mut last, mut sliding) = (f64::INFINITY, 0);
-        for _ in 0..CHANGES {
-            let found = self.damped(dashpots, &place, &state);
-            steps += found.steps;
-            if !found.converged() {
-                if dashpots >= strongest {
-                    break;
-                }
-                dashpots = (4.0 * dashpots).min(strongest);
-                continue;
-            }
-            let ways = found.place.jumps.iter().zip(&place.jumps);
-            let way = ways.fold(0.0, |most: f64, (to, from)| most.max((to - from).abs()));
-            if dashpots <= weakest && way > SLOWER * last {
-                sliding += 1;
-                if sliding == PATIENCE {
-                    break;
-                }
-            }
-            let slows = way < last;
-            last = way;
-            dashpots = (0.25 * dashpots).max(weakest);
-            let of_rows = found.place.forces[self.contact.c.len()..].to_vec();
-            place = self.place(found.place.jumps, of_rows);
-            state = found.state;
-            if !slows {
-                continue;
-            }
-            let free = self.newton(&place, &state, DAMPED_STEPS);
-            steps += free.steps;
-            if free.converged() {
-                return Found { steps, ..free };
-            }
-        }
-        Found { steps, ..failed }
-    }
-
-    /// The solution where every jump is held by a dashpot at where it is.
-    fn damped(&self, dashpots: f64, place: &Place, state: &State) -> Found {
-        let contact = &self.contact;
-        let mut h = contact.h.to_owned();
-        let (mut c, mut c_scale) = (contact.c.to_vec(), contact.c_scale.to_vec());
-        for (i, t) in place.jumps.iter().enumerate() {
-            let own = dashpots * self.stiffness[i];
-            h[(i, i)] += own;
-            c[i] += own * t;
-            c_scale[i] += (own * t).abs();
-        }
-        let damped = Discs {
-            contact: ContactProblem {
-                h: h.as_ref(),
-                c: &c,
-                c_scale: &c_scale,
-                ..*contact
-            },
-            points: self.points.clone(),
-            is_tangential: self.is_tangential.clone(),
-            stiffness: self.stiffness.clone(),
-            acting: self.acting,
-        };
-        damped.newton(place, state, DAMPED_STEPS)
-    }
-
-    /// Newton's method from a place where limits do this.
-    fn newton(&self, start: &Place, state: &State, most: usize) -> Found {
-        let mut place = start.clone();
-        let mut state = state.clone();
-        let mut merit = f64::INFINITY;
-        let mut best: Option<Found> = None;
-        for steps in 1..=most {
-            let target = self.step(&place, &state);
-            let look = self.look(&target, Some(&state));
-            if let Some(found) = &mut best
-                && look.missed > 0.5 * found.missed
-            {
-                found.steps = steps;
-                break;
-            }
-            if look.missed <= FORCE_TOLERANCE {
-                let found = Found {
-                    place: target.clone(),
-                    state: state.clone(),
-                    missed: look.missed,
-                    steps,
-                };
-                let exact = found.missed <= ROUND_OFF;
-                best = Some(found);
-                if exact {
-                    break;
-                }
-            }
-            (place, merit, state) = self.part_of_way(place, merit, target, look);
-        }
-        best.unwrap_or(Found {
-            place,
-            state,
-            missed: f64::INFINITY,
-            steps: most,
-        })
-    }
-
-    /// The part of the way from a place with this `merit` to a `target` that lessens it; the whole way if none does.
-    fn part_of_way(
-        &self,
-        place: Place,
-        merit: f64,
-        target: Place,
-        whole: Look,
-    ) -> (Place, f64, State) {
-        let lessens = |look: &Look, part: f64| look.merit <= (1.0 - LESSENS * part) * merit;
-        if merit == f64::INFINITY || lessens(&whole, 1.0) {
-            return (target, whole.merit, whole.state);
-        }
-        let m = place.jumps.len();
-        let mut part = 0.5;
-        while part >= SMALLEST {
-            let between = |a: &[f64], b: &[f64]| -> Vec<f64> {
-                a.iter().zip(b).map(|(a, b)| a + part * (b - a)).collect()
-            };
-            let jumps = between(&place.jumps, &target.jumps);
-            let there = self.place(jumps, between(&place.forces[m..], &target.forces[m..]));
-            let look = self.look(&there, None);
-            if lessens(&look, part) {
-                return (there, look.merit, look.state);
-            }
-            part *= 0.5;
-        }
-        (target, whole.merit, whole.state)
     }
 
     /// The place with these jumps and forces of dependent rows.
