@@ -6,6 +6,7 @@ pub mod assembly;
 pub mod balance;
 pub mod block;
 pub mod contact_group;
+pub mod contact_node;
 pub mod dofs;
 pub mod elasticity;
 pub mod estimate;

@@ -14,7 +14,8 @@ use crate::comm::Comm;
 use crate::contact::jumps::JumpOf;
 use crate::error::Failure;
 use crate::fem::block::Block;
-use crate::fem::contact_group::{ContactGroup, ContactNode};
+use crate::fem::contact_group::ContactGroup;
+use crate::fem::contact_node::ContactNode;
 use crate::plan::Plan;
 
 /// Most subdomains that are read at once: what HDF5 hands over is there twice for a while.

@@ -5,11 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use contact_dd_partition::contact_point::{ContactPoint, Law};
 use contact_dd_partition::element::geometry::{dot, length};
-use contact_dd_partition::model::{Material, Support};
-use contact_dd_partition::problem::consistency::Place;
-use serde::{Deserialize, Serialize};
+use contact_dd_partition::model::Support;
 
-use super::block::Block;
+use super::contact_node::ContactNode;
 use super::frame::{Frame, support_frames};
 use crate::contact::friction::{ForceBound, TangentialCondition};
 use crate::contact::jumps::{JumpRow, Jumps, NoUnknown, Sum, Variable, defining_conditions};
@@ -18,71 +16,6 @@ use crate::schur::substitution::Replaced;
 
 /// Square of a row, relative to that of another one, that is round-off.
 const NO_ROW: f64 = 1e-28;
-
-/// A node of contact points, as its subdomain describes it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ContactNode {
-    /// Its number on Γ.
-    pub interface: u32,
-    /// The mesh file's tag.
-    pub tag: i64,
-    /// Its body.
-    pub body: usize,
-    /// Coordinates (m).
-    pub at: [f64; 3],
-    /// The stiffest material around it (Pa).
-    pub stiffness: f64,
-    /// Directions of its supports, and what they prescribe in every load step (m).
-    pub supports: Vec<([f64; 3], Vec<f64>)>,
-}
-
-impl ContactNode {
-    /// Some `nodes` of a block: the block's node and its number on Γ.
-    pub fn of(block: &Block, materials: &[Material], nodes: &[(u32, u32)]) -> Vec<Self> {
-        let mut stiffness: BTreeMap<u32, f64> =
-            nodes.iter().map(|&(node, _)| (node, 0.0)).collect();
-        for cell in block.cells() {
-            for node in cell.nodes() {
-                if let Some(of_node) = stiffness.get_mut(&node) {
-                    *of_node = of_node.max(materials[cell.material].stiffness[0][0]);
-                }
-            }
-        }
-        let subdomain = &block.subdomain;
-        let steps = subdomain.steps.len().max(1);
-        let values: Vec<Vec<Support>> = (0..steps)
-            .map(|k| subdomain.supports_in(k).collect())
-            .collect();
-        let of_node = |&(node, interface): &(u32, u32)| {
-            let start = values[0].partition_point(|s| s.node < node);
-            let end = values[0].partition_point(|s| s.node <= node);
-            let support = |i: usize| {
-                (
-                    values[0][i].direction,
-                    values.iter().map(|step| step[i].value).collect(),
-                )
-            };
-            Self {
-                interface,
-                tag: subdomain.node_tags[node as usize],
-                body: subdomain.body,
-                at: subdomain.points[node as usize],
-                stiffness: stiffness[&node],
-                supports: (start..end).map(support).collect(),
-            }
-        };
-        nodes.iter().map(of_node).collect()
-    }
-
-    /// It as the check of contact points sees it.
-    pub fn place(&self) -> Place {
-        Place {
-            tag: self.tag,
-            body: self.body,
-            at: self.at,
-        }
-    }
-}
 
 /// Contact points over nodes of their own numbering.
 #[derive(Clone, Debug, Default)]
