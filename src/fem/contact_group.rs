@@ -1,10 +1,10 @@
 //! A contact group: the contact points that belong to one node of the hierarchy, where all that have one of
 //! their nodes come together, and what they need to know of these nodes.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use contact_dd_partition::contact_point::{ContactPoint, Law};
-use contact_dd_partition::element::geometry::{dot, length};
+use contact_dd_partition::element::geometry::{advance, dot, length};
 use contact_dd_partition::model::Support;
 
 use super::contact_node::ContactNode;
@@ -87,31 +87,54 @@ impl GroupLoads {
 
 impl ContactGroup {
     /// The group of these points. Where supports let what has friction slip in but one direction of a plane, that is
-    /// the first tangent, so that there is no condition along the second.
+    /// the first tangent, so that there is no condition along the second. What the normal jump alone moves along a
+    /// tangent, where the normal isn't along what is held, is no slip.
     pub fn new(points: Vec<ContactPoint<u32>>, nodes: Vec<ContactNode>, dim: usize) -> Self {
         let mut group = Self { points, nodes, dim };
         let frames = group.frames();
         for point in 0..group.points.len() {
+            let normal = group.points[point].normal();
             let tangents = group.points[point].tangents(dim);
             if let [first, second] = *tangents {
-                let [a, b] = [first, second].map(|direction| {
-                    group.row(
-                        &Condition {
-                            point,
-                            direction,
-                            is_tangential: true,
-                        },
-                        &frames,
-                    )
+                let [n, a, b] = [normal, first, second].map(|direction| {
+                    let condition = Condition {
+                        point,
+                        direction,
+                        is_tangential: true,
+                    };
+                    group.row(&condition, &frames)
                 });
+                let turned = |x: f64, y: f64| std::array::from_fn(|k| x * first[k] + y * second[k]);
                 if let Some((cos, sin)) = only_direction(&a, &b) {
-                    let turned =
-                        |x: f64, y: f64| std::array::from_fn(|k| x * first[k] + y * second[k]);
                     group.points[point].frame.tangents = [turned(cos, sin), turned(-sin, cos)];
+                } else if group.is_held_fast(point) {
+                    let [of_a, of_b] = [&a, &b].map(|row| product(row, &n) / product(&n, &n));
+                    let beside = [less(&a, of_a, &n), less(&b, of_b, &n)];
+                    let rest: f64 = beside.iter().map(|row| product(row, row)).sum();
+                    if rest <= NO_ROW * (product(&a, &a) + product(&b, &b)) {
+                        group.points[point].frame.tangents = [
+                            advance(first, -of_a, normal),
+                            advance(second, -of_b, normal),
+                        ];
+                    } else if let Some((cos, sin)) = only_direction(&beside[0], &beside[1]) {
+                        let of_normal = cos * of_b - sin * of_a;
+                        group.points[point].frame.tangents = [
+                            turned(cos, sin),
+                            advance(turned(-sin, cos), -of_normal, normal),
+                        ];
+                    }
                 }
             }
         }
         group
+    }
+
+    /// Whether supports hold nodes of a point, and prescribe no displacement but 0.
+    fn is_held_fast(&self, point: usize) -> bool {
+        let nodes = self.points[point].entries.iter();
+        let mut supports = nodes.flat_map(|(node, _)| &self.nodes[*node as usize].supports);
+        supports.clone().next().is_some()
+            && supports.all(|(_, values)| values.iter().all(|&value| value == 0.0))
     }
 
     /// Its conditions: the normal one of every point, then the tangential ones of the points that have friction.
@@ -328,15 +351,28 @@ fn only_direction(a: &JumpRow, b: &JumpRow) -> Option<(f64, f64)> {
     if a.is_empty() || b.is_empty() {
         return None;
     }
-    let b: BTreeMap<u32, f64> = b.iter().copied().collect();
-    let a: BTreeMap<u32, f64> = a.iter().copied().collect();
-    let at = |row: &BTreeMap<u32, f64>, v: &u32| row.get(v).copied().unwrap_or(0.0);
-    let sum = |term: &dyn Fn(f64, f64) -> f64| -> f64 {
-        let all: BTreeSet<&u32> = a.keys().chain(b.keys()).collect();
-        all.into_iter().map(|v| term(at(&a, v), at(&b, v))).sum()
-    };
-    let product = sum(&|a, b| a * b);
-    let (sin, cos) = (0.5 * (2.0 * product).atan2(sum(&|a, b| a * a - b * b))).sin_cos();
-    let rest = sum(&|a, b| (cos * b - sin * a).powi(2));
-    (rest <= NO_ROW * sum(&|a, b| a * a + b * b)).then_some((cos, sin))
+    let product = product(a, b);
+    let (of_a, of_b) = (self::product(a, a), self::product(b, b));
+    let (sin, cos) = (0.5 * (2.0 * product).atan2(of_a - of_b)).sin_cos();
+    let rest = less(&scaled(b, cos), sin, a);
+    (self::product(&rest, &rest) <= NO_ROW * (of_a + of_b)).then_some((cos, sin))
+}
+
+/// Σ a_v b_v.
+fn product(a: &JumpRow, b: &JumpRow) -> f64 {
+    let at = |v: &u32| b.iter().find(|(w, _)| w == v).map_or(0.0, |(_, c)| *c);
+    a.iter().map(|(v, c)| c * at(v)).sum()
+}
+
+fn scaled(row: &JumpRow, factor: f64) -> JumpRow {
+    row.iter().map(|&(v, c)| (v, factor * c)).collect()
+}
+
+/// a − factor·b.
+fn less(a: &JumpRow, factor: f64, b: &JumpRow) -> JumpRow {
+    let mut sum: BTreeMap<u32, f64> = a.iter().copied().collect();
+    for &(v, c) in b {
+        *sum.entry(v).or_default() -= factor * c;
+    }
+    sum.into_iter().collect()
 }

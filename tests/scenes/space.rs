@@ -2,6 +2,7 @@
 
 pub mod contact;
 mod friction;
+mod invariance;
 
 use std::collections::HashMap;
 

@@ -102,33 +102,38 @@ impl Blocks {
     }
 
     /// Makes one node of nodes that lie at the same place, where `at(x, y)` says so.
-    pub fn glued(mut self, at: impl Fn(f64, f64) -> bool) -> Self {
-        let mut known: HashMap<[i64; 2], u32> = HashMap::new();
-        let old = std::mem::take(&mut self.mesh);
-        let mut mesh = Mesh {
-            points: Vec::new(),
-            node_tags: Vec::new(),
-            ..old.clone()
-        };
-        let number: Vec<u32> = (old.points.iter())
-            .map(|&[x, y, _]| {
-                let next = mesh.points.len() as u32;
-                let key = [x, y].map(|c| (c * 1e7).round() as i64);
-                let node = match at(x, y) {
-                    true => *known.entry(key).or_insert(next),
-                    false => next,
-                };
-                if node == next {
-                    mesh.points.push([x, y, 0.0]);
-                    mesh.node_tags.push(i64::from(next) + 1);
-                }
-                node
-            })
-            .collect();
-        mesh.cells = renumbered(&old.cells, &number);
-        mesh.facets = renumbered(&old.facets, &number);
+    pub fn glued(self, at: impl Fn(f64, f64) -> bool) -> Self {
+        let mesh = glued(self.mesh, |[x, y, _]| at(x, y));
         Self { mesh }
     }
+}
+
+/// The mesh with one node for all that lie at the same place, where `at` says so.
+pub fn glued(old: Mesh, at: impl Fn([f64; 3]) -> bool) -> Mesh {
+    let mut known: HashMap<[i64; 3], u32> = HashMap::new();
+    let mut mesh = Mesh {
+        points: Vec::new(),
+        node_tags: Vec::new(),
+        ..old.clone()
+    };
+    let number: Vec<u32> = (old.points.iter())
+        .map(|&point| {
+            let next = mesh.points.len() as u32;
+            let key = point.map(|c| (c * 1e7).round() as i64);
+            let node = match at(point) {
+                true => *known.entry(key).or_insert(next),
+                false => next,
+            };
+            if node == next {
+                mesh.points.push(point);
+                mesh.node_tags.push(i64::from(next) + 1);
+            }
+            node
+        })
+        .collect();
+    mesh.cells = renumbered(&old.cells, &number);
+    mesh.facets = renumbered(&old.facets, &number);
+    mesh
 }
 
 fn renumbered(elements: &Elements, number: &[u32]) -> Elements {
@@ -196,13 +201,21 @@ pub fn shuffled(mesh: &Mesh, seed: u64) -> (Mesh, BTreeMap<i64, i64>) {
             let mut nodes = elements.nodes_of(old as usize).to_vec();
             let corners = elements.kind(old as usize).corners();
             let turn = random.below(corners);
-            let (at_corners, on_edges) = nodes.split_at_mut(corners);
-            at_corners.rotate_left(turn);
-            if let Some(on_edges) = on_edges.get_mut(..corners) {
-                on_edges.rotate_left(turn);
-            }
-            if elements.kind(old as usize).dim() == 1 {
-                nodes[..corners].reverse();
+            match elements.kind(old as usize).dim() {
+                1 => nodes[..corners].rotate_left(turn),
+                2 => {
+                    let (at_corners, on_edges) = nodes.split_at_mut(corners);
+                    at_corners.rotate_left(turn);
+                    if let Some(on_edges) = on_edges.get_mut(..corners) {
+                        on_edges.rotate_left(turn);
+                    }
+                }
+                // Every other one inside out.
+                _ if turn.is_multiple_of(2) => {
+                    let order = elements.kind(old as usize).reversed();
+                    nodes = order.iter().map(|&from| nodes[from]).collect();
+                }
+                _ => {}
             }
             let nodes: Vec<u32> = nodes.iter().map(|&n| number[n as usize]).collect();
             list.push(elements.kind(old as usize), &nodes);
@@ -222,8 +235,8 @@ pub fn shuffled(mesh: &Mesh, seed: u64) -> (Mesh, BTreeMap<i64, i64>) {
         .map(|(name, group)| {
             let order: &[u32] = match group.dim {
                 0 => &node_order,
-                1 => &facet_order,
-                _ => &cell_order,
+                dim if dim == mesh.dim => &cell_order,
+                _ => &facet_order,
             };
             let is_member = |old: &u32| group.members.contains(old);
             let members = (0..order.len() as u32)
@@ -247,6 +260,15 @@ pub fn shuffled(mesh: &Mesh, seed: u64) -> (Mesh, BTreeMap<i64, i64>) {
         warnings: Vec::new(),
     };
     (shuffled, old_tags)
+}
+
+/// The mesh with a name before those of its groups.
+pub fn named(mut mesh: Mesh, name: &str) -> Mesh {
+    let groups = std::mem::take(&mut mesh.groups).into_iter();
+    mesh.groups = groups
+        .map(|(group, members)| (format!("{name} {group}"), members))
+        .collect();
+    mesh
 }
 
 /// Two meshes as one, without common nodes.
