@@ -4,7 +4,8 @@ use crate::support::solution::Solution;
 use crate::support::solver::{Case, problem};
 use crate::support::sorts::sort;
 use crate::support::validation::{
-    beam, crack, hertz, hole, punch, ring, roller, signorini, space, uniform,
+    beam, crack, hertz, hole, indentation, mindlin_in_space, punch, ring, roller, signorini, space,
+    uniform,
 };
 
 #[test]
@@ -75,6 +76,31 @@ fn a_chosen_solution_with_contact_and_gap_is_found() {
 #[test]
 fn a_ball_on_a_plate_presses_as_hertz_says() {
     space::ball().check();
+}
+
+#[test]
+fn a_ball_on_a_ball_whose_curved_sides_do_not_match_presses_as_hertz_says() {
+    space::balls().check();
+}
+
+#[test]
+fn a_ball_in_space_converges_to_hertz() {
+    indentation::ball().check();
+}
+
+#[test]
+fn a_round_flat_punch_in_space_goes_as_deep_as_it_should() {
+    indentation::punch().check();
+}
+
+#[test]
+fn far_from_a_force_a_half_space_gives_way_as_boussinesq_says() {
+    indentation::force().check();
+}
+
+#[test]
+fn balls_pushed_along_their_contact_stick_where_mindlin_says() {
+    mindlin_in_space::case().check();
 }
 
 #[test]

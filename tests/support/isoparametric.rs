@@ -2,7 +2,7 @@
 //! they span, rules of quadrature from tables.
 
 use contact_dd_partition::element::ElementKind::{
-    self, Hexahedron8, Hexahedron20, Hexahedron27, Quad4, Quad8, Quad9, Tetrahedron4,
+    self, Hexahedron8, Hexahedron20, Hexahedron27, Line2, Line3, Quad4, Quad8, Quad9, Tetrahedron4,
     Tetrahedron10, Triangle3, Triangle6,
 };
 use contact_dd_partition::stiffness::Stiffness;
@@ -32,6 +32,7 @@ fn reference(kind: ElementKind) -> Vec<[f64; 3]> {
     let simplex = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     let (corners, between): (Vec<[f64; 3]>, &[&[usize]]) = match kind {
+        Line2 | Line3 => (vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], &[&[0, 1]]),
         Triangle3 | Triangle6 => (simplex[..3].to_vec(), &[&[0, 1], &[1, 2], &[2, 0]]),
         Quad4 | Quad8 | Quad9 => (
             square.map(|[x, y]| [x, y, 0.0]).to_vec(),
@@ -87,14 +88,15 @@ fn powers(kind: ElementKind) -> Vec<[i32; 3]> {
         // Factors of first degree come on top in serendipity elements.
         let beyond: i32 = powers.iter().filter(|&&p| p > 1).sum();
         match kind {
-            Triangle3 | Tetrahedron4 => sum <= 1,
+            Line2 | Triangle3 | Tetrahedron4 => sum <= 1,
             Triangle6 | Tetrahedron10 => sum <= 2,
             Quad4 | Hexahedron8 => beyond == 0,
             Quad8 | Hexahedron20 => beyond <= 2,
             _ => true,
         }
     };
-    all.filter(|powers| is_of(powers) && (kind.dim() == 3 || powers[2] == 0))
+    let is_in = |powers: &[i32; 3]| powers[kind.dim()..].iter().all(|&p| p == 0);
+    all.filter(|powers| is_of(powers) && is_in(powers))
         .collect()
 }
 

@@ -6,9 +6,12 @@
 pub mod beam;
 pub mod crack;
 pub mod exact;
+pub mod half_space;
 pub mod hertz;
 pub mod hole;
+pub mod indentation;
 pub mod mindlin;
+pub mod mindlin_in_space;
 pub mod punch;
 pub mod raous;
 pub mod ring;
@@ -102,7 +105,12 @@ pub fn cases() -> Vec<Case> {
         beam::case(),
         hole::case(),
         space::ball(),
+        space::balls(),
         space::layers(),
+        indentation::ball(),
+        indentation::punch(),
+        indentation::force(),
+        mindlin_in_space::case(),
     ]
 }
 
@@ -161,7 +169,7 @@ pub struct Posed {
 impl Posed {
     /// Number of unknowns, prescribed ones among them.
     pub fn dofs(&self) -> usize {
-        2 * self.model.mesh.points.len()
+        self.model.mesh.dim * self.model.mesh.points.len()
     }
 
     /// The error in the norm of the energy, then the other figures.

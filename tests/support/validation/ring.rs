@@ -3,13 +3,12 @@
 use std::f64::consts::PI;
 
 use contact_dd_partition::mesh::Mesh;
-use nalgebra::Complex;
 
 use super::super::blocks::joined;
 use super::super::scenes::model;
 use super::super::solution::{ContactPoint, Solution};
 use super::super::sorts::{Sort, sort};
-use super::exact::Exact;
+use super::half_space::{LOAD, depth, of_ball, of_punch, peak, radius, ring};
 use super::hertz::square;
 use super::{Case, Family, Figure, Gate, Measured, falling, gather, measured, plain};
 
@@ -46,100 +45,6 @@ Mesh: as above with a = 1, graded with the 3rd power: the edge of the punch is s
 1.5.
 ";
 
-const LOAD: f64 = 10.0;
-const POISSON: f64 = 0.3;
-/// E/(1 − ν²).
-const STIFFNESS: f64 = 200.0 / (1.0 - POISSON * POISSON);
-
-type C = Complex<f64>;
-
-/// What the stress at a point of the half space follows from: derivatives of F, and of Φ with Φ_z = F, over r where
-/// that is finite on the axis.
-struct Potential {
-    f_z: f64,
-    f_zz: f64,
-    f_rz: f64,
-    f_r_by_r: f64,
-    phi_r_by_r: f64,
-}
-
-impl Potential {
-    /// (σ_rr, σ_yy, σ_hoop, σ_ry) at the depth z, with y upwards.
-    fn stress(&self, z: f64) -> [f64; 4] {
-        let two_nu = 2.0 * POISSON;
-        let f_rr = -self.f_zz - self.f_r_by_r;
-        let phi_rr = -self.f_z - self.phi_r_by_r;
-        [
-            -two_nu * self.f_z + (1.0 - two_nu) * phi_rr + z * f_rr,
-            -self.f_z + z * self.f_zz,
-            -two_nu * self.f_z + (1.0 - two_nu) * self.phi_r_by_r + z * self.f_r_by_r,
-            -z * self.f_rz,
-        ]
-    }
-}
-
-/// R, ζ and R + ζ.
-fn complex([r, z]: [f64; 2], a: f64) -> [C; 3] {
-    let zeta = C::new(z, a);
-    let mut root = (zeta * zeta + r * r).sqrt();
-    if root.im < 0.0 {
-        root = -root;
-    }
-    [root, zeta, root + zeta]
-}
-
-fn radius() -> f64 {
-    (0.75 * LOAD * 8.0 / STIFFNESS).cbrt()
-}
-
-fn peak() -> f64 {
-    1.5 * LOAD / (PI * radius().powi(2))
-}
-
-fn of_ball([r, z]: [f64; 2]) -> Potential {
-    let (a, i) = (radius(), C::i());
-    let [root, zeta, w] = complex([r, z], a);
-    let (ln, ia, scale) = (w.ln(), i * a, -peak() / a);
-    let of = |value: C| scale * value.im;
-    let thirds = (root * root + root * zeta + zeta * zeta) / (w * 3.0);
-    Potential {
-        f_z: of(ln * z - root),
-        f_zz: of(ln - ia / root),
-        f_rz: of(-(w.inv() + ia / (root * w)) * r),
-        f_r_by_r: of(-(zeta / w + ln) * 0.5 + ia / w),
-        phi_r_by_r: of(-(thirds + zeta * ln - root) * 0.5 + ia * 0.5 * (zeta / w + ln)),
-    }
-}
-
-fn of_punch([r, z]: [f64; 2]) -> Potential {
-    let [root, zeta, w] = complex([r, z], 1.0);
-    let of = |value: C| -LOAD / (2.0 * PI) * value.im;
-    let cube = root * root * root;
-    Potential {
-        f_z: of(root.inv()),
-        f_zz: of(-zeta / cube),
-        f_rz: of(-cube.inv() * r),
-        f_r_by_r: of((root * w).inv()),
-        phi_r_by_r: of(-w.inv()),
-    }
-}
-
-/// How deep the axis goes at a depth z under the punch.
-fn depth(z: f64) -> f64 {
-    let [root, _, w] = complex([0.0, z], 1.0);
-    let of = |value: C| -LOAD / (2.0 * PI) * value.im;
-    let shear = 100.0 / (1.0 + POISSON);
-    (-2.0 * (1.0 - POISSON) * of(w.ln()) + z * of(root.inv())) / (2.0 * shear)
-}
-
-/// The stress of the half space y ≤ 0, mirrored above.
-fn exact(potential: fn([f64; 2]) -> Potential) -> Exact {
-    Exact::Ring(Box::new(move |[x, y]| {
-        let [rr, yy, hoop, ry] = potential([x, y.abs()]).stress(y.abs());
-        [rr, yy, hoop, if y > 0.0 { -ry } else { ry }]
-    }))
-}
-
 /// The section of a body in cells of a sort.
 fn section(sort: Sort, [body, row]: [&str; 2], n: usize, grading: f64, a: f64) -> Mesh {
     let mut mesh = sort.of(&square([body, row], n, grading, a));
@@ -167,8 +72,8 @@ fn solve_ball(sort: Sort, n: usize) -> Measured {
     let text = format!("{SCENE}sides = [['lower under top', 'lower beside top']]\ngap = 'x^2/16'");
     let mesh = section(sort, ["lower", "below"], n, 1.6, radius());
     let mut model = model(&text, mesh);
-    exact(of_ball).load(&mut model, &OUTSIDE);
-    measured(model, exact(of_ball), of_contact)
+    ring(of_ball).load(&mut model, &OUTSIDE);
+    measured(model, ring(of_ball), of_contact)
 }
 
 fn solve_balls(sort: Sort, n: usize) -> Measured {
@@ -192,15 +97,15 @@ fn solve_balls(sort: Sort, n: usize) -> Measured {
         ("upper under top", [0.0, 1.0]),
         ("upper beside top", [0.0, 1.0]),
     ];
-    exact(of_ball).load(&mut model, &[&OUTSIDE[..], &above].concat());
-    measured(model, exact(of_ball), of_contact)
+    ring(of_ball).load(&mut model, &[&OUTSIDE[..], &above].concat());
+    measured(model, ring(of_ball), of_contact)
 }
 
 fn solve_punch(sort: Sort, n: usize) -> Measured {
     let text = format!("{SCENE}sides = ['lower under top']");
     let mesh = section(sort, ["lower", "below"], n, 3.0, 1.0);
     let mut model = model(&text, mesh);
-    exact(of_punch).load(&mut model, &OUTSIDE);
+    ring(of_punch).load(&mut model, &OUTSIDE);
     let tag_at = |y: f64| {
         let points = model.mesh.points.iter();
         let place = points.zip(&model.mesh.node_tags);
@@ -208,7 +113,7 @@ fn solve_punch(sort: Sort, n: usize) -> Measured {
         *found.next().unwrap().1
     };
     let tags = [tag_at(0.0), tag_at(-2.0)];
-    measured(model, exact(of_punch), move |solution| {
+    measured(model, ring(of_punch), move |solution| {
         let points = &solution.contacts["contact"];
         let inside = points.iter().filter(|point| point.position[0] <= 0.8);
         let error = inside.map(|point| {

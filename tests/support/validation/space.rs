@@ -1,4 +1,4 @@
-//! Bodies in space: a ball on a plate, and a thick sphere in two layers.
+//! Bodies in space: a ball on a plate, a ball on a ball, and a thick sphere in two layers.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -9,10 +9,10 @@ use contact_dd_partition::element::geometry::{difference, length};
 use contact_dd_partition::example;
 use contact_dd_partition::mesh::Mesh;
 
-use super::super::blocks::joined;
+use super::super::blocks::{joined, named};
 use super::super::scenes::model;
-use super::super::solids::solid;
-use super::super::solution::Solution;
+use super::super::solids::{moved, solid};
+use super::super::solution::ContactPoint;
 use super::{Case, Family, Figure, Gate, Measured, falling, figured, plain};
 
 const BALL: &str = "\
@@ -26,6 +26,15 @@ Source: K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985, cha
 Mesh: the built-in scene `sphere`.
 ";
 
+const BALLS: &str = "\
+That ball on one of radius 5, moved towards each other by 0.11 in all: 1/R = 1/8 + 1/5, E\\* = E/(2 (1 − ν²)).
+
+Source: as above.
+
+Mesh: those of the scene `sphere`, the smaller one to the scale of 5 : 8 and turned over, both curved and matching in no
+node but the pole (`mortar`).
+";
+
 const LAYERS: &str = "\
 A thick sphere under pressure from inside in two layers that only touch, from r = 1 to 1.5 and to 2, E = 200, ν = 0.3,
 p = 1: u = p a³/(E (b³ − a³)) ((1 − 2ν) r + (1 + ν) b³/(2 r²)), pressure p a³/(b³ − a³) (b³/r³ − 1) where they touch.
@@ -37,17 +46,49 @@ Mesh: the part between four planes of symmetry; faces of the layers don't match 
 are quadratic.
 ";
 
+/// E/(1 − ν²).
+const STIFFNESS: f64 = 200.0 / 0.91;
+
 fn solved_ball(kind: ElementKind, level: usize) -> Measured {
     let example = example::find("sphere").unwrap();
     let mesh = example.mesh_of(kind, level as u32).unwrap();
-    figured(&model(example.scene, mesh), of_ball)
+    figured(&model(example.scene, mesh), |solution| {
+        against_hertz(&solution.contacts["plate"], 8.0, STIFFNESS)
+    })
 }
 
-fn of_ball(solution: &Solution) -> Vec<Figure> {
-    let points = &solution.contacts["plate"];
+const TWO_BALLS: &str = "
+    materials.steel = {young = 200, poisson = 0.3}
+    bodies.'upper ball'.material = 'steel'
+    bodies.'lower ball'.material = 'steel'
+    [[bilateral]]
+    on = ['upper x = 0', 'upper y = 0', 'lower x = 0', 'lower y = 0']
+    [[displacement]]
+    on = 'upper equator'
+    z = -0.05
+    [[displacement]]
+    on = 'lower equator'
+    z = 0.06
+    [[contact]]
+    name = 'contact'
+    sides = ['lower pole', 'upper pole']";
+
+fn solved_balls(kind: ElementKind, level: usize) -> Measured {
+    let mesh = || (example::find("sphere").unwrap().mesh_of(kind, level as u32)).unwrap();
+    let upper = named(mesh(), "upper");
+    let lower = named(
+        moved(mesh(), |[x, y, z]| [x, y, -z].map(|c| 0.625 * c)),
+        "lower",
+    );
+    figured(&model(TWO_BALLS, joined(lower, upper)), |solution| {
+        against_hertz(&solution.contacts["contact"], 40.0 / 13.0, STIFFNESS / 2.0)
+    })
+}
+
+/// By the radius R and the stiffness E* of a quarter of a contact.
+fn against_hertz(points: &[ContactPoint], radius: f64, stiffness: f64) -> Vec<Figure> {
     let force: f64 = 4.0 * points.iter().map(|point| point.force).sum::<f64>();
-    let stiffness = 200.0 / (1.0 - 0.3 * 0.3);
-    let radius = (0.75 * force * 8.0 / stiffness).cbrt();
+    let radius = (0.75 * force * radius / stiffness).cbrt();
     let peak = 1.5 * force / (PI * radius * radius);
     let away = |position: [f64; 3]| position[0].hypot(position[1]);
     let pole = points
@@ -67,25 +108,46 @@ fn of_ball(solution: &Solution) -> Vec<Figure> {
     ]
 }
 
-/// A ball on a plate.
-pub fn ball() -> Case {
-    let family = |(name, kind, meshes, peak): (&str, ElementKind, [usize; 2], f64)| Family {
+fn families(
+    solve: fn(ElementKind, usize) -> Measured,
+    kinds: &[(&str, ElementKind, [usize; 2], f64)],
+) -> Vec<Family> {
+    let family = |&(name, kind, meshes, peak): &(&str, ElementKind, [usize; 2], f64)| Family {
         name: name.into(),
-        run: Box::new(move |level| solved_ball(kind, level)),
+        run: Box::new(move |level| solve(kind, level)),
         meshes,
         gates: vec![Gate::AtMost("peak", peak), Gate::AtMost("radius", 0.15)],
     };
+    kinds.iter().map(family).collect()
+}
+
+/// A ball on a plate.
+pub fn ball() -> Case {
+    let kinds = [
+        ("hexahedron8", Hexahedron8, [1, 2], 2e-2),
+        ("hexahedron20", Hexahedron20, [1, 2], 1e-2),
+        ("hexahedron27", Hexahedron27, [0, 1], 2e-2),
+        ("tetrahedron10", Tetrahedron10, [0, 1], 5e-2),
+    ];
     Case {
         title: "Ball on a plate",
         text: BALL,
-        families: [
-            ("hexahedron8", Hexahedron8, [1, 2], 2e-2),
-            ("hexahedron20", Hexahedron20, [1, 2], 1e-2),
-            ("hexahedron27", Hexahedron27, [0, 1], 2e-2),
-            ("tetrahedron10", Tetrahedron10, [0, 1], 5e-2),
-        ]
-        .map(family)
-        .into(),
+        families: families(solved_ball, &kinds),
+    }
+}
+
+/// A ball on a ball.
+pub fn balls() -> Case {
+    let kinds = [
+        ("hexahedron8", Hexahedron8, [1, 2], 2e-2),
+        ("hexahedron20", Hexahedron20, [0, 2], 2e-2),
+        ("hexahedron27", Hexahedron27, [0, 1], 2e-2),
+        ("tetrahedron10", Tetrahedron10, [0, 1], 5e-2),
+    ];
+    Case {
+        title: "Ball on a ball",
+        text: BALLS,
+        families: families(solved_balls, &kinds),
     }
 }
 
