@@ -16,6 +16,9 @@ use crate::vector::{larger, largest};
 /// Sum of forces, relative to the terms that they are sums of, that is no load.
 const NO_LOAD: f64 = 1e-12;
 
+/// Moments relative to forces at the rim of the scene below which there are none.
+const SMALL_MOMENT: f64 = 1e-6;
+
 /// Checks of the full discrete problem, all relative to the scale of what they check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Certificate {
@@ -117,6 +120,11 @@ pub fn certificate(
     } else {
         external.force_scale / most.scale
     };
+    // Where supports carry at each of their nodes what acts there, moments are of round-off alone.
+    let moment_scale = larger(
+        external.moment_scale,
+        SMALL_MOMENT * external.force_scale * external.reach,
+    );
     Certificate {
         equilibrium: ratio(most.residual, most.scale),
         equilibrium_of_load: ratio(most.residual, most.external),
@@ -132,7 +140,7 @@ pub fn certificate(
         .into_iter()
         .fold(0.0, larger),
         force_balance: to_load * ratio(largest(&external.force), external.force_scale),
-        moment_balance: to_load * ratio(largest(&external.moment), external.moment_scale),
+        moment_balance: to_load * ratio(largest(&external.moment), moment_scale),
         interface_jump: ratio(jump, most.displacement),
     }
 }

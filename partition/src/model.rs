@@ -8,6 +8,7 @@ mod bodies;
 mod contact;
 mod diagnostics;
 mod groups;
+mod initial_stress;
 mod loads;
 mod mortar;
 mod node_pairs;
@@ -18,6 +19,7 @@ mod steps;
 mod supports;
 mod surface;
 
+pub use self::initial_stress::InitialStress;
 pub use self::steps::ModelStep;
 use crate::contact_point::ContactPoint;
 use crate::error::InputError;
@@ -96,6 +98,8 @@ pub struct Model {
     /// Consistent nodal forces of the first step in ascending order of nodes, one entry for every node
     /// that is loaded in any step (N per metre of thickness).
     pub forces: Vec<(u32, [f64; 3])>,
+    /// Stress without strain in the first step.
+    pub initial_stress: InitialStress,
     /// Load steps; none where all loads are there at once.
     pub steps: Vec<ModelStep>,
     /// Contacts in the order of the scene.
@@ -117,13 +121,13 @@ impl Model {
         let bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
         let topology = Topology::new(&bodies.mesh);
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
-        let loads = steps::Loads::new(scene, &bodies, &topology)?;
+        let materials = bodies::materials(scene, plane);
+        let loads = steps::Loads::new(scene, &bodies, &topology, &materials)?;
         let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads, scene);
         let contacts = (0..)
             .zip(&scene.contact)
             .map(|(number, keys)| sides.contact(number, keys, &mut warnings))
             .collect::<Result<Vec<_>, _>>()?;
-        let materials = bodies::materials(scene, plane);
         let diagnostics = diagnostics::Diagnostics {
             scene,
             bodies: &bodies,
@@ -150,6 +154,7 @@ impl Model {
             support_names: loads.names,
             supports: loads.supports,
             forces: loads.forces,
+            initial_stress: loads.initial_stress,
             steps: loads.steps,
             contacts,
             prescribed_subdomains,

@@ -62,6 +62,8 @@ pub struct Subdomain {
     pub supports: Vec<Support>,
     /// Nodal forces, by node of the subdomain (N per metre of thickness).
     pub forces: Vec<(u32, [f64; 3])>,
+    /// Stress without strain.
+    pub initial_stress: InitialStress,
     /// Its nodes on Γ, in ascending order of their number on Γ.
     pub interface: Vec<InterfaceNode>,
     /// Values of its supports and forces in every load step; none where the problem has none.
@@ -75,6 +77,17 @@ pub struct StepLoads {
     pub supports: Vec<f64>,
     /// Force on every loaded node (N per metre of thickness).
     pub forces: Vec<[f64; 3]>,
+    /// Stress without strain.
+    pub initial_stress: InitialStress,
+}
+
+/// Stress that a subdomain has without strain, XX YY ZZ XY YZ XZ (Pa); empty where the problem has none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InitialStress {
+    /// The mean over every cell.
+    pub cells: Vec<[f64; 6]>,
+    /// At every node, in the first of the materials around it.
+    pub nodes: Vec<[f64; 6]>,
 }
 
 impl Subdomain {
@@ -93,6 +106,20 @@ impl Subdomain {
         let loads = self.steps.get(step);
         let forces = self.forces.iter().enumerate();
         forces.map(move |(i, &(node, force))| (node, loads.map_or(force, |loads| loads.forces[i])))
+    }
+
+    /// Its stress without strain in a load step.
+    pub fn initial_stress_in(&self, step: usize) -> &InitialStress {
+        let loads = self.steps.get(step);
+        loads.map_or(&self.initial_stress, |loads| &loads.initial_stress)
+    }
+
+    /// The same in every load step, or the one that it has.
+    fn initial_stresses(&self) -> Vec<&InitialStress> {
+        match self.steps.is_empty() {
+            true => vec![&self.initial_stress],
+            false => self.steps.iter().map(|step| &step.initial_stress).collect(),
+        }
     }
 
     /// The values of a support: in every load step, or the one that it has.

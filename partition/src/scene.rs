@@ -4,6 +4,7 @@ pub mod condition;
 pub mod expression;
 mod fault;
 pub mod friction;
+pub mod initial;
 pub mod material;
 pub mod number;
 pub mod place;

@@ -36,6 +36,13 @@ class Material:
     out_of_plane: Sequence[float] | None = None
 
 
+class Thermal(TypedDict):
+    """Expansion by heat: the coefficient, and the temperature above that without stress."""
+
+    expansion: float
+    temperature: Number
+
+
 class Step(TypedDict, total=False):
     """A load step, as `[[step]]` of a scene: what it doesn't mention is the model's, times `scale`."""
 
@@ -46,6 +53,7 @@ class Step(TypedDict, total=False):
     traction: list[dict[str, Any]]
     pressure: list[dict[str, Any]]
     body_force: dict[str, Vector]
+    temperature: dict[str, Number]
 
 
 class Model:
@@ -76,13 +84,20 @@ class Model:
         scene, mesh = scene_of(Path(path))
         return cls(mesh, scene)
 
-    def body(self, group: str, material: Material, body_force: Vector | None = None) -> None:
-        """Makes a group of cells a body. `body_force` is a force per volume."""
+    def body(
+        self, group: str, material: Material, body_force: Vector | None = None, *,
+        initial_stress: Sequence[Number] | None = None, thermal: Thermal | None = None,
+    ) -> None:
+        """Makes a group of cells a body. `body_force` is a force per volume, `initial_stress` the stress that it has
+        without strain (xx, yy, zz, xy in plane strain and around an axis; xx, yy, xy in plane stress; in space xx, yy,
+        zz, yz, xz, xy), `thermal` its expansion by heat."""
         known: dict[str, dict[str, Any]] = self.scene.setdefault("materials", {})
         keys = given(**asdict(material))
         name = next((name for name, other in known.items() if other == keys), f"material {len(known) + 1}")
         known[name] = keys
-        self.scene.setdefault("bodies", {})[group] = given(material=name, body_force=body_force)
+        self.scene.setdefault("bodies", {})[group] = given(
+            material=name, body_force=body_force, initial_stress=initial_stress, thermal=thermal,
+        )
 
     def fix(
         self, on: Groups, *, x: Number | None = None, y: Number | None = None, z: Number | None = None,

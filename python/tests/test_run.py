@@ -3,6 +3,7 @@
 import stat
 import tomllib
 
+import meshio
 import numpy as np
 import pytest
 
@@ -136,3 +137,21 @@ def test_a_node_between_two_materials_may_have_two_stresses():
     kept, row = unique_nodes(tags, np.zeros((0, 6)))
     assert kept.tolist() == [1, 0]
     assert row.tolist() == [1, 0, 1, 1]
+
+
+def test_a_hot_body_between_walls_is_pressed(tmp_path):
+    points = np.array([[0, 0], [2, 0], [2, 1], [0, 1]], dtype=float)
+    mesh = meshio.Mesh(
+        points, [("quad", [[0, 1, 2, 3]])], cell_sets={"bar": [[0]]},
+        point_sets={"left": [0, 3], "bottom": [0, 1], "right": [1, 2]},
+    )
+    model = Model.from_mesh(mesh, "stress")
+    model.body("bar", Material(young=20e9, poisson=0.25), initial_stress=[1e6, 0, 0],
+               thermal={"expansion": 1e-5, "temperature": 0})
+    model.fix("left", x=0)
+    model.fix("right", x=0)
+    model.fix("bottom", y=0)
+    model.steps({}, {"temperature": {"bar": 80}})
+    result = model.run(ranks=1, folder=tmp_path, progress=False)
+    assert np.allclose(result.at_step(0).stress[:, 0], 1e6)
+    assert np.allclose(result.stress[:, 0], 1e6 - 20e9 * 1e-5 * 80)

@@ -79,6 +79,8 @@ pub(super) struct External {
     pub moment: [f64; 3],
     /// Of the absolute values of its terms.
     pub moment_scale: f64,
+    /// The largest coordinate (m).
+    pub reach: f64,
 }
 
 impl External {
@@ -86,6 +88,7 @@ impl External {
     fn add(&mut self, at: [f64; 3], force: [f64; 3]) {
         self.force = advance(self.force, 1.0, force);
         self.moment = advance(self.moment, 1.0, cross(at, force));
+        self.reach = larger(self.reach, largest(&at));
         for k in 0..3 {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
             self.moment_scale += (at[i] * force[j]).abs() + (at[j] * force[i]).abs();
@@ -99,6 +102,7 @@ impl External {
             force_scale: self.force_scale + other.force_scale,
             moment: advance(self.moment, 1.0, other.moment),
             moment_scale: self.moment_scale + other.moment_scale,
+            reach: larger(self.reach, other.reach),
         };
     }
 }

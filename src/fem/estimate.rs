@@ -12,13 +12,18 @@ use super::elasticity::{Voigt, stiffness_points, strain, voigt_stress};
 use super::polynomial::NodalStress;
 use crate::vector::axpy;
 
+/// The square of an error relative to that of an initial stress below which it is round-off.
+const ROUND_OFF: f64 = 1e-20;
+
 /// Squares of energy norms over a cell (N m, in the plane per metre of thickness).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CellError {
     /// ‖σ* − σ_h‖² = ∫ (σ* − σ_h) C⁻¹ (σ* − σ_h), with σ* the recovered stress.
     pub error: f64,
-    /// ‖σ_h‖².
+    /// ‖σ_h‖² without initial stress.
     pub energy: f64,
+    /// ‖σ_i‖² of the initial stress, against whose round-off no error counts.
+    pub initial: f64,
 }
 
 impl CellError {
@@ -26,12 +31,13 @@ impl CellError {
     pub fn add(&mut self, other: Self) {
         self.error += other.error;
         self.energy += other.energy;
+        self.initial += other.initial;
     }
 
     /// ‖σ* − σ_h‖ relative to ‖σ‖, the square of which is about ‖σ_h‖² + ‖σ* − σ_h‖².
     pub fn relative(&self) -> f64 {
         match self.error {
-            0.0 => 0.0,
+            error if error <= ROUND_OFF * self.initial => 0.0,
             error => (error / (error + self.energy)).sqrt(),
         }
     }
@@ -66,6 +72,11 @@ impl Compliance {
                 Self::Solid(Box::new(c.try_inverse().unwrap_or_default()))
             }
         }
+    }
+
+    /// ‖σ_i‖² over a cell with a `measure`, of a stress in the order of results.
+    pub fn initial(&self, measure: f64, stress: &NodalStress) -> f64 {
+        measure * self.norm(&self.voigt(stress))
     }
 
     /// s C⁻¹ s.
@@ -110,6 +121,7 @@ impl Compliance {
         CellError {
             error: measure / (corners * (corners + 1)) as f64 * (squares + self.norm(&total)),
             energy: measure * self.norm(&stress),
+            initial: 0.0,
         }
     }
 

@@ -85,8 +85,15 @@ impl BlockStress {
         Self { cells, recoveries }
     }
 
-    /// The stresses at nodes, and the estimate, for the same displacements.
-    pub fn recover(&mut self, block: &Block, materials: &[Material], u: &[f64]) -> RecoveredStress {
+    /// The stresses at nodes, and the estimate, for the same displacements; `initial` is the stress of cells that needs
+    /// none, empty where there is none.
+    pub fn recover(
+        &mut self,
+        block: &Block,
+        materials: &[Material],
+        u: &[f64],
+        initial: &[[f64; 6]],
+    ) -> RecoveredStress {
         let recoveries = std::mem::take(&mut self.recoveries);
         let present: Vec<usize> = recoveries.iter().map(Recovery::material).collect();
         let at_nodes: Vec<_> = (recoveries.into_iter())
@@ -113,6 +120,13 @@ impl BlockStress {
             }
             let of_cell = (cell.kind, &local.points[..], &local.u[..]);
             errors.push(compliance.cell(of_cell, &recovered, &materials[cell.material]));
+        }
+        for ((cell, error), initial) in block.cells().zip(&mut errors).zip(initial) {
+            if let Ok(place) = present.binary_search(&cell.material) {
+                local.take(block, &cell, u);
+                let measure = cell.kind.measure(&local.points);
+                error.initial = compliances[place].initial(measure, initial);
+            }
         }
         RecoveredStress {
             materials: present,

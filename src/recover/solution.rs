@@ -38,12 +38,12 @@ pub struct Solution {
 
 impl Solution {
     /// Refines a `discrete` solution against the full discrete problem, and recovers stresses if they are asked
-    /// for. Collective.
+    /// for, those of load step `stress_of`. Collective.
     pub fn new(
         fixed: &FixedActiveSet<'_>,
         analysis: &RigidBodyAnalysis,
         mut discrete: DiscreteSolution,
-        with_stress: bool,
+        stress_of: Option<usize>,
     ) -> Self {
         let (comm, plan, catalog) = (
             fixed.context.comm,
@@ -60,7 +60,7 @@ impl Solution {
         };
         let blocks = &discrete.blocks;
         let stress =
-            with_stress.then(|| stresses(comm, fixed.context.blocks, blocks, catalog, plan));
+            stress_of.map(|step| stresses(comm, fixed.context.blocks, blocks, catalog, plan, step));
         Self {
             displacement: with_closing_motions(&fixed.context, displacements(blocks), analysis),
             reactions: reactions(fixed, blocks),

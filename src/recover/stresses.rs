@@ -13,7 +13,7 @@ use crate::fem::estimate::CellError;
 use crate::fem::patch::PatchSum;
 use crate::fem::polynomial::Polynomial;
 use crate::fem::recovery::Recovery;
-use crate::fem::stress::{BlockStress, RecoveredStress};
+use crate::fem::stress::BlockStress;
 use crate::plan::Plan;
 use crate::recover::BlockSolution;
 
@@ -22,8 +22,10 @@ use crate::recover::BlockSolution;
 pub struct Stress {
     /// Of every cell (Pa).
     pub cells: Vec<[f64; 6]>,
-    /// At nodes, with the cells' error.
-    pub recovered: RecoveredStress,
+    /// Recovered at nodes (Pa).
+    pub nodes: Vec<[f64; 6]>,
+    /// Estimated error of every cell.
+    pub errors: Vec<CellError>,
 }
 
 /// What blocks know in parts of a node on Γ in one material.
@@ -46,13 +48,14 @@ impl Part for (Polynomial, f64) {
     }
 }
 
-/// Stresses of this rank's blocks. Collective.
+/// Stresses of this rank's blocks in load step `step`. Collective.
 pub fn stresses(
     comm: &Comm,
     blocks: &BTreeMap<usize, Block>,
     solutions: &BTreeMap<usize, BlockSolution>,
     catalog: &Catalog,
     plan: &Plan,
+    step: usize,
 ) -> BTreeMap<usize, Stress> {
     // Fresh memory for every block would cost more than what is done with it.
     let mut patches = Vec::new();
@@ -86,11 +89,26 @@ pub fn stresses(
     );
     let recover = |(b, (block, mut stress)): (usize, (&Block, BlockStress))| {
         let u = &solutions.get(&b)?.u;
-        let recovered = stress.recover(block, &catalog.materials, u);
-        let cells = stress.cells;
-        Some((b, Stress { cells, recovered }))
+        let initial = block.subdomain.initial_stress_in(step);
+        let recovered = stress.recover(block, &catalog.materials, u, &initial.cells);
+        let (mut cells, mut nodes) = (stress.cells, recovered.at_nodes(block));
+        add(&mut cells, &initial.cells);
+        add(&mut nodes, &initial.nodes);
+        let errors = recovered.errors;
+        let stress = Stress {
+            cells,
+            nodes,
+            errors,
+        };
+        Some((b, stress))
     };
     stresses.into_iter().filter_map(recover).collect()
+}
+
+fn add(stresses: &mut [[f64; 6]], initial: &[[f64; 6]]) {
+    for (stress, initial) in stresses.iter_mut().zip(initial) {
+        *stress = std::array::from_fn(|k| stress[k] + initial[k]);
+    }
 }
 
 /// The way of parts to all ranks that share a node.
@@ -197,7 +215,7 @@ pub fn error_estimate(comm: &Comm, stresses: &BTreeMap<usize, Stress>, plan: &Pl
         plan.owners(),
         |b| {
             let mut sum = CellError::default();
-            for &error in stresses.get(&b).iter().flat_map(|s| &s.recovered.errors) {
+            for &error in stresses.get(&b).iter().flat_map(|s| &s.errors) {
                 sum.add(error);
             }
             sum

@@ -216,7 +216,8 @@ impl Increments<'_> {
                 recover(fixed.factors(), &problem, u.zip(numbers))
             }
         };
-        let solution = Solution::new(&fixed, analysis, discrete, !settings.no_stress);
+        let stress_of = (!settings.no_stress).then_some(moment.step);
+        let solution = Solution::new(&fixed, analysis, discrete, stress_of);
         if let Some(outcome) = &mut outcome {
             outcome.accept(&solution.certificate, context.catalog.has_friction());
             outcome.name_unsettled(&unsettled_points(&context, outcome));

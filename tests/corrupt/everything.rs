@@ -14,7 +14,7 @@ solver = {method = 'anderson', tolerance = 1e-9, max_sweeps = 99, relaxation = 0
 materials.rock = {young = 20e9, poisson = 0.22}
 materials.steel = {young = 210e9, poisson = 0.3}
 bodies.base = {material = 'rock', body_force = [0.0, -25e3]}
-bodies.middle.material = 'steel'
+bodies.middle = {material = 'steel', initial_stress = [1e5, 0, '1e5*x', 0], thermal = {expansion = 1e-5, temperature = 20}}
 bodies.top.material = 'rock'
 [[displacement]]
 on = 'base left'

@@ -15,6 +15,7 @@ mod floating;
 mod friction;
 mod friction_held;
 mod groups;
+mod initial_stress;
 mod iterative;
 mod laws;
 mod monolithic;

@@ -11,10 +11,10 @@ use crate::contact_point::ContactPoint;
 use crate::element::Elements;
 use crate::error::InputError;
 use crate::lists::Lists;
-use crate::model::Model;
+use crate::model::{self, Model};
 use crate::problem::{
-    Body, Catalog, ContactSummary, InterfaceNode, LoadStep, Problem, StepLoads, Subdomain,
-    SubdomainNode, SubdomainSummary,
+    Body, Catalog, ContactSummary, InitialStress, InterfaceNode, LoadStep, Problem, StepLoads,
+    Subdomain, SubdomainNode, SubdomainSummary,
 };
 
 impl Problem {
@@ -171,6 +171,7 @@ fn cut(
             cell_material: Vec::new(),
             supports: Vec::new(),
             forces: Vec::new(),
+            initial_stress: InitialStress::default(),
             interface: Vec::new(),
             steps: vec![StepLoads::default(); model.steps.len()],
         })
@@ -209,7 +210,7 @@ fn cut(
     for (i, support) in model.supports.iter().enumerate() {
         for &(owner, node) in owners.of.of(support.node as usize) {
             let subdomain = &mut subdomains[owner as usize];
-            let support = crate::model::Support { node, ..*support };
+            let support = model::Support { node, ..*support };
             subdomain.supports.push(support);
             for (of_subdomain, step) in subdomain.steps.iter_mut().zip(&model.steps) {
                 of_subdomain.supports.push(step.supports[i]);
@@ -225,7 +226,58 @@ fn cut(
             }
         }
     }
+    give_initial_stress(model, decomposition, owners, &mut subdomains);
     Ok(subdomains)
+}
+
+/// Gives every subdomain its part of the initial stresses.
+fn give_initial_stress(
+    model: &Model,
+    decomposition: &Decomposition,
+    owners: &Owners,
+    subdomains: &mut [Subdomain],
+) {
+    if model.initial_stress.cells.is_empty() {
+        return;
+    }
+    // The first of the materials that a subdomain has around its nodes.
+    let sizes = subdomains.iter().map(|s| s.points.len());
+    let mut material: Vec<Vec<u32>> = sizes.map(|size| vec![u32::MAX; size]).collect();
+    for (subdomain, first) in subdomains.iter().zip(&mut material) {
+        for ((_, nodes), &of_cell) in subdomain.cells.iter().zip(&subdomain.cell_material) {
+            for &node in nodes {
+                first[node as usize] = of_cell.min(first[node as usize]);
+            }
+        }
+    }
+    let mut give = |stress: &model::InitialStress,
+                    of: fn(&mut Subdomain, usize) -> &mut InitialStress,
+                    step| {
+        for (cell, &s) in decomposition.subdomain.iter().enumerate() {
+            of(&mut subdomains[s as usize], step)
+                .cells
+                .push(stress.cells[cell]);
+        }
+        for (node, list) in owners.of.iter().enumerate() {
+            for &(s, local) in list {
+                let key = (node as u32, material[s as usize][local as usize]);
+                let value = stress.nodes.get(&key).copied().unwrap_or_default();
+                of(&mut subdomains[s as usize], step).nodes.push(value);
+            }
+        }
+    };
+    give(
+        &model.initial_stress,
+        |subdomain, _| &mut subdomain.initial_stress,
+        0,
+    );
+    for (k, step) in model.steps.iter().enumerate() {
+        give(
+            &step.initial_stress,
+            |subdomain, k| &mut subdomain.steps[k].initial_stress,
+            k,
+        );
+    }
 }
 
 /// The contact points of every group, in the order of the scene's contacts.

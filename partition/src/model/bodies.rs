@@ -52,13 +52,23 @@ impl Bodies {
         let cell_material: Vec<u32> = (cell_body.iter())
             .map(|&body| material_of_body[body as usize])
             .collect();
+        // A material of its own is where stresses are recovered by themselves: they jump where initial ones do.
+        let mut own = scene.materials.len() as u32..;
+        let material_of_body: Vec<u32> = (scene.bodies.values().zip(material_of_body))
+            .map(|(body, material)| match body.has_initial_stress() {
+                true => own.next().unwrap_or(material),
+                false => material,
+            })
+            .collect();
         if scene.plane == Some(PlaneState::Axisymmetric) {
             take_radii(&mut mesh, &cell_body, &names)?;
         }
         warn_of_locking(scene, &mesh, &cell_material, warnings);
+        let cell_material = cell_body.iter();
+        let cell_material = cell_material.map(|&body| material_of_body[body as usize]);
         Ok(Self {
+            cell_material: cell_material.collect(),
             mesh,
-            cell_material,
             cell_body,
         })
     }
@@ -126,13 +136,21 @@ fn warn_of_locking(scene: &Scene, mesh: &Mesh, cell_material: &[u32], warnings: 
     }
 }
 
-/// Materials in the order of their names, with C for the plane state, or for space.
+/// Materials in the order of their names, then those of bodies with initial stress, with C for the plane state, or for
+/// space.
 pub(super) fn materials(scene: &Scene, plane: Option<PlaneState>) -> Vec<Material> {
-    scene
-        .materials
+    let materials = scene.materials.iter();
+    let materials = materials.map(|(name, elasticity)| material(name, elasticity, plane));
+    let own = scene
+        .bodies
         .iter()
-        .map(|(name, elasticity)| material(name, elasticity, plane))
-        .collect()
+        .filter(|(_, body)| body.has_initial_stress());
+    let own = own.filter_map(|(name, body)| {
+        let elasticity = scene.materials.get(&body.material)?;
+        let name = format!("{} of {name}", body.material);
+        Some(material(&name, elasticity, plane))
+    });
+    materials.chain(own).collect()
 }
 
 fn material(name: &str, elasticity: &Elasticity, plane: Option<PlaneState>) -> Material {

@@ -3,9 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::bodies::Bodies;
-use super::groups;
+use super::initial_stress::InitialStress;
 use super::surface::Surface;
+use super::{Material, groups};
+use crate::element::ElementKind;
 use crate::element::geometry::{advance, length};
+use crate::element::quadrature::TabulatedPoint;
 use crate::error::InputError;
 use crate::magnitude;
 use crate::mesh::topology::Topology;
@@ -20,13 +23,14 @@ const FACET_DEGREES: [usize; 2] = [9, 11];
 /// What the radius adds to a degree.
 const RADIUS: [usize; 2] = [1, 2];
 
-/// The nodal forces of a loading of `scene`, node by node.
+/// The nodal forces of a loading of `scene`, node by node, and the initial stress that makes some of them.
 pub(super) fn forces(
     scene: &Scene,
     loading: &Loading,
     bodies: &Bodies,
     topology: &Topology,
-) -> Result<Vec<[f64; 3]>, InputError> {
+    materials: &[Material],
+) -> Result<(Vec<[f64; 3]>, InitialStress), InputError> {
     let mesh = &bodies.mesh;
     let scale = &loading.scale;
     let mut forces = vec![[0.0; 3]; mesh.points.len()];
@@ -63,6 +67,7 @@ pub(super) fn forces(
         })
         .map_err(InputError::about(&what))?;
     }
+    let initial = InitialStress::new(scene, loading, bodies, materials, &mut forces)?;
     for (force, tag) in forces.iter().zip(&mesh.node_tags) {
         for &component in force {
             magnitude::check(component).map_err(|expected| {
@@ -72,7 +77,7 @@ pub(super) fn forces(
             })?;
         }
     }
-    Ok(forces)
+    Ok((forces, initial))
 }
 
 /// The degree of a rule that is exact with the radius as a factor, where the scene is axisymmetric.
@@ -81,6 +86,21 @@ fn around(plane: Option<PlaneState>, degree: usize, is_linear: bool) -> usize {
         Some(PlaneState::Axisymmetric) => degree + RADIUS[usize::from(!is_linear)],
         _ => degree,
     }
+}
+
+/// The rule by which a load is integrated over cells.
+pub(super) fn rule_of_cells(
+    kind: ElementKind,
+    plane: Option<PlaneState>,
+    is_constant: bool,
+) -> Vec<TabulatedPoint> {
+    let degree = kind.rules().map(|rules| match is_constant {
+        true => rules.constant_load,
+        false => rules.cubic_load,
+    });
+    degree.map_or_else(Vec::new, |degree| {
+        kind.tabulate(around(plane, degree, kind.is_linear()))
+    })
 }
 
 /// Adds ∫ N_i b dx over the cells of a body, b a `factor` of the force.
@@ -98,15 +118,9 @@ fn body_force(
         if bodies.cell_body[cell] != body {
             continue;
         }
-        let rule = rules.entry(kind).or_insert_with(|| {
-            let degree = kind.rules().map(|rules| match force.is_constant() {
-                true => rules.constant_load,
-                false => rules.cubic_load,
-            });
-            degree.map_or_else(Vec::new, |degree| {
-                kind.tabulate(around(plane, degree, kind.is_linear()))
-            })
-        });
+        let rule = rules
+            .entry(kind)
+            .or_insert_with(|| rule_of_cells(kind, plane, force.is_constant()));
         let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
         for point in rule.iter() {
             let shape = point.shape.iter();

@@ -1,7 +1,8 @@
 //! Load steps on the mesh: the values of supports and forces in each of them.
 
 use super::bodies::Bodies;
-use super::{Support, loads, supports};
+use super::initial_stress::InitialStress;
+use super::{Material, Support, loads, supports};
 use crate::error::InputError;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
@@ -17,6 +18,8 @@ pub struct ModelStep {
     pub supports: Vec<f64>,
     /// Force on every loaded node (N per metre of thickness).
     pub forces: Vec<[f64; 3]>,
+    /// Stress without strain.
+    pub initial_stress: InitialStress,
 }
 
 /// The loads of a scene.
@@ -27,25 +30,32 @@ pub(super) struct Loads {
     pub supports: Vec<Support>,
     /// Forces on all nodes that are loaded in any step, those of the first.
     pub forces: Vec<(u32, [f64; 3])>,
+    /// Stress without strain in the first step.
+    pub initial_stress: InitialStress,
     /// The steps; none where the scene has none.
     pub steps: Vec<ModelStep>,
 }
 
 impl Loads {
     /// The loads of `scene` in all its steps.
-    pub fn new(scene: &Scene, bodies: &Bodies, topology: &Topology) -> Result<Self, InputError> {
+    pub fn new(
+        scene: &Scene,
+        bodies: &Bodies,
+        topology: &Topology,
+        materials: &[Material],
+    ) -> Result<Self, InputError> {
         let loadings = scene.loadings();
         let mut all = Vec::with_capacity(loadings.len());
         for loading in &loadings {
             let supports = supports::supports(scene, loading, &bodies.mesh, topology)?;
-            let forces = loads::forces(scene, loading, bodies, topology)?;
-            all.push((supports, forces));
+            let (forces, initial) = loads::forces(scene, loading, bodies, topology, materials)?;
+            all.push((supports, forces, initial));
         }
-        for (k, (supports, _)) in all.iter().enumerate().skip(1) {
+        for (k, (supports, ..)) in all.iter().enumerate().skip(1) {
             check_places(k, &all[0].0, supports, &bodies.mesh.node_tags)?;
         }
         let is_loaded = |&node: &u32| {
-            let mut forces = all.iter().map(|(_, forces)| forces[node as usize]);
+            let mut forces = all.iter().map(|(_, forces, _)| forces[node as usize]);
             forces.any(|force| force != [0.0; 3])
         };
         let loaded: Vec<u32> = (0..bodies.mesh.points.len() as u32)
@@ -55,17 +65,22 @@ impl Loads {
             loaded.iter().map(|&node| forces[node as usize]).collect()
         };
         let steps = scene.step.iter().zip(&all).enumerate();
-        let steps = steps.map(|(k, (step, (supports, forces)))| ModelStep {
+        let steps = steps.map(|(k, (step, (supports, forces, initial)))| ModelStep {
             name: step.name_or_number(k),
             time: step.time.unwrap_or((k + 1) as f64),
             supports: supports.iter().map(|support| support.value).collect(),
             forces: at_loaded(forces),
+            initial_stress: initial.clone(),
         });
+        let steps = steps.collect();
+        let forces = (loaded.iter().copied().zip(at_loaded(&all[0].1))).collect();
+        let (supports, _, initial_stress) = all.swap_remove(0);
         Ok(Self {
             names: supports::names(scene, &loadings[0], &bodies.mesh),
-            steps: steps.collect(),
-            forces: (loaded.iter().copied().zip(at_loaded(&all[0].1))).collect(),
-            supports: all.swap_remove(0).0,
+            steps,
+            forces,
+            supports,
+            initial_stress,
         })
     }
 

@@ -204,6 +204,11 @@ pub const FIELDS: &[Field] = &[
     field("/force/offset", "N + 1", Offsets('F'), "slices of the two datasets below"),
     field("/force/node", "F", Integers, "node, strictly ascending within a subdomain"),
     field("/force/value", "F, L?, d", Numbers, "nodal force [N], in every load step"),
+    optional("/initial_stress/cell", "C, L?, 6", Numbers,
+        "stress that the cell has without strain, its mean, in every load step: XX, YY, ZZ, XY, YZ, XZ [Pa]. Results add it to \
+         C ε; what it does to nodes is in `/force`"),
+    optional("/initial_stress/node", "P, L?, 6", Numbers,
+        "the same at the node, in the first of the materials that the subdomain has around it; with `cell` or not at all"),
     field("/contact/name", "Q", GroupNames, "names of the contacts"),
     field("/contact/contact", "R", Indices("contact", 'Q'), "index of the contact"),
     field("/contact/group_offset", "G + 1", Offsets('R'),

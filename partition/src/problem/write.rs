@@ -8,7 +8,7 @@ use toml::Value;
 
 use super::law::LawRow;
 use super::schema::{Counts, FIELDS};
-use super::{FORMAT, Problem, Subdomain, VERSION, vtkhdf};
+use super::{FORMAT, InitialStress, Problem, Subdomain, VERSION, vtkhdf};
 use crate::destination::Destination;
 use crate::error::OutputError;
 use crate::model::PlaneState;
@@ -169,7 +169,23 @@ impl Problem {
         let values = all
             .iter()
             .flat_map(|s| (0..s.forces.len()).map(move |i| s.force(i)));
-        datasets.vectors("/force/value", values.flatten())
+        datasets.vectors("/force/value", values.flatten())?;
+        if all.iter().all(|s| s.initial_stress.cells.is_empty()) {
+            return Ok(());
+        }
+        // Row by row all steps of a cell or node.
+        let rows = |rows: fn(&InitialStress) -> &[[f64; 6]]| {
+            all.iter().flat_map(move |s| {
+                let of_steps = s.initial_stresses();
+                let count = rows(of_steps[0]).len();
+                (0..count).flat_map(move |row| {
+                    let of_steps = of_steps.clone().into_iter();
+                    of_steps.flat_map(move |of_step| rows(of_step)[row])
+                })
+            })
+        };
+        datasets.put("/initial_stress/cell", rows(|s| &s.cells))?;
+        datasets.put("/initial_stress/node", rows(|s| &s.nodes))
     }
 
     fn write_contacts(&self, datasets: &mut Datasets) -> hdf5::Result<()> {

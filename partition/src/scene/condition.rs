@@ -4,6 +4,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
 use super::friction::{self, Friction};
+use super::initial::{InitialStress, Thermal};
 use super::number::{Constant, ConstantVector, Number, Vector, expected_components};
 use crate::name;
 
@@ -61,12 +62,26 @@ impl<'de> Deserialize<'de> for Names {
 
 /// A body: groups of cells of one material.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table of material and body_force")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table of material, body_force, initial_stress and thermal"
+)]
 pub struct Body {
     /// Name of its material.
     pub material: String,
     /// Force per volume (N/m³).
     pub body_force: Option<Vector>,
+    /// Stress before it is loaded (Pa).
+    pub initial_stress: Option<InitialStress>,
+    /// Expansion by heat.
+    pub thermal: Option<Thermal>,
+}
+
+impl Body {
+    /// Whether it has stress without strain, from before or by heat.
+    pub fn has_initial_stress(&self) -> bool {
+        self.initial_stress.is_some() || self.thermal.is_some()
+    }
 }
 
 /// Γ_u: prescribed displacements. A component left out is free.

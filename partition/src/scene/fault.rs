@@ -122,6 +122,12 @@ impl Scene {
         for (name, body) in &self.bodies {
             let fault = body.body_force.as_ref().and_then(|force| force.fault(dim));
             check(at(["bodies", name, "body_force"]), fault);
+            let initial = body.initial_stress.as_ref();
+            let fault = initial.and_then(|stress| stress.fault(dim, self.plane));
+            check(at(["bodies", name, "initial_stress"]), fault);
+            let thermal = body.thermal.as_ref();
+            let fault = thermal.and_then(|thermal| thermal.temperature.fault(dim));
+            check(at(["bodies", name, "thermal", "temperature"]), fault);
         }
         wrong_loads(
             dim,
@@ -138,6 +144,10 @@ impl Scene {
                     [within.clone(), at(["body_force", name])].concat(),
                     force.fault(dim),
                 );
+            }
+            for (name, temperature) in &step.temperature {
+                let path = [within.clone(), at(["temperature", name])].concat();
+                check(path, temperature.fault(dim));
             }
             let displacement = step.displacement.as_deref().unwrap_or_default();
             let traction = step.traction.as_deref().unwrap_or_default();
@@ -183,12 +193,17 @@ impl Scene {
             }
             before = step.time;
             let known = || self.bodies.keys().map(String::as_str);
-            for body in step.body_force.keys() {
-                if !self.bodies.contains_key(body) {
+            let forces = step.body_force.keys().map(|body| ("body_force", body));
+            let temperatures = step.temperature.keys().map(|body| ("temperature", body));
+            for (key, body) in forces.chain(temperatures) {
+                let path = || [of_step(index, key), vec![body.as_str().into()]].concat();
+                let Some(of_scene) = self.bodies.get(body) else {
                     let hint = suggest::hint(body, known());
-                    let path = [of_step(index, "body_force"), vec![body.as_str().into()]].concat();
-                    let message = format!("there is no body '{body}'{hint}");
-                    return Some((path, message));
+                    return Some((path(), format!("there is no body '{body}'{hint}")));
+                };
+                if key == "temperature" && of_scene.thermal.is_none() {
+                    let message = format!("the body '{body}' has no 'thermal', so no expansion");
+                    return Some((path(), message));
                 }
             }
         }

@@ -8,7 +8,7 @@ use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, Visitor};
 
 use super::Scene;
 use super::condition::{Displacement, Names, Pressure, Traction};
-use super::number::{Constant, Vector};
+use super::number::{Constant, Number, Vector};
 use super::place;
 
 /// A load step as a scene gives it.
@@ -16,7 +16,7 @@ use super::place;
 #[serde(
     deny_unknown_fields,
     default,
-    expecting = "a table of name, time, scale, body_force, traction, pressure and displacement"
+    expecting = "a table of name, time, scale, body_force, temperature, traction, pressure and displacement"
 )]
 pub struct LoadStep {
     /// Its name; its number without.
@@ -28,6 +28,8 @@ pub struct LoadStep {
     pub scale: Scale,
     /// Forces per volume in place of those of these bodies (N/m³).
     pub body_force: BTreeMap<String, Vector>,
+    /// Temperatures in place of those of these bodies (K).
+    pub temperature: BTreeMap<String, Number>,
     /// In place of all tractions of the scene.
     #[serde(deserialize_with = "list")]
     pub traction: Option<Vec<Traction>>,
@@ -55,6 +57,12 @@ pub struct Scale {
     /// Of prescribed displacements.
     #[serde(deserialize_with = "number")]
     pub displacement: f64,
+    /// Of initial stresses.
+    #[serde(deserialize_with = "number")]
+    pub initial_stress: f64,
+    /// Of temperatures.
+    #[serde(deserialize_with = "number")]
+    pub thermal: f64,
 }
 
 impl Scale {
@@ -64,6 +72,8 @@ impl Scale {
             traction: factor,
             pressure: factor,
             displacement: factor,
+            initial_stress: factor,
+            thermal: factor,
         }
     }
 }
@@ -82,7 +92,8 @@ impl<'de> Deserialize<'de> for Scale {
 
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
                 f.write_str(
-                    "a number, or a table of body_force, traction, pressure and displacement",
+                    "a number, or a table of body_force, traction, pressure, displacement, initial_stress \
+                     and thermal",
                 )
             }
 
@@ -130,6 +141,8 @@ pub struct Loading<'a> {
     step: Option<(usize, &'a LoadStep)>,
     /// Force per volume of every body.
     pub body_force: Vec<Option<&'a Vector>>,
+    /// Temperature of every body, where the step replaces it.
+    pub temperature: Vec<Option<&'a Number>>,
     /// Tractions.
     pub traction: &'a [Traction],
     /// Pressures.
@@ -157,12 +170,15 @@ impl Scene {
             let replaced = own.and_then(|step| step.body_force.get(name));
             replaced.or(body.body_force.as_ref())
         });
+        let temperature = self.bodies.keys();
+        let temperature = temperature.map(|name| own.and_then(|step| step.temperature.get(name)));
         let traction = own.and_then(|step| step.traction.as_deref());
         let pressure = own.and_then(|step| step.pressure.as_deref());
         let displacement = own.and_then(|step| step.displacement.as_deref());
         Loading {
             step,
             body_force: body_force.collect(),
+            temperature: temperature.collect(),
             traction: traction.unwrap_or(&self.traction),
             pressure: pressure.unwrap_or(&self.pressure),
             displacement: displacement.unwrap_or(&self.displacement),

@@ -11,7 +11,7 @@ use contact_dd_partition::contact_point::Law;
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::element::ElementKind::{Quad4, Quad8, Quad9, Triangle6};
 use contact_dd_partition::example;
-use contact_dd_partition::model::{Model, ModelStep};
+use contact_dd_partition::model::{InitialStress, Model, ModelStep};
 use contact_dd_partition::problem::Problem;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::scene::Scene;
@@ -63,6 +63,7 @@ fn with_steps(model: &Model) -> Model {
             forces: (model.forces.iter())
                 .map(|(_, force)| force.map(|f| factor * f))
                 .collect(),
+            initial_stress: InitialStress::default(),
         })
         .into();
     let first = &model.steps[0];

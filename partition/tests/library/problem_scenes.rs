@@ -11,7 +11,7 @@ use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::{ElementKind, Elements};
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::mesh::topology::Topology;
-use contact_dd_partition::model::{Contact, Material, Model, PlaneState, Support};
+use contact_dd_partition::model::{Contact, InitialStress, Material, Model, PlaneState, Support};
 use contact_dd_partition::scene::units::Units;
 use contact_dd_partition::solver::SolverSettings;
 
@@ -116,6 +116,7 @@ impl Builder {
                 .filter(|&n| self.points[n as usize][1] == top)
                 .map(|n| (n, [0.5, -1.0, 0.0]))
                 .collect(),
+            initial_stress: InitialStress::default(),
             topology: Topology::new(&mesh),
             mesh,
             cell_body: self.cell_body,

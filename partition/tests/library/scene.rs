@@ -187,11 +187,14 @@ fn every_key_of_a_step_is_read() {
         traction,
         pressure,
         displacement,
+        initial_stress,
+        thermal,
     } = first.scale;
     assert_eq!(
         [body_force, traction, pressure, displacement],
         [1.0, 1.0, 0.25, 0.125]
     );
+    assert_eq!([initial_stress, thermal], [1.0, 1.0]);
     assert_eq!(second.scale.traction, 2.0);
     assert_eq!(
         first.body_force["left block"].at([3.0, 0.0, 0.0]),

@@ -2,7 +2,7 @@ use contact_dd_partition::element::geometry::dot;
 use contact_dd_partition::element::{ElementKind, Elements};
 use contact_dd_partition::model::Support;
 use contact_dd_partition::problem::tree::Tree;
-use contact_dd_partition::problem::{InterfaceNode, Subdomain};
+use contact_dd_partition::problem::{InitialStress, InterfaceNode, Subdomain};
 
 use super::super::block::Block;
 use super::super::prescribed::Prescribed;
@@ -23,6 +23,7 @@ fn square() -> Subdomain {
         cell_material: vec![0, 0],
         supports: Vec::new(),
         forces: Vec::new(),
+        initial_stress: InitialStress::default(),
         interface: Vec::new(),
         steps: Vec::new(),
     }

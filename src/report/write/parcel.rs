@@ -45,7 +45,7 @@ impl Parcel {
                 Some((block, displacement)) => {
                     append_block(results, block, displacement);
                     if let Some(stress) = solution.stress.as_ref().and_then(|all| all.get(&index)) {
-                        append_stress(results, block, stress);
+                        append_stress(results, stress);
                     }
                 }
                 // It takes its place without any content, so that the file names it.
@@ -100,11 +100,11 @@ fn append_block(results: &mut SubdomainResults, block: &Block, displacement: &[f
 }
 
 /// Appends the stresses of a block.
-fn append_stress(results: &mut SubdomainResults, block: &Block, stress: &Stress) {
-    let (cells, recovered) = (&stress.cells, &stress.recovered);
-    results.nodal_stress.extend(recovered.at_nodes(block));
+fn append_stress(results: &mut SubdomainResults, stress: &Stress) {
+    let cells = &stress.cells;
+    results.nodal_stress.extend_from_slice(&stress.nodes);
     results.cell_stress.extend_from_slice(cells);
-    let norms = recovered.errors.iter().map(|e| e.error.sqrt());
+    let norms = stress.errors.iter().map(|e| e.error.sqrt());
     results.energy_error.extend(norms);
     results
         .principal

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use contact_dd_partition::mesh::Group;
-use contact_dd_partition::model::{Model, ModelStep};
+use contact_dd_partition::model::{InitialStress, Model, ModelStep};
 use nalgebra::Complex;
 
 use super::super::blocks::{Blocks, joined};
@@ -191,6 +191,7 @@ fn posed(sort: Sort, n: usize) -> Model {
             time: (step + 1) as f64,
             supports: vec![0.0; model.supports.len()],
             forces: loaded.forces.iter().map(|(_, force)| *force).collect(),
+            initial_stress: InitialStress::default(),
         });
         if step == 0 {
             model.forces = loaded.forces;

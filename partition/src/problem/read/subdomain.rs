@@ -11,7 +11,7 @@ use crate::error::InputError;
 use crate::magnitude::SMALLEST_AREA;
 use crate::mesh::topology::Facets;
 use crate::model::{PlaneState, Support};
-use crate::problem::{InterfaceNode, StepLoads, Subdomain, UNIT_TOLERANCE};
+use crate::problem::{InitialStress, InterfaceNode, StepLoads, Subdomain, UNIT_TOLERANCE};
 
 /// What indices of nodes are, in messages.
 const NODE: &str = "node of its subdomain";
@@ -32,6 +32,9 @@ struct Slices {
     support_conditions: Option<Slice<i64>>,
     force_nodes: Slice<i64>,
     force_values: Slice<f64>,
+    /// Absent where no cell has any.
+    stress_of_cells: Slice<f64>,
+    stress_of_nodes: Slice<f64>,
 }
 
 impl Slices {
@@ -45,6 +48,8 @@ impl Slices {
         let conditions =
             conditions.then(|| contents.integers("/support/condition", supports.clone()));
         Ok(Self {
+            stress_of_cells: contents.numbers("/initial_stress/cell", cells.clone())?,
+            stress_of_nodes: contents.numbers("/initial_stress/node", points.clone())?,
             points: contents.numbers("/VTKHDF/Points", points.clone())?,
             tags: contents.integers("/VTKHDF/PointData/GlobalNodeId", points)?,
             types: contents.integers("/VTKHDF/Types", cells.clone())?,
@@ -75,6 +80,12 @@ impl ProblemFile {
         if range.is_empty() {
             return Ok(Vec::new());
         }
+        let stress = ["/initial_stress/cell", "/initial_stress/node"];
+        if let [true, false] | [false, true] = stress.map(|path| self.contents.has(path)) {
+            return Err(InputError::new(
+                "/initial_stress has one of 'cell' and 'node'; expected both or none",
+            ));
+        }
         let slices = Slices::read(self, range.clone())?;
         range.map(|index| self.take(&slices, index)).collect()
     }
@@ -91,6 +102,7 @@ impl ProblemFile {
             cell_material: materials.iter().map(|&material| material as u32).collect(),
             supports: self.take_supports(slices, index, points.len())?,
             forces: self.take_forces(slices, index, points.len())?,
+            initial_stress: self.take_stress(slices, index, 0),
             interface: self.take_interface(slices, index)?,
             steps: self.take_steps(slices, index),
             points,
@@ -106,8 +118,25 @@ impl ProblemFile {
             forces: (forces.chunks_exact(steps * dim))
                 .map(|row| padded(&row[k * dim..][..dim]))
                 .collect(),
+            initial_stress: self.take_stress(slices, index, k),
         };
         (0..steps).map(of_step).collect()
+    }
+
+    /// The initial stress in load step k, the first where there are none.
+    fn take_stress(&self, slices: &Slices, index: usize, k: usize) -> InitialStress {
+        if !self.contents.has("/initial_stress/cell") {
+            return InitialStress::default();
+        }
+        let steps = self.catalog.steps.len().max(1);
+        let take = |slice: &Slice<f64>, letter| {
+            let (stresses, _) = slice.of(self.contents.rows(letter, index)).as_chunks::<6>();
+            stresses.iter().skip(k).step_by(steps).copied().collect()
+        };
+        InitialStress {
+            cells: take(&slices.stress_of_cells, 'C'),
+            nodes: take(&slices.stress_of_nodes, 'P'),
+        }
     }
 
     fn take_points(

@@ -149,3 +149,40 @@ fn a_vector_has_the_dimension_of_the_mesh() {
     let error = Model::new(&scene, block().mesh).unwrap_err();
     assert!(error.to_string().contains("plane"), "{error}");
 }
+
+/// −∫ Bᵀ σ does to linear displacements what σ does to their strains.
+#[test]
+fn initial_stress_does_the_work_of_its_strains() {
+    let body = "bodies.b = {material = 'steel', initial_stress = ['x', '2*y', 9, 'x+y']}\n";
+    let model = Blocks::new()
+        .block("b", [0.0, 2.0], [0.0, 1.0], [5, 4])
+        .model(body)
+        .unwrap();
+    let [fx, fy] = moments(&model);
+    // ∫ σ_xx, σ_xy and σ_yy over the block, against displacements x and y in either direction.
+    for (sum, exact) in fx
+        .into_iter()
+        .chain(fy)
+        .zip([0.0, -2.0, -3.0, 0.0, -3.0, -2.0])
+    {
+        close(sum, exact, 1e-13);
+    }
+    let means = model.initial_stress.cells.iter();
+    close(means.clone().map(|s| s[0]).sum::<f64>() / 40.0, 1.0, 1e-13);
+    assert!(means.map(|s| s[2]).all(|zz| (zz - 9.0).abs() < 1e-13));
+    assert_eq!(model.materials[1].name, "steel of b");
+}
+
+#[test]
+fn heat_in_plane_strain_needs_the_stiffness_out_of_the_plane() {
+    let text = "materials.wood.stiffness = [[9, 1, 0], [1, 5, 0], [0, 0, 2]]
+bodies.b = {material = 'wood', thermal = {expansion = 1e-5, temperature = 20}}\n";
+    let said = Blocks::new()
+        .block("b", [0.0, 2.0], [0.0, 1.0], [5, 4])
+        .model(text)
+        .unwrap_err();
+    assert!(
+        said.starts_with("bodies.b.thermal: in plane strain"),
+        "{said}"
+    );
+}

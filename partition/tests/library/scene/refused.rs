@@ -197,6 +197,44 @@ pressure = [] => presure = []
 "#;
 
 #[test]
+fn stress_and_heat_that_cannot_be_are_refused_at_their_key() {
+    let body = "body_force = [0.0, -25e3]";
+    for (key, expected) in [
+        (
+            "initial_stress = [0, 1, 2]",
+            "line 15: bodies.block.initial_stress: expected 4 numbers, xx, yy, zz, xy",
+        ),
+        (
+            "initial_stress = [0, 1, 2, 'z']",
+            "bodies.block.initial_stress: expression 'z', character 1: 'z' isn't known in the plane",
+        ),
+        (
+            "thermal = {expansion = 'x', temperature = 80}",
+            "bodies.block.thermal.expansion: 'x' depends on the place",
+        ),
+        (
+            "thermal = {expansion = 1e-5}",
+            "missing field `temperature`",
+        ),
+        (
+            "thermal = {expansion = 1e-5, temperature = 'z'}",
+            "bodies.block.thermal.temperature: expression 'z'",
+        ),
+    ] {
+        let message = said(body, key);
+        assert!(message.contains(expected), "{key}: {message}");
+    }
+    let message = said("pressure = []", "temperature = {block = 20}");
+    let expected = "step[2].temperature.block: the body 'block' has no 'thermal', so no expansion";
+    assert!(message.contains(expected), "{message}");
+    let message = said("pressure = []", "temperature = {blok = 20}");
+    assert!(
+        message.contains("there is no body 'blok'; did you mean 'block'?"),
+        "{message}"
+    );
+}
+
+#[test]
 fn steps_that_cannot_be_are_refused_at_their_line_and_key() {
     for (from, to, expected) in cases(STEPS) {
         let message = said(&from, &to);

@@ -1,0 +1,220 @@
+//! Stress σ_i that cells have without any strain: what is left from before, and what heat would make of a body
+//! that can't expand, σ = C (ε − ε_T) + σ_0 = C ε + σ_i. It loads nodes with f_i = −∫ Bᵀ σ_i dx.
+
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap};
+
+use nalgebra::Matrix3;
+
+use super::bodies::Bodies;
+use super::{Material, PlaneState, loads};
+use crate::element::geometry::advance;
+use crate::element::quadrature::TabulatedPoint;
+use crate::error::InputError;
+use crate::magnitude;
+use crate::scene::Scene;
+use crate::scene::number::Number;
+use crate::scene::step::Loading;
+
+/// A stress in the order of results: XX YY ZZ XY YZ XZ (Pa).
+pub type Stress = [f64; 6];
+
+/// σ_i in a load step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InitialStress {
+    /// The mean over every cell; empty where no body of the scene has any.
+    pub cells: Vec<Stress>,
+    /// By node and material, of which each body that has any has one of its own.
+    pub nodes: HashMap<(u32, u32), Stress>,
+}
+
+/// σ_i of one body in a load step.
+struct Field<'a> {
+    initial: Option<(&'a crate::scene::initial::InitialStress, f64)>,
+    /// σ_i at 1 K above, and the temperature with its factor.
+    thermal: Option<(Stress, &'a Number, f64)>,
+}
+
+impl Field<'_> {
+    fn at(&self, x: [f64; 3]) -> Result<Stress, String> {
+        let mut sum = [0.0; 6];
+        let mut add = |factor: f64, stress: Stress| {
+            sum = std::array::from_fn(|k| sum[k] + factor * stress[k]);
+        };
+        if let Some((initial, scale)) = self.initial {
+            add(scale, initial.at(x)?);
+        }
+        if let Some((of_degree, temperature, scale)) = self.thermal {
+            add(scale * temperature.at(x)?, of_degree);
+        }
+        match sum
+            .into_iter()
+            .try_for_each(|s| magnitude::check(s).map(drop))
+        {
+            Ok(()) => Ok(sum),
+            Err(expected) => Err(format!("a stress of {sum:?}; expected {expected}")),
+        }
+    }
+
+    fn is_constant(&self) -> bool {
+        self.initial
+            .is_none_or(|(initial, _)| initial.is_constant())
+            && self
+                .thermal
+                .is_none_or(|(_, t, _)| matches!(t, Number::Constant(_)))
+    }
+}
+
+impl InitialStress {
+    /// σ_i of a loading of `scene`, whose nodal forces are added to `forces`.
+    pub(super) fn new(
+        scene: &Scene,
+        loading: &Loading,
+        bodies: &Bodies,
+        materials: &[Material],
+        forces: &mut [[f64; 3]],
+    ) -> Result<Self, InputError> {
+        let mut all = Self::default();
+        if !scene
+            .bodies
+            .values()
+            .any(crate::scene::condition::Body::has_initial_stress)
+        {
+            return Ok(all);
+        }
+        all.cells.resize(bodies.mesh.cells.len(), [0.0; 6]);
+        for (number, (name, body)) in (0..).zip(&scene.bodies) {
+            if !body.has_initial_stress() {
+                continue;
+            }
+            let initial = body.initial_stress.as_ref();
+            let what = match (initial, &body.thermal) {
+                (Some(_), None) => format!("bodies.{name}.initial_stress"),
+                (None, _) => format!("bodies.{name}.thermal"),
+                _ => format!("bodies.{name}"),
+            };
+            let cell = bodies.cell_body.iter().position(|&body| body == number);
+            let material = &materials[cell.map_or(0, |cell| bodies.cell_material[cell] as usize)];
+            let thermal = body.thermal.as_ref().map(|thermal| {
+                let of_degree = of_degree(material, scene.plane, thermal.expansion.0)?;
+                let temperature =
+                    loading.temperature[number as usize].unwrap_or(&thermal.temperature);
+                Ok((of_degree, temperature, loading.scale.thermal))
+            });
+            let field = Field {
+                initial: initial.map(|initial| (initial, loading.scale.initial_stress)),
+                thermal: thermal.transpose().map_err(InputError::about(&what))?,
+            };
+            all.add(scene.plane, bodies, number, &field, forces)
+                .map_err(InputError::about(&what))?;
+        }
+        Ok(all)
+    }
+
+    fn add(
+        &mut self,
+        plane: Option<PlaneState>,
+        bodies: &Bodies,
+        body: u32,
+        field: &Field,
+        forces: &mut [[f64; 3]],
+    ) -> Result<(), String> {
+        let mesh = &bodies.mesh;
+        let mut rules = BTreeMap::new();
+        for (cell, (kind, nodes)) in mesh.cells.iter().enumerate() {
+            if bodies.cell_body[cell] != body {
+                continue;
+            }
+            let rule = (rules.entry(kind))
+                .or_insert_with(|| loads::rule_of_cells(kind, plane, field.is_constant()));
+            let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
+            for (&node, &x) in nodes.iter().zip(&at) {
+                let key = (node, bodies.cell_material[cell]);
+                if let Entry::Vacant(place) = self.nodes.entry(key) {
+                    place.insert(field.at(x)?);
+                }
+            }
+            let (mut sum, mut measure) = ([0.0; 6], 0.0);
+            for point in rule.iter() {
+                let shape = point.shape.iter().zip(&at);
+                let x = shape.fold([0.0; 3], |sum, (&n, &p)| advance(sum, n, p));
+                let stress = field.at(x)?;
+                let weight = point.weight
+                    * kind.determinant(&point.gradients, &at)
+                    * PlaneState::thickness(plane, x);
+                let gradients = gradients(point, &at, mesh.dim);
+                for ((&node, gradient), n) in nodes.iter().zip(gradients).zip(&point.shape) {
+                    let mut force = along(&stress, gradient);
+                    if plane == Some(PlaneState::Axisymmetric) {
+                        force[0] += stress[2] * n / x[0];
+                    }
+                    let sum = &mut forces[node as usize];
+                    *sum = advance(*sum, -weight, force);
+                }
+                sum = std::array::from_fn(|k| sum[k] + weight * stress[k]);
+                measure += weight;
+            }
+            self.cells[cell] = sum.map(|s| s / measure);
+        }
+        Ok(())
+    }
+}
+
+/// −C ε_T of an isotropic expansion by `expansion`.
+fn of_degree(
+    material: &Material,
+    plane: Option<PlaneState>,
+    expansion: f64,
+) -> Result<Stress, String> {
+    let c = &material.stiffness;
+    let axes = if c.size() == 3 { 2 } else { 3 };
+    let row = |i: usize| c[i][..axes].iter().sum::<f64>();
+    let rows: Vec<f64> = (0..c.size()).map(row).collect();
+    let stress = match (&rows[..], plane) {
+        (&[xx, yy, xy], Some(PlaneState::Strain)) => {
+            let (Some([zx, zy, _]), Some(_)) = (material.out_of_plane, material.poisson) else {
+                return Err(
+                    "in plane strain heat needs the stiffness out of the plane; expected a material of \
+                     'young' and 'poisson'"
+                        .into(),
+                );
+            };
+            // Isotropic, so that c_zz is c_xx.
+            [xx + zx, yy + zy, zx + zy + c[0][0], xy, 0.0, 0.0]
+        }
+        (&[xx, yy, xy], _) => [xx, yy, 0.0, xy, 0.0, 0.0],
+        (&[xx, yy, zz, xy], _) => [xx, yy, zz, xy, 0.0, 0.0],
+        (&[xx, yy, zz, yz, xz, xy], _) => [xx, yy, zz, xy, yz, xz],
+        _ => [0.0; 6],
+    };
+    Ok(stress.map(|s| -expansion * s))
+}
+
+/// ∂N_i/∂x at a point of a cell (1/m).
+fn gradients(
+    point: &TabulatedPoint,
+    at: &[[f64; 3]],
+    dim: usize,
+) -> impl Iterator<Item = [f64; 3]> {
+    let mut jacobian = Matrix3::identity();
+    for j in 0..dim {
+        for i in 0..dim {
+            let terms = point.gradients.iter().zip(at);
+            jacobian[(i, j)] = terms.map(|(g, x)| x[i] * g[j]).sum();
+        }
+    }
+    let inverse = jacobian.try_inverse().unwrap_or_default().transpose();
+    point.gradients.iter().map(move |g| {
+        let local = nalgebra::Vector3::from_fn(|j, _| if j < dim { g[j] } else { 0.0 });
+        (inverse * local).into()
+    })
+}
+
+/// σ g.
+fn along(&[xx, yy, zz, xy, yz, xz]: &Stress, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    [
+        xx * x + xy * y + xz * z,
+        xy * x + yy * y + yz * z,
+        xz * x + yz * y + zz * z,
+    ]
+}
