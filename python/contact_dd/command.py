@@ -1,4 +1,4 @@
-"""The command `contact-dd`: pictures and pages of results, and meshes that adapt."""
+"""The command `contact-dd`: pictures, pages and tables of results, and meshes that adapt."""
 
 import argparse
 import signal
@@ -12,6 +12,7 @@ from contact_dd.adaptivity import adapt as solve_adapted
 from contact_dd.errors import ContactError, InputError, OutputError
 from contact_dd.model import Model, scene_of
 from contact_dd.result import Result
+from contact_dd.tables import write_tables
 
 
 def main() -> None:
@@ -47,6 +48,13 @@ def parser() -> argparse.ArgumentParser:
     written.add_argument("result", type=Path, help="result file of contact-dd-mpi")
     written.add_argument("page", type=Path, nargs="?", help="default: the result's name with .html")
     written.set_defaults(command=report)
+
+    what = "Writes a table of each contact, CSV: pressures and gaps, in the plane over the arc length of side a."
+    tabled = commands.add_parser("table", help="write tables of contacts", description=what)
+    tabled.add_argument("result", type=Path, help="result file of contact-dd-mpi")
+    tabled.add_argument("outdir", type=Path, nargs="?", help="folder (default: tables beside the result)")
+    tabled.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
+    tabled.set_defaults(command=table)
 
     what = "Meshes and solves until the estimated error is as small as asked."
     adapted = commands.add_parser("adapt", help="mesh and solve until the error is small", description=what)
@@ -98,6 +106,12 @@ def report(arguments: argparse.Namespace) -> None:
     except OSError as error:
         raise OutputError(f"{path}: can't be written: {error.strerror}") from error
     print(path)
+
+
+def table(arguments: argparse.Namespace) -> None:
+    result = Result(arguments.result, arguments.step)
+    for path in write_tables(result, arguments.outdir or arguments.result.parent / "tables"):
+        print(path)
 
 
 def adapt(arguments: argparse.Namespace) -> None:

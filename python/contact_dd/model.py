@@ -72,9 +72,9 @@ class Model:
     ) -> Model:
         """A model without materials, supports, loads and contacts yet.
 
-        `mesh` is a file of Gmsh's, a deck of Abaqus or CalculiX (`.inp`) or a file that meshio reads, a mesh of meshio, or Gmsh's model as it stands
-        (`gmsh.model`). `plane` is "strain", "stress" or "axisymmetric", in space None; `units` is "m" (m, N, Pa) or
-        "mm" (mm, N, MPa).
+        `mesh` is a file of Gmsh's, a deck of Abaqus or CalculiX (`.inp`) or a file that meshio reads, a mesh of
+        meshio, or Gmsh's model as it stands (`gmsh.model`). `plane` is "strain", "stress" or "axisymmetric", in space
+        None; `units` is "m" (m, N, Pa) or "mm" (mm, N, MPa).
         """
         return cls(mesh, given(title=title, plane=plane, units=units))
 

@@ -123,6 +123,14 @@ class Result:
         return other
 
     @property
+    def von_mises(self) -> NDArray[np.float64]:
+        """The von Mises stress at nodes, of what is recovered there."""
+        xx, yy, zz, xy, yz, xz = self.stress.T
+        axial = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+        equivalent: NDArray[np.float64] = np.sqrt(0.5 * axial + 3 * (xy**2 + yz**2 + xz**2))
+        return equivalent
+
+    @property
     def is_in_space(self) -> bool:
         """Whether the cells are volumes."""
         return any(cells.kind in (10, 12, 24, 25, 29) for cells in self.cells)
@@ -146,6 +154,7 @@ class Result:
         grid.point_data["GlobalNodeId"] = self.nodes
         if len(self.stress):
             grid.point_data["Stress"] = self.stress
+            grid.point_data["VonMises"] = self.von_mises
         order = np.concatenate([cells.members for cells in self.cells])
         for name, values in self.cell_data.items():
             grid.cell_data[name] = values[order]

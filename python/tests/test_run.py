@@ -3,11 +3,13 @@
 import stat
 import tomllib
 
+import h5py
 import meshio
 import numpy as np
 import pytest
 
 from contact_dd import ContactError, IllPosed, InputError, Material, Model, NotConverged, OutputError, Result, toml
+from contact_dd.tables import write_tables
 
 
 def test_a_scene_is_read_as_it_was_written(scene):
@@ -155,3 +157,25 @@ def test_a_hot_body_between_walls_is_pressed(tmp_path):
     result = model.run(ranks=1, folder=tmp_path, progress=False)
     assert np.allclose(result.at_step(1).stress[:, 0], 1e6)
     assert np.allclose(result.stress[:, 0], 1e6 - 20e9 * 1e-5 * 80)
+
+
+def test_tables_follow_the_arc_length(scene, tmp_path):
+    result = Model.from_scene(scene("hertz")).run(folder=tmp_path, progress=False)
+    (path,) = write_tables(result, tmp_path / "tables")
+    table = np.genfromtxt(path, delimiter=",", names=True)
+    assert len(table) == sum(map(len, result.contacts.values()))
+    assert (np.diff(table["arc_length"]) > 0).all()
+    # The line is straight, and its half carries 5.
+    assert np.allclose(table["arc_length"], table["x"] - table["x"][0])
+    assert np.isclose(table["force"].sum(), 5, rtol=1e-3)
+    with h5py.File(result.path) as file:
+        at_nodes = file["VTKHDF/PointData/VonMises"][:]
+    assert np.isclose(result.von_mises.max(), at_nodes.max())
+
+
+def test_tables_of_contacts_in_space_have_no_arc_length(scene, tmp_path):
+    result = Model.from_scene(scene("cube-crack")).run(folder=tmp_path, progress=False)
+    for path in write_tables(result, tmp_path):
+        table = np.genfromtxt(path, delimiter=",", names=True)
+        assert np.allclose(table["z"], result.contacts[path.stem]["position"][:, 2])
+        assert "arc_length" not in table.dtype.names

@@ -119,6 +119,8 @@ lists! {
     displacement: [f64; 3], "displacements", "PointData/Displacement", Node, Solution;
     /// Stress recovered at the nodes.
     nodal_stress: [f64; 6], "nodal stresses", "PointData/Stress", Node, Stress;
+    /// Von Mises stress of what is recovered at the nodes (Pa).
+    nodal_von_mises: f64, "nodal von Mises stresses", "PointData/VonMises", Node, Stress;
     /// Nodes of the cells, numbered within their subdomain.
     connectivity: i64, "connectivity", "Connectivity", NodeOfCell, Mesh;
     /// For every subdomain the start of each of its cells in its part of `connectivity`, and the

@@ -31,6 +31,8 @@ fn strips(first: usize, cells: &[usize]) -> SubdomainResults {
         results.node_tags.extend((0..size.points).map(tag));
         results.displacement.extend((0..size.points).map(three));
         results.nodal_stress.extend((0..size.points).map(six));
+        let equivalent = (0..size.points).map(|row| value(row, 2));
+        results.nodal_von_mises.extend(equivalent);
         let triangle = |cell: i64| [cell, cell + 1, cell + 2];
         let triangles = (0..cells as i64).flat_map(triangle);
         results.connectivity.extend(triangles);
@@ -144,6 +146,7 @@ fn neither_the_order_of_arrival_nor_the_cuts_leave_a_trace() {
             "Points",
             "PointData/Displacement",
             "PointData/Stress",
+            "PointData/VonMises",
             "CellData/Stress",
             "CellData/PrincipalStress",
             "CellData/VonMises",
@@ -197,6 +200,7 @@ fn numbers_have_the_same_types_in_the_file_as_in_memory() {
             TypeDescriptor::Integer(IntSize::U8),
         ),
         ("PointData/Stress", TypeDescriptor::Float(FloatSize::U8)),
+        ("PointData/VonMises", TypeDescriptor::Float(FloatSize::U8)),
         ("CellData/Subdomain", TypeDescriptor::Integer(IntSize::U4)),
         ("CellData/Material", TypeDescriptor::Integer(IntSize::U4)),
         ("CellData/VonMises", TypeDescriptor::Float(FloatSize::U8)),

@@ -264,7 +264,7 @@ fn without_stresses(trials: &mut Trials) {
                 .iter()
                 .all(|left_out| !name.contains(left_out))
         });
-        assert_eq!(expected.len() + 5, with);
+        assert_eq!(expected.len() + 6, with);
         let ended = case.run_on(ranks, &["--no-stress"]);
         assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
         assert!(datasets(&case.result()) == expected);

@@ -103,6 +103,8 @@ fn append_block(results: &mut SubdomainResults, block: &Block, displacement: &[f
 fn append_stress(results: &mut SubdomainResults, stress: &Stress) {
     let cells = &stress.cells;
     results.nodal_stress.extend_from_slice(&stress.nodes);
+    let nodes = stress.nodes.iter();
+    results.nodal_von_mises.extend(nodes.map(von_mises));
     results.cell_stress.extend_from_slice(cells);
     let norms = stress.errors.iter().map(|e| e.error.sqrt());
     results.energy_error.extend(norms);

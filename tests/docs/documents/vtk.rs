@@ -56,6 +56,7 @@ pub fn reads_the_same(ranks: usize, element: &str, steps: &str) {
         &[
             "PointData/Displacement",
             "PointData/Stress",
+            "PointData/VonMises",
             "CellData/VonMises",
         ],
     );
