@@ -11,6 +11,8 @@ mod coarse;
 mod constraints;
 mod gradients;
 mod local;
+mod motions;
+mod reflections;
 pub mod solution;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,11 +22,34 @@ use self::closed::{GroupBetween, Ties};
 use self::coarse::{Coarse, CoarsePart};
 use self::constraints::{Basis, Side};
 use self::local::{Local, Moves, Shared};
+use self::motions::SharedNodes;
 use crate::comm::Comm;
 use crate::contact::jumps::NoUnknown;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::schur::condensed::{Condensed, InterfaceDof};
+use crate::schur::symmetric::PackedSymmetric;
+
+/// The Schur complement of a cluster.
+#[derive(Debug)]
+pub struct ClusterSchur {
+    /// Its unknowns on Γ, ascending.
+    pub dofs: Vec<InterfaceDof>,
+    /// S (Pa).
+    pub s: PackedSymmetric,
+    /// The diagonal of the matrix that S is condensed from (Pa).
+    pub diagonal: Vec<f64>,
+}
+
+impl From<Condensed> for ClusterSchur {
+    fn from(condensed: Condensed) -> Self {
+        Self {
+            s: PackedSymmetric::new(&condensed.s),
+            dofs: condensed.interface_dofs,
+            diagonal: condensed.diagonal,
+        }
+    }
+}
 
 /// Clusters and what is between them.
 #[derive(Debug)]
@@ -38,9 +63,11 @@ pub struct Bddc {
     /// Those of this rank, by number.
     groups: BTreeMap<usize, GroupBetween>,
     ties: Ties,
+    nodes: SharedNodes,
     classes: Classes,
-    /// The clusters of this rank: what their classes are to them, and in the bases of these.
-    sides: BTreeMap<usize, Vec<Option<Side>>>,
+    /// Whether classes are looked into for what else than their rigid motions is to be coarse.
+    is_adaptive: bool,
+    /// The clusters of this rank, in the bases of their classes.
     locals: BTreeMap<usize, Local>,
     /// The clusters whose S isn't any more what their part of the preconditioner was made of, on all ranks.
     stale: Vec<bool>,
@@ -63,13 +90,13 @@ struct Between {
 }
 
 impl Bddc {
-    /// Between the clusters that `condensed` has, by node; nothing is factorized yet. Collective.
+    /// Between these `clusters`, by node; nothing is factorized yet. Collective.
     ///
     /// # Errors
     /// A contact point that nothing can be replaced for.
     pub fn new(
         context: &Context<'_>,
-        condensed: &BTreeMap<usize, Condensed>,
+        clusters: &BTreeMap<usize, ClusterSchur>,
     ) -> Result<Self, Failure> {
         let Context { comm, plan, .. } = *context;
         let owners = plan.owners_of(&plan.tops);
@@ -77,9 +104,9 @@ impl Bddc {
         comm.gather(
             &owners,
             |c| {
-                condensed
+                clusters
                     .get(&plan.tops[c])
-                    .map(|of| of.interface_dofs.clone())
+                    .map(|cluster| cluster.dofs.clone())
             },
             |_, of_cluster| dofs.extend(of_cluster),
         );
@@ -124,13 +151,14 @@ impl Bddc {
         }
         Ok(Self {
             stale: vec![true; dofs.len()],
+            nodes: SharedNodes::new(context, &dofs),
+            is_adaptive: false,
             between,
             owners,
             dofs,
             groups,
             ties: Ties::default(),
             classes: Classes::default(),
-            sides: BTreeMap::new(),
             locals: BTreeMap::new(),
             coarse: None,
             coarse_dofs: 0,
@@ -138,7 +166,7 @@ impl Bddc {
         })
     }
 
-    /// Freezes which conditions are `open`, for `condensed` clusters some of which were `touched` by that, with a
+    /// Freezes which conditions are `open`, for `clusters` some of which were `touched` by that, with a
     /// `spring`, relative to the diagonal, on what they have let go. The preconditioner is made anew where clusters
     /// share other unknowns than before, and wherever S has changed if it is to be `renewed`. Collective.
     ///
@@ -147,7 +175,7 @@ impl Bddc {
     pub fn freeze(
         &mut self,
         context: &Context<'_>,
-        condensed: &BTreeMap<usize, Condensed>,
+        clusters: &BTreeMap<usize, ClusterSchur>,
         touched: &[bool],
         open: &BTreeMap<usize, Vec<bool>>,
         spring: f64,
@@ -183,20 +211,30 @@ impl Bddc {
         self.ties = ties;
 
         let shared = |c: usize| {
-            let of_cluster = &condensed[&plan.tops[c]];
-            Shared::new(c, of_cluster, &self.classes, &self.ties, spring, par)
+            let cluster = &clusters[&plan.tops[c]];
+            Shared::new(c, cluster, &self.classes, &self.ties, spring, par)
         };
+        let made: Vec<bool> = (self.classes.list.iter())
+            .map(|class| {
+                let has_changed = || class.clusters.iter().any(|&c| changed[c]);
+                let is_new = before.place_of(class).is_none();
+                !class.is_coarse() && (is_new || renewed && has_changed())
+            })
+            .collect();
         let own = self.owners.iter().enumerate();
-        let own = own.filter(|(c, owner)| changed[*c] && **owner == comm.rank());
+        let own = own.filter(|(_, owner)| **owner == comm.rank());
         let sides = own.map(|(c, _)| {
             let classes = &self.classes.of_clusters[c];
-            let is_adaptive = |at: usize| !self.classes.list[classes[at]].is_coarse();
-            let sides = shared(c).and_then(|(shared, s)| shared.sides(&s, is_adaptive, par));
+            let is_made = |at: usize| made[classes[at]];
+            if !(0..classes.len()).any(is_made) {
+                return Ok((c, Vec::new()));
+            }
+            let sides =
+                shared(c).and_then(|(shared, s)| shared.sides(&s, is_made, self.is_adaptive, par));
             Ok((c, sides.map_err(moves)?))
         });
         let sides: BTreeMap<usize, Vec<Option<Side>>> = comm.agree(sides.collect())?;
-        self.sides.extend(sides);
-        let bases = self.bases(context, &before, &changed, renewed)?;
+        let bases = self.bases(context, &before, &changed, &made, sides)?;
         let locals = bases.into_iter().map(|(c, bases)| {
             let local = shared(c).and_then(|shared| Local::new(shared, bases, par));
             Ok((c, local.map_err(moves)?))
@@ -233,6 +271,17 @@ impl Bddc {
         Ok(())
     }
 
+    /// Looks into all classes from now on: the preconditioner is to be made anew as a whole.
+    pub fn look_into(&mut self) {
+        self.is_adaptive = true;
+        self.classes = Classes::default();
+    }
+
+    /// Whether classes have been looked into.
+    pub fn is_adaptive(&self) -> bool {
+        self.is_adaptive
+    }
+
     /// Whether S of a cluster isn't any more what the preconditioner was made of; the same on all ranks.
     pub fn is_stale(&self) -> bool {
         self.stale.contains(&true)
@@ -260,24 +309,20 @@ impl Bddc {
         self.between.iter().map(|group| group.owner).collect()
     }
 
-    /// The bases of the classes of every cluster of this rank whose part of the preconditioner is to be made: of classes
-    /// that were there `before` those that they had, unless they are to be `renewed` because a cluster has changed. Each
-    /// is made where the first cluster of the class is. Collective.
+    /// The bases of the classes of every cluster of this rank whose part of the preconditioner is to be made: those that
+    /// they had `before`, but of the classes that are to be `made` of what they are to the clusters. Each is made where
+    /// the first cluster of the class is. Collective.
     fn bases(
         &self,
         context: &Context<'_>,
         before: &Classes,
         changed: &[bool],
-        renewed: bool,
+        made: &[bool],
+        mut sides: BTreeMap<usize, Vec<Option<Side>>>,
     ) -> Result<BTreeMap<usize, Vec<Basis>>, Failure> {
         let comm = context.comm;
-        let is_made = |k: usize| {
-            let class = &self.classes.list[k];
-            let has_changed = || class.clusters.iter().any(|&c| changed[c]);
-            !class.is_coarse() && (before.place_of(class).is_none() || renewed && has_changed())
-        };
         let ends: Vec<(usize, usize)> = (0..self.classes.list.len())
-            .filter(|&k| is_made(k))
+            .filter(|&k| made[k])
             .flat_map(|k| self.classes.list[k].clusters.iter().map(move |&c| (k, c)))
             .collect();
         let home = |k: usize| self.owners[self.classes.list[k].clusters[0]];
@@ -287,18 +332,18 @@ impl Bddc {
             |i| {
                 let (k, c) = ends[i];
                 let at = self.classes.of_clusters[c].binary_search(&k).ok()?;
-                self.sides[&c][at].clone()
+                sides.get_mut(&c)?[at].take()
             },
             |i, side| arrived.entry(ends[i].0).or_default().extend(side),
         );
         let mut result = Ok(());
-        let mut made = BTreeMap::new();
+        let mut results = BTreeMap::new();
         for (k, sides) in arrived {
-            match Basis::adaptive(&sides) {
+            let class = &self.classes.list[k];
+            match Basis::new(&sides, || self.nodes.motions_of(class)) {
                 Ok(bases) => {
-                    let clusters = &self.classes.list[k].clusters;
-                    let ends = clusters.iter().map(|&c| (k, c));
-                    made.extend(ends.zip(bases));
+                    let ends = class.clusters.iter().map(|&c| (k, c));
+                    results.extend(ends.zip(bases));
                 }
                 Err(Moves) => result = Err(moves(Moves)),
             }
@@ -307,13 +352,14 @@ impl Bddc {
         let mut of_ends = BTreeMap::new();
         comm.route(
             ends.iter().map(|&(k, c)| (home(k), self.owners[c])),
-            |i| made.remove(&ends[i]),
+            |i| results.remove(&ends[i]),
             |i, basis| of_ends.extend(basis.map(|basis| (ends[i], basis))),
         );
         let mut bases = BTreeMap::new();
-        for &c in self.sides.keys() {
+        for (c, owner) in self.owners.iter().enumerate() {
             let classes = &self.classes.of_clusters[c];
-            if !changed[c] && !classes.iter().any(|&k| is_made(k)) {
+            let is_new = changed[c] || classes.iter().any(|&k| made[k]);
+            if *owner != comm.rank() || !is_new {
                 continue;
             }
             let of_classes = classes.iter().map(|&k| {

@@ -1,6 +1,7 @@
 //! What is to be condensed and merged, and by whom: blocks, their hierarchy, clusters.
 
 mod assign;
+pub mod choice;
 pub mod cluster;
 pub mod cost;
 

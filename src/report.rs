@@ -15,6 +15,7 @@ use crate::output::report::{Build, Report, ReportFile};
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
+use crate::plan::choice::InterfaceTimes;
 use crate::plan::cluster::Merging;
 use crate::report::totals::{StepTotals, Totals};
 use crate::settings::Settings;
@@ -123,6 +124,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         interface_residual: (totals.steps.iter())
             .fold(0.0, |worst: f64, step| worst.max(step.outcome.residual)),
         interface_solver: totals.interface_solver(),
+        interface_choice: interface_choice(totals, settings),
         interface_iterations: (totals.steps.iter())
             .flat_map(|step| step.interface_iterations().iter().copied())
             .collect(),
@@ -154,9 +156,29 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
     }
 }
 
+/// Why the interface problem was solved as it was.
+fn interface_choice(totals: &Totals<'_>, settings: &Settings) -> String {
+    if settings.interface == Some(totals.interface_solver()) {
+        return "asked for".into();
+    }
+    let is_direct = totals.interface_solver() == InterfaceMethod::Direct;
+    match InterfaceTimes::new(totals.catalog) {
+        Some(times) if is_direct && times.is_iterative() => {
+            "some contact conditions depend on others, which takes the direct solver".into()
+        }
+        Some(times) if settings.method == Method::Newton && settings.interface.is_none() => {
+            format!(
+                "estimated time in flops: direct {:.1e}, iterative {:.1e}",
+                times.direct, times.iterative
+            )
+        }
+        _ => "nothing to choose between".into(),
+    }
+}
+
 /// Why the interface problem was solved directly where the iterative solver was asked for.
 fn solved_directly(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
-    let is_asked_for = settings.interface == InterfaceMethod::Iterative;
+    let is_asked_for = settings.interface == Some(InterfaceMethod::Iterative);
     if !is_asked_for || totals.interface_solver() == InterfaceMethod::Iterative {
         return None;
     }

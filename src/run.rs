@@ -111,7 +111,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         loads: &StepState::default().loads(&context, Moment::end_of(0), &analyses[0]),
         fixing_dofs: &analyses[0].motions.fixing_dofs,
     };
-    let condensed = condense_clusters(&condensation, &analyses[0], &|| log.bar.advance())?;
+    let mut condensed = condense_clusters(&condensation, &analyses[0], &|| log.bar.advance())?;
     [seconds.assemble, seconds.factorize] = condensed.seconds;
 
     // The root assembles S_0, (15), and the bilateral operator.
@@ -120,7 +120,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     let frozen = match plan.merging.is_frozen() {
         true => Some(RefCell::new(FrozenFronts::new(
             &condensation,
-            &condensed.linear,
+            std::mem::take(&mut condensed.linear),
         )?)),
         false => None,
     };

@@ -4,6 +4,7 @@
 //! > S = K_BB − K_BI K_II⁻¹ K_IB,   u_I = K_II⁻¹ (f_I − K_IB u_B)
 
 mod children;
+pub mod columns;
 pub mod condensed;
 mod dissection;
 pub mod factor;
@@ -17,3 +18,4 @@ pub mod pattern;
 pub mod substitution;
 mod supernodes;
 pub mod symmetric;
+pub mod trapezoid;

@@ -17,6 +17,7 @@ use serde::{Serialize, Serializer};
 use self::command_line::{CommandLine, InterfaceMethod, LogFormat};
 use crate::error::Failure;
 use crate::plan::Plan;
+use crate::plan::choice::InterfaceTimes;
 use crate::plan::cluster::Merging;
 use crate::sweep::{Method, SweepSettings};
 
@@ -47,8 +48,8 @@ pub struct Settings {
     pub max_sweeps: Option<usize>,
     /// Relaxation of picard; 1 is the paper's (18) to the letter.
     pub relaxation: Option<f64>,
-    /// How the linear interface problem is solved.
-    pub interface: InterfaceMethod,
+    /// How the linear interface problem is solved; what takes less time where it isn't said.
+    pub interface: Option<InterfaceMethod>,
     /// Threads of each rank.
     pub threads: u16,
     /// Whether stresses are left out: neither recovered nor written.
@@ -94,9 +95,7 @@ impl Settings {
             quiet: from
                 .choose("quiet", &run.quiet.then_some(true), &None)
                 .unwrap_or(false),
-            interface: from
-                .choose("interface", &run.interface, &None)
-                .unwrap_or_default(),
+            interface: from.choose("interface", &run.interface, &None),
             threads: from
                 .choose("threads", &run.threads, &None)
                 .map_or(1, u16::from),
@@ -159,7 +158,10 @@ impl Settings {
     /// # Errors
     /// The iterative solver is asked for, and the problem file has no clusters.
     pub fn merging(&self, catalog: &Catalog) -> Result<Merging, Failure> {
-        let is_iterative = self.interface == InterfaceMethod::Iterative;
+        let is_iterative = match self.interface {
+            Some(method) => method == InterfaceMethod::Iterative,
+            None => InterfaceTimes::new(catalog).is_some_and(InterfaceTimes::is_iterative),
+        };
         Ok(match self.method {
             Method::Picard => Merging::Linear,
             Method::Anderson => Merging::Groups,

@@ -106,21 +106,21 @@ impl Classes {
 
     /// Those of clusters that have these `dofs`, with closed contact conditions that tie some to others.
     pub fn new(dofs: &[Vec<InterfaceDof>], ties: &Ties) -> Self {
-        let mut clusters_of: BTreeMap<InterfaceDof, Vec<usize>> = BTreeMap::new();
+        let mut ends: Vec<(InterfaceDof, usize)> = Vec::new();
         for (c, list) in dofs.iter().enumerate() {
-            let mut left: Vec<InterfaceDof> = (list.iter())
-                .flat_map(|dof| ties.terms(dof))
-                .map(|(dof, _)| dof)
-                .collect();
-            left.sort_unstable();
-            left.dedup();
-            for dof in left {
-                clusters_of.entry(dof).or_default().push(c);
+            for dof in list {
+                match ties.tied(dof) {
+                    Some(terms) => ends.extend(terms.iter().map(|(dof, _)| (*dof, c))),
+                    None => ends.push((*dof, c)),
+                }
             }
         }
+        ends.sort_unstable();
+        ends.dedup();
         let mut of: BTreeMap<Vec<usize>, Vec<InterfaceDof>> = BTreeMap::new();
-        for (dof, clusters) in clusters_of {
-            of.entry(clusters).or_default().push(dof);
+        for of_dof in ends.chunk_by(|a, b| a.0 == b.0) {
+            let clusters: Vec<usize> = of_dof.iter().map(|(_, c)| *c).collect();
+            of.entry(clusters).or_default().push(of_dof[0].0);
         }
         let mut classes = Self {
             list: Vec::new(),

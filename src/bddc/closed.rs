@@ -145,9 +145,14 @@ impl Ties {
         joined
     }
 
+    /// What is in the place of an unknown that is tied.
+    pub fn tied(&self, dof: &InterfaceDof) -> Option<&Terms> {
+        self.resolved.get(dof)
+    }
+
     /// What is in the place of an unknown: itself where it isn't tied.
     pub fn terms(&self, dof: &InterfaceDof) -> Terms {
-        let terms = self.resolved.get(dof);
+        let terms = self.tied(dof);
         terms.cloned().unwrap_or_else(|| vec![(*dof, 1.0)])
     }
 

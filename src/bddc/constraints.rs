@@ -14,7 +14,9 @@ use faer::linalg::triangular_solve::{
 use faer::{Mat, Par};
 use serde::{Deserialize, Serialize};
 
-use crate::bddc::local::{Moves, product};
+use crate::bddc::local::Moves;
+use crate::bddc::reflections::Reflections;
+use crate::schur::columns::{product, transposed_product};
 
 /// Ratio of the energies above which what has it becomes coarse: about the condition number of what is left.
 const THRESHOLD: f64 = 10.0;
@@ -24,9 +26,8 @@ const THRESHOLD: f64 = 10.0;
 pub struct Basis {
     /// Number of coarse unknowns.
     pub coarse: usize,
-    /// The basis, a column each; nothing where it is the unknowns of the class.
-    #[serde(with = "crate::bytes::matrix")]
-    q: Mat<f64>,
+    /// The basis; nothing where it is the unknowns of the class.
+    pub q: Option<Reflections>,
     share: Share,
 }
 
@@ -45,7 +46,7 @@ pub struct Side {
     /// S_FF.
     #[serde(with = "crate::bytes::symmetric")]
     pub s: Mat<f64>,
-    /// S̃⁻¹.
+    /// S̃⁻¹, where the class is looked into; without unknowns elsewhere.
     #[serde(with = "crate::bytes::symmetric")]
     pub compliance: Mat<f64>,
 }
@@ -55,37 +56,36 @@ impl Basis {
     pub fn coarse(count: usize, is_first: bool) -> Self {
         Self {
             coarse: count,
-            q: Mat::new(),
+            q: None,
             share: if is_first { Share::All } else { Share::Nothing },
         }
     }
 
-    /// That of a class, for each of the clusters that have these `sides` of it.
+    /// That of a class, for each of the clusters that have these `sides` of it: its rigid `motions` are coarse, or what
+    /// the sides say where they are looked into.
     ///
     /// # Errors
     /// It can move although all else is held.
-    pub fn adaptive(sides: &[Side]) -> Result<Vec<Self>, Moves> {
+    pub fn new(sides: &[Side], motions: impl FnOnce() -> Mat<f64>) -> Result<Vec<Self>, Moves> {
         let n = sides.first().map_or(0, |side| side.s.nrows());
         let mut sum = Mat::<f64>::zeros(n, n);
-        let (mut held, mut free) = (sum.clone(), sum.clone());
-        for side in sides {
-            sum += &side.s;
-            held += side.s.llt(Lower).map_err(|_| Moves)?.inverse();
-            free += &side.compliance;
-        }
-        let (coarse, q) = coarse_first(held, free)?;
+        sides.iter().for_each(|side| sum += &side.s);
+        let weights = match sides.iter().all(|side| side.compliance.nrows() == n) {
+            true => adaptive(sides)?,
+            false => motions(),
+        };
+        let q = Reflections::new(&weights);
         let sum = sum.llt(Lower).map_err(|_| Moves)?;
-        let of = |side: &Side| Self {
-            coarse,
-            q: q.clone(),
-            share: Share::Part(sum.solve(&side.s * &q)),
+        let of = |side: &Side| {
+            let mut w = sum.solve(&side.s);
+            q.multiply_right(w.as_mut());
+            Self {
+                coarse: weights.ncols(),
+                q: Some(q.clone()),
+                share: Share::Part(w),
+            }
         };
         Ok(sides.iter().map(of).collect())
-    }
-
-    /// The basis, a column each, where it isn't the unknowns of the class.
-    pub fn q(&self) -> Option<&Mat<f64>> {
-        (self.q.ncols() > 0).then_some(&self.q)
     }
 
     /// The correction of the unknowns of the class for one in the basis.
@@ -100,15 +100,21 @@ impl Basis {
     /// The share of a residual, in the basis.
     pub fn share(&self, r: &[f64]) -> Vec<f64> {
         match &self.share {
-            Share::Part(w) => product(w.transpose(), r),
+            Share::Part(w) => transposed_product(w.as_ref(), r),
             _ => self.correct(r),
         }
     }
 }
 
-/// How many combinations of unknowns have far more energy where all else is `held` than where it is `free`, by the
-/// inverses of both, and an orthogonal matrix whose first columns span the weights of these.
-fn coarse_first(mut held: Mat<f64>, mut free: Mat<f64>) -> Result<(usize, Mat<f64>), Moves> {
+/// The weights of combinations of unknowns that have far more energy where all else is held than where it is free, a
+/// column each.
+fn adaptive(sides: &[Side]) -> Result<Mat<f64>, Moves> {
+    let n = sides.first().map_or(0, |side| side.s.nrows());
+    let (mut held, mut free) = (Mat::<f64>::zeros(n, n), Mat::<f64>::zeros(n, n));
+    for side in sides {
+        held += side.s.llt(Lower).map_err(|_| Moves)?.inverse();
+        free += &side.compliance;
+    }
     make_symmetric(&mut held);
     let factor = held.llt(Lower).map_err(|_| Moves)?;
     let l = factor.L();
@@ -117,12 +123,11 @@ fn coarse_first(mut held: Mat<f64>, mut free: Mat<f64>) -> Result<(usize, Mat<f6
     make_symmetric(&mut free);
     let eigen = free.self_adjoint_eigen(Lower).map_err(|_| Moves)?;
     let ratios = eigen.S().column_vector();
-    let n = free.nrows();
     // Ascending.
     let first = (0..n).take_while(|&i| ratios[i] <= THRESHOLD).count();
     let mut weights = eigen.U().subcols(first, n - first).to_owned();
     solve_upper_triangular_in_place(l.transpose(), weights.as_mut(), Par::Seq);
-    Ok((n - first, weights.qr().compute_Q()))
+    Ok(weights)
 }
 
 fn make_symmetric(a: &mut Mat<f64>) {

@@ -5,18 +5,21 @@
 
 use std::collections::BTreeMap;
 
-use faer::Mat;
-
 use crate::bddc::classes::Classes;
 use crate::bddc::coarse::Coarse;
 use crate::bddc::local::Local;
 use crate::comm::{Comm, ROOT};
+use crate::schur::symmetric::PackedSymmetric;
 use crate::vector::dot;
 
 /// Most iterations.
 const MAX_ITERATIONS: usize = 500;
-/// The same with a preconditioner that can be made better.
+/// The same with a preconditioner of other matrices.
 const MAX_WITH_STALE: usize = 30;
+/// Iterations after which a preconditioner that can be made better is judged.
+const TRIAL: usize = 6;
+/// What the error has to come down to by then.
+const GOOD: f64 = 0.02;
 
 /// A vector on what clusters share, by cluster.
 pub type Vectors = BTreeMap<usize, Vec<f64>>;
@@ -33,11 +36,13 @@ pub struct Gradients<'a> {
     /// The clusters of this rank.
     pub locals: &'a BTreeMap<usize, Local>,
     /// S of every cluster; none of those of other ranks.
-    pub matrices: &'a [Option<&'a Mat<f64>>],
+    pub matrices: &'a [Option<&'a PackedSymmetric>],
     /// The coarse problem, on the root.
     pub coarse: Option<&'a Coarse>,
     /// Whether the preconditioner is that of other matrices.
     pub is_stale: bool,
+    /// Whether classes have been looked into for what is to be coarse.
+    pub is_adaptive: bool,
 }
 
 impl Gradients<'_> {
@@ -69,7 +74,12 @@ impl Gradients<'_> {
             false => MAX_ITERATIONS,
         };
         let mut iterations = 0;
-        while rho > enough && iterations < most {
+        let begin = rho;
+        let is_slow = |iterations: usize, rho: f64| {
+            let is_judged = !self.is_stale && !self.is_adaptive && iterations == TRIAL;
+            is_judged && rho > GOOD * GOOD * begin
+        };
+        while rho > enough && iterations < most && !is_slow(iterations, rho) {
             let q = self.multiply(&p);
             let curvature = self.dot(&p, &q);
             if curvature <= 0.0 || curvature.is_nan() {

@@ -3,77 +3,33 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_inverse::invert_lower_triangular;
-use faer::linalg::triangular_solve::{
-    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
-};
-use faer::{Accum, Mat, MatMut, MatRef, Par, Side::Lower};
+use faer::{Mat, MatMut, Par, Side::Lower};
 
+use crate::bddc::ClusterSchur;
 use crate::bddc::classes::Classes;
 use crate::bddc::closed::Ties;
 use crate::bddc::constraints::{Basis, Side};
-use crate::schur::condensed::{Condensed, InterfaceDof};
-use crate::schur::front::partial_cholesky;
-use crate::schur::symmetric::product_of_lower;
+use crate::schur::condensed::InterfaceDof;
+use crate::schur::symmetric::PackedSymmetric;
+use crate::schur::trapezoid::{NotDefinite, Trapezoid};
 
 /// A cluster can move although what it shares with others is held.
 #[derive(Clone, Copy, Debug)]
 pub struct Moves;
 
-/// A matrix some of whose unknowns, the first ones, are eliminated.
-#[derive(Debug)]
-pub struct Eliminated {
-    /// L above P.
-    columns: Mat<f64>,
-}
-
-impl Eliminated {
-    /// Eliminates the first `count` unknowns of a symmetric matrix, both of whose triangles are given, and returns
-    /// what they leave to the others, its lower triangle.
-    pub fn new(matrix: MatRef<'_, f64>, count: usize, par: Par) -> Result<(Self, Mat<f64>), Moves> {
-        let n = matrix.nrows();
-        let mut columns = matrix.subcols(0, count).to_owned();
-        let rest = n - count;
-        let mut s = matrix.submatrix(count, count, rest, rest).to_owned();
-        partial_cholesky(columns.as_mut(), s.as_mut(), par).map_err(|_| Moves)?;
-        Ok((Self { columns }, s))
-    }
-
-    /// Carries a load on the first unknowns to the others.
-    fn forward(&self, x: &mut [f64]) {
-        let (l, p) = self.columns.as_ref().split_at_row(self.columns.ncols());
-        let (mut first, others) = column_of(x).split_at_row_mut(l.ncols());
-        solve_lower_triangular_in_place(l, first.as_mut(), Par::Seq);
-        matmul(others, Accum::Add, p, first, -1.0, Par::Seq);
-    }
-
-    /// Solves for the first unknowns where the others are known.
-    fn backward(&self, x: &mut [f64]) {
-        let (l, p) = self.columns.as_ref().split_at_row(self.columns.ncols());
-        let (mut first, others) = column_of(x).split_at_row_mut(l.ncols());
-        matmul(
-            first.as_mut(),
-            Accum::Add,
-            p.transpose(),
-            others,
-            -1.0,
-            Par::Seq,
-        );
-        solve_upper_triangular_in_place(l.transpose(), first, Par::Seq);
-    }
-}
-
-fn column_of(x: &mut [f64]) -> MatMut<'_, f64> {
-    let rows = x.len();
-    MatMut::from_column_major_slice_mut(x, rows, 1)
-}
-
 /// Makes both triangles of a symmetric matrix count.
-pub fn fill_upper_triangle(s: &mut Mat<f64>) {
-    for j in 0..s.ncols() {
-        for i in j + 1..s.nrows() {
-            s[(j, i)] = s[(i, j)];
+fn fill_upper_triangle(s: &mut Mat<f64>) {
+    // Tile by tile, so that rows are written while they are at hand.
+    const TILE: usize = 32;
+    let n = s.nrows();
+    for first in (0..n).step_by(TILE) {
+        for from in (first..n).step_by(TILE) {
+            for j in first..n.min(first + TILE) {
+                for i in from.max(j + 1)..n.min(from + TILE) {
+                    s[(j, i)] = s[(i, j)];
+                }
+            }
         }
     }
 }
@@ -83,13 +39,19 @@ pub fn fill_upper_triangle(s: &mut Mat<f64>) {
 pub struct Shared {
     /// What each unknown of the cluster is in terms of [own | shared], but for constants.
     terms: Vec<Vec<(usize, f64)>>,
-    own: Eliminated,
+    own: Trapezoid,
     /// Where its classes are.
     ranges: Vec<Range<usize>>,
     /// The spring on each unknown of the cluster; none where nothing has one.
     springs: Vec<f64>,
     /// What is sure to be more than the round-off of S.
     round_off: f64,
+}
+
+impl From<NotDefinite> for Moves {
+    fn from(_: NotDefinite) -> Self {
+        Self
+    }
 }
 
 impl Shared {
@@ -100,7 +62,7 @@ impl Shared {
     /// It can move although what it shares is held.
     pub fn new(
         c: usize,
-        condensed: &Condensed,
+        cluster: &ClusterSchur,
         classes: &Classes,
         ties: &Ties,
         spring: f64,
@@ -147,31 +109,32 @@ impl Shared {
                 .flat_map(|(dof, c)| places[&dof].iter().map(move |&(i, q)| (i, c * q)))
                 .collect()
         };
-        let terms: Vec<_> = condensed.interface_dofs.iter().map(in_place).collect();
+        let terms: Vec<_> = cluster.dofs.iter().map(in_place).collect();
         let mut springs = Vec::new();
         if spring > 0.0 {
-            let dofs = condensed.interface_dofs.iter().zip(&condensed.diagonal);
+            let dofs = cluster.dofs.iter().zip(&cluster.diagonal);
             let springs_on = dofs.map(|(dof, d)| spring * d * f64::from(ties.is_open(dof)));
             springs.extend(springs_on);
         }
-        let s = transformed(&condensed.s, &springs, &terms, own + first);
-        let (own, mut s) = Eliminated::new(s.as_ref(), own, par)?;
-        fill_upper_triangle(&mut s);
+        let s = transformed(&cluster.s, &springs, &terms, own + first);
+        let (own, s) = Trapezoid::new(s, own, par)?;
         let shared = Self {
             terms,
             own,
             ranges,
             springs,
-            round_off: ROUND_OFF * condensed.diagonal.iter().copied().fold(0.0, f64::max),
+            round_off: ROUND_OFF * cluster.diagonal.iter().copied().fold(0.0, f64::max),
         };
         Ok((shared, s))
     }
 
-    /// What each class that `is_chosen`, by its place, is where all else that is shared is held, and where it is free.
+    /// What each class that `is_chosen`, by its place, is where all else that is shared is held, and, where it
+    /// `is_looked_into`, where all else is free.
     pub fn sides(
         &self,
         s: &Mat<f64>,
         is_chosen: impl Fn(usize) -> bool,
+        is_looked_into: bool,
         par: Par,
     ) -> Result<Vec<Option<Side>>, Moves> {
         let n = s.nrows();
@@ -183,20 +146,27 @@ impl Shared {
             }
             held.llt(Lower).ok()
         };
-        let factor = HOLDS.into_iter().find_map(held_by).ok_or(Moves)?;
-        let mut inverse = Mat::zeros(n, n);
-        invert_lower_triangular(inverse.as_mut(), factor.L(), par);
+        let mut inverse = Mat::zeros(0, 0);
+        if is_looked_into {
+            let factor = HOLDS.into_iter().find_map(held_by).ok_or(Moves)?;
+            inverse.resize_with(n, n, |_, _| 0.0);
+            invert_lower_triangular(inverse.as_mut(), factor.L(), par);
+        }
         let side = |(at, range): (usize, &Range<usize>)| {
             is_chosen(at).then(|| {
                 let (first, len) = (range.start, range.len());
-                let columns = inverse.submatrix(first, first, n - first, len);
                 // It may also move where all but this class is held; what does becomes coarse.
                 let mut s = s.submatrix(first, first, len, len).to_owned();
+                fill_upper_triangle(&mut s);
                 hold(s.as_mut(), 0..len, MORE_HOLD, self.round_off);
-                Side {
-                    s,
-                    compliance: columns.transpose() * columns,
-                }
+                let compliance = match is_looked_into {
+                    true => {
+                        let columns = inverse.submatrix(first, first, n - first, len);
+                        columns.transpose() * columns
+                    }
+                    false => Mat::zeros(0, 0),
+                };
+                Side { s, compliance }
             })
         };
         Ok(self.ranges.iter().enumerate().map(side).collect())
@@ -217,30 +187,48 @@ fn hold(mut s: MatMut<'_, f64>, range: Range<usize>, share: f64, round_off: f64)
     range.for_each(|i| s[(i, i)] += share * largest + round_off);
 }
 
-/// Tᵀ S T, S with `springs` on its diagonal, of which the lower triangle is given and both are returned; T has a row of
-/// terms for every unknown of S.
-fn transformed(s: &Mat<f64>, springs: &[f64], terms: &[Vec<(usize, f64)>], n: usize) -> Mat<f64> {
-    // Half of it: the other half is its transpose.
+/// Tᵀ S T, its lower triangle, of S with `springs` on its diagonal; T has a row of terms for every unknown of S.
+fn transformed(
+    s: &PackedSymmetric,
+    springs: &[f64],
+    terms: &[Vec<(usize, f64)>],
+    n: usize,
+) -> Mat<f64> {
     let mut new = Mat::<f64>::zeros(n, n);
-    for j in 0..s.ncols() {
-        let column = &s.col_as_slice(j)[j..];
-        for &(b, d) in &terms[j] {
-            let below = terms[j + 1..].iter().zip(&column[1..]);
-            let to = new.col_as_slice_mut(b);
-            let half = 0.5 * (column[0] + springs.get(j).unwrap_or(&0.0));
-            terms[j].iter().for_each(|&(a, c)| to[a] += c * d * half);
-            for (terms, s) in below {
-                terms.iter().for_each(|&(a, c)| to[a] += c * d * s);
+    // Most unknowns stay what they are, but for their places.
+    let place = |terms: &Vec<(usize, f64)>| match terms[..] {
+        [(place, 1.0)] => Some(place),
+        _ => None,
+    };
+    let places: Vec<Option<usize>> = terms.iter().map(place).collect();
+    for j in 0..s.size() {
+        let column = s.column(j);
+        let diagonal = column[0] + springs.get(j).unwrap_or(&0.0);
+        for (at, &(b, d)) in terms[j].iter().enumerate() {
+            new[(b, b)] += d * d * diagonal;
+            for &(a, c) in &terms[j][at + 1..] {
+                add(&mut new, a, b, c * d * diagonal);
+            }
+        }
+        for (i, &s) in (j + 1..terms.len()).zip(&column[1..]) {
+            if let (Some(a), Some(b)) = (places[i], places[j]) {
+                add(&mut new, a, b, s);
+                continue;
+            }
+            for &(b, d) in &terms[j] {
+                terms[i]
+                    .iter()
+                    .for_each(|&(a, c)| add(&mut new, a, b, c * d * s));
             }
         }
     }
-    for j in 0..n {
-        for i in 0..=j {
-            let sum = new[(i, j)] + new[(j, i)];
-            (new[(i, j)], new[(j, i)]) = (sum, sum);
-        }
-    }
     new
+}
+
+/// Adds `value` at (a, b) and (b, a), of which the lower one is kept.
+fn add(s: &mut Mat<f64>, a: usize, b: usize, value: f64) {
+    let both = if a == b { 2.0 * value } else { value };
+    s[(a.max(b), a.min(b))] += both;
 }
 
 /// A cluster as conjugate gradients see it, and its part of the preconditioner, in the basis of coarse and other
@@ -253,7 +241,7 @@ pub struct Local {
     bases: Vec<Basis>,
     /// Where [others | coarse] are found.
     order: Vec<usize>,
-    others: Eliminated,
+    others: Trapezoid,
     /// What the others leave to the coarse unknowns.
     pub coarse: Mat<f64>,
 }
@@ -268,14 +256,13 @@ impl Local {
         bases: Vec<Basis>,
         par: Par,
     ) -> Result<Self, Moves> {
+        fill_upper_triangle(&mut s);
         let (mut others, mut coarse) = (Vec::new(), Vec::new());
         for (range, basis) in shared.ranges.iter().zip(&bases) {
-            if let Some(q) = basis.q() {
+            if let Some(q) = &basis.q {
                 let (n, len) = (s.nrows(), range.len());
-                let columns = s.submatrix(0, range.start, n, len) * q;
-                s.submatrix_mut(0, range.start, n, len).copy_from(columns);
-                let rows = q.transpose() * s.submatrix(range.start, 0, len, n);
-                s.submatrix_mut(range.start, 0, len, n).copy_from(rows);
+                q.multiply_right(s.submatrix_mut(0, range.start, n, len));
+                q.multiply_right(s.submatrix_mut(range.start, 0, len, n).transpose_mut());
             }
             coarse.extend(range.start..range.start + basis.coarse);
             others.extend(range.start + basis.coarse..range.end);
@@ -290,7 +277,7 @@ impl Local {
             let lower = permuted.col_as_slice_mut(j)[j..].iter_mut();
             lower.zip(&order[j..]).for_each(|(to, &i)| *to = from[i]);
         }
-        let (others, mut coarse) = Eliminated::new(permuted.as_ref(), count, par)?;
+        let (others, mut coarse) = Trapezoid::new(permuted, count, par)?;
         fill_upper_triangle(&mut coarse);
         Ok(Self {
             shared,
@@ -328,9 +315,9 @@ impl Local {
     }
 
     /// S x on what is shared, where `s` is that of the cluster's unknowns.
-    pub fn multiply(&self, s: &Mat<f64>, x: &[f64]) -> Vec<f64> {
+    pub fn multiply(&self, s: &PackedSymmetric, x: &[f64]) -> Vec<f64> {
         let x = self.recover(&vec![0.0; self.own()], x);
-        let mut y = product_of_lower(s, &x);
+        let mut y = s.multiply(&x);
         let springs = self.shared.springs.iter().zip(&x);
         y.iter_mut()
             .zip(springs)
@@ -341,12 +328,12 @@ impl Local {
 
     /// Number of unknowns that no other cluster has.
     pub fn own(&self) -> usize {
-        self.shared.own.columns.ncols()
+        self.shared.own.eliminated()
     }
 
     /// A load on the cluster's unknowns on [own | shared].
     fn gather(&self, load: &[f64]) -> Vec<f64> {
-        let mut f = vec![0.0; self.shared.own.columns.nrows()];
+        let mut f = vec![0.0; self.shared.own.size()];
         for (terms, load) in self.shared.terms.iter().zip(load) {
             terms.iter().for_each(|&(i, c)| f[i] += c * load);
         }
@@ -361,7 +348,7 @@ impl Local {
         }
         let mut load: Vec<f64> = self.order.iter().map(|&i| scaled[i]).collect();
         self.others.forward(&mut load);
-        let coarse = load.split_off(self.others.columns.ncols());
+        let coarse = load.split_off(self.others.eliminated());
         (load, coarse)
     }
 
@@ -380,12 +367,4 @@ impl Local {
         }
         x
     }
-}
-
-/// A x.
-pub fn product(a: MatRef<'_, f64>, x: &[f64]) -> Vec<f64> {
-    let mut y = vec![0.0; a.nrows()];
-    let x = MatRef::from_column_major_slice(x, x.len(), 1);
-    matmul(column_of(&mut y), Accum::Replace, a, x, 1.0, Par::Seq);
-    y
 }

@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::bddc::Bddc;
 use crate::bddc::gradients::{Gradients, Vectors};
+use crate::bddc::{Bddc, ClusterSchur};
 use crate::bytes::Reals;
 use crate::comm::Comm;
 use crate::context::Context;
 use crate::plan::Plan;
-use crate::schur::condensed::{Condensed, InterfaceDof};
-use crate::schur::symmetric::product_of_lower;
+use crate::schur::condensed::InterfaceDof;
 
 /// How far a solution is iterated.
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +46,7 @@ impl Bddc {
     pub fn solve(
         &self,
         context: &Context<'_>,
-        condensed: &BTreeMap<usize, Condensed>,
+        clusters: &BTreeMap<usize, ClusterSchur>,
         loads: &BTreeMap<usize, Vec<f64>>,
         values: &BTreeMap<usize, Vec<f64>>,
         accuracy: Accuracy,
@@ -62,7 +61,7 @@ impl Bddc {
         let (mut own, mut b) = (Vectors::new(), Vectors::new());
         for (&c, local) in &self.locals {
             let mut load = loads[&plan.tops[c]].clone();
-            let held = product_of_lower(&condensed[&plan.tops[c]].s, &constants_of(c));
+            let held = clusters[&plan.tops[c]].s.multiply(&constants_of(c));
             load.iter_mut()
                 .zip(held)
                 .for_each(|(load, held)| *load -= held);
@@ -75,29 +74,30 @@ impl Bddc {
             owners: &self.owners,
             classes: &self.classes,
             locals: &self.locals,
-            matrices: &(plan.tops.iter().map(|v| condensed.get(v).map(|of| &of.s)))
+            matrices: &(plan.tops.iter().map(|v| clusters.get(v).map(|of| &of.s)))
                 .collect::<Vec<_>>(),
             coarse: self.coarse.as_ref(),
             is_stale: self.is_stale(),
+            is_adaptive: self.is_adaptive(),
         };
         let start = accuracy.start.map(|known| self.start(comm, known, plan));
         let (x, iterations, is_solved) = gradients.solve(b, start, accuracy.tolerance);
-        let mut clusters = Vectors::new();
+        let mut solved = Vectors::new();
         for (&c, local) in &self.locals {
             let mut all = local.recover(&own[&c], &x[&c]);
             all.iter_mut()
                 .zip(constants_of(c))
                 .for_each(|(x, constant)| *x += constant);
-            clusters.insert(c, all);
+            solved.insert(c, all);
         }
-        let unbalanced = clusters.iter().map(|(&c, x)| {
+        let unbalanced = solved.iter().map(|(&c, x)| {
             let mut r = loads[&plan.tops[c]].clone();
-            let s_x = product_of_lower(&condensed[&plan.tops[c]].s, x);
+            let s_x = clusters[&plan.tops[c]].s.multiply(x);
             r.iter_mut().zip(s_x).for_each(|(r, s_x)| *r -= s_x);
             (c, r)
         });
-        let groups = self.answers(comm, &clusters, &unbalanced.collect());
-        let by_node = clusters.into_iter().map(|(c, x)| (plan.tops[c], x));
+        let groups = self.answers(comm, &solved, &unbalanced.collect());
+        let by_node = solved.into_iter().map(|(c, x)| (plan.tops[c], x));
         BddcSolution {
             clusters: by_node.collect(),
             groups,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
-use crate::bddc::Bddc;
+use crate::bddc::{Bddc, ClusterSchur};
 use crate::condense::Condensation;
 use crate::context::Context;
 use crate::error::Failure;
@@ -34,7 +34,9 @@ pub struct FrozenFronts {
     pub(super) nodes: Vec<usize>,
     pub(super) fronts: BTreeMap<usize, FrozenFront>,
     /// S of clusters and fronts, at the owner of the node that they are merged into.
-    pub(super) merged: BTreeMap<usize, Condensed>,
+    merged: BTreeMap<usize, Condensed>,
+    /// S of those that nothing here is above.
+    pub(super) tops: BTreeMap<usize, ClusterSchur>,
     replaced: BTreeMap<usize, Vec<Replaced>>,
     spring: f64,
     spare: Spare,
@@ -51,7 +53,7 @@ impl FrozenFronts {
     /// A contact point that nothing can be replaced for.
     pub fn new(
         condensation: &Condensation<'_>,
-        clusters: &BTreeMap<usize, Condensed>,
+        mut clusters: BTreeMap<usize, Condensed>,
     ) -> Result<Self, Failure> {
         let context = &condensation.context;
         let plan = context.plan;
@@ -81,6 +83,7 @@ impl FrozenFronts {
             nodes,
             fronts: BTreeMap::new(),
             merged: BTreeMap::new(),
+            tops: BTreeMap::new(),
             replaced,
             spring: 0.0,
             spare: Spare::default(),
@@ -88,7 +91,7 @@ impl FrozenFronts {
             bddc: None,
         };
         for (c, cluster) in plan.clusters.iter().enumerate() {
-            fronts.pass_up(context, cluster.node, clusters.get(&c).cloned());
+            fronts.pass_up(context, cluster.node, clusters.remove(&c));
         }
         Ok(fronts)
     }
@@ -102,8 +105,7 @@ impl FrozenFronts {
     fn pass_up(&mut self, context: &Context<'_>, v: usize, mut condensed: Option<Condensed>) {
         let Context { comm, plan, .. } = *context;
         let Some(parent) = plan.merged_into(v) else {
-            self.merged
-                .extend(condensed.map(|condensed| (v, condensed)));
+            self.tops.extend(condensed.map(|top| (v, top.into())));
             return;
         };
         let way = (plan.node_owners[v], plan.node_owners[parent]);
@@ -144,6 +146,22 @@ impl FrozenFronts {
         }
     }
 
+    /// Makes a preconditioner better that is too bad: that of the active set, else one that looks into what clusters
+    /// share. Collective.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely even where open contacts have springs.
+    pub fn make_better(
+        &mut self,
+        context: &Context<'_>,
+        open: &BTreeMap<usize, Vec<bool>>,
+    ) -> Result<(), Failure> {
+        if let Some(bddc) = self.bddc.as_mut().filter(|bddc| !bddc.is_stale()) {
+            bddc.look_into();
+        }
+        self.make(context, open, true)
+    }
+
     fn make(
         &mut self,
         context: &Context<'_>,
@@ -175,10 +193,19 @@ impl FrozenFronts {
         }
         let mut bddc = match self.bddc.take() {
             Some(bddc) => bddc,
-            None => Bddc::new(context, &self.merged)?,
+            None => Bddc::new(context, &self.tops)?,
         };
         let renewed = renewed || !is_known;
-        bddc.freeze(context, &self.merged, &touched, open, self.spring, renewed)?;
+        let freeze = |bddc: &mut Bddc| {
+            bddc.freeze(context, &self.tops, &touched, open, self.spring, renewed)
+        };
+        if let Err(failure) = freeze(&mut bddc) {
+            if bddc.is_adaptive() {
+                return Err(failure);
+            }
+            bddc.look_into();
+            freeze(&mut bddc)?;
+        }
         self.smallest_pivot = self.smallest_pivot.min(bddc.smallest_pivot);
         self.bddc = Some(bddc);
         Ok(())

@@ -23,7 +23,7 @@ pub struct FrozenSolution {
     pub tops: BTreeMap<usize, Vec<f64>>,
     /// Its iterations.
     pub iterations: usize,
-    /// Whether a preconditioner that was made for another active set was too bad.
+    /// Whether the preconditioner was too bad, and can be made better.
     pub is_too_far: bool,
 }
 
@@ -42,18 +42,18 @@ impl FrozenFronts {
         prescribed: &BTreeMap<usize, Vec<f64>>,
         accuracy: Accuracy<'_>,
     ) -> Result<FrozenSolution, Failure> {
-        let solution = self.solve_as_it_is(context, loads.clone(), prescribed, accuracy);
-        if !solution.is_too_far {
-            return Ok(solution);
+        let mut solution = self.solve_as_it_is(context, loads.clone(), prescribed, accuracy);
+        while solution.is_too_far {
+            self.make_better(context, open)?;
+            let from_there = Accuracy {
+                start: Some(&solution.tops),
+                ..accuracy
+            };
+            let mut nearer = self.solve_as_it_is(context, loads.clone(), prescribed, from_there);
+            nearer.iterations += solution.iterations;
+            solution = nearer;
         }
-        self.renew(context, open)?;
-        let from_there = Accuracy {
-            start: Some(&solution.tops),
-            ..accuracy
-        };
-        let mut nearer = self.solve_as_it_is(context, loads.clone(), prescribed, from_there);
-        nearer.iterations += solution.iterations;
-        Ok(nearer)
+        Ok(solution)
     }
 
     fn solve_as_it_is(
@@ -109,11 +109,12 @@ impl FrozenFronts {
             // Roots keep nothing.
             None => below.extend(plan.tops.iter().map(|&v| (v, Vec::new()))),
             Some(bddc) => {
-                let between = bddc.solve(context, &self.merged, &arrived, prescribed, accuracy);
+                let between = bddc.solve(context, &self.tops, &arrived, prescribed, accuracy);
                 solution.tops = between.clusters.clone();
                 below = between.clusters;
                 solution.iterations = between.iterations;
-                solution.is_too_far = bddc.is_stale() && !between.is_solved;
+                let is_rough = bddc.is_stale() || !bddc.is_adaptive();
+                solution.is_too_far = is_rough && !between.is_solved;
                 for (g, (jumps, forces)) in between.groups {
                     solution.jumps.insert(g, jumps);
                     solution.forces.insert(g, forces);

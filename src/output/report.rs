@@ -97,6 +97,8 @@ pub struct Report {
     pub interface_residual: f64,
     /// How the linear interface problem was solved: `direct` or `iterative`.
     pub interface_solver: InterfaceMethod,
+    /// Why it was solved like that, in words.
+    pub interface_choice: String,
     /// Iterations of the interface solver in the start and in every sweep, load step after load step; empty where it is
     /// direct.
     pub interface_iterations: Vec<usize>,

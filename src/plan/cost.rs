@@ -20,6 +20,8 @@ const PER_NODE_OF_CELL: [f64; 2] = [0.82, 0.4];
 const PER_BOUNDARY: f64 = 165.0;
 /// An entry of the largest matrix that blocks are merged in (bytes): it and its children.
 const PER_ENTRY: f64 = 16.0;
+/// An entry of S of a cluster between which an iterative solver works (bytes): S, and its part of the preconditioner.
+const PER_ENTRY_OF_CLUSTER: f64 = 14.0;
 /// An entry of the contact problem of all pairs, at the root (bytes).
 const PER_PAIR_OF_CONDITIONS: f64 = 33.0;
 
@@ -96,6 +98,12 @@ impl Plan {
             } else {
                 let size = (front.eliminated + front.kept) as f64;
                 largest[owner] = largest[owner].max(size);
+            }
+        }
+        if self.merging == Merging::Clusters {
+            for &v in &self.tops {
+                let kept = (catalog.dim * self.tree.nodes[v].kept.len()) as f64;
+                estimates[self.node_owners[v]].bytes += PER_ENTRY_OF_CLUSTER * kept * kept;
             }
         }
         for (estimate, largest) in estimates.iter_mut().zip(largest) {

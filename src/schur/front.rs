@@ -8,7 +8,7 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, Par};
 use pulp::{Arch, Simd, WithSimd};
 
-use super::panel::add_columns;
+use super::columns::add_columns;
 
 /// Rows of a front up to which it is factorized four columns at a time in place; larger ones are
 /// left to faer's blocked algorithms.

@@ -1,23 +1,55 @@
-//! Products with a symmetric matrix whose lower triangle counts.
+//! A symmetric matrix in half of the memory.
 
 use faer::Mat;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::panel::{add_columns, dot_columns};
+use super::columns::{WIDTH, add_columns, dot_columns};
+use super::panel::packed_len;
 
-/// Columns that are multiplied together, so that each is read from memory once for both triangles.
-const WIDTH: usize = 4;
-
-/// S x, where the lower triangle of S counts.
-pub fn product_of_lower(s: &Mat<f64>, x: &[f64]) -> Vec<f64> {
-    let mut y = vec![0.0; x.len()];
-    Arch::new().dispatch(Product { s, x, y: &mut y });
-    y
+/// The lower triangle of a symmetric matrix, column after column, each from the diagonal on.
+#[derive(Clone, Debug)]
+pub struct PackedSymmetric {
+    size: usize,
+    values: Vec<f64>,
 }
 
-/// y ← y + S x.
+impl PackedSymmetric {
+    /// That of a matrix whose lower triangle counts.
+    pub fn new(s: &Mat<f64>) -> Self {
+        let size = s.nrows();
+        let mut values = Vec::with_capacity(packed_len(size, size));
+        for j in 0..size {
+            values.extend_from_slice(&s.col_as_slice(j)[j..]);
+        }
+        Self { size, values }
+    }
+
+    /// Number of rows.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Column j, from the diagonal on.
+    pub fn column(&self, j: usize) -> &[f64] {
+        let begin = packed_len(self.size, j);
+        &self.values[begin..begin + self.size - j]
+    }
+
+    /// S x.
+    pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; x.len()];
+        Arch::new().dispatch(Product {
+            s: self,
+            x,
+            y: &mut y,
+        });
+        y
+    }
+}
+
+/// y ← y + S x; every column is read once for both triangles.
 struct Product<'a> {
-    s: &'a Mat<f64>,
+    s: &'a PackedSymmetric,
     x: &'a [f64],
     y: &'a mut [f64],
 }
@@ -31,7 +63,7 @@ impl WithSimd for Product<'_> {
         for j in (0..n).step_by(WIDTH) {
             let below = (j + WIDTH).min(n);
             for p in j..below {
-                let column = &self.s.col_as_slice(p)[p..below];
+                let column = &self.s.column(p)[..below - p];
                 self.y[p] += column[0] * self.x[p];
                 for (i, s) in (p + 1..below).zip(&column[1..]) {
                     self.y[i] += s * self.x[p];
@@ -42,7 +74,7 @@ impl WithSimd for Product<'_> {
                 break;
             }
             let (of_block, of_others) = self.y.split_at_mut(below);
-            let column = |p: usize| &self.s.col_as_slice(j + p)[below..n];
+            let column = |p: usize| &self.s.column(j + p)[below - j - p..];
             let sums = dot_columns::<S, WIDTH>(simd, &self.x[below..], column);
             for (y, sum) in of_block[j..].iter_mut().zip(sums) {
                 *y += sum;
@@ -64,7 +96,7 @@ mod tests {
             let x: Vec<f64> = (0..n).map(|i| (i % 5) as f64 - 2.0).collect();
             let expected = |i: usize| (0..n).map(|j| entry(i, j) * x[j]).sum::<f64>();
             let expected: Vec<f64> = (0..n).map(expected).collect();
-            assert_eq!(product_of_lower(&s, &x), expected);
+            assert_eq!(PackedSymmetric::new(&s).multiply(&x), expected);
         }
     }
 }

@@ -121,7 +121,7 @@ pub struct RunSettings {
     #[arg(long, help_heading = "Running")]
     pub second_start: bool,
 
-    /// How the linear interface problem is solved, with --method newton [default: direct]
+    /// How the linear interface problem is solved, with --method newton [default: what takes less time]
     #[arg(long, value_name = "NAME", value_enum, help_heading = "Solving")]
     pub interface: Option<InterfaceMethod>,
 
@@ -131,13 +131,10 @@ pub struct RunSettings {
 }
 
 /// How the linear interface problem is solved.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, schemars::JsonSchema,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum InterfaceMethod {
     /// By factorization, merged up to the root
-    #[default]
     Direct,
     /// By conjugate gradients between clusters of subdomains
     Iterative,

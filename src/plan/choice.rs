@@ -1,0 +1,62 @@
+//! Which interface solver takes less time: factors up to the roots of the hierarchy, or iterations between clusters.
+//!
+//! The constants are measured on two blocks of tetrahedra in contact, with 50 thousand to a million dofs.
+
+use contact_dd_partition::problem::Catalog;
+use contact_dd_partition::problem::tree::{ACTIVE_SETS, Tree};
+
+use super::cluster::Merging;
+use super::cost::weight;
+
+/// Iterations that an active set takes in all, about.
+const ITERATIONS: f64 = 60.0;
+/// What an entry of S of a cluster takes in an iteration, in flops: it and its factor are read from memory.
+const PER_ENTRY: f64 = 60.0;
+/// What the part of a cluster in the preconditioner takes, over the cube of its size.
+const PER_CUBE: f64 = 0.6;
+/// Coarse unknowns of a cluster in space.
+const COARSE: f64 = 60.0;
+/// Flops that the coarse problem takes, over the square of its size, in space.
+const PER_COARSE_PAIR: f64 = 24.0;
+
+/// Estimated times, in flops: arithmetic, and what goes with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InterfaceTimes {
+    /// Factors up to the roots.
+    pub direct: f64,
+    /// Iterations between clusters.
+    pub iterative: f64,
+}
+
+impl InterfaceTimes {
+    /// Those of a scene in space without friction, whose clusters are known; others are solved directly.
+    pub fn new(catalog: &Catalog) -> Option<Self> {
+        if catalog.dim < 3 || catalog.has_friction() || catalog.hierarchy.clusters.len() < 2 {
+            return None;
+        }
+        let tree = Tree::new(catalog);
+        let merging = match tree.freezing_pays(catalog.dim) {
+            true => Merging::Frozen,
+            false => Merging::All,
+        };
+        let time = |v: usize, merging| weight(&tree, v, catalog.dim, merging);
+        let direct = (0..tree.nodes.len()).map(|v| time(v, merging)).sum();
+        let of_cluster = |&c: &usize| {
+            let size = (catalog.dim * tree.nodes[c].kept.len()) as f64;
+            let below = tree.subtree(c).into_iter();
+            let below: f64 = below.map(|v| time(v, Merging::Clusters)).sum();
+            below + PER_CUBE * size.powi(3) + ITERATIONS * PER_ENTRY * size * size
+        };
+        let coarse = COARSE * tree.clusters.len() as f64;
+        let clusters: f64 = tree.clusters.iter().map(of_cluster).sum();
+        Some(Self {
+            direct,
+            iterative: clusters + ACTIVE_SETS * PER_COARSE_PAIR * coarse * coarse,
+        })
+    }
+
+    /// Whether iterations take less.
+    pub fn is_iterative(self) -> bool {
+        self.iterative < self.direct
+    }
+}
