@@ -5,6 +5,7 @@ mod solids;
 
 use std::collections::{BTreeSet, HashMap};
 
+use crate::says::says;
 use contact_dd_partition::element::ElementKind::{Quad4, Quad8, Quad9, Triangle6};
 use contact_dd_partition::example::{self, EXAMPLES};
 use contact_dd_partition::mesh::topology::Topology;
@@ -264,7 +265,7 @@ fn a_mesh_by_gmsh_is_refined_by_gmsh_only() {
     let gears = example::find("gears").unwrap();
     for refused in [gears.mesh(1), gears.mesh_of(Triangle6, 0)] {
         let error = refused.unwrap_err().to_string();
-        assert!(error.contains("gmsh -2 -order 2 -clscale 0.5"), "{error}");
+        says(&error, "gmsh -2 -order 2 -clscale 0.5");
         assert_eq!(error.lines().count(), 1);
     }
     let folder = tempfile::tempdir().unwrap();

@@ -19,5 +19,6 @@ mod hierarchy;
 mod model;
 mod problem;
 mod problem_scenes;
+mod says;
 mod scene;
 mod table;

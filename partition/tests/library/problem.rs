@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::problem_scenes::{cracked, shuffled, stacked};
+use crate::says::says;
 use contact_dd_partition::contact_point::Law;
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::element::ElementKind::{Quad4, Quad8, Quad9, Triangle6};
@@ -145,7 +146,7 @@ fn a_slab_of_subdomains_is_what_they_are_one_by_one() {
     }
     for range in [4..7, 9..11] {
         let message = file.subdomains(range).unwrap_err().to_string();
-        assert!(message.contains("there is no subdomain"), "{message}");
+        says(&message, "there is no subdomain");
     }
     for index in [6, usize::MAX] {
         let message = file.subdomain(index).unwrap_err().to_string();
@@ -291,5 +292,5 @@ fn a_body_is_what_hangs_together() {
 
     let glued = Decomposition::of_cells(&model, vec![0; model.mesh.cells.len()], 1);
     let message = Problem::new(&model, &glued).unwrap_err().to_string();
-    assert!(message.contains("\"die #1\" and \"plate\""), "{message}");
+    says(&message, "\"die #1\" and \"plate\"");
 }

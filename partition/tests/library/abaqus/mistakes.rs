@@ -1,6 +1,7 @@
 //! What is wrong with a deck, by file and line.
 
 use super::{SQUARES, read, read_all};
+use crate::says::says;
 
 #[test]
 fn a_mistake_is_named_with_its_line() {
@@ -102,7 +103,7 @@ fn a_mistake_is_named_with_its_line() {
         ),
     ] {
         let said = read(deck).unwrap_err();
-        assert!(said.contains(expected), "{said}");
+        says(&said, expected);
     }
     let said = read_all(&[
         ("a.inp", "*INCLUDE, INPUT=b.inp"),

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use crate::blocks::Blocks;
 use crate::close::close;
+use crate::says::says;
 use contact_dd_partition::contact_point::ContactPoint;
 
 /// A contact of lower and upper block, `slave` being side a.
@@ -242,7 +243,7 @@ fn nodes_decide_unless_the_scene_does() {
     let error = other
         .model(&(text.clone() + "pairing = 'nodes'"))
         .unwrap_err();
-    assert!(error.contains("the sides don't match at"), "{error}");
+    says(&error, "the sides don't match at");
     // Where nodes match both ways say the same.
     let nodes = conditions(&matching, &(text.clone() + "pairing = 'nodes'"));
     let mortar = conditions(&matching, &(text + "pairing = 'mortar'"));
@@ -269,10 +270,7 @@ fn sides_that_dont_face_each_other_are_an_error() {
     ] {
         let text = format!("[[contact]]\nname = 'c'\nsides = ['{a}', '{b}']\npairing = 'mortar'");
         let error = blocks.model(&text).unwrap_err();
-        assert!(
-            error.contains("contact 'c'") && error.contains(expected),
-            "{error}"
-        );
+        says(&error, &format!("contact 'c' … {expected}"));
     }
 }
 

@@ -3,6 +3,7 @@
 use super::contact::{conditions, stack};
 use crate::blocks::Blocks;
 use crate::close::close;
+use crate::says::says;
 use contact_dd_partition::element::ElementKind::{self, Quad4, Quad8, Quad9, Triangle6};
 use contact_dd_partition::element::Elements;
 use contact_dd_partition::mesh::Mesh;
@@ -156,10 +157,7 @@ fn a_corner_opposite_the_middle_of_an_edge_is_no_match() {
     let linear = Blocks::new().block("upper", [0.0, 2.0], [1.0, 2.0], [4, 2]);
     let by_nodes = format!("{CONTACT}pairing = 'nodes'\n");
     let error = conditions(&joined(quadratic, linear), &by_nodes).unwrap_err();
-    assert!(
-        error.contains("the sides don't match at 2 nodes"),
-        "{error}"
-    );
+    says(&error, "the sides don't match at 2 nodes");
 }
 
 /// Two meshes as one, without common nodes.
@@ -220,10 +218,7 @@ fn a_cell_that_is_folded_somewhere_is_named_with_the_place() {
         (Quad9, 8, [0.0, 0.9], "is folded"),
     ] {
         let error = moved(kind, node, to).unwrap_err();
-        assert!(
-            error.contains(&format!("element 77 ({})", kind.name())),
-            "{error}"
-        );
+        says(&error, &format!("element 77 ({})", kind.name()));
         assert!(error.contains(expected), "{kind:?}: {error}");
         let there = kind.node_coordinates()[node];
         assert_eq!(moved(kind, node, [there[0], there[1]]), Ok(()));
@@ -235,11 +230,11 @@ fn a_cell_without_area_or_with_a_node_twice_is_named() {
     let mut points = Quad4.node_coordinates().to_vec();
     points[1] = points[0];
     let error = single(Quad4, points).model("").unwrap_err();
-    assert!(error.contains("element 77"), "{error}");
+    says(&error, "element 77");
     let flat = Triangle6.node_coordinates().iter();
     let flat = flat.map(|&[x, _, _]| [x, 2.0 * x, 0.0]).collect();
     let error = single(Triangle6, flat).model("").unwrap_err();
-    assert!(error.contains("element 77 has no area"), "{error}");
+    says(&error, "element 77 has no area");
 }
 
 #[test]
@@ -268,9 +263,9 @@ fn linear_cells_that_share_an_edge_with_quadratic_ones_are_refused() {
     cells.push(ElementKind::Triangle3, &corners);
     blocks.mesh.cells = cells;
     let error = blocks.model("").unwrap_err();
-    assert!(
-        error.contains("elements 5000 (triangle of 6 nodes) and 5001 (triangle of 3 nodes)"),
-        "{error}"
+    says(
+        &error,
+        "elements 5000 (triangle of 6 nodes) and 5001 (triangle of 3 nodes)",
     );
 }
 

@@ -1,5 +1,6 @@
 //! Scenes in space on meshes by Gmsh: a quarter of a hollow cylinder, 1 < r < 2, 0 < z < 1.
 
+use crate::says::says;
 use contact_dd_partition::mesh::{Mesh, gmsh};
 use contact_dd_partition::model::Model;
 use contact_dd_partition::scene::Scene;
@@ -117,7 +118,7 @@ fn what_has_no_place_in_space_is_refused_in_words() {
         let error = Scene::parse(&format!("{scene}{text}"))
             .unwrap_err()
             .to_string();
-        assert!(error.contains(words), "{error}");
+        says(&error, words);
     }
 }
 
@@ -137,7 +138,7 @@ fn degenerate_and_folded_cells_are_refused() {
         };
         mesh.points[nodes[if name == "tetrahedra-4" { 3 } else { 0 }] as usize] = place;
         let error = made("", mesh).unwrap_err();
-        assert!(error.contains(words), "{error}");
+        says(&error, words);
     }
 }
 

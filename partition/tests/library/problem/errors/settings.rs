@@ -37,37 +37,37 @@ fn every_defect_of_the_settings_is_named() {
         (
             "unknown method",
             |f| set_attribute(f, "method", "newtn".parse::<VarLenUnicode>().unwrap()),
-            &["method of /settings is \"newtn\"; expected \"newton\""],
+            "method of /settings is \"newtn\"; expected \"newton\"",
         ),
         (
             "method by number",
             |f| set_attribute(f, "method", 1i64),
-            &["attribute method of /settings is 1; expected"],
+            "attribute method of /settings is 1; expected",
         ),
         (
             "tolerance of zero",
             |f| set_attribute(f, "tolerance", 0.0),
-            &["tolerance of /settings is 0.0", "above 0"],
+            "tolerance of /settings is 0.0 … above 0",
         ),
         (
             "relaxation that is no number",
             |f| set_attribute(f, "relaxation", f64::NAN),
-            &["relaxation of /settings is nan", "above 0"],
+            "relaxation of /settings is nan … above 0",
         ),
         (
             "sweeps below zero",
             |f| set_attribute(f, "max_sweeps", -1i64),
-            &["max_sweeps of /settings is -1"],
+            "max_sweeps of /settings is -1",
         ),
         (
             "half a sweep",
             |f| set_attribute(f, "max_sweeps", 0.5),
-            &["max_sweeps of /settings is 0.5", "an integer"],
+            "max_sweeps of /settings is 0.5 … an integer",
         ),
         (
             "neither true nor false",
             |f| set_attribute(f, "no_stress", 2i64),
-            &["no_stress of /settings is 2; expected true"],
+            "no_stress of /settings is 2; expected true",
         ),
         (
             "unknown setting",
@@ -76,7 +76,7 @@ fn every_defect_of_the_settings_is_named() {
                 let attribute = group.new_attr::<f64>().create("tolerence").unwrap();
                 attribute.write_scalar(&1e-8).unwrap();
             },
-            &["attribute /settings/tolerence", "did you mean 'tolerance'"],
+            "attribute /settings/tolerence … did you mean 'tolerance'",
         ),
         (
             "dataset among the settings",
@@ -84,7 +84,7 @@ fn every_defect_of_the_settings_is_named() {
                 let group = f.group("settings").unwrap();
                 group.new_dataset::<f64>().create("tolerance").unwrap();
             },
-            &["/settings/tolerance", "expected none here"],
+            "/settings/tolerance … expected none here",
         ),
         (
             "settings that are no group",
@@ -92,7 +92,7 @@ fn every_defect_of_the_settings_is_named() {
                 f.unlink("settings").unwrap();
                 f.new_dataset::<f64>().create("settings").unwrap();
             },
-            &["/settings isn't a group"],
+            "/settings isn't a group",
         ),
     ];
     refuses(write_with_settings, defects);
