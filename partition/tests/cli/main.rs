@@ -8,3 +8,7 @@ mod info;
 mod mounted;
 mod program;
 mod refusals;
+#[path = "../library/says.rs"]
+mod says;
+#[path = "../library/table.rs"]
+mod table;

@@ -5,9 +5,8 @@
 pub fn says(message: &str, expected: &str) {
     let mut rest = message;
     for part in expected.split(" … ") {
-        let Some((_, after)) = rest.split_once(part) else {
-            panic!("{message}\nlacks '{part}'");
-        };
-        rest = after;
+        let found = rest.split_once(part);
+        assert!(found.is_some(), "{message}\nlacks '{part}'");
+        rest = found.unwrap().1;
     }
 }
