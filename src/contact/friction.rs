@@ -187,6 +187,22 @@ impl FrictionProblem<'_> {
         }
     }
 
+    /// The change of jumps and forces where limits keep these statuses and `bounds` are what the closed ones lack:
+    /// that of the force of what slips in the plane follows from that of the normal force.
+    pub fn change(&self, status: &[Status]) -> (Vec<f64>, Vec<f64>) {
+        let slips = |status: &Status| status.sign() != 0.0 || *status == Status::Parting;
+        if !status.iter().any(slips) {
+            let open: Vec<bool> = status.iter().map(|status| !status.is_closed()).collect();
+            let trial = self.contact.linear(&open);
+            return (trial.jumps, trial.forces);
+        }
+        let mut tangents = self.tangents.to_vec();
+        (tangents.iter_mut()).for_each(|tangent| tangent.bound.cohesion = 0.0);
+        let (contact, tangents) = (self.contact, &tangents[..]);
+        let linear = Linear::solve(&FrictionProblem { contact, tangents }, status);
+        (linear.jumps, linear.forces)
+    }
+
     /// The limits whose status is wrong where they have these.
     pub fn unsettled(&self, status: &[Status]) -> Vec<usize> {
         if self.has_discs() {

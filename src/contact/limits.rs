@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::dependent::DependentConstraints;
-use super::friction::{ForceBound, TangentialCondition};
+use super::friction::{ForceBound, Status, TangentialCondition};
 use super::jumps::{JumpOf, defining_conditions};
 
 /// A slip, relative to the displacements that are prescribed, that is none.
@@ -306,12 +306,12 @@ impl Limits {
         closed
     }
 
-    /// Which limits are open where these conditions are `closed`, and what every closed one lacks of
-    /// its bound when the conditions lack `missing`; 0 for the open ones.
-    pub fn fixed(&self, closed: &[bool], missing: &[f64]) -> (Vec<bool>, Vec<f64>) {
-        let of_condition = |&(condition, factor): &(usize, f64)| match closed[condition] {
-            true => (false, missing[condition] / factor),
-            false => (true, 0.0),
+    /// The statuses of limits where these are those of `conditions`, and what every closed one lacks of its bound
+    /// when the conditions lack that much; 0 for the others.
+    pub fn fixed(&self, conditions: &[(Status, f64)]) -> (Vec<Status>, Vec<f64>) {
+        let of_condition = |&(condition, factor): &(usize, f64)| match conditions[condition] {
+            (Status::Closed, missing) => (Status::Closed, missing / factor),
+            (other, _) => (other, 0.0),
         };
         self.tightest.iter().map(of_condition).unzip()
     }

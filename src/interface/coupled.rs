@@ -189,23 +189,26 @@ impl<'a> CoupledContact<'a> {
         problem.other_solution(&vec![0.0; jumps.len()], largest(&jumps).max(largest(u)))
     }
 
-    /// The change that balances `r` on Γ and `loads` on the normal jumps of every pair where the
-    /// conditions stay `open` or closed and the closed ones still have to close by `missing`.
+    /// The change that balances `r` on Γ and `loads` on the normal jumps of every pair where limits keep their
+    /// `statuses` and the closed ones still have to close by `missing`.
     pub fn solve_fixed(
         &self,
         r: &[f64],
         loads: &[Vec<f64>],
         missing: &[Vec<f64>],
-        open: &[Vec<bool>],
+        statuses: &[Vec<Status>],
     ) -> CoupledStep {
         let loads = loads.concat();
         let scale = loads.iter().map(|x| x.abs()).collect();
         let condensed = self.condense(r, loads, scale);
-        let open = self.side_by_side(open.iter().map(Vec::as_slice));
+        let status = self.side_by_side(statuses.iter().map(Vec::as_slice));
         let missing = self.side_by_side(missing.iter().map(Vec::as_slice));
-        let trial = self.problem(&condensed, &missing, &[]).linear(&open);
-        let status: Vec<Status> = open.into_iter().map(Status::new).collect();
-        self.step(r, &condensed, &trial.jumps, trial.forces, &status)
+        let problem = FrictionProblem {
+            contact: self.problem(&condensed, &missing, &[]),
+            tangents: &self.tangents,
+        };
+        let (jumps, forces) = problem.change(&status);
+        self.step(r, &condensed, &jumps, forces, &status)
     }
 
     fn condense(&self, r: &[f64], mut c: Vec<f64>, mut c_scale: Vec<f64>) -> Condensed {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::contact::friction::Status;
 use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
 
@@ -29,7 +30,11 @@ pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
         (b, load.collect())
     };
     let loads: BTreeMap<usize, Vec<f64>> = fixed.condensed.blocks.keys().map(start).collect();
-    let answer = fixed.solve(loads.clone(), solution, &BTreeMap::new(), ACCURACY);
+    let held = solution.groups.iter().map(|(&g, of_group)| {
+        let closed = of_group.closed.iter();
+        (g, closed.map(|closed| (Status::new(!closed), 0.0)).collect())
+    });
+    let answer = fixed.solve(loads.clone(), held.collect(), ACCURACY);
     let answer = answer.blocks;
 
     // xᵀ D x and xᵀ K x, summed block by block so that ranks make no difference.

@@ -9,6 +9,7 @@ use crate::bddc::solution::Accuracy;
 use crate::bytes::Reals;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::substitute::Factors;
+use crate::contact::friction::Status;
 use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::fem::balance::Balance;
@@ -19,7 +20,7 @@ use crate::interface::operator::Interface;
 use crate::interface::problem::InterfaceProblem;
 use crate::plan::Plan;
 use crate::recover::motions::Motions;
-use crate::recover::{BlockSolution, DiscreteSolution};
+use crate::recover::BlockSolution;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::schur::local::CondensedLoad;
 use crate::step::StepProblem;
@@ -56,8 +57,11 @@ pub struct FixedActiveSetRoot<'a> {
     pub converged: bool,
 }
 
-/// Which limits of a cluster are open, and what the others still have to close (m).
-type FixedLimits = (Vec<bool>, Vec<f64>);
+/// The statuses of the limits of a cluster, and what the closed ones still have to close (m).
+type FixedLimits = (Vec<Status>, Vec<f64>);
+
+/// The statuses of the conditions of contact groups, by their number, and what the closed ones still have to close (m).
+pub type FixedConditions = BTreeMap<usize, Vec<(Status, f64)>>;
 
 impl FixedActiveSetRoot<'_> {
     /// Whether loads can be solved for: without an interface problem, or where the pairs' normal jumps can be
@@ -127,25 +131,18 @@ impl<'a> FixedActiveSet<'a> {
     }
 
     /// The change that `loads` on the unknowns of the blocks of this rank, and those on the others', make where
-    /// the points of `solution` stay open or closed and the closed ones still have to close by `missing`, nothing
-    /// where a group isn't named; an iterative solver goes as far as the `tolerance`. Collective.
+    /// `conditions` keep their statuses; an iterative solver goes as far as the `tolerance`. Collective.
     pub fn solve(
         &self,
         loads: BTreeMap<usize, Vec<f64>>,
-        solution: &DiscreteSolution,
-        missing: &BTreeMap<usize, Vec<f64>>,
+        conditions: FixedConditions,
         tolerance: f64,
     ) -> Change {
         let factors = self.factors();
-        let conditions = solution.groups.iter().map(|(g, of_group)| {
-            let none = vec![0.0; of_group.closed.len()];
-            let missing = missing.get(g).unwrap_or(&none).iter().copied();
-            (*g, of_group.closed.iter().copied().zip(missing).collect())
-        });
         if let Some(frozen) = self.frozen {
-            return self.solve_frozen(frozen, loads, conditions.collect(), tolerance);
+            return self.solve_frozen(frozen, loads, conditions, tolerance);
         }
-        let limits = self.limits(factors.collect_conditions(conditions.collect()));
+        let limits = self.limits(factors.collect_conditions(conditions));
         let condensed = factors.condense(loads);
         let (forces, boundaries) = self.solve_interface(&limits, &condensed);
         Change {
@@ -159,15 +156,15 @@ impl<'a> FixedActiveSet<'a> {
         &self,
         (fronts, limits): Frozen<'_>,
         loads: BTreeMap<usize, Vec<f64>>,
-        conditions: BTreeMap<usize, Vec<(bool, f64)>>,
+        conditions: FixedConditions,
         tolerance: f64,
     ) -> Change {
         let factors = self.factors();
         let (mut open, mut missing) = (BTreeMap::new(), BTreeMap::new());
         for (g, of_group) in conditions {
-            let (closed, lacking): (Vec<bool>, Vec<f64>) = of_group.into_iter().unzip();
-            let (of_group, lacking) = limits[&g].fixed(&closed, &lacking);
-            open.insert(g, of_group);
+            let (statuses, lacking) = limits[&g].fixed(&of_group);
+            let is_open = |status: &Status| !status.is_closed();
+            open.insert(g, statuses.iter().map(is_open).collect());
             missing.insert(g, lacking);
         }
         let mut fronts = fronts.borrow_mut();
@@ -196,16 +193,12 @@ impl<'a> FixedActiveSet<'a> {
         }
     }
 
-    /// For every cluster in contact of this rank, which limits are open and what the others lack.
-    fn limits(
-        &self,
-        conditions: BTreeMap<usize, Vec<(bool, f64)>>,
-    ) -> BTreeMap<usize, FixedLimits> {
+    /// For every cluster in contact of this rank, the statuses of its limits and what the closed ones lack.
+    fn limits(&self, conditions: FixedConditions) -> BTreeMap<usize, FixedLimits> {
         let mut limits = BTreeMap::new();
         for (p, of_cluster) in conditions {
-            let (closed, missing): (Vec<bool>, Vec<f64>) = of_cluster.into_iter().unzip();
             if let Some(pair) = self.step.pairs.get(&p) {
-                limits.insert(p, pair.limits().fixed(&closed, &missing));
+                limits.insert(p, pair.limits().fixed(&of_cluster));
             }
         }
         limits
@@ -280,12 +273,12 @@ impl FixedActiveSetRoot<'_> {
         let mut r = vec![0.0; problem.interface.len];
         let mut loads = Vec::new();
         let mut missing = Vec::new();
-        let mut open: Vec<Vec<bool>> = Vec::new();
+        let mut statuses: Vec<Vec<Status>> = Vec::new();
         for (question, interface_dofs) in gathered.into_iter().zip(&numbering.interface_dofs) {
             let mut on_jumps = question.load;
             let on_traces = on_jumps.split_off(on_jumps.len() - interface_dofs.len());
             if let Some((of_cluster, lacking)) = question.limits {
-                open.push(of_cluster);
+                statuses.push(of_cluster);
                 missing.push(lacking);
                 loads.push(on_jumps);
             }
@@ -296,7 +289,7 @@ impl FixedActiveSetRoot<'_> {
         let Some(coupled) = CoupledContact::new(problem) else {
             return vec![ClusterAnswer::default(); numbering.interface_dofs.len()];
         };
-        let step = coupled.solve_fixed(&r, &loads, &missing, &open);
+        let step = coupled.solve_fixed(&r, &loads, &missing, &statuses);
         let mut pairs = step.forces.into_iter().zip(step.jumps);
         let answer = |c: usize| {
             let of_pair = match plan.contact_place(c) {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::certificate::check::{BlockCheck, Most};
 use crate::certificate::{Certificate, certificate};
+use crate::contact::friction::{Status, TangentialCondition};
 use crate::fem::contact_group::ContactGroup;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::motions::Field;
@@ -17,6 +18,8 @@ const LIMIT: f64 = 4e-15;
 const LIMIT_OF_LOAD: f64 = 1e-11;
 /// Equilibrium and penetration that are good enough.
 const GOOD: f64 = 1e-14;
+/// Part of its bound below which a force that slips isn't at it: the contact is about to open.
+const AT_BOUND: f64 = 1.0 - 1e-9;
 /// Accuracy of a correction where it is iterated for.
 const CORRECTION: f64 = 1e-6;
 /// Most refinements.
@@ -130,9 +133,11 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
         Some((b, load))
     };
     let loads = residuals.into_iter().filter_map(on_unknowns).collect();
-    let missing = solution.groups.iter();
-    let missing = missing.map(|(&g, of_group)| (g, of_group.gaps.clone()));
-    let change = fixed.solve(loads, solution, &missing.collect(), CORRECTION);
+    let conditions = solution.groups.iter().map(|(&g, of_group)| {
+        let statuses = statuses(&fixed.context.groups[&g], of_group).into_iter();
+        (g, statuses.zip(of_group.gaps.iter().copied()).collect())
+    });
+    let change = fixed.solve(loads, conditions.collect(), CORRECTION);
     for (b, x) in change.blocks {
         let block = fixed.condensed.blocks.get(&b);
         if let (Some(of_block), Some(block)) = (solution.blocks.get_mut(&b), block) {
@@ -147,6 +152,27 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     solution.share(&fixed.context, &fixed.step.loads);
 }
 
+/// The statuses of the conditions of a contact group. What slips in a direction of a plane is open: its force stays
+/// what it is.
+fn statuses(group: &ContactGroup, solution: &GroupSolution) -> Vec<Status> {
+    let closed = solution.closed.iter();
+    let mut statuses: Vec<Status> = closed.map(|closed| Status::new(!closed)).collect();
+    for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
+        if let &[TangentialCondition { number, normal, bound }] = of_point {
+            let force = solution.forces[number];
+            let is_closed = solution.closed[normal];
+            let bound = bound.at(solution.forces[normal], is_closed);
+            statuses[number] = match solution.closed[number] || force == 0.0 {
+                true => statuses[number],
+                false if is_closed && force.abs() < AT_BOUND * bound => Status::Parting,
+                false if force > 0.0 => Status::Forward,
+                false => Status::Backward,
+            };
+        }
+    }
+    statuses
+}
+
 /// Changes the forces of a contact group: none holds its sides together, and friction stays at its bound.
 fn change_forces(group: &ContactGroup, solution: &mut GroupSolution, changes: &[f64]) {
     let normals = group.points.len();
@@ -156,11 +182,15 @@ fn change_forces(group: &ContactGroup, solution: &mut GroupSolution, changes: &[
             *force = force.max(0.0);
         }
     }
-    for tangential in group.friction() {
-        let (number, normal) = (tangential.number, tangential.normal);
-        if !solution.closed[number] && solution.forces[number] != 0.0 {
-            let bound = (tangential.bound).at(solution.forces[normal], solution.closed[normal]);
-            solution.forces[number] = bound.copysign(solution.forces[number]);
+    for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
+        let TangentialCondition { normal, bound, .. } = of_point[0];
+        let slips = of_point.iter().all(|one| !solution.closed[one.number]);
+        let bound = bound.at(solution.forces[normal], solution.closed[normal]);
+        let of_point = of_point.iter().map(|one| one.number);
+        let squares = of_point.clone().map(|j| solution.forces[j].powi(2));
+        let size = squares.sum::<f64>().sqrt();
+        for j in of_point.filter(|_| slips && size != 0.0) {
+            solution.forces[j] *= bound / size;
         }
     }
 }
