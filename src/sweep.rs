@@ -16,7 +16,9 @@ use std::time::Instant;
 
 pub use contact_dd_partition::solver::Method;
 
-pub use self::outcome::{IterativeSolves, SweepOutcome, SweepRecord, SweepStatus};
+pub use self::outcome::{
+    AGAINST_FRICTION, IterativeSolves, SweepOutcome, SweepRecord, SweepStatus,
+};
 use crate::contact::friction::Status;
 use crate::error::Failure;
 use crate::interface::problem::InterfaceProblem;

@@ -32,7 +32,10 @@ pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
     let loads: BTreeMap<usize, Vec<f64>> = fixed.condensed.blocks.keys().map(start).collect();
     let held = solution.groups.iter().map(|(&g, of_group)| {
         let closed = of_group.closed.iter();
-        (g, closed.map(|closed| (Status::new(!closed), 0.0)).collect())
+        (
+            g,
+            closed.map(|closed| (Status::new(!closed), 0.0)).collect(),
+        )
     });
     let answer = fixed.solve(loads.clone(), held.collect(), ACCURACY);
     let answer = answer.blocks;

@@ -10,6 +10,7 @@ use crate::fem::contact_group::ContactGroup;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::motions::Field;
 use crate::recover::{DiscreteSolution, GroupSolution};
+use crate::sweep::AGAINST_FRICTION;
 
 /// Equilibrium and penetration above which a solution is refined.
 const LIMIT: f64 = 4e-15;
@@ -24,6 +25,8 @@ const AT_BOUND: f64 = 1.0 - 1e-9;
 const CORRECTION: f64 = 1e-6;
 /// Most refinements.
 const MAX_REFINEMENTS: usize = 3;
+/// Most exchanges of what sticks and slips.
+const MAX_EXCHANGES: usize = 20;
 
 /// Refines `solution` until the certificate holds or gets no better, and returns it; on the root
 /// it is that of the whole solution. Collective.
@@ -46,6 +49,60 @@ pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Ce
         best = after;
     }
     best
+}
+
+/// Exchanges what sticks and what slips against the law of friction, as forces are known better after refinement than
+/// the sweeps know them, and refines anew, until the law is fulfilled; where that isn't found, nothing is changed.
+/// Collective.
+pub fn exchange_against_friction(
+    fixed: &FixedActiveSet<'_>,
+    solution: &mut DiscreteSolution,
+    certificate: Certificate,
+) -> Certificate {
+    let (mut exchanged, mut after) = (None, certificate);
+    for _ in 0..MAX_EXCHANGES {
+        if !decide(fixed, after.friction > AGAINST_FRICTION) {
+            break;
+        }
+        let next: &mut DiscreteSolution = exchanged.get_or_insert_with(|| solution.clone());
+        for (g, of_group) in &mut next.groups {
+            exchange(&fixed.context.groups[g], of_group);
+        }
+        next.share(&fixed.context, &fixed.step.loads);
+        after = refine(fixed, next);
+    }
+    let is_right = after.friction <= AGAINST_FRICTION;
+    let as_good = worst(&after) <= worst(&certificate).max(GOOD);
+    match exchanged {
+        Some(exchanged) if decide(fixed, is_right && as_good) => {
+            *solution = exchanged;
+            after
+        }
+        _ => certificate,
+    }
+}
+
+/// Lets slip what sticks under more than its bound, and stick what slips under a force that drives it.
+fn exchange(group: &ContactGroup, solution: &mut GroupSolution) {
+    for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
+        let TangentialCondition { normal, bound, .. } = of_point[0];
+        let bound = bound.at(solution.forces[normal], solution.closed[normal]);
+        let sum =
+            |of: &dyn Fn(usize) -> f64| of_point.iter().map(|one| of(one.number)).sum::<f64>();
+        let size = sum(&|j| solution.forces[j].powi(2)).sqrt();
+        let work = sum(&|j| -solution.gaps[j] * solution.forces[j]);
+        let sticks = of_point.iter().any(|one| solution.closed[one.number]);
+        let changes = match sticks {
+            true => size > bound,
+            false => work < 0.0,
+        };
+        for one in of_point.iter().filter(|_| changes) {
+            solution.closed[one.number] = !sticks;
+            if sticks {
+                solution.forces[one.number] *= bound / size;
+            }
+        }
+    }
 }
 
 /// Puts a `nearer` solution, refined, in the place of `solution` unless its certificate is a worse one, and returns the certificate and whether it did. Collective.
@@ -158,7 +215,14 @@ fn statuses(group: &ContactGroup, solution: &GroupSolution) -> Vec<Status> {
     let closed = solution.closed.iter();
     let mut statuses: Vec<Status> = closed.map(|closed| Status::new(!closed)).collect();
     for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
-        if let &[TangentialCondition { number, normal, bound }] = of_point {
+        if let &[
+            TangentialCondition {
+                number,
+                normal,
+                bound,
+            },
+        ] = of_point
+        {
             let force = solution.forces[number];
             let is_closed = solution.closed[normal];
             let bound = bound.at(solution.forces[normal], is_closed);

@@ -15,7 +15,7 @@ const ROUND_OFF_OF_TERMS: f64 = 1e-12;
 /// Share of loads in the forces on nodes from which these aren't round-off of a scene without load.
 const LOADED: f64 = 1e-2;
 /// Violation of the law of friction of an answer that isn't one.
-const AGAINST_FRICTION: f64 = 1e-9;
+pub const AGAINST_FRICTION: f64 = 1e-9;
 /// Equilibrium relative to the load of an answer that says nothing.
 const NOT_BALANCED_OF_LOAD: f64 = 1e-3;
 /// The same where what isn't balanced moves.

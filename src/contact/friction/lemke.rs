@@ -25,6 +25,8 @@ const MOST_UPDATES: usize = 20;
 /// Exchanges, whatever the problem and for each limit.
 const EXCHANGES: usize = 200;
 const EXCHANGES_EACH: usize = 8;
+/// Exchanges in a row at one θ: round-off goes round in circles there.
+const STANDS_STILL: usize = 100;
 
 /// The end of the path.
 pub(super) struct End {
@@ -43,7 +45,7 @@ impl FrictionProblem<'_> {
         let mut path = Path::new(self, attempt);
         let most = EXCHANGES + EXCHANGES_EACH * self.contact.bounds.len();
         let (mut theta, mut way) = (f64::INFINITY, -1.0);
-        let mut entered = None;
+        let (mut entered, mut still) = (None, 0);
         let often = (self.contact.bounds.len() / 4).max(MOST_UPDATES);
         for exchanges in 0..most {
             if exchanges % often == often - 1 {
@@ -56,6 +58,10 @@ impl FrictionProblem<'_> {
                 Some((at, _, _)) if at <= 0.0 => return (Some(path.end()), exchanges),
                 None if way < 0.0 => return (Some(path.end()), exchanges),
                 Some((at, i, quantity)) => {
+                    still = if at == theta { still + 1 } else { 0 };
+                    if still > STANDS_STILL {
+                        return (None, exchanges);
+                    }
                     theta = at;
                     entered = Some(path.exchange(theta, i, quantity));
                 }

@@ -34,3 +34,17 @@ proptest! {
         prop_assert!(is_fair, "{seed}: {:?} {}\n{}", trial.verdict, trial.reason, drawn.described());
     }
 }
+
+/// Its stiffnesses are so far apart that the sweeps know forces to less than round-off (895) or not even what sticks
+/// (865): refinement has to.
+#[test]
+fn a_badly_conditioned_scene_with_friction_is_refined_to_round_off() {
+    for seed in [865, 895] {
+        let mut drawn = draw_frictional(seed, 12);
+        drawn.ranks = 0;
+        let trial = Trial::of(&drawn, built(), Duration::from_secs(60), None);
+        assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
+        let findings = trial.findings.unwrap();
+        assert!(findings.backward_error < 1e-14, "{seed}: {findings:?}");
+    }
+}
