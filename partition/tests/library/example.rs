@@ -19,7 +19,7 @@ fn mesh_of(name: &str, refine: u32) -> Mesh {
 
 /// The examples of the plane whose meshes are made for any cells and size.
 fn adjustable() -> impl Iterator<Item = &'static example::Example> {
-    let names = ["gears", "sphere", "cube-crack", "stack3d"];
+    let names = ["gears", "sphere", "cube-crack", "pin", "stack3d"];
     EXAMPLES
         .iter()
         .filter(move |example| !names.contains(&example.name))
@@ -277,7 +277,8 @@ fn a_mesh_by_gmsh_is_refined_by_gmsh_only() {
 #[test]
 fn cells_are_well_shaped() {
     // Meshes graded towards points have long cells far from them.
-    let is_graded = |name: &str| ["hertz", "crack", "rollers", "mindlin", "sphere"].contains(&name);
+    let is_graded =
+        |name: &str| ["hertz", "crack", "rollers", "mindlin", "pin", "sphere"].contains(&name);
     for example in EXAMPLES.iter().filter(|e| !is_graded(e.name)) {
         let mesh = example.mesh(0).unwrap();
         let mut worst = f64::INFINITY;

@@ -120,11 +120,6 @@ fn figures(solution: &Solution, cell: f64) -> Vec<Figure> {
         let x = exact * area(p) * push.signum();
         (p.tangential_force[0] - x).hypot(p.tangential_force[1])
     });
-    println!(
-        "P {force} Q/muP {} a {a} share {share} found {}",
-        push / (FRICTION * force),
-        (2.0 * sticks / PI).sqrt() / a
-    );
     vec![
         plain("zone, cells", farthest.fold(0.0, f64::max) / cell),
         plain("share", (2.0 * sticks / PI).sqrt() / (share * a) - 1.0),

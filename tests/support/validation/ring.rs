@@ -144,7 +144,7 @@ fn of_contact(solution: &Solution) -> Vec<Figure> {
     let last = points.iter().rposition(|point| point.closed).unwrap();
     let cell = (at(last + 1) - at(last)).max(at(last) - at(last - 1));
     vec![
-        plain("p₀", points[0].pressure / peak() - 1.0),
+        falling("p₀", points[0].pressure / peak() - 1.0),
         plain("radius, cells", (at(last) - radius()) / cell),
         resultant(&points),
     ]
