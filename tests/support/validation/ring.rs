@@ -25,6 +25,8 @@ Mesh: half a section [0, 2] × [−2, 0] with the tractions of the half space on
 graded towards r = a and y = 0 with the 1.6th power. Only contact supports the body. *p₀*: pressure on the axis, where
 that of linear cells is less accurate than elsewhere; *radius*: number of cells between r = a and the last closed
 node; *resultant*: sum of the contact forces.
+
+By their order, linear cells come to 0.2 % of p₀ from some 220 000 dofs (`quad4`) or 550 000 (`triangle3`) on.
 ";
 
 const BALLS: &str = "\
