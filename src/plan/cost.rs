@@ -1,7 +1,8 @@
 //! What a run will cost: memory and arithmetic of every rank, before either is spent.
 //!
 //! The constants of memory are measured: on 45 peaks of 1 and 2 ranks, from 20 thousand to 2 million dofs, in 8
-//! to 1000 subdomains, with up to 5000 contact conditions, the estimate is within a quarter of each.
+//! to 1000 subdomains, with up to 5000 contact conditions, the estimate is within a quarter of each; in space on 4 peaks
+//! of blocks of tetrahedra with 49 thousand to a million dofs.
 
 use contact_dd_partition::flops::{Front, condensation};
 use contact_dd_partition::problem::Catalog;
@@ -20,6 +21,8 @@ const PER_NODE_OF_CELL: [f64; 2] = [0.82, 0.4];
 const PER_BOUNDARY: f64 = 165.0;
 /// An entry of the largest matrix that blocks are merged in (bytes): it and its children.
 const PER_ENTRY: f64 = 16.0;
+/// An entry of the factor of a front (bytes), which counts in space.
+const PER_ENTRY_OF_FACTOR: f64 = 8.0;
 /// An entry of S of a cluster between which an iterative solver works (bytes): S, and its part of the preconditioner.
 const PER_ENTRY_OF_CLUSTER: f64 = 14.0;
 /// An entry of the contact problem of all pairs, at the root (bytes).
@@ -98,6 +101,9 @@ impl Plan {
             } else {
                 let size = (front.eliminated + front.kept) as f64;
                 largest[owner] = largest[owner].max(size);
+                if catalog.dim == 3 {
+                    estimate.bytes += PER_ENTRY_OF_FACTOR * front.eliminated as f64 * size;
+                }
             }
         }
         if self.merging == Merging::Clusters {
