@@ -11,7 +11,7 @@ use crate::comm::{self, Comm};
 use crate::error::Failure;
 use crate::output::memory::peak_memory_bytes;
 use crate::output::ranks::{PhaseSeconds, RankReport};
-use crate::output::report::{Build, Report, ReportFile};
+use crate::output::report::{Build, Report, ReportFile, Status};
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
@@ -84,6 +84,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
     warnings.extend(totals.warnings.iter().cloned());
     warnings.extend(totals.step_warnings());
     warnings.extend(solved_directly(totals, settings));
+    warnings.extend(chosen_in_vain(totals, settings));
     let certificate = totals.certificate();
     let condition = totals.condition();
     if certificate.equilibrium > 1e-14 || certificate.penetration > 1e-14 {
@@ -174,6 +175,15 @@ fn interface_choice(totals: &Totals<'_>, settings: &Settings) -> String {
         }
         _ => "nothing to choose between".into(),
     }
+}
+
+/// What may help where the iterative solver was chosen and didn't converge.
+fn chosen_in_vain(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
+    let is_iterative = totals.interface_solver() == InterfaceMethod::Iterative;
+    let has_converged = totals.status() == Status::Converged;
+    (is_iterative && settings.interface.is_none() && !has_converged).then(|| {
+        "the iterative interface solver was chosen because it takes less time; --interface direct is more robust".into()
+    })
 }
 
 /// Why the interface problem was solved directly where the iterative solver was asked for.

@@ -29,9 +29,12 @@ pub struct InterfaceTimes {
 }
 
 impl InterfaceTimes {
-    /// Those of a scene in space without friction, whose clusters are known; others are solved directly.
+    /// Those of a scene in space without friction, whose clusters are known and whose contact is node by node: others
+    /// are solved directly, mortar because its conditions tie many unknowns of two clusters to each other.
     pub fn new(catalog: &Catalog) -> Option<Self> {
-        if catalog.dim < 3 || catalog.has_friction() || catalog.hierarchy.clusters.len() < 2 {
+        let is_node_by_node = (catalog.points.iter()).all(|point| point.entries.len() <= 2);
+        let can_be_either = catalog.dim == 3 && !catalog.has_friction() && is_node_by_node;
+        if !can_be_either || catalog.hierarchy.clusters.len() < 2 {
             return None;
         }
         let tree = Tree::new(catalog);
