@@ -1,5 +1,7 @@
 //! Scenes with exact answers: errors and observed orders, the short form of docs/validation.md.
 
+use contact_dd_partition::element::ElementKind::{Hexahedron20, Hexahedron27};
+
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, problem};
 use crate::support::sorts::sort;
@@ -81,6 +83,23 @@ fn a_ball_on_a_plate_presses_as_hertz_says() {
 #[test]
 fn a_ball_on_a_ball_whose_curved_sides_do_not_match_presses_as_hertz_says() {
     space::balls().check();
+}
+
+/// Where a side ends before the other does, some facets are partly covered.
+#[test]
+fn no_point_of_curved_sides_is_much_nearer_to_the_other_side_than_its_place() {
+    for kind in [Hexahedron20, Hexahedron27] {
+        let points = problem(&space::two_balls(kind, 0), Some(2)).catalog.points;
+        for point in points {
+            let r: f64 = point.position[0].hypot(point.position[1]);
+            let apart = 13.0 - (64.0 - r * r).sqrt() - (25.0 - r * r).sqrt();
+            assert!(
+                point.gap > 0.25 * apart - 1e-9,
+                "{kind:?}: {} at {r}",
+                point.gap
+            );
+        }
+    }
 }
 
 #[test]

@@ -8,6 +8,7 @@ use contact_dd_partition::element::ElementKind::{
 use contact_dd_partition::element::geometry::{difference, length};
 use contact_dd_partition::example;
 use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::model::Model;
 
 use super::super::blocks::{joined, named};
 use super::super::scenes::model;
@@ -73,14 +74,19 @@ const TWO_BALLS: &str = "
     name = 'contact'
     sides = ['lower pole', 'upper pole']";
 
-fn solved_balls(kind: ElementKind, level: usize) -> Measured {
+/// An eighth of a ball of radius 8 on that of one of radius 5.
+pub fn two_balls(kind: ElementKind, level: usize) -> Model {
     let mesh = || (example::find("sphere").unwrap().mesh_of(kind, level as u32)).unwrap();
     let upper = named(mesh(), "upper");
     let lower = named(
         moved(mesh(), |[x, y, z]| [x, y, -z].map(|c| 0.625 * c)),
         "lower",
     );
-    figured(&model(TWO_BALLS, joined(lower, upper)), |solution| {
+    model(TWO_BALLS, joined(lower, upper))
+}
+
+fn solved_balls(kind: ElementKind, level: usize) -> Measured {
+    figured(&two_balls(kind, level), |solution| {
         against_hertz(&solution.contacts["contact"], 40.0 / 13.0, STIFFNESS / 2.0)
     })
 }

@@ -197,8 +197,9 @@ impl Row {
     /// The contact point of node `a`, scaled so that the weights of side a sum to 1: the multiplier is the force
     /// along its normal.
     ///
-    /// ψ changes its sign, so that the weighted gap of uneven surfaces may be less than any of their gaps. No
-    /// point starts out violated more than they are: bodies that only touch carry no force without a load.
+    /// ψ changes its sign, so that the weighted gap of uneven surfaces may be less than any of their gaps, by far where
+    /// a curved side is partly covered. No point is nearer to closing than they are: bodies that only touch carry no
+    /// force without a load, and none where they are apart.
     pub fn point(
         mut self,
         a: &SideNode,
@@ -220,7 +221,7 @@ impl Row {
         entries.sort_by_key(|&(node, _)| node != a.node);
         let tag_a = mesh.node_tags[a.node as usize];
         ContactPoint {
-            gap: (self.gap / self.area).max(self.least_gap.min(0.0)),
+            gap: (self.gap / self.area).max(self.least_gap),
             area: self.area,
             force_point,
             ..ContactPoint::new(entries, a.normal, a.position, tag_a)
