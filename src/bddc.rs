@@ -14,6 +14,7 @@ mod local;
 mod motions;
 mod reflections;
 pub mod solution;
+mod transform;
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -10,6 +10,7 @@ use crate::bddc::ClusterSchur;
 use crate::bddc::classes::Classes;
 use crate::bddc::closed::Ties;
 use crate::bddc::constraints::{Basis, Side};
+use crate::bddc::transform::transformed;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::symmetric::PackedSymmetric;
 use crate::schur::trapezoid::{NotDefinite, Trapezoid};
@@ -185,50 +186,6 @@ const MORE_HOLD: f64 = 1e-9;
 fn hold(mut s: MatMut<'_, f64>, range: Range<usize>, share: f64, round_off: f64) {
     let largest = range.clone().fold(0.0, |m: f64, i| m.max(s[(i, i)]));
     range.for_each(|i| s[(i, i)] += share * largest + round_off);
-}
-
-/// Tᵀ S T, its lower triangle, of S with `springs` on its diagonal; T has a row of terms for every unknown of S.
-fn transformed(
-    s: &PackedSymmetric,
-    springs: &[f64],
-    terms: &[Vec<(usize, f64)>],
-    n: usize,
-) -> Mat<f64> {
-    let mut new = Mat::<f64>::zeros(n, n);
-    // Most unknowns stay what they are, but for their places.
-    let place = |terms: &Vec<(usize, f64)>| match terms[..] {
-        [(place, 1.0)] => Some(place),
-        _ => None,
-    };
-    let places: Vec<Option<usize>> = terms.iter().map(place).collect();
-    for j in 0..s.size() {
-        let column = s.column(j);
-        let diagonal = column[0] + springs.get(j).unwrap_or(&0.0);
-        for (at, &(b, d)) in terms[j].iter().enumerate() {
-            new[(b, b)] += d * d * diagonal;
-            for &(a, c) in &terms[j][at + 1..] {
-                add(&mut new, a, b, c * d * diagonal);
-            }
-        }
-        for (i, &s) in (j + 1..terms.len()).zip(&column[1..]) {
-            if let (Some(a), Some(b)) = (places[i], places[j]) {
-                add(&mut new, a, b, s);
-                continue;
-            }
-            for &(b, d) in &terms[j] {
-                terms[i]
-                    .iter()
-                    .for_each(|&(a, c)| add(&mut new, a, b, c * d * s));
-            }
-        }
-    }
-    new
-}
-
-/// Adds `value` at (a, b) and (b, a), of which the lower one is kept.
-fn add(s: &mut Mat<f64>, a: usize, b: usize, value: f64) {
-    let both = if a == b { 2.0 * value } else { value };
-    s[(a.max(b), a.min(b))] += both;
 }
 
 /// A cluster as conjugate gradients see it, and its part of the preconditioner, in the basis of coarse and other

@@ -14,6 +14,9 @@ use crate::scene::material::PlaneState;
 /// functions that are orthogonal.
 const ROUND_OFF: f64 = 1e-13;
 
+/// Weighted gap over the least one around it below which it is none: that of sides that are uneven is about as large.
+const NEARER: f64 = 0.8;
+
 /// Mean square of the distances of nodes, relative to the part of side a, below which they lie in one place.
 const TOGETHER: f64 = 1e-8;
 
@@ -198,8 +201,8 @@ impl Row {
     /// along its normal.
     ///
     /// ψ changes its sign, so that the weighted gap of uneven surfaces may be less than any of their gaps, by far where
-    /// a curved side is partly covered. No point is nearer to closing than they are: bodies that only touch carry no
-    /// force without a load, and none where they are apart.
+    /// a curved side is partly covered. No point starts out violated more than they are, or far nearer to closing: bodies
+    /// that only touch carry no force without a load, and none where they are apart.
     pub fn point(
         mut self,
         a: &SideNode,
@@ -221,7 +224,7 @@ impl Row {
         entries.sort_by_key(|&(node, _)| node != a.node);
         let tag_a = mesh.node_tags[a.node as usize];
         ContactPoint {
-            gap: (self.gap / self.area).max(self.least_gap),
+            gap: (self.gap / self.area).max(self.least_gap.min(NEARER * self.least_gap)),
             area: self.area,
             force_point,
             ..ContactPoint::new(entries, a.normal, a.position, tag_a)

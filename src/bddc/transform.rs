@@ -1,0 +1,126 @@
+//! S of a cluster for the unknowns that closed contact conditions leave.
+
+use faer::Mat;
+
+use crate::schur::symmetric::PackedSymmetric;
+
+/// Most terms of a row of T that are gone through one by one.
+const FEW_TERMS: usize = 8;
+
+/// Tᵀ S T, its lower triangle, of S with `springs` on its diagonal; T has a row of terms for every unknown of S.
+pub fn transformed(
+    s: &PackedSymmetric,
+    springs: &[f64],
+    terms: &[Vec<(usize, f64)>],
+    n: usize,
+) -> Mat<f64> {
+    let mut new = Mat::<f64>::zeros(n, n);
+    // Most unknowns stay what they are, but for their places.
+    let place = |terms: &Vec<(usize, f64)>| match terms[..] {
+        [(place, 1.0)] => Some(place),
+        _ => None,
+    };
+    let places: Vec<Option<usize>> = terms.iter().map(place).collect();
+    let mut many = 0;
+    let of_many: Vec<Option<usize>> = (terms.iter())
+        .map(|terms| {
+            let is_one = terms.len() > FEW_TERMS;
+            many += usize::from(is_one);
+            is_one.then(|| many - 1)
+        })
+        .collect();
+    // With T of those of many terms, T_D, and the rest, T_F: S_DF T_F + ½ S_DD T_D is what T_Dᵀ multiplies, from both
+    // sides.
+    let mut s_many = Mat::<f64>::zeros(many, many);
+    let mut product = Mat::<f64>::zeros(many, n);
+    for j in 0..s.size() {
+        let column = s.column(j);
+        let diagonal = column[0] + springs.get(j).unwrap_or(&0.0);
+        match of_many[j] {
+            Some(d) => s_many[(d, d)] = 0.5 * diagonal,
+            None => {
+                for (at, &(b, d)) in terms[j].iter().enumerate() {
+                    new[(b, b)] += d * d * diagonal;
+                    for &(a, c) in &terms[j][at + 1..] {
+                        add(&mut new, a, b, c * d * diagonal);
+                    }
+                }
+            }
+        }
+        for (i, &s) in (j + 1..terms.len()).zip(&column[1..]) {
+            if let (Some(a), Some(b)) = (places[i], places[j]) {
+                add(&mut new, a, b, s);
+                continue;
+            }
+            match (of_many[i], of_many[j]) {
+                (Some(c), Some(d)) => {
+                    s_many[(c, d)] = 0.5 * s;
+                    s_many[(d, c)] = 0.5 * s;
+                }
+                (Some(d), None) => terms[j].iter().for_each(|&(b, c)| product[(d, b)] += c * s),
+                (None, Some(d)) => terms[i].iter().for_each(|&(b, c)| product[(d, b)] += c * s),
+                (None, None) => {
+                    for &(b, d) in &terms[j] {
+                        terms[i]
+                            .iter()
+                            .for_each(|&(a, c)| add(&mut new, a, b, c * d * s));
+                    }
+                }
+            }
+        }
+    }
+    if many > 0 {
+        let mut t = Mat::<f64>::zeros(many, n);
+        for (terms, d) in terms.iter().zip(&of_many) {
+            if let Some(d) = *d {
+                terms.iter().for_each(|&(a, c)| t[(d, a)] += c);
+            }
+        }
+        product += s_many * &t;
+        let half = t.transpose() * product;
+        for b in 0..n {
+            for a in b..n {
+                new[(a, b)] += half[(a, b)] + half[(b, a)];
+            }
+        }
+    }
+    new
+}
+
+/// Adds `value` at (a, b) and (b, a), of which the lower one is kept.
+fn add(s: &mut Mat<f64>, a: usize, b: usize, value: f64) {
+    let both = if a == b { 2.0 * value } else { value };
+    s[(a.max(b), a.min(b))] += both;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknowns_of_few_and_of_many_terms_are_replaced_alike() {
+        let (m, n) = (15, 19);
+        let entry = |i: usize, j: usize| ((i.max(j) * 31 + i.min(j) * 7) % 17) as f64 - 8.0;
+        let full = Mat::from_fn(m, m, entry);
+        let terms_of = |i: usize| -> Vec<(usize, f64)> {
+            match i % 5 {
+                0..3 => vec![(i, 1.0)],
+                3 => vec![(i, 0.5), (18, 2.0), (0, -1.0)],
+                _ => (0..12).map(|k| (k + 5, (i + k) as f64 - 9.0)).collect(),
+            }
+        };
+        let terms: Vec<_> = (0..m).map(terms_of).collect();
+        let springs: Vec<f64> = (0..m).map(|i| i as f64).collect();
+        let mut t = Mat::<f64>::zeros(m, n);
+        let mut sprung = full.clone();
+        for (i, terms) in terms.iter().enumerate() {
+            terms.iter().for_each(|&(a, c)| t[(i, a)] += c);
+            sprung[(i, i)] += springs[i];
+        }
+        let expected = t.transpose() * sprung * &t;
+        let found = transformed(&PackedSymmetric::new(&full), &springs, &terms, n);
+        for j in 0..n {
+            (j..n).for_each(|i| assert_eq!(found[(i, j)], expected[(i, j)], "{i}, {j}"));
+        }
+    }
+}
