@@ -62,7 +62,10 @@ fn cubes() -> Vec<Cube> {
     let (along, eighth, out) = OF_PIN;
     for (layer, &cells) in along.iter().enumerate() {
         let (low, high) = (DEPTHS[layer], DEPTHS[layer + 1]);
-        let depth = [(layer == 0).then_some("z = 0"), (layer == 2).then_some("pin end")];
+        let depth = [
+            (layer == 0).then_some("z = 0"),
+            (layer == 2).then_some("pin end"),
+        ];
         let round = [Some("pin in the plate"), None, Some("pin in the fork")][layer];
         let z = move |r: f64| low * (1.0 - r) + high * r;
         cubes.push(Cube::new(
