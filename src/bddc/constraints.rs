@@ -7,16 +7,16 @@
 //! ETNA 46, 2017; deluxe scaling after Dohrmann and Widlund).
 
 use faer::Side::Lower;
+use faer::linalg::matmul::matmul;
 use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
-use faer::{Mat, Par};
+use faer::{Accum, ColMut, ColRef, Mat, MatRef, Par};
 use serde::{Deserialize, Serialize};
 
 use crate::bddc::local::Moves;
 use crate::bddc::reflections::Reflections;
-use crate::schur::columns::{product, transposed_product};
 
 /// Ratio of the energies above which what has it becomes coarse: about the condition number of what is left.
 const THRESHOLD: f64 = 10.0;
@@ -100,10 +100,25 @@ impl Basis {
     /// The share of a residual, in the basis.
     pub fn share(&self, r: &[f64]) -> Vec<f64> {
         match &self.share {
-            Share::Part(w) => transposed_product(w.as_ref(), r),
+            Share::Part(w) => product(w.transpose(), r),
             _ => self.correct(r),
         }
     }
+}
+
+/// A x.
+fn product(a: MatRef<'_, f64>, x: &[f64]) -> Vec<f64> {
+    let mut y = vec![0.0; a.nrows()];
+    let x = ColRef::from_slice(x);
+    matmul(
+        ColMut::from_slice_mut(&mut y).as_mat_mut(),
+        Accum::Replace,
+        a,
+        x.as_mat(),
+        1.0,
+        Par::Seq,
+    );
+    y
 }
 
 /// The weights of combinations of unknowns that have far more energy where all else is held than where it is free, a

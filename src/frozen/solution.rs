@@ -43,7 +43,11 @@ impl FrozenFronts {
         accuracy: Accuracy<'_>,
     ) -> Result<FrozenSolution, Failure> {
         let mut solution = self.solve_as_it_is(context, loads.clone(), prescribed, accuracy);
-        while solution.is_too_far {
+        // One made again of the classes known to need it, then one that all classes were looked into for.
+        for _ in 0..2 {
+            if !solution.is_too_far {
+                break;
+            }
             self.make_better(context, open)?;
             let from_there = Accuracy {
                 start: Some(&solution.tops),

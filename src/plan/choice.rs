@@ -1,6 +1,7 @@
 //! Which interface solver takes less time: factors up to the roots of the hierarchy, or iterations between clusters.
 //!
-//! The constants are measured on two blocks of tetrahedra in contact, with 50 thousand to a million dofs.
+//! The constants are fitted to the times of two blocks of tetrahedra in contact, with 50 thousand to a million dofs:
+//! they say which is faster there, and about where one becomes the other elsewhere.
 
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::tree::{ACTIVE_SETS, Tree};

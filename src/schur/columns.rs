@@ -1,76 +1,9 @@
 //! Products of a vector with the columns of a matrix, several at a time.
 
-use faer::MatRef;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 
 /// Columns that are multiplied together, so that the vector is read once for all.
 pub(super) const WIDTH: usize = 4;
-
-/// A x.
-pub fn product(a: MatRef<'_, f64>, x: &[f64]) -> Vec<f64> {
-    let mut y = vec![0.0; a.nrows()];
-    Arch::new().dispatch(Product { a, x, y: &mut y });
-    y
-}
-
-/// Aᵀ x.
-pub fn transposed_product(a: MatRef<'_, f64>, x: &[f64]) -> Vec<f64> {
-    let mut y = vec![0.0; a.ncols()];
-    Arch::new().dispatch(TransposedProduct { a, x, y: &mut y });
-    y
-}
-
-/// y ← y + A x.
-struct Product<'a> {
-    a: MatRef<'a, f64>,
-    x: &'a [f64],
-    y: &'a mut [f64],
-}
-
-impl WithSimd for Product<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let term = |j: usize| (self.x[j], column(self.a, j));
-        let whole = self.x.len() / WIDTH * WIDTH;
-        for j in (0..whole).step_by(WIDTH) {
-            add_columns::<S, WIDTH>(simd, self.y, |p| term(j + p));
-        }
-        for j in whole..self.x.len() {
-            add_columns::<S, 1>(simd, self.y, |_| term(j));
-        }
-    }
-}
-
-/// y ← Aᵀ x.
-struct TransposedProduct<'a> {
-    a: MatRef<'a, f64>,
-    x: &'a [f64],
-    y: &'a mut [f64],
-}
-
-impl WithSimd for TransposedProduct<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let whole = self.y.len() / WIDTH * WIDTH;
-        for j in (0..whole).step_by(WIDTH) {
-            let sums = dot_columns::<S, WIDTH>(simd, self.x, |p| column(self.a, j + p));
-            self.y[j..j + WIDTH].copy_from_slice(&sums);
-        }
-        for j in whole..self.y.len() {
-            [self.y[j]] = dot_columns::<S, 1>(simd, self.x, |_| column(self.a, j));
-        }
-    }
-}
-
-/// A column of a matrix, whose columns lie in one piece each.
-fn column(a: MatRef<'_, f64>, j: usize) -> &[f64] {
-    let column = a.col(j).try_as_col_major();
-    column.map_or(&[], |column| column.as_slice())
-}
 
 /// The products of x with the columns that `column` gives, each as long as x.
 #[inline(always)]
@@ -123,29 +56,5 @@ pub(super) fn add_columns<'a, S: Simd, const N: usize>(
             sum = simd.mul_add_e_f64s(factors[p], simd.partial_load_f64s(parts[p].1), sum);
         }
         simd.partial_store_f64s(tail, sum);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use faer::Mat;
-
-    use super::*;
-
-    #[test]
-    fn products_are_those_of_the_definition() {
-        for (m, n) in [(1, 1), (7, 4), (19, 9), (40, 3)] {
-            let a = Mat::from_fn(m, n, |i, j| ((5 * i + 3 * j) % 7) as f64 - 3.0);
-            let x: Vec<f64> = (0..n).map(|j| (j % 4) as f64 - 1.0).collect();
-            let z: Vec<f64> = (0..m).map(|i| (i % 5) as f64 - 2.0).collect();
-            let y: Vec<f64> = (0..m)
-                .map(|i| (0..n).map(|j| a[(i, j)] * x[j]).sum())
-                .collect();
-            let w: Vec<f64> = (0..n)
-                .map(|j| (0..m).map(|i| a[(i, j)] * z[i]).sum())
-                .collect();
-            assert_eq!(product(a.as_ref(), &x), y);
-            assert_eq!(transposed_product(a.as_ref(), &z), w);
-        }
     }
 }

@@ -137,3 +137,25 @@ fn one_cluster_and_friction_are_solved_directly_and_said_to_be() {
         assert!(warnings.contains(why), "{warnings}");
     }
 }
+
+#[test]
+fn the_solver_that_takes_less_time_is_chosen_and_said_to_be() {
+    for name in ["cube-crack", "stack3d"] {
+        let solution = Case::in_clusters(&built_in_model(name, 0), 12, 6).solve(&[]);
+        let choice = solution.report["interface_choice"].as_str().unwrap();
+        let times = choice.strip_prefix("estimated time in flops: direct ");
+        let (direct, iterative) = times.unwrap().split_once(", iterative ").unwrap();
+        let [direct, iterative] = [direct, iterative].map(|time| time.parse::<f64>().unwrap());
+        let expected = match iterative < direct {
+            true => "iterative",
+            false => "direct",
+        };
+        assert_eq!(solution.report["interface_solver"], expected, "{choice}");
+    }
+    for name in ["granite", "sphere"] {
+        let solution = Case::in_clusters(&built_in_model(name, 0), 12, 6).solve(&[]);
+        assert_eq!(solution.report["interface_solver"], "direct");
+        let choice = &solution.report["interface_choice"];
+        assert_eq!(choice, "nothing to choose between", "{name}");
+    }
+}
