@@ -13,6 +13,7 @@
 //! steeply to 0 with the last of the force: what ends there is about to open.
 
 mod path;
+mod responses;
 
 use self::path::Path;
 use super::{FrictionProblem, Status};

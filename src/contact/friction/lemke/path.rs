@@ -4,8 +4,9 @@ use faer::Mat;
 use faer::linalg::solvers::Solve;
 
 use super::End;
+use super::responses::{Responses, Terms};
 use crate::contact::friction::{ATTEMPTS, FrictionProblem, Status, TangentialLimit};
-use crate::vector::largest;
+use crate::vector::{axpy, largest};
 
 /// Force, relative to the largest, below which a bound that vanishes with it falls to 0, one attempt after the other:
 /// where it is steep the path ends at the solution, but has further to go.
@@ -49,7 +50,7 @@ struct Tangent {
 /// Where the path is: all in the scale of energies.
 pub(super) struct Path {
     /// The jumps of all limits, then their forces, for a unit of what is 0 at each of the limits.
-    response: Mat<f64>,
+    responses: Responses,
     /// The same where all these are 0: at θ = 0, and for every unit of θ.
     value: [Vec<f64>; 2],
     /// Both for the ways of independent jumps and the forces of dependent rows, whatever θ is.
@@ -107,7 +108,7 @@ impl Path {
             start[(count + k, k)] = 1.0;
         }
         let mut path = Self {
-            response: Mat::new(),
+            responses: Responses::new(Mat::new()),
             value: [Vec::new(), Vec::new()],
             start,
             at_start,
@@ -155,7 +156,7 @@ impl Path {
     }
 
     /// A quantity as a sum of jumps and forces, and the rest of it.
-    fn terms(&self, i: usize, quantity: Quantity) -> ([(usize, f64); 2], [f64; 2]) {
+    fn terms(&self, i: usize, quantity: Quantity) -> (Terms, [f64; 2]) {
         let count = self.bounds.len();
         let none = (i, 0.0);
         match quantity {
@@ -225,41 +226,23 @@ impl Path {
         let of_unknown = Mat::from_fn(2 * count, unknown.len(), |i, l| self.start[(i, unknown[l])]);
         let mut all = of_unknown * change;
         for (k, value) in self.value.iter_mut().enumerate() {
-            let change = all.col_as_slice(count + k).iter();
-            value.iter_mut().zip(change).for_each(|(x, dx)| *x += dx);
+            axpy(1.0, all.col_as_slice(count + k), value);
         }
         for j in (0..count).filter(|&j| is_given(j)) {
-            let own = self.start.col_as_slice(j).iter();
-            let column = all.col_as_slice_mut(j).iter_mut();
-            column.zip(own).for_each(|(x, own)| *x += own);
+            axpy(1.0, self.start.col_as_slice(j), all.col_as_slice_mut(j));
         }
         all.resize_with(2 * count, count, |_, _| 0.0);
-        self.response = all;
+        self.responses = Responses::new(all);
     }
 
     /// Makes another quantity of limit i 0.
     fn replace(&mut self, i: usize, quantity: Quantity) {
-        let value = self.quantity(i, quantity);
+        let of_value = self.quantity(i, quantity);
         let (terms, _) = self.terms(i, quantity);
-        let count = self.bounds.len();
-        let row: Vec<f64> = (0..count)
-            .map(|j| terms.iter().map(|&(k, c)| c * self.response[(k, j)]).sum())
-            .collect();
-        let column: Vec<f64> = (self.response.col_as_slice(i).iter())
-            .map(|x| x / row[i])
-            .collect();
-        for (j, row) in row.iter().enumerate() {
-            if *row != 0.0 && j != i {
-                let of_column = self.response.col_as_slice_mut(j).iter_mut().zip(&column);
-                of_column.for_each(|(x, c)| *x -= c * row);
-            }
+        let column = self.responses.exchange(i, terms);
+        for (value, of_value) in self.value.iter_mut().zip(of_value) {
+            axpy(-of_value, column, value);
         }
-        for (all, value) in self.value.iter_mut().zip(value) {
-            all.iter_mut()
-                .zip(&column)
-                .for_each(|(x, c)| *x -= c * value);
-        }
-        self.response.col_as_slice_mut(i).copy_from_slice(&column);
         self.zero[i] = quantity;
     }
 
