@@ -3,6 +3,7 @@
 //! > K u − f + Bᵀ λ = 0,   B u ≤ g,   λ ≥ 0,   λᵀ (g − B u) = 0
 
 pub mod check;
+pub mod energy;
 
 use std::collections::HashMap;
 

@@ -1,6 +1,7 @@
 //! Back-substitution: from U on Γ to displacements and contact forces everywhere.
 
 pub mod conditioning;
+pub mod energy;
 pub mod fixed_active_set;
 pub mod minimum_norm;
 pub mod motions;

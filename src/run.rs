@@ -158,7 +158,8 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         }
         seconds.write += lap.elapsed().as_secs_f64();
         let totals = solved.outcome.clone();
-        let totals = totals.map(|o| StepTotals::new(o, &solved.solution, resultants, at_end));
+        let totals =
+            totals.map(|o| StepTotals::new(o, &solved.solution, resultants, solved.energy, at_end));
         steps.extend(totals);
         state = solved.into_state(settings.method);
         if k + 1 < analyses.len() {

@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::ranks::{PhaseSeconds, RankReport};
 use super::resultants::{Friction, Resultants};
 use crate::certificate::Certificate;
+use crate::certificate::energy::EnergyBalance;
 use crate::settings::command_line::InterfaceMethod;
 use crate::settings::{Origins, Settings};
 
@@ -73,6 +74,8 @@ pub struct FrictionOfStep {
     /// What it does.
     #[serde(flatten)]
     pub friction: Friction,
+    /// Where the energy came from and went.
+    pub energy: EnergyBalance,
     /// Number of increments that the load step was solved in, of several load steps the largest; slip and status are said
     /// of the last one.
     pub increments: usize,

@@ -6,6 +6,7 @@ use crate::recover::solution::Solution;
 use serde::{Deserialize, Serialize};
 
 use crate::certificate::Certificate;
+use crate::certificate::energy::EnergyBalance;
 use crate::fem::estimate::CellError;
 use crate::output::ranks::RankReport;
 use crate::output::report::{ErrorEstimate, FrictionOfStep, Status, StepReport};
@@ -44,6 +45,8 @@ pub struct StepTotals {
     pub condition: Option<f64>,
     /// What contacts and supports carry.
     pub resultants: Resultants,
+    /// The balance of energy, where there is friction.
+    pub energy: EnergyBalance,
     /// The estimate of the mesh's error, where there are stresses.
     pub estimate: Option<CellError>,
     /// What a user should know of it.
@@ -56,6 +59,7 @@ impl StepTotals {
         outcome: SweepOutcome,
         solution: &Solution,
         resultants: Resultants,
+        energy: EnergyBalance,
         analysis: &RigidBodyAnalysis,
     ) -> Self {
         let warnings = [
@@ -63,12 +67,14 @@ impl StepTotals {
             &solution.minimum_norm.warnings,
             &outcome.notes,
             &resultants.warnings(),
+            &Vec::from_iter(energy.warning()),
         ];
         Self {
             active: outcome.totals.active - solution.minimum_norm.opened,
             certificate: solution.certificate,
             condition: solution.condition,
             resultants,
+            energy,
             estimate: solution.estimate,
             warnings: warnings.concat(),
             outcome,
@@ -88,6 +94,7 @@ impl StepTotals {
         let friction = self.resultants.friction();
         friction.map(|friction| FrictionOfStep {
             friction,
+            energy: self.energy,
             increments: self.outcome.increments,
             other_solution: self.outcome.other_solution,
         })
@@ -156,6 +163,7 @@ impl Totals<'_> {
                 dissipated_work: before.friction.dissipated_work + last.friction.dissipated_work,
                 ..last.friction
             },
+            energy: last.energy.since(before.energy),
             increments: before.increments.max(last.increments),
             other_solution: match before.other_solution {
                 Some(true) => before.other_solution,

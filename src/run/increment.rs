@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+use crate::certificate::energy::{BlockEnergy, EnergyBalance};
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::limits::limits_of_groups;
 use crate::contact::pair::ContactPair;
@@ -13,6 +14,7 @@ use crate::frozen::fronts::FrozenFronts;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
 use crate::output::ranks::PhaseSeconds;
+use crate::recover::energy::energies;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
 use crate::recover::{Slips, recover, substitute_back};
@@ -53,6 +55,10 @@ pub struct Increment {
     pub solution: Solution,
     /// What friction leaves.
     pub slips: Slips,
+    /// What the balance of energy of the next increment needs.
+    energies: BTreeMap<usize, BlockEnergy>,
+    /// The balance of this one, and of those before it in the load step; on the root.
+    pub energy: EnergyBalance,
 }
 
 impl Increments<'_> {
@@ -76,7 +82,7 @@ impl Increments<'_> {
         if self.is_converged(&at_once) {
             return Ok(at_once);
         }
-        let slips = before.slips.clone();
+        let (slips, energies) = (before.slips.clone(), before.energies.clone());
         let Some(in_parts) = self.in_halves(k, analyses, before, seconds)? else {
             let moves_freely = at_once.outcome.as_ref().is_some_and(|o| o.moves_freely);
             let unheld = (at_end.scene.as_ref().filter(|_| moves_freely)).and_then(Scene::unheld);
@@ -84,7 +90,7 @@ impl Increments<'_> {
             return Ok(at_once);
         };
         // Its end may be a solution of the whole load step, too.
-        let from_there = in_parts.clone_state(slips, self.settings.method);
+        let from_there = in_parts.clone_state(slips, energies, self.settings.method);
         let at_once = self.solve(end, at_end, from_there, seconds)?;
         match self.is_converged(&at_once) {
             true => Ok(at_once),
@@ -103,6 +109,7 @@ impl Increments<'_> {
     ) -> Result<Option<Increment>, Failure> {
         let mut way = Way::default();
         let mut work = BTreeMap::new();
+        let mut energy = EnergyBalance::default();
         loop {
             let moment = Moment {
                 step: k,
@@ -117,6 +124,7 @@ impl Increments<'_> {
                 }
             }
             solved.slips.add_work(&work);
+            solved.energy = solved.energy.since(energy);
             if way.accept() {
                 if let Some(outcome) = &mut solved.outcome {
                     outcome.count_increments(way.increments);
@@ -124,6 +132,7 @@ impl Increments<'_> {
                 return Ok(Some(solved));
             }
             work = std::mem::take(&mut solved.slips.work);
+            energy = solved.energy;
             state = solved.into_state(self.settings.method);
         }
     }
@@ -143,7 +152,7 @@ impl Increments<'_> {
         &self,
         moment: Moment,
         analysis: &RigidBodyAnalysis,
-        before: StepState,
+        mut before: StepState,
         seconds: &mut PhaseSeconds,
     ) -> Result<Increment, Failure> {
         let &Self {
@@ -160,6 +169,7 @@ impl Increments<'_> {
         log.phase("condensing the load", None);
         let lap = Instant::now();
         let (start, held_at) = (before.start(), before.slips.clone());
+        let energies_before = std::mem::take(&mut before.energies);
         let loads = before.loads(&context, moment, analysis);
         let loading = Loading {
             context,
@@ -218,6 +228,7 @@ impl Increments<'_> {
         };
         let stress_of = (!settings.no_stress).then_some(moment.step);
         let solution = Solution::new(&fixed, analysis, discrete, stress_of);
+        let (energies, energy) = energies(&fixed, &solution, &energies_before);
         if let Some(outcome) = &mut outcome {
             outcome.accept(&solution.certificate, context.catalog.has_friction());
             outcome.name_unsettled(&unsettled_points(&context, outcome));
@@ -228,6 +239,8 @@ impl Increments<'_> {
             pairs: problem.pairs,
             outcome,
             solution,
+            energies,
+            energy,
         })
     }
 }
@@ -249,13 +262,20 @@ fn unsettled_points(context: &Context<'_>, outcome: &SweepOutcome) -> Vec<String
 }
 
 impl Increment {
-    /// The state that it leaves, but for the tangential jumps, which are those of another one.
-    fn clone_state(&self, slips: BTreeMap<usize, Vec<f64>>, method: Method) -> StepState {
-        StepState::after(self.pairs.clone(), slips, self.outcome.as_ref(), method)
+    /// The state that it leaves, but for tangential jumps and energies, which are those of another one.
+    fn clone_state(
+        &self,
+        slips: BTreeMap<usize, Vec<f64>>,
+        energies: BTreeMap<usize, BlockEnergy>,
+        method: Method,
+    ) -> StepState {
+        let outcome = self.outcome.as_ref();
+        StepState::after(self.pairs.clone(), slips, energies, outcome, method)
     }
 
     /// The state that it leaves.
     pub fn into_state(self, method: Method) -> StepState {
-        StepState::after(self.pairs, self.slips.jumps, self.outcome.as_ref(), method)
+        let outcome = self.outcome.as_ref();
+        StepState::after(self.pairs, self.slips.jumps, self.energies, outcome, method)
     }
 }

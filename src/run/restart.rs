@@ -12,6 +12,7 @@ use contact_dd_partition::destination::unfinished;
 use serde::{Deserialize, Serialize};
 
 use crate::bytes::Reals;
+use crate::certificate::energy::BlockEnergy;
 use crate::contact::friction::Status;
 use crate::contact::pair::PairState;
 use crate::context::Context;
@@ -34,6 +35,8 @@ struct Kept {
     pairs: Vec<PairState>,
     /// The tangential jumps of every contact group (m).
     slips: Vec<Vec<f64>>,
+    /// What the balance of energy needs of every block, where there is friction.
+    energies: Vec<BlockEnergy>,
 }
 
 /// Two runs that agree in this go the same way.
@@ -99,13 +102,14 @@ pub fn finished_steps(context: &Context<'_>, settings: &Settings) -> Result<Fini
         false => Ok(None),
     })?;
     let mut finished = Finished::default();
-    let (mut pairs, mut slips) = (Vec::new(), Vec::new());
+    let (mut pairs, mut slips, mut energies) = (Vec::new(), Vec::new(), Vec::new());
     if let Some(kept) = kept {
         finished.count = kept.steps.len();
         finished.steps = kept.steps;
         finished.state.interface = kept.interface;
         pairs = kept.pairs;
         slips = kept.slips;
+        energies = kept.energies;
     } else {
         finished.warning = Some(format!(
             "--restart: there is no {}: this run begins at the start",
@@ -128,6 +132,15 @@ pub fn finished_steps(context: &Context<'_>, settings: &Settings) -> Result<Fini
                 finished.state.slips.insert(g, of_group);
             },
         );
+        if context.catalog.has_friction() {
+            comm.scatter(
+                context.plan.owners(),
+                |b| std::mem::take(&mut energies[b]),
+                |b, energy| {
+                    finished.state.energies.insert(b, energy);
+                },
+            );
+        }
     }
     Ok(finished)
 }
@@ -176,6 +189,14 @@ pub fn keep(
         |g| Reals(state.slips[&g].clone()),
         |_, Reals(of_group)| slips.push(of_group),
     );
+    let mut energies = Vec::new();
+    if context.catalog.has_friction() {
+        context.comm.gather(
+            context.plan.owners(),
+            |b| state.energies[&b].clone(),
+            |_, energy| energies.push(energy),
+        );
+    }
     let write = |result: &mut ResultFile| -> Result<(), Failure> {
         let kept = Kept {
             run: Identity::new(settings)?,
@@ -183,6 +204,7 @@ pub fn keep(
             interface: state.interface.clone(),
             pairs,
             slips,
+            energies,
         };
         let mut bytes = Vec::new();
         ciborium::into_writer(&kept, &mut bytes)

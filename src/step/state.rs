@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::destination::unfinished;
 
+use crate::certificate::energy::BlockEnergy;
 use crate::contact::friction::Status;
 use crate::contact::pair::{ContactPair, PairState};
 use crate::context::{Context, Loads, Moment};
@@ -24,15 +25,18 @@ pub struct StepState {
     /// The tangential jumps at the tangential conditions of every contact group of this rank, since the bodies
     /// were unloaded (m).
     pub slips: BTreeMap<usize, Vec<f64>>,
+    /// Where there is friction, what the balance of energy needs of the blocks of this rank.
+    pub energies: BTreeMap<usize, BlockEnergy>,
 }
 
 impl StepState {
-    /// The state after a step that ended with `outcome`, which the root has, and `slips`. A step that went nowhere is no
+    /// The state after a step that ended with `outcome`, which the root has, `slips` and `energies`. A step that went nowhere is no
     /// place to start from; neither are others for picard, whose relaxation is that of the contacts that the
     /// bilateral solution leaves closed.
     pub fn after(
         pairs: BTreeMap<usize, ContactPair>,
         slips: BTreeMap<usize, Vec<f64>>,
+        energies: BTreeMap<usize, BlockEnergy>,
         outcome: Option<&SweepOutcome>,
         method: Method,
     ) -> Self {
@@ -44,6 +48,7 @@ impl StepState {
             interface: (outcome.filter(starts)).map(|o| (o.u.clone(), o.statuses.clone())),
             pairs: pairs.map(|(p, pair)| (p, pair.into_state())).collect(),
             slips,
+            energies,
         }
     }
 

@@ -16,6 +16,43 @@ pub fn two_blocks_with_friction() -> Model {
     posed_in_steps(&scene.replacen("[[contact]]\n", "[[contact]]\nfriction = '0.1+0.2*x'\n", 1))
 }
 
+/// Two solids, the upper one of which is moved to and fro on the lower one.
+pub fn two_solids_with_friction() -> Model {
+    let block = |name, z| {
+        solid(
+            name,
+            Hexahedron8,
+            [3, 3, 2],
+            between([0.0, 0.0, z], [1.0, 1.0, z + 0.5]),
+        )
+    };
+    let mut text = "materials.rock = {young = 20e9, poisson = 0.2}
+        bodies.lower.material = 'rock'
+        bodies.upper.material = 'rock'
+        [[contact]]
+        name = 'joint'
+        sides = ['upper z0', 'lower z1']
+        gap = 0.0
+        friction = 0.2\n"
+        .to_owned();
+    for [x, y] in [[1e-4, 0.0], [1e-4, 1e-4], [-1e-4, 0.5e-4]] {
+        text += &format!(
+            "[[step]]
+            [[step.displacement]]
+            on = 'lower z0'
+            x = 0
+            y = 0
+            z = 0
+            [[step.displacement]]
+            on = 'upper z1'
+            x = {x:e}
+            y = {y:e}
+            z = -1e-4\n"
+        );
+    }
+    model(&text, joined(block("lower", 0.0), block("upper", 0.5)))
+}
+
 fn posed_in_steps(scene: &str) -> Model {
     let steps = "
         [[step]]

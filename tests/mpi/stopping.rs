@@ -1,6 +1,7 @@
 //! Runs that a signal stops.
 
 use rustix::process::Signal;
+use serde_json::Value;
 
 use super::*;
 
@@ -42,6 +43,11 @@ pub fn stopped_between_steps(trials: &mut Trials) {
     }
     stop_between_steps(trials, "", steps::two_blocks_in_steps);
     stop_between_steps(trials, "_with_friction", steps::two_blocks_with_friction);
+    stop_between_steps(
+        trials,
+        "_with_friction_in_space",
+        steps::two_solids_with_friction,
+    );
 }
 
 fn stop_between_steps(trials: &mut Trials, name: &'static str, model: fn() -> Model) {
@@ -50,6 +56,7 @@ fn stop_between_steps(trials: &mut Trials, name: &'static str, model: fn() -> Mo
         let ended = case.run_on(ranks, &[]);
         assert_eq!(ended.code(), 0, "{}", ended.stderr);
         let expected = datasets(&case.result());
+        let friction = friction(&case);
         let status = &expected["/contact/joint/status"];
         assert_eq!(status.contains(&2), !name.is_empty());
         fs::write(case.result(), "an older result").unwrap();
@@ -60,8 +67,16 @@ fn stop_between_steps(trials: &mut Trials, name: &'static str, model: fn() -> Mo
         let ended = case.run_on(1 + ranks % 4, &["--restart"]);
         assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
         assert!(datasets(&case.result()) == expected);
+        assert_eq!(self::friction(&case), friction);
         assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
     });
+}
+
+/// What the report says of friction in every load step.
+fn friction(case: &Case) -> Vec<Value> {
+    let report = Solution::read_report(&case.result());
+    let steps = report["steps"].as_array().unwrap();
+    steps.iter().map(|step| step["friction"].clone()).collect()
 }
 
 /// What isn't of this run is refused and stays; where there is nothing to go on with the run begins anew.

@@ -9,6 +9,7 @@ pub mod assembled;
 pub mod blocks;
 pub mod close;
 pub mod comparison;
+pub mod energy;
 pub mod extruded;
 pub mod frictional;
 pub mod isoparametric;

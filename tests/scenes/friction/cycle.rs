@@ -2,11 +2,10 @@
 
 use contact_dd_partition::model::Model;
 
-use crate::support::assembled::Assembled;
 use crate::support::blocks::Blocks;
 use crate::support::close::close;
-use crate::support::scenes::{BODIES, HELD, JOINT, at_step, model};
-use crate::support::solution::Solution;
+use crate::support::energy::{Works, checked_works};
+use crate::support::scenes::{BODIES, HELD, JOINT, model};
 use crate::support::solver::solve_steps;
 
 /// A block that is pressed on another one and moved to and fro by its top, so many steps a quarter.
@@ -42,53 +41,6 @@ fn driven(law: &str, largest: f64, steps: usize, cycles: usize) -> Model {
     model(&text, blocks.mesh)
 }
 
-/// Work of supports and loads and of friction in every increment, by the mean of the forces at both its ends; without
-/// normal forces at moving gaps their difference is the energy of the bodies.
-fn works(model: &Model, solutions: &[Solution]) -> Vec<[f64; 2]> {
-    let assembled: Vec<Assembled> = (0..solutions.len())
-        .map(|k| Assembled::new(&at_step(model, k)))
-        .collect();
-    let forces = |solution: &Solution, assembled: &Assembled| -> (Vec<f64>, Vec<f64>) {
-        let points: Vec<_> = model
-            .contacts
-            .iter()
-            .flat_map(|c| &solution.contacts[&c.name])
-            .collect();
-        let tangents = assembled.tangents.iter();
-        let along = tangents.map(|t| {
-            let force = points[t.condition].tangential_force;
-            -(0..3).map(|i| force[i] * t.direction[i]).sum::<f64>()
-        });
-        (
-            points.iter().map(|point| point.force).collect(),
-            along.collect(),
-        )
-    };
-    (1..solutions.len())
-        .map(|k| {
-            let ends = [k - 1, k].map(|k| (&solutions[k], &assembled[k]));
-            let u = ends.map(|(solution, _)| solution.dofs(model));
-            let by = ends.map(|(solution, assembled)| forces(solution, assembled));
-            // K u + Bᵀ λ + Tᵀ λ_t: loads and reactions together.
-            let outer = [0, 1].map(|end| {
-                let residual = ends[end].1.residual(&u[end], &by[end].0, &by[end].1).value;
-                (residual.iter().zip(&ends[end].1.load))
-                    .map(|(r, f)| r + f)
-                    .collect::<Vec<f64>>()
-            });
-            let moved = u[1].iter().zip(&u[0]).map(|(a, b)| a - b);
-            let done = moved.zip(outer[0].iter().zip(&outer[1]));
-            let outside = done.map(|(du, (a, b))| du * (a + b) / 2.0).sum();
-            let tangents = ends[0].1.tangents.iter().enumerate();
-            let friction = tangents.map(|(t, tangent)| {
-                let slip = tangent.jump(&u[1]) - tangent.jump(&u[0]);
-                slip * (by[0].1[t] + by[1].1[t]) / 2.0
-            });
-            [outside, friction.sum()]
-        })
-        .collect()
-}
-
 /// From the second cycle on every cycle ends where it began, so that no energy is left in the bodies.
 #[test]
 fn what_a_cycle_takes_is_what_friction_dissipates() {
@@ -101,11 +53,12 @@ fn what_a_cycle_takes_is_what_friction_dissipates() {
             "{law}"
         );
         assert!(solutions.iter().any(|s| s.slipping() > 0), "{law}");
-        let works = works(&model, &solutions);
+        let works = checked_works(&model, &solutions);
         let [first, second] = [1, 2].map(|cycle| {
-            let part = &works[4 * steps * cycle..4 * steps * (cycle + 1)];
-            part.iter()
-                .fold([0.0; 2], |sum, work| [0, 1].map(|i| sum[i] + work[i]))
+            let part = &works[4 * steps * cycle + 1..][..4 * steps];
+            part.iter().fold([0.0; 2], |[outside, friction], work| {
+                [outside + work.outside(), friction + work.friction]
+            })
         });
         for [outside, friction] in [first, second] {
             assert!(friction > 0.0, "{law}");
@@ -140,4 +93,38 @@ fn a_block_that_slides_back_and_forth_dissipates_force_times_way() {
         close(reported.unwrap(), work, 1e-9 * work);
         assert!(work > 0.0);
     }
+}
+
+/// Pressure on part of the way of a gap that opens or closes takes energy, too.
+#[test]
+fn a_report_says_where_energy_goes_where_gaps_open() {
+    let mut text = format!("{BODIES}{HELD}{JOINT}\ngap = 1e-6\nfriction = 0.4\n");
+    for (push, y) in [(0.0, -2e-5), (4e5, -1.5e-5), (3e5, 1e-6), (-2e5, -1e-5)] {
+        text += &format!(
+            "[[step]]
+            [[step.displacement]]
+            on = 'lower bottom'
+            x = 0.0
+            y = 0.0
+            [[step.displacement]]
+            on = 'upper top'
+            x = {:e}
+            y = {y:e}
+            [[step.traction]]
+            on = 'upper right'
+            value = [{push:e}, 0.0]\n",
+            1e-11 * push
+        );
+    }
+    let blocks = Blocks::new()
+        .rectangle("lower", [0.0, 2.0], [0.0, 1.0], [8, 4])
+        .rectangle("upper", [0.5, 1.5], [1.0, 1.5], [4, 3]);
+    let model = model(&text, blocks.mesh);
+    let works = checked_works(&model, &solve_steps(&model, 4));
+    let is_much =
+        |part: fn(&Works) -> f64| works.iter().any(|w| part(w).abs() > 1e-3 * w.elastic.abs());
+    assert!(
+        is_much(|w| w.pressure) && is_much(|w| w.friction) && is_much(|w| w.loads),
+        "{works:?}"
+    );
 }

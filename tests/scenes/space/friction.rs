@@ -11,6 +11,7 @@ use super::{BODY, is_near};
 use crate::support::assembled::Assembled;
 use crate::support::blocks::{Blocks, joined};
 use crate::support::close::close;
+use crate::support::energy::{Works, checked_works};
 use crate::support::extruded::extruded;
 use crate::support::scenes::{at_step, built_in, model, two_block_scene, two_blocks};
 use crate::support::solids::{SOLIDS, between, moved, solid, turned};
@@ -213,6 +214,27 @@ fn what_slips_evenly_is_pulled_back_by_the_bound_whatever_way_it_goes() {
                 assert!(point.slipping);
             }
         }
+    }
+}
+
+/// A closed way on which a joint sticks and slips; in the end it comes back to where it began.
+#[test]
+fn what_a_cycle_in_space_takes_is_what_friction_dissipates() {
+    let corners = [[2e-4, 0.0], [2e-4, 2e-4], [-2e-4, 1e-4], [0.0, -2e-4]];
+    for (kind, law) in [
+        (Hexahedron8, "friction = 0.3"),
+        (Tetrahedron10, "tresca = 1e6"),
+    ] {
+        let mut steps = String::new();
+        (0..5).for_each(|_| corners.iter().for_each(|[x, y]| steps += &to(*x, *y)));
+        let (text, mesh) = driven(kind, law, &steps);
+        let model = model(&text, mesh);
+        let works = checked_works(&model, &solve_steps(&model, 4));
+        let last = &works[4 * corners.len()..];
+        let outside: f64 = last.iter().map(Works::outside).sum();
+        let friction: f64 = last.iter().map(|work| work.friction).sum();
+        assert!(friction > 0.0, "{law}");
+        close(outside, friction, 1e-10 * friction);
     }
 }
 
