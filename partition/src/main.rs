@@ -86,7 +86,7 @@ fn run(args: &CommandLine) -> Result<(), Failure> {
         problem.catalog.choose_clusters(args.clusters);
     }
     problem.write(&source.output)?;
-    report(&problem, &source.output);
+    report(&problem, &model.found, &source.output);
     Ok(())
 }
 
@@ -187,12 +187,15 @@ fn output(args: &CommandLine, stem: &Path) -> PathBuf {
     })
 }
 
-/// Prints what the problem file holds and what to do with it.
-fn report(problem: &Problem, output: &Path) {
+/// Prints what the problem file holds, which contacts were `found`, and what to do with it.
+fn report(problem: &Problem, found: &[String], output: &Path) {
     say(&format!("title         {}", problem.catalog.title));
     say(&problem.summary().to_string());
     if !problem.catalog.solver.is_empty() {
         say(&format!("settings      {}", problem.catalog.solver));
+    }
+    for contact in found {
+        say(&format!("found         {contact}"));
     }
     for warning in &problem.catalog.warnings {
         say(&format!("{WARNING}warning{WARNING:#}       {warning}"));

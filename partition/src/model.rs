@@ -5,6 +5,7 @@
 
 mod blend;
 mod bodies;
+mod clip;
 mod contact;
 mod diagnostics;
 mod groups;
@@ -15,9 +16,11 @@ mod node_pairs;
 mod obstacle;
 mod ray_search;
 mod sides;
+mod skin;
 mod steps;
 mod supports;
 mod surface;
+mod touching;
 
 pub use self::initial_stress::InitialStress;
 pub use self::steps::ModelStep;
@@ -104,6 +107,8 @@ pub struct Model {
     pub steps: Vec<ModelStep>,
     /// Contacts in the order of the scene.
     pub contacts: Vec<Contact>,
+    /// What the contacts consist of that were found by themselves, in words, each with its name.
+    pub found: Vec<String>,
     /// The partition that the scene asks for, a subdomain for every cell.
     pub prescribed_subdomains: Option<Vec<u32>>,
     /// What a user should know and that isn't an error.
@@ -118,16 +123,23 @@ impl Model {
     pub fn new(scene: &Scene, mesh: Mesh) -> Result<Self, InputError> {
         let plane = plane_state(scene, &mesh)?;
         let mut warnings = mesh.warnings.clone();
-        let bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
+        let mut bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
         let topology = Topology::new(&bodies.mesh);
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
         let materials = bodies::materials(scene, plane);
         let loads = steps::Loads::new(scene, &bodies, &topology, &materials)?;
+        let declared = touching::contacts(scene, &mut bodies, &topology, &mut warnings)?;
         let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads, scene);
-        let contacts = (0..)
-            .zip(&scene.contact)
-            .map(|(number, keys)| sides.contact(number, keys, &mut warnings))
-            .collect::<Result<Vec<_>, _>>()?;
+        let mut contacts = Vec::new();
+        let mut found = Vec::new();
+        for touching::Declared { contact, words } in &declared {
+            let made = sides.contact(contacts.len() as u32, contact, &mut warnings)?;
+            // Where all nodes are held no bodies touch each other that could part.
+            if words.is_none() || !made.points.is_empty() {
+                contacts.push(made);
+                found.extend(words.clone());
+            }
+        }
         let diagnostics = diagnostics::Diagnostics {
             scene,
             bodies: &bodies,
@@ -135,6 +147,7 @@ impl Model {
             materials: &materials,
             loads: &loads,
             contacts: &contacts,
+            declared: &declared,
         };
         warnings.extend(diagnostics.warnings());
         let prescribed_subdomains = (scene.subdomains.as_ref())
@@ -157,6 +170,7 @@ impl Model {
             initial_stress: loads.initial_stress,
             steps: loads.steps,
             contacts,
+            found,
             prescribed_subdomains,
             warnings,
         })

@@ -1,6 +1,7 @@
 //! What a user writes: `scene.toml`.
 
 pub mod condition;
+pub mod contact;
 pub mod expression;
 mod fault;
 pub mod friction;
@@ -21,7 +22,8 @@ use serde::Deserialize;
 use crate::error::InputError;
 use crate::solver::SolverSettings;
 use crate::source;
-use condition::{Bilateral, Body, Contact, Displacement, Names, Pressure, Traction};
+use condition::{Bilateral, Body, Displacement, Names, Pressure, Traction};
+use contact::Declaration;
 use material::{Elasticity, PlaneState};
 use step::LoadStep;
 use units::Units;
@@ -57,9 +59,9 @@ pub struct Scene {
     /// Γ_τ, pressures.
     #[serde(default, deserialize_with = "place::list")]
     pub pressure: Vec<Pressure>,
-    /// Γ_c.
+    /// Γ_c: contacts, and bodies between which they are to be found.
     #[serde(default, deserialize_with = "place::list")]
-    pub contact: Vec<Contact>,
+    pub contact: Vec<Declaration>,
     /// Load steps, one after the other; without any the loads of the scene are there at once.
     #[serde(default, deserialize_with = "place::list")]
     pub step: Vec<LoadStep>,

@@ -133,15 +133,25 @@ class Model:
                 self.scene["bodies"][name]["body_force"] = body_force
 
     def contact(
-        self, a: Groups, b: Groups, *, name: str | None = None, friction: Number | None = None,
+        self, a: Groups | None = None, b: Groups | None = None, *, between: Groups | None = None,
+        within: Number | None = None, name: str | None = None, friction: Number | None = None,
         cohesion: Number | None = None, tresca: Number | None = None, gap: Number | None = None,
         interference: bool | None = None, pairing: str | None = None,
     ) -> None:
         """Two sides that may touch, slide and part. Pressures and normals belong to side `a`, of curved sides best
-        the one with the coarser mesh. The gap is measured from the mesh where it isn't given."""
+        the one with the coarser mesh. The gap is measured from the mesh where it isn't given.
+
+        With `between` in place of sides: contacts wherever two of these bodies touch, or one touches itself, or "all";
+        `within` is up to which distance."""
+        if (between is None) == (a is None) or (a is None) != (b is None):
+            raise InputError("contact: expected two sides, or the bodies between which contacts are found")
+        if name is None and between is not None:
+            name = "contact" if between == "all" else f"contact of {joined(between)}"
+        elif name is None and a is not None and b is not None:
+            name = f"{joined(a)} on {joined(b)}"
         self._add(
-            "contact", name=name or f"{joined(a)} on {joined(b)}", sides=[a, b], friction=friction, cohesion=cohesion,
-            tresca=tresca, gap=gap, interference=interference, pairing=pairing,
+            "contact", name=name, sides=[a, b] if between is None else None, between=between, within=within,
+            friction=friction, cohesion=cohesion, tresca=tresca, gap=gap, interference=interference, pairing=pairing,
         )
 
     def obstacle(

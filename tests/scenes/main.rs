@@ -29,4 +29,5 @@ mod stability;
 mod steps;
 #[path = "../support/mod.rs"]
 mod support;
+mod touching;
 mod validation;

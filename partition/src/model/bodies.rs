@@ -8,7 +8,8 @@ use crate::error::InputError;
 use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::{Group, Mesh};
 use crate::scene::Scene;
-use crate::scene::condition::{Body, Contact, Names};
+use crate::scene::condition::{Body, Names};
+use crate::scene::contact::{Contact, Declaration};
 use crate::scene::material::Elasticity;
 use crate::stiffness::Stiffness;
 
@@ -222,8 +223,9 @@ fn used_groups(scene: &Scene) -> BTreeSet<&str> {
             .chain(loading.traction.iter().map(|c| &c.on))
             .chain(loading.pressure.iter().map(|c| &c.on))
     });
+    let explicit = scene.contact.iter().filter_map(Declaration::contact);
     (loaded.chain(scene.bilateral.iter().map(|c| &c.on)))
-        .chain(scene.contact.iter().flat_map(Contact::sides))
+        .chain(explicit.flat_map(Contact::sides))
         .flat_map(Names::iter)
         .collect()
 }

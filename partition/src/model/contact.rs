@@ -15,7 +15,8 @@ use crate::magnitude::short;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
-use crate::scene::condition::{self, Names, Pairing, Partner};
+use crate::scene::condition::Names;
+use crate::scene::contact::{self, Pairing, Partner};
 use crate::scene::material::PlaneState;
 use crate::scene::units::Units;
 
@@ -76,7 +77,7 @@ impl<'a> Contacts<'a> {
     pub fn contact(
         &self,
         number: u32,
-        keys: &condition::Contact,
+        keys: &contact::Contact,
         warnings: &mut Vec<String>,
     ) -> Result<Contact, InputError> {
         let what = format!("contact '{}'", keys.name);

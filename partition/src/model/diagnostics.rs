@@ -7,12 +7,13 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::bodies::Bodies;
 use super::steps::Loads;
+use super::touching::Declared;
 use super::{Contact, Material, groups};
 use crate::magnitude::short;
 use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
-use crate::scene::condition::Partner;
+use crate::scene::contact::Partner;
 
 /// Which sides of two contacts have a facet in common: the first's a with the second's a and b, then its b.
 type Common = [[bool; 2]; 2];
@@ -25,6 +26,8 @@ pub(super) struct Diagnostics<'a> {
     pub materials: &'a [Material],
     pub loads: &'a Loads,
     pub contacts: &'a [Contact],
+    /// What the contacts are made from.
+    pub declared: &'a [Declared],
 }
 
 impl Diagnostics<'_> {
@@ -64,7 +67,7 @@ impl Diagnostics<'_> {
     /// Two contacts between the same facets, or with the same obstacle: each of them holds what the
     /// other holds already.
     pub(super) fn repeated_contacts(&self) -> Vec<String> {
-        let contacts = &self.scene.contact;
+        let contacts: Vec<_> = self.declared.iter().map(|of| &of.contact).collect();
         let mesh = &self.bodies.mesh;
         let mut of_facet: HashMap<u32, Vec<(usize, usize)>> = HashMap::new();
         let mut common: BTreeMap<(usize, usize), Common> = BTreeMap::new();
@@ -80,7 +83,7 @@ impl Diagnostics<'_> {
             }
         }
         let again = common.into_iter().filter_map(|((first, second), common)| {
-            let (first, second) = (&contacts[first], &contacts[second]);
+            let (first, second) = (contacts[first], contacts[second]);
             let is_repeated = match (&first.partner, &second.partner) {
                 (Partner::Obstacle(one), Partner::Obstacle(other)) => one == other,
                 _ => (common[0][0] && common[1][1]) || (common[0][1] && common[1][0]),

@@ -15,7 +15,6 @@
 
 mod bases;
 mod chart;
-mod clip;
 mod cover;
 mod dual;
 mod field;

@@ -85,6 +85,12 @@ impl SurfaceFacet {
         Blending::new(self.kind, self.corner_on_axis())
     }
 
+    /// The mean of its nodes (m).
+    pub fn middle(&self) -> [f64; 3] {
+        let part = 1.0 / self.at.len() as f64;
+        (self.at.iter()).fold([0.0; 3], |sum, &at| advance(sum, part, at))
+    }
+
     /// Its diameter, by the order of magnitude (m).
     pub fn size(&self) -> f64 {
         match self.kind.dim() {
@@ -132,9 +138,7 @@ impl SurfaceFacet {
     /// The way from its node `node` to its middle, across `normal`; `None` if it isn't its node.
     fn aside(&self, node: u32, normal: [f64; 3]) -> Option<[f64; 3]> {
         let from = self.nodes.iter().position(|&n| n == node)?;
-        let count = self.at.len() as f64;
-        let middle = (self.at.iter()).fold([0.0; 3], |sum, &at| advance(sum, 1.0 / count, at));
-        let way = advance(middle, -1.0, self.at[from]);
+        let way = advance(self.middle(), -1.0, self.at[from]);
         Some(advance(way, -dot(way, normal), normal))
     }
 

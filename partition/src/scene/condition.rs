@@ -1,12 +1,10 @@
-//! Bodies, supports, loads and contacts as a scene gives them.
+//! Bodies, supports, loads and obstacles as a scene gives them.
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
-use super::friction::{self, Friction};
 use super::initial::{InitialStress, Thermal};
 use super::number::{Constant, ConstantVector, Number, Vector, expected_components};
-use crate::name;
 
 /// Names of physical groups: one, or a list without repetition.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,6 +14,12 @@ impl Names {
     /// The names in the order in which they were given.
     pub fn iter(&self) -> impl Iterator<Item = &str> {
         self.0.iter().map(String::as_str)
+    }
+}
+
+impl From<String> for Names {
+    fn from(name: String) -> Self {
+        Self(vec![name])
     }
 }
 
@@ -144,125 +148,6 @@ pub struct Pressure {
     pub on: Names,
     /// Pressure, positive where it pushes into the body (N/m²).
     pub value: Number,
-}
-
-/// Γ_c: two sides that may touch, or one side and a rigid obstacle.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(try_from = "ContactKeys")]
-pub struct Contact {
-    /// Its name, that of a group in the result file.
-    pub name: String,
-    /// Side a.
-    pub side_a: Names,
-    /// What side a may touch.
-    pub partner: Partner,
-    /// How conditions are made of two sides; `None` to let their nodes decide.
-    pub pairing: Option<Pairing>,
-    /// The gap in place of the geometric one (m).
-    pub gap: Option<Number>,
-    /// Whether negative gaps are intended.
-    pub interference: bool,
-    /// Its law of friction; `None` without.
-    pub friction: Option<Friction>,
-}
-
-impl Contact {
-    /// Its sides, one of them where its partner is an obstacle.
-    pub fn sides(&self) -> impl Iterator<Item = &Names> {
-        let side_b = match &self.partner {
-            Partner::Side(names) => Some(names),
-            Partner::Obstacle(_) => None,
-        };
-        std::iter::once(&self.side_a).chain(side_b)
-    }
-}
-
-/// What the side a of a contact may touch.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Partner {
-    /// Side b.
-    Side(Names),
-    /// A rigid obstacle.
-    Obstacle(Obstacle),
-}
-
-/// How the conditions of a contact are made of its two sides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Pairing {
-    /// A condition for every node of side a and the node of side b opposite it.
-    Nodes,
-    /// A condition for every node of side a and what of side b lies opposite its surroundings,
-    /// weighted by dual Lagrange multipliers.
-    Mortar,
-}
-
-#[derive(Deserialize)]
-#[serde(
-    deny_unknown_fields,
-    expecting = "a table of name, sides, pairing, gap, interference, obstacle, friction, cohesion and tresca"
-)]
-struct ContactKeys {
-    #[serde(deserialize_with = "contact_name")]
-    name: String,
-    sides: Vec<Names>,
-    pairing: Option<Pairing>,
-    gap: Option<Number>,
-    #[serde(default)]
-    interference: bool,
-    obstacle: Option<Obstacle>,
-    #[serde(default, deserialize_with = "friction::bound")]
-    friction: Option<Number>,
-    #[serde(default, deserialize_with = "friction::bound")]
-    cohesion: Option<Number>,
-    #[serde(default, deserialize_with = "friction::bound")]
-    tresca: Option<Number>,
-}
-
-impl TryFrom<ContactKeys> for Contact {
-    type Error = String;
-
-    fn try_from(keys: ContactKeys) -> Result<Self, String> {
-        let count = keys.sides.len();
-        let mut sides = keys.sides.into_iter();
-        let (side_a, partner) = match (sides.next(), sides.next(), sides.next(), keys.obstacle) {
-            (Some(a), Some(b), None, None) => {
-                if let Some(name) = a.iter().find(|name| b.iter().any(|other| other == *name)) {
-                    return Err(format!("'{name}' is on both 'sides'"));
-                }
-                (a, Partner::Side(b))
-            }
-            (Some(_), None, None, Some(_)) if keys.pairing.is_some() => {
-                return Err("'pairing' is of two sides; expected none beside an 'obstacle'".into());
-            }
-            (Some(a), None, None, Some(obstacle)) => (a, Partner::Obstacle(obstacle)),
-            _ => {
-                return Err(format!(
-                    "the number of 'sides' is {count}; expected 2, or 1 beside an 'obstacle'"
-                ));
-            }
-        };
-        Ok(Self {
-            name: keys.name,
-            side_a,
-            partner,
-            pairing: keys.pairing,
-            gap: keys.gap,
-            interference: keys.interference,
-            friction: Friction::new(keys.friction, keys.cohesion, keys.tresca)?,
-        })
-    }
-}
-
-fn contact_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
-    let name = String::deserialize(deserializer)?;
-    match name::check_contact(&name) {
-        Ok(()) => Ok(name),
-        Err(reason) => Err(D::Error::custom(format!(
-            "'{}' {reason}",
-            name::shown(&name)
-        ))),
-    }
 }
 
 /// A rigid obstacle.

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::condition::{Displacement, Partner, Pressure, Traction};
+use super::condition::{Displacement, Pressure, Traction};
+use super::contact::{Contact, Declaration, Partner};
 use super::material::{Elasticity, PlaneState};
 use super::place::{self, Step};
 use super::{Scene, suggest};
@@ -34,6 +35,7 @@ impl Scene {
         self.wrong_name()
             .or_else(|| self.unknown_material())
             .or_else(|| self.repeated_contact())
+            .or_else(|| self.unknown_body())
             .or_else(|| self.plane.and_then(|_| self.wrong_dimension(2)))
             .or_else(|| self.wrong_step())
     }
@@ -70,10 +72,27 @@ impl Scene {
     fn repeated_contact(&self) -> Option<Fault> {
         let mut seen = HashMap::new();
         for (index, contact) in self.contact.iter().enumerate() {
-            if let Some(first) = seen.insert(contact.name.as_str(), index) {
-                let (first, name) = (first + 1, &contact.name);
+            if let Some(first) = seen.insert(contact.name(), index) {
+                let (first, name) = (first + 1, contact.name());
                 let message = format!("contact[{first}] has the name '{name}' already");
                 return Some((entry("contact", index, "name"), message));
+            }
+        }
+        None
+    }
+
+    /// A body between which and another one contacts are looked for, and that isn't there.
+    fn unknown_body(&self) -> Option<Fault> {
+        for (index, declared) in self.contact.iter().enumerate() {
+            let Declaration::Between(between) = declared else {
+                continue;
+            };
+            let is_unknown = |name: &&str| !self.bodies.contains_key(*name);
+            if let Some(name) = between.bodies.names().find(is_unknown) {
+                let known = self.bodies.keys().map(String::as_str);
+                let hint = suggest::hint_and_known(name, known);
+                let message = format!("there is no body '{name}'{hint}");
+                return Some((entry("contact", index, "between"), message));
             }
         }
         None
@@ -155,12 +174,17 @@ impl Scene {
             wrong_loads(dim, &within, displacement, traction, pressure, &mut check);
         }
         for (index, contact) in self.contact.iter().enumerate() {
-            if let Partner::Obstacle(obstacle) = &contact.partner {
+            if let Some(Contact {
+                partner: Partner::Obstacle(obstacle),
+                ..
+            }) = contact.contact()
+            {
                 check(entry("contact", index, "obstacle"), obstacle.fault(dim));
             }
-            let gap = contact.gap.as_ref().and_then(|gap| gap.fault(dim));
+            let (gap, friction) = contact.laws();
+            let gap = gap.and_then(|gap| gap.fault(dim));
             check(entry("contact", index, "gap"), gap);
-            if let Some((key, fault)) = contact.friction.as_ref().and_then(|law| law.fault(dim)) {
+            if let Some((key, fault)) = friction.and_then(|law| law.fault(dim)) {
                 check(entry("contact", index, key), Some(fault));
             }
         }

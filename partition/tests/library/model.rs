@@ -13,3 +13,4 @@ mod quadratic;
 mod space;
 mod steps;
 mod supports;
+mod touching;

@@ -122,6 +122,7 @@ impl Builder {
             cell_body: self.cell_body,
             steps: Vec::new(),
             contacts: self.contacts,
+            found: Vec::new(),
             prescribed_subdomains: None,
             warnings: vec!["something".into()],
         }

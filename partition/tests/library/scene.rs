@@ -5,7 +5,8 @@ mod refused;
 
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::scene::Scene;
-use contact_dd_partition::scene::condition::{Obstacle, Partner};
+use contact_dd_partition::scene::condition::Obstacle;
+use contact_dd_partition::scene::contact::{Chosen, Declaration, Partner};
 use contact_dd_partition::scene::friction::Friction;
 use contact_dd_partition::scene::material::Elasticity;
 use contact_dd_partition::scene::number::Number;
@@ -112,7 +113,12 @@ fn every_key_is_read() {
         Ok([0.0, -0.75e6, 0.0])
     );
     assert_eq!(scene.pressure[0].value, Number::Constant(0.6e7));
-    let [crack, table, ring] = scene.contact.as_slice() else {
+    let [
+        Declaration::Contact(crack),
+        Declaration::Contact(table),
+        Declaration::Contact(ring),
+    ] = scene.contact.as_slice()
+    else {
         panic!("three contacts");
     };
     assert_eq!(crack.name, "left crack");
@@ -133,6 +139,30 @@ fn every_key_is_read() {
     assert!(matches!(&ring.partner,
         Partner::Obstacle(Obstacle::Ball { radius, inside: true, .. })
             if *radius == 2.0 * std::f64::consts::PI));
+}
+
+#[test]
+fn contacts_may_be_looked_for_between_bodies() {
+    let text = "mesh = 'a.msh'\nplane = 'stress'\nmaterials.m = {young = 1, poisson = 0}
+        bodies.b.material = 'm'\nbodies.c.material = 'm'\nbodies.all.material = 'm'
+        [[contact]]\nname = 'joints'\nbetween = ['b', 'c']\nwithin = '1/2'\nfriction = 0.5
+        [[contact]]\nname = 'cracks'\nbetween = 'c'
+        [[contact]]\nname = 'others'\nbetween = 'all'\n";
+    let scene = Scene::parse(text).unwrap();
+    let [joints, cracks, others] = [0, 1, 2].map(|i| match &scene.contact[i] {
+        Declaration::Between(between) => between,
+        Declaration::Contact(_) => panic!("looked for"),
+    });
+    assert_eq!((joints.within, cracks.within), (Some(0.5), None));
+    assert!(joints.friction.is_some() && cracks.friction.is_none());
+    assert_eq!(others.bodies, Chosen::All);
+    let has = |chosen: &Chosen| {
+        [("b", "c"), ("c", "b"), ("c", "c"), ("b", "b"), ("b", "all")]
+            .map(|(a, b)| chosen.has(a, b))
+    };
+    assert_eq!(has(&joints.bodies), [true, true, false, false, false]);
+    assert_eq!(has(&cracks.bodies), [false, false, true, false, false]);
+    assert_eq!(has(&others.bodies), [true; 5]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Flat coordinates on a facet of space, in which what covers it is cut into polygons.
 
-use super::clip::{Point, area};
+use super::super::clip::{Point, area};
 use super::field::Field;
 use super::foot::{ROUND_OFF, STEPS, middle, solve};
 use super::map::{Map, Xi};

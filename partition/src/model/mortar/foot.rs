@@ -1,6 +1,6 @@
 //! Where a line meets a facet of space.
 
-use super::clip::Point;
+use super::super::clip::Point;
 use super::map::{Map, Xi};
 use crate::contact_point::LocalFrame;
 use crate::element::geometry::{difference, dot};

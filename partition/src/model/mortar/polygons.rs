@@ -8,9 +8,9 @@ use std::collections::HashMap;
 
 use nalgebra::DMatrix;
 
+use super::super::clip::{Point, area, clip, contains, middle, triangles};
 use super::super::surface::SurfaceFacet;
 use super::chart::{Chart, aside};
-use super::clip::{Point, area, clip, contains, middle, triangles};
 use super::cover::{Cover, Opposite, Overlap, Pieces};
 use super::field::Field;
 use super::foot::{foot, middle as middle_of};

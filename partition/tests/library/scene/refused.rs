@@ -143,6 +143,20 @@ normal = [0.0, 2.0] => normal = [0.0, 0]
     line 41: contact[2] 'table'.obstacle.normal: the zero vector
 name = "table" => name = "table"\npairing = 'nodes'
     contact[2] 'table': 'pairing' is of two sides; expected none beside an 'obstacle'
+sides = ["base"]\n =>
+    contact[2] 'table': expected its two 'sides', or the bodies 'between' which it is
+sides = ["base"] => between = "block"
+    contact[2] 'table': 'between' is of bodies; expected no 'obstacle'
+gap = 0.0 => between = "all"
+    contact[1] 'left crack': 'between' finds the sides; expected no 'sides'
+gap = 0.0 => within = 1
+    contact[1] 'left crack': 'within' stands beside 'between', which is missing
+gap = 0.0 => within = 0
+    line 34: contact[1] 'left crack'.within: the distance is 0; expected more than 0
+sides = ["left crack lower", ["left crack upper", "more"]] => between = ["block", "lft block"]
+    line 33: contact[1] 'left crack'.between: there is no body 'lft block'; did you mean 'left block'?
+sides = ["left crack lower", ["left crack upper", "more"]] => between = 7
+    line 33: contact[1] 'left crack'.between: invalid type: integer `7`, expected the name
 , normal = [0.0, 2.0] =>
     line 41: contact[2] 'table'.obstacle: expected 'point' and 'normal'
 "2*pi" => 0

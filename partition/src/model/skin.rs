@@ -1,0 +1,157 @@
+//! The boundary of all bodies, and which of its facets face each other.
+
+mod view;
+
+use std::collections::BTreeMap;
+
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+
+use self::view::View;
+use super::bodies::Bodies;
+use super::surface::SurfaceFacet;
+use crate::element::geometry::dot;
+use crate::mesh::Mesh;
+use crate::mesh::bounding_box::BoundingBox;
+use crate::mesh::topology::{CellFacet, Topology};
+use crate::scene::material::PlaneState;
+
+/// Distance up to which facets touch but for round-off, relative to their size.
+pub(super) const ROUND_OFF: f64 = 1e-6;
+
+/// Distance up to which facets touch where straight ones stand off the curves that they stand for, relative to their
+/// size: those of a circle of fifteen sides stand off by half of it.
+pub(super) const STANDING_OFF: f64 = 0.05;
+
+/// Cosine of the angle between neighbours that are no corner: 45°.
+const SMOOTH: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// A facet of the boundary.
+pub(super) struct SkinFacet {
+    pub place: CellFacet,
+    pub shape: SurfaceFacet,
+    /// Body of its cell.
+    pub body: u32,
+    /// Piece of the mesh that its cell hangs together with.
+    piece: u32,
+}
+
+/// Two facets that face each other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Facing {
+    /// The facets, ascending.
+    pub facets: [usize; 2],
+    /// The way from one to the other along the normal, in the middle of what they have in common (m).
+    pub gap: f64,
+    /// Length or area of what they have in common.
+    pub measure: f64,
+}
+
+/// The facets of all bodies that no two cells share.
+pub(super) struct Skin<'a> {
+    pub facets: Vec<SkinFacet>,
+    pub mesh: &'a Mesh,
+}
+
+impl<'a> Skin<'a> {
+    /// The facets of the boundary of bodies that are `wanted`; around an axis without those on the axis.
+    pub fn new(
+        bodies: &'a Bodies,
+        topology: &Topology,
+        plane: Option<PlaneState>,
+        wanted: impl Fn(&CellFacet) -> bool,
+    ) -> Self {
+        let mesh = &bodies.mesh;
+        let pieces = topology.pieces();
+        let facet = |place: CellFacet| {
+            let cell = place.cell as usize;
+            let (kind, _) = mesh.cells.kind(cell).facets()[place.facet as usize];
+            let nodes = place.nodes(&mesh.cells);
+            let at = nodes.iter().map(|&node| mesh.points[node as usize]);
+            SkinFacet {
+                place,
+                shape: SurfaceFacet::new(kind, nodes.clone(), at.collect(), plane),
+                body: bodies.cell_body[cell],
+                piece: pieces[cell],
+            }
+        };
+        let facets = topology.boundary().filter(wanted).map(facet);
+        Self {
+            facets: facets.filter(|facet| facet.shape.area() > 0.0).collect(),
+            mesh,
+        }
+    }
+
+    /// All pairs of facets that face each other with nothing between them, ascending, up to the distance `reach` of
+    /// the larger one's size (m), either way. O(n log n) for n facets, as long as the reach isn't beyond their size.
+    pub fn facing(&self, reach: impl Fn(f64) -> f64) -> Vec<Facing> {
+        let leaf = |(index, facet): (usize, &SkinFacet)| {
+            let all = BoundingBox::around(&facet.shape.kind.hull(&facet.shape.at));
+            GeomWithData::new(Rectangle::from_corners(all.low, all.high), index)
+        };
+        let tree = RTree::bulk_load(self.facets.iter().enumerate().map(leaf).collect());
+        let mut pairs: BTreeMap<[usize; 2], Facing> = BTreeMap::new();
+        for (index, facet) in self.facets.iter().enumerate() {
+            let own = BoundingBox::around(&facet.shape.kind.hull(&facet.shape.at));
+            let margin = reach(facet.shape.size());
+            let near =
+                AABB::from_corners(own.low.map(|c| c - margin), own.high.map(|c| c + margin));
+            let others = tree.locate_in_envelope_intersecting(near);
+            let opposite: Vec<(usize, &SkinFacet)> = others
+                .map(|leaf| (leaf.data, &self.facets[leaf.data]))
+                .filter(|(_, other)| dot(facet.shape.normal, other.shape.normal) < -SMOOTH)
+                .collect();
+            if opposite.is_empty() {
+                continue;
+            }
+            for seen in View::new(facet, self.mesh).of(&opposite) {
+                let size = facet.shape.size().max(self.facets[seen.facet].shape.size());
+                if seen.gap.abs() > reach(size) {
+                    continue;
+                }
+                let facets = [index.min(seen.facet), index.max(seen.facet)];
+                let found = pairs.entry(facets).or_insert(Facing {
+                    facets,
+                    gap: seen.gap,
+                    measure: seen.measure,
+                });
+                // Of two that aren't parallel each sees the other in its own way.
+                found.measure = found.measure.max(seen.measure);
+                if seen.gap.abs() < found.gap.abs() {
+                    found.gap = seen.gap;
+                }
+            }
+        }
+        pairs.into_values().collect()
+    }
+
+    /// The facets that each facet goes on in without a corner, of the same body.
+    pub fn neighbours(&self) -> Vec<Vec<usize>> {
+        let mut at_edge: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
+        for (index, facet) in self.facets.iter().enumerate() {
+            let nodes = &facet.shape.nodes;
+            match self.mesh.dim {
+                2 => nodes[..2]
+                    .iter()
+                    .for_each(|&node| at_edge.entry([node; 2]).or_default().push(index)),
+                _ => facet.shape.kind.facets().iter().for_each(|(_, edge)| {
+                    let [p, q] = [nodes[edge[0]], nodes[edge[1]]];
+                    let edge = [p.min(q), p.max(q)];
+                    at_edge.entry(edge).or_default().push(index);
+                }),
+            }
+        }
+        let mut neighbours = vec![Vec::new(); self.facets.len()];
+        for around in at_edge.values() {
+            for &one in around {
+                let goes_on = |&&other: &&usize| {
+                    let (a, b) = (&self.facets[one], &self.facets[other]);
+                    let is_smooth = dot(a.shape.normal, b.shape.normal) > SMOOTH;
+                    one != other && a.body == b.body && is_smooth
+                };
+                neighbours[one].extend(around.iter().filter(goes_on));
+            }
+        }
+        neighbours
+    }
+}

@@ -1,0 +1,154 @@
+//! What a facet of the boundary sees along its normal.
+
+use super::super::clip::{Point, area, clip, contains, middle};
+use super::super::surface::SurfaceFacet;
+use super::{ROUND_OFF, STANDING_OFF, SkinFacet};
+use crate::contact_point::LocalFrame;
+use crate::element::geometry::{advance, difference, dot};
+use crate::mesh::Mesh;
+
+/// Part of the smaller of two facets that they have in common at least: less is round-off of those that end beside
+/// each other.
+const LEAST: f64 = 1e-6;
+
+/// A facet that is seen.
+pub(super) struct Seen {
+    /// Its index.
+    pub facet: usize,
+    /// Distance along the normal in the middle of what is seen of it (m).
+    pub gap: f64,
+    /// Length or area of that.
+    pub measure: f64,
+    outline: Vec<Point>,
+    /// Whether it is the far side of the body itself.
+    is_far_side: bool,
+}
+
+/// The plane of a facet, in which others are cut out. A line is a strip as wide as it is long, so that there is one way
+/// for both dimensions.
+pub(super) struct View<'a> {
+    facet: &'a SkinFacet,
+    mesh: &'a Mesh,
+    frame: LocalFrame,
+    /// Width of a strip; 0 of a face (m).
+    width: f64,
+    outline: Vec<Point>,
+}
+
+impl<'a> View<'a> {
+    /// The view of a facet of the boundary of `mesh`.
+    pub fn new(facet: &'a SkinFacet, mesh: &'a Mesh) -> Self {
+        let mut view = Self {
+            facet,
+            mesh,
+            frame: LocalFrame::new(facet.shape.normal),
+            width: if mesh.dim == 2 {
+                facet.shape.size()
+            } else {
+                0.0
+            },
+            outline: Vec::new(),
+        };
+        view.outline = view.flat(&facet.shape);
+        view
+    }
+
+    /// What it sees of `opposite` facets, which look its way, each with its index, with nothing between.
+    pub fn of(&self, opposite: &[(usize, &SkinFacet)]) -> Vec<Seen> {
+        let seen = opposite
+            .iter()
+            .filter_map(|(index, other)| self.seen(*index, other));
+        let mut all: Vec<Seen> = seen.collect();
+        let is_visible: Vec<bool> = all.iter().map(|seen| !is_hidden(seen, &all)).collect();
+        let mut is_visible = is_visible.into_iter();
+        all.retain(|_| is_visible.next() == Some(true));
+        all
+    }
+
+    /// What there is to see of another facet.
+    fn seen(&self, index: usize, other: &SkinFacet) -> Option<Seen> {
+        let (own, shape) = (&self.facet.shape, &other.shape);
+        let mut shadow = self.flat(shape);
+        shadow.reverse();
+        let outline = clip(&shadow, &self.outline);
+        let common = area(&outline);
+        // False of what isn't a number, too.
+        let is_seen = common > LEAST * area(&self.outline).min(area(&shadow));
+        if !is_seen {
+            return None;
+        }
+        let x = self.place(middle(&outline));
+        let gap = self.height(shape, x) - self.height(own, x);
+        Some(Seen {
+            facet: index,
+            gap,
+            measure: if self.width > 0.0 {
+                common / self.width
+            } else {
+                common
+            },
+            outline,
+            is_far_side: self.facet.piece == other.piece && self.is_beyond(other, gap),
+        })
+    }
+
+    /// Whether another facet of the same piece lies so far behind this one that it is no side of a crack.
+    fn is_beyond(&self, other: &SkinFacet, gap: f64) -> bool {
+        let (own, shape) = (&self.facet.shape, &other.shape);
+        let size = own.size().min(shape.size());
+        let cell = |of: &SkinFacet| self.mesh.cells.nodes_of(of.place.cell as usize);
+        let is_thin = || (cell(self.facet).iter()).any(|node| cell(other).contains(node));
+        gap < -STANDING_OFF * size || (gap < -ROUND_OFF * size && is_thin())
+    }
+
+    /// The corners of a facet in the plane, counter-clockwise where it looks the same way.
+    fn flat(&self, shape: &SurfaceFacet) -> Vec<Point> {
+        let corners = shape.at.iter().take(shape.kind.corners());
+        let mut flat: Vec<Point> = corners
+            .map(|&x| {
+                let way = difference(x, self.facet.shape.at[0]);
+                self.frame.tangents.map(|t| dot(t, way))
+            })
+            .collect();
+        if let ([p, q], true) = (&flat[..], self.width > 0.0) {
+            let [p, q] = [*p, *q];
+            flat.extend([q, p].map(|[s, _]| [s, self.width]));
+        }
+        flat
+    }
+
+    /// The point of space at one of the plane (m).
+    fn place(&self, [s, t]: Point) -> [f64; 3] {
+        let [along, across] = self.frame.tangents;
+        let x = advance(self.facet.shape.at[0], s, along);
+        match self.width > 0.0 {
+            true => x,
+            false => advance(x, t, across),
+        }
+    }
+
+    /// The way from `x` along the normal to a facet, or to its plane where rounding has it that it passes by (m).
+    fn height(&self, shape: &SurfaceFacet, x: [f64; 3]) -> f64 {
+        let normal = self.frame.normal;
+        let crossing = shape.kind.crossing(&shape.at, x, normal);
+        crossing.unwrap_or_else(|| {
+            let to_plane = dot(difference(shape.at[0], x), shape.normal);
+            to_plane / dot(normal, shape.normal)
+        })
+    }
+}
+
+/// Whether something else lies before the middle of what is seen of a facet, or the body itself does.
+fn is_hidden(seen: &Seen, all: &[Seen]) -> bool {
+    if seen.is_far_side {
+        return true;
+    }
+    let x = middle(&seen.outline);
+    all.iter().any(|other| {
+        let is_nearer = match other.is_far_side {
+            true => seen.gap < other.gap,
+            false => seen.gap.abs() > other.gap.abs(),
+        };
+        is_nearer && other.facet != seen.facet && contains(&other.outline, x)
+    })
+}

@@ -1,0 +1,337 @@
+//! Contacts that a scene wants wherever bodies touch: found, and written as if each had been one of the scene.
+//!
+//! Facets of the boundary that face each other at no more than a small distance are a pair. A contact is made of pairs
+//! that go on side by side, as long as the facets on both of its sides go on without a corner in the same body. Its
+//! sides become groups of the mesh.
+
+mod nearest;
+mod patch;
+
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+
+use self::patch::Patch;
+use super::bodies::Bodies;
+use super::groups;
+use super::skin::{Facing, ROUND_OFF, STANDING_OFF, Skin};
+use crate::error::InputError;
+use crate::magnitude::short;
+use crate::mesh::topology::{CellFacet, Topology};
+use crate::mesh::{Group, Mesh};
+use crate::name;
+use crate::scene::Scene;
+use crate::scene::condition::Names;
+use crate::scene::contact::{Between, Contact, Declaration};
+
+/// Distance up to which facets beside those that touch are thought to come into contact, relative to their size.
+const NEAR: f64 = 0.25;
+
+/// A contact of the scene, and what is known of it where it was found.
+pub(super) struct Declared {
+    pub contact: Contact,
+    /// What it consists of, in words.
+    pub words: Option<String>,
+}
+
+/// A table of the scene that wants contacts wherever bodies touch, and what was found for it.
+struct Search<'a> {
+    between: &'a Between,
+    patches: Vec<Patch>,
+    /// Pairs that other contacts have already.
+    taken: usize,
+}
+
+impl Search<'_> {
+    /// Up to which distance facets of a size touch (m).
+    fn tolerance(&self, size: f64) -> f64 {
+        self.between.within.unwrap_or(STANDING_OFF * size)
+    }
+}
+
+/// The contacts of a scene in its order, those that are found in the place of the table that wants them; their sides
+/// are added to the groups of the mesh.
+///
+/// # Errors
+/// A table for which nothing is found.
+pub(super) fn contacts(
+    scene: &Scene,
+    bodies: &mut Bodies,
+    topology: &Topology,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Declared>, InputError> {
+    let mut searches: Vec<Search> = Vec::new();
+    for declared in &scene.contact {
+        if let Declaration::Between(between) = declared {
+            searches.push(Search {
+                between,
+                patches: Vec::new(),
+                taken: 0,
+            });
+        }
+    }
+    let mut groups = Vec::new();
+    let found = match searches.is_empty() {
+        true => Vec::new(),
+        false => {
+            let skin = Skin::new(bodies, topology, scene.plane, |_| true);
+            search(&mut searches, scene, &skin, topology, warnings)?;
+            let sides = Sides { scene, skin: &skin };
+            sides.written(&searches, &mut groups)?
+        }
+    };
+    for (name, facets) in groups {
+        add_group(&mut bodies.mesh, name, &facets);
+    }
+    let mut found = found.into_iter();
+    let mut contacts = Vec::new();
+    for declared in &scene.contact {
+        match declared {
+            Declaration::Contact(contact) => contacts.push(Declared {
+                contact: contact.clone(),
+                words: None,
+            }),
+            Declaration::Between(_) => contacts.extend(found.next().into_iter().flatten()),
+        }
+    }
+    Ok(contacts)
+}
+
+/// Finds the patches of every search.
+fn search(
+    searches: &mut [Search],
+    scene: &Scene,
+    skin: &Skin,
+    topology: &Topology,
+    warnings: &mut Vec<String>,
+) -> Result<(), InputError> {
+    let names: Vec<&str> = scene.bodies.keys().map(String::as_str).collect();
+    let within = searches.iter().filter_map(|search| search.between.within);
+    let farthest = within.fold(0.0, f64::max);
+    let facing = skin.facing(|size| farthest.max(NEAR * size));
+    let explicit = Explicit::new(scene, skin.mesh, topology);
+    let mut of_search: Vec<Vec<Facing>> = vec![Vec::new(); searches.len()];
+    for pair in facing {
+        let [a, b] = pair.facets.map(|facet| &skin.facets[facet]);
+        let [first, second] = [a, b].map(|facet| names[facet.body as usize]);
+        let wanted = |search: &Search| search.between.bodies.has(first, second);
+        let Some((index, search)) =
+            (searches.iter_mut().enumerate()).find(|(_, search)| wanted(search))
+        else {
+            continue;
+        };
+        match explicit.has(a.place, b.place) {
+            true => search.taken += 1,
+            false => of_search[index].push(pair),
+        }
+    }
+    let neighbours = skin.neighbours();
+    let unit = scene.units.length();
+    for (search, pairs) in searches.iter_mut().zip(of_search) {
+        let size = |pair: &Facing| {
+            let [a, b] = pair.facets.map(|facet| skin.facets[facet].shape.size());
+            a.max(b)
+        };
+        let (touching, near): (Vec<Facing>, Vec<Facing>) =
+            (pairs.into_iter()).partition(|pair| pair.gap.abs() <= search.tolerance(size(pair)));
+        search.patches = patch::patches(skin, &neighbours, &touching);
+        let what = &search.between.name;
+        if search.between.within.is_none() {
+            warnings.extend(parting(skin, &neighbours, &touching, &near, what, unit));
+        }
+        if search.patches.is_empty() && search.taken == 0 {
+            return Err(nearest::apart(skin, &names, search.between, &near, unit));
+        }
+        if search.patches.is_empty() {
+            warnings.push(format!(
+                "contact '{what}': all facets that touch between its bodies have a contact of their own; it adds none"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The warning of facets that part slowly beside those that touch: they may come into contact.
+fn parting(
+    skin: &Skin,
+    neighbours: &[Vec<usize>],
+    touching: &[Facing],
+    near: &[Facing],
+    what: &str,
+    unit: &str,
+) -> Option<String> {
+    let touch: HashSet<[usize; 2]> = touching.iter().map(|pair| pair.facets).collect();
+    let goes_on = |pair: &&Facing| {
+        let mut beside = patch::beside(neighbours, pair.facets);
+        pair.gap > 0.0 && beside.any(|[a, b]| touch.contains(&[a.min(b), a.max(b)]))
+    };
+    let first = near.iter().filter(goes_on);
+    let first = first.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+    let node = skin.facets[first.facets[0]].shape.nodes[0];
+    Some(format!(
+        "contact '{what}': where what touches ends, as near node {}, sides part slowly, at first by {} {unit}, and loads \
+         may close them; expected within = the distance up to which they belong to it",
+        skin.mesh.node_tags[node as usize],
+        short(first.gap)
+    ))
+}
+
+/// The sides of contacts that are told by their sides.
+struct Explicit {
+    of_facet: HashMap<CellFacet, BTreeSet<(usize, usize)>>,
+}
+
+impl Explicit {
+    fn new(scene: &Scene, mesh: &Mesh, topology: &Topology) -> Self {
+        let mut of_facet: HashMap<CellFacet, BTreeSet<(usize, usize)>> = HashMap::new();
+        let contacts = scene.contact.iter().filter_map(Declaration::contact);
+        for (number, contact) in contacts.enumerate() {
+            for (side, names) in contact.sides().enumerate() {
+                // What is wrong with a group is said where the contact is made.
+                for facet in groups::facets(mesh, names, "").unwrap_or_default() {
+                    for place in topology.cells_at(mesh.facets.nodes_of(facet as usize)) {
+                        of_facet.entry(place).or_default().insert((number, side));
+                    }
+                }
+            }
+        }
+        Self { of_facet }
+    }
+
+    /// Whether two facets are on different sides of one contact.
+    fn has(&self, a: CellFacet, b: CellFacet) -> bool {
+        let (Some(of_a), Some(of_b)) = (self.of_facet.get(&a), self.of_facet.get(&b)) else {
+            return false;
+        };
+        (of_a.iter()).any(|&(number, side)| of_b.contains(&(number, 1 - side)))
+    }
+}
+
+/// Writes down what was found.
+struct Sides<'a> {
+    scene: &'a Scene,
+    skin: &'a Skin<'a>,
+}
+
+impl Sides<'_> {
+    /// The contacts of every search; their sides are added to `groups`, each by its name.
+    fn written(
+        &self,
+        searches: &[Search],
+        groups: &mut Vec<(String, Vec<CellFacet>)>,
+    ) -> Result<Vec<Vec<Declared>>, InputError> {
+        let names: Vec<&str> = self.scene.bodies.keys().map(String::as_str).collect();
+        let mut taken: HashSet<String> = (self.scene.contact.iter())
+            .filter_map(Declaration::contact)
+            .map(|contact| contact.name.clone())
+            .collect();
+        let mut taken_groups: HashSet<String> = self.skin.mesh.groups.keys().cloned().collect();
+        let mut all = Vec::new();
+        for search in searches {
+            let mut of_search = Vec::new();
+            let bodies_of = |patch: &Patch| patch.bodies.map(|body| names[body as usize]);
+            let mut counts: BTreeMap<[&str; 2], [usize; 2]> = BTreeMap::new();
+            for patch in &search.patches {
+                counts.entry(bodies_of(patch)).or_default()[0] += 1;
+            }
+            for patch in &search.patches {
+                let bodies = bodies_of(patch);
+                let [count, place] = counts.entry(bodies).or_default();
+                *place += 1;
+                let mut name = search.between.name.clone();
+                if search.patches.len() > 1 {
+                    name = format!("{name} {}", between(bodies).replace('/', "-"));
+                    if *count > 1 {
+                        name = format!("{name} {place}");
+                    }
+                }
+                let name = unique(name, &mut taken);
+                name::check_contact(&name).map_err(|reason| {
+                    InputError::new(format!("contact '{}' {reason}", name::shown(&name)))
+                })?;
+                let sides = [0, 1].map(|side| {
+                    let letter = if bodies[0] == bodies[1] {
+                        [" a", " b"][side]
+                    } else {
+                        ""
+                    };
+                    let group = format!("{} ({name}){letter}", bodies[side]);
+                    let group = unique(group, &mut taken_groups);
+                    let facets = patch.sides[side].iter();
+                    let facets = facets.map(|&facet| self.skin.facets[facet].place).collect();
+                    groups.push((group.clone(), facets));
+                    Names::from(group)
+                });
+                let words = self.words(patch, bodies, &name);
+                of_search.push(Declared {
+                    contact: search.between.contact(name, sides),
+                    words: Some(words),
+                });
+            }
+            all.push(of_search);
+        }
+        Ok(all)
+    }
+
+    /// What a contact consists of.
+    fn words(&self, patch: &Patch, bodies: [&str; 2], name: &str) -> String {
+        let unit = self.scene.units.length();
+        let square = if self.skin.mesh.dim == 3 { "²" } else { "" };
+        let [a, b] = [0, 1].map(|side| patch.sides[side].len());
+        let facets = match bodies {
+            [first, second] if first == second => format!("{a} on {b} facets of '{first}'"),
+            [first, second] => {
+                let word = if a == 1 { "facet" } else { "facets" };
+                format!("{a} {word} of '{first}' on {b} of '{second}'")
+            }
+        };
+        let size = patch.measure / (a.min(b) as f64);
+        let size = if self.skin.mesh.dim == 3 {
+            size.sqrt()
+        } else {
+            size
+        };
+        let seen = |gap: f64| (gap.abs() > ROUND_OFF * size).then(|| short(gap.abs()));
+        let [least, most] = patch.gaps;
+        let mut words = format!("{name}: {facets}, {} {unit}{square}", short(patch.measure));
+        if let Some(overlap) = seen(least.min(0.0)) {
+            words += &format!(", overlap up to {overlap} {unit}");
+        }
+        if let Some(gap) = seen(most.max(0.0)) {
+            words += &format!(", gap up to {gap} {unit}");
+        }
+        words
+    }
+}
+
+/// Two bodies in a name.
+fn between([first, second]: [&str; 2]) -> String {
+    match first == second {
+        true => first.to_owned(),
+        false => format!("{first}-{second}"),
+    }
+}
+
+/// A name that isn't taken yet, and is now.
+fn unique(name: String, taken: &mut HashSet<String>) -> String {
+    let mut free = name.clone();
+    let mut number = 2;
+    while !taken.insert(free.clone()) {
+        free = format!("{name} ({number})");
+        number += 1;
+    }
+    free
+}
+
+/// Adds a group of facets to a mesh.
+fn add_group(mesh: &mut Mesh, name: String, facets: &[CellFacet]) {
+    let first = mesh.facets.len() as u32;
+    for facet in facets {
+        let (kind, _) = mesh.cells.kind(facet.cell as usize).facets()[facet.facet as usize];
+        let nodes = facet.nodes(&mesh.cells);
+        mesh.facets.push(kind, &nodes);
+    }
+    let group = Group {
+        dim: mesh.dim - 1,
+        members: (first..mesh.facets.len() as u32).collect(),
+    };
+    mesh.groups.insert(name, group);
+}

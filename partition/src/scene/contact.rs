@@ -1,0 +1,274 @@
+//! Contacts as a scene gives them: by their sides, or by the bodies between which they are to be found.
+
+use serde::Deserialize;
+use serde::de::{Deserializer, Error};
+
+use super::condition::{Names, Obstacle};
+use super::friction::{self, Friction};
+use super::number::{Constant, Number};
+use crate::name;
+
+/// What a table `[[contact]]` says.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "Keys")]
+pub enum Declaration {
+    /// A contact.
+    Contact(Contact),
+    /// Contacts wherever bodies touch.
+    Between(Between),
+}
+
+impl Declaration {
+    /// The name of the contact, or that with which the names of contacts that are found begin.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Contact(contact) => &contact.name,
+            Self::Between(between) => &between.name,
+        }
+    }
+
+    /// The contact, where it is told by its sides.
+    pub fn contact(&self) -> Option<&Contact> {
+        match self {
+            Self::Contact(contact) => Some(contact),
+            Self::Between(_) => None,
+        }
+    }
+
+    /// The gap in place of the geometric one (m), and the law of friction.
+    pub(super) fn laws(&self) -> (Option<&Number>, Option<&Friction>) {
+        let (gap, friction) = match self {
+            Self::Contact(contact) => (&contact.gap, &contact.friction),
+            Self::Between(between) => (&between.gap, &between.friction),
+        };
+        (gap.as_ref(), friction.as_ref())
+    }
+}
+
+/// Γ_c: two sides that may touch, or one side and a rigid obstacle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// Its name, that of a group in the result file.
+    pub name: String,
+    /// Side a.
+    pub side_a: Names,
+    /// What side a may touch.
+    pub partner: Partner,
+    /// How conditions are made of two sides; `None` to let their nodes decide.
+    pub pairing: Option<Pairing>,
+    /// The gap in place of the geometric one (m).
+    pub gap: Option<Number>,
+    /// Whether negative gaps are intended.
+    pub interference: bool,
+    /// Its law of friction; `None` without.
+    pub friction: Option<Friction>,
+}
+
+impl Contact {
+    /// Its sides, one of them where its partner is an obstacle.
+    pub fn sides(&self) -> impl Iterator<Item = &Names> {
+        let side_b = match &self.partner {
+            Partner::Side(names) => Some(names),
+            Partner::Obstacle(_) => None,
+        };
+        std::iter::once(&self.side_a).chain(side_b)
+    }
+}
+
+/// What the side a of a contact may touch.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Partner {
+    /// Side b.
+    Side(Names),
+    /// A rigid obstacle.
+    Obstacle(Obstacle),
+}
+
+/// How the conditions of a contact are made of its two sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Pairing {
+    /// A condition for every node of side a and the node of side b opposite it.
+    Nodes,
+    /// A condition for every node of side a and what of side b lies opposite its surroundings,
+    /// weighted by dual Lagrange multipliers.
+    Mortar,
+}
+
+/// Contacts wherever bodies touch: what they have in common.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Between {
+    /// With what their names begin.
+    pub name: String,
+    /// The bodies.
+    pub bodies: Chosen,
+    /// Up to which gap facets that face each other belong to a contact (m); `None` for what touches but for
+    /// the standing off of facets from curves.
+    pub within: Option<f64>,
+    /// As in [`Contact`].
+    pub pairing: Option<Pairing>,
+    /// As in [`Contact`].
+    pub gap: Option<Number>,
+    /// As in [`Contact`].
+    pub interference: bool,
+    /// As in [`Contact`].
+    pub friction: Option<Friction>,
+}
+
+impl Between {
+    /// The contact `name` of two sides that were found.
+    pub fn contact(&self, name: String, [side_a, side_b]: [Names; 2]) -> Contact {
+        Contact {
+            name,
+            side_a,
+            partner: Partner::Side(side_b),
+            pairing: self.pairing,
+            gap: self.gap.clone(),
+            interference: self.interference,
+            friction: self.friction.clone(),
+        }
+    }
+}
+
+/// Between which bodies contacts are looked for.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(from = "Names")]
+pub enum Chosen {
+    /// Any two bodies, and a body and itself.
+    All,
+    /// Any two of several bodies, or one and itself.
+    Named(Names),
+}
+
+impl From<Names> for Chosen {
+    fn from(names: Names) -> Self {
+        match names.iter().eq(["all"]) {
+            true => Self::All,
+            false => Self::Named(names),
+        }
+    }
+}
+
+impl Chosen {
+    /// The names of the bodies; none where all are meant.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        let names = match self {
+            Self::All => None,
+            Self::Named(names) => Some(names),
+        };
+        names.into_iter().flat_map(Names::iter)
+    }
+
+    /// Whether a contact between bodies of these names is looked for.
+    pub fn has(&self, a: &str, b: &str) -> bool {
+        let Self::Named(names) = self else {
+            return true;
+        };
+        let is_named = |body: &str| names.iter().any(|name| name == body);
+        is_named(a) && is_named(b) && (a != b || names.iter().count() == 1)
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table of name, sides or between, within, pairing, gap, interference, obstacle, friction, cohesion \
+                 and tresca"
+)]
+struct Keys {
+    #[serde(deserialize_with = "contact_name")]
+    name: String,
+    sides: Option<Vec<Names>>,
+    between: Option<Chosen>,
+    #[serde(default, deserialize_with = "distance")]
+    within: Option<f64>,
+    pairing: Option<Pairing>,
+    gap: Option<Number>,
+    #[serde(default)]
+    interference: bool,
+    obstacle: Option<Obstacle>,
+    #[serde(default, deserialize_with = "friction::bound")]
+    friction: Option<Number>,
+    #[serde(default, deserialize_with = "friction::bound")]
+    cohesion: Option<Number>,
+    #[serde(default, deserialize_with = "friction::bound")]
+    tresca: Option<Number>,
+}
+
+impl TryFrom<Keys> for Declaration {
+    type Error = String;
+
+    fn try_from(keys: Keys) -> Result<Self, String> {
+        let friction = Friction::new(keys.friction, keys.cohesion, keys.tresca)?;
+        let sides = match (keys.between, keys.sides) {
+            (Some(_), Some(_)) => {
+                return Err("'between' finds the sides; expected no 'sides' beside it".into());
+            }
+            (Some(_), None) if keys.obstacle.is_some() => {
+                return Err("'between' is of bodies; expected no 'obstacle' beside it".into());
+            }
+            (Some(bodies), None) => {
+                return Ok(Self::Between(Between {
+                    name: keys.name,
+                    bodies,
+                    within: keys.within,
+                    pairing: keys.pairing,
+                    gap: keys.gap,
+                    interference: keys.interference,
+                    friction,
+                }));
+            }
+            (None, None) => {
+                return Err("expected its two 'sides', or the bodies 'between' which it is".into());
+            }
+            (None, Some(_)) if keys.within.is_some() => {
+                return Err("'within' stands beside 'between', which is missing".into());
+            }
+            (None, Some(sides)) => sides,
+        };
+        let count = sides.len();
+        let mut sides = sides.into_iter();
+        let (side_a, partner) = match (sides.next(), sides.next(), sides.next(), keys.obstacle) {
+            (Some(a), Some(b), None, None) => {
+                if let Some(name) = a.iter().find(|name| b.iter().any(|other| other == *name)) {
+                    return Err(format!("'{name}' is on both 'sides'"));
+                }
+                (a, Partner::Side(b))
+            }
+            (Some(_), None, None, Some(_)) if keys.pairing.is_some() => {
+                return Err("'pairing' is of two sides; expected none beside an 'obstacle'".into());
+            }
+            (Some(a), None, None, Some(obstacle)) => (a, Partner::Obstacle(obstacle)),
+            _ => {
+                return Err(format!(
+                    "the number of 'sides' is {count}; expected 2, or 1 beside an 'obstacle'"
+                ));
+            }
+        };
+        Ok(Self::Contact(Contact {
+            name: keys.name,
+            side_a,
+            partner,
+            pairing: keys.pairing,
+            gap: keys.gap,
+            interference: keys.interference,
+            friction,
+        }))
+    }
+}
+
+fn contact_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    let name = String::deserialize(deserializer)?;
+    match name::check_contact(&name) {
+        Ok(()) => Ok(name),
+        Err(reason) => Err(D::Error::custom(format!(
+            "'{}' {reason}",
+            name::shown(&name)
+        ))),
+    }
+}
+
+fn distance<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    let is_positive = |value| value > 0.0;
+    Constant::checked(deserializer, is_positive, "the distance", "more than 0").map(Some)
+}

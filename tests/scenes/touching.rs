@@ -1,0 +1,151 @@
+//! Contacts that are found wherever bodies touch give the answers of those that are told by their sides.
+
+use contact_dd_partition::element::ElementKind::{self, Hexahedron8, Tetrahedron4, Tetrahedron10};
+use contact_dd_partition::mesh::Mesh;
+
+use crate::support::blocks::joined;
+use crate::support::close::close;
+use crate::support::scenes::{built_in, model};
+use crate::support::solids::{between, moved, solid, turned};
+use crate::support::solution::Solution;
+use crate::support::solver::{Case, solve};
+use crate::support::statics::reaction;
+
+/// Fails unless two solutions have the same displacements but for `slack`, relative to the largest.
+#[track_caller]
+fn move_the_same(found: &Solution, explicit: &Solution, slack: f64) {
+    let size = explicit.largest_displacement();
+    assert_eq!(found.displacement.len(), explicit.displacement.len());
+    for (tag, u) in &found.displacement {
+        (u.iter().zip(explicit.displacement[tag])).for_each(|(a, b)| close(*a, b, slack * size));
+    }
+}
+
+/// The forces of all points by their nodes, whichever side these are on.
+fn forces(solution: &Solution) -> Vec<([i64; 2], f64)> {
+    let mut forces: Vec<([i64; 2], f64)> = (solution.points())
+        .map(|point| {
+            let mut tags = point.tags;
+            tags.sort_unstable();
+            (tags, point.force)
+        })
+        .collect();
+    forces.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    forces
+}
+
+/// A scene with one table for all its contacts of two sides, with these keys.
+fn without_sides(scene: &str, keys: &str) -> String {
+    let tables = scene
+        .split("\n[[")
+        .filter(|table| !table.starts_with("contact"));
+    let kept: Vec<&str> = tables.collect();
+    format!(
+        "{}\n[[contact]]\nname = 'joints'\nbetween = 'all'\n{keys}",
+        kept.join("\n[[")
+    )
+}
+
+#[test]
+fn built_in_scenes_are_solved_the_same() {
+    for (name, keys) in [
+        ("granite-friction", "gap = 0\nfriction = 0.6"),
+        ("junction", "gap = 0"),
+        ("cube-crack", "gap = 0"),
+        ("stack3d", "gap = 0"),
+    ] {
+        let (scene, mesh) = built_in(name, 0);
+        let explicit = solve(&model(scene, mesh.clone()), 6);
+        let found = model(&without_sides(scene, keys), mesh);
+        for ranks in [1, 3] {
+            let case = Case::of(&found, 6);
+            let ended = case.run_on(ranks, &[]);
+            assert_eq!(ended.code(), 0, "{name}: {}{}", ended.stdout, ended.stderr);
+            let solution = Solution::read(&case.result());
+            move_the_same(&solution, &explicit, 1e-12);
+            let (forces, expected) = (forces(&solution), forces(&explicit));
+            assert_eq!(forces.len(), expected.len());
+            for ((tags, force), (expected_tags, expected_force)) in forces.iter().zip(&expected) {
+                assert_eq!(tags, expected_tags);
+                close(*force, *expected_force, 1e-11 * explicit.largest_force());
+            }
+        }
+    }
+}
+
+/// Two blocks beside each other under a third, and a fourth on which all three lean, pressed down and aside: nothing
+/// matches. With its explicit contacts, whose side a is that of the name that comes first.
+fn heap(kind: ElementKind, [a, b, c, d]: [&str; 4]) -> (String, Mesh) {
+    let mesh = [
+        solid(a, kind, [3, 2, 2], between([0.0; 3], [1.0, 1.0, 0.5])),
+        solid(
+            b,
+            kind,
+            [2, 3, 2],
+            between([1.0, 0.0, 0.0], [2.0, 1.0, 0.5]),
+        ),
+        solid(
+            c,
+            kind,
+            [4, 2, 1],
+            between([0.3, 0.2, 0.5], [1.7, 1.0, 0.9]),
+        ),
+        solid(
+            d,
+            kind,
+            [3, 1, 3],
+            between([0.2, 1.0, 0.0], [1.6, 1.5, 0.8]),
+        ),
+    ];
+    let mesh = mesh.into_iter().reduce(joined).unwrap();
+    let mut text = "materials.rock = {young = 20e9, poisson = 0.25}\n".to_owned();
+    for body in [a, b, c, d] {
+        text += &format!("bodies.{body}.material = 'rock'\n");
+    }
+    text += &format!(
+        "[[displacement]]\non = ['{a} z0', '{b} z0', '{d} y1']\nx = 0\ny = 0\nz = 0
+        [[displacement]]\non = '{c} x0'\nx = 0
+        [[pressure]]\non = '{c} z1'\nvalue = '1e6*(1 + x)'
+        [[pressure]]\non = '{c} y0'\nvalue = 5e5\n"
+    );
+    let mut touching = [
+        [(a, "x1"), (b, "x0")],
+        [(a, "z1"), (c, "z0")],
+        [(b, "z1"), (c, "z0")],
+        [(a, "y1"), (d, "y0")],
+        [(b, "y1"), (d, "y0")],
+        [(c, "y1"), (d, "y0")],
+    ];
+    touching.iter_mut().for_each(|pair| pair.sort_unstable());
+    // In the order in which they are found.
+    touching.sort_unstable_by_key(|pair| pair.map(|(body, _)| body));
+    for [(first, on_first), (second, on_second)] in touching {
+        text += &format!(
+            "[[contact]]\nname = '{first} {second}'\nsides = ['{first} {on_first}', '{second} {on_second}']\n"
+        );
+    }
+    (text, moved(mesh, turned))
+}
+
+#[test]
+fn blocks_in_space_that_do_not_match_are_solved_the_same() {
+    for (kind, names) in [
+        (Tetrahedron4, ["a", "b", "c", "d"]),
+        (Tetrahedron10, ["b", "d", "a", "c"]),
+        (Hexahedron8, ["d", "c", "b", "a"]),
+    ] {
+        let (scene, mesh) = heap(kind, names);
+        let explicit = model(&scene, mesh.clone());
+        let found = model(&without_sides(&scene, ""), mesh);
+        assert_eq!(found.contacts.len(), 6, "{:?}", found.found);
+        // The integrals over polygons are summed in another order.
+        let [solution, expected] = [&found, &explicit].map(|model| solve(model, 5));
+        move_the_same(&solution, &expected, 1e-11);
+        // Which of two near nodes carries a force is less certain than how much the contact does.
+        for (one, other) in found.contacts.iter().zip(&explicit.contacts) {
+            let [one, other] = [(&solution, one), (&expected, other)]
+                .map(|(solution, contact)| reaction(&solution.contacts[&contact.name]));
+            (0..3).for_each(|k| close(one[k], other[k], 1e-9 * expected.largest_force()));
+        }
+    }
+}
