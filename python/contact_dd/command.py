@@ -81,10 +81,10 @@ def factor(text: str) -> float | None:
 
 def plot(arguments: argparse.Namespace) -> None:
     from contact_dd.drawing.canvas import save
-    from contact_dd.drawing.pictures import PICTURES, draw
+    from contact_dd.drawing.pictures import draw
 
     outdir = arguments.outdir or arguments.result.parent / "figures"
-    for name, figure in draw(Result(arguments.result, arguments.step), arguments.only or PICTURES, arguments.scale):
+    for name, figure in draw(Result(arguments.result, arguments.step), arguments.only, arguments.scale):
         path = outdir / f"{name}.png"
         try:
             outdir.mkdir(parents=True, exist_ok=True)

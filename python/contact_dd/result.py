@@ -137,7 +137,8 @@ class Result:
 
     def plot(self, picture: str = "overview", scale: float | None = None) -> Figure:
         """A picture by matplotlib: `overview`, the deformed shape by von Mises stress with the contact pressures; in
-        the plane also `deformation`, `u_x`, `u_y`, `tau_x`, `tau_y`, `tau_xy`, `principal`. Without `scale`
+        the plane also `deformation`, `u_x`, `u_y`, `tau_x`, `tau_y`, `tau_xy`, `principal`, in space `displacement`,
+        `von_mises`, `pressure`. Without `scale`
         displacements are enlarged until they show, unless closed contacts would seem to overlap."""
         from contact_dd.drawing.pictures import draw
 

@@ -42,6 +42,20 @@ def test_messages_are_raised_by_exit_code(scene, tmp_path):
     assert len(raised.value.result.points) == 2575
 
 
+def test_contacts_are_found_between_bodies(scene):
+    model = Model.from_scene(scene("stack3d"))
+    explicit = model.run(progress=False)
+    del model.scene["contact"]
+    model.contact(between=["lower block", "middle block"], gap=0)
+    model.contact(between="all", gap=0, name="joint")
+    found = model.run(progress=False)
+    assert set(found.contacts) == {"contact of lower block, middle block", "joint"}
+    np.testing.assert_allclose(found.displacement, explicit.displacement, atol=1e-12 * abs(explicit.displacement).max())
+    for wrong in [{}, {"a": "x"}, {"a": "x", "b": "y", "between": "all"}]:
+        with pytest.raises(InputError, match="two sides, or the bodies between"):
+            model.contact(**wrong)
+
+
 def test_a_missing_program_is_named(scene, monkeypatch, tmp_path):
     model = Model.from_scene(scene("granite"))
     monkeypatch.setenv("MPIEXEC", "no-such-launcher")
@@ -179,3 +193,32 @@ def test_tables_of_contacts_in_space_have_no_arc_length(scene, tmp_path):
         table = np.genfromtxt(path, delimiter=",", names=True)
         assert np.allclose(table["z"], result.contacts[path.stem]["position"][:, 2])
         assert "arc_length" not in table.dtype.names
+
+
+def test_a_page_in_space_has_pictures_of_the_bodies(scene, tmp_path):
+    from contact_dd.drawing import space
+    from contact_dd.drawing.page import page
+
+    result = Model.from_scene(scene("stack3d")).run(folder=tmp_path, progress=False)
+    text = page(result)
+    assert text.count('src="data:image/png;base64,') == 1
+    assert text.count("src=") == 1
+    assert not any(tag in text for tag in ("<link", "<script", "@import"))
+    solid = space.Solid(result)
+    assert list(solid.pictures()) == ["displacement", "von_mises", "pressure"]
+    # The surface is closed and looks outward, and sides a are the faces of contacts: 3 m by 3 m and 2 m by 2 m.
+    polygons = [result.points[face] for face in solid.faces]
+    assert np.isclose(sum(space.area(polygon) @ polygon.mean(axis=0) for polygon in polygons) / 3, 29)
+    sides = {name: solid.side(table) for name, table in result.contacts.items()}
+    sizes = [sum(np.linalg.norm(space.area(result.points[face])) for face in faces) for faces, _ in sides.values()]
+    assert np.allclose(sizes, [9, 4])
+    for name, (_, pressures) in sides.items():
+        table = result.contacts[name]
+        assert 0 < pressures.max() <= table["pressure"].max()
+    # Of a crack, 3.354 m by 3 m, up to its tips.
+    cracked = Model.from_scene(scene("cube-crack")).run(folder=tmp_path, progress=False)
+    faces, _ = space.Solid(cracked).side(cracked.contacts["left crack"])
+    assert np.isclose(sum(np.linalg.norm(space.area(cracked.points[face])) for face in faces), 3 * 45**0.5 / 2)
+    bare = Model.from_scene(scene("stack3d")).run(folder=tmp_path, options=["--no-stress"], progress=False)
+    assert list(space.Solid(bare).pictures()) == ["displacement", "pressure"]
+    assert "base64" in page(bare)

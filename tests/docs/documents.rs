@@ -70,12 +70,9 @@ pub fn trials() -> Vec<Trial> {
         let name = format!("python::{}", file.display());
         trials.push(needs_python(trial(name, move || package::passes(&file))));
     }
-    for (name, ranks, element, steps) in vtk::CASES {
-        let case = move || vtk::reads_the_same(ranks, element, steps);
-        trials.push(needs_python(trial(
-            format!("vtk_reads_what_h5py_reads::{name}"),
-            case,
-        )));
+    for case in &vtk::CASES {
+        let name = format!("vtk_reads_what_h5py_reads::{}", case.name);
+        trials.push(needs_python(trial(name, || vtk::reads_the_same(case))));
     }
     trials
 }

@@ -1,10 +1,14 @@
 """Pieces of a page in HTML."""
 
+import base64
 import html
 import io
 
 import matplotlib.pyplot as plt
 import numpy as np
+
+# Per inch: twice those of a page.
+PIXELS = 144
 
 STYLE = """
 body { font: 14px/1.45 system-ui, sans-serif; color: #1d2733; max-width: 62em; margin: 2em auto; padding: 0 1.5em }
@@ -20,7 +24,7 @@ th, td { padding: .2em .8em .2em 0; border-bottom: 1px solid #eceff2; vertical-a
 .number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
 .key span { margin-right: 1em } .key span::before { content: ""; display: inline-block; width: .8em; height: .8em;
   background: var(--c); margin-right: .35em }
-svg { max-width: 100%; height: auto } li { margin: .2em 0 }
+svg, img { max-width: 100%; height: auto } li { margin: .2em 0 }
 ul.warnings li::marker { content: "⚠ "; } code { font-size: .95em }
 @media print { * { print-color-adjust: exact }
  body { margin: 0; max-width: none; font-size: 11px } section { break-inside: avoid } }
@@ -54,6 +58,15 @@ def svg(figure):
     figure.savefig(text, format="svg", metadata={"Date": None})
     plt.close(figure)
     return text.getvalue()[text.getvalue().index("<svg") :]
+
+
+def png(figure, words):
+    """A picture of too many pieces for SVG, with `words` for those who don't see it."""
+    data = io.BytesIO()
+    figure.savefig(data, dpi=PIXELS, pil_kwargs={"optimize": True})
+    plt.close(figure)
+    text = base64.b64encode(data.getvalue()).decode()
+    return f'<img src="data:image/png;base64,{text}" alt="{escape(words)}">'
 
 
 def axes_of(width, height, layout="constrained", **options):

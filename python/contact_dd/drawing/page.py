@@ -7,7 +7,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import EngFormatter, MaxNLocator
 
-from contact_dd.drawing.html import STYLE, axes_of, escape, section, short, svg, table
+from contact_dd.drawing import space
+from contact_dd.drawing.html import STYLE, axes_of, escape, png, section, short, svg, table
 from contact_dd.drawing.sides import DIRECTION, sides_of
 from contact_dd.drawing.units import formatter, si, units_of
 
@@ -47,7 +48,7 @@ def page(result):
     report, units = result.report, units_of(result)
     with plt.rc_context(FONTS):
         parts = [
-            head(report, result.path.name), warnings(report), steps(report, units),
+            head(report, result.path.name), warnings(report), surfaces(result), steps(report, units),
             contacts(report, sides_of(result), units), convergence(report, result.convergence), certificate(report),
             reactions(report, units), ranks(report), rest(report),
         ]
@@ -110,6 +111,15 @@ def warnings(report):
         return ""
     items = "".join(f"<li>{escape(text)}</li>" for text in report["warnings"])
     return section("Warnings", f'<ul class="warnings">{items}</ul>')
+
+
+def surfaces(result):
+    """Pictures of the surface; none in the plane."""
+    if not result.is_in_space:
+        return ""
+    words = "The surface by displacement and von Mises stress, deformed; what presses, seen through the bodies"
+    of_step = ", in the last load step" if result.steps > 1 else ""
+    return section("The bodies", png(space.panels(result), words), f"<p><small>{words}{of_step}.</small></p>")
 
 
 def certificate(report):

@@ -1,7 +1,8 @@
 """The pictures of a result.
 
 `overview` is the deformed shape by von Mises stress with the contact pressures on it; the others are the
-seven pictures of the paper: deformation, u_x, u_y, tau_x, tau_y, tau_xy, principal stresses.
+seven pictures of the paper: deformation, u_x, u_y, tau_x, tau_y, tau_xy, principal stresses. In space they are
+displacement, von_mises and pressure.
 """
 
 import warnings
@@ -46,10 +47,12 @@ PICTURES = {
 }
 
 
-def draw(result, names, scale=None):
-    """Draws pictures by their names, one after the other; in space there is the overview alone."""
+def draw(result, names=None, scale=None):
+    """Draws pictures by their names, one after the other, without any those that there are; in space others than in
+    the plane."""
     if result.is_in_space:
-        yield "overview", space.overview(result, scale)
+        for name in names or ["overview", *space.Solid(result).pictures()]:
+            yield name, known(space.PICTURES, name)(result, scale)
         return
     plane = Plane(result)
     honest = honest_scale(plane)
@@ -60,10 +63,14 @@ def draw(result, names, scale=None):
             f"apart; × {round_below(honest):g} isn't too much",
             stacklevel=3,
         )
-    for name in names:
-        if name not in PICTURES:
-            raise InputError(f"there is no picture {name!r}; expected one of {', '.join(PICTURES)}")
-        yield name, PICTURES[name](plane, scale)
+    for name in names or PICTURES:
+        yield name, known(PICTURES, name)(plane, scale)
+
+
+def known(pictures, name):
+    if name not in pictures:
+        raise InputError(f"there is no picture {name!r}; expected one of {', '.join(pictures)}")
+    return pictures[name]
 
 
 def automatic_scale(plane, honest):

@@ -5,18 +5,42 @@ use std::process::Command;
 use super::page::root;
 use super::run::{Folder, python};
 
-/// Name, number of ranks, kind of cells and load steps.
-pub const CASES: [(&str, usize, &str, &str); 5] = [
-    ("on_1_rank", 1, "triangle3", ""),
-    ("on_3_ranks", 3, "triangle6", ""),
-    ("of_8_nodes", 1, "quad8", ""),
-    ("of_9_nodes", 3, "quad9", ""),
-    (
-        "in_load_steps",
-        2,
-        "triangle6",
-        "[[step]]\nscale = 0.1\n[[step]]\n[[step]]\nscale = 2\n",
-    ),
+/// A built-in scene that is solved and opened.
+pub struct Case {
+    pub name: &'static str,
+    ranks: usize,
+    example: &'static str,
+    element: &'static str,
+    steps: &'static str,
+}
+
+const fn case(
+    name: &'static str,
+    ranks: usize,
+    example: &'static str,
+    element: &'static str,
+    steps: &'static str,
+) -> Case {
+    Case {
+        name,
+        ranks,
+        example,
+        element,
+        steps,
+    }
+}
+
+const STEPS: &str = "[[step]]\nscale = 0.1\n[[step]]\n[[step]]\nscale = 2\n";
+
+pub const CASES: [Case; 8] = [
+    case("on_1_rank", 1, "junction", "triangle3", ""),
+    case("on_3_ranks", 3, "junction", "triangle6", ""),
+    case("of_8_nodes", 1, "junction", "quad8", ""),
+    case("of_9_nodes", 3, "junction", "quad9", ""),
+    case("in_load_steps", 2, "junction", "triangle6", STEPS),
+    case("in_space", 2, "cube-crack", "tetrahedron4", ""),
+    case("of_20_nodes", 1, "cube-crack", "hexahedron20", ""),
+    case("of_27_nodes", 2, "cube-crack", "hexahedron27", STEPS),
 ];
 
 /// Number of subdomains of the cases.
@@ -24,16 +48,16 @@ const SUBDOMAINS: &str = "6";
 
 /// A test: `vtkHDFReader` finds the same partitions, points, cells and fields as h5py, in the result and in
 /// the problem file.
-pub fn reads_the_same(ranks: usize, element: &str, steps: &str) {
+pub fn reads_the_same(case: &Case) {
     let folder = Folder::new();
-    let ranks = ranks.to_string();
+    let ranks = case.ranks.to_string();
     let python = python().expect("cases that need Python are ignored without it");
     let check = root().join("tests/docs/documents/opened_by_vtk.py");
     let mut write = Command::new("contact-dd-partition");
-    write.args(["--example", "junction", "--element", element]);
+    write.args(["--example", case.example, "--element", case.element]);
     write.args(["--write-scene", "."]);
     let mut add_steps = Command::new("sh");
-    add_steps.args(["-c", "printf '%s' \"$1\" >> scene.toml", "sh", steps]);
+    add_steps.args(["-c", "printf '%s' \"$1\" >> scene.toml", "sh", case.steps]);
     let mut partition = Command::new("contact-dd-partition");
     partition.args(["scene.toml", "-n", SUBDOMAINS, "-o", "problem.h5"]);
     let mut solve = Command::new("mpirun");
