@@ -7,6 +7,7 @@ use crate::element::ElementKind;
 use crate::element::reference::Domain;
 use crate::error::InputError;
 use crate::mesh::Mesh;
+use crate::mesh::topology::Topology;
 
 /// The image of the unit cube, a piece of one body.
 pub(super) struct Cube {
@@ -127,7 +128,7 @@ pub(super) fn mesh(cubes: &[Cube], refine: u32, kind: ElementKind) -> Result<Mes
     let placed: Vec<Placed> = (cubes.iter())
         .map(|cube| place(cube, refine, kind, &mut points))
         .collect();
-    let node = glue(cubes, &placed, &points);
+    let node = glue(cubes, &placed, &points, kind);
 
     let mut mesh = Mesh {
         dim: 3,
@@ -140,6 +141,7 @@ pub(super) fn mesh(cubes: &[Cube], refine: u32, kind: ElementKind) -> Result<Mes
             mesh.points.push(*point);
         }
     }
+    let mut sides: Vec<(&str, ElementKind, Vec<u32>)> = Vec::new();
     for (cube, placed) in cubes.iter().zip(&placed) {
         let number = |place: &Place| number[node[placed.nodes[place]]];
         for element in &placed.elements {
@@ -151,10 +153,7 @@ pub(super) fn mesh(cubes: &[Cube], refine: u32, kind: ElementKind) -> Result<Mes
                 for (kind, local) in kind.facets() {
                     let at: Vec<Place> = local.iter().map(|&node| element[node]).collect();
                     if at.iter().all(|&place| is_on(place, face, placed.cells)) {
-                        let facet = mesh.facets.len() as u32;
-                        group(&mut mesh, name, 2).members.push(facet);
-                        let nodes: Vec<u32> = at.iter().map(number).collect();
-                        mesh.facets.push(*kind, &nodes);
+                        sides.push((name, *kind, at.iter().map(number).collect()));
                     }
                 }
             }
@@ -163,6 +162,15 @@ pub(super) fn mesh(cubes: &[Cube], refine: u32, kind: ElementKind) -> Result<Mes
     mesh.node_tags = (1..=mesh.points.len() as i64).collect();
     mesh.cell_tags = (1..=mesh.cells.len() as i64).collect();
     mesh.orient_cells()?;
+    let topology = Topology::new(&mesh);
+    for (name, kind, nodes) in sides {
+        // In the corner of a crack's tip a triangle has no nodes but those of the tip: it is none of the crack.
+        if topology.cells_at(&nodes).len() == 1 {
+            let facet = mesh.facets.len() as u32;
+            group(&mut mesh, name, 2).members.push(facet);
+            mesh.facets.push(kind, &nodes);
+        }
+    }
     Ok(mesh)
 }
 
@@ -236,7 +244,7 @@ fn elements_of(start: Place, kind: ElementKind) -> Vec<Vec<Place>> {
 }
 
 /// For every node of every cube the first one that it is glued to.
-fn glue(cubes: &[Cube], placed: &[Placed], points: &[[f64; 3]]) -> Vec<usize> {
+fn glue(cubes: &[Cube], placed: &[Placed], points: &[[f64; 3]], kind: ElementKind) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..points.len()).collect();
     let size = points
         .iter()
@@ -271,5 +279,26 @@ fn glue(cubes: &[Cube], placed: &[Placed], points: &[[f64; 3]]) -> Vec<usize> {
             }
         }
     }
+    if kind == ElementKind::Tetrahedron10 {
+        close_edges(placed, &mut parent, kind);
+    }
     (0..points.len()).map(|node| root(&parent, node)).collect()
+}
+
+/// Glues the nodes in the middle of edges whose ends are glued: those across the corner of a crack's tip.
+fn close_edges(placed: &[Placed], parent: &mut [usize], kind: ElementKind) {
+    let mut known: HashMap<[usize; 2], usize> = HashMap::new();
+    for placed in placed {
+        for element in &placed.elements {
+            for (face, local) in kind.facets() {
+                for (_, edge) in face.facets() {
+                    let [p, q, middle] =
+                        [0, 1, 2].map(|i| root(parent, placed.nodes[&element[local[edge[i]]]]));
+                    let other = *known.entry([p.min(q), p.max(q)]).or_insert(middle);
+                    let (a, b) = (root(parent, other), middle);
+                    parent[a.max(b)] = a.min(b);
+                }
+            }
+        }
+    }
 }

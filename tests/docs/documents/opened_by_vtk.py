@@ -11,7 +11,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
 # Nodes of VTK's types of cells.
-NODES = {5: 3, 22: 6, 9: 4, 23: 8, 28: 9}
+NODES = {5: 3, 22: 6, 9: 4, 23: 8, 28: 9, 10: 4, 24: 10, 12: 8, 25: 20, 29: 27}
 
 
 def by_vtk(path, step):

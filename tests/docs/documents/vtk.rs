@@ -38,9 +38,9 @@ pub const CASES: [Case; 8] = [
     case("of_8_nodes", 1, "junction", "quad8", ""),
     case("of_9_nodes", 3, "junction", "quad9", ""),
     case("in_load_steps", 2, "junction", "triangle6", STEPS),
-    case("in_space", 2, "cube-crack", "tetrahedron4", ""),
+    case("in_space", 2, "cube-crack", "tetrahedron4", STEPS),
     case("of_20_nodes", 1, "cube-crack", "hexahedron20", ""),
-    case("of_27_nodes", 2, "cube-crack", "hexahedron27", STEPS),
+    case("of_27_nodes", 2, "pin", "hexahedron27", ""),
 ];
 
 /// Number of subdomains of the cases.

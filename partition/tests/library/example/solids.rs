@@ -7,6 +7,8 @@ use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::example;
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::mesh::topology::Topology;
+use contact_dd_partition::model::Model;
+use contact_dd_partition::scene::Scene;
 
 fn ball(kind: ElementKind, refine: u32) -> Mesh {
     example::find("sphere")
@@ -69,7 +71,8 @@ fn refinement_follows_the_ball() {
 fn blocks_in_space_are_as_large_as_they_are_meant_of_any_cells() {
     for (name, bodies, exact) in [("cube-crack", 1, 500.0), ("stack3d", 3, 16.0 + 9.0 + 4.0)] {
         for kind in ElementKind::of_dim(3) {
-            let mesh = example::find(name).unwrap().mesh_of(kind, 0).unwrap();
+            let example = example::find(name).unwrap();
+            let mesh = example.mesh_of(kind, 0).unwrap();
             assert!(
                 (volume(&mesh) - exact).abs() < 1e-10 * exact,
                 "{name} {kind:?}"
@@ -78,6 +81,9 @@ fn blocks_in_space_are_as_large_as_they_are_meant_of_any_cells() {
             topology.check_sides(&mesh).unwrap();
             let pieces = topology.pieces().into_iter().max();
             assert_eq!(pieces, Some(bodies - 1), "{name} {kind:?}");
+            let scene = Scene::parse(example.scene).unwrap();
+            let model = Model::new(&scene, mesh).unwrap();
+            assert_eq!(model.warnings, Vec::<String>::new(), "{name} {kind:?}");
         }
     }
 }
