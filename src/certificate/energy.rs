@@ -9,7 +9,7 @@
 //!
 //! What friction dissipates, λ_tᵀ Δw, has the force at the end. The rest of the work of contacts is an error of finite
 //! increments: forces that change while something slips, and pressure on the way of a gap that opens or closes. It
-//! vanishes as increments become small.
+//! vanishes as increments become small, but for what an interference fit brings in.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -34,7 +34,7 @@ pub struct EnergyBalance {
     /// Change of the elastic energy ½ uᵀ K u.
     pub elastic_energy: f64,
     /// What contacts take: `dissipated_work`, and an error of finite increments beyond it, which vanishes as these
-    /// become small.
+    /// become small; less than nothing where an interference fit brings energy in.
     pub work_of_contacts: f64,
     /// How far the first two are off the sum of the other two, relative to the largest of the four and of the elastic
     /// energy.
