@@ -82,7 +82,8 @@ pub fn exchange_against_friction(
     }
 }
 
-/// Lets slip what sticks under more than its bound, and stick what slips under a force that drives it.
+/// Lets slip what sticks under more than its bound, and stick what slips under a force that drives it. What slips without
+/// a force, which it lost with its pressure, gets the one that it has by the law.
 fn exchange(group: &ContactGroup, solution: &mut GroupSolution) {
     for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
         let TangentialCondition { normal, bound, .. } = of_point[0];
@@ -96,6 +97,12 @@ fn exchange(group: &ContactGroup, solution: &mut GroupSolution) {
             true => size > bound,
             false => work < 0.0,
         };
+        let way = sum(&|j| solution.gaps[j].powi(2)).sqrt();
+        if !sticks && size == 0.0 && bound * way > 0.0 {
+            for one in of_point {
+                solution.forces[one.number] = -bound / way * solution.gaps[one.number];
+            }
+        }
         for one in of_point.iter().filter(|_| changes) {
             solution.closed[one.number] = !sticks;
             if sticks {

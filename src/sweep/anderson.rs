@@ -42,6 +42,9 @@ impl Sweeps<'_, '_> {
         while self.goes_on(&residual)? {
             let hopeless = !residual.relative.is_finite() || self.problem.interface.len == 0;
             if hopeless || self.sweeps_done() >= limit {
+                if self.can_be_refined(&residual) {
+                    return Ok(SweepStatus::Converged);
+                }
                 return Ok(self.gave_up(&residual, "anderson stopped"));
             }
             let mut chord = residual.r;

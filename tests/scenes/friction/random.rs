@@ -21,8 +21,6 @@ proptest! {
     #[test]
     fn a_random_scene_with_friction_is_not_answered_wrongly(seed in 0_u64..1_000_000) {
         let mut drawn = draw_frictional(seed, 4);
-        // Packings' corners, which several contacts share, take long.
-        prop_assume!(!drawn.family.starts_with("packing"));
         // Tests of several ranks stand elsewhere.
         drawn.ranks = 0;
         let trial = Trial::of(&drawn, built(), Duration::from_secs(60), None);
@@ -35,11 +33,11 @@ proptest! {
     }
 }
 
-/// Its stiffnesses are so far apart that the sweeps know forces to less than round-off (895) or not even what sticks
-/// (865): refinement has to.
+/// Its stiffnesses are so far apart that the sweeps know forces to less than round-off (895), get no further (603) or
+/// don't even know what sticks (865), of what has no pressure at times (626): refinement has to.
 #[test]
 fn a_badly_conditioned_scene_with_friction_is_refined_to_round_off() {
-    for seed in [865, 895] {
+    for seed in [603, 626, 865, 895] {
         let mut drawn = draw_frictional(seed, 12);
         drawn.ranks = 0;
         let trial = Trial::of(&drawn, built(), Duration::from_secs(60), None);
