@@ -76,3 +76,38 @@ fn tangential_jumps_that_depend_on_others_have_their_laws_too() {
     }
     assert!(converged > 55, "{converged}");
 }
+
+/// Where a slip relieves the contact, whatever its direction, sticking and opening are both in equilibrium.
+#[test]
+fn a_second_start_finds_other_solutions_in_space() {
+    let strong = ForceBound {
+        coefficient: 1.5,
+        ..COULOMB
+    };
+    for angle in [0.0_f64, 0.7, 2.5] {
+        let direction = [1.0, angle.cos(), angle.sin()];
+        for (coupling, opened) in [(0.9, Some(0.5 / 0.19)), (0.3, None)] {
+            let mut points = Points::in_space(1, 3, strong);
+            points.set_stiffness(3, |i, j| match (i, j) {
+                (0, 0) => 1.0,
+                (0, k) | (k, 0) => coupling * direction[k],
+                (i, j) => f64::from(u8::from(i == j)),
+            });
+            points.bounds = vec![0.0; 3];
+            points.c = [1.0, 1.4, 1.4]
+                .iter()
+                .zip(direction)
+                .map(|(c, d)| c * d)
+                .collect();
+            let known = points.solve(&mut [Status::Closed; 3]).jumps;
+            assert_eq!(known, [0.0; 3]);
+            let other = points.with(|problem| problem.other_solution(&known, 1.0));
+            assert_eq!(other.is_some(), opened.is_some(), "{angle}");
+            // The largest of its jumps: that of the gap, or the larger part of the slip.
+            let slip = opened.map(|slip| slip * direction[1].abs().max(direction[2].abs()));
+            let expected = slip.map_or(0.0, |slip| slip.max(0.26 / 0.19));
+            let found = other.unwrap_or_default();
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+}
