@@ -151,9 +151,13 @@ fn a_wedge_keeps_its_neighbours_apart() {
         let angle = f64::to_radians(from + (to - from) * t);
         turned([0.5 + s, 0.0, z], angle)
     });
-    let model = blocks.model(ALL).unwrap();
-    assert_eq!(names(&model), ["joints above-wedge", "joints below-wedge"]);
-    assert_eq!(model.warnings, Vec::<String>::new());
+    // The neighbours' sides are 0.3 m apart at the far end.
+    for within in ["", "within = 0.3\n"] {
+        let model = blocks.model(&format!("{ALL}{within}")).unwrap();
+        let expected = ["joints above-wedge", "joints below-wedge"];
+        assert_eq!(names(&model), expected);
+        assert_eq!(model.warnings, Vec::<String>::new());
+    }
 }
 
 #[test]
