@@ -227,18 +227,21 @@ impl Sides<'_> {
         let mut all = Vec::new();
         for search in searches {
             let mut of_search = Vec::new();
-            let bodies_of = |patch: &Patch| patch.bodies.map(|body| names[body as usize]);
-            let mut counts: BTreeMap<[&str; 2], [usize; 2]> = BTreeMap::new();
+            let name_of = |body: u32| names[body as usize];
+            let mut counts: BTreeMap<[u32; 2], [usize; 2]> = BTreeMap::new();
             for patch in &search.patches {
-                counts.entry(bodies_of(patch)).or_default()[0] += 1;
+                counts.entry(patch.pair()).or_default()[0] += 1;
             }
             for patch in &search.patches {
-                let bodies = bodies_of(patch);
-                let [count, place] = counts.entry(bodies).or_default();
+                let bodies = patch.bodies.map(name_of);
+                let [count, place] = counts.entry(patch.pair()).or_default();
                 *place += 1;
                 let mut name = search.between.name.clone();
                 if search.patches.len() > 1 {
-                    name = format!("{name} {}", between(bodies).replace('/', "-"));
+                    name = format!(
+                        "{name} {}",
+                        between(patch.pair().map(name_of)).replace('/', "-")
+                    );
                     if *count > 1 {
                         name = format!("{name} {place}");
                     }

@@ -26,6 +26,14 @@ pub(super) struct Patch {
     pub gaps: [f64; 2],
 }
 
+impl Patch {
+    /// The bodies in their order, whichever has side a.
+    pub fn pair(&self) -> [u32; 2] {
+        let [a, b] = self.bodies;
+        [a.min(b), a.max(b)]
+    }
+}
+
 /// The pairs of facets beside a pair: one or both of its facets exchanged for a neighbour.
 pub(super) fn beside(
     neighbours: &[Vec<usize>],
@@ -65,7 +73,7 @@ pub(super) fn patches(skin: &Skin, neighbours: &[Vec<usize>], pairs: &[Facing]) 
     let place = |patch: &Patch| {
         let middle = middle(skin, &patch.sides);
         let rounded = middle.map(|c| (c / (SAME * extent)).round());
-        (patch.bodies, rounded)
+        (patch.pair(), rounded)
     };
     patches.sort_by(|one, other| {
         let ((bodies, at), (others, there)) = (place(one), place(other));

@@ -181,6 +181,21 @@ fn what_parts_slowly_is_warned_of() {
 }
 
 #[test]
+fn the_coarser_of_curved_sides_is_first_whatever_the_name() {
+    let mut round = Blocks::new()
+        .block("lower", [0.0, 2.0], [0.0, 1.0], [40, 8])
+        .block("upper", [0.0, 2.0], [1.0, 2.0], [16, 8])
+        .block("zero", [0.0, 2.0], [-1.0, 0.0], [40, 8]);
+    for x in &mut round.mesh.points[41 * 9..][..17 * 9] {
+        x[1] += 0.1 * (x[0] - 1.0).powi(2);
+    }
+    let model = round.model(&format!("{ALL}within = 0.11")).unwrap();
+    assert_eq!(names(&model), ["joints lower-upper", "joints lower-zero"]);
+    says(&model.found[0], "16 facets of 'upper' on 40 of 'lower'");
+    assert_eq!(model.contacts[0].points.len(), 17);
+}
+
+#[test]
 fn what_is_held_on_both_sides_is_left_out() {
     let held = "[[displacement]]\non = ['left right', 'right left']\nx = 0\ny = 0\n";
     let model = uneven().model(&format!("{held}{ALL}")).unwrap();
