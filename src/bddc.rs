@@ -66,8 +66,7 @@ pub struct Bddc {
     ties: Ties,
     nodes: SharedNodes,
     classes: Classes,
-    /// Whether classes are looked into for what else than their rigid motions is to be coarse.
-    is_adaptive: bool,
+    depth: Depth,
     /// The clusters of this rank, in the bases of their classes.
     locals: BTreeMap<usize, Local>,
     /// The clusters whose S isn't any more what their part of the preconditioner was made of, on all ranks.
@@ -76,7 +75,28 @@ pub struct Bddc {
     /// Number of coarse unknowns; on the root.
     pub coarse_dofs: usize,
     /// The smallest pivot of the coarse problem relative to its diagonal entry; on the root.
-    pub smallest_pivot: f64,
+    pub coarse_pivot: f64,
+}
+
+/// What is made coarse, and whether the preconditioner is held where round-off keeps it from being definite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Depth {
+    /// The rigid motions of classes.
+    Motions,
+    /// What their energies say.
+    Energies,
+    /// Rigid motions, and all is held by a little.
+    Held,
+}
+
+impl Depth {
+    /// Shares of diagonal entries of which the first is added that leaves something definite.
+    fn holds(self) -> &'static [f64] {
+        match self {
+            Self::Held => &[0.0, 1e-13, 1e-11, 1e-9, 1e-7],
+            _ => &[0.0],
+        }
+    }
 }
 
 /// A contact group between clusters.
@@ -153,7 +173,7 @@ impl Bddc {
         Ok(Self {
             stale: vec![true; dofs.len()],
             nodes: SharedNodes::new(context, &dofs),
-            is_adaptive: false,
+            depth: Depth::Motions,
             between,
             owners,
             dofs,
@@ -163,12 +183,12 @@ impl Bddc {
             locals: BTreeMap::new(),
             coarse: None,
             coarse_dofs: 0,
-            smallest_pivot: f64::INFINITY,
+            coarse_pivot: f64::INFINITY,
         })
     }
 
     /// Freezes which conditions are `open`, for `clusters` some of which were `touched` by that, with a
-    /// `spring`, relative to the diagonal, on what they have let go. The preconditioner is made anew where clusters
+    /// `spring`, relative to the diagonal, on all unknowns of conditions between them. The preconditioner is made anew where clusters
     /// share other unknowns than before, and wherever S has changed if it is to be `renewed`. Collective.
     ///
     /// # Errors
@@ -211,9 +231,18 @@ impl Bddc {
         let before = std::mem::replace(&mut self.classes, classes);
         self.ties = ties;
 
+        let unknowns = self.between.iter().flat_map(|group| &group.dofs);
+        let sprung: BTreeSet<InterfaceDof> = unknowns.copied().collect();
         let shared = |c: usize| {
             let cluster = &clusters[&plan.tops[c]];
-            Shared::new(c, cluster, &self.classes, &self.ties, spring, par)
+            Shared::new(
+                c,
+                cluster,
+                &self.classes,
+                &self.ties,
+                (&sprung, spring),
+                par,
+            )
         };
         let made: Vec<bool> = (self.classes.list.iter())
             .map(|class| {
@@ -230,14 +259,16 @@ impl Bddc {
             if !(0..classes.len()).any(is_made) {
                 return Ok((c, Vec::new()));
             }
-            let sides =
-                shared(c).and_then(|(shared, s)| shared.sides(&s, is_made, self.is_adaptive, par));
+            let sides = shared(c).and_then(|(shared, s)| {
+                shared.sides(&s, is_made, self.depth == Depth::Energies, par)
+            });
             Ok((c, sides.map_err(moves)?))
         });
         let sides: BTreeMap<usize, Vec<Option<Side>>> = comm.agree(sides.collect())?;
         let bases = self.bases(context, &before, &changed, &made, sides)?;
         let locals = bases.into_iter().map(|(c, bases)| {
-            let local = shared(c).and_then(|shared| Local::new(shared, bases, par));
+            let local =
+                shared(c).and_then(|shared| Local::new(shared, bases, self.depth.holds(), par));
             Ok((c, local.map_err(moves)?))
         });
         let locals: BTreeMap<usize, Local> = comm.agree(locals.collect())?;
@@ -263,24 +294,39 @@ impl Bddc {
             |_, part| parts.push(part),
         );
         let order = || self.classes.order(&plan.tree, &plan.tops);
-        let coarse = comm.is_root().then(|| Coarse::new(&parts, &order(), par));
+        let coarse = comm
+            .is_root()
+            .then(|| Coarse::new(&parts, &order(), self.depth.holds(), par));
         self.coarse = comm.agree(coarse.transpose())?;
         if let Some(coarse) = &self.coarse {
             self.coarse_dofs = coarse.len();
-            self.smallest_pivot = coarse.smallest_pivot();
+            self.coarse_pivot = coarse.smallest_pivot();
         }
         Ok(())
     }
 
-    /// Looks into all classes from now on: the preconditioner is to be made anew as a whole.
-    pub fn look_into(&mut self) {
-        self.is_adaptive = true;
+    /// What is to become of a preconditioner that is too bad, or can't be made: classes are looked into, and where that
+    /// was in vain it is to be held, and as good as it is. Returns whether there was anything left to do.
+    pub fn look_deeper(&mut self) -> bool {
+        let deeper = match self.depth {
+            Depth::Motions => Depth::Energies,
+            Depth::Energies => Depth::Held,
+            Depth::Held => return false,
+        };
+        self.depth = deeper;
         self.classes = Classes::default();
+        true
     }
 
-    /// Whether classes have been looked into.
-    pub fn is_adaptive(&self) -> bool {
-        self.is_adaptive
+    /// Whether the preconditioner can be made better if it is too bad.
+    pub fn is_judged(&self) -> bool {
+        self.depth == Depth::Motions
+    }
+
+    /// The smallest pivot of this rank relative to its diagonal entry, that of the coarse problem among them on the root.
+    pub fn smallest_pivot(&self) -> f64 {
+        let pivots = (self.locals.values()).map(|local| local.shared.smallest_pivot);
+        pivots.fold(self.coarse_pivot, f64::min)
     }
 
     /// Whether S of a cluster isn't any more what the preconditioner was made of; the same on all ranks.

@@ -66,13 +66,9 @@ impl GroupBetween {
 
     /// What its conditions tie.
     pub fn ties(&self) -> Ties {
-        let of_open = self.terms.iter().zip(&self.open).filter(|(_, open)| **open);
         Ties {
             direct: (self.replaced.iter())
                 .map(|replaced| (replaced.dof, replaced.staying.clone()))
-                .collect(),
-            open: of_open
-                .flat_map(|(terms, _)| terms.iter().map(|(dof, _)| *dof))
                 .collect(),
             resolved: BTreeMap::new(),
         }
@@ -116,8 +112,6 @@ pub struct Ties {
     direct: Vec<(InterfaceDof, Terms)>,
     /// The same in terms of what nothing ties.
     resolved: BTreeMap<InterfaceDof, Terms>,
-    /// Unknowns of open conditions.
-    open: Vec<InterfaceDof>,
 }
 
 /// Unknowns and their coefficients.
@@ -129,9 +123,7 @@ impl Ties {
         let mut joined = Self::default();
         for ties in all {
             joined.direct.extend(ties.direct);
-            joined.open.extend(ties.open);
         }
-        joined.open.sort_unstable();
         for (dof, terms) in joined.direct.iter().rev() {
             let mut resolved: BTreeMap<InterfaceDof, f64> = BTreeMap::new();
             for (staying, factor) in terms {
@@ -178,14 +170,8 @@ impl Ties {
         }
     }
 
-    /// Whether an unknown is tied as in others, and has open conditions where it has some there.
+    /// Whether an unknown is tied as in others.
     pub fn is_as_in(&self, others: &Self, dof: &InterfaceDof) -> bool {
         self.resolved.get(dof) == others.resolved.get(dof)
-            && self.is_open(dof) == others.is_open(dof)
-    }
-
-    /// Whether an open condition has an unknown.
-    pub fn is_open(&self, dof: &InterfaceDof) -> bool {
-        self.open.binary_search(dof).is_ok()
     }
 }

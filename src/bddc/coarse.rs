@@ -40,11 +40,16 @@ pub struct Coarse {
 
 impl Coarse {
     /// Adds up what all clusters say, in their order, and factorizes it; `order` is that in which their classes are
-    /// eliminated.
+    /// eliminated. The first of `holds`, shares of the diagonal, is added that leaves it definite.
     ///
     /// # Errors
     /// A part of the scene can move.
-    pub fn new(parts: &[CoarsePart], order: &[usize], par: Par) -> Result<Self, Failure> {
+    pub fn new(
+        parts: &[CoarsePart],
+        order: &[usize],
+        holds: &[f64],
+        par: Par,
+    ) -> Result<Self, Failure> {
         let mut counts = vec![0; order.len()];
         for &(k, count) in parts.iter().flat_map(|part| &part.classes) {
             counts[k] = count;
@@ -68,11 +73,21 @@ impl Coarse {
             Failure::internal("the coarse problem has more than 2^32 entries: use fewer clusters")
         };
         let pattern = LowerPattern::new(n, &cliques);
-        let mut sum = SparseSymmetric::zeros(pattern.ok_or_else(too_large)?);
-        for (part, numbers) in parts.iter().zip(&numbers) {
-            sum.add_large(numbers, part.s.as_ref());
+        let pattern = pattern.ok_or_else(too_large)?;
+        let held_by = |share: f64| {
+            let mut sum = SparseSymmetric::zeros(pattern.clone());
+            for (part, numbers) in parts.iter().zip(&numbers) {
+                let mut s = part.s.clone();
+                (0..s.nrows()).for_each(|i| s[(i, i)] *= 1.0 + share);
+                sum.add_large(numbers, s.as_ref());
+            }
+            BoundaryLastCholesky::new(&sum, n, par)
+        };
+        let mut factor = held_by(0.0);
+        for &share in &holds[1..] {
+            factor = factor.or_else(|_| held_by(share));
         }
-        let factor = BoundaryLastCholesky::new(&sum, n, par).map_err(|error| {
+        let factor = factor.map_err(|error| {
             Failure::ill_posed(format!(
                 "the coarse problem of the clusters can't be solved ({error}): some part of the scene is held neither \
                  by supports nor by contact"

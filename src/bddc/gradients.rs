@@ -41,8 +41,8 @@ pub struct Gradients<'a> {
     pub coarse: Option<&'a Coarse>,
     /// Whether the preconditioner is that of other matrices.
     pub is_stale: bool,
-    /// Whether classes have been looked into for what is to be coarse.
-    pub is_adaptive: bool,
+    /// Whether the preconditioner can be made better.
+    pub is_judged: bool,
 }
 
 impl Gradients<'_> {
@@ -58,17 +58,23 @@ impl Gradients<'_> {
         tolerance: f64,
     ) -> (Vectors, usize, bool) {
         self.add_up(&mut b);
-        let scale = self.dot(&b, &self.precondition(&b));
-        let enough = tolerance * tolerance * scale;
         let mut x: Vectors = b.iter().map(|(&c, b)| (c, vec![0.0; b.len()])).collect();
         let mut r = b;
-        if let Some(start) = start {
-            subtract(&mut r, &self.multiply(&start), 1.0);
-            x = start;
-        }
         let mut z = self.precondition(&r);
-        let mut p = z.clone();
         let mut rho = self.dot(&r, &z);
+        let scale = rho;
+        let enough = tolerance * tolerance * scale;
+        if let Some(start) = start {
+            let mut of_start = r.clone();
+            subtract(&mut of_start, &self.multiply(&start), 1.0);
+            let of_start_z = self.precondition(&of_start);
+            let of_start_rho = self.dot(&of_start, &of_start_z);
+            // Another load may leave less than what it starts from, as none does.
+            if of_start_rho < rho {
+                (x, r, z, rho) = (start, of_start, of_start_z, of_start_rho);
+            }
+        }
+        let mut p = z.clone();
         let most = match self.is_stale {
             true => MAX_WITH_STALE,
             false => MAX_ITERATIONS,
@@ -76,7 +82,7 @@ impl Gradients<'_> {
         let mut iterations = 0;
         let begin = rho;
         let is_slow = |iterations: usize, rho: f64| {
-            let is_judged = !self.is_stale && !self.is_adaptive && iterations == TRIAL;
+            let is_judged = !self.is_stale && self.is_judged && iterations == TRIAL;
             is_judged && rho > GOOD * GOOD * begin
         };
         while rho > enough && iterations < most && !is_slow(iterations, rho) {

@@ -1,6 +1,6 @@
 //! A cluster: its unknowns [own | shared], own ones eliminated, and what the preconditioner inverts of it.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
 use faer::linalg::triangular_inverse::invert_lower_triangular;
@@ -41,6 +41,8 @@ pub struct Shared {
     /// What each unknown of the cluster is in terms of [own | shared], but for constants.
     terms: Vec<Vec<(usize, f64)>>,
     own: Trapezoid,
+    /// The smallest pivot of own unknowns relative to the diagonal entry.
+    pub smallest_pivot: f64,
     /// Where its classes are.
     ranges: Vec<Range<usize>>,
     /// The spring on each unknown of the cluster; none where nothing has one.
@@ -56,8 +58,7 @@ impl From<NotDefinite> for Moves {
 }
 
 impl Shared {
-    /// Cluster c, with a `spring`, relative to the diagonal, on what open conditions have let go, and its S on what is
-    /// shared, both triangles.
+    /// Cluster c, with a `spring`, relative to the diagonal, on what is `sprung`, and its S on what is shared.
     ///
     /// # Errors
     /// It can move although what it shares is held.
@@ -66,7 +67,7 @@ impl Shared {
         cluster: &ClusterSchur,
         classes: &Classes,
         ties: &Ties,
-        spring: f64,
+        (sprung, spring): (&BTreeSet<InterfaceDof>, f64),
         par: Par,
     ) -> Result<(Self, Mat<f64>), Moves> {
         let mut places: HashMap<InterfaceDof, Vec<(usize, f64)>> = HashMap::new();
@@ -114,13 +115,15 @@ impl Shared {
         let mut springs = Vec::new();
         if spring > 0.0 {
             let dofs = cluster.dofs.iter().zip(&cluster.diagonal);
-            let springs_on = dofs.map(|(dof, d)| spring * d * f64::from(ties.is_open(dof)));
-            springs.extend(springs_on);
+            let has_one = |dof| f64::from(sprung.contains(dof));
+            springs.extend(dofs.map(|(dof, d)| spring * d * has_one(dof)));
         }
         let s = transformed(&cluster.s, &springs, &terms, own + first);
+        let diagonal: Vec<f64> = (0..own).map(|i| s[(i, i)]).collect();
         let (own, s) = Trapezoid::new(s, own, par)?;
         let shared = Self {
             terms,
+            smallest_pivot: own.smallest_pivot(&diagonal),
             own,
             ranges,
             springs,
@@ -204,13 +207,15 @@ pub struct Local {
 }
 
 impl Local {
-    /// A cluster with the bases of its classes.
+    /// A cluster with the bases of its classes, and the first of `holds`, shares of the diagonal, that leaves the others
+    /// definite.
     ///
     /// # Errors
     /// It can move although its coarse unknowns are held.
     pub fn new(
         (shared, mut s): (Shared, Mat<f64>),
         bases: Vec<Basis>,
+        holds: &[f64],
         par: Par,
     ) -> Result<Self, Moves> {
         fill_upper_triangle(&mut s);
@@ -234,7 +239,12 @@ impl Local {
             let lower = permuted.col_as_slice_mut(j)[j..].iter_mut();
             lower.zip(&order[j..]).for_each(|(to, &i)| *to = from[i]);
         }
-        let (others, mut coarse) = Trapezoid::new(permuted, count, par)?;
+        let held_by = |share: &f64| {
+            let mut held = permuted.clone();
+            hold(held.as_mut(), 0..n, *share, 0.0);
+            Trapezoid::new(held, count, par).ok()
+        };
+        let (others, mut coarse) = holds.iter().find_map(held_by).ok_or(Moves)?;
         fill_upper_triangle(&mut coarse);
         Ok(Self {
             shared,
@@ -274,13 +284,18 @@ impl Local {
     /// S x on what is shared, where `s` is that of the cluster's unknowns.
     pub fn multiply(&self, s: &PackedSymmetric, x: &[f64]) -> Vec<f64> {
         let x = self.recover(&vec![0.0; self.own()], x);
-        let mut y = s.multiply(&x);
-        let springs = self.shared.springs.iter().zip(&x);
+        let mut y = self.gather(&self.forces(s, &x));
+        y.split_off(self.own())
+    }
+
+    /// What the cluster, whose S is `s`, and its springs exert where its unknowns are x.
+    pub fn forces(&self, s: &PackedSymmetric, x: &[f64]) -> Vec<f64> {
+        let mut y = s.multiply(x);
+        let springs = self.shared.springs.iter().zip(x);
         y.iter_mut()
             .zip(springs)
             .for_each(|(y, (k, x))| *y += k * x);
-        let mut y = self.gather(&y);
-        y.split_off(self.own())
+        y
     }
 
     /// Number of unknowns that no other cluster has.

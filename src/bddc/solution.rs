@@ -61,7 +61,7 @@ impl Bddc {
         let (mut own, mut b) = (Vectors::new(), Vectors::new());
         for (&c, local) in &self.locals {
             let mut load = loads[&plan.tops[c]].clone();
-            let held = clusters[&plan.tops[c]].s.multiply(&constants_of(c));
+            let held = local.forces(&clusters[&plan.tops[c]].s, &constants_of(c));
             load.iter_mut()
                 .zip(held)
                 .for_each(|(load, held)| *load -= held);
@@ -78,7 +78,7 @@ impl Bddc {
                 .collect::<Vec<_>>(),
             coarse: self.coarse.as_ref(),
             is_stale: self.is_stale(),
-            is_adaptive: self.is_adaptive(),
+            is_judged: self.is_judged(),
         };
         let start = accuracy.start.map(|known| self.start(comm, known, plan));
         let (x, iterations, is_solved) = gradients.solve(b, start, accuracy.tolerance);
@@ -92,7 +92,7 @@ impl Bddc {
         }
         let unbalanced = solved.iter().map(|(&c, x)| {
             let mut r = loads[&plan.tops[c]].clone();
-            let s_x = clusters[&plan.tops[c]].s.multiply(x);
+            let s_x = self.locals[&c].forces(&clusters[&plan.tops[c]].s, x);
             r.iter_mut().zip(s_x).for_each(|(r, s_x)| *r -= s_x);
             (c, r)
         });

@@ -17,6 +17,9 @@ use crate::schur::substitution::Replaced;
 /// the contacts that are open: the next active set closes what stops it.
 const SPRING: f64 = 1e-9;
 
+/// The least pivot between clusters, relative to its diagonal entry, that isn't of round-off.
+const NO_PIVOT: f64 = 1e-12;
+
 /// A front whose own normal jumps are open or closed.
 #[derive(Debug)]
 pub(super) struct FrozenFront {
@@ -157,7 +160,7 @@ impl FrozenFronts {
         open: &BTreeMap<usize, Vec<bool>>,
     ) -> Result<(), Failure> {
         if let Some(bddc) = self.bddc.as_mut().filter(|bddc| !bddc.is_stale()) {
-            bddc.look_into();
+            bddc.look_deeper();
         }
         self.make(context, open, true)
     }
@@ -169,11 +172,38 @@ impl FrozenFronts {
         renewed: bool,
     ) -> Result<(), Failure> {
         let is_known = self.fronts_known(context);
-        if self.factorize(context, open, is_known, renewed).is_ok() {
+        if self.factorize(context, open, is_known, renewed).is_ok() && !self.nearly_moves(context) {
             return Ok(());
         }
         self.spring = SPRING;
         self.factorize(context, open, false, true)
+    }
+
+    /// Takes the springs of earlier active sets away where the iterative interface solver needs none for this one;
+    /// returns whether it did. Collective.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely even where open contacts have springs.
+    pub fn release(
+        &mut self,
+        context: &Context<'_>,
+        open: &BTreeMap<usize, Vec<bool>>,
+    ) -> Result<bool, Failure> {
+        if self.spring == 0.0 || self.bddc.is_none() {
+            return Ok(false);
+        }
+        self.spring = 0.0;
+        self.make(context, open, true)?;
+        Ok(self.spring == 0.0)
+    }
+
+    /// Whether what the iterative interface solver holds without springs may be held by round-off alone. Collective.
+    fn nearly_moves(&self, context: &Context<'_>) -> bool {
+        let comm = context.comm;
+        let pivot = self.bddc.as_ref().map(Bddc::smallest_pivot);
+        let is_small = self.spring == 0.0 && pivot.is_some_and(|pivot| pivot < NO_PIVOT);
+        let is_small = comm.collect(&is_small).contains(&true);
+        comm.decide(is_small)
     }
 
     /// Eliminates what is touched, and makes the preconditioner between clusters. Collective.
@@ -196,18 +226,16 @@ impl FrozenFronts {
             None => Bddc::new(context, &self.tops)?,
         };
         let renewed = renewed || !is_known;
-        let freeze = |bddc: &mut Bddc| {
-            bddc.freeze(context, &self.tops, &touched, open, self.spring, renewed)
-        };
-        if let Err(failure) = freeze(&mut bddc) {
-            if bddc.is_adaptive() {
-                return Err(failure);
-            }
-            bddc.look_into();
-            freeze(&mut bddc)?;
+        // What was made before, with another preconditioner, can't move, nor can what springs hold.
+        let is_sound = self.spring > 0.0 || !touched.contains(&true) && !bddc.is_stale();
+        let mut frozen = bddc.freeze(context, &self.tops, &touched, open, self.spring, renewed);
+        while frozen.is_err() && (bddc.is_judged() || is_sound) && bddc.look_deeper() {
+            frozen = bddc.freeze(context, &self.tops, &touched, open, self.spring, true);
         }
-        self.smallest_pivot = self.smallest_pivot.min(bddc.smallest_pivot);
+        frozen?;
+        let pivot = bddc.coarse_pivot;
         self.bddc = Some(bddc);
+        self.smallest_pivot = self.smallest_pivot.min(pivot);
         Ok(())
     }
 

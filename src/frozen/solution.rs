@@ -117,7 +117,7 @@ impl FrozenFronts {
                 solution.tops = between.clusters.clone();
                 below = between.clusters;
                 solution.iterations = between.iterations;
-                let is_rough = bddc.is_stale() || !bddc.is_adaptive();
+                let is_rough = bddc.is_stale() || bddc.is_judged();
                 solution.is_too_far = is_rough && !between.is_solved;
                 for (g, (jumps, forces)) in between.groups {
                     solution.jumps.insert(g, jumps);

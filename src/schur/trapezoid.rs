@@ -52,6 +52,13 @@ impl Trapezoid {
         Ok((trapezoid, s))
     }
 
+    /// The smallest pivot relative to the entries of the `diagonal`, min L_jj² / d_j.
+    pub fn smallest_pivot(&self, diagonal: &[f64]) -> f64 {
+        let pivot = |(j, d): (usize, &f64)| self.column(j, j)[0].powi(2) / d;
+        let pivots = diagonal.iter().enumerate().map(pivot);
+        pivots.fold(f64::INFINITY, f64::min)
+    }
+
     /// Number of unknowns that are eliminated.
     pub fn eliminated(&self) -> usize {
         self.columns
