@@ -7,8 +7,10 @@
 
 mod classes;
 mod closed;
+pub mod cluster_schur;
 mod coarse;
 mod constraints;
+mod depth;
 mod gradients;
 mod local;
 mod motions;
@@ -20,37 +22,17 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use self::classes::Classes;
 use self::closed::{GroupBetween, Ties};
+use self::cluster_schur::ClusterSchur;
 use self::coarse::{Coarse, CoarsePart};
 use self::constraints::{Basis, Side};
+use self::depth::Depth;
 use self::local::{Local, Moves, Shared};
 use self::motions::SharedNodes;
 use crate::comm::Comm;
 use crate::contact::jumps::NoUnknown;
 use crate::context::Context;
 use crate::error::Failure;
-use crate::schur::condensed::{Condensed, InterfaceDof};
-use crate::schur::symmetric::PackedSymmetric;
-
-/// The Schur complement of a cluster.
-#[derive(Debug)]
-pub struct ClusterSchur {
-    /// Its unknowns on Γ, ascending.
-    pub dofs: Vec<InterfaceDof>,
-    /// S (Pa).
-    pub s: PackedSymmetric,
-    /// The diagonal of the matrix that S is condensed from (Pa).
-    pub diagonal: Vec<f64>,
-}
-
-impl From<Condensed> for ClusterSchur {
-    fn from(condensed: Condensed) -> Self {
-        Self {
-            s: PackedSymmetric::new(&condensed.s),
-            dofs: condensed.interface_dofs,
-            diagonal: condensed.diagonal,
-        }
-    }
-}
+use crate::schur::condensed::InterfaceDof;
 
 /// Clusters and what is between them.
 #[derive(Debug)]
@@ -76,27 +58,6 @@ pub struct Bddc {
     pub coarse_dofs: usize,
     /// The smallest pivot of the coarse problem relative to its diagonal entry; on the root.
     pub coarse_pivot: f64,
-}
-
-/// What is made coarse, and whether the preconditioner is held where round-off keeps it from being definite.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Depth {
-    /// The rigid motions of classes.
-    Motions,
-    /// What their energies say.
-    Energies,
-    /// Rigid motions, and all is held by a little.
-    Held,
-}
-
-impl Depth {
-    /// Shares of diagonal entries of which the first is added that leaves something definite.
-    fn holds(self) -> &'static [f64] {
-        match self {
-            Self::Held => &[0.0, 1e-13, 1e-11, 1e-9, 1e-7],
-            _ => &[0.0],
-        }
-    }
 }
 
 /// A contact group between clusters.
@@ -308,10 +269,8 @@ impl Bddc {
     /// What is to become of a preconditioner that is too bad, or can't be made: classes are looked into, and where that
     /// was in vain it is to be held, and as good as it is. Returns whether there was anything left to do.
     pub fn look_deeper(&mut self) -> bool {
-        let deeper = match self.depth {
-            Depth::Motions => Depth::Energies,
-            Depth::Energies => Depth::Held,
-            Depth::Held => return false,
+        let Some(deeper) = self.depth.next() else {
+            return false;
         };
         self.depth = deeper;
         self.classes = Classes::default();

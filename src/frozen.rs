@@ -5,5 +5,6 @@
 //! displacement, a closed one is known there.
 
 pub mod active_set;
+mod exchange;
 pub mod fronts;
 pub mod solution;

@@ -6,9 +6,9 @@ use std::ops::Range;
 use faer::linalg::triangular_inverse::invert_lower_triangular;
 use faer::{Mat, MatMut, Par, Side::Lower};
 
-use crate::bddc::ClusterSchur;
 use crate::bddc::classes::Classes;
 use crate::bddc::closed::Ties;
+use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::constraints::{Basis, Side};
 use crate::bddc::transform::transformed;
 use crate::schur::condensed::InterfaceDof;

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::bddc::Bddc;
+use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::gradients::{Gradients, Vectors};
-use crate::bddc::{Bddc, ClusterSchur};
 use crate::bytes::Reals;
 use crate::comm::Comm;
 use crate::context::Context;

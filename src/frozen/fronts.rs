@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
-use crate::bddc::{Bddc, ClusterSchur};
+use crate::bddc::Bddc;
+use crate::bddc::cluster_schur::ClusterSchur;
 use crate::condense::Condensation;
 use crate::context::Context;
 use crate::error::Failure;

@@ -1,0 +1,31 @@
+//! How far one goes to make a preconditioner that is good, or that can be made at all.
+
+/// What is made coarse, and whether the preconditioner is held where round-off keeps it from being definite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// The rigid motions of classes.
+    Motions,
+    /// What their energies say.
+    Energies,
+    /// Rigid motions, and all is held by a little.
+    Held,
+}
+
+impl Depth {
+    /// Shares of diagonal entries of which the first is added that leaves something definite.
+    pub fn holds(self) -> &'static [f64] {
+        match self {
+            Self::Held => &[0.0, 1e-13, 1e-11, 1e-9, 1e-7],
+            _ => &[0.0],
+        }
+    }
+
+    /// The next one to be tried.
+    pub fn next(self) -> Option<Self> {
+        match self {
+            Self::Motions => Some(Self::Energies),
+            Self::Energies => Some(Self::Held),
+            Self::Held => None,
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! Which conditions are exchanged where the solution says that an active set is wrong.
+//!
+//! All that are wrong, as semismooth Newton does. Where these don't become fewer the energy descends: from jumps that
+//! penetrate nowhere the way towards those of a step is gone up to where the first condition closes, and where none does
+//! those under tension open (Nocedal and Wright, Numerical Optimization, 2006, algorithm 16.3), until fewer are wrong than
+//! ever. That comes back nowhere, so it ends.
+
+use std::collections::BTreeMap;
+
+use crate::context::Context;
+
+/// Tolerance of an iterative solver beside what is wrong with the active set before.
+const LOOSE: f64 = 0.01;
+/// Steps without fewer conditions that say otherwise until the energy descends.
+const PATIENCE: usize = 8;
+
+/// Whether all wrong conditions are exchanged.
+#[derive(Debug)]
+pub(super) struct Exchange {
+    /// Fewest conditions that were wrong.
+    fewest: usize,
+    /// Steps that may go by without fewer.
+    patience: usize,
+    /// Tolerance of an iterative solver beside what is wrong with the active set before: where conditions are exchanged
+    /// because of errors they don't become fewer.
+    pub tolerance: f64,
+}
+
+impl Default for Exchange {
+    fn default() -> Self {
+        Self {
+            fewest: usize::MAX,
+            patience: PATIENCE,
+            tolerance: LOOSE,
+        }
+    }
+}
+
+impl Exchange {
+    /// Whether all are exchanged where `count` are wrong; if not, the energy is to descend.
+    pub fn is_of_all(&mut self, count: usize) -> bool {
+        let all = count < self.fewest || self.patience > 0;
+        if count < self.fewest {
+            (self.fewest, self.patience) = (count, PATIENCE);
+        } else {
+            self.patience = self.patience.saturating_sub(1);
+            self.tolerance *= LOOSE;
+        }
+        all
+    }
+}
+
+/// Normal jumps that penetrate nowhere, by group of this rank, from which the energy descends.
+#[derive(Debug, Default)]
+pub(super) struct Descent(Option<BTreeMap<usize, Vec<f64>>>);
+
+impl Descent {
+    /// Goes towards the jumps that a step `found` where those conditions were `open`, of which some are `wrong`, and
+    /// exchanges some; how many. Collective.
+    pub fn exchange(
+        &mut self,
+        context: &Context<'_>,
+        wrong: &BTreeMap<usize, Vec<usize>>,
+        bounds: &BTreeMap<usize, Vec<f64>>,
+        found: &BTreeMap<usize, Vec<f64>>,
+        open: &mut BTreeMap<usize, Vec<bool>>,
+    ) -> usize {
+        let Context { comm, plan, .. } = *context;
+        let begun = self.0.is_some();
+        let jumps = self.0.get_or_insert_with(|| found.clone());
+        let part_of = |g: usize| match (begun, wrong.get(&g)) {
+            (true, Some(wrong)) => part(&jumps[&g], &found[&g], &bounds[&g], &open[&g], wrong),
+            _ => f64::INFINITY,
+        };
+        let mut least = f64::INFINITY;
+        comm.gather(&plan.group_owners(), part_of, |_, part| {
+            least = least.min(part)
+        });
+        comm.broadcast(&mut least);
+        let mut changed = BTreeMap::new();
+        for (g, of_group) in jumps {
+            let wrong = wrong.get(g).map_or(&[][..], Vec::as_slice);
+            if let Some(open) = open.get_mut(g) {
+                let count = match begun {
+                    true => go(of_group, &found[g], &bounds[g], open, wrong, least),
+                    // Where all that penetrates is closed none does.
+                    false => close(of_group, &bounds[g], open, wrong),
+                };
+                changed.insert(*g, count);
+            }
+        }
+        let mut sum = 0;
+        comm.gather(
+            &plan.group_owners(),
+            |g| changed.get(&g).copied().unwrap_or(0),
+            |_, count| sum += count,
+        );
+        comm.broadcast(&mut sum);
+        sum
+    }
+}
+
+/// The part of the way from `jumps` to those that were `found` after which the first open condition that is wrong
+/// closes; infinite where none is.
+fn part(jumps: &[f64], found: &[f64], bounds: &[f64], open: &[bool], wrong: &[usize]) -> f64 {
+    let part = |&j: &usize| ((bounds[j] - jumps[j]) / (found[j] - jumps[j])).max(0.0);
+    let penetrating = wrong.iter().filter(|&&j| open[j]);
+    penetrating.map(part).fold(f64::INFINITY, f64::min)
+}
+
+/// Goes a `way` of this length from `jumps` towards those that were `found`, and closes what closes there, or goes there
+/// where nothing is in the way, and opens what is under tension; how many.
+fn go(
+    jumps: &mut [f64],
+    found: &[f64],
+    bounds: &[f64],
+    open: &mut [bool],
+    wrong: &[usize],
+    way: f64,
+) -> usize {
+    let is_blocked = way.is_finite();
+    let closes = |j: usize, jumps: &[f64]| part(jumps, found, bounds, open, &[j]) <= way;
+    let exchanged: Vec<usize> = (wrong.iter().copied())
+        .filter(|&j| match is_blocked {
+            true => open[j] && closes(j, jumps),
+            false => !open[j],
+        })
+        .collect();
+    for j in 0..jumps.len() {
+        jumps[j] += way.min(1.0) * (found[j] - jumps[j]);
+    }
+    for &j in &exchanged {
+        open[j] = !open[j];
+        jumps[j] = bounds[j];
+    }
+    exchanged.len()
+}
+
+/// Closes what is open and wrong, at its bound; how many.
+fn close(jumps: &mut [f64], bounds: &[f64], open: &mut [bool], wrong: &[usize]) -> usize {
+    let mut count = 0;
+    for &j in wrong.iter().filter(|&&j| open[j]) {
+        jumps[j] = bounds[j];
+        count += 1;
+    }
+    wrong.iter().for_each(|&j| open[j] &= jumps[j] != bounds[j]);
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::linalg::solvers::Solve;
+    use faer::{Mat, Side};
+
+    use super::*;
+
+    /// Finds which t are 0 in min ½ tᵀ H t − cᵀ t over t ≤ 0; how many steps of descent that took.
+    fn open_jumps(h: &Mat<f64>, c: &[f64]) -> usize {
+        let n = c.len();
+        let (mut open, mut exchange, mut singles) = (vec![false; n], Exchange::default(), 0);
+        let mut descent: Option<Vec<f64>> = None;
+        let bounds = vec![0.0; n];
+        for _ in 0..1000 {
+            let free: Vec<usize> = (0..n).filter(|&j| open[j]).collect();
+            let of_free = Mat::from_fn(free.len(), free.len(), |i, j| h[(free[i], free[j])]);
+            let load = Mat::from_fn(free.len(), 1, |i, _| c[free[i]]);
+            let jumps = match free.len() {
+                0 => load,
+                _ => of_free.llt(Side::Lower).unwrap().solve(&load),
+            };
+            let force = |j: usize| {
+                let terms = free.iter().enumerate();
+                c[j] - terms.map(|(i, &k)| h[(j, k)] * jumps[(i, 0)]).sum::<f64>()
+            };
+            let jump = |j: usize| free.binary_search(&j).map_or(0.0, |i| jumps[(i, 0)]);
+            let is_wrong = |j: &usize| match open[*j] {
+                true => jump(*j) > 0.0,
+                false => force(*j) < 0.0,
+            };
+            let wrong: Vec<usize> = (0..n).filter(is_wrong).collect();
+            if wrong.is_empty() {
+                return singles;
+            }
+            if exchange.is_of_all(wrong.len()) {
+                descent = None;
+                wrong.iter().for_each(|&j| open[j] = !open[j]);
+                continue;
+            }
+            singles += 1;
+            let found: Vec<f64> = (0..n).map(jump).collect();
+            match &mut descent {
+                None => {
+                    let mut jumps = found;
+                    close(&mut jumps, &bounds, &mut open, &wrong);
+                    descent = Some(jumps);
+                }
+                Some(jumps) => {
+                    let way = part(jumps, &found, &bounds, &open, &wrong);
+                    go(jumps, &found, &bounds, &mut open, &wrong, way);
+                }
+            }
+        }
+        panic!("it goes on for ever");
+    }
+
+    /// Exchanges of all that are wrong come back to where they were with 7 of these matrices.
+    #[test]
+    fn sets_that_come_back_are_left_by_descent() {
+        let noise = |s: usize| ((s as f64 * 78.233).sin() * 43758.5453).fract();
+        let mut singles = 0;
+        for seed in 0..200 {
+            let n = 6 + seed % 9;
+            // Of low rank, but for a little.
+            let root = Mat::from_fn(n, (3 * n / 10).max(2), |i, j| {
+                noise(1000 * seed + 31 * i + j)
+            });
+            let mut h = &root * root.transpose();
+            (0..n).for_each(|i| h[(i, i)] += 1e-4);
+            let c: Vec<f64> = (0..n).map(|i| noise(77 * seed + i)).collect();
+            singles += open_jumps(&h, &c);
+        }
+        assert!(singles > 0);
+    }
+}
