@@ -6,5 +6,6 @@
 
 pub mod active_set;
 mod exchange;
+pub mod friction;
 pub mod fronts;
 pub mod solution;

@@ -67,7 +67,7 @@ impl Plan {
 
     /// The merging that takes least for this scene, where newton may choose.
     pub fn cheapest(catalog: &Catalog) -> Merging {
-        match !catalog.has_friction() && Tree::new(catalog).freezing_pays(catalog.dim) {
+        match Tree::new(catalog).freezing_pays(catalog.dim) {
             true => Merging::Frozen,
             false => Merging::All,
         }

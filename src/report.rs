@@ -194,8 +194,8 @@ fn solved_directly(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
     }
     let why = if settings.method != Method::Newton {
         "it goes with --method newton"
-    } else if totals.catalog.has_friction() {
-        "it doesn't know friction yet"
+    } else if totals.catalog.has_friction() && settings.second_start {
+        "--second-start solves for all conditions at once"
     } else if totals.plan.merging == Merging::Clusters {
         "the problem file has one cluster"
     } else {

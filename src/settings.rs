@@ -171,7 +171,9 @@ impl Settings {
                      anew, or use --interface direct",
                 ));
             }
-            Method::Newton if is_iterative && !catalog.has_friction() => Merging::Clusters,
+            // Another solution is looked for with all conditions at once.
+            Method::Newton if catalog.has_friction() && self.second_start => Merging::All,
+            Method::Newton if is_iterative => Merging::Clusters,
             Method::Newton => Plan::cheapest(catalog),
         })
     }

@@ -35,8 +35,9 @@ pub struct Arguments {
     /// Runs scenes in space alone; their seeds count anew.
     #[arg(long, conflicts_with_all = ["markdown", "friction"])]
     space: bool,
-    /// Solves with the iterative interface solver between so many clusters, about, scenes without friction.
-    #[arg(long, value_name = "N", conflicts_with_all = ["markdown", "friction"])]
+    /// Solves with the iterative interface solver between so many clusters, about, scenes without friction if no others
+    /// are asked for.
+    #[arg(long, value_name = "N", conflicts_with = "markdown")]
     clusters: Option<usize>,
     /// Most cells along a side of a block.
     #[arg(long, default_value_t = 12)]

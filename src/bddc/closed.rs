@@ -83,6 +83,13 @@ impl GroupBetween {
         self.replaced.iter().map(constant).collect()
     }
 
+    /// What `forces` on its jumps make of the loads on its unknowns, −Bᵀλ.
+    pub fn loads_of(&self, forces: &[f64]) -> Vec<(InterfaceDof, f64)> {
+        let acting = forces.iter().zip(&self.terms).filter(|(f, _)| **f != 0.0);
+        let loads = acting.flat_map(|(f, terms)| terms.iter().map(move |&(dof, c)| (dof, -c * f)));
+        loads.collect()
+    }
+
     /// The normal jumps, and the forces on them, 0 where open, for displacements and unbalanced forces at its
     /// unknowns.
     pub fn answer(

@@ -8,6 +8,7 @@ use crate::bddc::gradients::{Gradients, Vectors};
 use crate::bytes::Reals;
 use crate::comm::Comm;
 use crate::context::Context;
+use crate::frozen::solution::FrozenLoads;
 use crate::plan::Plan;
 use crate::schur::condensed::InterfaceDof;
 
@@ -42,18 +43,26 @@ pub struct BddcSolution {
 }
 
 impl Bddc {
-    /// Solves for `loads` on the unknowns of the clusters of this rank, by node, where the closed normal jumps of
-    /// every contact group between them have these `values`. Collective.
+    /// Solves for `loads` on the unknowns of the clusters of this rank. Collective.
     pub fn solve(
         &self,
         context: &Context<'_>,
         clusters: &BTreeMap<usize, ClusterSchur>,
-        loads: &BTreeMap<usize, Vec<f64>>,
-        values: &BTreeMap<usize, Vec<f64>>,
+        loads: FrozenLoads<'_>,
         accuracy: Accuracy,
     ) -> BddcSolution {
         let Context { comm, plan, .. } = *context;
-        let constants = self.constants(comm, values);
+        let constants = self.constants(comm, loads.prescribed);
+        let forces = match context.catalog.has_friction() {
+            true => self.loads_of(comm, loads.forces),
+            false => Vec::new(),
+        };
+        let load_of = |c: usize| {
+            let mut load = loads.clusters[&plan.tops[c]].clone();
+            let own = forces.iter().filter(|(cluster, ..)| *cluster == c);
+            own.for_each(|&(_, place, force)| load[place] += force);
+            load
+        };
         let constants_of = |c: usize| -> Vec<f64> {
             let dofs = self.dofs[c].iter();
             dofs.map(|dof| constants.get(dof).copied().unwrap_or(0.0))
@@ -61,7 +70,7 @@ impl Bddc {
         };
         let (mut own, mut b) = (Vectors::new(), Vectors::new());
         for (&c, local) in &self.locals {
-            let mut load = loads[&plan.tops[c]].clone();
+            let mut load = load_of(c);
             let held = local.forces(&clusters[&plan.tops[c]].s, &constants_of(c));
             load.iter_mut()
                 .zip(held)
@@ -92,7 +101,7 @@ impl Bddc {
             solved.insert(c, all);
         }
         let unbalanced = solved.iter().map(|(&c, x)| {
-            let mut r = loads[&plan.tops[c]].clone();
+            let mut r = load_of(c);
             let s_x = self.locals[&c].forces(&clusters[&plan.tops[c]].s, x);
             r.iter_mut().zip(s_x).for_each(|(r, s_x)| *r -= s_x);
             (c, r)
@@ -145,6 +154,34 @@ impl Bddc {
             |i, Reals(values)| start.entry(ends[i].1).or_default().extend(values),
         );
         start
+    }
+
+    /// What forces on the jumps of the contact groups of this rank load clusters with, on all ranks: the first that has
+    /// an unknown, and its place there. Collective.
+    fn loads_of(
+        &self,
+        comm: &Comm,
+        forces: &BTreeMap<usize, Vec<f64>>,
+    ) -> Vec<(usize, usize, f64)> {
+        let mut loads = Vec::new();
+        comm.gather(
+            &self.group_owners(),
+            |i| {
+                let number = self.between[i].number;
+                let forces = forces.get(&number).map_or(&[][..], Vec::as_slice);
+                self.groups[&number].loads_of(forces)
+            },
+            |i, of_group| {
+                let clusters = &self.between[i].clusters;
+                loads.extend(of_group.into_iter().filter_map(|(dof, load)| {
+                    let place = |&c: &usize| Some((c, self.dofs[c].binary_search(&dof).ok()?));
+                    let (c, place) = clusters.iter().find_map(place)?;
+                    Some((c, place, load))
+                }));
+            },
+        );
+        comm.broadcast(&mut loads);
+        loads
     }
 
     /// What tied displacements are beside the terms of others, on all ranks. Collective.

@@ -35,7 +35,7 @@ impl Factors<'_> {
             } else if let Some(merge) = condensed.merges.get(&v) {
                 let of_children: Vec<&[f64]> =
                     children.iter().map(|child| &arrived[child][..]).collect();
-                of_nodes.insert(v, merge.condense(&of_children));
+                of_nodes.insert(v, merge.condense(&of_children, &[]));
             }
         }
         of_nodes

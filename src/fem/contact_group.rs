@@ -190,6 +190,20 @@ impl ContactGroup {
         conditions.filter_map(of_condition).collect()
     }
 
+    /// How stiff the bodies are against a jump at a point, about (N/m).
+    pub fn stiffness_at(&self, point: usize) -> f64 {
+        let point = &self.points[point];
+        let width = if self.dim == 3 {
+            point.area.sqrt()
+        } else {
+            1.0
+        };
+        let of_entry = |&(node, weight): &(u32, f64)| {
+            weight * weight / (self.nodes[node as usize].stiffness * width)
+        };
+        1.0 / point.entries.iter().map(of_entry).sum::<f64>()
+    }
+
     /// What displacements `u`, node by node, leave of the jumps that conditions allow: the gaps g − n·⟦u⟧, and the
     /// way back to where the sides stick (m).
     pub fn gaps_left(&self, loads: &GroupLoads, u: &[f64]) -> Vec<f64> {

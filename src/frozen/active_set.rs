@@ -12,14 +12,14 @@ use crate::context::Context;
 use crate::error::Failure;
 use crate::frozen::exchange::{Descent, Exchange};
 use crate::frozen::fronts::FrozenFronts;
-use crate::frozen::solution::FrozenSolution;
+use crate::frozen::solution::{FrozenLoads, FrozenSolution};
 use crate::interface::s_con::ConTotals;
 use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
 
 /// Most steps.
 const MAX_STEPS: usize = 400;
 /// What is none beside the largest force or displacement.
-const ROUND_OFF: f64 = 1e-12;
+pub(super) const ROUND_OFF: f64 = 1e-12;
 
 /// What the steps found, on this rank.
 #[derive(Clone, Debug)]
@@ -72,6 +72,11 @@ pub fn solve(
     let (mut exchange, mut descent) = (Exchange::default(), Descent::default());
     let (mut changed, mut is_released) = (None, false);
     let (mut last, mut wrong_by) = (None, 1.0_f64);
+    let of_set = FrozenLoads {
+        clusters: loads,
+        prescribed: &bounds,
+        forces: &BTreeMap::new(),
+    };
     loop {
         fronts.freeze(context, &open)?;
         let accurate = |fronts: &mut FrozenFronts, tolerance, start: Option<&FrozenSolution>| {
@@ -79,7 +84,7 @@ pub fn solve(
                 tolerance,
                 start: start.map(|start| &start.tops),
             };
-            let mut solution = fronts.solve(context, &open, loads, &bounds, accuracy)?;
+            let mut solution = fronts.solve(context, &open, of_set, accuracy)?;
             solution.iterations += start.map_or(0, |start| start.iterations);
             let least = ROUND_OFF.max(tolerance);
             let faults = Faults::of(context, &solution, &bounds, &open, least);
@@ -123,14 +128,7 @@ pub fn solve(
                     "newton stopped after {sweep} sweeps: {n} conditions aren't settled"
                 )),
             };
-            outcome.residual = faults.largest;
-            outcome.active_set_iterations = sweep + 1;
-            outcome.totals = ConTotals {
-                active: faults.active,
-                changed: changed.unwrap_or(0),
-                steps: sweep + 1,
-                ..ConTotals::default()
-            };
+            end(&mut outcome);
             let conditions = limits.iter().map(|(g, limits)| {
                 let forces = solution.forces[g]
                     .iter()
@@ -148,11 +146,7 @@ pub fn solve(
                 outcome,
             });
         }
-        if context.comm.is_any_asked_to_stop() {
-            return Err(Failure::interrupted(format!(
-                "interrupted after {sweep} sweeps, before a result was written"
-            )));
-        }
+        go_on(context, sweep)?;
         changed = Some(match exchange.is_of_all(faults.count) {
             true => {
                 descent = Descent::default();
@@ -169,6 +163,34 @@ pub fn solve(
             iterations: 0,
             ..solution
         });
+    }
+}
+
+/// Counts what the steps took, at their end.
+pub(super) fn end(outcome: &mut SweepOutcome) {
+    let steps = outcome.records.len();
+    outcome.active_set_iterations = steps;
+    if let Some(last) = outcome.records.last() {
+        outcome.residual = last.residual;
+        outcome.totals = ConTotals {
+            active: last.active,
+            changed: last.changed.unwrap_or(0),
+            steps,
+            ..ConTotals::default()
+        };
+    }
+}
+
+/// Goes on unless a signal has asked the run to stop. Collective.
+///
+/// # Errors
+/// A signal did.
+pub(super) fn go_on(context: &Context<'_>, sweeps: usize) -> Result<(), Failure> {
+    match context.comm.is_any_asked_to_stop() {
+        false => Ok(()),
+        true => Err(Failure::interrupted(format!(
+            "interrupted after {sweeps} sweeps, before a result was written"
+        ))),
     }
 }
 

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use crate::context::Context;
 
 /// Tolerance of an iterative solver beside what is wrong with the active set before.
-const LOOSE: f64 = 0.01;
+pub(super) const LOOSE: f64 = 0.01;
 /// Steps without fewer conditions that say otherwise until the energy descends.
 const PATIENCE: usize = 8;
 

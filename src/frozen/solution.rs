@@ -10,6 +10,25 @@ use crate::error::Failure;
 use crate::schur::local::CondensedLoad;
 use crate::vector::{axpy, dot};
 
+/// What acts where the active set is frozen, on this rank.
+#[derive(Clone, Copy, Debug)]
+pub struct FrozenLoads<'a> {
+    /// Loads on the boundaries of clusters, by node.
+    pub clusters: &'a BTreeMap<usize, Vec<f64>>,
+    /// The values of the closed jumps of every contact group (m).
+    pub prescribed: &'a BTreeMap<usize, Vec<f64>>,
+    /// The forces on the open ones of every group with friction (N/m); others have none.
+    pub forces: &'a BTreeMap<usize, Vec<f64>>,
+}
+
+impl FrozenLoads<'_> {
+    /// The forces on the open jumps of group g.
+    fn forces_on(&self, g: usize, open: &[bool]) -> Vec<f64> {
+        let all = self.forces.get(&g).into_iter().flatten().zip(open);
+        all.filter(|(_, open)| **open).map(|(f, _)| *f).collect()
+    }
+}
+
 /// What a load does where the active set is frozen, on this rank.
 #[derive(Clone, Debug, Default)]
 pub struct FrozenSolution {
@@ -28,9 +47,8 @@ pub struct FrozenSolution {
 }
 
 impl FrozenFronts {
-    /// Solves for `loads` on the boundaries of the clusters of this rank, by node, where the closed normal jumps of
-    /// every group have the values `prescribed` and others are `open`, as is frozen; an iterative solver goes as far as
-    /// `accuracy` says. Collective.
+    /// Solves for `loads` where those normal jumps are `open` that are frozen as such; an iterative solver goes as far
+    /// as `accuracy` says. Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely even where open contacts have springs.
@@ -38,11 +56,10 @@ impl FrozenFronts {
         &mut self,
         context: &Context<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
-        loads: &BTreeMap<usize, Vec<f64>>,
-        prescribed: &BTreeMap<usize, Vec<f64>>,
+        loads: FrozenLoads<'_>,
         accuracy: Accuracy<'_>,
     ) -> Result<FrozenSolution, Failure> {
-        let mut solution = self.solve_as_it_is(context, loads.clone(), prescribed, accuracy);
+        let mut solution = self.solve_as_it_is(context, loads, accuracy);
         // One made again of the classes known to need it, then one that all classes were looked into for.
         for _ in 0..2 {
             if !solution.is_too_far {
@@ -53,7 +70,7 @@ impl FrozenFronts {
                 start: Some(&solution.tops),
                 ..accuracy
             };
-            let mut nearer = self.solve_as_it_is(context, loads.clone(), prescribed, from_there);
+            let mut nearer = self.solve_as_it_is(context, loads, from_there);
             nearer.iterations += solution.iterations;
             solution = nearer;
         }
@@ -63,8 +80,7 @@ impl FrozenFronts {
     fn solve_as_it_is(
         &self,
         context: &Context<'_>,
-        mut loads: BTreeMap<usize, Vec<f64>>,
-        prescribed: &BTreeMap<usize, Vec<f64>>,
+        loads: FrozenLoads<'_>,
         accuracy: Accuracy<'_>,
     ) -> FrozenSolution {
         let plan = context.plan;
@@ -72,7 +88,7 @@ impl FrozenFronts {
         // What arrives at the owner of the node above.
         let mut arrived: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         for cluster in &plan.clusters {
-            let load = loads.remove(&cluster.node);
+            let load = loads.clusters.get(&cluster.node).cloned();
             let parent = plan.merged_into(cluster.node);
             carry(
                 context,
@@ -87,8 +103,10 @@ impl FrozenFronts {
             let passed = self.fronts.get(&v).map(|front| {
                 let children = plan.tree.nodes[v].children.iter();
                 let of_children: Vec<&[f64]> = children.map(|child| &arrived[child][..]).collect();
-                let load = front.merge.condense(&of_children);
-                let values = front.closed_values(plan.group_of(v).map(|g| &prescribed[&g][..]));
+                let group = plan.group_of(v);
+                let forces = group.map_or_else(Vec::new, |g| loads.forces_on(g, &front.open));
+                let load = front.merge.condense(&of_children, &forces);
+                let values = front.closed_values(group.map(|g| &loads.prescribed[&g][..]));
                 let closed = values.len();
                 let mut kept = load.boundary()[closed..].to_vec();
                 for (j, value) in values.iter().enumerate() {
@@ -113,7 +131,15 @@ impl FrozenFronts {
             // Roots keep nothing.
             None => below.extend(plan.tops.iter().map(|&v| (v, Vec::new()))),
             Some(bddc) => {
-                let between = bddc.solve(context, &self.tops, &arrived, prescribed, accuracy);
+                let between = bddc.solve(
+                    context,
+                    &self.tops,
+                    FrozenLoads {
+                        clusters: &arrived,
+                        ..loads
+                    },
+                    accuracy,
+                );
                 solution.tops = between.clusters.clone();
                 below = between.clusters;
                 solution.iterations = between.iterations;

@@ -37,7 +37,7 @@ pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
             closed.map(|closed| (Status::new(!closed), 0.0)).collect(),
         )
     });
-    let answer = fixed.solve(loads.clone(), held.collect(), ACCURACY);
+    let answer = fixed.solve(loads.clone(), held.collect(), &BTreeMap::new(), ACCURACY);
     let answer = answer.blocks;
 
     // xᵀ D x and xᵀ K x, summed block by block so that ranks make no difference.

@@ -5,15 +5,18 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::bddc::solution::Accuracy;
 use crate::bytes::Reals;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::substitute::Factors;
 use crate::contact::friction::Status;
 use crate::contact::limits::Limits;
 use crate::context::Context;
+use crate::error::Failure;
 use crate::fem::balance::Balance;
+use crate::frozen::friction::points::Law;
+use crate::frozen::friction::slip_problem::{Forces, Laws, SlipProblem};
 use crate::frozen::fronts::FrozenFronts;
+use crate::frozen::solution::FrozenSolution;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
@@ -25,6 +28,10 @@ use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::schur::local::CondensedLoad;
 use crate::step::StepProblem;
 use crate::sweep::{SweepOutcome, SweepStatus};
+use crate::vector::axpy;
+
+/// How well slip forces follow what presses, at best.
+const FOLLOWED: f64 = 1e-4;
 
 /// What a rank holds of the problem of the fixed active set.
 #[derive(Clone, Copy)]
@@ -131,16 +138,18 @@ impl<'a> FixedActiveSet<'a> {
     }
 
     /// The change that `loads` on the unknowns of the blocks of this rank, and those on the others', make where
-    /// `conditions` keep their statuses; an iterative solver goes as far as the `tolerance`. Collective.
+    /// `conditions` keep their statuses; what slips under these `forces` of conditions, by contact group, follows what
+    /// presses, in their directions; an iterative solver goes as far as the `tolerance`. Collective.
     pub fn solve(
         &self,
         loads: BTreeMap<usize, Vec<f64>>,
         conditions: FixedConditions,
+        forces: &BTreeMap<usize, Vec<f64>>,
         tolerance: f64,
     ) -> Change {
         let factors = self.factors();
         if let Some(frozen) = self.frozen {
-            return self.solve_frozen(frozen, loads, conditions, tolerance);
+            return self.solve_frozen(frozen, loads, conditions, forces, tolerance);
         }
         let limits = self.limits(factors.collect_conditions(conditions));
         let condensed = factors.condense(loads);
@@ -157,12 +166,17 @@ impl<'a> FixedActiveSet<'a> {
         (fronts, limits): Frozen<'_>,
         loads: BTreeMap<usize, Vec<f64>>,
         conditions: FixedConditions,
+        forces: &BTreeMap<usize, Vec<f64>>,
         tolerance: f64,
     ) -> Change {
         let factors = self.factors();
         let (mut open, mut missing) = (BTreeMap::new(), BTreeMap::new());
+        let mut laws = Laws::new();
         for (g, of_group) in conditions {
             let (statuses, lacking) = limits[&g].fixed(&of_group);
+            if let Some(forces) = forces.get(&g) {
+                laws.insert(g, Law::of_slipping(&limits[&g], &statuses, forces));
+            }
             let is_open = |status: &Status| !status.is_closed();
             open.insert(g, statuses.iter().map(is_open).collect());
             missing.insert(g, lacking);
@@ -176,12 +190,15 @@ impl<'a> FixedActiveSet<'a> {
         let on_clusters = condensed
             .iter()
             .map(|(&v, load)| (v, load.boundary().to_vec()));
-        let accuracy = Accuracy {
-            tolerance,
-            start: None,
+        let problem = SlipProblem {
+            context: &self.context,
+            open: &open,
+            clusters: &on_clusters.collect(),
+            prescribed: &missing,
         };
-        let loads = on_clusters.collect();
-        let Ok(solution) = fronts.solve(&self.context, &open, &loads, &missing, accuracy) else {
+        let follows = self.context.catalog.has_friction();
+        let solved = follow(&mut fronts, &problem, &laws, follows, tolerance);
+        let Ok(solution) = solved else {
             return Change::default();
         };
         let forces = solution.forces.iter();
@@ -249,6 +266,29 @@ impl<'a> FixedActiveSet<'a> {
         );
         (forces, boundaries)
     }
+}
+
+/// Solves for what acts, and for the forces of what slips where that `follows` what presses. Collective.
+fn follow(
+    fronts: &mut FrozenFronts,
+    problem: &SlipProblem<'_>,
+    laws: &Laws,
+    follows: bool,
+    tolerance: f64,
+) -> Result<FrozenSolution, Failure> {
+    let solution = problem.respond(fronts, &Forces::new(), tolerance, None)?;
+    if !follows {
+        return Ok(solution);
+    }
+    let reduction = tolerance.max(FOLLOWED);
+    let Some(slip_forces) = problem.follow(fronts, laws, &solution, reduction)? else {
+        return Ok(solution);
+    };
+    let mut solution = problem.respond(fronts, &slip_forces, tolerance, Some(&solution))?;
+    for (g, forces) in &mut solution.forces {
+        axpy(1.0, &slip_forces[g], forces);
+    }
+    Ok(solution)
 }
 
 /// What the owner of a cluster tells the root.

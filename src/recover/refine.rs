@@ -201,7 +201,9 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
         let statuses = statuses(&fixed.context.groups[&g], of_group).into_iter();
         (g, statuses.zip(of_group.gaps.iter().copied()).collect())
     });
-    let change = fixed.solve(loads, conditions.collect(), CORRECTION);
+    let forces = solution.groups.iter();
+    let forces = forces.map(|(&g, of_group)| (g, of_group.forces.clone()));
+    let change = fixed.solve(loads, conditions.collect(), &forces.collect(), CORRECTION);
     for (b, x) in change.blocks {
         let block = fixed.condensed.blocks.get(&b);
         if let (Some(of_block), Some(block)) = (solution.blocks.get_mut(&b), block) {

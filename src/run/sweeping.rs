@@ -7,6 +7,7 @@ use crate::contact::pair::ContactPair;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::frozen::active_set::{self, FrozenContact};
+use crate::frozen::friction;
 use crate::frozen::fronts::FrozenFronts;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::SCon;
@@ -65,7 +66,11 @@ pub fn sweep_frozen(
         .map(|(&v, load)| (v, load.boundary().to_vec()));
     let mut observer = |record: &SweepRecord| log.sweep(record);
     let loads = loads.collect();
-    active_set::solve(
+    let solve = match context.catalog.has_friction() {
+        true => friction::solve,
+        false => active_set::solve,
+    };
+    solve(
         context,
         fronts,
         limits,

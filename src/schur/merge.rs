@@ -204,8 +204,9 @@ impl Merge {
         Ok((merge, condensed))
     }
 
-    /// Condenses the loads on the children's boundaries, in their order.
-    pub fn condense(&self, loads: &[&[f64]]) -> CondensedLoad {
+    /// Condenses the loads on the children's boundaries, in their order, where the front's own normal jumps that are
+    /// eliminated carry these `forces`; none where there are none.
+    pub fn condense(&self, loads: &[&[f64]], forces: &[f64]) -> CondensedLoad {
         let mut load = vec![0.0; self.columns.nrows()];
         for (place, of_child) in self.places.iter().zip(loads) {
             for (&to, f) in place.iter().zip(*of_child) {
@@ -213,6 +214,10 @@ impl Merge {
             }
         }
         self.substitution.transform_load(&mut load);
+        let first = self.eliminated - forces.len();
+        for (load, force) in load[first..].iter_mut().zip(forces) {
+            *load -= force;
+        }
         self.forward(&mut load);
         CondensedLoad::new(load, self.eliminated)
     }

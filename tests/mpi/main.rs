@@ -183,7 +183,7 @@ fn same_results(trials: &mut Trials) {
     for (name, make) in cases {
         same_bits(trials, name, make, &[]);
     }
-    let iterative: [(&str, MakeCase); 5] = [
+    let iterative: [(&str, MakeCase); 7] = [
         ("between_clusters::in_space", || {
             let lower = solid(
                 "lower",
@@ -214,6 +214,12 @@ fn same_results(trials: &mut Trials) {
         }),
         ("between_clusters::stack", || {
             Case::in_clusters(&built_in_model("stack", 0), 20, 7)
+        }),
+        ("between_clusters::raous", || {
+            Case::in_clusters(&built_in_model("raous", 0), 14, 6)
+        }),
+        ("between_clusters::with_friction_in_steps", || {
+            Case::in_clusters(&steps::two_blocks_with_friction(), 12, 6)
         }),
         ("between_clusters::in_steps", || {
             Case::in_clusters(&steps::two_blocks_in_steps(), 12, 6)

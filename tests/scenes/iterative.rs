@@ -3,8 +3,8 @@
 use contact_dd_partition::element::ElementKind::{Hexahedron8, Tetrahedron10};
 
 use crate::space::contact::rocking_scene;
-use crate::support::blocks::joined;
-use crate::support::scenes::{built_in_model, checkerboard, columns, model};
+use crate::support::blocks::{Blocks, joined};
+use crate::support::scenes::{built_in, built_in_model, checkerboard, columns, model};
 use crate::support::solids::{between, solid};
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, LIMIT, built, problem};
@@ -141,10 +141,153 @@ fn a_file_without_clusters_is_refused_in_words() {
     assert!(ended.errors()[0].contains("/hierarchy/cluster is missing"));
 }
 
+/// What sticks and what slips may differ where a force is within 1e-12 of its bound, which moves what slips by more.
+const FRICTION: f64 = 1e-9;
+
 #[test]
-fn one_cluster_and_friction_are_solved_directly_and_said_to_be() {
-    for (name, clusters, why) in [("plain", 1, "one cluster"), ("raous", 6, "friction")] {
-        let solution = Case::in_clusters(&built_in_model(name, 0), 8, clusters).solve(&ITERATIVE);
+fn friction_is_that_of_the_direct_solver() {
+    for name in ["raous", "granite-friction", "mindlin", "shrink-fit"] {
+        let model = built_in_model(name, 0);
+        let case = Case::in_clusters(&model, 16, 6);
+        let all = |args: &[&str]| {
+            let ended = case.run(args);
+            assert_eq!(ended.code(), 0, "{name}: {}", ended.stderr);
+            let all = Solution::increments(&case.result(), !model.steps.is_empty());
+            all.iter().for_each(Solution::check_certificate);
+            all
+        };
+        let (direct, iterative) = (all(&[]), all(&ITERATIVE));
+        for (direct, iterative) in direct.iter().zip(&iterative) {
+            let difference = difference(direct, iterative);
+            assert!(difference < FRICTION, "{name}: {difference:e}");
+        }
+        let report = Solution::read_report(&case.result());
+        assert_eq!(report["interface_solver"], "iterative");
+    }
+}
+
+#[test]
+fn friction_is_that_of_the_direct_solver_in_space() {
+    let scene = "
+    materials.rock = {young = 20e9, poisson = 0.25}
+    bodies.lower.material = 'rock'
+    bodies.upper.material = 'rock'
+    [[displacement]]
+    on = 'lower z0'
+    x = 0
+    y = 0
+    z = 0
+    [[displacement]]
+    on = 'upper z1'
+    x = '1.2e-5*(1+y)'
+    y = '6e-6*(1-x)'
+    z = '-1e-4*(1-1.6*x)'
+    [[contact]]
+    name = 'joint'
+    sides = ['upper z0', 'lower z1']
+    ";
+    for (law, upper) in [
+        ("friction = 0.6", [4, 3, 2]),
+        ("friction = 0.3\ncohesion = 1e6", [5, 4, 2]),
+        ("tresca = 8e5", [4, 3, 2]),
+    ] {
+        let below = between([0.0; 3], [1.0, 1.0, 0.5]);
+        let above = between([0.0, 0.0, 0.5], [1.0, 1.0, 1.0]);
+        let mesh = joined(
+            solid("lower", Hexahedron8, [5, 4, 2], below),
+            solid("upper", Hexahedron8, upper, above),
+        );
+        let case = Case::in_clusters(&model(&format!("{scene}{law}"), mesh), 10, 6);
+        let (direct, iterative) = (case.solve(&[]), case.solve(&ITERATIVE));
+        let difference = difference(&direct, &iterative);
+        assert!(difference < FRICTION, "{law}: {difference:e}");
+        assert!(iterations(&iterative).into_iter().max() > Some(1));
+        for acts in ["sticking", "slipping"] {
+            let of = |solution: &Solution| solution.report["friction"][acts].as_u64();
+            assert!(of(&direct) > Some(0), "{law}: none {acts}");
+            assert_eq!(of(&direct), of(&iterative), "{law}: {acts}");
+        }
+    }
+}
+
+#[test]
+fn what_friction_cannot_hold_slides() {
+    let (scene, mesh) = built_in("incline", 0);
+    for (friction, code) in [("0.5", 0), ("0.29", 4)] {
+        let scene = scene.replace("friction = 0.5", &format!("friction = {friction}"));
+        let case = Case::in_clusters(&model(&scene, mesh.clone()), 8, 4);
+        let ended = case.run(&ITERATIVE);
+        assert_eq!(
+            ended.code(),
+            code,
+            "{friction}: {}{}",
+            ended.stdout,
+            ended.stderr
+        );
+    }
+}
+
+#[test]
+fn many_conditions_with_friction_are_solved_for_as_few_are() {
+    let mesh = Blocks::new()
+        .rectangle("base", [0.0, 8.0], [0.0, 0.2], [320, 2])
+        .rectangle("middle", [0.0, 8.0], [0.2, 0.4], [320, 2])
+        .rectangle("next", [0.0, 8.0], [0.4, 0.6], [320, 2])
+        .rectangle("upper", [0.0, 8.0], [0.6, 0.8], [320, 2]);
+    let scene = "
+    plane = 'strain'
+    materials.rock = {young = 20e9, poisson = 0.25}
+    bodies.base.material = 'rock'
+    bodies.middle = {material = 'rock', body_force = [0.0, -25e3]}
+    bodies.next = {material = 'rock', body_force = [0.0, -25e3]}
+    bodies.upper = {material = 'rock', body_force = [0.0, -25e3]}
+    [[displacement]]
+    on = 'base bottom'
+    x = 0
+    y = 0
+    [[pressure]]
+    on = 'upper top'
+    value = '1e5*(1+sin(2*x))'
+    [[traction]]
+    on = 'upper left'
+    value = [2e5, 0.0]
+    [[contact]]
+    name = 'lower joint'
+    sides = ['middle bottom', 'base top']
+    friction = 0.5
+    [[contact]]
+    name = 'upper joint'
+    sides = ['next bottom', 'middle top']
+    friction = 0.5
+    [[contact]]
+    name = 'top joint'
+    sides = ['upper bottom', 'next top']
+    friction = 0.5
+    ";
+    let case = Case::new(&problem(&model(scene, mesh.mesh), None));
+    // A second start takes all conditions at once.
+    let (frozen, at_once) = (case.solve(&[]), case.solve(&["--second-start"]));
+    let steps = |solution: &Solution| solution.report["sweeps"].as_u64();
+
+    assert!(steps(&frozen) > steps(&at_once));
+    let difference = difference(&at_once, &frozen);
+    assert!(difference < FRICTION, "{difference:e}");
+    for acts in ["sticking", "slipping"] {
+        let of = |solution: &Solution| solution.report["friction"][acts].as_u64();
+        assert!(of(&at_once) > Some(0), "none {acts}");
+        assert_eq!(of(&at_once), of(&frozen), "{acts}");
+    }
+}
+
+#[test]
+fn one_cluster_and_conditions_that_depend_on_others_are_solved_directly_and_said_to_be() {
+    let (junction, mesh) = built_in("junction", 0);
+    let with_friction = junction.replace("[[contact]]", "[[contact]]\nfriction = 0.4");
+    for (model, clusters, why) in [
+        (built_in_model("plain", 0), 1, "one cluster"),
+        (model(&with_friction, mesh), 6, "depend on others"),
+    ] {
+        let solution = Case::in_clusters(&model, 12, clusters).solve(&ITERATIVE);
         assert_eq!(solution.report["interface_solver"], "direct");
         let warnings = solution.report["warnings"].to_string();
         assert!(warnings.contains(why), "{warnings}");
