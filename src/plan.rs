@@ -67,7 +67,7 @@ impl Plan {
 
     /// The merging that takes least for this scene, where newton may choose.
     pub fn cheapest(catalog: &Catalog) -> Merging {
-        match Tree::new(catalog).freezing_pays(catalog.dim) {
+        match Tree::new(catalog).freezing_pays(catalog) {
             true => Merging::Frozen,
             false => Merging::All,
         }

@@ -39,7 +39,7 @@ impl InterfaceTimes {
             return None;
         }
         let tree = Tree::new(catalog);
-        let merging = match tree.freezing_pays(catalog.dim) {
+        let merging = match tree.freezing_pays(catalog) {
             true => Merging::Frozen,
             false => Merging::All,
         };

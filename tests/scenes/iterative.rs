@@ -228,55 +228,57 @@ fn what_friction_cannot_hold_slides() {
 }
 
 #[test]
-fn many_conditions_with_friction_are_solved_for_as_few_are() {
-    let mesh = Blocks::new()
-        .rectangle("base", [0.0, 8.0], [0.0, 0.2], [320, 2])
-        .rectangle("middle", [0.0, 8.0], [0.2, 0.4], [320, 2])
-        .rectangle("next", [0.0, 8.0], [0.4, 0.6], [320, 2])
-        .rectangle("upper", [0.0, 8.0], [0.6, 0.8], [320, 2]);
-    let scene = "
+fn many_conditions_with_friction_are_solved_alike_up_the_hierarchy_and_between_clusters() {
+    let names = ["base", "first", "second", "third", "fourth"];
+    let mesh = names
+        .iter()
+        .enumerate()
+        .fold(Blocks::new(), |mesh, (k, name)| {
+            let below = 0.2 * k as f64;
+            mesh.rectangle(name, [0.0, 8.0], [below, below + 0.2], [400, 2])
+        });
+    let mut scene = "
     plane = 'strain'
     materials.rock = {young = 20e9, poisson = 0.25}
     bodies.base.material = 'rock'
-    bodies.middle = {material = 'rock', body_force = [0.0, -25e3]}
-    bodies.next = {material = 'rock', body_force = [0.0, -25e3]}
-    bodies.upper = {material = 'rock', body_force = [0.0, -25e3]}
     [[displacement]]
     on = 'base bottom'
     x = 0
     y = 0
     [[pressure]]
-    on = 'upper top'
-    value = '1e5*(1+sin(2*x))'
+    on = 'fourth top'
+    value = '2e5*(1+sin(2*x))'
     [[traction]]
-    on = 'upper left'
+    on = 'fourth left'
     value = [2e5, 0.0]
-    [[contact]]
-    name = 'lower joint'
-    sides = ['middle bottom', 'base top']
-    friction = 0.5
-    [[contact]]
-    name = 'upper joint'
-    sides = ['next bottom', 'middle top']
-    friction = 0.5
-    [[contact]]
-    name = 'top joint'
-    sides = ['upper bottom', 'next top']
-    friction = 0.5
-    ";
-    let case = Case::new(&problem(&model(scene, mesh.mesh), None));
-    // A second start takes all conditions at once.
-    let (frozen, at_once) = (case.solve(&[]), case.solve(&["--second-start"]));
-    let steps = |solution: &Solution| solution.report["sweeps"].as_u64();
-
-    assert!(steps(&frozen) > steps(&at_once));
-    let difference = difference(&at_once, &frozen);
+    "
+    .to_owned();
+    for both in names.windows(2) {
+        let [lower, upper] = [both[0], both[1]];
+        scene += &format!(
+            "[bodies.{upper}]
+            material = 'rock'
+            body_force = [0.0, -25e3]
+            [[contact]]
+            name = 'joint of {upper}'
+            sides = ['{upper} bottom', '{lower} top']
+            friction = 0.5
+            "
+        );
+    }
+    let case = Case::in_clusters(&model(&scene, mesh.mesh), 24, 5);
+    let (direct, iterative) = (case.solve(&[]), case.solve(&ITERATIVE));
+    assert_eq!(direct.report["interface_solver"], "direct");
+    assert!(iterations(&iterative).len() > 1);
+    let difference = difference(&direct, &iterative);
     assert!(difference < FRICTION, "{difference:e}");
     for acts in ["sticking", "slipping"] {
         let of = |solution: &Solution| solution.report["friction"][acts].as_u64();
-        assert!(of(&at_once) > Some(0), "none {acts}");
-        assert_eq!(of(&at_once), of(&frozen), "{acts}");
+        assert!(of(&direct) > Some(0), "none {acts}");
+        assert_eq!(of(&direct), of(&iterative), "{acts}");
     }
+    // At once they settle in one sweep.
+    assert!(direct.report["sweeps"].as_u64() > Some(1));
 }
 
 #[test]

@@ -24,6 +24,8 @@ const AT_ONCE: f64 = 10.0;
 /// Contact conditions up to which they are solved for at once, whatever that takes: that is more robust where bodies
 /// are held by next to nothing.
 const FEW_CONDITIONS: usize = 600;
+/// The same with friction, where sets that come back find a way out at once alone.
+const FEW_WITH_FRICTION: usize = 3000;
 
 /// The tree.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -260,7 +262,12 @@ impl Tree {
 
     /// Whether it takes fewer flops to eliminate what is above contacts for one active set after the other than to
     /// keep all normal jumps and solve for them at once.
-    pub fn freezing_pays(&self, dim: usize) -> bool {
+    pub fn freezing_pays(&self, catalog: &Catalog) -> bool {
+        let dim = catalog.dim;
+        let few = match catalog.has_friction() {
+            true => FEW_WITH_FRICTION,
+            false => FEW_CONDITIONS,
+        };
         let inner = self.subdomains..self.nodes.len();
         let above = inner.filter(|&v| self.nodes[v].conditions > 0);
         let frozen = above.clone().map(|v| self.frozen_front(v, dim).flops());
@@ -269,8 +276,7 @@ impl Tree {
         let cubed = roots.clone().map(|root| (root.conditions as f64).powi(3));
         let at_once = AT_ONCE * cubed.sum::<f64>();
         let conditions: usize = roots.map(|root| root.conditions).sum();
-        conditions > FEW_CONDITIONS
-            && ACTIVE_SETS * frozen.sum::<f64>() < kept.sum::<f64>() + at_once
+        conditions > few && ACTIVE_SETS * frozen.sum::<f64>() < kept.sum::<f64>() + at_once
     }
 
     /// Estimated flops of condensing a subdomain, or of merging what lies under an inner node.

@@ -23,7 +23,7 @@ impl Work {
     /// What the hierarchy of `catalog` costs; the speed-up is that over all active sets where these are frozen.
     pub fn new(catalog: &Catalog) -> Self {
         let (tree, dim) = (Tree::new(catalog), catalog.dim);
-        let is_frozen = tree.freezing_pays(dim);
+        let is_frozen = tree.freezing_pays(catalog);
         let front = |v: usize| match is_frozen {
             true => tree.frozen_front(v, dim),
             false => tree.front(v, dim),
