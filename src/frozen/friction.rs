@@ -194,6 +194,8 @@ pub fn solve(
             Some(_) => Accuracy::FULL.tolerance,
             None => 0.0,
         };
+        // What an iterative solver leaves is no smaller.
+        let enough = ROUND_OFF.max(10.0 * finest);
         let loose = (LOOSE * wrong_by.min(1.0)).max(ROUND_OFF);
         let (mut solved, mut missed) =
             slipping.solve(fronts, loose.max(finest), (loose, 1), start.as_ref())?;
@@ -201,13 +203,13 @@ pub fn solve(
         if faults.count == 0 {
             fronts.renew(context, &open)?;
             (solved, missed) =
-                slipping.solve(fronts, finest, (ROUND_OFF, STEPS), Some(&solved.solution))?;
+                slipping.solve(fronts, finest, (enough, STEPS), Some(&solved.solution))?;
             faults = Faults::of(context, slipping.groups, &solved, ROUND_OFF);
         }
         if faults.count == 0 && !is_released && fronts.release(context, &open)? {
             is_released = true;
             (solved, missed) =
-                slipping.solve(fronts, finest, (ROUND_OFF, STEPS), Some(&solved.solution))?;
+                slipping.solve(fronts, finest, (enough, STEPS), Some(&solved.solution))?;
             faults = Faults::of(context, slipping.groups, &solved, ROUND_OFF);
         }
         wrong_by = faults.largest.max(missed);

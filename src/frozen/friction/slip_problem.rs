@@ -19,8 +19,11 @@ use crate::vector::{axpy, dot};
 
 /// Most products.
 const PRODUCTS: usize = 40;
-/// Tolerance of a product beside what GMRES is to reach.
+/// Tolerance of the first product beside what GMRES is to reach. The nearer that is, the less a product matters: later
+/// ones may be as much less exact (Bouras and Frayssé, SIAM J. Matrix Anal. Appl. 26, 2005).
 const PRODUCT: f64 = 0.3;
+/// Tolerance of a product at most.
+const LEAST_EXACT: f64 = 0.1;
 
 /// Forces on the jumps of every contact group of this rank.
 pub type Forces = BTreeMap<usize, Vec<f64>>;
@@ -121,8 +124,9 @@ impl SlipProblem<'_> {
         let mut basis = vec![scaled(&missed, -1.0 / size)];
         let mut h = Mat::<f64>::zeros(PRODUCTS + 1, PRODUCTS);
         let mut weights = Vec::new();
+        let mut tolerance = PRODUCT * reduction;
         for k in 0..PRODUCTS {
-            let (mut next, taken) = self.product(fronts, laws, &basis[k], PRODUCT * reduction)?;
+            let (mut next, taken) = self.product(fronts, laws, &basis[k], tolerance)?;
             iterations += taken;
             for (i, known) in basis.iter().enumerate() {
                 let share = self.dot(&next, known);
@@ -137,6 +141,7 @@ impl SlipProblem<'_> {
             let right = Col::from_fn(k + 2, |i| if i == 0 { size } else { 0.0 });
             let y = small.qr().solve_lstsq(&right);
             let left = (small * &y - &right).norm_l2();
+            tolerance = (PRODUCT * reduction * size / left).min(LEAST_EXACT);
             weights = y.subrows(0, k + 1).iter().copied().collect();
             if left <= reduction * size || rest <= f64::EPSILON * size {
                 break;
