@@ -238,7 +238,7 @@ impl GroupFriction {
 
 impl Law {
     /// The laws of the points within `limits` that slip as these statuses of limits say, under these `forces` of their
-    /// conditions, whose directions stay.
+    /// conditions, whose directions stay; b is what these lack of it.
     pub fn of_slipping(limits: &Limits, statuses: &[Status], forces: &[f64]) -> Vec<Self> {
         let of_limits = limits.conditions_of_limits();
         let law = |tangent: &TangentialLimit| {
@@ -257,8 +257,9 @@ impl Law {
             }
             let presses = tangent.normal.filter(|&n| statuses[n].is_closed());
             let normal = presses.map_or(0.0, |n| forces[of_limits[n]]);
+            let bound = tangent.bound.at(normal, presses.is_some());
             let size = match tangent.beside {
-                Beside::Prescribed(_) => tangent.bound.at(normal, presses.is_some()),
+                Beside::Prescribed(_) => bound,
                 _ => direction[0].hypot(direction[1]),
             };
             let slips = tangents.iter().all(|&t| !statuses[t].is_closed());
@@ -266,7 +267,7 @@ impl Law {
                 direction: direction.map(|e| e / size),
                 tangents,
                 normal: presses,
-                bound: size,
+                bound: bound - size,
                 slope: tangent.bound.coefficient,
                 turn: 0.0,
                 own: 1.0,

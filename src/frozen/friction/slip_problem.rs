@@ -70,7 +70,7 @@ impl SlipProblem<'_> {
         Ok(solution)
     }
 
-    /// The forces that follow `laws` with the pressures of a solution without them, where the directions of these stay;
+    /// The forces that follow `laws`, whose directions stay, with the pressures of a solution without them;
     /// GMRES makes what is missed smaller by `reduction`. `None` where none are missed. Collective.
     ///
     /// # Errors
@@ -87,7 +87,7 @@ impl SlipProblem<'_> {
             for law in laws.get(&g).into_iter().flatten() {
                 let normal = law.normal.map_or(0.0, |n| solution.forces[&g][n]);
                 for (&t, e) in law.tangents.iter().zip(law.direction) {
-                    missed[t] = -law.slope * normal * e;
+                    missed[t] = -(law.bound + law.slope * normal) * e;
                 }
             }
             (g, missed)
