@@ -84,7 +84,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
     warnings.extend(totals.warnings.iter().cloned());
     warnings.extend(totals.step_warnings());
     warnings.extend(solved_directly(totals, settings));
-    warnings.extend(chosen_in_vain(totals, settings));
+    warnings.extend(more_robust(totals, settings));
     let certificate = totals.certificate();
     let condition = totals.condition();
     if certificate.equilibrium > 1e-14 || certificate.penetration > 1e-14 {
@@ -177,13 +177,18 @@ fn interface_choice(totals: &Totals<'_>, settings: &Settings) -> String {
     }
 }
 
-/// What may help where the iterative solver was chosen and didn't converge.
-fn chosen_in_vain(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
+/// What may help where the iterative solver didn't converge.
+fn more_robust(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
     let is_iterative = totals.interface_solver() == InterfaceMethod::Iterative;
-    let has_converged = totals.status() == Status::Converged;
-    (is_iterative && settings.interface.is_none() && !has_converged).then(|| {
-        "the iterative interface solver was chosen because it takes less time; --interface direct is more robust".into()
-    })
+    if !is_iterative || totals.status() == Status::Converged {
+        return None;
+    }
+    if settings.interface.is_none() {
+        let why = "the iterative interface solver was chosen because it takes less time; --interface direct is more robust";
+        return Some(why.into());
+    }
+    let why = "--interface direct finds more solutions with friction than --interface iterative";
+    totals.catalog.has_friction().then(|| why.into())
 }
 
 /// Why the interface problem was solved directly where the iterative solver was asked for.

@@ -211,6 +211,20 @@ fn friction_is_that_of_the_direct_solver_in_space() {
 }
 
 #[test]
+fn what_is_more_robust_is_said_where_friction_does_not_converge() {
+    let case = Case::in_clusters(&built_in_model("raous", 0), 16, 6);
+    let ended = case.run(&["--interface", "iterative", "--max-sweeps", "1"]);
+    assert_eq!(ended.code(), 3, "{}{}", ended.stdout, ended.stderr);
+    assert!(
+        ended.stderr.contains("--interface direct"),
+        "{}",
+        ended.stderr
+    );
+    // Some of the points that aren't settled are named.
+    assert!(ended.stdout.contains("node "), "{}", ended.stdout);
+}
+
+#[test]
 fn what_friction_cannot_hold_slides() {
     let (scene, mesh) = built_in("incline", 0);
     for (friction, code) in [("0.5", 0), ("0.29", 4)] {
