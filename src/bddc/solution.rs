@@ -8,9 +8,19 @@ use crate::bddc::gradients::{Gradients, Vectors};
 use crate::bytes::Reals;
 use crate::comm::Comm;
 use crate::context::Context;
-use crate::frozen::solution::FrozenLoads;
 use crate::plan::Plan;
 use crate::schur::condensed::InterfaceDof;
+
+/// What acts where the active set is frozen, on this rank.
+#[derive(Clone, Copy, Debug)]
+pub struct ClusterLoads<'a> {
+    /// Loads on the boundaries of clusters, by node.
+    pub clusters: &'a BTreeMap<usize, Vec<f64>>,
+    /// The values of the closed jumps of every contact group (m).
+    pub prescribed: &'a BTreeMap<usize, Vec<f64>>,
+    /// The forces on the open ones of every group with friction (N/m); others have none.
+    pub forces: &'a BTreeMap<usize, Vec<f64>>,
+}
 
 /// How far a solution is iterated.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +58,7 @@ impl Bddc {
         &self,
         context: &Context<'_>,
         clusters: &BTreeMap<usize, ClusterSchur>,
-        loads: FrozenLoads<'_>,
+        loads: ClusterLoads<'_>,
         accuracy: Accuracy,
     ) -> BddcSolution {
         let Context { comm, plan, .. } = *context;

@@ -6,13 +6,13 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use crate::bddc::solution::Accuracy;
+use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::frozen::exchange::{Descent, Exchange};
 use crate::frozen::fronts::FrozenFronts;
-use crate::frozen::solution::{FrozenLoads, FrozenSolution};
+use crate::frozen::solution::FrozenSolution;
 use crate::interface::s_con::ConTotals;
 use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
 
@@ -72,7 +72,7 @@ pub fn solve(
     let (mut exchange, mut descent) = (Exchange::default(), Descent::default());
     let (mut changed, mut is_released) = (None, false);
     let (mut last, mut wrong_by) = (None, 1.0_f64);
-    let of_set = FrozenLoads {
+    let of_set = ClusterLoads {
         clusters: loads,
         prescribed: &bounds,
         forces: &BTreeMap::new(),

@@ -3,31 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::fronts::{FrozenFront, FrozenFronts};
-use crate::bddc::solution::Accuracy;
+use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::condense::substitute::{Direction, carry};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::schur::local::CondensedLoad;
 use crate::vector::{axpy, dot};
-
-/// What acts where the active set is frozen, on this rank.
-#[derive(Clone, Copy, Debug)]
-pub struct FrozenLoads<'a> {
-    /// Loads on the boundaries of clusters, by node.
-    pub clusters: &'a BTreeMap<usize, Vec<f64>>,
-    /// The values of the closed jumps of every contact group (m).
-    pub prescribed: &'a BTreeMap<usize, Vec<f64>>,
-    /// The forces on the open ones of every group with friction (N/m); others have none.
-    pub forces: &'a BTreeMap<usize, Vec<f64>>,
-}
-
-impl FrozenLoads<'_> {
-    /// The forces on the open jumps of group g.
-    fn forces_on(&self, g: usize, open: &[bool]) -> Vec<f64> {
-        let all = self.forces.get(&g).into_iter().flatten().zip(open);
-        all.filter(|(_, open)| **open).map(|(f, _)| *f).collect()
-    }
-}
 
 /// What a load does where the active set is frozen, on this rank.
 #[derive(Clone, Debug, Default)]
@@ -56,7 +37,7 @@ impl FrozenFronts {
         &mut self,
         context: &Context<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
-        loads: FrozenLoads<'_>,
+        loads: ClusterLoads<'_>,
         accuracy: Accuracy<'_>,
     ) -> Result<FrozenSolution, Failure> {
         let mut solution = self.solve_as_it_is(context, loads, accuracy);
@@ -80,7 +61,7 @@ impl FrozenFronts {
     fn solve_as_it_is(
         &self,
         context: &Context<'_>,
-        loads: FrozenLoads<'_>,
+        loads: ClusterLoads<'_>,
         accuracy: Accuracy<'_>,
     ) -> FrozenSolution {
         let plan = context.plan;
@@ -104,7 +85,7 @@ impl FrozenFronts {
                 let children = plan.tree.nodes[v].children.iter();
                 let of_children: Vec<&[f64]> = children.map(|child| &arrived[child][..]).collect();
                 let group = plan.group_of(v);
-                let forces = group.map_or_else(Vec::new, |g| loads.forces_on(g, &front.open));
+                let forces = group.map_or_else(Vec::new, |g| forces_on(&loads, g, &front.open));
                 let load = front.merge.condense(&of_children, &forces);
                 let values = front.closed_values(group.map(|g| &loads.prescribed[&g][..]));
                 let closed = values.len();
@@ -134,7 +115,7 @@ impl FrozenFronts {
                 let between = bddc.solve(
                     context,
                     &self.tops,
-                    FrozenLoads {
+                    ClusterLoads {
                         clusters: &arrived,
                         ..loads
                     },
@@ -176,6 +157,12 @@ impl FrozenFronts {
         solution.boundaries = below;
         solution
     }
+}
+
+/// The forces on the open jumps of group g.
+fn forces_on(loads: &ClusterLoads<'_>, g: usize, open: &[bool]) -> Vec<f64> {
+    let all = loads.forces.get(&g).into_iter().flatten().zip(open);
+    all.filter(|(_, open)| **open).map(|(f, _)| *f).collect()
 }
 
 impl FrozenFront {

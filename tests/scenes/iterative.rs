@@ -216,9 +216,9 @@ fn what_is_more_robust_is_said_where_friction_does_not_converge() {
     let ended = case.run(&["--interface", "iterative", "--max-sweeps", "1"]);
     assert_eq!(ended.code(), 3, "{}{}", ended.stdout, ended.stderr);
     assert!(
-        ended.stderr.contains("--interface direct"),
+        ended.stdout.contains("--interface direct finds more"),
         "{}",
-        ended.stderr
+        ended.stdout
     );
     // Some of the points that aren't settled are named.
     assert!(ended.stdout.contains("node "), "{}", ended.stdout);

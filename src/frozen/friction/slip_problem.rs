@@ -10,11 +10,11 @@ use faer::linalg::solvers::SolveLstsq;
 use faer::{Col, Mat};
 
 use super::points::Law;
-use crate::bddc::solution::Accuracy;
+use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::frozen::fronts::FrozenFronts;
-use crate::frozen::solution::{FrozenLoads, FrozenSolution};
+use crate::frozen::solution::FrozenSolution;
 use crate::vector::{axpy, dot};
 
 /// Most products.
@@ -56,7 +56,7 @@ impl SlipProblem<'_> {
         tolerance: f64,
         start: Option<&FrozenSolution>,
     ) -> Result<FrozenSolution, Failure> {
-        let loads = FrozenLoads {
+        let loads = ClusterLoads {
             clusters: self.clusters,
             prescribed: self.prescribed,
             forces,
@@ -165,7 +165,7 @@ impl SlipProblem<'_> {
         tolerance: f64,
     ) -> Result<(Forces, usize), Failure> {
         let clusters = self.clusters.iter();
-        let loads = FrozenLoads {
+        let loads = ClusterLoads {
             clusters: &clusters
                 .map(|(&v, load)| (v, vec![0.0; load.len()]))
                 .collect(),
