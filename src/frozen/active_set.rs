@@ -1,6 +1,6 @@
 //! The active set: which conditions are closed, found by steps that freeze it.
 //!
-//! λ ≥ 0 where closed, t ≤ g where open. A step that finds conditions that say otherwise [exchanges](super::exchange)
+//! λ ≥ 0 where closed, t ≤ g where open. A step that finds conditions that say otherwise exchanges
 //! some of them.
 
 use std::collections::BTreeMap;

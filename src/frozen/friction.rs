@@ -3,7 +3,7 @@
 //!
 //! The direction e is that of ξ = λ_t + r s, with the slip s and whatever stiffness r > 0 (Alart and Curnier, Comput.
 //! Methods Appl. Mech. Engrg 92, 1991). A step that finds points that should do something else exchanges all of them;
-//! the forces of those that slip follow by Newton's method ([`slip_forces`]).
+//! the forces of those that slip follow by Newton's method.
 
 pub mod points;
 mod slip_forces;
