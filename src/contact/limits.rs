@@ -69,6 +69,18 @@ impl PrescribedSlip {
 }
 
 impl TangentialLimit {
+    /// The tangential limits of its point, the second of which may not be one, and the slip that supports prescribe along
+    /// the second (m); `None` where it is the second itself.
+    pub fn of_point(&self) -> Option<([Option<usize>; 2], f64)> {
+        let (second, prescribed) = match self.beside {
+            Beside::Limit(other) if other < self.limit => return None,
+            Beside::Limit(other) => (Some(other), 0.0),
+            Beside::Prescribed(slip) => (None, slip),
+            Beside::Nothing => (None, 0.0),
+        };
+        Some(([Some(self.limit), second], prescribed))
+    }
+
     /// The same where limits are numbered otherwise.
     #[must_use]
     pub fn renamed(&self, number: impl Fn(usize) -> usize) -> Self {

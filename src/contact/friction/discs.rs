@@ -160,17 +160,13 @@ impl<'a> Discs<'a> {
         let mut points = Vec::new();
         for tangent in problem.tangents {
             is_tangential[tangent.limit] = true;
-            let (second, prescribed) = match tangent.beside {
-                Beside::Limit(other) if other < tangent.limit => continue,
-                Beside::Limit(other) => (Some(other), 0.0),
-                Beside::Prescribed(slip) => (None, slip),
-                Beside::Nothing => (None, 0.0),
+            let Some((tangents, prescribed)) = tangent.of_point() else {
+                continue;
             };
             // The same along both tangents, however they are turned.
-            let mean = second.map_or(stiffness[tangent.limit], |other| {
+            let mean = tangents[1].map_or(stiffness[tangent.limit], |other| {
                 0.5 * (stiffness[tangent.limit] + stiffness[other])
             });
-            let tangents = [Some(tangent.limit), second];
             for i in tangents.into_iter().flatten() {
                 stiffness[i] = mean;
             }

@@ -1,12 +1,13 @@
 //! What the points of a contact group with friction do while the active set is frozen, and what is wrong with it.
 
 use crate::contact::friction::{ForceBound, Status};
-use crate::contact::limits::{Beside, Limits, TangentialLimit};
+use crate::contact::limits::{Limits, TangentialLimit};
 use crate::fem::contact_group::ContactGroup;
 
 /// A point with friction: its jumps and what bounds its force.
 #[derive(Clone, Debug)]
 pub(super) struct Point {
+    /// Its normal jump, where that carries force.
     pub normal: Option<usize>,
     /// Its tangential jumps, one or two.
     pub tangents: Vec<usize>,
@@ -115,18 +116,12 @@ impl GroupFriction {
         let mut points = Vec::new();
         for tangent in &limits.tangents {
             is_tangential[tangent.limit] = true;
-            let (second, prescribed) = match tangent.beside {
-                Beside::Limit(other) if other < tangent.limit => continue,
-                Beside::Limit(other) => (Some(other), 0.0),
-                Beside::Prescribed(slip) => (None, slip),
-                Beside::Nothing => (None, 0.0),
+            let Some((tangents, prescribed)) = tangent.of_point() else {
+                continue;
             };
             points.push(Point {
                 normal: tangent.normal,
-                tangents: [Some(tangent.limit), second]
-                    .into_iter()
-                    .flatten()
-                    .collect(),
+                tangents: tangents.into_iter().flatten().collect(),
                 prescribed,
                 bound: tangent.bound,
                 stiffness: group.stiffness_at(of_jumps[tangent.limit]),
@@ -242,15 +237,8 @@ impl Law {
     pub fn of_slipping(limits: &Limits, statuses: &[Status], forces: &[f64]) -> Vec<Self> {
         let of_limits = limits.conditions_of_limits();
         let law = |tangent: &TangentialLimit| {
-            let second = match tangent.beside {
-                Beside::Limit(other) if other < tangent.limit => return None,
-                Beside::Limit(other) => Some(other),
-                Beside::Prescribed(_) | Beside::Nothing => None,
-            };
-            let tangents: Vec<usize> = [Some(tangent.limit), second]
-                .into_iter()
-                .flatten()
-                .collect();
+            let (tangents, prescribed) = tangent.of_point()?;
+            let tangents: Vec<usize> = tangents.into_iter().flatten().collect();
             let mut direction = [0.0; 2];
             for (e, &t) in direction.iter_mut().zip(&tangents) {
                 *e = forces[of_limits[t]];
@@ -258,9 +246,9 @@ impl Law {
             let presses = tangent.normal.filter(|&n| statuses[n].is_closed());
             let normal = presses.map_or(0.0, |n| forces[of_limits[n]]);
             let bound = tangent.bound.at(normal, presses.is_some());
-            let size = match tangent.beside {
-                Beside::Prescribed(_) => bound,
-                _ => direction[0].hypot(direction[1]),
+            let size = match prescribed == 0.0 {
+                true => direction[0].hypot(direction[1]),
+                false => bound,
             };
             let slips = tangents.iter().all(|&t| !statuses[t].is_closed());
             (slips && size > 0.0).then(|| Self {
