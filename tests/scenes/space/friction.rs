@@ -2,7 +2,6 @@
 
 mod random;
 
-use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::element::ElementKind::{self, *};
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
@@ -15,7 +14,7 @@ use crate::support::energy::{Works, checked_works};
 use crate::support::extruded::extruded;
 use crate::support::scenes::{at_step, built_in, model, two_block_scene, two_blocks};
 use crate::support::solids::{SOLIDS, between, moved, solid, turned};
-use crate::support::solution::{ContactPoint, Solution};
+use crate::support::solution::ContactPoint;
 use crate::support::solver::{Case, solve, solve_steps};
 use crate::support::sorts::sort;
 use crate::support::stress::judge::Findings;
@@ -379,41 +378,4 @@ fn extruded_scenes_with_friction_have_the_answers_of_the_plane() {
             }
         }
     }
-}
-
-/// A model in so many subdomains, or as many as it can have.
-fn cut(model: &Model, count: usize) -> Case {
-    let counts = [count, 3, 2];
-    let can_be = |&&count: &&usize| Decomposition::new(model, Some(count)).is_ok();
-    Case::of(model, *counts.iter().find(can_be).unwrap())
-}
-
-/// Judges what friction does in a random scene; whether it was solved.
-fn judged(model: &Model, count: usize) -> Option<Vec<String>> {
-    let case = cut(model, count);
-    let ended = case.run(&[]);
-    if ended.code() == 3 || ended.code() == 4 {
-        return None;
-    }
-    assert_eq!(ended.code(), 0, "{}", ended.stderr);
-    let all = Solution::increments(&case.result(), !model.steps.is_empty());
-    let mut faults = Vec::new();
-    let mut before: Option<&Solution> = None;
-    for (k, solution) in all.iter().enumerate() {
-        solution.check_certificate();
-        let of_step = match model.steps.is_empty() {
-            true => model.clone(),
-            false => at_step(model, k),
-        };
-        let parts = solution.report["friction"]["increments"].as_u64();
-        let findings = Findings::after(before, &of_step, &Assembled::new(&of_step), solution, true);
-        let findings = if parts.is_some_and(|parts| parts > 1) {
-            findings.in_parts()
-        } else {
-            findings
-        };
-        faults.extend(findings.faults());
-        before = Some(solution);
-    }
-    Some(faults)
 }

@@ -1,13 +1,17 @@
 //! Random scenes in space with friction, judged by an independent check of the discrete law.
 
+use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::model::Model;
 
-use super::{cut, judged, vector};
+use super::vector;
+use crate::support::assembled::Assembled;
 use crate::support::blocks::joined;
 use crate::support::random::Random;
-use crate::support::scenes::model;
+use crate::support::scenes::{at_step, model};
 use crate::support::solids::{SOLIDS, moved, solid, turned};
 use crate::support::solution::Solution;
+use crate::support::solver::Case;
+use crate::support::stress::judge::Findings;
 
 /// A stack of blocks with tilted joints on a base, pressed, pushed and turned, in one or more steps.
 fn stack(seed: u64) -> Model {
@@ -135,6 +139,43 @@ fn stack(seed: u64) -> Model {
     }
     let mesh = mesh.unwrap_or_default();
     model(&text, moved(mesh, to))
+}
+
+/// A model in so many subdomains, or as many as it can have.
+fn cut(model: &Model, count: usize) -> Case {
+    let counts = [count, 3, 2];
+    let can_be = |&&count: &&usize| Decomposition::new(model, Some(count)).is_ok();
+    Case::of(model, *counts.iter().find(can_be).unwrap())
+}
+
+/// Judges what friction does in a random scene; whether it was solved.
+fn judged(model: &Model, count: usize) -> Option<Vec<String>> {
+    let case = cut(model, count);
+    let ended = case.run(&[]);
+    if ended.code() == 3 || ended.code() == 4 {
+        return None;
+    }
+    assert_eq!(ended.code(), 0, "{}", ended.stderr);
+    let all = Solution::increments(&case.result(), !model.steps.is_empty());
+    let mut faults = Vec::new();
+    let mut before: Option<&Solution> = None;
+    for (k, solution) in all.iter().enumerate() {
+        solution.check_certificate();
+        let of_step = match model.steps.is_empty() {
+            true => model.clone(),
+            false => at_step(model, k),
+        };
+        let parts = solution.report["friction"]["increments"].as_u64();
+        let findings = Findings::after(before, &of_step, &Assembled::new(&of_step), solution, true);
+        let findings = if parts.is_some_and(|parts| parts > 1) {
+            findings.in_parts()
+        } else {
+            findings
+        };
+        faults.extend(findings.faults());
+        before = Some(solution);
+    }
+    Some(faults)
 }
 
 #[test]
