@@ -20,11 +20,13 @@
 //! `DOCUMENTS_KEEP` names a folder that keeps what the pages made.
 
 mod block;
+mod book;
 mod code;
 mod links;
 mod package;
 mod page;
 mod printed;
+mod release;
 mod run;
 mod vtk;
 
@@ -59,6 +61,12 @@ pub fn trials() -> Vec<Trial> {
             false => runs,
         });
     }
+    let all = Arc::clone(&pages);
+    trials.push(trial("the_book_holds_every_page", move || {
+        book::holds_every_page(&all);
+    }));
+    trials.push(needs_python(trial("the_book_is_whole", book::is_whole)));
+    trials.push(trial("a_release_solves", release::solves));
     trials.push(trial("a_page_is_split_into_its_blocks", block::are_split));
     trials.push(trial("unmarked_blocks_are_refused", block::refuse_unmarked));
     trials.push(trial("dots_stand_for_anything", printed::dots));

@@ -35,7 +35,7 @@ pub fn python() -> Option<PathBuf> {
 /// The folder with both programs. Cargo builds that of the other package along with its own tests only, so
 /// that it is asked to build some, with what all tests are built with; there is nothing to do where all
 /// tests are run.
-fn programs() -> &'static Path {
+pub fn programs() -> &'static Path {
     static BUILT: Once = Once::new();
     let folder = Path::new(env!("CARGO_BIN_EXE_contact-dd-mpi"))
         .parent()
