@@ -35,6 +35,8 @@ class Result:
     """The result file."""
     report: dict[str, Any]
     """The report of the run."""
+    title: str
+    """The scene's title; may be empty."""
     units: str
     """"m" (m, N, Pa) or "mm" (mm, N, MPa)."""
     plane: str | None
@@ -80,6 +82,7 @@ class Result:
             raise InputError(f"{self.path}: is a problem file; contact-dd-mpi {self.path} solves it")
         self.report = json.loads(file.attrs["report"])
         text = {name: value.decode() if isinstance(value, bytes) else value for name, value in file.attrs.items()}
+        self.title = text.get("title", "")
         self.units = text.get("units", "m")
         self.plane = text.get("plane")
         self.steps = int(grid["Steps"].attrs["NSteps"]) if "Steps" in grid else 1

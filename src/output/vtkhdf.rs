@@ -34,6 +34,8 @@ pub struct Layout {
     pub times: Vec<f64>,
     /// Whether there are stresses.
     pub stress: bool,
+    /// The scene's title; may be empty.
+    pub title: String,
     /// The units that its numbers are meant in.
     pub units: Units,
     /// Plane state; `None` in space.
@@ -55,6 +57,7 @@ impl Layout {
             contacts: catalog.contacts.clone(),
             times: catalog.steps.iter().map(|step| step.time).collect(),
             stress,
+            title: catalog.title.clone(),
             units: catalog.units,
             plane: catalog.plane,
         }
@@ -131,6 +134,7 @@ impl ResultFile {
     ) -> Result<Self, OutputError> {
         let make = || {
             let file = open(without_locks(), destination.temporary())?;
+            attribute(&file, "title", &layout.title)?;
             attribute(&file, "units", layout.units.length())?;
             if let Some(plane) = layout.plane {
                 attribute(&file, "plane", plane.name())?;

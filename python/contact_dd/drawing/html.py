@@ -26,7 +26,11 @@ th, td { padding: .2em .8em .2em 0; border-bottom: 1px solid #eceff2; vertical-a
   background: var(--c); margin-right: .35em }
 svg, img { max-width: 100%; height: auto } li { margin: .2em 0 }
 ul.warnings li::marker { content: "⚠ "; } code { font-size: .95em }
-@media print { * { print-color-adjust: exact }
+#view canvas { width: 100%; height: 30em; border: 1px solid #d5dbe1; border-radius: .5em; touch-action: none }
+#view .controls label { margin-right: 1.5em; white-space: nowrap } #view input[type=range] { vertical-align: middle }
+#view .bar { display: flex; align-items: center; gap: .7em; margin: .3em 0 } #view .bar i { flex: 1; height: .8em }
+@media screen { #view.drawn .still { display: none } }
+@media print { #view .live { display: none } * { print-color-adjust: exact }
  body { margin: 0; max-width: none; font-size: 11px } section { break-inside: avoid } }
 """
 

@@ -8,9 +8,14 @@ import numpy as np
 from matplotlib.ticker import EngFormatter, MaxNLocator
 
 from contact_dd.drawing import space
+from contact_dd.drawing.gaps import honest_scale
 from contact_dd.drawing.html import STYLE, axes_of, escape, png, section, short, svg, table
+from contact_dd.drawing.overview import overview
+from contact_dd.drawing.pictures import automatic_scale
+from contact_dd.drawing.plane import Plane
 from contact_dd.drawing.sides import DIRECTION, sides_of
 from contact_dd.drawing.units import formatter, si, units_of
+from contact_dd.drawing.view import view
 
 PHASES = ["read", "assemble", "factorize", "interface", "sweeps", "recover", "write"]
 COLORS = ["#9aa5b1", "#5b8ff9", "#1f5fa8", "#d62728", "#ff9d4d", "#3a9d5d", "#6b7785"]
@@ -48,15 +53,19 @@ def page(result):
     report, units = result.report, units_of(result)
     with plt.rc_context(FONTS):
         parts = [
-            head(report, result.path.name), warnings(report), surfaces(result), steps(report, units),
+            head(report, result), warnings(report), bodies(result), steps(report, units),
             contacts(report, sides_of(result), units), convergence(report, result.convergence), certificate(report),
             reactions(report, units), ranks(report), rest(report),
         ]
-    title = escape(pathlib.Path(report["settings"]["problem"]).name)
+    title = escape(result.title or problem_of(report))
     return (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
         f"<style>{STYLE}</style></head>\n<body>\n" + "\n".join(parts) + "\n</body></html>\n"
     )
+
+
+def problem_of(report):
+    return pathlib.Path(report["settings"]["problem"]).name
 
 
 def forces(found, unit):
@@ -79,10 +88,10 @@ def more(found, words):
     return f"<p><small>and {count} more{words}; the report has all</small></p>" if count > 0 else ""
 
 
-def head(report, path):
+def head(report, result):
     good = report["status"] == "converged"
     status = "converged" if good else "not converged"
-    problem = pathlib.Path(report["settings"]["problem"]).name
+    problem = escape(problem_of(report))
     ranks = f"{report['ranks']} rank{'s' * (report['ranks'] > 1)}"
     hosts = f"{report['hosts']} host{'s' * (report['hosts'] > 1)}"
     commit = report["build"]["commit"]
@@ -97,8 +106,9 @@ def head(report, path):
     if report.get("error_estimate"):
         cards.append((f"{100 * report['error_estimate']['relative']:.2g} %", "error of the mesh, estimated"))
     return (
-        f'<h1>{escape(problem)}<span class="badge {"good" if good else "bad"}">{status}</span></h1>'
-        f'<p class="sub">{escape(path)} · {ranks} with {report["threads"]} thread{"s" * (report["threads"] > 1)} '
+        f'<h1>{escape(result.title) or problem}<span class="badge {"good" if good else "bad"}">{status}</span></h1>'
+        f'<p class="sub">{escape(result.path.name)} of {problem} · {ranks} with {report["threads"]} '
+        f'thread{"s" * (report["threads"] > 1)} '
         f'on {hosts} · contact-dd-mpi {escape(report["version"])}{f" ({escape(commit[:10])})" if commit else ""}</p>'
         '<div class="cards">'
         + "".join(f'<div class="card"><b>{value}</b><span>{words}</span></div>' for value, words in cards)
@@ -113,13 +123,21 @@ def warnings(report):
     return section("Warnings", f'<ul class="warnings">{items}</ul>')
 
 
-def surfaces(result):
-    """Pictures of the surface; none in the plane."""
-    if not result.is_in_space:
+def bodies(result):
+    """A picture of the bodies, and a view of them to be turned; none in the plane without stresses."""
+    if result.is_in_space:
+        scale = space.Solid(result).scale
+        words = "The surface by displacement and von Mises stress, deformed; what presses, seen through the bodies"
+        picture = png(space.panels(result), words)
+    elif len(result.stress):
+        plane = Plane(result)
+        scale = automatic_scale(plane, honest_scale(plane))
+        words = "The deformed shape by von Mises stress, with the contact pressures"
+        picture = png(overview(plane, scale), words)
+    else:
         return ""
-    words = "The surface by displacement and von Mises stress, deformed; what presses, seen through the bodies"
     of_step = ", in the last load step" if result.steps > 1 else ""
-    return section("The bodies", png(space.panels(result), words), f"<p><small>{words}{of_step}.</small></p>")
+    return section("The bodies", view(result, scale, f"{picture}<p><small>{words}{of_step}.</small></p>"))
 
 
 def certificate(report):
