@@ -12,11 +12,12 @@
 """
 
 from contact_dd.adaptivity import adapt
+from contact_dd.comparison import Compared, compare
 from contact_dd.errors import ContactError, IllPosed, InputError, NotConverged, OutputError, Stopped
 from contact_dd.model import Material, Model, Step
 from contact_dd.result import Result
 
 __all__ = [
-    "ContactError", "IllPosed", "InputError", "Material", "Model", "NotConverged", "OutputError", "Result", "Step",
-    "Stopped", "adapt",
+    "Compared", "ContactError", "IllPosed", "InputError", "Material", "Model", "NotConverged", "OutputError", "Result",
+    "Step", "Stopped", "adapt", "compare",
 ]

@@ -32,6 +32,7 @@ class Round:
     """Estimated, relative, in the energy norm."""
     seconds: float
     """Since the first mesh was begun."""
+    result: Result
 
 
 def adapt(
@@ -54,7 +55,7 @@ def adapt(
         model.mesh = meshed(path, sizes)
         result = model.run(ranks, folder=folder, progress=False)
         found, _ = relative_errors(result)
-        rounds.append(Round(result.report["dofs"], found, time.perf_counter() - start))
+        rounds.append(Round(result.report["dofs"], found, time.perf_counter() - start, result))
         if progress:
             last = rounds[-1]
             print(f"round {len(rounds)}: {last.dofs:8} dofs, error {found:.2%}, {last.seconds:.1f} s", flush=True)

@@ -1,4 +1,4 @@
-"""The command `contact-dd`: pictures, pages and tables of results, and meshes that adapt."""
+"""The command `contact-dd`: pictures, pages and tables of results, error bars, and meshes that adapt."""
 
 import argparse
 import signal
@@ -9,6 +9,7 @@ from pathlib import Path
 import matplotlib
 
 from contact_dd.adaptivity import adapt as solve_adapted
+from contact_dd.comparison import compare
 from contact_dd.errors import ContactError, InputError, OutputError
 from contact_dd.model import Model, scene_of
 from contact_dd.result import Result
@@ -47,6 +48,9 @@ def parser() -> argparse.ArgumentParser:
     written = commands.add_parser("report", help="write a page on a run", description="Writes a page on a run.")
     written.add_argument("result", type=Path, help="result file of contact-dd-mpi")
     written.add_argument("page", type=Path, nargs="?", help="default: the result's name with .html")
+    written.add_argument(
+        "--coarser", type=Path, nargs="+", metavar="RESULT", help="results on coarser meshes, for error bars"
+    )
     written.set_defaults(command=report)
 
     what = "Writes a table of each contact, CSV: pressures and gaps, in the plane over the arc length of side a."
@@ -55,6 +59,11 @@ def parser() -> argparse.ArgumentParser:
     tabled.add_argument("outdir", type=Path, nargs="?", help="folder (default: tables beside the result)")
     tabled.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
     tabled.set_defaults(command=table)
+
+    what = "Compares results of one scene on two or three meshes, and says how far off the numbers are at most."
+    compared = commands.add_parser("compare", help="error bars from several meshes", description=what)
+    compared.add_argument("results", type=Path, nargs="+", metavar="RESULT", help="on meshes that differ in size")
+    compared.set_defaults(command=bars)
 
     what = "Meshes and solves until the estimated error is as small as asked."
     adapted = commands.add_parser("adapt", help="mesh and solve until the error is small", description=what)
@@ -100,7 +109,7 @@ def report(arguments: argparse.Namespace) -> None:
     if path.suffix not in (".html", ".htm"):
         # A second result is a likely slip, and would be overwritten.
         raise InputError(f"{path}: isn't the name of a page; expected one that ends in .html")
-    text = page(Result(arguments.result))
+    text = page(Result(arguments.result), [Result(path) for path in arguments.coarser or ()])
     try:
         path.write_text(text)
     except OSError as error:
@@ -114,10 +123,26 @@ def table(arguments: argparse.Namespace) -> None:
         print(path)
 
 
+def bars(arguments: argparse.Namespace) -> None:
+    print_bars([Result(path) for path in arguments.results])
+
+
+def print_bars(results: list[Result]) -> None:
+    for one in compare(results):
+        order = "" if one.order is None else f", order {one.order:.1f}"
+        error = "and doesn't converge: singular, or finer meshes tell" if one.error is None else f"± {one.error:.2g}"
+        on_others = ", ".join(f"{value:.6g}" for value in one.values[:-1])
+        print(f"{one.name}: {one.values[-1]:.6g} {error} {one.unit} (coarser {on_others}{order})")
+
+
 def adapt(arguments: argparse.Namespace) -> None:
     scene, mesh = scene_of(arguments.scene)
     geometry = arguments.geometry or mesh.with_suffix(".geo")
     folder = arguments.folder or arguments.scene.with_name(arguments.scene.stem + "-adapted")
     # A mesh is made first of all.
-    result, _ = solve_adapted(Model(b"", scene), arguments.error, geometry, ranks=arguments.ranks, folder=folder)
+    result, rounds = solve_adapted(Model(b"", scene), arguments.error, geometry, ranks=arguments.ranks, folder=folder)
+    try:
+        print_bars([one.result for one in rounds])
+    except InputError:
+        print("one mesh was enough, so that there are no error bars of pressures and forces")
     print(result.path)

@@ -9,7 +9,7 @@ import pytest
 from conftest import ROOT
 from hertz import true_error
 
-from contact_dd import InputError, Material, Model, NotConverged, Result, adapt
+from contact_dd import InputError, Material, Model, NotConverged, Result, adapt, compare
 
 HERTZ = (ROOT / "scripts/performance/geometries/hertz.geo").read_text()
 
@@ -46,6 +46,8 @@ def test_the_true_error_is_about_that_asked(scene, tmp_path, asked):
     assert 1 / 3 <= true_error(result) / asked <= 1.3
     assert len(rounds) <= 4
     assert result.report["dofs"] < 16 / asked
+    [peak] = [one for one in compare([one.result for one in rounds]) if one.name.startswith("largest pressure")]
+    assert abs(peak.values[-1] - 9.35135) <= peak.error
 
 
 def test_a_script_that_makes_its_mesh_itself_is_run_with_other_sizes(tmp_path):

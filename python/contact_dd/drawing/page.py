@@ -7,6 +7,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import EngFormatter, MaxNLocator
 
+from contact_dd.comparison import compare
 from contact_dd.drawing import space
 from contact_dd.drawing.gaps import honest_scale
 from contact_dd.drawing.html import STYLE, axes_of, escape, png, section, short, svg, table
@@ -48,14 +49,14 @@ FONTS = {
 }
 
 
-def page(result):
-    """The page of a result, in HTML."""
+def page(result, coarser=()):
+    """The page of a result, in HTML; with error bars where there are results on coarser meshes."""
     report, units = result.report, units_of(result)
     with plt.rc_context(FONTS):
         parts = [
             head(report, result), warnings(report), bodies(result), steps(report, units),
             contacts(report, sides_of(result), units), convergence(report, result.convergence), certificate(report),
-            reactions(report, units), ranks(report), rest(report),
+            reactions(report, units), bars([*coarser, result]), ranks(report), rest(report),
         ]
     title = escape(result.title or problem_of(report))
     return (
@@ -329,6 +330,25 @@ def reactions(report, units):
     rows = [[escape(r["support"]), *force] for r, force in zip(found[:MOST_ROWS], forces(found, units.force))]
     rows = table(["support", *force_head("", found)], rows, numbers=(1, 2, 3))
     return section("Reactions of supports", rows, more(found, ""))
+
+
+def bars(results):
+    """How far off pressures and forces are, by comparison of meshes."""
+    if len(results) == 1:
+        return ""
+    found = compare(results)
+    rows = [
+        [escape(one.name), si(one.values[-1], one.unit, 5), f"± {si(one.error, one.unit, 2)}" if one.error else "–",
+         "" if one.order is None else f"{one.order:.1f}"]
+        for one in found[:MOST_ROWS]
+    ]
+    meshes = len(found[0].values) - 1 if found else 1
+    words = (
+        f"By comparison with {meshes} coarser mesh{'es' * (meshes > 1)}. A line where the number doesn't converge: at "
+        "an edge or a tip, or where finer meshes would tell."
+    )
+    table_of = table(["", "", "off at most", "order"], rows, numbers=(1, 2, 3))
+    return section("Error bars", table_of, more(found, ""), f"<p><small>{words}</small></p>")
 
 
 def rest(report):

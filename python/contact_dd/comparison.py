@@ -1,0 +1,127 @@
+"""Error bars by comparison: the same scene on coarser and finer meshes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from contact_dd.errors import InputError
+from contact_dd.result import Result
+
+# Meshes whose sizes differ by less tell little.
+LEAST_RATIO = 1.3
+# Orders of convergence that are believed: with less there may be no limit, and a higher one is likely chance.
+ORDERS = (0.3, 2.0)
+# Bars over the extrapolated error with the order observed on three meshes and without: Roache's grid convergence index.
+OBSERVED, UNKNOWN = 1.25, 3.0
+# Differences that are no larger, relative to the largest of the kind, are round-off.
+ROUND_OFF = 1e-9
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A number of a report on meshes from coarse to fine."""
+
+    name: str
+    """What it is: "largest pressure of left crack", "force on left crack, x"."""
+    unit: str
+    values: tuple[float, ...]
+    """Its values, the last one on the finest mesh."""
+    error: float | None
+    """By which the last one is off at most, most likely; None where it doesn't converge, as at an edge that pressures
+    become the higher at the finer the mesh is."""
+    order: float | None
+    """The order of convergence in the size of cells that three meshes show; None where they show none, 0 where
+    differences don't become smaller."""
+
+
+def compare(results: Sequence[Result]) -> list[Compared]:
+    """Error bars of the largest pressures, forces, reactions and the work of friction in the last load step, from
+    results of one scene on two or three meshes of one kind of cells. Of more results count the finest one and what is
+    1.3 times coarser, and 1.3 times again.
+
+    With three meshes the order of convergence is observed and the error extrapolated, times 1.25. With two the order is
+    taken as 1, and the error times 3: that is often much too large.
+    """
+    # By the size of cells.
+    def size(result: Result) -> float:
+        dofs: float = result.report["dofs"]
+        return 1 / (math.cbrt(dofs) if result.is_in_space else math.sqrt(dofs))
+
+    found = list[Result]()
+    for result in sorted(results, key=size):
+        if not found or (size(result) >= LEAST_RATIO * size(found[0]) and len(found) < 3):
+            found.insert(0, result)
+    if len(found) < 2:
+        dofs = ", ".join(str(result.report["dofs"]) for result in results)
+        raise InputError(f"meshes with {dofs} degrees of freedom; expected cells {LEAST_RATIO} times smaller in one")
+    ratios = [size(coarse) / size(fine) for coarse, fine in zip(found, found[1:], strict=False)]
+    numbers = [dict(numbers_of(result)) for result in found]
+    if any(one.keys() != numbers[0].keys() for one in numbers):
+        raise InputError("the results are of several scenes: their contacts or supports differ")
+    scales = dict[str, float]()
+    for one in numbers:
+        for (kind, _, _), value in one.items():
+            scales[kind] = max(scales.get(kind, 0.0), abs(value))
+    compared = []
+    for key in numbers[-1]:
+        kind, name, unit = key
+        values = tuple(one[key] for one in numbers)
+        if max(abs(value) for value in values) > ROUND_OFF * scales[kind]:
+            error, order = bar(values, ratios, ROUND_OFF * scales[kind])
+            compared.append(Compared(name, unit, values, error, order))
+    return compared
+
+
+def bar(values: Sequence[float], ratios: Sequence[float], round_off: float) -> tuple[float | None, float | None]:
+    """By which the last value is off at most, and the order that the values show."""
+    steps = [fine - coarse for coarse, fine in zip(values, values[1:], strict=False)]
+    last = abs(steps[-1])
+    if last <= round_off:
+        return round_off, None
+    if len(steps) == 1:
+        return UNKNOWN * last / (ratios[0] - 1), None
+    before = abs(steps[0])
+    if before * steps[0] * steps[1] < 0 or before <= round_off:
+        # It goes to and fro.
+        return UNKNOWN * max(before, last) / 2, None
+    order = observed(before / last, *ratios)
+    if order < ORDERS[0]:
+        return None, order
+    return OBSERVED * last / (ratios[1] ** min(order, ORDERS[1]) - 1), order
+
+
+def observed(shrinks: float, first: float, second: float) -> float:
+    """The order p with (first^p - 1) / (1 - second^-p) = `shrinks`, of differences on meshes `first` and then `second`
+    times finer; 0 where there is none above."""
+    low, high = 0.0, 20.0
+    while high - low > 1e-6:
+        p = (low + high) / 2
+        if math.expm1(p * math.log(first)) < -shrinks * math.expm1(-p * math.log(second)):
+            low = p
+        else:
+            high = p
+    return low
+
+
+def numbers_of(result: Result) -> Iterator[tuple[tuple[str, str, str], float]]:
+    """What is compared: kind, name and unit, and the value."""
+    # With it comes matplotlib.
+    from contact_dd.drawing.units import units_of
+
+    report: dict[str, Any] = result.report
+    units = units_of(result)
+    for contact in report["contacts"]:
+        if contact["largest_pressure"] is not None:
+            name = f"largest pressure of {contact['name']}"
+            yield (name, name, units.stress), contact["largest_pressure"]
+    for contact in report["contacts"]:
+        for axis, force in zip("xyz", contact["force"], strict=True):
+            yield ("force", f"force on {contact['name']}, {axis}", units.force), force
+    for support in report["reactions"]:
+        for axis, force in zip("xyz", support["force"], strict=True):
+            yield ("force", f"reaction of {support['support']}, {axis}", units.force), force
+    if report.get("friction"):
+        yield ("work", "work of friction", units.work), report["friction"]["dissipated_work"]

@@ -1,0 +1,105 @@
+"""Error bars by comparison of meshes, against exact answers."""
+
+import gmsh
+import numpy as np
+import pytest
+
+from contact_dd import InputError, Material, Model, compare
+from contact_dd.comparison import bar
+
+
+def on_meshes(scene, name, *options, meshes):
+    return [Model.from_scene(scene(name, "--refine", str(k), *options)).run(progress=False) for k in meshes]
+
+
+def found(results, name):
+    [one] = [one for one in compare(results) if one.name == name]
+    return one
+
+
+def holds(one, exact, at_most):
+    """Whether the exact number is within the error bar, which isn't too long."""
+    off = abs(one.values[-1] - exact)
+    return off <= one.error <= at_most * off
+
+
+def test_the_order_of_powers_is_found():
+    for order in 0.5, 1.0, 1.7:
+        sizes = np.array([1.0, 0.6, 0.25])
+        error, seen = bar(3 + 0.1 * sizes**order, sizes[:-1] / sizes[1:], 1e-12)
+        assert np.isclose(seen, order)
+        assert np.isclose(error, 1.25 * 0.1 * sizes[-1] ** order)
+
+
+def test_what_grows_or_sways_has_no_order():
+    assert bar([1.0, 1.1, 1.3], [2, 2], 1e-12) == (None, 0)
+    error, order = bar([1.0, 1.2, 1.1], [2, 2], 1e-12)
+    assert order is None
+    assert error >= 0.2
+
+
+def test_hertz(scene):
+    results = on_meshes(scene, "hertz", "--element", "quad8", meshes=(2, 0, 1))
+    peak = found(results, "largest pressure of contact")
+    assert list(peak.values) == sorted(peak.values, reverse=True)
+    assert 1.7 < peak.order < 2.3
+    assert holds(peak, 9.35135, at_most=3)
+    assert holds(found(results[1:], "largest pressure of contact"), 9.35135, at_most=10)
+    assert not any(one.error > 1e-8 for one in compare(results) if one.name.startswith("force on contact, y"))
+    with pytest.raises(InputError, match="expected cells"):
+        compare([results[0], results[0]])
+    other = on_meshes(scene, "patch", meshes=(0,))
+    with pytest.raises(InputError, match="several scenes"):
+        compare([results[0], *other])
+
+
+def test_the_work_of_friction_in_mindlins_cylinders(scene):
+    results = on_meshes(scene, "mindlin", "--element", "quad4", meshes=(0, 1))
+    assert holds(found(results, "work of friction"), 0.09803, at_most=20)
+
+
+def test_rings_of_lame(tmp_path):
+    # Quarters of two rings in plane strain, the inner one too large by `excess`.
+    inner, joint, outer, excess = 1.0, 2.0, 3.0, 1e-3
+    steel = Material(young=200e3, poisson=0.3)
+    results = []
+    for size in 0.4, 0.2, 0.1:
+        gmsh.initialize()
+        try:
+            gmsh.option.setNumber("General.Terminal", 0)
+            gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+            groups = {"flat": [], "upright": []}
+            for name, low, high in (("core", inner, joint), ("ring", joint, outer)):
+                corners = [gmsh.model.geo.addPoint(*at, 0) for at in ((low, 0), (high, 0), (0, high), (0, low))]
+                middle = gmsh.model.geo.addPoint(0, 0, 0)
+                flat = gmsh.model.geo.addLine(corners[0], corners[1])
+                over = gmsh.model.geo.addCircleArc(corners[1], middle, corners[2])
+                upright = gmsh.model.geo.addLine(corners[2], corners[3])
+                under = gmsh.model.geo.addCircleArc(corners[3], middle, corners[0])
+                loop = gmsh.model.geo.addCurveLoop([flat, over, upright, under])
+                surface = gmsh.model.geo.addPlaneSurface([loop])
+                gmsh.model.geo.synchronize()
+                gmsh.model.addPhysicalGroup(2, [surface], name=name)
+                gmsh.model.addPhysicalGroup(1, [over if name == "core" else under], name=f"joint of {name}")
+                groups["flat"].append(flat)
+                groups["upright"].append(upright)
+            for name, curves in groups.items():
+                gmsh.model.addPhysicalGroup(1, curves, name=name)
+            gmsh.model.mesh.generate(2)
+            model = Model.from_mesh(gmsh.model, plane="strain")
+        finally:
+            gmsh.finalize()
+        for name in "core", "ring":
+            model.body(name, steel)
+        model.fix("flat", y=0)
+        model.fix("upright", x=0)
+        model.contact("joint of core", "joint of ring", name="joint", gap=-excess)
+        results.append(model.run(progress=False, folder=tmp_path / str(size)))
+    # Lame's displacements of the two faces, with the modulus of plane strain; Poisson's ratio cancels.
+    modulus = steel.young / (1 - steel.poisson**2)
+    yields = sum((high**2 + low**2) / (high**2 - low**2) for low, high in ((inner, joint), (joint, outer)))
+    pressure = excess * modulus / (joint * yields)
+    assert holds(found(results, "force on joint, y"), -pressure * joint, at_most=20)
+    # At the ends of the joint it hasn't begun to converge; that isn't called a small error.
+    peak = found(results, "largest pressure of joint")
+    assert peak.error is None or abs(peak.values[-1] - pressure) <= peak.error
