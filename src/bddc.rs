@@ -14,6 +14,7 @@ mod depth;
 mod gradients;
 mod local;
 mod motions;
+mod placement;
 mod reflections;
 pub mod solution;
 mod transform;
@@ -28,6 +29,7 @@ use self::constraints::{Basis, Side};
 use self::depth::Depth;
 use self::local::{Local, Moves, Shared};
 use self::motions::SharedNodes;
+use self::placement::Placement;
 use crate::comm::Comm;
 use crate::contact::jumps::NoUnknown;
 use crate::context::Context;
@@ -134,7 +136,7 @@ impl Bddc {
         Ok(Self {
             stale: vec![true; dofs.len()],
             nodes: SharedNodes::new(context, &dofs),
-            depth: Depth::Motions,
+            depth: Depth::first(context.catalog.dim),
             between,
             owners,
             dofs,
@@ -194,16 +196,11 @@ impl Bddc {
 
         let unknowns = self.between.iter().flat_map(|group| &group.dofs);
         let sprung: BTreeSet<InterfaceDof> = unknowns.copied().collect();
+        let placement =
+            |c: usize| Placement::new(c, &clusters[&plan.tops[c]], &self.classes, &self.ties);
         let shared = |c: usize| {
             let cluster = &clusters[&plan.tops[c]];
-            Shared::new(
-                c,
-                cluster,
-                &self.classes,
-                &self.ties,
-                (&sprung, spring),
-                par,
-            )
+            Shared::new(cluster, placement(c), (&sprung, spring), par)
         };
         let made: Vec<bool> = (self.classes.list.iter())
             .map(|class| {
@@ -220,16 +217,21 @@ impl Bddc {
             if !(0..classes.len()).any(is_made) {
                 return Ok((c, Vec::new()));
             }
-            let sides = shared(c).and_then(|(shared, s)| {
-                shared.sides(&s, is_made, self.depth == Depth::Energies, par)
-            });
+            let sides = match self.depth {
+                Depth::Diagonals => {
+                    let diagonal = &clusters[&plan.tops[c]].diagonal;
+                    Ok(placement(c).sides(diagonal, is_made))
+                }
+                _ => shared(c).and_then(|(shared, s)| {
+                    shared.sides(&s, is_made, self.depth == Depth::Energies, par)
+                }),
+            };
             Ok((c, sides.map_err(moves)?))
         });
         let sides: BTreeMap<usize, Vec<Option<Side>>> = comm.agree(sides.collect())?;
         let bases = self.bases(context, &before, &changed, &made, sides)?;
         let locals = bases.into_iter().map(|(c, bases)| {
-            let local =
-                shared(c).and_then(|shared| Local::new(shared, bases, self.depth.holds(), par));
+            let local = shared(c).and_then(|shared| Local::new(shared, bases, self.depth, par));
             Ok((c, local.map_err(moves)?))
         });
         let locals: BTreeMap<usize, Local> = comm.agree(locals.collect())?;
@@ -279,7 +281,7 @@ impl Bddc {
 
     /// Whether the preconditioner can be made better if it is too bad.
     pub fn is_judged(&self) -> bool {
-        self.depth == Depth::Motions
+        matches!(self.depth, Depth::Diagonals | Depth::Motions)
     }
 
     /// The smallest pivot of this rank relative to its diagonal entry, that of the coarse problem among them on the root.

@@ -10,6 +10,7 @@ use contact_dd_mpi::settings::command_line::{CommandLine, LogFormat};
 use contact_dd_partition::manual::{Answer, BAD_USAGE};
 
 fn main() -> ExitCode {
+    keep_freed_memory();
     if comm::is_launched() {
         // Launchers show ranks a terminal whatever their output goes to.
         event::without_colours();
@@ -25,6 +26,22 @@ fn main() -> ExitCode {
         Err(failure) => fail(LogFormat::of_this_program(), &failure),
     }
 }
+
+/// Keeps memory that is freed for what needs some next: a page that the system gives anew is cleared first and takes
+/// longer than what most matrices are made for.
+fn keep_freed_memory() {
+    #[cfg(target_env = "gnu")]
+    // SAFETY: sets parameters of the C library's allocator while nothing else runs.
+    unsafe {
+        libc::mallopt(libc::M_MMAP_MAX, 0);
+        libc::mallopt(libc::M_TRIM_THRESHOLD, -1);
+        libc::mallopt(libc::M_TOP_PAD, TOP_PAD);
+    }
+}
+
+/// Bytes that the allocator asks the system for beyond what it needs.
+#[cfg(target_env = "gnu")]
+const TOP_PAD: i32 = 64 << 20;
 
 /// Runs on all ranks. Collective.
 fn solve(comm: &Comm, command_line: &CommandLine) -> ExitCode {

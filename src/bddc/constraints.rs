@@ -36,19 +36,26 @@ pub struct Basis {
 enum Share {
     All,
     Nothing,
-    /// W = D Q: of r it has Wᵀ r, and it corrects by W x.
+    /// W = D Q with D as here: of r it has Wᵀ r, and it corrects by W x.
+    Diagonal(#[serde(with = "crate::bytes")] Vec<f64>),
+    /// W.
     Part(#[serde(with = "crate::bytes::matrix")] Mat<f64>),
 }
 
-/// S_FF of a cluster and S̃⁻¹.
+/// What a class is to a cluster.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Side {
-    /// S_FF.
-    #[serde(with = "crate::bytes::symmetric")]
-    pub s: Mat<f64>,
-    /// S̃⁻¹, where the class is looked into; without unknowns elsewhere.
-    #[serde(with = "crate::bytes::symmetric")]
-    pub compliance: Mat<f64>,
+pub enum Side {
+    /// The stiffness of each unknown.
+    Diagonal(#[serde(with = "crate::bytes")] Vec<f64>),
+    /// Where all other unknowns are held, and where they are free.
+    Whole {
+        /// S_FF.
+        #[serde(with = "crate::bytes::symmetric")]
+        s: Mat<f64>,
+        /// S̃⁻¹, where the class is looked into; without unknowns elsewhere.
+        #[serde(with = "crate::bytes::symmetric")]
+        compliance: Mat<f64>,
+    },
 }
 
 impl Basis {
@@ -67,40 +74,69 @@ impl Basis {
     /// # Errors
     /// It can move although all else is held.
     pub fn new(sides: &[Side], motions: impl FnOnce() -> Mat<f64>) -> Result<Vec<Self>, Moves> {
-        let n = sides.first().map_or(0, |side| side.s.nrows());
-        let mut sum = Mat::<f64>::zeros(n, n);
-        sides.iter().for_each(|side| sum += &side.s);
-        let weights = match sides.iter().all(|side| side.compliance.nrows() == n) {
-            true => adaptive(sides)?,
+        let (mut whole, mut diagonals) = (Vec::new(), Vec::new());
+        for side in sides {
+            match side {
+                Side::Diagonal(diagonal) => diagonals.push(diagonal),
+                Side::Whole { s, compliance } => whole.push((s, compliance)),
+            }
+        }
+        let is_looked_into =
+            |(s, compliance): &(&Mat<f64>, &Mat<f64>)| compliance.nrows() == s.nrows();
+        let weights = match !whole.is_empty() && whole.iter().all(is_looked_into) {
+            true => adaptive(&whole)?,
             false => motions(),
         };
         let q = Reflections::new(&weights);
-        let sum = sum.llt(Lower).map_err(|_| Moves)?;
-        let of = |side: &Side| {
-            let mut w = sum.solve(&side.s);
-            q.multiply_right(w.as_mut());
-            Self {
-                coarse: weights.ncols(),
-                q: Some(q.clone()),
-                share: Share::Part(w),
-            }
+        let basis = |share| Self {
+            coarse: weights.ncols(),
+            q: Some(q.clone()),
+            share,
         };
-        Ok(sides.iter().map(of).collect())
+        if whole.is_empty() {
+            let sum = |i: usize| diagonals.iter().map(|diagonal| diagonal[i]).sum::<f64>();
+            let part = |diagonal: &&Vec<f64>| {
+                let parts = diagonal.iter().enumerate();
+                Share::Diagonal(parts.map(|(i, d)| d / sum(i)).collect())
+            };
+            return Ok(diagonals.iter().map(part).map(basis).collect());
+        }
+        let n = weights.nrows();
+        let mut sum = Mat::<f64>::zeros(n, n);
+        whole.iter().for_each(|(s, _)| sum += *s);
+        let sum = sum.llt(Lower).map_err(|_| Moves)?;
+        let of = |(s, _): &(&Mat<f64>, _)| {
+            let mut w = sum.solve(*s);
+            q.multiply_right(w.as_mut());
+            basis(Share::Part(w))
+        };
+        Ok(whole.iter().map(of).collect())
     }
 
     /// The correction of the unknowns of the class for one in the basis.
     pub fn correct(&self, x: &[f64]) -> Vec<f64> {
-        match &self.share {
-            Share::All => x.to_vec(),
-            Share::Nothing => vec![0.0; x.len()],
-            Share::Part(w) => product(w.as_ref(), x),
+        match (&self.share, &self.q) {
+            (Share::Nothing, _) => vec![0.0; x.len()],
+            (Share::Part(w), _) => product(w.as_ref(), x),
+            (Share::Diagonal(d), Some(q)) => {
+                let mut x = x.to_vec();
+                q.turn(&mut x);
+                x.iter_mut().zip(d).for_each(|(x, d)| *x *= d);
+                x
+            }
+            _ => x.to_vec(),
         }
     }
 
     /// The share of a residual, in the basis.
     pub fn share(&self, r: &[f64]) -> Vec<f64> {
-        match &self.share {
-            Share::Part(w) => product(w.transpose(), r),
+        match (&self.share, &self.q) {
+            (Share::Part(w), _) => product(w.transpose(), r),
+            (Share::Diagonal(d), Some(q)) => {
+                let mut r: Vec<f64> = r.iter().zip(d).map(|(r, d)| d * r).collect();
+                q.turn_back(&mut r);
+                r
+            }
             _ => self.correct(r),
         }
     }
@@ -123,12 +159,12 @@ fn product(a: MatRef<'_, f64>, x: &[f64]) -> Vec<f64> {
 
 /// The weights of combinations of unknowns that have far more energy where all else is held than where it is free, a
 /// column each.
-fn adaptive(sides: &[Side]) -> Result<Mat<f64>, Moves> {
-    let n = sides.first().map_or(0, |side| side.s.nrows());
+fn adaptive(sides: &[(&Mat<f64>, &Mat<f64>)]) -> Result<Mat<f64>, Moves> {
+    let n = sides.first().map_or(0, |(s, _)| s.nrows());
     let (mut held, mut free) = (Mat::<f64>::zeros(n, n), Mat::<f64>::zeros(n, n));
-    for side in sides {
-        held += side.s.llt(Lower).map_err(|_| Moves)?.inverse();
-        free += &side.compliance;
+    for (s, compliance) in sides {
+        held += s.llt(Lower).map_err(|_| Moves)?.inverse();
+        free += *compliance;
     }
     make_symmetric(&mut held);
     let factor = held.llt(Lower).map_err(|_| Moves)?;

@@ -3,6 +3,8 @@
 /// What is made coarse, and whether the preconditioner is held where round-off keeps it from being definite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
+    /// The rigid motions of classes, of which clusters have shares as their diagonals say, in single precision.
+    Diagonals,
     /// The rigid motions of classes.
     Motions,
     /// What their energies say.
@@ -12,6 +14,14 @@ pub enum Depth {
 }
 
 impl Depth {
+    /// Where one begins. In the plane clusters share so little that all of it can be looked at.
+    pub fn first(dim: usize) -> Self {
+        match dim {
+            3 => Self::Diagonals,
+            _ => Self::Motions,
+        }
+    }
+
     /// Shares of diagonal entries of which the first is added that leaves something definite.
     pub fn holds(self) -> &'static [f64] {
         match self {
@@ -23,7 +33,7 @@ impl Depth {
     /// The next one to be tried.
     pub fn next(self) -> Option<Self> {
         match self {
-            Self::Motions => Some(Self::Energies),
+            Self::Diagonals | Self::Motions => Some(Self::Energies),
             Self::Energies => Some(Self::Held),
             Self::Held => None,
         }

@@ -1,15 +1,15 @@
 //! A cluster: its unknowns [own | shared], own ones eliminated, and what the preconditioner inverts of it.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use faer::linalg::triangular_inverse::invert_lower_triangular;
 use faer::{Mat, MatMut, Par, Side::Lower};
 
-use crate::bddc::classes::Classes;
-use crate::bddc::closed::Ties;
 use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::constraints::{Basis, Side};
+use crate::bddc::depth::Depth;
+use crate::bddc::placement::Placement;
 use crate::bddc::transform::transformed;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::symmetric::PackedSymmetric;
@@ -38,13 +38,10 @@ fn fill_upper_triangle(s: &mut Mat<f64>) {
 /// What a cluster shares with others, class after class.
 #[derive(Debug)]
 pub struct Shared {
-    /// What each unknown of the cluster is in terms of [own | shared], but for constants.
-    terms: Vec<Vec<(usize, f64)>>,
-    own: Trapezoid,
+    placement: Placement,
+    own: Trapezoid<f64>,
     /// The smallest pivot of own unknowns relative to the diagonal entry.
     pub smallest_pivot: f64,
-    /// Where its classes are.
-    ranges: Vec<Range<usize>>,
     /// The spring on each unknown of the cluster; none where nothing has one.
     springs: Vec<f64>,
     /// What is sure to be more than the round-off of S.
@@ -58,74 +55,30 @@ impl From<NotDefinite> for Moves {
 }
 
 impl Shared {
-    /// Cluster c, with a `spring`, relative to the diagonal, on what is `sprung`, and its S on what is shared.
+    /// A cluster whose unknowns are found at their `placement`, with a `spring`, relative to the diagonal, on what is
+    /// `sprung`, and its S on what is shared.
     ///
     /// # Errors
     /// It can move although what it shares is held.
     pub fn new(
-        c: usize,
         cluster: &ClusterSchur,
-        classes: &Classes,
-        ties: &Ties,
+        placement: Placement,
         (sprung, spring): (&BTreeSet<InterfaceDof>, f64),
         par: Par,
     ) -> Result<(Self, Mat<f64>), Moves> {
-        let mut places: HashMap<InterfaceDof, Vec<(usize, f64)>> = HashMap::new();
-        let mut own = classes.own[c].len();
-        for (i, &dof) in classes.own[c].iter().enumerate() {
-            places.insert(dof, vec![(i, 1.0)]);
-        }
-        for &k in &classes.of_clusters[c] {
-            let class = &classes.list[k];
-            if let Some(turned) = &class.turned {
-                let which = 1 + usize::from(class.clusters[0] != c);
-                let alone = turned.ends[which]..turned.ends[which + 1];
-                for (i, &dof) in class.dofs.iter().enumerate() {
-                    let terms = alone.clone().enumerate();
-                    let terms = terms.map(|(at, j)| (own + at, turned.q[(i, j)]));
-                    places.insert(dof, terms.filter(|(_, q)| *q != 0.0).collect());
-                }
-                own += alone.len();
-            }
-        }
-        let mut ranges = Vec::new();
-        let mut first = 0;
-        for &k in &classes.of_clusters[c] {
-            let class = &classes.list[k];
-            for (i, &dof) in class.dofs.iter().enumerate() {
-                let place = places.entry(dof).or_default();
-                match &class.turned {
-                    None => place.push((own + first + i, 1.0)),
-                    Some(turned) => {
-                        let both = (0..turned.ends[1]).map(|j| (own + first + j, turned.q[(i, j)]));
-                        place.extend(both.filter(|(_, q)| *q != 0.0));
-                    }
-                }
-            }
-            ranges.push(first..first + class.size());
-            first += class.size();
-        }
-        let in_place = |dof: &InterfaceDof| -> Vec<(usize, f64)> {
-            let terms = ties.terms(dof).into_iter();
-            terms
-                .flat_map(|(dof, c)| places[&dof].iter().map(move |&(i, q)| (i, c * q)))
-                .collect()
-        };
-        let terms: Vec<_> = cluster.dofs.iter().map(in_place).collect();
         let mut springs = Vec::new();
         if spring > 0.0 {
             let dofs = cluster.dofs.iter().zip(&cluster.diagonal);
             let has_one = |dof| f64::from(sprung.contains(dof));
             springs.extend(dofs.map(|(dof, d)| spring * d * has_one(dof)));
         }
-        let s = transformed(&cluster.s, &springs, &terms, own + first);
-        let diagonal: Vec<f64> = (0..own).map(|i| s[(i, i)]).collect();
-        let (own, s) = Trapezoid::new(s, own, par)?;
+        let s = transformed(&cluster.s, &springs, &placement.terms, placement.size());
+        let diagonal: Vec<f64> = (0..placement.own).map(|i| s[(i, i)]).collect();
+        let (own, s) = Trapezoid::new(s, placement.own, par)?;
         let shared = Self {
-            terms,
             smallest_pivot: own.smallest_pivot(&diagonal),
+            placement,
             own,
-            ranges,
             springs,
             round_off: ROUND_OFF * cluster.diagonal.iter().copied().fold(0.0, f64::max),
         };
@@ -145,7 +98,7 @@ impl Shared {
         // It may move as a whole, and of some classes it has not all unknowns.
         let held_by = |share: f64| {
             let mut held = s.clone();
-            for range in &self.ranges {
+            for range in &self.placement.ranges {
                 hold(held.as_mut(), range.clone(), share, self.round_off);
             }
             held.llt(Lower).ok()
@@ -170,10 +123,10 @@ impl Shared {
                     }
                     false => Mat::zeros(0, 0),
                 };
-                Side { s, compliance }
+                Side::Whole { s, compliance }
             })
         };
-        Ok(self.ranges.iter().enumerate().map(side).collect())
+        Ok(self.placement.ranges.iter().enumerate().map(side).collect())
     }
 }
 
@@ -191,6 +144,55 @@ fn hold(mut s: MatMut<'_, f64>, range: Range<usize>, share: f64, round_off: f64)
     range.for_each(|i| s[(i, i)] += share * largest + round_off);
 }
 
+/// The factor of what isn't coarse.
+#[derive(Debug)]
+enum Others {
+    Single(Trapezoid<f32>),
+    Double(Trapezoid<f64>),
+}
+
+impl Others {
+    /// As precise as this `depth` asks for, and what they leave to the coarse unknowns.
+    fn new(
+        s: Mat<f64>,
+        count: usize,
+        depth: Depth,
+        par: Par,
+    ) -> Result<(Self, Mat<f64>), NotDefinite> {
+        Ok(match depth {
+            Depth::Diagonals => {
+                let (others, coarse) = Trapezoid::new(s, count, par)?;
+                (Self::Single(others), coarse)
+            }
+            _ => {
+                let (others, coarse) = Trapezoid::new(s, count, par)?;
+                (Self::Double(others), coarse)
+            }
+        })
+    }
+
+    fn eliminated(&self) -> usize {
+        match self {
+            Self::Single(others) => others.eliminated(),
+            Self::Double(others) => others.eliminated(),
+        }
+    }
+
+    fn forward(&self, x: &mut [f64]) {
+        match self {
+            Self::Single(others) => others.forward(x),
+            Self::Double(others) => others.forward(x),
+        }
+    }
+
+    fn backward(&self, x: &mut [f64]) {
+        match self {
+            Self::Single(others) => others.backward(x),
+            Self::Double(others) => others.backward(x),
+        }
+    }
+}
+
 /// A cluster as conjugate gradients see it, and its part of the preconditioner, in the basis of coarse and other
 /// unknowns of its classes.
 #[derive(Debug)]
@@ -201,26 +203,25 @@ pub struct Local {
     bases: Vec<Basis>,
     /// Where [others | coarse] are found.
     order: Vec<usize>,
-    others: Trapezoid,
+    others: Others,
     /// What the others leave to the coarse unknowns.
     pub coarse: Mat<f64>,
 }
 
 impl Local {
-    /// A cluster with the bases of its classes, and the first of `holds`, shares of the diagonal, that leaves the others
-    /// definite.
+    /// A cluster with the bases of its classes, as `depth` says.
     ///
     /// # Errors
     /// It can move although its coarse unknowns are held.
     pub fn new(
         (shared, mut s): (Shared, Mat<f64>),
         bases: Vec<Basis>,
-        holds: &[f64],
+        depth: Depth,
         par: Par,
     ) -> Result<Self, Moves> {
         fill_upper_triangle(&mut s);
         let (mut others, mut coarse) = (Vec::new(), Vec::new());
-        for (range, basis) in shared.ranges.iter().zip(&bases) {
+        for (range, basis) in shared.placement.ranges.iter().zip(&bases) {
             if let Some(q) = &basis.q {
                 let (n, len) = (s.nrows(), range.len());
                 q.multiply_right(s.submatrix_mut(0, range.start, n, len));
@@ -239,12 +240,18 @@ impl Local {
             let lower = permuted.col_as_slice_mut(j)[j..].iter_mut();
             lower.zip(&order[j..]).for_each(|(to, &i)| *to = from[i]);
         }
-        let held_by = |share: &f64| {
-            let mut held = permuted.clone();
-            hold(held.as_mut(), 0..n, *share, 0.0);
-            Trapezoid::new(held, count, par).ok()
+        let factor = |mut held: Mat<f64>, share: f64| {
+            hold(held.as_mut(), 0..n, share, 0.0);
+            Others::new(held, count, depth, par)
         };
-        let (others, mut coarse) = holds.iter().find_map(held_by).ok_or(Moves)?;
+        let (last, before) = depth.holds().split_last().ok_or(Moves)?;
+        let found = before
+            .iter()
+            .find_map(|&share| factor(permuted.clone(), share).ok());
+        let (others, mut coarse) = match found {
+            Some(found) => found,
+            None => factor(permuted, *last)?,
+        };
         fill_upper_triangle(&mut coarse);
         Ok(Self {
             shared,
@@ -257,7 +264,7 @@ impl Local {
 
     /// Where its classes are.
     pub fn ranges(&self) -> &[Range<usize>] {
-        &self.shared.ranges
+        &self.shared.placement.ranges
     }
 
     /// The bases of its classes.
@@ -278,7 +285,7 @@ impl Local {
         let mut x = [own, shared].concat();
         self.shared.own.backward(&mut x);
         let of = |terms: &Vec<(usize, f64)>| terms.iter().map(|&(i, c)| c * x[i]).sum();
-        self.shared.terms.iter().map(of).collect()
+        self.shared.placement.terms.iter().map(of).collect()
     }
 
     /// S x on what is shared, where `s` is that of the cluster's unknowns.
@@ -306,7 +313,7 @@ impl Local {
     /// A load on the cluster's unknowns on [own | shared].
     fn gather(&self, load: &[f64]) -> Vec<f64> {
         let mut f = vec![0.0; self.shared.own.size()];
-        for (terms, load) in self.shared.terms.iter().zip(load) {
+        for (terms, load) in self.shared.placement.terms.iter().zip(load) {
             terms.iter().for_each(|&(i, c)| f[i] += c * load);
         }
         f
@@ -315,7 +322,7 @@ impl Local {
     /// The cluster's share of a residual: what stays on the other unknowns, and the load on the coarse ones.
     pub fn share(&self, r: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut scaled = vec![0.0; r.len()];
-        for (range, basis) in self.shared.ranges.iter().zip(&self.bases) {
+        for (range, basis) in self.shared.placement.ranges.iter().zip(&self.bases) {
             scaled[range.clone()].copy_from_slice(&basis.share(&r[range.clone()]));
         }
         let mut load: Vec<f64> = self.order.iter().map(|&i| scaled[i]).collect();
@@ -333,7 +340,7 @@ impl Local {
             .iter()
             .zip(others)
             .for_each(|(&i, value)| x[i] = value);
-        for (range, basis) in self.shared.ranges.iter().zip(&self.bases) {
+        for (range, basis) in self.shared.placement.ranges.iter().zip(&self.bases) {
             let scaled = basis.correct(&x[range.clone()]);
             x[range.clone()].copy_from_slice(&scaled);
         }

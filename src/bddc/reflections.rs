@@ -2,10 +2,14 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::householder::{
+    apply_block_householder_sequence_on_the_left_in_place_scratch,
+    apply_block_householder_sequence_on_the_left_in_place_with_conj,
     apply_block_householder_sequence_on_the_right_in_place_scratch,
     apply_block_householder_sequence_on_the_right_in_place_with_conj,
+    apply_block_householder_sequence_transpose_on_the_left_in_place_scratch,
+    apply_block_householder_sequence_transpose_on_the_left_in_place_with_conj,
 };
-use faer::{Conj, Mat, MatMut, Par};
+use faer::{ColMut, Conj, Mat, MatMut, Par};
 use serde::{Deserialize, Serialize};
 
 /// An orthogonal matrix Q whose first columns span those of another.
@@ -47,6 +51,37 @@ impl Reflections {
             MemStack::new(&mut MemBuffer::new(scratch)),
         );
     }
+
+    /// x ← Q x.
+    pub fn turn(&self, x: &mut [f64]) {
+        let (n, block) = (self.basis.nrows(), self.factor.nrows());
+        let scratch =
+            apply_block_householder_sequence_on_the_left_in_place_scratch::<f64>(n, block, 1);
+        apply_block_householder_sequence_on_the_left_in_place_with_conj(
+            self.basis.as_ref(),
+            self.factor.as_ref(),
+            Conj::No,
+            ColMut::from_slice_mut(x).as_mat_mut(),
+            Par::Seq,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
+    }
+
+    /// x ← Qᵀ x.
+    pub fn turn_back(&self, x: &mut [f64]) {
+        let (n, block) = (self.basis.nrows(), self.factor.nrows());
+        let scratch = apply_block_householder_sequence_transpose_on_the_left_in_place_scratch::<f64>(
+            n, block, 1,
+        );
+        apply_block_householder_sequence_transpose_on_the_left_in_place_with_conj(
+            self.basis.as_ref(),
+            self.factor.as_ref(),
+            Conj::No,
+            ColMut::from_slice_mut(x).as_mat_mut(),
+            Par::Seq,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
+    }
 }
 
 #[cfg(test)]
@@ -57,8 +92,16 @@ mod tests {
     fn the_first_columns_span_the_given_ones_and_all_are_orthonormal() {
         let given = Mat::from_fn(9, 3, |i, j| ((3 * i + 7 * j) as f64).sin());
         let mut q = Mat::<f64>::identity(9, 9);
-        Reflections::new(&given).multiply_right(q.as_mut());
+        let reflections = Reflections::new(&given);
+        reflections.multiply_right(q.as_mut());
         assert!((q.transpose() * &q - Mat::<f64>::identity(9, 9)).norm_max() < 1e-14);
         assert!((q.subcols(3, 6).transpose() * given).norm_max() < 1e-14);
+        let mut x: Vec<f64> = (0..9).map(f64::from).collect();
+        let before = Mat::from_fn(9, 1, |i, _| x[i]);
+        reflections.turn(&mut x);
+        let turned = Mat::from_fn(9, 1, |i, _| x[i]);
+        assert!((&q * &before - turned).norm_max() < 1e-13);
+        reflections.turn_back(&mut x);
+        assert!((0..9).all(|i| (x[i] - before[(i, 0)]).abs() < 1e-13));
     }
 }

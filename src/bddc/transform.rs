@@ -21,6 +21,12 @@ pub fn transformed(
         _ => None,
     };
     let places: Vec<Option<usize>> = terms.iter().map(place).collect();
+    if springs.is_empty()
+        && let Some(places) = places.iter().copied().collect::<Option<Vec<usize>>>()
+        && is_permutation(&places, n)
+    {
+        return permuted(s, &places);
+    }
     let mut many = 0;
     let of_many: Vec<Option<usize>> = (terms.iter())
         .map(|terms| {
@@ -87,6 +93,24 @@ pub fn transformed(
     new
 }
 
+/// Whether every number below n is one of the `places`, once.
+fn is_permutation(places: &[usize], n: usize) -> bool {
+    let mut is_there = vec![false; n];
+    places.iter().for_each(|&place| is_there[place] = true);
+    places.len() == n && is_there.iter().all(|there| *there)
+}
+
+/// S with its unknowns at other `places`, its lower triangle.
+fn permuted(s: &PackedSymmetric, places: &[usize]) -> Mat<f64> {
+    let mut new = Mat::<f64>::zeros(s.size(), s.size());
+    for (j, &b) in places.iter().enumerate() {
+        for (&a, &value) in places[j..].iter().zip(s.column(j)) {
+            new[(a.max(b), a.min(b))] = value;
+        }
+    }
+    new
+}
+
 /// Adds `value` at (a, b) and (b, a), of which the lower one is kept.
 fn add(s: &mut Mat<f64>, a: usize, b: usize, value: f64) {
     let both = if a == b { 2.0 * value } else { value };
@@ -121,6 +145,19 @@ mod tests {
         let found = transformed(&PackedSymmetric::new(&full), &springs, &terms, n);
         for j in 0..n {
             (j..n).for_each(|i| assert_eq!(found[(i, j)], expected[(i, j)], "{i}, {j}"));
+        }
+    }
+
+    #[test]
+    fn a_permutation_is_what_terms_of_one_unknown_each_are() {
+        let full = Mat::from_fn(7, 7, |i, j| (i.max(j) * 31 + i.min(j) * 7) as f64);
+        let s = PackedSymmetric::new(&full);
+        let places = [3, 0, 6, 1, 5, 2, 4];
+        let terms: Vec<_> = places.iter().map(|&place| vec![(place, 1.0)]).collect();
+        let by_place = transformed(&s, &[], &terms, 7);
+        let by_terms = transformed(&s, &[0.0; 7], &terms, 7);
+        for j in 0..7 {
+            (j..7).for_each(|i| assert_eq!(by_place[(i, j)], by_terms[(i, j)]));
         }
     }
 }

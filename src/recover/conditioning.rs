@@ -7,7 +7,7 @@ use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
 
 /// Accuracy of the inverse iteration where it is iterated for.
-const ACCURACY: f64 = 1e-3;
+const ACCURACY: f64 = 3e-2;
 
 /// Estimates κ = λ_max / λ_min of A = D^(−1/2) K D^(−1/2), K the stiffness of the whole scene with its
 /// contacts fixed as they are, D its diagonal: round-off makes a relative error of about

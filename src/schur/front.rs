@@ -8,7 +8,7 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, Par};
 use pulp::{Arch, Simd, WithSimd};
 
-use super::columns::add_columns;
+use super::columns::Number;
 
 /// Rows of a front up to which it is factorized four columns at a time in place; larger ones are
 /// left to faer's blocked algorithms.
@@ -111,10 +111,10 @@ fn subtract<S: Simd>(simd: S, to: &mut [f64], block: &[f64], rows: usize, j: usi
     };
     match block.len() / rows {
         0 => {}
-        1 => add_columns::<S, 1>(simd, to, column),
-        2 => add_columns::<S, 2>(simd, to, column),
-        3 => add_columns::<S, 3>(simd, to, column),
-        _ => add_columns::<S, WIDTH>(simd, to, column),
+        1 => f64::add::<S, 1>(simd, to, column),
+        2 => f64::add::<S, 2>(simd, to, column),
+        3 => f64::add::<S, 3>(simd, to, column),
+        _ => f64::add::<S, WIDTH>(simd, to, column),
     }
 }
 

@@ -4,7 +4,7 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Mat, MatMut, Par};
 use pulp::{Arch, Simd, WithSimd};
 
-use super::columns::{WIDTH, add_columns, dot_columns};
+use super::columns::{Number, WIDTH};
 
 /// The columns of one supernode: a dense lower trapezoid over its own rows and those `below`, column
 /// after column, each from the diagonal on.
@@ -125,10 +125,10 @@ impl WithSimd for Product<'_> {
         let below = |j: usize| self.panel.column_below(j);
         let whole = self.x.len() / WIDTH * WIDTH;
         for j in (0..whole).step_by(WIDTH) {
-            add_columns::<S, WIDTH>(simd, self.y, |p| (self.x[j + p], below(j + p)));
+            f64::add::<S, WIDTH>(simd, self.y, |p| (self.x[j + p], below(j + p)));
         }
         for j in whole..self.x.len() {
-            add_columns::<S, 1>(simd, self.y, |_| (self.x[j], below(j)));
+            f64::add::<S, 1>(simd, self.y, |_| (self.x[j], below(j)));
         }
     }
 }
@@ -148,13 +148,13 @@ impl WithSimd for TransposedProduct<'_> {
         let below = |j: usize| self.panel.column_below(j);
         let whole = self.y.len() / WIDTH * WIDTH;
         for j in (0..whole).step_by(WIDTH) {
-            let sums = dot_columns::<S, WIDTH>(simd, self.x, |p| below(j + p));
+            let sums = f64::dot::<S, WIDTH>(simd, self.x, |p| below(j + p));
             for (y, sum) in self.y[j..].iter_mut().zip(sums) {
                 *y -= sum;
             }
         }
         for j in whole..self.y.len() {
-            let [sum] = dot_columns::<S, 1>(simd, self.x, |_| below(j));
+            let [sum] = f64::dot::<S, 1>(simd, self.x, |_| below(j));
             self.y[j] -= sum;
         }
     }

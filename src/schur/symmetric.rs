@@ -3,7 +3,7 @@
 use faer::Mat;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::columns::{WIDTH, add_columns, dot_columns};
+use super::columns::{Number, WIDTH};
 use super::panel::packed_len;
 
 /// The lower triangle of a symmetric matrix, column after column, each from the diagonal on.
@@ -75,11 +75,11 @@ impl WithSimd for Product<'_> {
             }
             let (of_block, of_others) = self.y.split_at_mut(below);
             let column = |p: usize| &self.s.column(j + p)[below - j - p..];
-            let sums = dot_columns::<S, WIDTH>(simd, &self.x[below..], column);
+            let sums = f64::dot::<S, WIDTH>(simd, &self.x[below..], column);
             for (y, sum) in of_block[j..].iter_mut().zip(sums) {
                 *y += sum;
             }
-            add_columns::<S, WIDTH>(simd, of_others, |p| (self.x[j + p], column(p)));
+            f64::add::<S, WIDTH>(simd, of_others, |p| (self.x[j + p], column(p)));
         }
     }
 }

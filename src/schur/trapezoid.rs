@@ -3,7 +3,7 @@
 use faer::{Mat, Par};
 use pulp::{Arch, Simd, WithSimd};
 
-use super::columns::{WIDTH, add_columns, dot_columns};
+use super::columns::{Number, WIDTH};
 use super::front::partial_cholesky;
 use super::panel::packed_len;
 
@@ -11,15 +11,17 @@ use super::panel::packed_len;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotDefinite;
 
-/// L above P of a symmetric matrix whose first unknowns are eliminated, column after column, each from the diagonal on.
+/// L above P of a symmetric matrix whose first unknowns are eliminated, in single precision where they are `f32`.
 #[derive(Clone, Debug)]
-pub struct Trapezoid {
+pub struct Trapezoid<T> {
     rows: usize,
-    columns: usize,
-    values: Vec<f64>,
+    /// The diagonal of L.
+    pivots: Vec<f64>,
+    /// Column after column over its pivot, each from the diagonal on.
+    values: Vec<T>,
 }
 
-impl Trapezoid {
+impl<T: Number> Trapezoid<T> {
     /// Eliminates the first `count` unknowns of a symmetric matrix, whose lower triangle counts, and returns what they
     /// leave to the others, its lower triangle.
     ///
@@ -35,8 +37,10 @@ impl Trapezoid {
         let mut rest = rest.subrows_mut(count, rows - count);
         partial_cholesky(columns, rest.as_mut(), par).map_err(|_| NotDefinite)?;
         let mut values = Vec::with_capacity(packed_len(rows, count));
-        for j in 0..count {
-            values.extend_from_slice(&matrix.col_as_slice(j)[j..]);
+        let pivots: Vec<f64> = (0..count).map(|j| matrix[(j, j)]).collect();
+        for (j, pivot) in pivots.iter().enumerate() {
+            let column = matrix.col_as_slice(j)[j..].iter();
+            values.extend(column.map(|l| T::of(l / pivot)));
         }
         let s = match count {
             0 => matrix,
@@ -46,7 +50,7 @@ impl Trapezoid {
         };
         let trapezoid = Self {
             rows,
-            columns: count,
+            pivots,
             values,
         };
         Ok((trapezoid, s))
@@ -54,14 +58,14 @@ impl Trapezoid {
 
     /// The smallest pivot relative to the entries of the `diagonal`, min L_jj² / d_j.
     pub fn smallest_pivot(&self, diagonal: &[f64]) -> f64 {
-        let pivot = |(j, d): (usize, &f64)| self.column(j, j)[0].powi(2) / d;
-        let pivots = diagonal.iter().enumerate().map(pivot);
-        pivots.fold(f64::INFINITY, f64::min)
+        let pivots = self.pivots.iter().zip(diagonal);
+        let relative = pivots.map(|(pivot, d)| pivot.powi(2) / d);
+        relative.fold(f64::INFINITY, f64::min)
     }
 
     /// Number of unknowns that are eliminated.
     pub fn eliminated(&self) -> usize {
-        self.columns
+        self.pivots.len()
     }
 
     /// Number of all unknowns.
@@ -71,79 +75,108 @@ impl Trapezoid {
 
     /// Carries a load on the first unknowns to the others: x ← [L⁻¹ x_1; x_2 − P L⁻¹ x_1].
     pub fn forward(&self, x: &mut [f64]) {
-        Arch::new().dispatch(Forward { factor: self, x });
+        in_precision(x, |x: &mut [T]| {
+            Arch::new().dispatch(Forward { factor: self, x });
+        });
+        self.scale(x);
     }
 
     /// Solves for the first unknowns where the others are known: x_1 ← L⁻ᵀ (x_1 − Pᵀ x_2).
     pub fn backward(&self, x: &mut [f64]) {
-        Arch::new().dispatch(Backward { factor: self, x });
+        self.scale(x);
+        in_precision(x, |x: &mut [T]| {
+            Arch::new().dispatch(Backward { factor: self, x });
+        });
+    }
+
+    /// Divides the first unknowns by their pivots.
+    fn scale(&self, x: &mut [f64]) {
+        let pivots = x.iter_mut().zip(&self.pivots);
+        pivots.for_each(|(x, pivot)| *x /= pivot);
     }
 
     /// Column j from row `first` on.
-    fn column(&self, j: usize, first: usize) -> &[f64] {
+    fn column(&self, j: usize, first: usize) -> &[T] {
         let begin = packed_len(self.rows, j);
         &self.values[begin + first - j..begin + self.rows - j]
     }
 }
 
-struct Forward<'a> {
-    factor: &'a Trapezoid,
-    x: &'a mut [f64],
+/// Changes x as numbers of another precision, which are scaled so that none is too large or all too small for it.
+fn in_precision<T: Number>(x: &mut [f64], change: impl FnOnce(&mut [T])) {
+    let largest = x.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let scale = match largest > 0.0 && largest.is_finite() {
+        true => largest.log2().floor().exp2(),
+        false => 1.0,
+    };
+    let mut scaled: Vec<T> = x.iter().map(|x| T::of(x / scale)).collect();
+    change(&mut scaled);
+    let back = x.iter_mut().zip(scaled);
+    back.for_each(|(x, y)| *x = y.value() * scale);
 }
 
-impl WithSimd for Forward<'_> {
+struct Forward<'a, T> {
+    factor: &'a Trapezoid<T>,
+    x: &'a mut [T],
+}
+
+impl<T: Number> WithSimd for Forward<'_, T> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { factor, x } = self;
-        for j in (0..factor.columns).step_by(WIDTH) {
-            let end = (j + WIDTH).min(factor.columns);
+        let count = factor.eliminated();
+        for j in (0..count).step_by(WIDTH) {
+            let end = (j + WIDTH).min(count);
             let (before, rest) = x.split_at_mut(end);
             for p in j..end {
                 let column = factor.column(p, p);
-                before[p] /= column[0];
                 for i in p + 1..end {
-                    before[i] -= column[i - p] * before[p];
+                    let term = column[i - p] * before[p];
+                    before[i] -= term;
                 }
             }
             let term = |p: usize| (-before[p], factor.column(p, end));
             match end - j {
-                WIDTH => add_columns::<S, WIDTH>(simd, rest, |p| term(j + p)),
-                _ => (j..end).for_each(|p| add_columns::<S, 1>(simd, rest, |_| term(p))),
+                WIDTH => T::add::<S, WIDTH>(simd, rest, |p| term(j + p)),
+                _ => (j..end).for_each(|p| T::add::<S, 1>(simd, rest, |_| term(p))),
             }
         }
     }
 }
 
-struct Backward<'a> {
-    factor: &'a Trapezoid,
-    x: &'a mut [f64],
+struct Backward<'a, T> {
+    factor: &'a Trapezoid<T>,
+    x: &'a mut [T],
 }
 
-impl WithSimd for Backward<'_> {
+impl<T: Number> WithSimd for Backward<'_, T> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { factor, x } = self;
-        for j in (0..factor.columns).step_by(WIDTH).rev() {
-            let end = (j + WIDTH).min(factor.columns);
+        let count = factor.eliminated();
+        for j in (0..count).step_by(WIDTH).rev() {
+            let end = (j + WIDTH).min(count);
             let (before, rest) = x.split_at_mut(end);
             let column = |p: usize| factor.column(p, end);
-            let mut sums = [0.0; WIDTH];
+            let mut sums = [T::default(); WIDTH];
             match end - j {
-                WIDTH => sums = dot_columns::<S, WIDTH>(simd, rest, |p| column(j + p)),
+                WIDTH => sums = T::dot::<S, WIDTH>(simd, rest, |p| column(j + p)),
                 count => {
                     for (p, sum) in sums[..count].iter_mut().enumerate() {
-                        [*sum] = dot_columns::<S, 1>(simd, rest, |_| column(j + p));
+                        [*sum] = T::dot::<S, 1>(simd, rest, |_| column(j + p));
                     }
                 }
             }
             for p in (j..end).rev() {
                 let column = factor.column(p, p);
                 let within = (p + 1..end).map(|i| column[i - p] * before[i]);
-                before[p] = (before[p] - sums[p - j] - within.sum::<f64>()) / column[0];
+                let within: T = within.sum();
+                before[p] -= sums[p - j];
+                before[p] -= within;
             }
         }
     }
@@ -155,26 +188,33 @@ mod tests {
 
     use super::*;
 
+    /// The largest error of solving with factors of this precision.
+    fn error<T: Number>(n: usize, count: usize) -> f64 {
+        let root = Mat::from_fn(n, n, |i, j| ((17 * i + 5 * j) as f64).sin());
+        let a = &root * root.transpose() + Mat::<f64>::identity(n, n);
+        let b: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
+        let (factor, s) = Trapezoid::<T>::new(a.clone(), count, Par::Seq).unwrap();
+        let mut x = b.clone();
+        factor.forward(&mut x);
+        if count < n {
+            let rest = Mat::from_fn(n - count, 1, |i, _| x[count + i]);
+            let rest = s.llt(faer::Side::Lower).unwrap().solve(&rest);
+            (count..n).for_each(|i| x[i] = rest[(i - count, 0)]);
+        }
+        factor.backward(&mut x);
+        let exact = a
+            .llt(faer::Side::Lower)
+            .unwrap()
+            .solve(&Mat::from_fn(n, 1, |i, _| b[i]));
+        let differences = (0..n).map(|i| (x[i] - exact[(i, 0)]).abs());
+        differences.fold(0.0, f64::max)
+    }
+
     #[test]
     fn eliminating_some_and_solving_for_the_rest_solves_for_all() {
         for (n, count) in [(1, 1), (9, 4), (23, 18), (23, 23), (40, 7)] {
-            let root = Mat::from_fn(n, n, |i, j| ((17 * i + 5 * j) as f64).sin());
-            let a = &root * root.transpose() + Mat::<f64>::identity(n, n);
-            let b: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
-            let (factor, s) = Trapezoid::new(a.clone(), count, Par::Seq).unwrap();
-            let mut x = b.clone();
-            factor.forward(&mut x);
-            if count < n {
-                let rest = Mat::from_fn(n - count, 1, |i, _| x[count + i]);
-                let rest = s.llt(faer::Side::Lower).unwrap().solve(&rest);
-                (count..n).for_each(|i| x[i] = rest[(i - count, 0)]);
-            }
-            factor.backward(&mut x);
-            let exact = a
-                .llt(faer::Side::Lower)
-                .unwrap()
-                .solve(&Mat::from_fn(n, 1, |i, _| b[i]));
-            (0..n).for_each(|i| assert!((x[i] - exact[(i, 0)]).abs() < 1e-12));
+            assert!(error::<f64>(n, count) < 1e-12);
+            assert!(error::<f32>(n, count) < 1e-4);
         }
     }
 }
