@@ -222,3 +222,22 @@ def test_a_page_in_space_has_pictures_of_the_bodies(scene, tmp_path):
     bare = Model.from_scene(scene("stack3d")).run(folder=tmp_path, options=["--no-stress"], progress=False)
     assert list(space.Solid(bare).pictures()) == ["displacement", "pressure"]
     assert "base64" in page(bare)
+
+
+def test_crosses_stand_on_an_even_grid(scene, tmp_path):
+    from contact_dd.drawing.paper import grid_of
+    from contact_dd.drawing.plane import Plane
+
+    plane = Plane(Model.from_scene(scene("plain", "--element", "quad8")).run(folder=tmp_path, progress=False))
+    points, cells, step = grid_of(plane)
+    apart = (points - points[0]) / step
+    assert np.allclose(apart, apart.round(), atol=1e-6)
+    # None in the hole, and as many as there is room for.
+    hole = plane.points[np.linalg.norm(plane.points, axis=1).argmin()]
+    assert (np.linalg.norm(points, axis=1) > 0.99 * np.linalg.norm(hole)).all()
+    area = np.ptp(plane.points, axis=0).prod() - np.pi / 4 * np.linalg.norm(hole) ** 2
+    assert abs(len(points) * step**2 / area - 1) < 0.05
+    middle = plane.centers()[cells]
+    nodes = plane.cells[0].nodes
+    across = np.ptp(plane.points[nodes], axis=1).max(axis=1)[np.argsort(plane.cells[0].members)][cells]
+    assert (np.linalg.norm(points - middle, axis=1) < across).all()

@@ -11,6 +11,9 @@ from PIL import Image
 from contact_dd.drawing.plane import curves
 from contact_dd.drawing.units import in_units
 
+# Of axes, and of what stands around them (inches).
+LARGEST, AROUND = 5.0, (1.8, 1.2)
+
 LARGEST_PNG = 300_000
 
 # Of 255, what counts as white in a palette.
@@ -21,8 +24,12 @@ NEARLY_WHITE = 247
 OVERSAMPLED = 2
 
 
-def canvas(title, units):
-    figure, axes = plt.subplots(figsize=(6.8, 5.8), layout="constrained")
+def canvas(title, units, points):
+    """A figure with axes of the shape of `points`."""
+    wide, tall = np.ptp(points, axis=0)
+    width, height = LARGEST * np.array([wide, tall]) / max(wide, tall)
+    size = max(width, 2.5) + AROUND[0], max(height, 1.0) + AROUND[1]
+    figure, axes = plt.subplots(figsize=size, layout="constrained")
     axes.set_aspect("equal")
     axes.set_title(title)
     axes.set_xlabel(f"x [{units.length}]")
@@ -36,7 +43,9 @@ def lines(axes, points, facets, **style):
 
 
 def legend(axes, columns):
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncol=columns, frameon=False)
+    # Below the axis, whatever the height of the axes (inches).
+    below = 0.5 / (axes.figure.get_figheight() - AROUND[1])
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -below), ncol=columns, frameon=False)
 
 
 def scale_bar(axes, width, units):

@@ -31,6 +31,11 @@ LONGEST = 0.09
 # Around panels (inches).
 LEFT, BETWEEN, RIGHT, BELOW, ABOVE = 0.25, 0.2, 0.85, 0.75, 0.5
 
+# What presses is hatched on white: a coating of red would turn the stress under it brown.
+BAND = {"fc": (1, 1, 1, 0.5), "ec": RED, "hatch": "//////", "lw": 0}
+# Room for a label behind the longest ordinate, over the size of a panel.
+OF_LABEL = 0.05
+
 # Most contacts whose largest pressure is written beside it, one by one.
 MOST_LABELS = 6
 
@@ -79,7 +84,7 @@ def overview(result, scale):
 def whole(result, moved, sides):
     """A window on the bodies as they were and are, with the pressures on them."""
     largest = max((side.pressure.max() for side in sides), default=0.0)
-    longest = LONGEST * max(np.ptp(moved, axis=0))
+    longest = (LONGEST + OF_LABEL) * max(np.ptp(moved, axis=0))
     tips = [side.tips(longest / largest) for side in sides] if largest > 0 else []
     return window([result.points, moved, *tips], 0.02)
 
@@ -149,7 +154,7 @@ def pressures(axes, sides, length):
         closed = (side.pressure[a] > 0) | (side.pressure[b] > 0)
         a, b = a[closed], b[closed]
         shape = band(side.foot[a], tip[a], tip[b], side.foot[b])
-        axes.add_patch(PathPatch(shape, fc=RED, alpha=0.45, lw=0))
+        axes.add_patch(PathPatch(shape, **BAND))
         for ends in ([tip[a], tip[b]], [side.foot[a], side.foot[b]]):
             strokes(axes, ends, colors=RED, linewidths=1.1)
         a, b = side.segments[~closed].T
@@ -214,7 +219,7 @@ def key(figure, sides, largest, has_moved, unit):
         entries.append(Line2D([], [], color="0.45", lw=0.8, ls=DASHES, label="undeformed"))
     if largest > 0:
         (shown,), unit = in_units(np.array([largest]), unit)
-        entries.append(Patch(fc=RED, alpha=0.6, label=f"contact pressure, at most {shown:.3g} {unit}"))
+        entries.append(Patch(**{**BAND, "lw": 1}, label=f"contact pressure, at most {shown:.3g} {unit}"))
     for status, (color, word) in FRICTION.items():
         if any(side.has_friction and (side.status == status).any() for side in sides):
             halo = [withStroke(linewidth=4.2, foreground="k")]

@@ -4,9 +4,15 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
+from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
-from contact_dd.drawing.canvas import canvas, legend, lines
+from contact_dd.drawing.canvas import canvas, legend, lines, round_below
 from contact_dd.drawing.units import in_units
+
+# The steps between levels, times a power of ten.
+ROUND = [1, 2, 5, 10]
+# Crosses along the larger side.
+ACROSS = 24
 
 
 def levels(values):
@@ -15,14 +21,14 @@ def levels(values):
     if high - low <= 1e-9 * max(abs(low), abs(high), 1e-300):
         middle, half = (low + high) / 2, max(abs(low) * 1e-3, 1e-12)
         low, high = middle - half, middle + half
-    return MaxNLocator(nbins=20, min_n_ticks=10).tick_values(low, high)
+    return MaxNLocator(nbins=20, min_n_ticks=10, steps=ROUND).tick_values(low, high)
 
 
 def contours(result, values, name, unit):
     values, unit = in_units(values, unit)
     steps = levels(values)
     signed = steps[0] < 0 < steps[-1] and min(-steps[0], steps[-1]) > 0.1 * max(-steps[0], steps[-1])
-    figure, axes = canvas(f"{name} [{unit}]", result.units)
+    figure, axes = canvas(name, result.units, result.points)
     style = {"cmap": "viridis"}
     if signed:
         bound, step = max(-steps[0], steps[-1]), steps[1] - steps[0]
@@ -35,13 +41,13 @@ def contours(result, values, name, unit):
     filled = axes.tricontourf(mesh, values, steps, extend="both", antialiased=False, **style)
     axes.tricontour(mesh, values, steps, colors="k", linewidths=0.25, alpha=0.5, linestyles="solid")
     lines(axes, result.points, result.outline, colors="k", linewidths=1.0)
-    figure.colorbar(filled, ax=axes, shrink=0.9, label=unit)
+    figure.colorbar(filled, ax=axes, shrink=0.9, label=unit, ticks=MaxNLocator(nbins=9, steps=ROUND))
     return figure
 
 
 def deformation(result, scale):
-    figure, axes = canvas(f"Deformation, enlarged {scale:g} times", result.units)
     moved = result.deformed(scale)
+    figure, axes = canvas(f"Deformation × {scale:g}", result.units, moved)
     fine = len(result.facets) > 60_000
     facets = result.borders if fine else result.facets
     lines(axes, moved, facets, colors="0.45", linewidths=0.5 if fine else 0.3)
@@ -54,26 +60,46 @@ def deformation(result, scale):
     return figure
 
 
-def thinned(centers, size, across):
-    """Of each square of a grid the cell that is nearest to the square's middle."""
-    step = size / across
-    square = np.floor((centers - centers.min(axis=0)) / step)
-    middle = (square + 0.5) * step + centers.min(axis=0)
-    order = np.argsort(np.linalg.norm(centers - middle, axis=1), kind="stable")
-    _, first = np.unique(square[order], axis=0, return_index=True)
-    return order[first], step
+def grid_of(result):
+    """Points of an even grid inside the bodies, the cell around each, and the step between them."""
+    low, high = result.points.min(axis=0), result.points.max(axis=0)
+    step = max(high - low) / ACROSS
+    counts = np.maximum((high - low) / step, 1).astype(int)
+    # As far from the edges on the left as on the right.
+    axes = [a + (b - a - (n - 1) * step) / 2 + step * np.arange(n) for a, b, n in zip(low, high, counts)]
+    points = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
+    mesh = Triangulation(*result.at_points(result.points).T, result.triangles)
+    triangle = containing(mesh, points)
+    return points[triangle >= 0], result.cell_of_triangle[triangle[triangle >= 0]], step
+
+
+def containing(mesh, points):
+    """The triangle around each point, -1 where there is none.
+
+    Matplotlib's own search doesn't take triangles that meet in points of their own, as these do."""
+    corners = np.stack([mesh.x, mesh.y], axis=1)[mesh.triangles]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    found = np.full(len(points), -1)
+    (ax, ay), (bx, by), (cx, cy) = (corners[:, k].T for k in range(3))
+    area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+    for k, (x, y) in enumerate(points):
+        near = np.flatnonzero((low[:, 0] <= x) & (x <= high[:, 0]) & (low[:, 1] <= y) & (y <= high[:, 1]) & (area != 0))
+        s = ((x - ax[near]) * (cy - ay)[near] - (cx - ax)[near] * (y - ay[near])) / area[near]
+        t = ((bx - ax)[near] * (y - ay[near]) - (x - ax[near]) * (by - ay)[near]) / area[near]
+        inside = near[(s >= 0) & (t >= 0) & (s + t <= 1)]
+        if len(inside):
+            found[k] = inside[0]
+    return found
 
 
 def principal(result):
-    all_centers = result.centers()
-    chosen, step = thinned(all_centers, result.size, across=22)
-    centers = all_centers[chosen]
+    centers, chosen, step = grid_of(result)
     xx, yy, _, xy, *_ = result.cell_stress[chosen].T
     mean, radius = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
     angle = 0.5 * np.arctan2(2 * xy, xx - yy)
     largest = max(np.percentile(np.abs(mean) + radius, 98), 1e-300)
 
-    figure, axes = canvas("Principal stresses", result.units)
+    figure, axes = canvas("Principal stresses", result.units, result.points)
     lines(axes, result.points, result.outline, colors="k", linewidths=1.0)
     axes.autoscale()
     for value, turn in ((mean + radius, angle), (mean - radius, angle + np.pi / 2)):
@@ -89,9 +115,14 @@ def principal(result):
                     pivot=pivot, angles="xy", scale_units="xy", scale=1, units="xy",
                     width=0.035 * step, headwidth=3.6, headlength=4, headaxislength=3.6, minlength=0.1,
                 )
-    shown, unit = in_units(np.array([largest]), result.units.stress)
+    (shown,), unit = in_units(np.array([largest]), result.units.stress)
+    arm = round_below(shown)
     axes.plot([], [], color="tab:red", label="tension ←→")
     axes.plot([], [], color="tab:blue", label="compression →←")
-    axes.plot([], [], " ", label=f"longest arm: {shown[0]:.3g} {unit}")
-    legend(axes, 3)
+    # Beside the axes on the top, where nothing is.
+    axes.add_artist(AnchoredSizeBar(
+        axes.transData, 0.6 * step * arm / shown, f"{arm:g} {unit}", loc="lower right", bbox_to_anchor=(1, 1),
+        bbox_transform=axes.transAxes, frameon=False, pad=0.1, sep=4,
+    ))
+    legend(axes, 2)
     return figure

@@ -30,7 +30,8 @@ def displacement(component, name):
 
 def stress(component, name):
     def draw(plane, _scale):
-        return contours(plane, plane.stress[:, component], f"Stress $\\tau_{{{name}}}$", plane.units.stress)
+        title = f"Stress $\\sigma_{{{name}}}$ ($\\tau_{{{name}}}$ in the paper)"
+        return contours(plane, plane.stress[:, component], title, plane.units.stress)
 
     return draw
 

@@ -86,7 +86,7 @@ class Solid:
         axes = figure.add_subplot(*place, projection="3d", computed_zorder=False)
         low, high = self.points.min(axis=0), self.points.max(axis=0)
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-        axes.set_box_aspect(high - low)
+        axes.set_box_aspect(high - low, zoom=1.1)
         axes.view_init(**VIEW)
         axes.set_axis_off()
         return axes
@@ -191,6 +191,7 @@ def panels(result):
     solid = Solid(result)
     drawn = solid.pictures()
     figure = plt.figure(figsize=(4.2 * len(drawn), 3.6), layout="constrained")
+    figure.get_layout_engine().set(w_pad=0.12)
     for place, draw in enumerate(drawn.values(), start=1):
         draw(solid.axes(figure, (1, len(drawn), place)))
     return figure
@@ -215,6 +216,7 @@ def overview(result, scale):
     solid = Solid(result, scale)
     pressed = solid.pressed
     figure = plt.figure(figsize=(9.6 if pressed else 6.4, 4.8), layout="constrained")
+    figure.get_layout_engine().set(w_pad=0.12)
     solid.von_mises(solid.axes(figure, (1, 2 if pressed else 1, 1)))
     if pressed:
         name = max(pressed, key=lambda name: pressed[name]["pressure"].max())
@@ -240,6 +242,7 @@ def pressure_map(figure, name, table, units):
         half = max(np.ptp(x[closed]), np.ptp(y[closed])) * AROUND / 2
         limit(max(middle - half, of.min()), min(middle + half, of.max()))
     axes.tick_params(labelsize=8)
+    axes.set_xlabel(f"[{units.length}]", fontsize=8)
     figure.colorbar(colours, ax=axes, shrink=0.7, label=f"contact pressure [{unit}]")
     axes.set_title(f"{name}, at most {pressure.max():.4g} {unit}", fontsize=10)
 
