@@ -82,8 +82,18 @@ def test_a_browser_draws_the_view(scene, name, tmp_path):
     path = tmp_path / "page.html"
     path.write_text(text.replace("</body>", LOOK + "</body>"))
     command = [browser, "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-    command += [f"--user-data-dir={tmp_path / 'browser'}", "--virtual-time-budget=20000", "--dump-dom", path.as_uri()]
-    drawn = subprocess.run(command, check=True, capture_output=True, text=True, timeout=120).stdout
+    command += [f"--user-data-dir={tmp_path / 'browser'}", "--virtual-time-budget=20000"]
+
+    def run(*options):
+        ended = subprocess.run(
+            [*command, *options, path.as_uri()], check=True, capture_output=True, text=True, timeout=120
+        )
+        return ended.stdout
+
+    printed = tmp_path / "page.pdf"
+    run(f"--print-to-pdf={printed}")
+    assert len(re.findall(rb"/Type\s*/Page\b", printed.read_bytes())) == 1
+    drawn = run("--dump-dom")
     [found] = re.findall(r"data-seen=\"([^\"]*)\"", drawn)
     found = json.loads(found.replace("&quot;", '"'))
     shares, colours, sums = zip(*found["seen"])

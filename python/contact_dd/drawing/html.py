@@ -30,8 +30,11 @@ ul.warnings li::marker { content: "⚠ "; } code { font-size: .95em }
 #view .controls label { margin-right: 1.5em; white-space: nowrap } #view input[type=range] { vertical-align: middle }
 #view .bar { display: flex; align-items: center; gap: .7em; margin: .3em 0 } #view .bar i { flex: 1; height: .8em }
 @media screen { #view.drawn .still { display: none } }
+@page { size: A4; margin: 1cm }
 @media print { #view .live { display: none } * { print-color-adjust: exact }
- body { margin: 0; max-width: none; font-size: 11px } section { break-inside: avoid } }
+ body { margin: 0; padding: 0; max-width: none; font-size: 8px; columns: 2; column-gap: 2em }
+ h1, p.sub, .cards { column-span: all } h2 { margin-top: 1em } .cards { margin-bottom: 1em }
+ section { break-inside: avoid } th, td { padding-right: .4em } th.number { white-space: normal } }
 """
 
 

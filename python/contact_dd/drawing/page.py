@@ -39,6 +39,8 @@ STATES = {
     1: {"color": "#1f5fa8"},
     2: {"color": SLIPPING},
 }
+# So few are told in words.
+FEW_SWEEPS = 3
 # More of them are on the page in words only: one has to be able to look at it.
 MOST_CURVES = 12
 MOST_ROWS = 24
@@ -163,6 +165,9 @@ def convergence(report, rows):
         return section("Convergence", "<p>No contact: one linear solve, no sweeps.</p>")
     residual, active = rows["residual"], rows["active"]
     sweeps = np.arange(len(residual))
+    if len(sweeps) <= FEW_SWEEPS and not report.get("steps"):
+        words = [f"{short(of)} with {closed} closed conditions" for of, closed in zip(residual, active)]
+        return section("Convergence", f"<p>Residuals: {', '.join(words)}; the first is the bilateral start.</p>")
     figure, (left, right) = axes_of(9.2, 2.7, ncols=2)
     style = {"ms": 4, "lw": 1.4, "marker": None if len(sweeps) > 40 else "o"}
     # A line for each load step, which begins anew.
@@ -215,10 +220,24 @@ def steps(report, units):
 def ranks(report):
     times = np.array([[rank[phase] for phase in PHASES] for rank in report["per_rank"]])
     totals = np.array([rank["total"] for rank in report["per_rank"]])
+    rows = []
+    for phase, column in [*zip(PHASES, times.T), ("total", totals)]:
+        share = column.mean() / totals.mean() if totals.mean() > 0 else 0
+        seconds = (column.min(), column.mean(), column.max()) if len(times) > 1 else column
+        rows.append([phase, *(si(number, "s") for number in seconds), f"{100 * share:.0f} %"])
+    if len(times) == 1:
+        return section("Time", table(["phase", "", "share"], rows, numbers=(1, 2)))
+    key = "".join(f'<span style="--c:{color}">{phase}</span>' for phase, color in
+                  [*zip(PHASES, COLORS), ("waiting, other", "#e3e7eb")])
     memory = np.array([rank["peak_memory_bytes"] for rank in report["per_rank"]])
+    return section("Time and memory", f'<p class="key">{key}</p>', svg(of_ranks(times, totals, memory)),
+                   table(["phase", "least", "mean", "largest of a rank", "share"], rows, numbers=(1, 2, 3, 4)))
+
+
+def of_ranks(times, totals, memory):
     count = len(times)
     places = np.arange(count)
-    figure, (left, right) = axes_of(9.2, min(2.2 + 0.12 * count, 7.5), ncols=2, sharey=True, width_ratios=[2.2, 1])
+    figure, (left, right) = axes_of(9.2, min(1.4 + 0.2 * count, 7.5), ncols=2, sharey=True, width_ratios=[2.2, 1])
     start = np.zeros(count)
     for phase, color, column in zip(PHASES, COLORS, times.T):
         left.barh(places, column, 0.8, left=start, color=color, label=phase)
@@ -233,15 +252,7 @@ def ranks(report):
     right.set_xlabel("memory")
     right.xaxis.set_major_formatter(EngFormatter("B"))
     right.xaxis.set_major_locator(MaxNLocator(4))
-    key = "".join(f'<span style="--c:{color}">{phase}</span>' for phase, color in
-                  [*zip(PHASES, COLORS), ("waiting, other", "#e3e7eb")])
-    rows = []
-    for phase, column in [*zip(PHASES, times.T), ("total", totals)]:
-        share = column.mean() / totals.mean() if totals.mean() > 0 else 0
-        rows.append([phase, *(si(number, "s") for number in (column.min(), column.mean(), column.max())),
-                     f"{100 * share:.0f} %"])
-    return section("Time and memory", f'<p class="key">{key}</p>', svg(figure),
-                   table(["phase", "least", "mean", "largest of a rank", "share"], rows, numbers=(1, 2, 3, 4)))
+    return figure
 
 
 def curve(axes, name, side, units):

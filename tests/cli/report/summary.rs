@@ -52,9 +52,9 @@ fn a_page_says_how_the_run_ended_and_draws_its_contacts() {
     let rough = page("raous", &[], 0);
     assert!(rough.contains("work of friction") && !converged.contains("friction"));
     for (page, badge, pictures) in [
-        (&converged, "\"badge good\">converged<", 3),
-        (&short, "\"badge bad\">not converged<", 3),
-        (&linear, "\"badge good\">converged<", 1),
+        (&converged, "\"badge good\">converged<", 1),
+        (&short, "\"badge bad\">not converged<", 2),
+        (&linear, "\"badge good\">converged<", 0),
     ] {
         assert!(page.contains(badge));
         assert_eq!(page.matches("<svg").count(), pictures);
