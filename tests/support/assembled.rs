@@ -36,6 +36,13 @@ pub struct Tangent {
     area: f64,
 }
 
+/// Round-off with random signs: in the entries of K their last digits, and forces of up to so much.
+#[derive(Clone, Copy, Debug)]
+pub struct Disturbance {
+    pub force: f64,
+    pub seed: u64,
+}
+
 /// What holds along a tangent while a linear system is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Along {
@@ -221,27 +228,21 @@ impl Assembled {
     }
 
     /// u and λ with the `closed` conditions and `equations` as equations and the other conditions
-    /// away. `disturbed` moves the entries of K in their last digits, and the load by up to its
-    /// force with random signs: what that does to the solution is what the scene's condition makes
-    /// of round-off.
-    pub fn solve(
-        &self,
-        closed: &[bool],
-        equations: &[(Row, f64)],
-        disturbed: Option<f64>,
-    ) -> (Vec<f64>, Vec<f64>) {
+    /// away.
+    pub fn solve(&self, closed: &[bool], equations: &[(Row, f64)]) -> (Vec<f64>, Vec<f64>) {
         let free = vec![Along::Free; self.tangents.len()];
-        let solved = self.solve_along(closed, &free, equations, disturbed);
+        let solved = self.solve_along(closed, &free, equations, None);
         (solved.u, solved.forces)
     }
 
-    /// The same with what holds along the tangents.
+    /// The same with what holds along the tangents. What is `disturbed` does to the solution what the scene's condition
+    /// makes of round-off.
     pub fn solve_along(
         &self,
         closed: &[bool],
         along: &[Along],
         equations: &[(Row, f64)],
-        disturbed: Option<f64>,
+        disturbed: Option<Disturbance>,
     ) -> Solved {
         let active: Vec<usize> = (0..closed.len()).filter(|&j| closed[j]).collect();
         let stuck: Vec<(usize, f64)> = (along.iter().enumerate())
@@ -258,8 +259,8 @@ impl Assembled {
         let n = self.dofs + rows.len();
         let mut entries = self.stiffness.clone();
         let mut rhs = self.load.clone();
-        if let Some(force) = disturbed {
-            let mut random = Random::new(1);
+        if let Some(Disturbance { force, seed }) = disturbed {
+            let mut random = Random::new(seed);
             for entry in &mut entries {
                 entry.val *= 1.0 + f64::EPSILON * random.signed();
             }

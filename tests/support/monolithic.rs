@@ -62,7 +62,7 @@ fn active_set(assembled: &Assembled, equations: &[(Row, f64)]) -> (Vec<f64>, Vec
     let mut one_at_a_time = false;
     for _ in 0..500 {
         one_at_a_time |= !seen.insert(closed.clone());
-        let (u, forces) = assembled.solve(&closed, equations, None);
+        let (u, forces) = assembled.solve(&closed, equations);
         let gaps = assembled.gaps(&u);
         let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let no_force = ROUND_OFF * largest(&forces).max(largest(&assembled.load));
