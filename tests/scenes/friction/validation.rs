@@ -2,7 +2,7 @@
 
 use crate::support::close::close;
 use crate::support::solver::solve;
-use crate::support::validation::{crack, mindlin, raous};
+use crate::support::validation::{crack, mindlin, raous, roller};
 
 #[test]
 fn raous_plate_is_open_slips_and_sticks_where_it_should() {
@@ -17,6 +17,11 @@ fn cylinders_pushed_to_and_fro_follow_cattaneo_mindlin_and_deresiewicz() {
 #[test]
 fn a_closed_crack_with_friction_slips_as_much_less_as_it_should() {
     crack::with_friction().check();
+}
+
+#[test]
+fn the_nafems_roller_with_friction_presses_as_it_should() {
+    roller::with_friction().check();
 }
 
 /// cot 20° = 2.747: below it slips a little, above not at all.

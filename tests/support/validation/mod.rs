@@ -93,6 +93,7 @@ pub fn cases() -> Vec<Case> {
         hertz::body_on_body(),
         hertz::uneven_bodies(),
         roller::case(),
+        roller::with_friction(),
         crack::case(),
         crack::with_friction(),
         raous::case(),

@@ -3,13 +3,14 @@
 use std::f64::consts::{FRAC_PI_4, PI};
 
 use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::model::Model;
 
 use super::super::blocks::{Blocks, joined};
 use super::super::scenes::model;
 use super::super::solution::{ContactPoint, Solution};
 use super::super::sorts::{Sort, sort};
 use super::super::statics::reaction;
-use super::{Case, Family, Figure, Gate, Measured, falling, figured, gather, plain};
+use super::{Case, Family, Figure, Gate, falling, figured, gather, plain};
 
 const TEXT: &str = "\
 A cylinder of steel, R = 50 mm, E = 210 GPa, is pressed by P = 35 kN/mm on a block of aluminium,
@@ -29,6 +30,19 @@ ellipse), against those of 1 257 604 dofs in `quad9`, 3590.30 MPa and 6.21309 mm
 *Resultant*: the vertical force against P/2.
 ";
 
+const WITH_FRICTION: &str = "\
+The same with μ = 0.1 between cylinder and block, which keeps the softer block from spreading under the cylinder.
+
+Source: as above; Code_Aster SSNP154, which gives the benchmark's means of several programs: u_y = −1.3026 mm of the
+block's middle and σ_yy = −3542.7 MPa there, and finds −1.2703 mm and −3643.6 MPa itself. They are of large
+displacements.
+
+Mesh: as above.
+
+*Depth* and *p₀*: u_y of the block's middle and (3π/8) Σ F p/Σ F, against those of 1 257 604 dofs in `quad9`,
+−1.269378 mm and 3631.97 MPa. *From Code_Aster*, *from NAFEMS*: against theirs.
+";
+
 const RADIUS: f64 = 50.0;
 const SIDE: f64 = 200.0;
 /// P (N/mm).
@@ -36,6 +50,12 @@ const LOAD: f64 = 35e3;
 
 /// p₀ (MPa) and a (mm) of `quad9` on a mesh four times as fine as the finest here.
 const REFERENCE: [f64; 2] = [3590.30, 6.213_09];
+
+/// u_y of the block's middle (mm) and p₀ (MPa) with friction, likewise.
+const FRICTION_REFERENCE: [f64; 2] = [-1.269_378, 3631.97];
+/// The same as Code_Aster finds and as the benchmark has them, the stress in place of p₀.
+const CODE_ASTER: [f64; 2] = [-1.270_310_97, 3_643.561_94];
+const NAFEMS: [f64; 2] = [-1.302_635_6, 3_542.687_88];
 
 /// p₀ (MPa) and a (mm) of half planes.
 fn hertz() -> [f64; 2] {
@@ -124,7 +144,8 @@ fn figures(solution: &Solution) -> Vec<Figure> {
     ]
 }
 
-fn solved(sort: Sort, n: usize) -> Measured {
+/// The scene, with these last lines of its contact, and after it.
+fn posed(sort: Sort, n: usize, rest: &str) -> Model {
     let mut cylinder = sort.of(&quarter(6 * n));
     gather(&mut cylinder, "cylinder", &["below", "beside", "middle"]);
     round(&mut cylinder, "below bottom");
@@ -149,11 +170,11 @@ fn solved(sort: Sort, n: usize) -> Measured {
         [[contact]]
         name = 'contact'
         sides = ['below bottom', 'block top']
-        pairing = 'mortar'",
+        pairing = 'mortar'
+        {rest}",
         LOAD / (2.0 * RADIUS)
     );
-    let mesh = joined(cylinder, sort.of(&block(9 * n)));
-    figured(&model(&text, mesh), figures)
+    model(&text, joined(cylinder, sort.of(&block(9 * n))))
 }
 
 /// The roller in all kinds of cells.
@@ -175,7 +196,7 @@ pub fn case() -> Case {
         ]);
         Family {
             name: name.into(),
-            run: Box::new(move |level| solved(sort, 2 << level)),
+            run: Box::new(move |level| figured(&posed(sort, 2 << level, ""), figures)),
             meshes: match name {
                 "quad8" => [0, 3],
                 _ if sort.is_quadratic => [2, 3],
@@ -188,6 +209,62 @@ pub fn case() -> Case {
         title: "NAFEMS contact roller",
         text: TEXT,
         families: ["triangle3", "quad4", "triangle6", "quad8", "quad9"]
+            .map(family)
+            .into(),
+    }
+}
+
+/// u_y of the block's middle (mm) and p₀ (MPa).
+fn pressed(model: &Model, solution: &Solution) -> [f64; 2] {
+    let all = model.mesh.points.iter().zip(&model.mesh.node_tags);
+    let mut middles = all.filter(|(x, _)| **x == [0.0; 3]);
+    // The block's nodes are the last.
+    let depth = (middles.next_back()).map(|(_, tag)| solution.displacement[tag][1]);
+    let [p_0, _] = ellipse(&solution.contacts["contact"]);
+    [depth.unwrap_or(f64::NAN), p_0]
+}
+
+/// The roller with friction.
+pub fn with_friction() -> Case {
+    let family = |name: &'static str| {
+        let sort = sort(name);
+        let run = move |level: usize| {
+            let model = posed(sort, 2 << level, "friction = 0.1");
+            let of_model = model.clone();
+            figured(&model, move |solution| {
+                let found = pressed(&of_model, solution);
+                let from = |other: [f64; 2], i: usize| found[i] / other[i] - 1.0;
+                vec![
+                    falling("depth", from(FRICTION_REFERENCE, 0)),
+                    falling("p₀", from(FRICTION_REFERENCE, 1)),
+                    plain("depth from Code_Aster", from(CODE_ASTER, 0)),
+                    plain("p₀ from Code_Aster", from(CODE_ASTER, 1)),
+                    plain("depth from NAFEMS", from(NAFEMS, 0)),
+                    plain("p₀ from NAFEMS", from(NAFEMS, 1)),
+                ]
+            })
+        };
+        Family {
+            name: name.into(),
+            run: Box::new(run),
+            meshes: match sort.is_quadratic {
+                true => [2, 3],
+                false => [3, 4],
+            },
+            gates: vec![
+                Gate::AtMost("depth", 2e-3),
+                Gate::AtMost("p₀", 5e-3),
+                Gate::AtMost("depth from Code_Aster", 4e-3),
+                Gate::AtMost("p₀ from Code_Aster", 8e-3),
+                Gate::AtMost("depth from NAFEMS", 0.03),
+                Gate::AtMost("p₀ from NAFEMS", 0.03),
+            ],
+        }
+    };
+    Case {
+        title: "NAFEMS contact roller with friction",
+        text: WITH_FRICTION,
+        families: ["triangle3", "quad4", "triangle6", "quad9"]
             .map(family)
             .into(),
     }
