@@ -73,6 +73,8 @@ pub struct ContactSolution {
     pub fell_back: bool,
     /// Whether all signs are right and the open conditions balanced.
     pub converged: bool,
+    /// Whether something was seen to slide on and on against friction, so that there may be no solution.
+    pub slides: bool,
 }
 
 impl ContactSolution {
@@ -84,6 +86,7 @@ impl ContactSolution {
             steps: 0,
             fell_back: false,
             converged: true,
+            slides: false,
         }
     }
 }
@@ -190,6 +193,7 @@ impl ContactProblem<'_> {
             steps,
             fell_back: false,
             converged: right && trial.unbalanced <= FORCE_TOLERANCE,
+            slides: false,
         }
     }
 

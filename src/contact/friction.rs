@@ -187,8 +187,9 @@ impl FrictionProblem<'_> {
         }
     }
 
-    /// The change of jumps and forces where limits keep these statuses and `bounds` are what the closed ones lack:
-    /// that of the force of what slips in the plane follows from that of the normal force.
+    /// The change of jumps and forces where limits keep these statuses; `bounds` are what the closed ones lack, and the
+    /// share of the bound of their point that those have that slip: the change of that force follows from that of the
+    /// normal one, in the direction that the force has.
     pub fn change(&self, status: &[Status]) -> (Vec<f64>, Vec<f64>) {
         let slips = |status: &Status| status.sign() != 0.0 || *status == Status::Parting;
         if !status.iter().any(slips) {
@@ -197,7 +198,12 @@ impl FrictionProblem<'_> {
             return (trial.jumps, trial.forces);
         }
         let mut tangents = self.tangents.to_vec();
-        (tangents.iter_mut()).for_each(|tangent| tangent.bound.cohesion = 0.0);
+        for tangent in &mut tangents {
+            tangent.bound.cohesion = 0.0;
+            if status[tangent.limit].sign() != 0.0 {
+                tangent.bound.coefficient *= self.contact.bounds[tangent.limit];
+            }
+        }
         let (contact, tangents) = (self.contact, &tangents[..]);
         let linear = Linear::solve(&FrictionProblem { contact, tangents }, status);
         (linear.jumps, linear.forces)
@@ -236,6 +242,7 @@ impl FrictionProblem<'_> {
             steps,
             fell_back: false,
             converged: right && unbalanced <= FORCE_TOLERANCE,
+            slides: false,
         }
     }
 

@@ -62,6 +62,8 @@ pub struct CoupledStep {
     pub fell_back: bool,
     /// Whether the contact problem converged.
     pub converged: bool,
+    /// Whether something was seen to slide on and on.
+    pub slides: bool,
     /// Where it didn't for friction, the conditions of every pair whose status is wrong.
     pub unsettled: Vec<Vec<usize>>,
 }
@@ -165,6 +167,7 @@ impl<'a> CoupledContact<'a> {
         step.steps = solution.steps;
         step.fell_back = solution.fell_back;
         step.converged = solution.converged;
+        step.slides = solution.slides;
         step
     }
 
@@ -278,6 +281,7 @@ impl<'a> CoupledContact<'a> {
             steps: 1,
             fell_back: false,
             converged: true,
+            slides: false,
             unsettled: Vec::new(),
         }
     }

@@ -64,10 +64,12 @@ pub struct FixedActiveSetRoot<'a> {
     pub converged: bool,
 }
 
-/// The statuses of the limits of a cluster, and what the closed ones still have to close (m).
+/// The statuses of the limits of a cluster, and what the closed ones still have to close (m), or slipping ones have of
+/// their point's bound.
 type FixedLimits = (Vec<Status>, Vec<f64>);
 
-/// The statuses of the conditions of contact groups, by their number, and what the closed ones still have to close (m).
+/// The statuses of the conditions of contact groups, by their number, and what the closed ones still have to close (m), or
+/// slipping ones have of their point's bound.
 pub type FixedConditions = BTreeMap<usize, Vec<(Status, f64)>>;
 
 impl FixedActiveSetRoot<'_> {
@@ -177,9 +179,11 @@ impl<'a> FixedActiveSet<'a> {
             if let Some(forces) = forces.get(&g) {
                 laws.insert(g, Law::of_slipping(&limits[&g], &statuses, forces));
             }
-            let is_open = |status: &Status| !status.is_closed();
-            open.insert(g, statuses.iter().map(is_open).collect());
-            missing.insert(g, lacking);
+            let is_closed: Vec<bool> = statuses.iter().map(|status| status.is_closed()).collect();
+            let lacking = lacking.into_iter().zip(&is_closed);
+            let lacking = lacking.map(|(way, is_closed)| if *is_closed { way } else { 0.0 });
+            missing.insert(g, lacking.collect());
+            open.insert(g, is_closed.iter().map(|is_closed| !is_closed).collect());
         }
         let mut fronts = fronts.borrow_mut();
         if fronts.freeze(&self.context, &open).is_err() {

@@ -7,7 +7,7 @@ use crate::certificate::check::{BlockCheck, Most};
 use crate::certificate::{Certificate, certificate};
 use crate::contact::friction::{Status, TangentialCondition};
 use crate::fem::contact_group::ContactGroup;
-use crate::recover::fixed_active_set::FixedActiveSet;
+use crate::recover::fixed_active_set::{FixedActiveSet, FixedConditions};
 use crate::recover::motions::Field;
 use crate::recover::{DiscreteSolution, GroupSolution};
 use crate::sweep::AGAINST_FRICTION;
@@ -197,13 +197,12 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
         Some((b, load))
     };
     let loads = residuals.into_iter().filter_map(on_unknowns).collect();
-    let conditions = solution.groups.iter().map(|(&g, of_group)| {
-        let statuses = statuses(&fixed.context.groups[&g], of_group).into_iter();
-        (g, statuses.zip(of_group.gaps.iter().copied()).collect())
-    });
+    let conditions: FixedConditions = (solution.groups.iter())
+        .map(|(&g, of_group)| (g, conditions(&fixed.context.groups[&g], of_group)))
+        .collect();
     let forces = solution.groups.iter();
     let forces = forces.map(|(&g, of_group)| (g, of_group.forces.clone()));
-    let change = fixed.solve(loads, conditions.collect(), &forces.collect(), CORRECTION);
+    let change = fixed.solve(loads, conditions.clone(), &forces.collect(), CORRECTION);
     for (b, x) in change.blocks {
         let block = fixed.condensed.blocks.get(&b);
         if let (Some(of_block), Some(block)) = (solution.blocks.get_mut(&b), block) {
@@ -212,47 +211,65 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     }
     for (g, changes) in change.forces {
         if let Some(of_group) = solution.groups.get_mut(&g) {
-            change_forces(&fixed.context.groups[&g], of_group, &changes);
+            change_forces(
+                &fixed.context.groups[&g],
+                of_group,
+                &conditions[&g],
+                &changes,
+            );
         }
     }
     solution.share(&fixed.context, &fixed.step.loads);
 }
 
-/// The statuses of the conditions of a contact group. What slips in a direction of a plane is open: its force stays
-/// what it is.
-fn statuses(group: &ContactGroup, solution: &GroupSolution) -> Vec<Status> {
-    let closed = solution.closed.iter();
-    let mut statuses: Vec<Status> = closed.map(|closed| Status::new(!closed)).collect();
+/// The statuses of the conditions of a contact group, what the closed ones lack (m), and what slipping ones have of
+/// their point's bound: in space these forces keep their direction.
+fn conditions(group: &ContactGroup, solution: &GroupSolution) -> Vec<(Status, f64)> {
+    let both = solution.closed.iter().zip(&solution.gaps);
+    let mut conditions: Vec<(Status, f64)> = both
+        .map(|(closed, gap)| (Status::new(!closed), if *closed { *gap } else { 0.0 }))
+        .collect();
     for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
-        if let &[
-            TangentialCondition {
-                number,
-                normal,
-                bound,
-            },
-        ] = of_point
-        {
-            let force = solution.forces[number];
-            let is_closed = solution.closed[normal];
-            let bound = bound.at(solution.forces[normal], is_closed);
-            statuses[number] = match solution.closed[number] || force == 0.0 {
-                true => statuses[number],
-                false if is_closed && force.abs() < AT_BOUND * bound => Status::Parting,
-                false if force > 0.0 => Status::Forward,
-                false => Status::Backward,
+        let TangentialCondition { normal, bound, .. } = of_point[0];
+        let squares = of_point
+            .iter()
+            .map(|one| solution.forces[one.number].powi(2));
+        let size = match of_point {
+            [one] => solution.forces[one.number].abs(),
+            _ => squares.sum::<f64>().sqrt(),
+        };
+        let is_closed = solution.closed[normal];
+        let bound = bound.at(solution.forces[normal], is_closed);
+        let parts = is_closed && size < AT_BOUND * bound;
+        for one in of_point.iter().filter(|one| !solution.closed[one.number]) {
+            let force = solution.forces[one.number];
+            conditions[one.number] = match force {
+                0.0 => continue,
+                _ if parts && of_point.len() == 1 => (Status::Parting, 0.0),
+                _ if parts => continue,
+                ahead if ahead > 0.0 => (Status::Forward, ahead / size),
+                back => (Status::Backward, -back / size),
             };
         }
     }
-    statuses
+    conditions
 }
 
-/// Changes the forces of a contact group: none holds its sides together, and friction stays at its bound.
-fn change_forces(group: &ContactGroup, solution: &mut GroupSolution, changes: &[f64]) {
+/// Changes the forces of a contact group, whose conditions have these statuses: none holds its sides together, and
+/// friction stays at its bound, in space in the direction that it has.
+fn change_forces(
+    group: &ContactGroup,
+    solution: &mut GroupSolution,
+    conditions: &[(Status, f64)],
+    changes: &[f64],
+) {
     let normals = group.points.len();
     for (j, (force, change)) in solution.forces.iter_mut().zip(changes).enumerate() {
-        *force += change;
+        let keeps = |status| matches!(status, Status::Forward | Status::Backward);
         if j < normals {
-            *force = force.max(0.0);
+            *force = (*force + change).max(0.0);
+        } else if group.dim == 2 || !keeps(conditions[j].0) {
+            *force += change;
         }
     }
     for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
@@ -260,9 +277,10 @@ fn change_forces(group: &ContactGroup, solution: &mut GroupSolution, changes: &[
         let slips = of_point.iter().all(|one| !solution.closed[one.number]);
         let bound = bound.at(solution.forces[normal], solution.closed[normal]);
         let of_point = of_point.iter().map(|one| one.number);
+        let parts = group.dim == 3 && of_point.clone().all(|j| conditions[j].0 == Status::Open);
         let squares = of_point.clone().map(|j| solution.forces[j].powi(2));
         let size = squares.sum::<f64>().sqrt();
-        for j in of_point.filter(|_| slips && size != 0.0) {
+        for j in of_point.filter(|_| slips && !parts && size != 0.0) {
             solution.forces[j] *= bound / size;
         }
     }

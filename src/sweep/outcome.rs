@@ -88,7 +88,8 @@ pub struct SweepOutcome {
     pub increments: usize,
     /// Whether another solution with friction was found, where it was looked for.
     pub other_solution: Option<bool>,
-    /// Whether an active set was found under which something moves freely, so that forces aren't balanced.
+    /// Whether an active set was found under which something moves freely, so that forces aren't balanced; or something
+    /// was seen to slide on and on.
     pub moves_freely: bool,
     /// The conditions of every pair whose status cycles, where friction keeps sweeps from converging.
     pub unsettled: Vec<Vec<usize>>,

@@ -60,6 +60,12 @@ enum Act {
         e: [f64; 2],
         across: f64,
     },
+    /// It slips along e while it is about to open: without pressure, under what is left of the cohesion, and κ times what
+    /// of the slip is across e.
+    Parts {
+        e: [f64; 2],
+        across: f64,
+    },
 }
 
 /// What all limits do.
@@ -68,6 +74,8 @@ struct State {
     /// Of every limit that isn't tangential whether it is closed.
     closed: Vec<bool>,
     points: Vec<Act>,
+    /// Which points have been open on the way here.
+    opened: Vec<bool>,
 }
 
 /// Jumps and forces.
@@ -107,6 +115,13 @@ struct Found {
     steps: usize,
 }
 
+/// What dashpots lead to.
+enum Rest {
+    Found(Found),
+    Slides,
+    Unknown,
+}
+
 impl Found {
     fn converged(&self) -> bool {
         self.missed <= FORCE_TOLERANCE
@@ -123,7 +138,7 @@ impl FrictionProblem<'_> {
     /// Solves the problem from the statuses that its limits have at first, and leaves there those of the solution.
     pub(super) fn solve_discs(&self, status: &mut [Status]) -> ContactSolution {
         let discs = Discs::new(self);
-        let (found, fell_back) = discs.solve(status);
+        let (found, fell_back, slides) = discs.solve(status);
         discs.tell(&found.state, status);
         let (jumps, forces) = discs.exact(&found);
         ContactSolution {
@@ -132,6 +147,7 @@ impl FrictionProblem<'_> {
             steps: found.steps,
             fell_back,
             converged: found.converged(),
+            slides,
         }
     }
 
@@ -207,6 +223,7 @@ impl<'a> Discs<'a> {
                     Act::Rests => Status::Open,
                     Act::Sticks => Status::Closed,
                     Act::Slips { .. } => Status::Slipping,
+                    Act::Parts { .. } => Status::Parting,
                 };
             }
         }
@@ -229,12 +246,16 @@ impl<'a> Discs<'a> {
         let cut = Place { jumps, forces };
         let mut forces = cut.forces.clone();
         for (point, act) in self.points.iter().zip(&state.points) {
+            if let (Act::Parts { .. }, Some(n)) = (act, point.normal) {
+                forces[n] = 0.0;
+                continue;
+            }
             let bound = self.bound(point, &cut, &state.closed);
             // Small slips know their direction less well than what balances the bodies.
             let [_, [first, second]] = self.tangential(point, place);
             let size = first.hypot(second);
             let part = match act {
-                Act::Sticks => continue,
+                Act::Sticks | Act::Parts { .. } => continue,
                 Act::Slips { .. } if size > 0.0 && point.prescribed == 0.0 => bound / size,
                 Act::Slips { .. } => 1.0,
                 Act::Rests => 0.0,

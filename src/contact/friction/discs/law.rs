@@ -65,6 +65,44 @@ impl Discs<'_> {
         }
     }
 
+    /// What point k does whose cohesion vanishes as it opens, where it parted `before` or would open once more; `None` where
+    /// the state `now` is right.
+    fn parting(&self, k: usize, place: &Place, before: &State, now: &State) -> Option<Act> {
+        let point = &self.points[k];
+        let bound = point.own.bound;
+        let n = point.normal?;
+        if !bound.only_closed || bound.cohesion == 0.0 || point.prescribed != 0.0 {
+            return None;
+        }
+        let [slip, force] = self.tangential(point, place);
+        let [way, size] = [slip, force].map(|v| v[0].hypot(v[1]));
+        let parts = || match way > 0.0 {
+            true => Act::Parts {
+                e: slip.map(|s| s / way),
+                across: point.across(size / way),
+            },
+            false => Act::Parts {
+                e: force.map(|f| f / size),
+                across: 0.0,
+            },
+        };
+        let along = |v: [f64; 2], e: [f64; 2]| v[0] * e[0] + v[1] * e[1];
+        match before.points[k] {
+            Act::Slips { .. } | Act::Sticks if now.points[k] == Act::Rests => {
+                (before.opened[k] && way + size > 0.0).then(parts)
+            }
+            Act::Parts { e, .. } if along(force, e) < 0.0 || way == 0.0 => Some(Act::Rests),
+            Act::Parts { e, .. } if along(slip, e) < 0.0 => Some(Act::Sticks),
+            Act::Parts { .. } if size > bound.cohesion => {
+                let whole = bound.at(place.forces[n], true);
+                Some(self.act(point, self.reach(point, place, whole), whole, 0.0))
+            }
+            Act::Parts { .. } => Some(parts()),
+            _ => None,
+        }
+        .filter(|_| before.closed[n])
+    }
+
     /// What limits with these statuses do at a place.
     pub(super) fn begin(&self, status: &[Status], place: &Place) -> State {
         let closed: Vec<bool> = status.iter().map(|status| status.is_closed()).collect();
@@ -88,6 +126,7 @@ impl Discs<'_> {
         State {
             points: self.points.iter().map(act).collect(),
             closed,
+            opened: vec![false; self.points.len()],
         }
     }
 
@@ -119,10 +158,22 @@ impl Discs<'_> {
             let xi = self.reach(point, place, bound);
             self.act(point, xi, bound, slack(point.own.limit, stuck))
         };
-        let state = State {
+        let mut state = State {
             points: self.points.iter().enumerate().map(act).collect(),
             closed,
+            opened: Vec::new(),
         };
+        if let Some(before) = before {
+            for (k, point) in self.points.iter().enumerate() {
+                if let (Some(n), Some(act)) = (point.normal, self.parting(k, place, before, &state))
+                {
+                    state.closed[n] = act != Act::Rests;
+                    state.points[k] = act;
+                }
+            }
+            let rests = state.points.iter().map(|act| *act == Act::Rests);
+            state.opened = rests.zip(&before.opened).map(|(a, b)| a || *b).collect();
+        }
         let missed = self.missed(place, &state);
         let squares = missed.iter().zip(&self.stiffness);
         let merit = squares.map(|(x, r)| x * x / r).sum::<f64>().sqrt();
@@ -149,14 +200,19 @@ impl Discs<'_> {
         for (point, act) in self.points.iter().zip(&state.points) {
             let bound = self.bound(point, place, &state.closed);
             let xi = self.reach(point, place, bound);
+            let [_, force] = self.tangential(point, place);
             for (k, i) in point.tangents.into_iter().enumerate() {
                 let Some(i) = i else { continue };
                 let right = match act {
                     Act::Rests => 0.0,
                     Act::Sticks => xi[k],
                     Act::Slips { e, .. } => bound * e[k],
+                    Act::Parts { e, .. } => e[k] * (e[0] * force[0] + e[1] * force[1]),
                 };
                 missed[i] = place.forces[i] - right;
+            }
+            if let (Act::Parts { .. }, Some(n)) = (act, point.normal) {
+                missed[n] = place.forces[n];
             }
         }
         missed

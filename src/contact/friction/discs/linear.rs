@@ -37,7 +37,10 @@ impl Discs<'_> {
         for (point, act) in self.points.iter().zip(&state.points) {
             for (k, i) in point.tangents.into_iter().enumerate() {
                 if let Some(i) = i {
-                    equations[i] = self.slides(point, k, i, act, &state.closed);
+                    equations[i] = match (act, point.normal) {
+                        (&Act::Parts { e, across }, Some(n)) => self.parts(point, n, k, e, across),
+                        _ => self.slides(point, k, i, act, &state.closed),
+                    };
                 }
             }
         }
@@ -121,7 +124,7 @@ impl Discs<'_> {
         let (e, across) = match *act {
             Act::Rests => return of_jump.then(|| self.force_is(i)),
             Act::Sticks => return (!of_jump).then(|| self.way_is_none(i)),
-            Act::Slips { e, across } => (e, across),
+            Act::Slips { e, across } | Act::Parts { e, across } => (e, across),
         };
         let mut equation = self.force_is(i);
         equation.forces.clear();
@@ -154,6 +157,28 @@ impl Discs<'_> {
         }
         if let Some(n) = pressed {
             equation.forces.push((n, -share * bound.coefficient));
+        }
+        Some(equation)
+    }
+
+    /// The equation number k of a point that parts: λ_n = 0 with limit n, and λ_t as it is along e, κ times what of the slip
+    /// is across.
+    fn parts(
+        &self,
+        point: &Point,
+        n: usize,
+        k: usize,
+        e: [f64; 2],
+        across: f64,
+    ) -> Option<Equation> {
+        let mut equation = self.force_is(n);
+        equation.spring = 0.0;
+        if let ([Some(first), Some(second)], 1) = (point.tangents, k) {
+            equation.scale = self.stiffness[first].sqrt();
+            let weight = self.stiffness[first] / (self.stiffness[first] + across);
+            let normal = [(first, -weight * e[1]), (second, weight * e[0])];
+            equation.forces = normal.to_vec();
+            equation.ways = normal.map(|(i, c)| (i, -across * c)).to_vec();
         }
         Some(equation)
     }

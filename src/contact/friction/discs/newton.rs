@@ -1,8 +1,9 @@
 //! Semismooth Newton on discs, and dashpots where it gets no further.
 
-use super::{Discs, Found, Look, Place, State};
+use super::{Act, Discs, Found, Look, Place, Rest, State};
 use crate::contact::active_set::{ContactProblem, FORCE_TOLERANCE};
 use crate::contact::friction::Status;
+use crate::vector::{dot, largest};
 
 /// Most steps of Newton's method.
 const STEPS: usize = 40;
@@ -19,18 +20,26 @@ const DASHPOTS: [f64; 3] = [0.1, 1e-4, 10.0];
 /// Part of the way before that isn't less, and how often that may be.
 const SLOWER: f64 = 0.9;
 const PATIENCE: usize = 3;
+/// What resists a motion relative to springs, that is round-off: nothing does.
+const NO_RESISTANCE: f64 = 1e-10;
 /// Most changes of dashpots.
 const CHANGES: usize = 24;
 
 impl Discs<'_> {
-    /// The solution, found from where these statuses are right, and whether that took dashpots.
-    pub(super) fn solve(&self, status: &[Status]) -> (Found, bool) {
+    /// The solution, found from where these statuses are right, whether that took dashpots, and whether these slide on
+    /// and on.
+    pub(super) fn solve(&self, status: &[Status]) -> (Found, bool, bool) {
         let start = self.start();
         let state = self.begin(status, &start);
         let at_once = self.newton(&start, &state, STEPS);
-        match at_once.converged() {
-            true => (at_once, false),
-            false => (self.with_dashpots(&start, &state, at_once), true),
+        if at_once.converged() {
+            return (at_once, false, false);
+        }
+        let mut steps = at_once.steps;
+        match self.with_dashpots(&start, &state, &mut steps) {
+            Rest::Found(found) => (Found { steps, ..found }, true, false),
+            Rest::Slides => (Found { steps, ..at_once }, true, true),
+            Rest::Unknown => (Found { steps, ..at_once }, true, false),
         }
     }
 
@@ -42,14 +51,13 @@ impl Discs<'_> {
 
     /// Goes from one position to the next of a problem with dashpots, which weaken as long as that is found; to no end
     /// where things slide on and on.
-    fn with_dashpots(&self, start: &Place, state: &State, failed: Found) -> Found {
+    fn with_dashpots(&self, start: &Place, state: &State, steps: &mut usize) -> Rest {
         let [mut dashpots, weakest, strongest] = DASHPOTS;
         let (mut place, mut state) = (start.clone(), state.clone());
-        let mut steps = failed.steps;
         let (mut last, mut sliding) = (f64::INFINITY, 0);
         for _ in 0..CHANGES {
             let found = self.damped(dashpots, &place, &state);
-            steps += found.steps;
+            *steps += found.steps;
             if !found.converged() {
                 if dashpots >= strongest {
                     break;
@@ -58,11 +66,12 @@ impl Discs<'_> {
                 continue;
             }
             let ways = found.place.jumps.iter().zip(&place.jumps);
-            let way = ways.fold(0.0, |most: f64, (to, from)| most.max((to - from).abs()));
+            let ways: Vec<f64> = ways.map(|(to, from)| to - from).collect();
+            let way = largest(&ways);
             if dashpots <= weakest && way > SLOWER * last {
                 sliding += 1;
-                if sliding == PATIENCE {
-                    break;
+                if sliding >= PATIENCE && self.resists(&ways) <= NO_RESISTANCE {
+                    return Rest::Slides;
                 }
             }
             let slows = way < last;
@@ -75,12 +84,23 @@ impl Discs<'_> {
                 continue;
             }
             let free = self.newton(&place, &state, DAMPED_STEPS);
-            steps += free.steps;
+            *steps += free.steps;
             if free.converged() {
-                return Found { steps, ..free };
+                return Rest::Found(free);
             }
         }
-        Found { steps, ..failed }
+        Rest::Unknown
+    }
+
+    /// How much the bodies resist jumps that grow so, relative to springs as stiff as they are.
+    fn resists(&self, ways: &[f64]) -> f64 {
+        let mut forces = vec![0.0; ways.len()];
+        self.contact.subtract(ways, &mut forces);
+        let springs = ways
+            .iter()
+            .zip(&self.stiffness)
+            .map(|(way, r)| r * way * way);
+        -dot(ways, &forces) / springs.sum::<f64>()
     }
 
     /// The solution where every jump is held by a dashpot at where it is.
@@ -137,7 +157,9 @@ impl Discs<'_> {
                     break;
                 }
             }
+            let opened = look.state.opened.clone();
             (place, merit, state) = self.part_of_way(place, merit, target, look);
+            state.opened = opened;
         }
         best.unwrap_or(Found {
             place,
@@ -156,7 +178,10 @@ impl Discs<'_> {
         whole: Look,
     ) -> (Place, f64, State) {
         let lessens = |look: &Look, part: f64| look.merit <= (1.0 - LESSENS * part) * merit;
-        if merit == f64::INFINITY || lessens(&whole, 1.0) {
+        // The law of what parts is no function of the place.
+        let parts = |act: &Act| matches!(act, Act::Parts { .. });
+        let parts = whole.state.points.iter().any(parts);
+        if merit == f64::INFINITY || parts || lessens(&whole, 1.0) {
             return (target, whole.merit, whole.state);
         }
         let m = place.jumps.len();

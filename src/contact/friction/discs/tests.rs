@@ -111,3 +111,59 @@ fn a_second_start_finds_other_solutions_in_space() {
         }
     }
 }
+
+/// What opens where it sticks or slips under all of its cohesion, and penetrates without any.
+#[test]
+fn a_contact_about_to_open_slips_under_part_of_its_cohesion_in_any_direction() {
+    let bound = ForceBound {
+        coefficient: 0.0,
+        cohesion: 1.0,
+        only_closed: true,
+    };
+    for angle in [0.0_f64, 0.7, 2.5, 4.0] {
+        let direction = [1.0, angle.cos(), angle.sin()];
+        let mut points = Points::in_space(1, 3, bound);
+        points.set_stiffness(3, |i, j| match (i, j) {
+            (0, k) | (k, 0) if k > 0 => -0.5 * direction[k],
+            (i, j) => f64::from(u8::from(i == j)),
+        });
+        points.bounds = vec![0.0; 3];
+        points.c = vec![-0.75, 2.0 * direction[1], 2.0 * direction[2]];
+        let mut status = vec![Status::Closed; 3];
+        let solution = points.solve(&mut status);
+        assert!(solution.converged, "{angle}");
+        assert_eq!(status, [Status::Closed, Status::Parting, Status::Parting]);
+        assert_eq!(solution.forces[0], 0.0);
+        for k in [1, 2] {
+            assert!(
+                (solution.jumps[k] - 1.5 * direction[k]).abs() < 1e-14,
+                "{angle}"
+            );
+            assert!(
+                (solution.forces[k] - 0.5 * direction[k]).abs() < 1e-14,
+                "{angle}"
+            );
+        }
+        // From its own statuses it stays where it is.
+        let again = points.solve(&mut status);
+        assert!(again.converged && again.jumps == solution.jumps, "{angle}");
+    }
+}
+
+/// A load beyond what friction holds, along a motion that nothing else resists.
+#[test]
+fn what_slides_on_and_on_is_seen() {
+    for (pull, slides) in [(0.29, false), (0.31, true)] {
+        let mut points = Points::in_space(1, 3, COULOMB);
+        points.set_stiffness(3, |i, j| f64::from(u8::from(i == 0 && j == 0)));
+        points.diagonal = vec![1.0; 3];
+        points.bounds = vec![0.0; 3];
+        points.c = vec![1.0, 0.6 * pull, 0.8 * pull];
+        let solution = points.solve(&mut [Status::Closed; 3]);
+        assert_eq!(
+            (solution.converged, solution.slides),
+            (!slides, slides),
+            "{pull}"
+        );
+    }
+}

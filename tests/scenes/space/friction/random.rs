@@ -2,6 +2,7 @@
 
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::model::Model;
+use serde_json::Value;
 
 use super::vector;
 use crate::support::assembled::Assembled;
@@ -148,14 +149,15 @@ fn cut(model: &Model, count: usize) -> Case {
     Case::of(model, *counts.iter().find(can_be).unwrap())
 }
 
-/// Judges what friction does in a random scene; whether it was solved.
-fn judged(model: &Model, count: usize) -> Option<Vec<String>> {
+/// Judges what friction does in a random scene, and looks at its report; whether it was solved.
+fn judged(model: &Model, count: usize, look: impl FnOnce(&Value)) -> Option<Vec<String>> {
     let case = cut(model, count);
     let ended = case.run(&[]);
     if ended.code() == 3 || ended.code() == 4 {
         return None;
     }
     assert_eq!(ended.code(), 0, "{}", ended.stderr);
+    look(&Solution::read_report(&case.result()));
     let all = Solution::increments(&case.result(), !model.steps.is_empty());
     let mut faults = Vec::new();
     let mut before: Option<&Solution> = None;
@@ -183,7 +185,7 @@ fn a_random_scene_in_space_with_friction_is_not_answered_wrongly() {
     let mut solved = 0;
     let seeds = 0..20;
     for seed in seeds.clone() {
-        if let Some(faults) = judged(&stack(seed), 3 + seed as usize % 5) {
+        if let Some(faults) = judged(&stack(seed), 3 + seed as usize % 5, |_| {}) {
             assert!(faults.is_empty(), "{seed}: {faults:?}");
             solved += 1;
         }
@@ -212,4 +214,31 @@ fn an_answer_with_friction_in_space_is_the_same_on_any_ranks() {
         compared += 1;
     }
     assert!(compared > 2, "{compared}");
+}
+
+/// What would open where it sticks or slips under all of its cohesion, and penetrate without any.
+#[test]
+fn what_is_about_to_open_in_space_slips_under_a_part_of_its_cohesion() {
+    for seed in [299, 354, 376] {
+        let faults = judged(&stack(seed), 4, |report| {
+            let warnings = report["warnings"].as_array().unwrap().iter();
+            let parts = |words: &&Value| words.as_str().unwrap().contains("about to open");
+            assert!(warnings.filter(parts).count() > 0, "{seed}");
+        });
+        assert_eq!(faults, Some(Vec::new()), "{seed}");
+    }
+}
+
+/// Rigid blocks could be held: their pressures are a matter of choice, those of elastic ones aren't.
+#[test]
+fn a_block_in_space_that_friction_does_not_hold_is_named() {
+    for seed in [55, 388] {
+        let ended = cut(&stack(seed), 4).run(&[]);
+        assert_eq!(ended.code(), 4, "{seed}: {}", ended.stderr);
+        assert!(
+            ended.stderr.contains("friction can't hold it"),
+            "{}",
+            ended.stderr
+        );
+    }
 }
