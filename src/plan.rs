@@ -147,6 +147,11 @@ impl Plan {
         true
     }
 
+    /// Estimated number of coarse unknowns between clusters, where an iterative interface solver works.
+    pub fn coarse_dofs(&self, dim: usize) -> Option<usize> {
+        (self.merging == Merging::Clusters).then(|| choice::coarse_dofs(&self.tree, dim))
+    }
+
     /// The owner of every group.
     pub fn group_owners(&self) -> Vec<usize> {
         let nodes = self.groups.iter().map(|group| group.node);

@@ -96,7 +96,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     log.phase("looking for free rigid motions", None);
     let analyses = analyse_steps(&context)?;
     if settings.check {
-        log.check(&analyses, &costs, available);
+        log.check(&analyses, &costs, available, plan.coarse_dofs(catalog.dim));
         return Ok(Ending::Converged);
     }
     log.phase("creating the outputs", None);

@@ -66,6 +66,9 @@ pub enum Event<'a> {
         flops: f64,
         /// Arithmetic of the busiest rank (flop).
         busiest_rank_flops: f64,
+        /// Unknowns of the coarse problem of the iterative interface solver, about; none where it is direct.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        coarse_dofs: Option<usize>,
     },
     /// The run has ended and its results are written.
     Finished {

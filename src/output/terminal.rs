@@ -53,13 +53,21 @@ pub struct Summary<'a> {
 }
 
 /// What solving would cost `all` ranks together and one of them at `most`, against the memory that is
-/// `available` on the hosts together (bytes).
-pub fn costs(all: CostEstimate, most: CostEstimate, available: f64) -> String {
+/// `available` on the hosts together (bytes), and the coarse problem of an iterative interface solver.
+pub fn costs(
+    all: CostEstimate,
+    most: CostEstimate,
+    available: f64,
+    coarse_dofs: Option<usize>,
+) -> String {
     let giga = |number: f64| number / 1e9;
+    let coarse = coarse_dofs.map_or_else(String::new, |dofs| {
+        format!("\n  coarse       {dofs} dofs between clusters")
+    });
     format!(
         "\nsolving it would take about\n  \
          memory       {:.2} GB, {:.2} GB on the largest rank; {:.1} GB are available\n  \
-         arithmetic   {:.3} Gflop, {:.3} Gflop on the busiest rank",
+         arithmetic   {:.3} Gflop, {:.3} Gflop on the busiest rank{coarse}",
         giga(all.bytes),
         giga(most.bytes),
         giga(available),

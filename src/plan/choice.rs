@@ -3,6 +3,8 @@
 //! The constants are fitted to the times of two blocks of tetrahedra in contact, with 50 thousand to a million dofs:
 //! they say which is faster there, and about where one becomes the other elsewhere.
 
+use std::collections::BTreeMap;
+
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::tree::{ACTIVE_SETS, Tree};
 
@@ -15,10 +17,26 @@ const ITERATIONS: f64 = 60.0;
 const PER_ENTRY: f64 = 60.0;
 /// What the part of a cluster in the preconditioner takes, over the cube of its size.
 const PER_CUBE: f64 = 0.6;
-/// Coarse unknowns of a cluster in space.
-const COARSE: f64 = 60.0;
 /// Flops that the coarse problem takes, over the square of its size, in space.
 const PER_COARSE_PAIR: f64 = 24.0;
+
+/// Estimated number of coarse unknowns between the clusters of a tree: of the nodes that the same clusters share, their
+/// rigid motions.
+pub fn coarse_dofs(tree: &Tree, dim: usize) -> usize {
+    let mut clusters: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for &c in &tree.clusters {
+        for &node in &tree.nodes[c].kept {
+            clusters.entry(node).or_default().push(c);
+        }
+    }
+    let mut classes: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
+    for of_node in clusters.into_values().filter(|list| list.len() > 1) {
+        *classes.entry(of_node).or_default() += 1;
+    }
+    let motions = dim * (dim + 1) / 2;
+    let of_class = classes.into_values().map(|nodes| motions.min(dim * nodes));
+    of_class.sum()
+}
 
 /// Estimated times, in flops: arithmetic, and what goes with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +69,7 @@ impl InterfaceTimes {
             let below: f64 = below.map(|v| time(v, Merging::Clusters)).sum();
             below + PER_CUBE * size.powi(3) + ITERATIONS * PER_ENTRY * size * size
         };
-        let coarse = COARSE * tree.clusters.len() as f64;
+        let coarse = coarse_dofs(&tree, catalog.dim) as f64;
         let clusters: f64 = tree.clusters.iter().map(of_cluster).sum();
         Some(Self {
             direct,

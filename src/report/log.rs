@@ -100,7 +100,13 @@ impl<'a> RunLog<'a> {
     }
 
     /// What validating found, and what solving would cost.
-    pub fn check(&self, analyses: &[RigidBodyAnalysis], costs: &[CostEstimate], available: f64) {
+    pub fn check(
+        &self,
+        analyses: &[RigidBodyAnalysis],
+        costs: &[CostEstimate],
+        available: f64,
+        coarse_dofs: Option<usize>,
+    ) {
         self.bar.finish();
         let all = analyses.iter().map(|analysis| &analysis.motions.warnings);
         if self.comm.is_root() {
@@ -109,7 +115,7 @@ impl<'a> RunLog<'a> {
             }
         }
         let (all, most) = (CostEstimate::sum(costs), CostEstimate::largest(costs));
-        self.say(|| terminal::costs(all, most, available));
+        self.say(|| terminal::costs(all, most, available, coarse_dofs));
         self.say(|| "\nthe problem file is valid".into());
         self.log(&Event::Check {
             memory_bytes: all.bytes,
@@ -117,6 +123,7 @@ impl<'a> RunLog<'a> {
             available_bytes: available,
             flops: all.flops,
             busiest_rank_flops: most.flops,
+            coarse_dofs,
         });
     }
 

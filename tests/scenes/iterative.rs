@@ -131,6 +131,24 @@ fn contrast_and_slender_and_nearly_incompressible_bodies_take_few_more() {
 }
 
 #[test]
+fn a_check_says_how_large_the_coarse_problem_will_be() {
+    for (model, subdomains, clusters) in [
+        (checkerboard([1e9, 1e9], 0.3, 1, 6), 40, 12),
+        (columns([1e9, 1e9], 0.3, 1, 6), 12, 8),
+    ] {
+        let case = Case::in_clusters(&model, subdomains, clusters);
+        let checked = case.run(&["--check", "--interface", "iterative"]);
+        assert_eq!(checked.code(), 0, "{}", checked.stderr);
+        let mut lines = checked.stdout.lines().map(str::trim_start);
+        let line = lines.find(|line| line.starts_with("coarse")).unwrap();
+        let estimated: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
+        let made = &case.solve(&ITERATIVE).report["coarse_dofs"];
+        let ratio = estimated / made.as_f64().unwrap();
+        assert!((0.8..1.25).contains(&ratio), "{estimated}, {made}");
+    }
+}
+
+#[test]
 fn a_file_without_clusters_is_refused_in_words() {
     let mut problem = problem(&built_in_model("plain", 0), Some(4));
     problem.catalog.hierarchy.clusters.clear();
