@@ -2,15 +2,13 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::householder::{
-    apply_block_householder_sequence_on_the_left_in_place_scratch,
-    apply_block_householder_sequence_on_the_left_in_place_with_conj,
     apply_block_householder_sequence_on_the_right_in_place_scratch,
     apply_block_householder_sequence_on_the_right_in_place_with_conj,
-    apply_block_householder_sequence_transpose_on_the_left_in_place_scratch,
-    apply_block_householder_sequence_transpose_on_the_left_in_place_with_conj,
 };
-use faer::{ColMut, Conj, Mat, MatMut, Par};
+use faer::{Conj, Mat, MatMut, Par};
 use serde::{Deserialize, Serialize};
+
+use crate::vector::{axpy, dot};
 
 /// An orthogonal matrix Q whose first columns span those of another.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -54,33 +52,23 @@ impl Reflections {
 
     /// x ← Q x.
     pub fn turn(&self, x: &mut [f64]) {
-        let (n, block) = (self.basis.nrows(), self.factor.nrows());
-        let scratch =
-            apply_block_householder_sequence_on_the_left_in_place_scratch::<f64>(n, block, 1);
-        apply_block_householder_sequence_on_the_left_in_place_with_conj(
-            self.basis.as_ref(),
-            self.factor.as_ref(),
-            Conj::No,
-            ColMut::from_slice_mut(x).as_mat_mut(),
-            Par::Seq,
-            MemStack::new(&mut MemBuffer::new(scratch)),
-        );
+        (0..self.basis.ncols())
+            .rev()
+            .for_each(|k| self.reflect(k, x));
     }
 
     /// x ← Qᵀ x.
     pub fn turn_back(&self, x: &mut [f64]) {
-        let (n, block) = (self.basis.nrows(), self.factor.nrows());
-        let scratch = apply_block_householder_sequence_transpose_on_the_left_in_place_scratch::<f64>(
-            n, block, 1,
-        );
-        apply_block_householder_sequence_transpose_on_the_left_in_place_with_conj(
-            self.basis.as_ref(),
-            self.factor.as_ref(),
-            Conj::No,
-            ColMut::from_slice_mut(x).as_mat_mut(),
-            Par::Seq,
-            MemStack::new(&mut MemBuffer::new(scratch)),
-        );
+        (0..self.basis.ncols()).for_each(|k| self.reflect(k, x));
+    }
+
+    /// Reflection k of x, x − v (vᵀ x) / τ; v begins with 1 at k.
+    fn reflect(&self, k: usize, x: &mut [f64]) {
+        let tau = self.factor[(k % self.factor.nrows(), k)];
+        let v = &self.basis.col_as_slice(k)[k + 1..];
+        let factor = (x[k] + dot(v, &x[k + 1..])) / tau;
+        x[k] -= factor;
+        axpy(-factor, v, &mut x[k + 1..]);
     }
 }
 

@@ -14,11 +14,11 @@ use super::cost::weight;
 /// Iterations that an active set takes in all, about.
 const ITERATIONS: f64 = 60.0;
 /// What an entry of S of a cluster takes in an iteration, in flops: it and its factor are read from memory.
-const PER_ENTRY: f64 = 60.0;
+const PER_ENTRY: f64 = 24.0;
 /// What the part of a cluster in the preconditioner takes, over the cube of its size.
-const PER_CUBE: f64 = 0.6;
+const PER_CUBE: f64 = 0.3;
 /// Flops that the coarse problem takes, over the square of its size, in space.
-const PER_COARSE_PAIR: f64 = 24.0;
+const PER_COARSE_PAIR: f64 = 12.0;
 
 /// Estimated number of coarse unknowns between the clusters of a tree: of the nodes that the same clusters share, their
 /// rigid motions.

@@ -24,7 +24,7 @@ const PER_ENTRY: f64 = 16.0;
 /// An entry of the factor of a front (bytes), which counts in space.
 const PER_ENTRY_OF_FACTOR: f64 = 8.0;
 /// An entry of S of a cluster between which an iterative solver works (bytes): S, and its part of the preconditioner.
-const PER_ENTRY_OF_CLUSTER: f64 = 14.0;
+const PER_ENTRY_OF_CLUSTER: f64 = 8.0;
 /// An entry of the contact problem of all pairs, at the root (bytes).
 const PER_PAIR_OF_CONDITIONS: f64 = 33.0;
 
