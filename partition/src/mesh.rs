@@ -66,6 +66,6 @@ fn name_of_dim(name: &str, dim: usize) -> String {
 pub struct Group {
     /// Dimension of its members.
     pub dim: usize,
-    /// Indices of cells (`dim` that of the mesh), facets (one less) or nodes (0), ascending.
+    /// Indices of cells (`dim` that of the mesh), facets (one less) or nodes (0, of curves in space, too), ascending.
     pub members: Vec<u32>,
 }

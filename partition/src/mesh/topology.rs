@@ -156,6 +156,43 @@ impl Facets {
         })
     }
 
+    /// A face of four corners, three of which are a face of another cell.
+    fn halved(&self, cells: &Elements) -> Option<[CellFacet; 2]> {
+        let corners = |of: &CellFacet| {
+            let kind = cells.kind(of.cell as usize);
+            kind.facets()[of.facet as usize].0.corners()
+        };
+        let kinds = ElementKind::ALL.map(|kind| cells.iter().any(|(of_cell, _)| of_cell == kind));
+        let has = |corners| {
+            let solid = |kind: &ElementKind| kind.dim() == 3 && kind.corners() == corners;
+            (ElementKind::ALL.iter().zip(kinds)).any(|(kind, is_there)| is_there && solid(kind))
+        };
+        if !(has(4) && has(8)) {
+            return None;
+        }
+        let all = self.by_node.iter().flatten().map(|(_, facet)| *facet);
+        all.filter(|facet| corners(facet) == 4).find_map(|face| {
+            let nodes = face.nodes(cells);
+            let threes = (0..4).map(|out| (0..4).filter(move |&i| i != out));
+            threes.into_iter().find_map(|three| {
+                let half = self.of(key(three.map(|i| nodes[i])));
+                let half = half.iter().find(|(_, half)| corners(half) == 3)?;
+                Some([face, half.1])
+            })
+        })
+    }
+
+    /// Those with this key.
+    fn of(&self, [first, rest @ ..]: Key) -> &[(Rest, CellFacet)] {
+        let list = match first as usize {
+            node if node < self.by_node.len() => self.by_node.of(node),
+            _ => &[],
+        };
+        let start = list.partition_point(|(other, _)| *other < rest);
+        let same = list[start..].partition_point(|(other, _)| *other == rest);
+        &list[start..start + same]
+    }
+
     /// A line or a face whose corners cells share, but not what lies between them, if there is any: a node in
     /// its middle would hang.
     pub fn torn(cells: &Elements, nodes: usize) -> Option<Tear> {
@@ -234,11 +271,21 @@ impl Topology {
         Self { facets, neighbours }
     }
 
-    /// Checks that no two cells lie on the same side of a facet that they share.
+    /// Checks that cells share whole facets, no two of them on the same side.
     ///
     /// # Errors
-    /// Two such cells, by their tags.
+    /// Two cells that don't, by their tags.
     pub fn check_sides(&self, mesh: &Mesh) -> Result<(), InputError> {
+        if let Some([a, b]) = self.facets.halved(&mesh.cells) {
+            return Err(InputError::new(format!(
+                "element {} has the nodes {} of a face of element {} for a face of its own; expected cells of one \
+                 body to share whole faces: tetrahedra and hexahedra of different bodies meet in a contact, with \
+                 nodes of their own",
+                mesh.cell_tags[b.cell as usize],
+                mesh.tags_of(&b.nodes(&mesh.cells)),
+                mesh.cell_tags[a.cell as usize],
+            )));
+        }
         let Some([a, b]) = self.facets.overlap(&mesh.cells) else {
             return Ok(());
         };
@@ -254,16 +301,8 @@ impl Topology {
 
     /// The facets of cells that have exactly these nodes, in any order, in space these corners.
     pub fn cells_at(&self, facet_nodes: &[u32]) -> Vec<CellFacet> {
-        let [first, rest @ ..] = key(telling(facet_nodes).iter().copied());
-        let by_node = &self.facets.by_node;
-        let list = match first as usize {
-            node if node < by_node.len() => by_node.of(node),
-            _ => &[],
-        };
-        let start = list.partition_point(|(other, _)| *other < rest);
-        let same = list[start..].partition_point(|(other, _)| *other == rest);
-        let found = list[start..start + same].iter();
-        found.map(|&(_, facet)| facet).collect()
+        let found = self.facets.of(key(telling(facet_nodes).iter().copied()));
+        found.iter().map(|&(_, facet)| facet).collect()
     }
 
     /// The facets of one cell only, in the order of their nodes.

@@ -100,8 +100,12 @@ fn find<'a>(
     };
     match mesh.groups.get(name) {
         Some(group) if !members.fit(group, mesh) => Err(InputError::new(format!(
-            "{what}: '{name}' is a group of dimension {}; expected one of {word} ({list})",
-            group.dim
+            "{what}: '{name}' is a group of {}; expected one of {word} ({list})",
+            match mesh.dim - group.dim {
+                0 => Members::Cells.word(),
+                1 => Members::Facets.word(),
+                _ => "points",
+            }
         ))),
         Some(group) if group.members.is_empty() => Err(InputError::new(format!(
             "{what}: the group '{name}' is empty"

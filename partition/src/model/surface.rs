@@ -229,6 +229,9 @@ impl Surface {
             let cell = mesh.cells.nodes_of(cell_facet.cell as usize);
             let kind = mesh.cells.kind(cell_facet.cell as usize);
             let (kind, local) = kind.facets()[cell_facet.facet as usize];
+            if mesh.facets.kind(facet as usize).corners() < kind.corners() {
+                return Err(refused("is only a part of a face of a cell"));
+            }
             let nodes: Vec<u32> = local.iter().map(|&i| cell[i]).collect();
             let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
             Ok(SurfaceFacet::new(kind, nodes, at, plane))

@@ -10,6 +10,7 @@
 mod corpus;
 mod mesh;
 mod scene;
+mod solid;
 
 use std::sync::Once;
 

@@ -4,6 +4,18 @@ use proptest::prelude::*;
 
 use super::{SCENE, breaks, broken, cases, is_said, partition};
 
+/// A scene of the meshes in space in `../library/gmsh/kinds`.
+const RING: &str = include_str!("corpus/good-ring.toml");
+
+const IN_SPACE: [&[u8]; 6] = [
+    include_bytes!("../library/gmsh/kinds/tetrahedra-4-4.1-binary.msh"),
+    include_bytes!("../library/gmsh/kinds/tetrahedra-10-2.2-binary.msh"),
+    include_bytes!("../library/gmsh/kinds/hexahedra-8-2.2-ascii.msh"),
+    include_bytes!("../library/gmsh/kinds/hexahedra-20-4.1-ascii.msh"),
+    include_bytes!("../library/gmsh/kinds/hexahedra-27-4.1-binary.msh"),
+    include_bytes!("../library/gmsh/kinds/hexahedra-27-2.2-ascii.msh"),
+];
+
 const MESHES: [&[u8]; 8] = [
     include_bytes!("../library/gmsh/files/version4.1-ascii.msh"),
     include_bytes!("../library/gmsh/files/version4.1-binary.msh"),
@@ -29,6 +41,9 @@ fn every_mesh_is_good_before_it_is_broken() {
     for mesh in MESHES {
         partition(SCENE, mesh).unwrap();
     }
+    for mesh in IN_SPACE {
+        partition(RING, mesh).unwrap();
+    }
 }
 
 proptest! {
@@ -40,6 +55,16 @@ proptest! {
         breaks in breaks(),
     ) {
         if let Err(error) = partition(SCENE, &broken(MESHES[mesh], &breaks)) {
+            is_said(&error)?;
+        }
+    }
+
+    #[test]
+    fn a_broken_mesh_in_space_is_refused_in_words_or_makes_a_problem(
+        mesh in 0..IN_SPACE.len(),
+        breaks in breaks(),
+    ) {
+        if let Err(error) = partition(RING, &broken(IN_SPACE[mesh], &breaks)) {
             is_said(&error)?;
         }
     }

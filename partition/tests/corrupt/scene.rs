@@ -5,20 +5,29 @@ use proptest::prelude::*;
 
 use super::{SCENE, breaks, broken, cases, is_said, partition};
 
+/// Scenes with their meshes.
+const SCENES: [(&str, &[u8]); 2] = [
+    (SCENE, MESH),
+    (
+        include_str!("corpus/good-in-space.toml"),
+        include_bytes!("corpus/good-in-space.msh"),
+    ),
+];
 const MESH: &[u8] = include_bytes!("../library/gmsh/files/version4.1-ascii.msh");
 
 proptest! {
     #![proptest_config(cases(1500))]
 
     #[test]
-    fn a_broken_scene_is_refused_in_words_or_makes_a_problem(breaks in breaks()) {
-        let text = broken(SCENE.as_bytes(), &breaks);
+    fn a_broken_scene_is_refused_in_words_or_makes_a_problem(at in 0..SCENES.len(), breaks in breaks()) {
+        let (scene, mesh) = SCENES[at];
+        let text = broken(scene.as_bytes(), &breaks);
         let text = String::from_utf8_lossy(&text);
         if let Err(error) = Scene::parse(&text) {
             let message = error.to_string();
             prop_assert!(message.starts_with("line "), "{message}");
         }
-        if let Err(error) = partition(&text, MESH) {
+        if let Err(error) = partition(&text, mesh) {
             is_said(&error)?;
         }
     }

@@ -45,17 +45,17 @@ pub(super) fn mesh(content: Content) -> Result<Mesh, InputError> {
         ..Mesh::default()
     };
     let index = keep_nodes(&content.nodes, &cells, &mut mesh)?;
-    let mut nodes = Vec::new();
+    let mut of_cell = Vec::new();
     for cell in &cells.elements {
-        nodes.clear();
-        nodes.extend(cell.nodes.iter().filter_map(|&node| index[node as usize]));
-        mesh.cells.push(cell.kind, &nodes);
+        of_cell.clear();
+        of_cell.extend(cell.nodes.iter().filter_map(|&node| index[node as usize]));
+        mesh.cells.push(cell.kind, &of_cell);
         mesh.cell_tags.push(cell.tag);
     }
     mesh.orient_cells()?;
 
     let mut groups: BTreeMap<(usize, i64), Vec<u32>> = BTreeMap::new();
-    for dim in [0, dim - 1, dim] {
+    for dim in 0..=dim {
         let named = content.names.keys().filter(|key| key.0 == dim);
         groups.extend(named.map(|&key| (key, Vec::new())));
     }
@@ -68,10 +68,16 @@ pub(super) fn mesh(content: Content) -> Result<Mesh, InputError> {
     let (facets, found) = facets(&content, dim, &index)?;
     mesh.facets = facets;
     add(dim - 1, found);
-    add(0, points(&content, &index));
+    for low in 0..dim - 1 {
+        add(low, nodes(&content, low, &index));
+    }
     mesh.groups = names::by_name(groups, &content.names)?
         .into_iter()
-        .map(|(name, (dim, members))| (name, Group { dim, members }))
+        .map(|(name, (of, members))| {
+            // Of curves in space there are nodes alone.
+            let dim = if of + 1 < dim { 0 } else { of };
+            (name, Group { dim, members })
+        })
         .collect();
     Ok(mesh)
 }
@@ -213,13 +219,13 @@ fn facets(
     Ok((facets, distinct.groups))
 }
 
-/// The groups of nodes, of those that belong to cells.
-fn points(content: &Content, index: &[Option<u32>]) -> Members {
+/// The nodes of groups of a dimension, of those that belong to cells.
+fn nodes(content: &Content, dim: usize, index: &[Option<u32>]) -> Members {
     let mut groups = Members::new();
-    for point in listed(&content.blocks, 0) {
-        for &group in point.groups {
+    for element in listed(&content.blocks, dim) {
+        for &group in element.groups {
             let members = groups.entry(group).or_default();
-            members.extend(renumbered(point.nodes, index));
+            members.extend(renumbered(element.nodes, index));
         }
     }
     for members in groups.values_mut() {

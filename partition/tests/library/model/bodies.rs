@@ -163,7 +163,7 @@ fn unknown_groups_are_named_with_the_nearest_and_the_list() {
         .unwrap_err();
     says(
         &error,
-        "'upper' is a group of dimension 2; expected one of facets",
+        "'upper' is a group of cells; expected one of facets",
     );
 }
 

@@ -98,7 +98,7 @@ fn what_has_no_place_in_space_is_refused_in_words() {
         ),
         (
             "[[pressure]]\non = 'ring'\nvalue = 1".into(),
-            "a group of dimension 3",
+            "a group of cells",
         ),
     ] {
         let error = made(&text, mesh("hexahedra-8")).unwrap_err();
