@@ -43,7 +43,8 @@ Mesh: the part between the spheres R = 1 and R = 4 and two planes of symmetry, w
 quadratic cells curved. A node holds it vertically.
 ";
 
-const SIDE: f64 = 2.0;
+/// Radius and height of what is meshed of a half space.
+pub const SIDE: f64 = 2.0;
 
 /// The part of a length after the part `s` of its cells, which grow with a power of their number; nodes between are in
 /// the middle.

@@ -4,24 +4,27 @@ use std::f64::consts::PI;
 
 use contact_dd_partition::element::ElementKind::{self, Hexahedron8, Hexahedron27};
 use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::model::Model;
 
 use super::super::blocks::{glued, joined, named};
 use super::super::scenes::model;
 use super::super::solids::moved;
 use super::super::solution::Solution;
-use super::indentation::cylinder;
+use super::indentation::{SIDE, cylinder};
 use super::{Case, Family, Figure, Gate, Measured, figured_steps, gather, plain};
 
 const TEXT: &str = "\
 Two equal balls of radius R = 8, E = 200, ν = 0, μ = 0.5, are pressed on each other by P and then pushed along the contact
 by Q. They stick where r < c = a (1 − Q/μP)^(1/3), at Q = ½ μP c/a = 0.7937; the shear stress is μ p₀/a (√(a² − r²) −
-√(c² − r²)), along the push. With the P and Q of the solution, a³ = 3 P R/(4 E): by ν = 0 that is exact for half spaces.
+√(c² − r²)), along the push. With the P and Q of the solution, a³ = 3 P R/(4 E): by ν = 0 that is exact for half spaces,
+and pushing leaves P as it is.
 
 Source: R. D. Mindlin, *Compliance of elastic bodies in contact*, J. Appl. Mech. 16 (1949); K. L. Johnson, chapter 7.
 
-Mesh: halves of two cylinders of radius 2 and height 2, gap r²/8, moved by their ends, with matching nodes.
+Mesh: halves of two cylinders of radius 2 and height 2, gap r²/8, with matching nodes; their ends are moved towards each other, and the
+upper one is pushed with half of μP of a solution without Q.
 
-*Zone*: how far the farthest node that sticks or slips where it shouldn't is from r = c, in cells; *share*: c/a with c
+*Push*: Q/μP against ½; *zone*: how far the farthest node that sticks or slips where it shouldn't is from r = c, in cells; *share*: c/a with c
 from the area that sticks, against the exact one, which jumps with every node; *shear*: Σ|error of the tangential force| over μP.
 ";
 
@@ -48,7 +51,7 @@ fn half(kind: ElementKind, n: usize) -> Mesh {
     mesh
 }
 
-fn solved(kind: ElementKind, n: usize) -> Measured {
+fn posed(kind: ElementKind, n: usize, push: f64) -> Model {
     let lower = named(half(kind, n), "lower");
     // Turned about y.
     let upper = named(moved(half(kind, n), |[x, y, z]| [-x, y, -z]), "upper");
@@ -65,32 +68,36 @@ fn solved(kind: ElementKind, n: usize) -> Measured {
         z = 0.06
         [[displacement]]
         on = 'upper low'
-        x = 0
-        y = 0
         z = -0.06
+        [[traction]]
+        on = 'upper low'
+        value = [{push:e}, 0, 0]
         [[contact]]
         name = 'contact'
         sides = ['lower top', 'upper top']
         gap = '(x^2+y^2)/8'
         friction = {FRICTION}
         [[step]]
-        [[step]]
-        [[step.displacement]]
-        on = 'lower low'
-        x = -0.02
-        y = 0
-        z = 0.06
-        [[step.displacement]]
-        on = 'upper low'
-        x = 0.02
-        y = 0
-        z = -0.06"
+        scale = {{traction = 0}}
+        [[step]]"
     );
-    let model = model(&text, joined(lower, upper));
+    model(&text, joined(lower, upper))
+}
+
+fn solved(kind: ElementKind, n: usize) -> Measured {
+    // By ν = 0 pushing leaves P as it is.
+    let pressed = figured_steps(&posed(kind, n, 0.0), |solutions| {
+        let points = &solutions[0].contacts["contact"];
+        vec![plain("P", points.iter().map(|p| p.force).sum())]
+    });
+    let end = 0.5 * PI * SIDE * SIDE;
+    let push = 0.5 * FRICTION * pressed.figures[0].value / end;
     let nodes = if kind.is_linear() { 1 } else { 2 };
     // Across the ring.
     let cell = 0.5 * FINE / (2 * n * nodes) as f64;
-    figured_steps(&model, |solutions| figures(&solutions[1], cell))
+    figured_steps(&posed(kind, n, push), |solutions| {
+        figures(&solutions[1], cell)
+    })
 }
 
 fn figures(solution: &Solution, cell: f64) -> Vec<Figure> {
@@ -121,6 +128,7 @@ fn figures(solution: &Solution, cell: f64) -> Vec<Figure> {
         (p.tangential_force[0] - x).hypot(p.tangential_force[1])
     });
     vec![
+        plain("push", 2.0 * push / (FRICTION * force) - 1.0),
         plain("zone, cells", farthest.fold(0.0, f64::max) / cell),
         plain("share", (2.0 * sticks / PI).sqrt() / (share * a) - 1.0),
         plain("shear", 2.0 * off.sum::<f64>() / (FRICTION * force)),
@@ -134,6 +142,7 @@ pub fn case() -> Case {
         run: Box::new(move |level| solved(kind, n << level)),
         meshes: [tested, 2],
         gates: vec![
+            Gate::AtMost("push", 1e-2),
             Gate::AtMost("zone, cells", 1.0),
             Gate::AtMost("share", 1e-1),
             Gate::AtMost("shear", 0.2),
