@@ -10,14 +10,15 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use crate::support::stress::space::draw_in_space;
+use self::random::{Draw, Ran};
+use crate::support::stress::space::{draw_frictional_in_space, draw_in_space};
 use crate::support::stress::trial::Verdict;
 use crate::support::stress::{draw, draw_frictional};
 
 /// Runs scenes that are hard on the solver and says what became of each.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Number of random scenes, without friction and with it.
+    /// Number of random scenes in the plane, without friction and with it, of half as many in space.
     #[arg(short = 'n', long, default_value_t = 1008)]
     scenes: u64,
     /// The first of their seeds.
@@ -32,8 +33,8 @@ pub struct Arguments {
     /// Runs scenes with friction alone; their seeds count anew.
     #[arg(long, conflicts_with = "markdown")]
     friction: bool,
-    /// Runs scenes in space alone; their seeds count anew.
-    #[arg(long, conflicts_with_all = ["markdown", "friction"])]
+    /// Runs scenes in space alone; their seeds count anew, without friction and with it.
+    #[arg(long, conflicts_with = "markdown")]
     space: bool,
     /// Solves with the iterative interface solver between so many clusters, about, scenes without friction if no others
     /// are asked for.
@@ -56,6 +57,14 @@ pub struct Arguments {
     markdown: Option<PathBuf>,
 }
 
+/// What was run of each kind.
+struct Kinds {
+    plain: Vec<Ran>,
+    in_space: Vec<Ran>,
+    with_friction: Vec<Ran>,
+    in_space_with_friction: Vec<Ran>,
+}
+
 pub fn run(arguments: &Arguments) -> ExitCode {
     let binary = arguments.binary.clone();
     let binary = binary.unwrap_or_else(|| crate::support::solver::built().to_owned());
@@ -72,36 +81,43 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         true => arguments.only.clone(),
         false => (arguments.first..arguments.first + arguments.scenes).collect(),
     };
-    let without = match arguments.friction {
-        true => Vec::new(),
-        false if arguments.space => Vec::new(),
-        false => runs.all(draw, &seeds, told),
+    let one_kind = told || arguments.clusters.is_some() || arguments.space || arguments.friction;
+    let some = |draw: Draw, space: bool, friction: bool| {
+        // Scenes in space cost more.
+        let count = match one_kind || !space {
+            true => seeds.len(),
+            false => seeds.len().div_ceil(2),
+        };
+        match !one_kind || (space, friction) == (arguments.space, arguments.friction) {
+            true => runs.all(draw, &seeds[..count], told),
+            false => Vec::new(),
+        }
     };
-    let in_space = match (arguments.space, &arguments.markdown) {
-        (true, _) => runs.all(draw_in_space, &seeds, told),
-        (false, Some(_)) => runs.all(draw_in_space, &seeds[..seeds.len() / 4], told),
-        (false, None) => Vec::new(),
-    };
-    let alone = told || arguments.clusters.is_some() || arguments.space;
-    let with = match alone && !arguments.friction {
-        true => Vec::new(),
-        false => runs.all(draw_frictional, &seeds, told),
+    let ran = Kinds {
+        plain: some(draw, false, false),
+        in_space: some(draw_in_space, true, false),
+        with_friction: some(draw_frictional, false, true),
+        in_space_with_friction: some(draw_frictional_in_space, true, true),
     };
     if let Some(path) = &arguments.markdown {
         let rows = axes::table(&runs);
-        let text = document::document(arguments.first, [&without, &in_space, &with], &rows);
+        let text = document::document(arguments.first, &ran, &rows);
         std::fs::write(path, text).unwrap();
     }
-    for ran in [&without, &in_space, &with] {
+    let Kinds {
+        plain,
+        in_space,
+        with_friction,
+        in_space_with_friction,
+    } = &ran;
+    let all = [plain, in_space, with_friction, in_space_with_friction];
+    for ran in all {
         random::summary(ran);
     }
-    if !with.is_empty() && !told {
-        print!("{}", document::friction(arguments.first, &with));
+    if !told {
+        print!("{}", document::chapters(arguments.first, &ran));
     }
-    if !in_space.is_empty() && !told {
-        print!("{}", document::in_space(arguments.first, &in_space));
-    }
-    let mut all = without.iter().chain(&in_space).chain(&with);
+    let mut all = all.into_iter().flatten();
     match all.all(|one| one.trial.verdict == Verdict::Right) {
         true => ExitCode::SUCCESS,
         false => ExitCode::FAILURE,

@@ -4,8 +4,7 @@ mod friction;
 
 use std::fmt::Write as _;
 
-pub use self::friction::chapter as friction;
-
+use super::Kinds;
 use super::axes::Row;
 use super::random::Ran;
 use crate::support::stress::trial::Verdict;
@@ -56,7 +55,8 @@ with the condition number.
 ";
 
 /// The whole document.
-pub fn document(first: u64, [ran, in_space, frictional]: [&[Ran]; 3], rows: &[Row]) -> String {
+pub fn document(first: u64, kinds: &Kinds, rows: &[Row]) -> String {
+    let ran = &kinds.plain;
     let without = ran
         .iter()
         .filter(|one| one.trial.equilibrium == Some(false))
@@ -83,11 +83,28 @@ usual, up to 30 subdomains.
     distributions(&mut text, ran);
     worst(&mut text, ran);
     axes(&mut text, rows);
-    text + &self::in_space(first, in_space) + &friction(first, frictional)
+    text + &chapters(first, kinds)
+}
+
+/// The chapters on all but scenes in the plane without friction, where any were run.
+pub fn chapters(first: u64, kinds: &Kinds) -> String {
+    let mut text = String::new();
+    if !kinds.in_space.is_empty() {
+        text += &in_space(first, &kinds.in_space);
+    }
+    for (kind, ran) in [
+        (&friction::PLANE, &kinds.with_friction),
+        (&friction::SPACE, &kinds.in_space_with_friction),
+    ] {
+        if !ran.is_empty() {
+            text += &kind.chapter(first, ran);
+        }
+    }
+    text
 }
 
 /// The chapter on scenes in space.
-pub fn in_space(first: u64, ran: &[Ran]) -> String {
+fn in_space(first: u64, ran: &[Ran]) -> String {
     let count = |of: &dyn Fn(&Ran) -> bool| ran.iter().filter(|one| of(one)).count();
     let mut text = format!(
         "

@@ -10,7 +10,7 @@ use crate::support::scenes::{BODIES, JOINT, LOAD, SUPPORTS, model, two_block_sce
 use crate::support::solution::Solution;
 use crate::support::solver::{built, solve};
 use crate::support::stress::judge::Findings;
-use crate::support::stress::space::draw_in_space;
+use crate::support::stress::space::{draw_frictional_in_space, draw_in_space};
 use crate::support::stress::trial::{Trial, Verdict};
 use crate::support::stress::{Balance, Drawn, draw, draw_uneven};
 
@@ -139,6 +139,14 @@ fn newton_gives_up_where_it_gets_no_further() {
 fn random_scenes_in_space_are_answered_rightly() {
     for seed in 0..18 {
         let (verdict, why) = judged(draw_in_space(seed, 2));
+        assert_eq!(verdict, Verdict::Right, "{seed}: {why}");
+    }
+}
+
+#[test]
+fn random_scenes_in_space_with_friction_are_answered_rightly() {
+    for seed in 0..11 {
+        let (verdict, why) = judged(draw_frictional_in_space(seed, 2));
         assert_eq!(verdict, Verdict::Right, "{seed}: {why}");
     }
 }

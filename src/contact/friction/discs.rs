@@ -9,12 +9,14 @@
 //!
 //! Semismooth Newton: where ξ and ξ_t are says what is open, closed, sticks or slips, and a linear problem follows
 //! ([`linear`]). What is missed of the laws is the merit of a step, which is halved as long as it doesn't lessen that.
-//! Where this gets no further, dashpots at all jumps make the problem easier, the slower things move the less.
+//! Where this gets no further, it starts again from near the solution, where an interior-point method leads
+//! ([`interior`]), and after that dashpots at all jumps make the problem easier, the slower things move the less.
 //!
 //! P. Alart, A. Curnier, *A mixed formulation for frictional contact problems prone to Newton like solution methods*,
 //! Comput. Methods Appl. Mech. Engrg 92 (1991); S. Hüeber, G. Stadler, B. Wohlmuth, *A primal-dual active set algorithm
 //! for three-dimensional contact problems with Coulomb friction*, SIAM J. Sci. Comput. 30 (2008).
 
+mod interior;
 mod law;
 mod linear;
 mod newton;

@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 
 use super::super::random::Ran;
 use super::{Figure, figures, verdict_columns, verdict_line};
-use crate::support::stress::friction::{FAMILIES, Law};
+use crate::support::stress::friction::Law;
 use crate::support::stress::trial::Verdict;
+use crate::support::stress::{Family, friction, space};
 
 /// What is promised of coefficients up to this.
 const USUAL: f64 = 0.5;
@@ -41,53 +42,91 @@ its bound alone. *Newton steps* are those of a scene's worst increment.
 
 ";
 
-/// The verdicts, by law.
-pub fn chapter(first: u64, ran: &[Ran]) -> String {
-    let given = |one: &Ran| one.friction == Some(Law::Given);
-    let upto = |one: &Ran| matches!(one.friction, Some(Law::Coulomb(most)) if most <= USUAL);
-    let above = |one: &Ran| matches!(one.friction, Some(Law::Coulomb(most)) if most > USUAL);
-    let count = |of: &dyn Fn(&Ran) -> bool| ran.iter().filter(|one| of(one)).count();
-    let mut text = format!(
-        "
-## Friction
+/// Scenes of one kind.
+pub struct Kind {
+    title: &'static str,
+    place: &'static str,
+    option: &'static str,
+    moved: &'static str,
+    families: &'static [Family],
+    how_to_read: &'static str,
+}
 
-{} random scenes with friction, seeds {first} to {} (`scripts/stress --friction --only SEED`): {} with given bounds of
-1e-10 to 100 times the pressure, {} with coefficients up to {USUAL}, {} with coefficients up to 1.5, some with cohesion;
-{} with 1 to 5 load steps, in which loads along the joints change their sign; {} also run on 2 to 4 ranks.
+pub const PLANE: Kind = Kind {
+    title: "Friction",
+    place: "",
+    option: "--friction",
+    moved: "change their sign",
+    families: &friction::FAMILIES,
+    how_to_read: HOW_TO_READ,
+};
+
+pub const SPACE: Kind = Kind {
+    title: "Friction in space",
+    place: " in space",
+    option: "--space --friction",
+    moved: "turn and reverse",
+    families: &space::friction::FAMILIES,
+    how_to_read: "As in the plane, with discs for bounds. Which rigid bodies friction holds a linear program says with polygons in the
+discs and around them.
 
 ",
+};
+
+impl Kind {
+    /// The verdicts, by law.
+    pub fn chapter(&self, first: u64, ran: &[Ran]) -> String {
+        let given = |one: &Ran| one.friction == Some(Law::Given);
+        let upto = |one: &Ran| matches!(one.friction, Some(Law::Coulomb(most)) if most <= USUAL);
+        let above = |one: &Ran| matches!(one.friction, Some(Law::Coulomb(most)) if most > USUAL);
+        let count = |of: &dyn Fn(&Ran) -> bool| ran.iter().filter(|one| of(one)).count();
+        let mut text = format!(
+        "
+## {}
+
+{} random scenes with friction{}, seeds {first} to {} (`scripts/stress {} --only SEED`): {} with given bounds of
+1e-10 to 100 times the pressure, {} with coefficients up to {USUAL}, {} with coefficients up to 1.5, some with cohesion;
+{} with 1 to 5 load steps, in which loads along the joints {}; {} also run on 2 to 4 ranks.
+
+",
+        self.title,
         ran.len(),
-        first + (ran.len() as u64).max(1) - 1,
+        self.place,
+        ran.iter().map(|one| one.seed).max().unwrap_or(first),
+        self.option,
         count(&given),
         count(&upto),
         count(&above),
         count(&|one| one.steps > 0),
+        self.moved,
         count(&|one| one.ranks > 0),
     );
-    text += HOW_TO_READ;
-    verdict_columns(&mut text);
-    let mut line = |name: &str, of: &dyn Fn(&Ran) -> bool| verdict_line(&mut text, ran, name, of);
-    for family in FAMILIES {
-        line(family.name, &|one| one.family == family.name);
-    }
-    line("given bounds", &given);
-    line("μ ≤ 0.5", &upto);
-    line("μ > 0.5", &above);
-    line("without equilibrium", &|one| {
-        one.trial.equilibrium == Some(false)
-    });
-    line("in parts", &|one| one.trial.in_parts);
-    line("held by friction", &|one| one.trial.by_friction);
-    line("**all**", &|_| true);
-    text.push('\n');
-    figures(&mut text, ran, &FIGURES);
-    let wrong = ran.iter().filter(|one| one.trial.verdict != Verdict::Right);
-    let wrong: Vec<String> = wrong.map(|one| one.seed.to_string()).collect();
-    match wrong.is_empty() {
-        true => text += "All of them are right.\n",
-        false => {
-            let _ = writeln!(text, "Not right are the seeds {}.", wrong.join(", "));
+        text += self.how_to_read;
+        verdict_columns(&mut text);
+        let mut line =
+            |name: &str, of: &dyn Fn(&Ran) -> bool| verdict_line(&mut text, ran, name, of);
+        for family in self.families {
+            line(family.name, &|one| one.family == family.name);
         }
+        line("given bounds", &given);
+        line("μ ≤ 0.5", &upto);
+        line("μ > 0.5", &above);
+        line("without equilibrium", &|one| {
+            one.trial.equilibrium == Some(false)
+        });
+        line("in parts", &|one| one.trial.in_parts);
+        line("held by friction", &|one| one.trial.by_friction);
+        line("**all**", &|_| true);
+        text.push('\n');
+        figures(&mut text, ran, &FIGURES);
+        let wrong = ran.iter().filter(|one| one.trial.verdict != Verdict::Right);
+        let wrong: Vec<String> = wrong.map(|one| one.seed.to_string()).collect();
+        match wrong.is_empty() {
+            true => text += "All of them are right.\n",
+            false => {
+                let _ = writeln!(text, "Not right are the seeds {}.", wrong.join(", "));
+            }
+        }
+        text
     }
-    text
 }

@@ -5,8 +5,11 @@
 //! allow, D R z = 0 and B R z ≤ 0, and that the load drives, fᵀ R z > 0; both are checked.
 //!
 //! With friction there are tangential forces, too: |λ_t| ≤ μ λ + b, with b > 0 for a given bound and for cohesion,
-//! for which all is taken to be closed. What rigid bodies can't balance no elastic ones can; what they can, elastic
-//! ones may still not, as their normal forces aren't free to choose.
+//! for which all is taken to be closed. In space discs are polygons: one inside for what holds, one around for what
+//! fails. What rigid bodies can't balance no elastic ones can; what they can, elastic ones may still not, as their
+//! normal forces aren't free to choose.
+
+use std::f64::consts::PI;
 
 use contact_dd_partition::model::Model;
 use nalgebra::{DMatrix, DVector};
@@ -17,6 +20,9 @@ use super::rigid::Bodies;
 /// What is left of the load, relative to it, up to which it is balanced, and from which not.
 const BALANCED: f64 = 1e-11;
 const UNBALANCED: f64 = 1e-7;
+
+/// Corners of the polygon for a disc.
+const CORNERS: usize = 12;
 
 /// What the linear program says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,14 +36,23 @@ pub enum Balance {
 impl Balance {
     /// With the friction that the scene has.
     pub fn new(model: &Model, assembled: &Assembled) -> Self {
-        Self::with(model, assembled, &assembled.tangents)
+        let inside = Self::with(model, assembled, &assembled.tangents, 1.0);
+        if model.mesh.dim == 2 || inside == Self::Holds {
+            return inside;
+        }
+        let around = 1.0 / (PI / CORNERS as f64).cos();
+        match Self::with(model, assembled, &assembled.tangents, around) {
+            Self::Fails => Self::Fails,
+            _ => Self::Unclear,
+        }
     }
 
     pub fn without_friction(model: &Model, assembled: &Assembled) -> Self {
-        Self::with(model, assembled, &[])
+        Self::with(model, assembled, &[], 1.0)
     }
 
-    fn with(model: &Model, assembled: &Assembled, tangents: &[Tangent]) -> Self {
+    /// With bounds that are `reach` times those of the law at the corners.
+    fn with(model: &Model, assembled: &Assembled, tangents: &[Tangent], reach: f64) -> Self {
         let bodies = Bodies::new(model);
         let load: Vec<(usize, f64)> = assembled.load.iter().copied().enumerate().collect();
         let load = bodies.act(&load);
@@ -55,37 +70,33 @@ impl Balance {
         let allowed = DMatrix::from_columns(&allowed).transpose();
         let act = |row: &Row| -> DVector<f64> { &allowed * bodies.act(row) };
         let mut columns = Vec::new();
-        let mut slopes = vec![0.0; assembled.conditions.len()];
         let mut bounded = Vec::new();
-        let mut along = vec![None; assembled.conditions.len()];
-        for tangent in tangents {
-            let (grows, constant) = tangent.bound(true);
-            let row = act(&tangent.row);
-            slopes[tangent.condition] = grows;
+        let mut slopes = vec![(0.0, Vec::new()); assembled.conditions.len()];
+        for of_point in tangents.chunk_by(|a, b| a.condition == b.condition) {
+            let (grows, constant) = of_point[0].bound(true);
+            let rows: Vec<_> = of_point.iter().map(|tangent| act(&tangent.row)).collect();
+            let corners = corners(&rows, reach);
             if constant > 0.0 {
-                bounded.push((row.clone(), constant / scale));
+                bounded.push((corners.clone(), constant / scale));
             }
-            along[tangent.condition] = Some(row);
+            slopes[of_point[0].condition] = (grows, corners);
         }
-        for (j, (row, _)) in assembled.conditions.iter().enumerate() {
+        for ((row, _), (grows, corners)) in assembled.conditions.iter().zip(slopes) {
             let normal = act(row);
-            match &along[j] {
+            match grows > 0.0 {
                 // The edges of the cone.
-                Some(along) if slopes[j] > 0.0 => {
-                    columns.push(&normal + along * slopes[j]);
-                    columns.push(normal - along * slopes[j]);
-                }
-                _ => columns.push(normal),
+                true => columns.extend(corners.iter().map(|along| &normal + along * grows)),
+                false => columns.push(normal),
             }
         }
         Self::bounded(columns, &bounded, &allowed * load)
     }
 
-    /// Whether `load` is a combination of `columns` with coefficients ≥ 0 and of `bounded` ones with coefficients
-    /// between −bound and bound.
+    /// Whether `load` is a combination of `columns` with coefficients ≥ 0 and of points of polygons, given by their
+    /// corners and a factor of these.
     fn bounded(
         columns: Vec<DVector<f64>>,
-        bounded: &[(DVector<f64>, f64)],
+        bounded: &[(Vec<DVector<f64>>, f64)],
         load: DVector<f64>,
     ) -> Self {
         // More than all the load together needs no bound.
@@ -101,13 +112,11 @@ impl Balance {
         };
         let mut all: Vec<DVector<f64>> = columns.iter().map(|c| lifted(c, None)).collect();
         let mut rhs = lifted(&load, None);
-        for (i, (row, bound)) in bounded.iter().enumerate() {
-            // λ_t = b (2 s − 1) with s + r = 1.
-            let bound = bound.min(most);
-            let mut shifted = rhs.rows_mut(0, rows);
-            shifted += row * bound;
+        for (i, (corners, bound)) in bounded.iter().enumerate() {
+            // The shares of its corners and of its middle are 1 together.
             rhs[rows + i] = 1.0;
-            all.push(lifted(&(row * (2.0 * bound)), Some(i)));
+            let bound = bound.min(most);
+            all.extend((corners.iter()).map(|corner| lifted(&(corner * bound), Some(i))));
             all.push(lifted(&DVector::zeros(rows), Some(i)));
         }
         Self::of(&all, &rhs)
@@ -125,6 +134,17 @@ impl Balance {
             left if left >= UNBALANCED && grows => Self::Fails,
             _ => Self::Unclear,
         }
+    }
+}
+
+/// Both ends along the only tangent, or the corners of a polygon in the disc of two of them.
+fn corners(tangents: &[DVector<f64>], reach: f64) -> Vec<DVector<f64>> {
+    match tangents {
+        [a, b] => (0..CORNERS)
+            .map(|k| (2.0 * PI / CORNERS as f64 * k as f64).sin_cos())
+            .map(|(sin, cos)| (a * cos + b * sin) * reach)
+            .collect(),
+        _ => (tangents.iter()).flat_map(|a| [a.clone(), -a]).collect(),
     }
 }
 

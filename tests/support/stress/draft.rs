@@ -36,6 +36,8 @@ pub struct Draft {
     /// The cells of a scene in space, and whether it stands askew.
     pub kind: ElementKind,
     pub tilted: bool,
+    /// Sides in space under pressure.
+    pub pressed: Vec<String>,
 }
 
 impl Draft {
@@ -60,6 +62,7 @@ impl Draft {
             determined: false,
             kind: ElementKind::Hexahedron8,
             tilted: false,
+            pressed: Vec::new(),
             random,
         }
     }

@@ -26,7 +26,8 @@ pub struct Friction {
     orders: Option<[f64; 2]>,
 }
 
-const fn frictional(family: Family) -> Family {
+/// With laws of friction.
+pub const fn frictional(family: Family) -> Family {
     Family {
         frictional: true,
         ..family

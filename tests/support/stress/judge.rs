@@ -195,7 +195,12 @@ impl Findings {
             // About to open, without pressure, it may have any part of its cohesion.
             let normal = state.forces[tangent.condition];
             let is_parting = !tangent.is_given() && normal <= FRICTION * scale;
-            let opposing = ratio(dot(force, since), way);
+            // Of a small slip the direction is known less well.
+            let angle = ratio(dot(force, since), size_of_force * way)
+                .clamp(-1.0, 1.0)
+                .acos();
+            let unknown = ratio(STUCK * size, way).min(1.0).asin();
+            let opposing = size_of_force * (angle - unknown).max(0.0).cos();
             let least_bound = if is_parting { size_of_force } else { bounds[k] };
             let lacks = ratio(least_bound - opposing, scale) / FRICTION;
             let slipped = ratio(way, size) / STUCK;

@@ -179,6 +179,7 @@ fn drawn(seed: u64, family: &'static str, cells: &'static str, draft: Draft, mes
     let mut model = model(&text, mesh);
     let mut random = draft.random;
     let may_be = draft.equilibrium == Some(true) || model.mesh.dim == 3;
+    let may_be = may_be && draft.friction.is_none();
     let manufactured = may_be && random.chance(0.15);
     if manufactured {
         manufactured::manufacture(&mut model, &mut random);

@@ -1,5 +1,7 @@
 //! Scenes in space: blocks on and beside each other, wedges, layers, and obstacles, upright or askew.
 
+pub mod friction;
+
 use std::collections::HashSet;
 
 use contact_dd_partition::element::ElementKind;
@@ -9,6 +11,7 @@ use super::super::blocks::joined;
 use super::super::random::Random;
 use super::super::solids::{SOLIDS, moved, solid, turned};
 use super::draft::{Draft, noise};
+use super::friction::Friction;
 use super::{Drawn, Family, drawn, matching};
 
 /// The families of scenes in space.
@@ -24,7 +27,18 @@ pub const FAMILIES: [Family; 6] = [
 /// The scene of a seed, with blocks of at most `cells` linear cells a side, or half as many quadratic ones.
 #[track_caller]
 pub fn draw_in_space(seed: u64, cells: usize) -> Drawn {
-    let family = FAMILIES[(seed % FAMILIES.len() as u64) as usize];
+    draw_from(&FAMILIES, seed, cells)
+}
+
+/// The same with friction, of seeds that count anew.
+#[track_caller]
+pub fn draw_frictional_in_space(seed: u64, cells: usize) -> Drawn {
+    draw_from(&friction::FAMILIES, seed, cells)
+}
+
+#[track_caller]
+fn draw_from(families: &[Family], seed: u64, cells: usize) -> Drawn {
+    let family = families[(seed % families.len() as u64) as usize];
     let mut random = Random::new(seed);
     let kind = random.pick(&SOLIDS);
     let cells = match kind.is_linear() {
@@ -32,6 +46,9 @@ pub fn draw_in_space(seed: u64, cells: usize) -> Drawn {
         false => cells.min(4).div_ceil(2),
     };
     let mut draft = Draft::in_space(random, kind, cells);
+    if family.frictional {
+        draft.friction = Some(Friction::new(Random::new(!seed), draft.load));
+    }
     (family.make)(&mut draft);
     let mut mesh = std::mem::take(&mut draft.blocks.mesh);
     if draft.tilted {
@@ -125,6 +142,7 @@ impl Draft {
         let axis = self.random.pick(&["x", "y", "z"]);
         let pressure = self.drawn_pressure(axis, [0.0, 1.0]);
         self.pressure(on, &pressure);
+        self.pressed.push(on.to_owned());
     }
 
     fn own_weight(&mut self, height: f64) -> [f64; 3] {

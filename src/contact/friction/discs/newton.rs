@@ -26,14 +26,17 @@ const NO_RESISTANCE: f64 = 1e-10;
 const CHANGES: usize = 24;
 
 impl Discs<'_> {
-    /// The solution, found from where these statuses are right, whether that took dashpots, and whether these slide on
-    /// and on.
+    /// The solution, found from where these statuses are right, whether that took more than Newton's method, and whether
+    /// things slide on and on.
     pub(super) fn solve(&self, status: &[Status]) -> (Found, bool, bool) {
         let start = self.start();
         let state = self.begin(status, &start);
         let at_once = self.newton(&start, &state, STEPS);
         if at_once.converged() {
             return (at_once, false, false);
+        }
+        if let Some(found) = self.along_path() {
+            return (found, true, false);
         }
         let mut steps = at_once.steps;
         match self.with_dashpots(&start, &state, &mut steps) {
@@ -130,7 +133,7 @@ impl Discs<'_> {
     }
 
     /// Newton's method from a place where limits do this.
-    fn newton(&self, start: &Place, state: &State, most: usize) -> Found {
+    pub(super) fn newton(&self, start: &Place, state: &State, most: usize) -> Found {
         let mut place = start.clone();
         let mut state = state.clone();
         let mut merit = f64::INFINITY;

@@ -29,6 +29,50 @@ fn equilibrium_and_every_law_hold_at_random_points_in_space() {
 }
 
 #[test]
+fn the_interior_path_ends_at_solutions() {
+    let mut ended = [0; 3];
+    for seed in 0..150 {
+        let steep = ForceBound {
+            coefficient: 1.2,
+            ..COULOMB
+        };
+        let mut points =
+            Points::in_space(2 + seed % 6, 23 * seed, [COULOMB, GIVEN, steep][seed % 3]);
+        if seed % 2 == 0 {
+            // Nothing but friction resists where all slip alike.
+            let (h, m) = (points.h.clone(), points.c.len());
+            let mean = |i: usize| (0..m).map(|j| h[(i, j)]).sum::<f64>() / m as f64;
+            let all = (0..m).map(mean).sum::<f64>() / m as f64;
+            points.set_stiffness(m, |i, j| h[(i, j)] - mean(i) - mean(j) + all);
+            let load = points.c.iter().sum::<f64>() / m as f64;
+            points.c.iter_mut().for_each(|c| *c -= load);
+        }
+        points.with(|problem| {
+            let discs = Discs::new(problem);
+            let Some(found) = discs.along_path() else {
+                return;
+            };
+            let (jumps, forces) = discs.exact(&found);
+            let violation = points.violation(&ContactSolution {
+                jumps,
+                forces,
+                steps: found.steps,
+                fell_back: true,
+                converged: true,
+                slides: false,
+            });
+            assert!(violation < 1e-9, "seed {seed}: {violation:e}");
+            ended[seed % 3] += 1;
+        });
+    }
+    // Given bounds make a convex problem.
+    assert!(
+        ended[1] == 50 && ended.iter().sum::<usize>() > 115,
+        "{ended:?}"
+    );
+}
+
+#[test]
 fn a_slip_that_supports_prescribe_along_one_tangent_turns_the_force_along_the_other() {
     for seed in 0..60 {
         let mut points = Points::in_space(3, 13 * seed, [COULOMB, GIVEN][seed % 2]);
