@@ -51,22 +51,33 @@ pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Ce
     best
 }
 
-/// Exchanges what sticks and what slips against the law of friction, as forces are known better after refinement than
-/// the sweeps know them, and refines anew, until the law is fulfilled; where that isn't found, nothing is changed.
-/// Collective.
-pub fn exchange_against_friction(
+/// Exchanges what is against the laws of contact, as forces are known better after refinement than the sweeps know them,
+/// and refines anew, until they are fulfilled; where that isn't found, nothing is changed: what sticks and what slips
+/// against friction, and where a frozen active set falls short of the certificate, what is closed without a force or
+/// open with an overlap, both less than the sweeps see. Collective.
+pub fn exchange_what_is_wrong(
     fixed: &FixedActiveSet<'_>,
     solution: &mut DiscreteSolution,
     certificate: Certificate,
 ) -> Certificate {
     let (mut exchanged, mut after) = (None, certificate);
     for _ in 0..MAX_EXCHANGES {
-        if !decide(fixed, after.friction > AGAINST_FRICTION) {
-            break;
-        }
+        let is_rough = decide(fixed, after.friction > AGAINST_FRICTION);
+        let is_short = fixed.frozen.is_some() && decide(fixed, worst(&after) > GOOD);
         let next: &mut DiscreteSolution = exchanged.get_or_insert_with(|| solution.clone());
+        let mut changed = is_rough;
         for (g, of_group) in &mut next.groups {
-            exchange(&fixed.context.groups[g], of_group);
+            let group = &fixed.context.groups[g];
+            if is_short {
+                changed |= open_or_close(group, of_group);
+            }
+            if is_rough {
+                exchange(group, of_group);
+            }
+        }
+        let changed = fixed.context.comm.collect(&changed).contains(&true);
+        if !decide(fixed, changed) {
+            break;
         }
         next.share(&fixed.context, &fixed.step.loads);
         after = refine(fixed, next);
@@ -80,6 +91,26 @@ pub fn exchange_against_friction(
         }
         _ => certificate,
     }
+}
+
+/// Opens what is closed without a force and closes what is open with an overlap; returns whether there was any.
+fn open_or_close(group: &ContactGroup, solution: &mut GroupSolution) -> bool {
+    let mut changed = false;
+    for j in 0..group.points.len() {
+        let is_wrong = match solution.closed[j] {
+            true => solution.forces[j] <= 0.0,
+            false => solution.gaps[j] < 0.0,
+        };
+        solution.closed[j] ^= is_wrong;
+        changed |= is_wrong;
+    }
+    for one in group.friction() {
+        if !solution.closed[one.normal] {
+            solution.closed[one.number] = false;
+            solution.forces[one.number] = 0.0;
+        }
+    }
+    changed
 }
 
 /// Lets slip what sticks under more than its bound, and stick what slips under a force that drives it. What slips without

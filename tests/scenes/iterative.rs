@@ -78,10 +78,10 @@ fn displacements_and_contacts_are_those_of_the_direct_solver_in_space() {
 }
 
 /// Active sets that come back where solutions are not accurate or springs come and go, and bodies that nothing presses in
-/// the end.
+/// the end; forces that are nothing beside the largest, and yet hold a body.
 #[test]
 fn scenes_in_space_that_are_hard_to_settle_are_solved_between_clusters() {
-    for seed in [2, 29, 220] {
+    for seed in [2, 29, 55, 220, 331] {
         let drawn = draw_in_space(seed, 12);
         let trial = Trial::with(&drawn, built(), LIMIT, None, Some(8));
         assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
