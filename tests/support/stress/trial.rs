@@ -312,14 +312,16 @@ impl Trial {
         }
     }
 
-    /// Whether the report warns that the step of this name, or the only increment, was made in parts.
+    /// Whether the report warns that the step of this name, or the only one, was made in parts.
     fn is_in_parts(&self, step: Option<&str>) -> bool {
-        let start = step.map_or("a load step".to_owned(), |name| {
-            format!("step '{name}': a load step")
-        });
+        let name = step.map_or(String::new(), |name| format!("step '{name}': "));
         let warnings = self.listed("warnings").unwrap_or_default();
-        let mut warnings = warnings.iter();
-        warnings.any(|words| words.starts_with(&start) && words.contains("didn't converge at once"))
+        let mut warnings = warnings
+            .iter()
+            .map(|words| words.strip_prefix(&name).unwrap_or(words));
+        warnings.any(|words| {
+            words.starts_with("a load step") && words.contains("didn't converge at once")
+        })
     }
 
     /// The words of a list in the program's report.
