@@ -152,7 +152,7 @@ fn document(linear: &[(&str, Taken)], contact: &[(&str, Taken)]) -> String {
          `scripts/iterations` counts the iterations of `--interface iterative` on scenes whose mesh and number of \
          clusters\ngrow together, and writes this page. Clusters are subtrees of the hierarchy, cut like subdomains; \
          nodes inside the\nplates are moved at random. An iteration ends where the error in the energy norm is about \
-         1e-12 of the solution.\n\n## Without contact\n\n\
+         1e-14 of the solution.\n\n## Without contact\n\n\
          | scene | dofs | clusters | coarse dofs | iterations |\n|---|--:|--:|--:|--:|\n",
     );
     for (name, taken) in linear {
