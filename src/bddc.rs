@@ -24,7 +24,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use self::classes::Classes;
 use self::closed::{GroupBetween, Ties};
 use self::cluster_schur::ClusterSchur;
-use self::coarse::{Coarse, CoarsePart};
+use self::coarse::{Coarse, Part};
 use self::constraints::{Basis, Side};
 use self::depth::Depth;
 use self::local::{Local, Moves, Shared};
@@ -35,6 +35,7 @@ use crate::contact::jumps::NoUnknown;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::schur::condensed::InterfaceDof;
+use crate::schur::symmetric::PackedSymmetric;
 
 /// Clusters and what is between them.
 #[derive(Debug)]
@@ -55,11 +56,9 @@ pub struct Bddc {
     locals: BTreeMap<usize, Local>,
     /// The clusters whose S isn't any more what their part of the preconditioner was made of, on all ranks.
     stale: Vec<bool>,
-    coarse: Option<Coarse>,
+    coarse: Coarse,
     /// Number of coarse unknowns; on the root.
     pub coarse_dofs: usize,
-    /// The smallest pivot of the coarse problem relative to its diagonal entry; on the root.
-    pub coarse_pivot: f64,
 }
 
 /// A contact group between clusters.
@@ -144,9 +143,8 @@ impl Bddc {
             ties: Ties::default(),
             classes: Classes::default(),
             locals: BTreeMap::new(),
-            coarse: None,
+            coarse: Coarse::new(plan),
             coarse_dofs: 0,
-            coarse_pivot: f64::INFINITY,
         })
     }
 
@@ -234,7 +232,12 @@ impl Bddc {
             let local = shared(c).and_then(|shared| Local::new(shared, bases, self.depth, par));
             Ok((c, local.map_err(moves)?))
         });
-        let locals: BTreeMap<usize, Local> = comm.agree(locals.collect())?;
+        let made_anew: BTreeMap<usize, (Local, PackedSymmetric)> = comm.agree(locals.collect())?;
+        let (mut locals, mut parts) = (BTreeMap::new(), BTreeMap::new());
+        for (c, (local, s)) in made_anew {
+            parts.insert(c, Part::of(c, &local, s, &self.classes));
+            locals.insert(c, local);
+        }
         let is_new = |c: &usize| locals.contains_key(c);
         let others = self.locals.keys().copied().filter(|c| !is_new(c));
         let touched = others.filter(|&c| touched[plan.tops[c]] && self.locals[&c].own() > 0);
@@ -250,21 +253,12 @@ impl Bddc {
             return Ok(());
         }
 
-        let mut parts = Vec::new();
-        comm.gather(
-            &self.owners,
-            |c| CoarsePart::of(&self.locals[&c], &self.classes.of_clusters[c]),
-            |_, part| parts.push(part),
-        );
-        let order = || self.classes.order(&plan.tree, &plan.tops);
-        let coarse = comm
-            .is_root()
-            .then(|| Coarse::new(&parts, &order(), self.depth.holds(), par));
-        self.coarse = comm.agree(coarse.transpose())?;
-        if let Some(coarse) = &self.coarse {
-            self.coarse_dofs = coarse.len();
-            self.coarse_pivot = coarse.smallest_pivot();
-        }
+        let is_remade =
+            |c: usize| changed[c] || self.classes.of_clusters[c].iter().any(|&k| made[k]);
+        let remade: Vec<bool> = (0..changed.len()).map(is_remade).collect();
+        let holds = self.depth.holds();
+        (self.coarse).factorize(context, &self.classes, parts, &remade, holds)?;
+        self.coarse_dofs = comm.collect(&self.coarse.len()).into_iter().sum();
         Ok(())
     }
 
@@ -284,10 +278,15 @@ impl Bddc {
         matches!(self.depth, Depth::Diagonals | Depth::Motions)
     }
 
-    /// The smallest pivot of this rank relative to its diagonal entry, that of the coarse problem among them on the root.
+    /// The smallest pivot of the coarse problem, of this rank, relative to its diagonal entry.
+    pub fn coarse_pivot(&self) -> f64 {
+        self.coarse.smallest_pivot()
+    }
+
+    /// The smallest pivot of this rank relative to its diagonal entry, those of the coarse problem among them.
     pub fn smallest_pivot(&self) -> f64 {
         let pivots = (self.locals.values()).map(|local| local.shared.smallest_pivot);
-        pivots.fold(self.coarse_pivot, f64::min)
+        pivots.fold(self.coarse_pivot(), f64::min)
     }
 
     /// Whether S of a cluster isn't any more what the preconditioner was made of; the same on all ranks.

@@ -7,6 +7,7 @@ pub mod cost;
 
 pub mod links;
 
+use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 use contact_dd_partition::problem::Catalog;
@@ -133,6 +134,19 @@ impl Plan {
     /// Whether frozen active sets are merged up to the roots of the hierarchy, so that nothing is left between clusters.
     pub fn has_one_cluster(&self) -> bool {
         (self.tops.iter()).all(|&v| self.tree.nodes[v].parent.is_none())
+    }
+
+    /// The nodes of the hierarchy that are `sought`, the deepest first: what ranks share is near the roots, and none
+    /// waits for another before.
+    pub fn deepest_first(&self, is_sought: impl Fn(usize) -> bool) -> Vec<usize> {
+        let nodes = &self.tree.nodes;
+        let mut depth = vec![0; nodes.len()];
+        for v in (0..nodes.len()).rev() {
+            depth[v] = nodes[v].parent.map_or(0, |parent| depth[parent] + 1);
+        }
+        let mut sought: Vec<usize> = (0..nodes.len()).filter(|&v| is_sought(v)).collect();
+        sought.sort_by_key(|&v| Reverse(depth[v]));
+        sought
     }
 
     /// Whether node v of the hierarchy is above the last ones that frozen active sets are merged to.

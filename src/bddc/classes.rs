@@ -91,17 +91,14 @@ impl Classes {
             && pairs.all(|(&k, &other)| self.list[k] == others.list[other])
     }
 
-    /// The order in which they are eliminated where clusters are the `nodes` of a tree: each class at the lowest node
-    /// above all of its clusters.
-    pub fn order(&self, tree: &Tree, nodes: &[usize]) -> Vec<usize> {
+    /// The lowest node above all clusters of each class, where clusters are the `nodes` of a tree.
+    pub fn homes(&self, tree: &Tree, nodes: &[usize]) -> Vec<usize> {
         let home = |class: &Class| {
+            let first = nodes[class.clusters[0]];
             let clusters = class.clusters.iter().map(|&c| nodes[c]);
-            clusters.reduce(|v, w| tree.lowest_above(v, w))
+            clusters.fold(first, |v, w| tree.lowest_above(v, w))
         };
-        let homes: Vec<Option<usize>> = self.list.iter().map(home).collect();
-        let mut order: Vec<usize> = (0..homes.len()).collect();
-        order.sort_by_key(|&k| homes[k]);
-        order
+        self.list.iter().map(home).collect()
     }
 
     /// Those of clusters that have these `dofs`, with closed contact conditions that tie some to others.

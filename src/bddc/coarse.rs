@@ -1,125 +1,388 @@
-//! The coarse problem: what clusters leave to coarse unknowns, added up and factorized at the root.
+//! The coarse problem: what clusters leave to coarse unknowns, merged up the hierarchy above them.
+//!
+//! The unknowns of a class are eliminated at the lowest node above all of its clusters. Ranks share the nodes as they
+//! share the clusters, and only what is above clusters that changed is made again.
+
+use std::collections::BTreeMap;
 
 use faer::{Mat, Par};
 use serde::{Deserialize, Serialize};
 
+use crate::bddc::classes::Classes;
+use crate::bddc::gradients::Vectors;
 use crate::bddc::local::Local;
+use crate::condense::substitute::{Direction, carry};
+use crate::context::Context;
 use crate::error::Failure;
-use crate::schur::factor::BoundaryLastCholesky;
-use crate::schur::pattern::{Cliques, LowerPattern, SparseSymmetric};
+use crate::plan::Plan;
+use crate::schur::condensed::InterfaceDof;
+use crate::schur::symmetric::PackedSymmetric;
+use crate::schur::trapezoid::{NotDefinite, Trapezoid};
 
-/// What a cluster says of its coarse unknowns.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct CoarsePart {
-    /// Its classes, and how many unknowns each has.
-    pub classes: Vec<(usize, usize)>,
-    /// What the cluster leaves to them.
-    #[serde(with = "crate::bytes::symmetric")]
-    pub s: Mat<f64>,
+/// What a cluster or a node leaves to coarse unknowns.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Part {
+    /// Its classes, each by its first unknown, and how many coarse unknowns each has.
+    classes: Vec<(InterfaceDof, usize)>,
+    s: PackedSymmetric,
+    /// The diagonal of the coarse matrix, as far as it is added up.
+    #[serde(with = "crate::bytes")]
+    diagonal: Vec<f64>,
 }
 
-impl CoarsePart {
-    /// That of a cluster with these classes.
-    pub fn of(local: &Local, classes: &[usize]) -> Self {
+impl Part {
+    /// That of cluster c, which leaves `s`.
+    pub fn of(c: usize, local: &Local, s: PackedSymmetric, classes: &Classes) -> Self {
+        let first = |&k: &usize| classes.list[k].dofs[0];
         let counts = local.bases().iter().map(|basis| basis.coarse);
         Self {
-            classes: classes.iter().copied().zip(counts).collect(),
-            s: local.coarse.clone(),
+            classes: (classes.of_clusters[c].iter().map(first))
+                .zip(counts)
+                .collect(),
+            diagonal: (0..s.size()).map(|i| s.column(i)[0]).collect(),
+            s,
         }
     }
 }
 
-/// The coarse problem, on the root.
+/// A node above clusters.
+#[derive(Debug)]
+struct Front {
+    factor: Trapezoid<f64>,
+    /// Where the unknowns of each child are, those that are eliminated first.
+    places: Vec<Vec<usize>>,
+    /// The smallest pivot relative to its diagonal entry.
+    smallest_pivot: f64,
+}
+
+impl Front {
+    /// Adds up `children`, with a share of the diagonal of each, eliminates the classes that `is_own`, and returns what
+    /// that leaves to the others.
+    fn new(
+        children: &[(&Part, f64)],
+        is_own: impl Fn(&InterfaceDof) -> bool,
+        par: Par,
+    ) -> Result<(Self, Part), NotDefinite> {
+        let all = children
+            .iter()
+            .flat_map(|(part, _)| part.classes.iter().copied());
+        let all: BTreeMap<InterfaceDof, usize> = all.collect();
+        let (own, kept): (Vec<_>, Vec<_>) = all.into_iter().partition(|(class, _)| is_own(class));
+        let mut first = BTreeMap::new();
+        let mut n = 0;
+        for (class, count) in own.iter().chain(&kept) {
+            first.insert(*class, n);
+            n += count;
+        }
+        let eliminated: usize = own.iter().map(|(_, count)| count).sum();
+        let (mut sum, mut diagonal) = (Mat::zeros(n, n), vec![0.0; n]);
+        let mut places = Vec::new();
+        for (part, share) in children {
+            let of_class = |(class, count): &(InterfaceDof, usize)| {
+                let first = first[class];
+                first..first + count
+            };
+            let of_part: Vec<usize> = part.classes.iter().flat_map(of_class).collect();
+            for (j, (&b, d)) in of_part.iter().zip(&part.diagonal).enumerate() {
+                diagonal[b] += d;
+                sum[(b, b)] += share * d;
+                for (&a, s) in of_part[j..].iter().zip(part.s.column(j)) {
+                    sum[(a.max(b), a.min(b))] += s;
+                }
+            }
+            places.push(of_part);
+        }
+        let (factor, s) = Trapezoid::new(sum, eliminated, par)?;
+        let front = Self {
+            smallest_pivot: factor.smallest_pivot(&diagonal),
+            factor,
+            places,
+        };
+        let part = Part {
+            classes: kept,
+            s: PackedSymmetric::new(&s),
+            diagonal: diagonal.split_off(eliminated),
+        };
+        Ok((front, part))
+    }
+}
+
+/// The coarse problem, on this rank.
 #[derive(Debug)]
 pub struct Coarse {
-    factor: BoundaryLastCholesky,
-    /// The coarse unknowns of every cluster.
-    numbers: Vec<Vec<u32>>,
-    len: usize,
+    /// The nodes of the hierarchy above clusters, children before parents.
+    nodes: Vec<usize>,
+    /// Those of this rank.
+    fronts: BTreeMap<usize, Front>,
+    /// What clusters and nodes leave, at the owner of the node above.
+    parts: BTreeMap<usize, Part>,
+    /// The share of the diagonal that is added; none before the first factorization.
+    share: Option<f64>,
 }
 
 impl Coarse {
-    /// Adds up what all clusters say, in their order, and factorizes it; `order` is that in which their classes are
-    /// eliminated. The first of `holds`, shares of the diagonal, is added that leaves it definite.
+    /// Above the clusters of a `plan`; nothing is factorized yet.
+    pub fn new(plan: &Plan) -> Self {
+        Self {
+            nodes: plan.deepest_first(|v| plan.is_above_tops(v)),
+            fronts: BTreeMap::new(),
+            parts: BTreeMap::new(),
+            share: None,
+        }
+    }
+
+    /// Factorizes whatever is above clusters that are `remade`, which leave these `parts`, by cluster; the first of
+    /// `holds`, shares of the diagonal, is added that leaves it definite. Collective.
     ///
     /// # Errors
     /// A part of the scene can move.
-    pub fn new(
-        parts: &[CoarsePart],
-        order: &[usize],
+    pub fn factorize(
+        &mut self,
+        context: &Context<'_>,
+        classes: &Classes,
+        mut parts: BTreeMap<usize, Part>,
+        remade: &[bool],
         holds: &[f64],
-        par: Par,
-    ) -> Result<Self, Failure> {
-        let mut counts = vec![0; order.len()];
-        for &(k, count) in parts.iter().flat_map(|part| &part.classes) {
-            counts[k] = count;
+    ) -> Result<(), Failure> {
+        let Context { comm, plan, .. } = *context;
+        for (c, &top) in plan.tops.iter().enumerate().filter(|(c, _)| remade[*c]) {
+            self.pass_up(context, top, parts.remove(&c));
         }
-        let (mut first, mut n) = (vec![0; order.len()], 0);
-        for &k in order {
-            first[k] = n as u32;
-            n += counts[k];
-        }
-        let numbers_of = |part: &CoarsePart| -> Vec<u32> {
-            let classes = part.classes.iter();
-            let numbers = classes.flat_map(|&(k, count)| first[k]..first[k] + count as u32);
-            numbers.collect()
-        };
-        let numbers: Vec<Vec<u32>> = parts.iter().map(numbers_of).collect();
-        let mut cliques = Cliques::default();
-        for of_cluster in &numbers {
-            cliques.push(of_cluster.iter().copied());
-        }
-        let too_large = || {
-            Failure::internal("the coarse problem has more than 2^32 entries: use fewer clusters")
-        };
-        let pattern = LowerPattern::new(n, &cliques);
-        let pattern = pattern.ok_or_else(too_large)?;
-        let held_by = |share: f64| {
-            let mut sum = SparseSymmetric::zeros(pattern.clone());
-            for (part, numbers) in parts.iter().zip(&numbers) {
-                let mut s = part.s.clone();
-                (0..s.nrows()).for_each(|i| s[(i, i)] *= 1.0 + share);
-                sum.add_large(numbers, s.as_ref());
+        let mut factorized = Ok(());
+        for &share in holds {
+            let is_other = self.share != Some(share);
+            let mut touched = vec![false; plan.tree.nodes.len()];
+            for (&top, is_remade) in plan.tops.iter().zip(remade) {
+                touched[top] = is_other || *is_remade;
             }
-            BoundaryLastCholesky::new(&sum, n, par)
-        };
-        let mut factor = held_by(0.0);
-        for &share in &holds[1..] {
-            factor = factor.or_else(|_| held_by(share));
+            for v in 0..touched.len() {
+                if let (true, Some(parent)) = (touched[v], plan.tree.nodes[v].parent) {
+                    touched[parent] = true;
+                }
+            }
+            factorized = comm.agree(self.merge(context, classes, &touched, share));
+            self.share = factorized.is_ok().then_some(share);
+            if factorized.is_ok() {
+                break;
+            }
         }
-        let factor = factor.map_err(|error| {
-            Failure::ill_posed(format!(
-                "the coarse problem of the clusters can't be solved ({error}): some part of the scene is held neither \
-                 by supports nor by contact"
-            ))
-        })?;
-        Ok(Self {
-            factor,
-            numbers,
-            len: n,
-        })
+        factorized
     }
 
-    /// Number of coarse unknowns.
+    /// Merges what is `touched`. Collective; what failed on this rank is said at the end.
+    fn merge(
+        &mut self,
+        context: &Context<'_>,
+        classes: &Classes,
+        touched: &[bool],
+        share: f64,
+    ) -> Result<(), Failure> {
+        let Context {
+            comm, plan, par, ..
+        } = *context;
+        let homes = classes.homes(&plan.tree, &plan.tops);
+        let homes: BTreeMap<InterfaceDof, usize> = (classes.list.iter().zip(homes))
+            .map(|(class, home)| (class.dofs[0], home))
+            .collect();
+        let mut result = Ok(());
+        for v in self.nodes.clone() {
+            if !touched[v] {
+                continue;
+            }
+            let child = |&child: &usize| {
+                let share = if plan.is_top(child) { share } else { 0.0 };
+                Some((self.parts.get(&child)?, share))
+            };
+            let children: Option<Vec<(&Part, f64)>> =
+                plan.tree.nodes[v].children.iter().map(child).collect();
+            let is_due = plan.node_owners[v] == comm.rank() && result.is_ok();
+            // A child that failed isn't there; its owner says why.
+            let merged = children
+                .filter(|_| is_due)
+                .map(|children| Front::new(&children, |class| homes.get(class) == Some(&v), par));
+            let part = match merged.transpose() {
+                Ok(merged) => merged.map(|(front, part)| {
+                    self.fronts.insert(v, front);
+                    part
+                }),
+                Err(NotDefinite) => {
+                    result = Err(Failure::ill_posed(
+                        "the coarse problem of the clusters can't be solved: some part of the scene is held neither by \
+                         supports nor by contact",
+                    ));
+                    None
+                }
+            };
+            self.pass_up(context, v, part);
+        }
+        result
+    }
+
+    /// Brings what node v leaves to the owner of the node above. Collective.
+    fn pass_up(&mut self, context: &Context<'_>, v: usize, mut part: Option<Part>) {
+        let Context { comm, plan, .. } = *context;
+        let Some(parent) = plan.tree.nodes[v].parent else {
+            return;
+        };
+        let way = (plan.node_owners[v], plan.node_owners[parent]);
+        self.parts.remove(&v);
+        comm.route(
+            [way],
+            |_| part.take(),
+            |_, arrived| self.parts.extend(arrived.map(|part| (v, part))),
+        );
+    }
+
+    /// Number of coarse unknowns that this rank eliminates.
     pub fn len(&self) -> usize {
-        self.len
+        let fronts = self.fronts.values();
+        fronts.map(|front| front.factor.eliminated()).sum()
     }
 
-    /// The smallest pivot relative to its diagonal entry.
+    /// The smallest pivot of this rank relative to its diagonal entry.
     pub fn smallest_pivot(&self) -> f64 {
-        self.factor.smallest_pivot()
+        let pivots = self.fronts.values().map(|front| front.smallest_pivot);
+        pivots.fold(f64::INFINITY, f64::min)
     }
 
-    /// The coarse unknowns of every cluster, for the loads of all.
-    pub fn solve(&self, loads: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let mut x = vec![0.0; self.len];
-        for (numbers, load) in self.numbers.iter().zip(loads) {
-            for (&i, load) in numbers.iter().zip(load) {
-                x[i as usize] += load;
+    /// The coarse unknowns of the clusters of this rank, for the loads of all. Collective.
+    pub fn solve(&self, context: &Context<'_>, mut loads: Vectors) -> Vectors {
+        let plan = context.plan;
+        let parent = |v: usize| plan.tree.nodes[v].parent;
+        let mut arrived = BTreeMap::new();
+        for (c, &top) in plan.tops.iter().enumerate() {
+            let load = loads.remove(&c);
+            carry(context, top, parent(top), load, &mut arrived, Direction::Up);
+        }
+        let mut eliminated: Vectors = BTreeMap::new();
+        for &v in &self.nodes {
+            let passed = self.fronts.get(&v).map(|front| {
+                let mut load = vec![0.0; front.factor.size()];
+                for (child, places) in plan.tree.nodes[v].children.iter().zip(&front.places) {
+                    let of_child = arrived.remove(child).unwrap_or_default();
+                    for (&i, f) in places.iter().zip(of_child) {
+                        load[i] += f;
+                    }
+                }
+                front.factor.forward(&mut load);
+                let passed = load.split_off(front.factor.eliminated());
+                eliminated.insert(v, load);
+                passed
+            });
+            carry(context, v, parent(v), passed, &mut arrived, Direction::Up);
+        }
+        let mut solved = BTreeMap::new();
+        for &v in self.nodes.iter().rev() {
+            let x = self.fronts.get(&v).map(|front| {
+                let mut x = eliminated.remove(&v).unwrap_or_default();
+                x.extend(solved.remove(&v).unwrap_or_default());
+                front.factor.backward(&mut x);
+                x
+            });
+            for (i, &child) in plan.tree.nodes[v].children.iter().enumerate() {
+                let of_child = x.as_ref().zip(self.fronts.get(&v)).map(|(x, front)| {
+                    let places = front.places[i].iter();
+                    places.map(|&i| x[i]).collect()
+                });
+                carry(
+                    context,
+                    child,
+                    Some(v),
+                    of_child,
+                    &mut solved,
+                    Direction::Down,
+                );
             }
         }
-        self.factor.solve(&mut x);
-        let of_cluster = |numbers: &Vec<u32>| numbers.iter().map(|&i| x[i as usize]).collect();
-        self.numbers.iter().map(of_cluster).collect()
+        let of_clusters = plan.tops.iter().enumerate();
+        of_clusters
+            .filter_map(|(c, top)| Some((c, solved.remove(top)?)))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::linalg::solvers::Solve;
+
+    use super::*;
+
+    /// The unknowns of class k among all.
+    const UNKNOWNS: [std::ops::Range<usize>; 3] = [0..2, 2..5, 5..6];
+
+    fn first(k: usize) -> InterfaceDof {
+        InterfaceDof {
+            node: 10 - k as u32,
+            axis: 0,
+        }
+    }
+
+    /// What is left to these `classes`, in this order, and where they are among all.
+    fn part(classes: &[usize]) -> (Part, Mat<f64>, Vec<usize>) {
+        let places: Vec<usize> = classes.iter().flat_map(|&k| UNKNOWNS[k].clone()).collect();
+        let n = places.len();
+        let root = Mat::from_fn(n, n, |i, j| ((7 * i + 3 * j + classes[0]) as f64).sin());
+        let s = &root * root.transpose() + Mat::<f64>::identity(n, n);
+        let part = Part {
+            classes: (classes.iter())
+                .map(|&k| (first(k), UNKNOWNS[k].len()))
+                .collect(),
+            diagonal: (0..n).map(|i| s[(i, i)]).collect(),
+            s: PackedSymmetric::new(&s),
+        };
+        (part, s, places)
+    }
+
+    #[test]
+    fn merges_one_above_the_other_solve_for_the_sum_of_all_parts() {
+        const SHARE: f64 = 0.25;
+        let parts = [part(&[0, 1]), part(&[2, 1]), part(&[2, 0])];
+        let mut sum = Mat::<f64>::zeros(6, 6);
+        for (_, s, places) in &parts {
+            for (i, &a) in places.iter().enumerate() {
+                for (j, &b) in places.iter().enumerate() {
+                    sum[(a, b)] += s[(i, j)] * if i == j { 1.0 + SHARE } else { 1.0 };
+                }
+            }
+        }
+        let [a, b, c] = &parts;
+        let children = [(&a.0, SHARE), (&b.0, SHARE)];
+        let (below, left) = Front::new(&children, |class| *class == first(1), Par::Seq).unwrap();
+        let children = [(&left, 0.0), (&c.0, SHARE)];
+        let (above, nothing) = Front::new(&children, |_| true, Par::Seq).unwrap();
+        assert!(nothing.classes.is_empty());
+
+        // Loads on class 1 are carried up by the front below, all others by the third part.
+        let load = |i: usize| 1.0 + i as f64;
+        let mut of_below = vec![0.0; 6];
+        let eliminated = below.factor.eliminated();
+        (0..eliminated).for_each(|i| of_below[i] = load(UNKNOWNS[1].start + i));
+        below.factor.forward(&mut of_below);
+        let mut of_above = vec![0.0; above.factor.size()];
+        for (i, &place) in above.places[0].iter().enumerate() {
+            of_above[place] += of_below[eliminated + i];
+        }
+        for (&place, &at) in above.places[1].iter().zip(&c.2) {
+            of_above[place] += load(at);
+        }
+        above.factor.forward(&mut of_above);
+        above.factor.backward(&mut of_above);
+        for (i, &place) in above.places[0].iter().enumerate() {
+            of_below[eliminated + i] = of_above[place];
+        }
+        below.factor.backward(&mut of_below);
+
+        let exact = sum
+            .llt(faer::Side::Lower)
+            .unwrap()
+            .solve(&Mat::from_fn(6, 1, |i, _| load(i)));
+        for (front_place, &at) in below.places[0].iter().zip(&a.2) {
+            assert!((of_below[*front_place] - exact[(at, 0)]).abs() < 1e-13);
+        }
+        for (front_place, &at) in above.places[1].iter().zip(&c.2) {
+            assert!((of_above[*front_place] - exact[(at, 0)]).abs() < 1e-13);
+        }
+        let pivots = [&below, &above].map(|front| front.smallest_pivot);
+        assert!(pivots.iter().all(|pivot| (1e-3..=1.25).contains(pivot)));
     }
 }

@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 use crate::bddc::classes::Classes;
 use crate::bddc::coarse::Coarse;
 use crate::bddc::local::Local;
-use crate::comm::{Comm, ROOT};
+use crate::comm::ROOT;
+use crate::context::Context;
 use crate::schur::symmetric::PackedSymmetric;
 use crate::vector::dot;
 
@@ -27,8 +28,8 @@ pub type Vectors = BTreeMap<usize, Vec<f64>>;
 /// What conjugate gradients need.
 #[derive(Clone, Copy)]
 pub struct Gradients<'a> {
-    /// All ranks.
-    pub comm: &'a Comm,
+    /// What the run works on.
+    pub context: &'a Context<'a>,
     /// The owner of every cluster.
     pub owners: &'a [usize],
     /// The classes of Γ.
@@ -37,8 +38,8 @@ pub struct Gradients<'a> {
     pub locals: &'a BTreeMap<usize, Local>,
     /// S of every cluster; none of those of other ranks.
     pub matrices: &'a [Option<&'a PackedSymmetric>],
-    /// The coarse problem, on the root.
-    pub coarse: Option<&'a Coarse>,
+    /// The coarse problem.
+    pub coarse: &'a Coarse,
     /// Whether the preconditioner is that of other matrices.
     pub is_stale: bool,
     /// Whether the preconditioner can be made better.
@@ -123,15 +124,10 @@ impl Gradients<'_> {
             others.insert(c, of_others);
             coarse.insert(c, of_coarse);
         }
-        let to_root: Vec<(usize, usize)> = self.owners.iter().map(|&owner| (owner, ROOT)).collect();
-        let from_root: Vec<(usize, usize)> = to_root.iter().map(|&(a, b)| (b, a)).collect();
-        let loads = (self.comm).route_lists(&to_root, |c| coarse.remove(&c).unwrap_or_default());
-        let loads: Vec<Vec<f64>> = loads.into_values().collect();
-        let mut answers = (self.coarse).map_or_else(Vec::new, |coarse| coarse.solve(&loads));
-        let answers = (self.comm).route_lists(&from_root, |c| std::mem::take(&mut answers[c]));
+        let mut answers = self.coarse.solve(self.context, coarse);
         let mut z = Vectors::new();
-        for (c, x) in answers {
-            let others = others.remove(&c).unwrap_or_default();
+        for (c, others) in others {
+            let x = answers.remove(&c).unwrap_or_default();
             z.insert(c, self.locals[&c].correct(others, &x));
         }
         self.add_up(&mut z);
@@ -157,7 +153,7 @@ impl Gradients<'_> {
             v[&c][ranges(c, k)].to_vec()
         };
         let mut sums: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-        for (i, part) in self.comm.route_lists(&there, own) {
+        for (i, part) in self.context.comm.route_lists(&there, own) {
             match sums.get_mut(&parts[i].0) {
                 Some(sum) => sum
                     .iter_mut()
@@ -166,7 +162,7 @@ impl Gradients<'_> {
                 None => drop(sums.insert(parts[i].0, part)),
             }
         }
-        for (i, sum) in (self.comm).route_lists(&back, |i| sums[&parts[i].0].clone()) {
+        for (i, sum) in (self.context.comm).route_lists(&back, |i| sums[&parts[i].0].clone()) {
             let (k, c) = parts[i];
             if let Some(of_cluster) = v.get_mut(&c) {
                 of_cluster[ranges(c, k)].copy_from_slice(&sum);
@@ -177,7 +173,7 @@ impl Gradients<'_> {
     /// x·y, every unknown once, on all ranks. Collective.
     fn dot(&self, x: &Vectors, y: &Vectors) -> f64 {
         let to_root: Vec<(usize, usize)> = self.owners.iter().map(|&owner| (owner, ROOT)).collect();
-        let parts = self.comm.route_lists(&to_root, |c| {
+        let parts = self.context.comm.route_lists(&to_root, |c| {
             let classes = self.classes.of_clusters[c].iter();
             let classes = classes.zip(self.locals[&c].ranges());
             let own = classes.filter(|(k, _)| self.classes.list[**k].clusters[0] == c);
@@ -185,7 +181,7 @@ impl Gradients<'_> {
             vec![of.sum::<f64>()]
         });
         let mut sum: f64 = parts.into_values().flatten().sum();
-        self.comm.broadcast(&mut sum);
+        self.context.comm.broadcast(&mut sum);
         sum
     }
 }

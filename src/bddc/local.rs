@@ -204,12 +204,10 @@ pub struct Local {
     /// Where [others | coarse] are found.
     order: Vec<usize>,
     others: Others,
-    /// What the others leave to the coarse unknowns.
-    pub coarse: Mat<f64>,
 }
 
 impl Local {
-    /// A cluster with the bases of its classes, as `depth` says.
+    /// A cluster with the bases of its classes, as `depth` says, and what it leaves to its coarse unknowns.
     ///
     /// # Errors
     /// It can move although its coarse unknowns are held.
@@ -218,7 +216,7 @@ impl Local {
         bases: Vec<Basis>,
         depth: Depth,
         par: Par,
-    ) -> Result<Self, Moves> {
+    ) -> Result<(Self, PackedSymmetric), Moves> {
         fill_upper_triangle(&mut s);
         let (mut others, mut coarse) = (Vec::new(), Vec::new());
         for (range, basis) in shared.placement.ranges.iter().zip(&bases) {
@@ -248,18 +246,17 @@ impl Local {
         let found = before
             .iter()
             .find_map(|&share| factor(permuted.clone(), share).ok());
-        let (others, mut coarse) = match found {
+        let (others, coarse) = match found {
             Some(found) => found,
             None => factor(permuted, *last)?,
         };
-        fill_upper_triangle(&mut coarse);
-        Ok(Self {
+        let local = Self {
             shared,
             bases,
             order,
             others,
-            coarse,
-        })
+        };
+        Ok((local, PackedSymmetric::new(&coarse)))
     }
 
     /// Where its classes are.

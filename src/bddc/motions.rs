@@ -74,6 +74,6 @@ impl SharedNodes {
         let rank = diagonal
             .iter()
             .take_while(|r| **r > DEPENDENT * diagonal[0]);
-        qr.compute_Q().subcols(0, rank.count()).to_owned()
+        qr.compute_thin_Q().subcols(0, rank.count()).to_owned()
     }
 }

@@ -90,13 +90,13 @@ impl Bddc {
             b.insert(c, of_shared);
         }
         let gradients = Gradients {
-            comm,
+            context,
             owners: &self.owners,
             classes: &self.classes,
             locals: &self.locals,
             matrices: &(plan.tops.iter().map(|v| clusters.get(v).map(|of| &of.s)))
                 .collect::<Vec<_>>(),
-            coarse: self.coarse.as_ref(),
+            coarse: &self.coarse,
             is_stale: self.is_stale(),
             is_judged: self.is_judged(),
         };

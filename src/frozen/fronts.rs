@@ -1,6 +1,5 @@
 //! The fronts above all contact, for an active set that is frozen.
 
-use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use faer::Mat;
@@ -70,13 +69,7 @@ impl FrozenFronts {
                 is_between[v] = false;
             }
         }
-        let mut nodes: Vec<usize> = (0..is_between.len()).filter(|&v| is_between[v]).collect();
-        let mut depth = vec![0; is_between.len()];
-        for v in (0..depth.len()).rev() {
-            depth[v] = (plan.tree.nodes[v].parent).map_or(0, |parent| depth[parent] + 1);
-        }
-        // The deepest first: what ranks share is near the root, and none waits for another before.
-        nodes.sort_by_key(|&v| Reverse(depth[v]));
+        let nodes = plan.deepest_first(|v| is_between[v]);
         let own = plan
             .groups
             .iter()
@@ -234,7 +227,7 @@ impl FrozenFronts {
             frozen = bddc.freeze(context, &self.tops, &touched, open, self.spring, true);
         }
         frozen?;
-        let pivot = bddc.coarse_pivot;
+        let pivot = bddc.coarse_pivot();
         self.bddc = Some(bddc);
         self.smallest_pivot = self.smallest_pivot.min(pivot);
         Ok(())

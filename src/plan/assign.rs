@@ -23,7 +23,13 @@ struct Share {
 pub(super) fn assign(tree: &Tree, clusters: &[usize], costs: &[f64], ranks: usize) -> Vec<usize> {
     let of_subtree = tree.sums(costs);
     let mut tasks = clusters.to_vec();
-    let mut best = share(tree, &tasks, costs, &of_subtree, ranks);
+    let mut best = share(
+        tree,
+        by_cost(&tasks, &of_subtree, ranks),
+        costs,
+        &of_subtree,
+        ranks,
+    );
     for _ in 0..SPLITS * ranks {
         let dividable = (0..tasks.len()).filter(|&t| !tree.nodes[tasks[t]].children.is_empty());
         let costliest = dividable.max_by(|&a, &b| {
@@ -36,21 +42,31 @@ pub(super) fn assign(tree: &Tree, clusters: &[usize], costs: &[f64], ranks: usiz
         let node = tasks.swap_remove(costliest);
         tasks.extend(&tree.nodes[node].children);
         tasks.sort_unstable();
-        let next = share(tree, &tasks, costs, &of_subtree, ranks);
+        let next = share(
+            tree,
+            by_cost(&tasks, &of_subtree, ranks),
+            costs,
+            &of_subtree,
+            ranks,
+        );
         if next.end < GAIN * best.end {
             best = next;
         }
     }
-    best.owner
+    let row = in_a_row(tree, clusters, &of_subtree, ranks);
+    let neighbours = share(tree, row, costs, &of_subtree, ranks);
+    match GAIN * neighbours.end <= best.end {
+        true => neighbours.owner,
+        false => best.owner,
+    }
 }
 
-/// Hands out `tasks`, subtrees, the most expensive first, each to the rank that has least.
-fn share(tree: &Tree, tasks: &[usize], costs: &[f64], of_subtree: &[f64], ranks: usize) -> Share {
-    const NOBODY: usize = usize::MAX;
+/// The owners of `tasks`, subtrees, the most expensive first, each that of the rank that has least.
+fn by_cost(tasks: &[usize], of_subtree: &[f64], ranks: usize) -> Vec<(usize, usize)> {
     let mut order = tasks.to_vec();
     order.sort_by(|&a, &b| of_subtree[b].total_cmp(&of_subtree[a]).then(a.cmp(&b)));
-    let mut owner = vec![NOBODY; tree.nodes.len()];
     let mut busy = vec![0.0f64; ranks];
+    let mut owners = Vec::with_capacity(order.len());
     for task in order {
         let mut least = 0;
         for rank in 1..ranks {
@@ -59,7 +75,42 @@ fn share(tree: &Tree, tasks: &[usize], costs: &[f64], of_subtree: &[f64], ranks:
             }
         }
         busy[least] += of_subtree[task];
-        owner[task] = least;
+        owners.push((task, least));
+    }
+    owners
+}
+
+/// The owners of `tasks` where each rank gets what is together in the hierarchy: what is above is shared as well.
+fn in_a_row(tree: &Tree, tasks: &[usize], of_subtree: &[f64], ranks: usize) -> Vec<(usize, usize)> {
+    let mut is_task = vec![false; tree.nodes.len()];
+    tasks.iter().for_each(|&task| is_task[task] = true);
+    let all = tree.roots().flat_map(|root| tree.subtree(root));
+    let row: Vec<usize> = all.filter(|&v| is_task[v]).collect();
+    let total: f64 = row.iter().map(|&task| of_subtree[task]).sum();
+    let mut before = 0.0;
+    let owner = |task: usize| {
+        let middle = before + 0.5 * of_subtree[task];
+        before += of_subtree[task];
+        let share = ranks as f64 * middle / total.max(f64::MIN_POSITIVE);
+        (task, (share as usize).min(ranks - 1))
+    };
+    row.into_iter().map(owner).collect()
+}
+
+/// Hands out subtrees, the tasks, to `owners`.
+fn share(
+    tree: &Tree,
+    owners: Vec<(usize, usize)>,
+    costs: &[f64],
+    of_subtree: &[f64],
+    ranks: usize,
+) -> Share {
+    const NOBODY: usize = usize::MAX;
+    let mut owner = vec![NOBODY; tree.nodes.len()];
+    let mut busy = vec![0.0f64; ranks];
+    for (task, rank) in owners {
+        busy[rank] += of_subtree[task];
+        owner[task] = rank;
     }
     let mut done: Vec<f64> = (owner.iter())
         .map(|&owner| if owner == NOBODY { 0.0 } else { busy[owner] })

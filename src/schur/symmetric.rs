@@ -2,14 +2,16 @@
 
 use faer::Mat;
 use pulp::{Arch, Simd, WithSimd};
+use serde::{Deserialize, Serialize};
 
 use super::columns::{Number, WIDTH};
 use super::panel::packed_len;
 
 /// The lower triangle of a symmetric matrix, column after column, each from the diagonal on.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PackedSymmetric {
     size: usize,
+    #[serde(with = "crate::bytes")]
     values: Vec<f64>,
 }
 
