@@ -61,6 +61,10 @@ impl Context<'_> {
         if moment.part < 1.0 {
             let before = (moment.step.checked_sub(1)).map(|step| self.loads_of_step(step));
             for (b, loads) in &mut loads.blocks {
+                // Nothing acts on what isn't there, whatever did before.
+                if self.catalog.bodies[self.catalog.subdomains[*b].body].is_absent {
+                    continue;
+                }
                 let before = before.as_ref().map(|before| &before.blocks[b]);
                 loads.go_back(before, moment.part);
             }

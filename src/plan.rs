@@ -301,7 +301,7 @@ mod tests {
             units: Units::Metre,
             plane: Some(PlaneState::Strain),
             materials: Vec::new(),
-            bodies: vec![Body { name: "b".into() }],
+            bodies: vec![Body::new("b".into())],
             supports: Vec::new(),
             contacts: Vec::new(),
             steps: Vec::new(),

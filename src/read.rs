@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use contact_dd_partition::error::InputError;
 use contact_dd_partition::mesh::bounding_box::BoundingBox;
-use contact_dd_partition::problem::Subdomain;
 use contact_dd_partition::problem::consistency::Places;
 use contact_dd_partition::problem::copies::NodeCopies;
 use contact_dd_partition::problem::read::ProblemFile;
+use contact_dd_partition::problem::{Catalog, Subdomain};
 
 use crate::comm::Comm;
 use crate::contact::jumps::JumpOf;
@@ -37,17 +37,18 @@ pub fn read_blocks(
         .collect())
 }
 
-/// The contact groups of this rank, by their number, whose nodes the owners of `blocks` describe. Collective.
+/// The contact groups of this rank in a stage whose `catalog` this is, by their number, whose nodes the owners of `blocks`
+/// describe. Collective.
 ///
 /// # Errors
 /// A contact point that says something else than the mesh does.
 pub fn collect_groups(
     comm: &Comm,
     file: &ProblemFile,
+    catalog: &Catalog,
     plan: &Plan,
     blocks: &BTreeMap<usize, Block>,
 ) -> Result<BTreeMap<usize, ContactGroup>, Failure> {
-    let catalog = file.catalog();
     let mut bounds = BoundingBox::EMPTY;
     comm.gather(
         plan.owners(),

@@ -22,8 +22,11 @@ pub struct ContactPoint<N> {
     pub entries: Vec<(N, f64)>,
     /// The directions in which jumps and forces are told apart.
     pub frame: LocalFrame,
-    /// The gap g of the undeformed bodies (m); negative for an interference.
+    /// The gap g (m), negative for an interference: of the undeformed bodies, or of what came later in the position in which it
+    /// came.
     pub gap: f64,
+    /// The jump ⟦u⟧ when it came (m), from which its slip counts.
+    pub since: [f64; 3],
     /// Tributary area on side a, the integral of its shape function (m, in space m²): pressure is force over
     /// area.
     pub area: f64,
@@ -126,6 +129,7 @@ impl<N: Copy> ContactPoint<N> {
             entries,
             frame: LocalFrame::new(normal),
             gap: 0.0,
+            since: [0.0; 3],
             area: 0.0,
             position,
             force_point: position,
@@ -175,6 +179,7 @@ impl<N: Copy> ContactPoint<N> {
             place: self.place,
             frame: self.frame,
             gap: self.gap,
+            since: self.since,
             area: self.area,
             position: self.position,
             force_point: self.force_point,

@@ -14,6 +14,7 @@ mod loads;
 mod mortar;
 mod node_pairs;
 mod obstacle;
+mod presence;
 mod ray_search;
 mod sides;
 mod skin;
@@ -132,14 +133,23 @@ impl Model {
         let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads, scene);
         let mut contacts = Vec::new();
         let mut found = Vec::new();
-        for touching::Declared { contact, words } in &declared {
+        let mut tables = Vec::new();
+        for touching::Declared {
+            contact,
+            table,
+            words,
+        } in &declared
+        {
             let made = sides.contact(contacts.len() as u32, contact, &mut warnings)?;
             // Where all nodes are held no bodies touch each other that could part.
             if words.is_none() || !made.points.is_empty() {
                 contacts.push(made);
+                tables.push(&table[..]);
                 found.extend(words.clone());
             }
         }
+        presence::check(scene, &bodies, &contacts)?;
+        let absent_contacts = presence::contacts(scene, &tables);
         let diagnostics = diagnostics::Diagnostics {
             scene,
             bodies: &bodies,
@@ -168,7 +178,12 @@ impl Model {
             supports: loads.supports,
             forces: loads.forces,
             initial_stress: loads.initial_stress,
-            steps: loads.steps,
+            steps: (loads.steps.into_iter().zip(absent_contacts))
+                .map(|(step, absent_contacts)| ModelStep {
+                    absent_contacts,
+                    ..step
+                })
+                .collect(),
             contacts,
             found,
             prescribed_subdomains,

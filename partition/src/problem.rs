@@ -10,6 +10,7 @@ mod friction;
 mod law;
 pub mod read;
 pub mod schema;
+pub mod stage;
 mod strings;
 pub mod tree;
 pub mod vtkhdf;
@@ -212,6 +213,18 @@ pub struct LoadStep {
     pub name: String,
     /// What it stands at on the axis of time.
     pub time: f64,
+    /// What isn't there.
+    pub absent: Absent,
+}
+
+/// The bodies and contacts that aren't there in a load step, by their numbers, ascending; contacts of absent bodies
+/// needn't be among these.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Absent {
+    /// Bodies.
+    pub bodies: Vec<u32>,
+    /// Contacts.
+    pub contacts: Vec<u32>,
 }
 
 /// A body: one piece of the mesh that hangs together.
@@ -219,6 +232,8 @@ pub struct LoadStep {
 pub struct Body {
     /// Name of the scene's body, numbered where that one has several pieces.
     pub name: String,
+    /// Whether it isn't there in the [stage](stage::Stage) that the catalog is of.
+    pub is_absent: bool,
 }
 
 /// A tree over the subdomains, up which their Schur complements are merged.
@@ -273,6 +288,16 @@ pub struct Catalog {
     pub solver: SolverSettings,
     /// Warnings of the partition tool, to be repeated in the report.
     pub warnings: Vec<String>,
+}
+
+impl Body {
+    /// A body that is there.
+    pub fn new(name: String) -> Self {
+        Self {
+            name,
+            is_absent: false,
+        }
+    }
 }
 
 impl Catalog {

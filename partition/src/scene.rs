@@ -9,6 +9,7 @@ pub mod initial;
 pub mod material;
 pub mod number;
 pub mod place;
+mod presence;
 pub mod step;
 pub mod suggest;
 mod syntax;

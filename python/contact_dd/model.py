@@ -49,6 +49,8 @@ class Step(TypedDict, total=False):
     name: str
     time: float
     scale: float | dict[str, float]
+    add: str | list[str]
+    remove: str | list[str]
     displacement: list[dict[str, Any]]
     traction: list[dict[str, Any]]
     pressure: list[dict[str, Any]]

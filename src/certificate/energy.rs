@@ -24,7 +24,7 @@ use crate::vector::dot;
 const NOT_ROUND_OFF: f64 = 1e-12;
 
 /// Where energy came from and went in a load step, with the mean of the forces at both ends of every increment (J, per
-/// metre of thickness in the plane).
+/// metre of thickness in the plane); in a load step in which bodies or contacts come or go, on the way from unloaded bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EnergyBalance {
     /// Work of loads.

@@ -43,6 +43,8 @@ pub struct StepReport {
     pub name: String,
     /// What it stands at on the axis of time.
     pub time: f64,
+    /// Names of the bodies and contacts that aren't there; contacts of absent bodies needn't be among them.
+    pub absent: Vec<String>,
     /// How its sweeps ended.
     pub status: Status,
     /// Number of sweeps after the start.

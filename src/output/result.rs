@@ -55,6 +55,8 @@ pub(super) enum Of {
     Solution,
     /// Left out where stresses are.
     Stress,
+    /// Left out where nothing comes or goes.
+    Presence,
 }
 
 /// A list as the file has it.
@@ -130,6 +132,8 @@ lists! {
     types: u8, "cell types", "Types", Cell, Mesh;
     /// Index of its material for every cell.
     materials: i32, "materials", "CellData/Material", Cell, Mesh;
+    /// Whether the body of every cell is there.
+    present: u8, "presences", "CellData/Present", Cell, Presence;
     /// Stress of the cells.
     cell_stress: [f64; 6], "cell stresses", "CellData/Stress", Cell, Stress;
     /// Principal stresses of the cells, descending (Pa).

@@ -19,6 +19,8 @@ use crate::certificate::Certificate;
 use crate::plan::cost::CostEstimate;
 use crate::sweep::SweepRecord;
 
+/// Bodies and contacts up to which all that aren't there are named.
+const NAMED: usize = 6;
 /// How the reason is shown for which sweeps ended well.
 const CONVERGED: Style = AnsiColor::Green.on_default();
 
@@ -116,10 +118,20 @@ pub fn settings(settings: &[(&str, String)]) -> String {
     entries.collect()
 }
 
-/// Which load step comes, number k of `count`.
-pub fn step(step: &LoadStep, k: usize, count: usize) -> String {
+/// Which load step comes, number k of `count`, and what isn't there in it.
+pub fn step(step: &LoadStep, k: usize, count: usize, absent: &[String]) -> String {
     let LoadStep { name, time, .. } = step;
-    format!("\nstep {} of {count}: '{name}' at {time}", k + 1)
+    let first: Vec<String> = absent
+        .iter()
+        .take(NAMED)
+        .map(|name| format!("'{name}'"))
+        .collect();
+    let without = match absent.len().checked_sub(NAMED) {
+        _ if absent.is_empty() => String::new(),
+        None | Some(0) => format!(", without {}", first.join(", ")),
+        Some(more) => format!(", without {} and {more} more", first.join(", ")),
+    };
+    format!("\nstep {} of {count}: '{name}' at {time}{without}", k + 1)
 }
 
 /// One line of the table of sweeps.

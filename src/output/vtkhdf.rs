@@ -20,7 +20,7 @@ use hdf5::{File, FileBuilder};
 
 use self::contact_table::ContactTables;
 use self::grid::Grid;
-use super::result::{ContactRow, PartitionSize, SubdomainResults};
+use super::result::{ContactRow, Of, PartitionSize, SubdomainResults};
 use crate::sweep::SweepRecord;
 
 /// How much room everything takes.
@@ -34,6 +34,8 @@ pub struct Layout {
     pub times: Vec<f64>,
     /// Whether there are stresses.
     pub stress: bool,
+    /// Whether bodies or contacts come or go.
+    pub presence: bool,
     /// The scene's title; may be empty.
     pub title: String,
     /// The units that its numbers are meant in.
@@ -57,10 +59,20 @@ impl Layout {
             contacts: catalog.contacts.clone(),
             times: catalog.steps.iter().map(|step| step.time).collect(),
             stress,
+            presence: catalog.has_stages(),
             title: catalog.title.clone(),
             units: catalog.units,
             plane: catalog.plane,
         }
+    }
+}
+
+impl Layout {
+    /// The lists that the file doesn't have.
+    fn left_out(&self) -> Vec<Of> {
+        let kinds = [(Of::Stress, self.stress), (Of::Presence, self.presence)];
+        let left_out = kinds.into_iter().filter(|(_, is_there)| !is_there);
+        left_out.map(|(kind, _)| kind).collect()
     }
 }
 

@@ -15,13 +15,25 @@ use crate::plan::Plan;
 use crate::plan::cost::CostEstimate;
 use crate::report::totals::Totals;
 use crate::report::{Outputs, failures, reason, report};
-use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::settings::Settings;
 use crate::settings::command_line::LogFormat;
 use crate::sweep::SweepRecord;
 
 /// Exit code of sweeps that don't converge.
 const NOT_CONVERGED: u8 = 3;
+
+/// What validating found in load steps in which the same is there.
+#[derive(Debug)]
+pub struct Checked {
+    /// What a user should know of their rigid motions.
+    pub warnings: Vec<String>,
+    /// What solving them would cost every rank.
+    pub costs: Vec<CostEstimate>,
+    /// Memory that there is (bytes).
+    pub available: f64,
+    /// Coarse unknowns of an iterative interface solver.
+    pub coarse_dofs: Option<usize>,
+}
 
 /// Prints on the root what a user wants to follow, and nothing elsewhere.
 pub struct RunLog<'a> {
@@ -99,21 +111,27 @@ impl<'a> RunLog<'a> {
         }
     }
 
-    /// What validating found, and what solving would cost.
-    pub fn check(
-        &self,
-        analyses: &[RigidBodyAnalysis],
-        costs: &[CostEstimate],
-        available: f64,
-        coarse_dofs: Option<usize>,
-    ) {
+    /// What validating found in every stage, and what solving the one that takes most memory would cost.
+    pub fn check(&self, stages: &[Checked]) {
         self.bar.finish();
-        let all = analyses.iter().map(|analysis| &analysis.motions.warnings);
+        let all = stages.iter().flat_map(|stage| &stage.warnings);
         if self.comm.is_root() {
-            for warning in all.flatten().collect::<BTreeSet<_>>() {
+            for warning in all.collect::<BTreeSet<_>>() {
                 event::warning(self.settings.log, warning);
             }
         }
+        let bytes = |stage: &&Checked| CostEstimate::sum(&stage.costs).bytes;
+        let largest = stages.iter().max_by(|a, b| bytes(a).total_cmp(&bytes(b)));
+        let Some(Checked {
+            costs,
+            available,
+            coarse_dofs,
+            ..
+        }) = largest
+        else {
+            return;
+        };
+        let (available, coarse_dofs) = (*available, *coarse_dofs);
         let (all, most) = (CostEstimate::sum(costs), CostEstimate::largest(costs));
         self.say(|| terminal::costs(all, most, available, coarse_dofs));
         self.say(|| "\nthe problem file is valid".into());
@@ -132,7 +150,7 @@ impl<'a> RunLog<'a> {
         let Some(step) = catalog.steps.get(k) else {
             return;
         };
-        self.say(|| terminal::step(step, k, catalog.steps.len()));
+        self.say(|| terminal::step(step, k, catalog.steps.len(), &catalog.absent_in(k)));
         self.log(&Event::Step {
             step: k + 1,
             steps: catalog.steps.len(),

@@ -208,9 +208,11 @@ impl Totals<'_> {
     pub fn step_reports(&self) -> Vec<StepReport> {
         let steps = self.catalog.steps.iter().zip(&self.steps);
         steps
-            .map(|(step, totals)| StepReport {
+            .enumerate()
+            .map(|(k, (step, totals))| StepReport {
                 name: step.name.clone(),
                 time: step.time,
+                absent: self.catalog.absent_in(k),
                 status: totals.status(),
                 sweeps: totals.sweeps(),
                 active_set_iterations: totals.outcome.active_set_iterations,

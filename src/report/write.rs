@@ -3,7 +3,10 @@
 mod parcel;
 
 use contact_dd_partition::contact_point::ContactPoint;
+use contact_dd_partition::element::geometry::dot;
 use contact_dd_partition::error::OutputError;
+use contact_dd_partition::problem::stage::Stage;
+use contact_dd_partition::problem::{Catalog, SubdomainNode};
 
 use self::parcel::Parcel;
 use crate::comm::ROOT;
@@ -19,7 +22,7 @@ use crate::recover::{GroupSolution, Slips};
 /// Streams all subdomains and contact rows to the root, which writes a slab of subdomains as soon
 /// as it is complete. Collective; `file` is the root's.
 ///
-/// On the root the conditions are added up to `contacts` on their way.
+/// On the root the conditions are added up to `contacts` on their way; those that are `absent` are written behind the others.
 ///
 /// The slabs don't depend on who owns what: the same calls write the same numbers on any ranks.
 ///
@@ -31,10 +34,9 @@ pub fn write_solution(
     slips: &Slips,
     mut file: Option<&mut ResultFile>,
     contacts: &mut [ContactResultant],
+    absent: &[ContactRow],
 ) -> Result<(), Failure> {
-    let &Context {
-        comm, plan, blocks, ..
-    } = context;
+    let &Context { comm, plan, .. } = context;
     let slabs = file.as_ref().map_or(Vec::new(), |file| file.slabs());
     let mut failed = Ok(());
     let mut write = |write: &mut dyn FnMut(&mut ResultFile) -> Result<(), OutputError>| {
@@ -47,11 +49,11 @@ pub fn write_solution(
     for parcel in &parcels {
         match (parcel.owner, comm.is_root()) {
             // What is the root's own needs no message.
-            (ROOT, true) => parcel.append_to(&mut slab, blocks, solution),
+            (ROOT, true) => parcel.append_to(&mut slab, context, solution),
             (owner, true) => slab.append(comm.receive(owner)),
             (owner, false) if owner == comm.rank() => {
                 sent.restart(parcel.subdomains.start);
-                parcel.append_to(&mut sent, blocks, solution);
+                parcel.append_to(&mut sent, context, solution);
                 comm.send(ROOT, &sent);
             }
             _ => {}
@@ -77,8 +79,23 @@ pub fn write_solution(
             write(&mut |file| file.write_contacts(&rows));
         },
     );
+    write(&mut |file| file.write_contacts(absent));
     write(&mut ResultFile::finish_step);
     comm.agree(failed.map_err(Failure::from))
+}
+
+/// The rows of the contact points of a problem that aren't there in a `stage`: without forces, and without a gap.
+pub fn absent_rows(whole: &Catalog, stage: &Stage<'_>) -> Vec<ContactRow> {
+    let all = whole.points.iter().enumerate();
+    let absent = all.filter(|(j, _)| stage.points.binary_search(j).is_err());
+    let row = |(_, point): (usize, &ContactPoint<SubdomainNode>)| {
+        let state = ContactState {
+            gap: f64::NAN,
+            ..ContactState::default()
+        };
+        (point.rename(|_| None), state)
+    };
+    absent.map(row).collect()
 }
 
 /// The points of a contact group, and the solution there, with slip and work of friction of its tangential
@@ -109,9 +126,10 @@ fn contact_rows(
         let state = &mut rows[condition.point].1;
         let force = solution.forces[number];
         let slips = state.closed && !solution.closed[number];
+        let came_with = dot(group.points[condition.point].since, condition.direction);
         for (k, t) in condition.direction.iter().enumerate() {
             state.tangential_force[k] -= force * t;
-            state.slip[k] += slip * t;
+            state.slip[k] += (slip - came_with) * t;
         }
         state.slipping |= slips;
         state.dissipated += work;

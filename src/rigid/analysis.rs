@@ -77,7 +77,7 @@ pub struct FixingDof {
 pub struct RigidMotions {
     /// Free ones.
     pub free: Vec<FreeMotion>,
-    /// As many pins as there are free motions.
+    /// As many pins as there are free motions, and those of bodies that aren't there.
     pub fixing_dofs: Vec<FixingDof>,
     /// What a user should know.
     pub warnings: Vec<String>,
@@ -102,6 +102,31 @@ impl Scene {
     /// Whether supports leave any rigid motion to any body.
     pub fn is_movable(&self) -> bool {
         Kinematics::new(self.dim, &self.bodies).len > 0
+    }
+
+    /// Pins the bodies that aren't there to where they are, so that their motions are none of the scene's.
+    ///
+    /// # Errors
+    /// One of them on which something acts.
+    pub fn hold(&mut self, is_absent: impl Fn(usize) -> bool) -> Result<Vec<FixingDof>, Failure> {
+        let mut pins = Vec::new();
+        let bodies = self.bodies.iter_mut().zip(&self.names).enumerate();
+        for (_, (body, name)) in bodies.filter(|(b, _)| is_absent(*b)) {
+            if body.load_scale > 0.0 {
+                return Err(Failure::input(format!(
+                    "body '{name}' isn't there, but forces act on it; expected none in /force/value"
+                )));
+            }
+            let alone = std::slice::from_ref(body);
+            let kinematics = Kinematics::new(self.dim, alone);
+            let free = DMatrix::identity(kinematics.len, kinematics.len);
+            pins.extend(kinematics.fixing_dofs(alone, &free));
+            let modes = BodyFrame::count(self.dim);
+            // The last column is what supports prescribe.
+            let unit = |i: usize| (0..=modes).map(|k| f64::from(i == k)).collect();
+            body.supports = (0..modes).map(unit).collect();
+        }
+        Ok(pins)
     }
 
     /// Finds the free motions.

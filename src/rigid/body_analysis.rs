@@ -53,15 +53,20 @@ pub fn analyse_bodies(
     let Context { comm, catalog, .. } = *context;
     let frames = body_frames(context);
     let (rows, conditions) = rigid_rows(context, &frames);
-    let scene = Scene {
+    let mut scene = Scene {
         dim: catalog.dim,
         bodies: body_states(context, &frames, loads),
         names: catalog.bodies.iter().map(|b| b.name.clone()).collect(),
         rows,
         conditions,
     };
-    let found = comm.is_root().then(|| scene.analyse()).transpose();
-    let found = comm.agree(found)?;
+    let mut analyse = || -> Result<RigidMotions, Failure> {
+        let pins = scene.hold(|b| catalog.bodies[b].is_absent)?;
+        let mut motions = scene.analyse()?;
+        motions.fixing_dofs.extend(pins);
+        Ok(motions)
+    };
+    let found = comm.agree(comm.is_root().then(&mut analyse).transpose())?;
     let mut found = found.map(|motions| Found {
         movable: scene.is_movable(),
         closing_motions: closing_motions(scene.dim, &scene.bodies, &scene.rows, before),

@@ -62,19 +62,19 @@ pub struct Increment {
 }
 
 impl Increments<'_> {
-    /// Solves load step k from the state `before`; `analyses` know the rigid motions of all steps. Where friction keeps
-    /// it from converging at once, in halves. Collective.
+    /// Solves load step k from the state `before`; `at_end` knows its rigid motions, `earlier` are the closing motions
+    /// of the step before. Where friction keeps it from converging at once, in halves. Collective.
     ///
     /// # Errors
     /// Supports that make two sides penetrate, a part that moves freely, or a signal that stopped the sweeps.
     pub fn step(
         &self,
         k: usize,
-        analyses: &[RigidBodyAnalysis],
+        (earlier, at_end): (&[Vec<f64>], &RigidBodyAnalysis),
         before: StepState,
         seconds: &mut PhaseSeconds,
     ) -> Result<Increment, Failure> {
-        let (end, at_end) = (Moment::end_of(k), &analyses[k]);
+        let end = Moment::end_of(k);
         if !self.context.catalog.has_friction() {
             return self.solve(end, at_end, before, seconds);
         }
@@ -83,7 +83,7 @@ impl Increments<'_> {
             return Ok(at_once);
         }
         let (slips, energies) = (before.slips.clone(), before.energies.clone());
-        let Some(in_parts) = self.in_halves(k, analyses, before, seconds)? else {
+        let Some(in_parts) = self.in_halves(k, earlier, before, seconds)? else {
             let moves_freely = at_once.outcome.as_ref().is_some_and(|o| o.moves_freely);
             let unheld = (at_end.scene.as_ref().filter(|_| moves_freely)).and_then(Scene::unheld);
             self.context.comm.agree(unheld.map_or(Ok(()), Err))?;
@@ -98,12 +98,12 @@ impl Increments<'_> {
         }
     }
 
-    /// Solves load step k in halves, halves of these and so on; `None` where small parts don't converge either.
-    /// Collective.
+    /// Solves load step k in halves, halves of these and so on, after the closing motions `earlier`;
+    /// `None` where small parts don't converge either. Collective.
     fn in_halves(
         &self,
         k: usize,
-        analyses: &[RigidBodyAnalysis],
+        earlier: &[Vec<f64>],
         mut state: StepState,
         seconds: &mut PhaseSeconds,
     ) -> Result<Option<Increment>, Failure> {
@@ -115,7 +115,7 @@ impl Increments<'_> {
                 step: k,
                 part: way.next(),
             };
-            let analysis = analyse(&self.context, moment, analyses[..k].last())?;
+            let analysis = analyse(&self.context, moment, earlier)?;
             let mut solved = self.solve(moment, &analysis, state.clone(), seconds)?;
             if !self.is_converged(&solved) {
                 match way.halve() {

@@ -13,12 +13,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::bytes::Reals;
 use crate::certificate::energy::BlockEnergy;
+use crate::comm::Comm;
 use crate::contact::friction::Status;
 use crate::contact::pair::PairState;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::output::vtkhdf::ResultFile;
 use crate::report::totals::StepTotals;
+use crate::run::passage::Passage;
 use crate::settings::Settings;
 use crate::step::state::StepState;
 
@@ -37,6 +39,8 @@ struct Kept {
     slips: Vec<Vec<f64>>,
     /// What the balance of energy needs of every block, where there is friction.
     energies: Vec<BlockEnergy>,
+    /// What passed to the stage of the next load step.
+    passage: Passage,
 }
 
 /// Two runs that agree in this go the same way.
@@ -82,8 +86,10 @@ pub struct Finished {
     pub count: usize,
     /// What is known of them; on the root.
     pub steps: Vec<StepTotals>,
-    /// The state that the next one starts from.
-    pub state: StepState,
+    /// What passed to the stage of the next one.
+    pub passage: Passage,
+    /// The state that the next one starts from; on the root.
+    kept: Option<Kept>,
     /// What a user should know; on the root.
     pub warning: Option<String>,
 }
@@ -92,8 +98,7 @@ pub struct Finished {
 ///
 /// # Errors
 /// It is that of another problem, of other settings or of another version of the program.
-pub fn finished_steps(context: &Context<'_>, settings: &Settings) -> Result<Finished, Failure> {
-    let comm = context.comm;
+pub fn finished_steps(comm: &Comm, settings: &Settings) -> Result<Finished, Failure> {
     if !settings.restart {
         return Ok(Finished::default());
     }
@@ -102,14 +107,11 @@ pub fn finished_steps(context: &Context<'_>, settings: &Settings) -> Result<Fini
         false => Ok(None),
     })?;
     let mut finished = Finished::default();
-    let (mut pairs, mut slips, mut energies) = (Vec::new(), Vec::new(), Vec::new());
-    if let Some(kept) = kept {
+    if let Some(mut kept) = kept {
         finished.count = kept.steps.len();
-        finished.steps = kept.steps;
-        finished.state.interface = kept.interface;
-        pairs = kept.pairs;
-        slips = kept.slips;
-        energies = kept.energies;
+        finished.steps = std::mem::take(&mut kept.steps);
+        finished.passage = std::mem::take(&mut kept.passage);
+        finished.kept = Some(kept);
     } else {
         finished.warning = Some(format!(
             "--restart: there is no {}: this run begins at the start",
@@ -117,19 +119,34 @@ pub fn finished_steps(context: &Context<'_>, settings: &Settings) -> Result<Fini
         ));
     }
     comm.broadcast(&mut finished.count);
-    if finished.count > 0 {
+    comm.broadcast(&mut finished.passage);
+    Ok(finished)
+}
+
+impl Finished {
+    /// The state that the load step after the finished ones starts from, in the middle of a stage. Collective.
+    pub fn state(&mut self, context: &Context<'_>) -> StepState {
+        let comm = context.comm;
+        let (mut pairs, mut slips, mut energies) = (Vec::new(), Vec::new(), Vec::new());
+        let mut state = StepState::default();
+        if let Some(kept) = self.kept.take() {
+            state.interface = kept.interface;
+            pairs = kept.pairs;
+            slips = kept.slips;
+            energies = kept.energies;
+        }
         comm.scatter(
             &context.plan.contact_owners(),
             |p| pairs[p].clone(),
-            |p, state| {
-                finished.state.pairs.insert(p, state);
+            |p, of_pair| {
+                state.pairs.insert(p, of_pair);
             },
         );
         comm.scatter(
             &context.plan.group_owners(),
             |g| Reals(slips[g].clone()),
             |g, Reals(of_group)| {
-                finished.state.slips.insert(g, of_group);
+                state.slips.insert(g, of_group);
             },
         );
         if context.catalog.has_friction() {
@@ -137,12 +154,12 @@ pub fn finished_steps(context: &Context<'_>, settings: &Settings) -> Result<Fini
                 context.plan.owners(),
                 |b| std::mem::take(&mut energies[b]),
                 |b, energy| {
-                    finished.state.energies.insert(b, energy);
+                    state.energies.insert(b, energy);
                 },
             );
         }
+        state
     }
-    Ok(finished)
 }
 
 fn read(settings: &Settings) -> Result<Option<Kept>, Failure> {
@@ -165,8 +182,8 @@ fn read(settings: &Settings) -> Result<Option<Kept>, Failure> {
     Err(refused(why))
 }
 
-/// Keeps the results of the load steps so far and the `state` after them, for a run that goes on.
-/// Collective; `steps` and `result` are the root's.
+/// Keeps the results of the load steps so far, the `state` after them and what passed to the stage of the next one, for a
+/// run that goes on. Collective; `steps` and `result` are the root's.
 ///
 /// # Errors
 /// The file can't be written.
@@ -174,6 +191,7 @@ pub fn keep(
     context: &Context<'_>,
     settings: &Settings,
     state: &StepState,
+    passage: &Passage,
     steps: &[StepTotals],
     result: Option<&mut ResultFile>,
 ) -> Result<(), Failure> {
@@ -205,6 +223,7 @@ pub fn keep(
             pairs,
             slips,
             energies,
+            passage: passage.clone(),
         };
         let mut bytes = Vec::new();
         ciborium::into_writer(&kept, &mut bytes)

@@ -1,6 +1,7 @@
 //! Load steps: what acts in one, and the state that it starts from and leaves.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use contact_dd_partition::destination::unfinished;
 
@@ -78,35 +79,41 @@ impl StepState {
     }
 }
 
-/// Looks at the rigid motions of the scene at the end of every load step, one where it has none. Collective.
+/// Looks at the rigid motions of the scene at the end of these load steps, which come after the closing motions `before`.
+/// Collective.
 ///
 /// # Errors
 /// What a step prescribes leaves no place for a node, or its load drives a motion that nothing holds.
-pub fn analyse_steps(context: &Context<'_>) -> Result<Vec<RigidBodyAnalysis>, Failure> {
+pub fn analyse_steps(
+    context: &Context<'_>,
+    steps: Range<usize>,
+    before: &[Vec<f64>],
+) -> Result<Vec<RigidBodyAnalysis>, Failure> {
     let mut analyses: Vec<RigidBodyAnalysis> = Vec::new();
-    for k in 0..context.catalog.steps.len().max(1) {
-        let analysis = analyse(context, Moment::end_of(k), analyses.last())
+    for k in steps {
+        let before = analyses.last().map_or(before, |last| &last.closing_motions);
+        let analysis = analyse(context, Moment::end_of(k), before)
             .map_err(|failure| context.in_step(failure, k))?;
         analyses.push(analysis);
     }
     Ok(analyses)
 }
 
-/// Looks at the rigid motions of the scene at a moment, those of the step `before` known. Collective.
+/// Looks at the rigid motions of the scene at a moment, which comes after the closing motions `before`, none at first.
+/// Collective.
 ///
 /// # Errors
 /// What is prescribed then leaves no place for a node, or the load drives a motion that nothing holds.
 pub fn analyse(
     context: &Context<'_>,
     moment: Moment,
-    before: Option<&RigidBodyAnalysis>,
+    before: &[Vec<f64>],
 ) -> Result<RigidBodyAnalysis, Failure> {
     let loads = context.loads(moment);
     let mut groups = context.groups.values().zip(loads.groups.values());
     let checked = groups
         .try_for_each(|(group, loads)| infeasible_nodes::check(group, loads, context.catalog));
     context.comm.agree(checked)?;
-    let before = before.map_or(&[][..], |before| &before.closing_motions);
     analyse_bodies(context, &loads, before)
 }
 

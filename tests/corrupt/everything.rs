@@ -42,14 +42,16 @@ obstacle = { point = [0.0, -1e-4], normal = [0.0, 1.0] }
 [[step]]
 name = 'half'
 scale = 0.5
+remove = 'table'
 [[step]]
+add = ['table', 'top']
 [[step.pressure]]
 on = 'top top'
 value = 1e6
 ";
 
 /// Three blocks of quadratic cells of all kinds on a table, in matching and mortar contact, two of
-/// three with friction, with supports, forces in two load steps, a hierarchy, settings and a warning.
+/// three with friction, with supports, forces in two load steps in which a body and a contact come, a hierarchy, settings and a warning.
 pub fn everything() -> Problem {
     let mesh = Blocks::new()
         .rectangle("base", [0.0, 2.0], [0.0, 1.0], [7, 3])

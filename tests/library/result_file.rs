@@ -88,6 +88,7 @@ fn layout(cells: &[usize], conditions: &[usize]) -> Layout {
         contacts: conditions.iter().enumerate().map(contact).collect(),
         times: Vec::new(),
         stress: true,
+        presence: false,
         title: "Two cracks".to_owned(),
         units: Units::Millimetre,
         plane: None,

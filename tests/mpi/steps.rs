@@ -16,6 +16,29 @@ pub fn two_blocks_with_friction() -> Model {
     posed_in_steps(&scene.replacen("[[contact]]\n", "[[contact]]\nfriction = '0.1+0.2*x'\n", 1))
 }
 
+/// The same, and another block that is put on the upper one after the first step, and taken away after the second.
+pub fn two_blocks_in_stages() -> Model {
+    let scene = two_block_scene().replacen("[[contact]]\n", "[[contact]]\nfriction = 0.1\n", 1);
+    let other = "
+        bodies.other = {material = 'rock', body_force = [0.0, -1e6]}
+        [[contact]]
+        name = 'on top'
+        sides = ['other bottom', 'upper top']
+        friction = 0.3
+        [[displacement]]
+        on = 'other top'
+        x = 1e-6
+        [[step]]
+        [[step]]
+        add = 'other'
+        [[step]]
+        remove = 'other'";
+    let (bodies, rest) = other.split_once("[[contact]]").unwrap();
+    let scene = scene.replacen(BODIES, &format!("{BODIES}{bodies}"), 1);
+    let blocks = two_blocks().rectangle("other", [0.6, 1.4], [2.0, 2.5], [4, 4]);
+    model(&format!("{scene}[[contact]]{rest}"), blocks.mesh)
+}
+
 /// Two solids, the upper one of which is moved to and fro on the lower one.
 pub fn two_solids_with_friction() -> Model {
     let block = |name, z| {

@@ -43,6 +43,7 @@ pub fn stopped_between_steps(trials: &mut Trials) {
     }
     stop_between_steps(trials, "", steps::two_blocks_in_steps);
     stop_between_steps(trials, "_with_friction", steps::two_blocks_with_friction);
+    stop_between_steps(trials, "_in_stages", steps::two_blocks_in_stages);
     stop_between_steps(
         trials,
         "_with_friction_in_space",

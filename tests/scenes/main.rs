@@ -26,6 +26,7 @@ mod released_modes;
 mod resultants;
 mod space;
 mod stability;
+mod stages;
 mod steps;
 #[path = "../support/mod.rs"]
 mod support;

@@ -13,8 +13,8 @@ use crate::error::InputError;
 use crate::lists::Lists;
 use crate::model::{self, Model};
 use crate::problem::{
-    Body, Catalog, ContactSummary, InitialStress, InterfaceNode, LoadStep, Problem, StepLoads,
-    Subdomain, SubdomainNode, SubdomainSummary,
+    Absent, Body, Catalog, ContactSummary, InitialStress, InterfaceNode, LoadStep, Problem,
+    StepLoads, Subdomain, SubdomainNode, SubdomainSummary,
 };
 
 impl Problem {
@@ -42,7 +42,7 @@ impl Problem {
             units: model.units,
             plane: model.plane,
             materials: model.materials.clone(),
-            bodies: bodies.names.into_iter().map(|name| Body { name }).collect(),
+            bodies: bodies.names.iter().cloned().map(Body::new).collect(),
             contacts: model
                 .contacts
                 .iter()
@@ -56,6 +56,10 @@ impl Problem {
                 .map(|step| LoadStep {
                     name: step.name.clone(),
                     time: step.time,
+                    absent: Absent {
+                        bodies: bodies.among(model, &step.absent_bodies),
+                        contacts: step.absent_contacts.clone(),
+                    },
                 })
                 .collect(),
             subdomains: subdomains

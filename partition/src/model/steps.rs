@@ -2,7 +2,7 @@
 
 use super::bodies::Bodies;
 use super::initial_stress::InitialStress;
-use super::{Material, Support, loads, supports};
+use super::{Material, Support, loads, presence, supports};
 use crate::error::InputError;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
@@ -20,6 +20,10 @@ pub struct ModelStep {
     pub forces: Vec<[f64; 3]>,
     /// Stress without strain.
     pub initial_stress: InitialStress,
+    /// The scene's bodies that aren't there, ascending.
+    pub absent_bodies: Vec<u32>,
+    /// The contacts that are switched off, ascending: those of absent bodies aren't among them.
+    pub absent_contacts: Vec<u32>,
 }
 
 /// The loads of a scene.
@@ -46,10 +50,14 @@ impl Loads {
     ) -> Result<Self, InputError> {
         let loadings = scene.loadings();
         let mut all = Vec::with_capacity(loadings.len());
-        for loading in &loadings {
+        let absent = presence::bodies(scene);
+        for (k, loading) in loadings.iter().enumerate() {
             let supports = supports::supports(scene, loading, &bodies.mesh, topology)?;
             let (forces, initial) = loads::forces(scene, loading, bodies, topology, materials)?;
             all.push((supports, forces, initial));
+            if let (Some(absent), Some(loads)) = (absent.get(k), all.last_mut()) {
+                presence::unload(bodies, absent, loads);
+            }
         }
         for (k, (supports, ..)) in all.iter().enumerate().skip(1) {
             check_places(k, &all[0].0, supports, &bodies.mesh.node_tags)?;
@@ -64,14 +72,18 @@ impl Loads {
         let at_loaded = |forces: &[[f64; 3]]| -> Vec<[f64; 3]> {
             loaded.iter().map(|&node| forces[node as usize]).collect()
         };
-        let steps = scene.step.iter().zip(&all).enumerate();
-        let steps = steps.map(|(k, (step, (supports, forces, initial)))| ModelStep {
-            name: step.name_or_number(k),
-            time: step.time.unwrap_or((k + 1) as f64),
-            supports: supports.iter().map(|support| support.value).collect(),
-            forces: at_loaded(forces),
-            initial_stress: initial.clone(),
-        });
+        let steps = scene.step.iter().zip(&all).zip(absent).enumerate();
+        let steps = steps.map(
+            |(k, ((step, (supports, forces, initial)), absent))| ModelStep {
+                name: step.name_or_number(k),
+                time: step.time.unwrap_or((k + 1) as f64),
+                supports: supports.iter().map(|support| support.value).collect(),
+                forces: at_loaded(forces),
+                initial_stress: initial.clone(),
+                absent_bodies: absent,
+                absent_contacts: Vec::new(),
+            },
+        );
         let steps = steps.collect();
         let forces = (loaded.iter().copied().zip(at_loaded(&all[0].1))).collect();
         let (supports, _, initial_stress) = all.swap_remove(0);

@@ -28,6 +28,8 @@ const NEAR: f64 = 0.25;
 /// A contact of the scene, and what is known of it where it was found.
 pub(super) struct Declared {
     pub contact: Contact,
+    /// The name in the scene of what asks for it.
+    pub table: String,
     /// What it consists of, in words.
     pub words: Option<String>,
 }
@@ -87,6 +89,7 @@ pub(super) fn contacts(
         match declared {
             Declaration::Contact(contact) => contacts.push(Declared {
                 contact: contact.clone(),
+                table: contact.name.clone(),
                 words: None,
             }),
             Declaration::Between(_) => contacts.extend(found.next().into_iter().flatten()),
@@ -266,6 +269,7 @@ impl Sides<'_> {
                 let words = self.words(patch, bodies, &name);
                 of_search.push(Declared {
                     contact: search.between.contact(name, sides),
+                    table: search.between.name.clone(),
                     words: Some(words),
                 });
             }

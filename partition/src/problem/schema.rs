@@ -150,6 +150,12 @@ pub const ATTRIBUTES: &[Attribute] = &[
 pub const FIELDS: &[Field] = &[
     field("/steps/name", "L", Names, "at least one"),
     field("/steps/time", "L", Numbers, "ascending"),
+    optional("/steps/body", "L, B", Codes("presence", 2),
+        "1 where the body is there, 0 where it isn't: nothing may act on it then, no force, no prescribed displacement but 0, no \
+         initial stress, and its contact points aren't there either; without it all bodies are"),
+    optional("/steps/contact", "L, Q", Codes("presence", 2),
+        "1 where the contact is there, if its bodies are, 0 where it isn't; without it all contacts are. Gap and slip of what \
+         comes count from the displacements at the end of the step before"),
     field("/VTKHDF/NumberOfPoints", "N", Sizes('P'), "points of each subdomain"),
     field("/VTKHDF/NumberOfCells", "N", Sizes('C'), "cells of each subdomain"),
     field("/VTKHDF/NumberOfConnectivityIds", "N", Sizes('K'),

@@ -107,6 +107,8 @@ impl Problem {
         if !steps.is_empty() {
             datasets.strings("/steps/name", steps.iter().map(|step| step.name.as_str()))?;
             datasets.put("/steps/time", steps.iter().map(|step| step.time))?;
+            let bodies = steps.iter().map(|step| &step.absent.bodies);
+            datasets.presence("/steps/body", catalog.bodies.len(), bodies)?;
         }
         if !catalog.warnings.is_empty() {
             datasets.strings("/warnings", catalog.warnings.iter().map(String::as_str))?;
@@ -192,6 +194,8 @@ impl Problem {
         let names = self.catalog.contacts.iter().map(|c| c.name.as_str());
         datasets.strings("/contact/name", names)?;
         datasets.offsets("/contact/group_offset", self.catalog.groups.iter().copied())?;
+        let absent = self.catalog.steps.iter().map(|step| &step.absent.contacts);
+        datasets.presence("/steps/contact", self.catalog.contacts.len(), absent)?;
         let points = || self.catalog.points.iter();
         datasets.put("/contact/contact", points().map(|p| i64::from(p.contact)))?;
         datasets.put("/contact/place", points().map(|p| i64::from(p.place)))?;
@@ -245,6 +249,22 @@ impl Datasets<'_> {
             true => Ok(()),
             false => dataset.write_raw(&values),
         }
+    }
+
+    /// Writes which of `count` things are there, row by row; nothing if none is ever `absent`.
+    fn presence<'v>(
+        &mut self,
+        path: &str,
+        count: usize,
+        absent: impl Iterator<Item = &'v Vec<u32>> + Clone,
+    ) -> hdf5::Result<()> {
+        if absent.clone().all(Vec::is_empty) {
+            return Ok(());
+        }
+        let of_row = |absent: &'v Vec<u32>| {
+            (0..count as u32).map(move |number| i64::from(!absent.contains(&number)))
+        };
+        self.put(path, absent.flat_map(of_row))
     }
 
     /// Writes vectors, of which as many components are kept as the shape has.

@@ -11,7 +11,7 @@ use crate::error::InputError;
 use crate::name;
 
 /// The key at which something is wrong, and what.
-type Fault = (Vec<Step>, String);
+pub(super) type Fault = (Vec<Step>, String);
 
 /// The key to which these names of tables lead.
 fn at<const N: usize>(keys: [&str; N]) -> Vec<Step> {
@@ -19,7 +19,7 @@ fn at<const N: usize>(keys: [&str; N]) -> Vec<Step> {
 }
 
 /// The key of the entry `index` of a list.
-fn entry(list: &str, index: usize, key: &str) -> Vec<Step> {
+pub(super) fn entry(list: &str, index: usize, key: &str) -> Vec<Step> {
     vec![list.into(), index.into(), key.into()]
 }
 
@@ -38,6 +38,7 @@ impl Scene {
             .or_else(|| self.unknown_body())
             .or_else(|| self.plane.and_then(|_| self.wrong_dimension(2)))
             .or_else(|| self.wrong_step())
+            .or_else(|| self.wrong_change())
     }
 
     fn wrong_name(&self) -> Option<Fault> {

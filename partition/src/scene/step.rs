@@ -16,7 +16,7 @@ use super::place;
 #[serde(
     deny_unknown_fields,
     default,
-    expecting = "a table of name, time, scale, body_force, temperature, traction, pressure and displacement"
+    expecting = "a table of name, time, scale, add, remove, body_force, temperature, traction, pressure and displacement"
 )]
 pub struct LoadStep {
     /// Its name; its number without.
@@ -26,6 +26,10 @@ pub struct LoadStep {
     pub time: Option<f64>,
     /// What its loads are multiplied by.
     pub scale: Scale,
+    /// Bodies and contacts that are there from this step on.
+    pub add: Option<Names>,
+    /// Those that aren't any more.
+    pub remove: Option<Names>,
     /// Forces per volume in place of those of these bodies (N/m³).
     pub body_force: BTreeMap<String, Vector>,
     /// Temperatures in place of those of these bodies (K).

@@ -65,6 +65,8 @@ fn with_steps(model: &Model) -> Model {
                 .map(|(_, force)| force.map(|f| factor * f))
                 .collect(),
             initial_stress: InitialStress::default(),
+            absent_bodies: Vec::new(),
+            absent_contacts: Vec::new(),
         })
         .into();
     let first = &model.steps[0];

@@ -23,7 +23,7 @@ pub(super) struct Grid {
     datasets: Vec<Dataset>,
     /// The number of its subdomain for each cell.
     subdomains: Dataset,
-    stress: bool,
+    left_out: Vec<Of>,
     total: PartitionSize,
     sizes: Vec<PartitionSize>,
     starts: Vec<PartitionSize>,
@@ -70,7 +70,8 @@ impl Grid {
             };
             list.empty(&group, field.place, rows)
         };
-        let datasets = written(&none, layout.stress)
+        let left_out = layout.left_out();
+        let datasets = written(&none, &left_out)
             .map(create)
             .collect::<Result<_>>()?;
         if !layout.times.is_empty() {
@@ -79,7 +80,7 @@ impl Grid {
         Ok(Self {
             datasets,
             subdomains,
-            stress: layout.stress,
+            left_out,
             total,
             sizes: sizes.clone(),
             starts,
@@ -112,17 +113,19 @@ impl Grid {
             let (count, index) = (self.sizes.len(), first.max(self.sizes.len()));
             return Err(format!("subdomain {index} of {count} has no place").into());
         };
-        check_sizes(results, sizes, self.stress)?;
+        check_sizes(results, sizes, &self.left_out)?;
         let Some(size) = self.starts.get(first) else {
             return Ok(());
         };
-        for (dataset, (field, list)) in self.datasets.iter().zip(written(results, self.stress)) {
+        for (dataset, (field, list)) in self.datasets.iter().zip(written(results, &self.left_out)) {
             let start = field.per.rows(size, first);
             let of_a_step = field.per.rows(&self.total, self.sizes.len());
             match field.of {
                 Of::Mesh if step > 0 => {}
                 Of::Mesh => list.fill(dataset, start)?,
-                Of::Solution | Of::Stress => list.fill(dataset, step * of_a_step + start)?,
+                Of::Solution | Of::Stress | Of::Presence => {
+                    list.fill(dataset, step * of_a_step + start)?
+                }
             }
         }
         if step == 0 {
@@ -147,9 +150,12 @@ impl Grid {
 }
 
 /// The lists that the file has.
-fn written(results: &SubdomainResults, stress: bool) -> impl Iterator<Item = (Field, &dyn List)> {
+fn written<'a>(
+    results: &'a SubdomainResults,
+    left_out: &[Of],
+) -> impl Iterator<Item = (Field, &'a dyn List)> {
     let lists = results.lists().into_iter();
-    lists.filter(move |(field, _)| stress || field.of != Of::Stress)
+    lists.filter(|(field, _)| !left_out.contains(&field.of))
 }
 
 /// Writes `/VTKHDF/Steps`: load steps as a time series of VTK's HDF format, on a mesh that stays the same.
@@ -181,7 +187,7 @@ fn create_steps(grid: &Group, layout: &Layout, total: &PartitionSize) -> Result<
         }
         None => Ok(()),
     };
-    for (field, _) in written(&SubdomainResults::default(), layout.stress) {
+    for (field, _) in written(&SubdomainResults::default(), &layout.left_out()) {
         let of_a_step = field.per.rows(total, parts);
         offsets(
             field.place,
@@ -192,7 +198,7 @@ fn create_steps(grid: &Group, layout: &Layout, total: &PartitionSize) -> Result<
 }
 
 /// Checks that each partition has the size in `sizes`, and that the lists hold what these say.
-fn check_sizes(results: &SubdomainResults, sizes: &[PartitionSize], stress: bool) -> Result<()> {
+fn check_sizes(results: &SubdomainResults, sizes: &[PartitionSize], left_out: &[Of]) -> Result<()> {
     let check = |whose: &str, checks: &[(&str, usize, usize)]| match checks
         .iter()
         .find(|(_, found, expected)| found != expected)
@@ -223,8 +229,7 @@ fn check_sizes(results: &SubdomainResults, sizes: &[PartitionSize], stress: bool
         ),
     };
     let lists = results.lists().into_iter().map(|(field, list)| {
-        let is_left_out = field.of == Of::Stress && !stress;
-        let expected = if is_left_out {
+        let expected = if left_out.contains(&field.of) {
             0
         } else {
             field.per.rows(&sum, sizes.len())

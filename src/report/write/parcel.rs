@@ -1,11 +1,12 @@
 //! Consecutive subdomains of one owner: what travels to the root in one message.
 
-use std::collections::BTreeMap;
+use std::iter::repeat_n;
 use std::ops::Range;
 
 use contact_dd_partition::element::geometry::padded;
 
 use crate::comm::Comm;
+use crate::context::Context;
 use crate::fem::block::Block;
 use crate::fem::elasticity::{principal_stresses, von_mises};
 use crate::output::result::{PartitionSize, SubdomainResults};
@@ -37,13 +38,21 @@ impl Parcel {
     pub(super) fn append_to(
         &self,
         results: &mut SubdomainResults,
-        blocks: &BTreeMap<usize, Block>,
+        context: &Context<'_>,
         solution: &Solution,
     ) {
+        let &Context {
+            catalog, blocks, ..
+        } = context;
         for index in self.subdomains.clone() {
             match blocks.get(&index).zip(solution.displacement.get(&index)) {
                 Some((block, displacement)) => {
                     append_block(results, block, displacement);
+                    if catalog.has_stages() {
+                        let is_there = !catalog.bodies[block.subdomain.body].is_absent;
+                        let cells = block.subdomain.cells.len();
+                        results.present.extend(repeat_n(u8::from(is_there), cells));
+                    }
                     if let Some(stress) = solution.stress.as_ref().and_then(|all| all.get(&index)) {
                         append_stress(results, stress);
                     }

@@ -192,6 +192,8 @@ fn posed(sort: Sort, n: usize) -> Model {
             supports: vec![0.0; model.supports.len()],
             forces: loaded.forces.iter().map(|(_, force)| *force).collect(),
             initial_stress: InitialStress::default(),
+            absent_bodies: Vec::new(),
+            absent_contacts: Vec::new(),
         });
         if step == 0 {
             model.forces = loaded.forces;

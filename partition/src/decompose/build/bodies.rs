@@ -52,6 +52,16 @@ impl Bodies {
     }
 }
 
+impl Bodies {
+    /// The bodies that consist of these bodies of the scene, ascending.
+    pub fn among(&self, model: &Model, of_scene: &[u32]) -> Vec<u32> {
+        let cells = self.of_cell.iter().zip(&model.cell_body);
+        let among = cells.filter(|(_, body)| of_scene.contains(body));
+        let bodies: BTreeSet<u32> = among.map(|(&body, _)| body as u32).collect();
+        bodies.into_iter().collect()
+    }
+}
+
 /// Numbers the names that occur more than once.
 fn numbered(names: impl Iterator<Item = String>) -> Vec<String> {
     let names: Vec<String> = names.collect();

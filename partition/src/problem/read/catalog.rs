@@ -7,7 +7,9 @@ use super::header::Header;
 use super::{hierarchy, materials, points, settings};
 use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
-use crate::problem::{Body, Catalog, ContactSummary, Hierarchy, LoadStep, SubdomainSummary};
+use crate::problem::{
+    Absent, Body, Catalog, ContactSummary, Hierarchy, LoadStep, SubdomainSummary,
+};
 
 /// Reads and checks the catalog.
 pub(super) fn read(
@@ -32,7 +34,7 @@ pub(super) fn read(
         units: header.units,
         plane: header.plane,
         materials,
-        bodies: bodies.into_iter().map(|name| Body { name }).collect(),
+        bodies: bodies.into_iter().map(Body::new).collect(),
         supports: read_support_names(contents)?,
         contacts,
         steps: read_steps(contents)?,
@@ -193,8 +195,40 @@ fn read_steps(contents: &Contents) -> Result<Vec<LoadStep>, InputError> {
         let what = format!("{after} comes after {before}; expected times that ascend");
         return Err(time.error(row + 1, &what));
     }
-    let steps = names.into_iter().zip(time.all());
-    Ok(steps.map(|(name, &time)| LoadStep { name, time }).collect())
+    let bodies = read_absent(contents, "/steps/body", 'B')?;
+    let contacts = read_absent(contents, "/steps/contact", 'Q')?;
+    let absent = |k: usize| Absent {
+        bodies: bodies.get(k).cloned().unwrap_or_default(),
+        contacts: contacts.get(k).cloned().unwrap_or_default(),
+    };
+    let steps = names.into_iter().zip(time.all()).enumerate();
+    Ok(steps
+        .map(|(k, (name, &time))| LoadStep {
+            name,
+            time,
+            absent: absent(k),
+        })
+        .collect())
+}
+
+/// What isn't there of what a letter counts, load step by load step; none where the file doesn't say.
+fn read_absent(contents: &Contents, path: &str, letter: char) -> Result<Vec<Vec<u32>>, InputError> {
+    let is_there = contents.all_integers(path)?;
+    let count = contents.count(letter);
+    if !contents.has(path) || count == 0 {
+        return Ok(Vec::new());
+    }
+    let mut steps = Vec::new();
+    for (row, of_step) in is_there.all().chunks(count).enumerate() {
+        if let Some(value) = of_step.iter().find(|value| !matches!(value, 0 | 1)) {
+            let what =
+                format!("{value} says nothing; expected 1 for what is there, 0 for what isn't");
+            return Err(is_there.error(row, &what));
+        }
+        let absent = (0..).zip(of_step).filter(|(_, value)| **value == 0);
+        steps.push(absent.map(|(number, _)| number).collect());
+    }
+    Ok(steps)
 }
 
 /// Contacts with the numbers of their points.

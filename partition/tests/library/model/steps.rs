@@ -3,6 +3,7 @@
 use crate::blocks::Blocks;
 use crate::close::close;
 use crate::says::says;
+use contact_dd_partition::mesh::Group;
 use contact_dd_partition::model::Model;
 
 /// A block that is held at its bottom and loaded in every way.
@@ -117,6 +118,83 @@ fn steps_hold_the_same_nodes() {
         let start = format!("step[2].displacement: node {node} isn't held in the same directions");
         assert!(refused.starts_with(&start), "{refused}");
     }
+}
+
+/// Two blocks that share a side, and one beside them.
+fn three_blocks(steps: &str) -> Result<Model, String> {
+    let text = format!(
+        "bodies.b = {{material = 'steel', body_force = [0, -5]}}
+        bodies.c = {{material = 'steel', body_force = [0, -7], initial_stress = [1, 2, 3, 4]}}
+        bodies.d = {{material = 'steel', body_force = [0, -9]}}
+        [[displacement]]
+        on = ['b and c bottom', 'd bottom']
+        x = 0.25
+        y = 'x'
+        [[contact]]
+        name = 'joint'
+        sides = ['d left', 'b and c right']
+        {steps}"
+    );
+    let mut blocks = Blocks::new()
+        .block("b and c", [0.0, 2.0], [0.0, 1.0], [4, 2])
+        .block("d", [2.0, 3.0], [0.0, 1.0], [2, 2]);
+    let Blocks { mesh } = &mut blocks;
+    let is_left = |&cell: &u32| {
+        let mut nodes = mesh.cells.nodes_of(cell as usize).iter();
+        nodes.all(|&node| mesh.points[node as usize][0] <= 1.0)
+    };
+    let both = mesh.groups["b and c"].members.clone();
+    let (b, c) = both.into_iter().partition(is_left);
+    for (name, members) in [("b", b), ("c", c)] {
+        mesh.groups.insert(name.into(), Group { dim: 2, members });
+    }
+    blocks.model(&text)
+}
+
+#[test]
+fn nothing_acts_on_what_is_not_there() {
+    let model =
+        three_blocks("[[step]]\nadd = 'd'\n[[step]]\nremove = ['b', 'c', 'joint']").unwrap();
+    let absent = |k: usize| {
+        let step = &model.steps[k];
+        (&step.absent_bodies[..], &step.absent_contacts[..])
+    };
+    assert_eq!(absent(0), (&[][..], &[][..]));
+    assert_eq!(absent(1), (&[0, 1][..], &[0][..]));
+    same(resultant(&model, 1), [0.0, -9.0]);
+    let is_of_d = |node: u32| model.mesh.points[node as usize][0] >= 2.0;
+    let tags = |cell: usize| model.mesh.cells.nodes_of(cell).to_vec();
+    let of_d: Vec<u32> = (0..model.mesh.cells.len())
+        .filter(|&cell| model.cell_body[cell] == 2)
+        .flat_map(tags)
+        .collect();
+    for (support, value) in model.supports.iter().zip(&model.steps[1].supports) {
+        let is_there = is_of_d(support.node) && of_d.contains(&support.node);
+        assert_eq!(*value, if is_there { support.value } else { 0.0 });
+    }
+    assert!(
+        model.steps[0]
+            .initial_stress
+            .cells
+            .iter()
+            .any(|s| *s != [0.0; 6])
+    );
+    assert!(
+        model.steps[1]
+            .initial_stress
+            .cells
+            .iter()
+            .all(|s| *s == [0.0; 6])
+    );
+}
+
+#[test]
+fn what_comes_or_goes_has_its_nodes_to_itself() {
+    let refused = three_blocks("[[step]]\n[[step]]\nremove = 'c'").unwrap_err();
+    says(
+        &refused,
+        "step[2]: the bodies 'c' and 'b' share nodes, such as",
+    );
 }
 
 #[test]

@@ -204,6 +204,16 @@ value = [0, 1] => value = [0, 1, 2]
     step[2].traction[1].value: a plane scene
 x = 1\ny = 2 => x = 1\nz = 2
     step[2].displacement[1].z: a plane scene has no 'z'
+pressure = [] => add = "ring"\nremove = "ring"
+    step[2].remove: 'ring' is added and removed
+pressure = [] => remove = "left blok"
+    line 54: step[2].remove: there is no body or contact 'left blok'; did you mean 'left block'?
+pressure = [] => remove = ["block", "left block"]
+    line 54: step[2].remove: no body is left
+time = 0.5 => time = 0.5\nadd = "table"\n[[step]]\ntime = 0.6\nadd = "table"
+    line 52: step[2].add: 'table' is there already
+time = 0.5 => time = 0.5\nremove = "table"\n[[step]]\ntime = 0.6\nremove = "table"
+    line 52: step[2].remove: 'table' isn't there
 pressure = [] => presure = []
     step[2].presure: unknown key 'presure'; did you mean 'pressure'?
 "#;

@@ -1,0 +1,110 @@
+//! Stages: consecutive load steps in which the same bodies and contacts are there.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use super::{Absent, Catalog, SubdomainNode};
+use crate::contact_point::ContactPoint;
+use crate::element::geometry::dot;
+
+/// What of a problem is there in consecutive load steps.
+#[derive(Debug)]
+pub struct Stage<'a> {
+    /// The load steps; one where the problem has none.
+    pub steps: Range<usize>,
+    /// The problem without the contact points that aren't there. Bodies that aren't there stay, and nothing acts on them.
+    pub catalog: Cow<'a, Catalog>,
+    /// The contact points that are there, by their places in the catalog of the whole problem.
+    pub points: Vec<usize>,
+}
+
+impl Catalog {
+    /// The load steps of every stage.
+    pub fn stages(&self) -> Vec<Range<usize>> {
+        let mut stages: Vec<Range<usize>> = Vec::new();
+        for k in 0..self.steps.len().max(1) {
+            match stages.last_mut() {
+                Some(stage) if self.steps[k].absent == self.steps[stage.start].absent => {
+                    stage.end = k + 1;
+                }
+                _ => stages.push(k..k + 1),
+            }
+        }
+        stages
+    }
+
+    /// Whether bodies or contacts come or go.
+    pub fn has_stages(&self) -> bool {
+        self.steps
+            .iter()
+            .any(|step| step.absent != Default::default())
+    }
+
+    /// The names of the bodies and contacts that aren't there in load step k; contacts of absent bodies needn't be among them.
+    pub fn absent_in(&self, k: usize) -> Vec<String> {
+        let Some(Absent { bodies, contacts }) = self.steps.get(k).map(|step| &step.absent) else {
+            return Vec::new();
+        };
+        let bodies = bodies.iter().map(|&b| &self.bodies[b as usize].name);
+        let contacts = contacts.iter().map(|&c| &self.contacts[c as usize].name);
+        bodies.chain(contacts).cloned().collect()
+    }
+
+    /// Whether a contact point is there in load step k.
+    pub fn is_there(&self, point: &ContactPoint<SubdomainNode>, k: usize) -> bool {
+        let Some(absent) = self.steps.get(k).map(|step| &step.absent) else {
+            return true;
+        };
+        let mut bodies = point
+            .entries
+            .iter()
+            .map(|(at, _)| self.subdomains[at.subdomain as usize].body);
+        !absent.contacts.contains(&point.contact)
+            && bodies.all(|body| !absent.bodies.contains(&(body as u32)))
+    }
+
+    /// What is there in the load steps of a stage. Jumps count from those that points had when they came, `since` by their
+    /// places in this catalog (m); from none where it is empty.
+    pub fn stage(&self, steps: Range<usize>, since: &[[f64; 3]]) -> Stage<'_> {
+        let k = steps.start;
+        let all = 0..self.points.len();
+        let points: Vec<usize> = all.filter(|&j| self.is_there(&self.points[j], k)).collect();
+        let is_whole = points.len() == self.points.len();
+        let absent = self
+            .steps
+            .get(k)
+            .map(|step| &step.absent.bodies[..])
+            .unwrap_or_default();
+        if is_whole && absent.is_empty() && since.is_empty() {
+            return Stage {
+                steps,
+                catalog: Cow::Borrowed(self),
+                points,
+            };
+        }
+        let mut catalog = self.clone();
+        for &body in absent {
+            catalog.bodies[body as usize].is_absent = true;
+        }
+        catalog.points = points.iter().map(|&j| self.points[j].clone()).collect();
+        catalog.point_nodes = points
+            .iter()
+            .map(|&j| self.point_nodes[j].clone())
+            .collect();
+        for (point, &j) in catalog.points.iter_mut().zip(&points) {
+            point.since = since.get(j).copied().unwrap_or_default();
+            point.gap += dot(point.since, point.normal());
+        }
+        let mut first = 0;
+        for count in &mut catalog.groups {
+            let end = first + *count;
+            *count = points.partition_point(|&j| j < end) - points.partition_point(|&j| j < first);
+            first = end;
+        }
+        Stage {
+            steps,
+            catalog: Cow::Owned(catalog),
+            points,
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! What passes from one stage to the next: from the load steps before bodies or contacts come or go to those after that.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use contact_dd_partition::element::geometry::{advance, dot, padded};
+use contact_dd_partition::problem::Catalog;
+use contact_dd_partition::problem::stage::Stage;
+use serde::{Deserialize, Serialize};
+
+use crate::bytes::Reals;
+use crate::context::Context;
+use crate::run::increment::Increment;
+use crate::step::state::StepState;
+
+/// What passes from one stage to the next, by the places of contact points in the catalog of the whole problem; nothing
+/// before the first.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Passage {
+    /// The jump ⟦u⟧ that every point had when it came (m).
+    pub since: Vec<[f64; 3]>,
+    /// The tangential jumps of those that were there and have friction (m).
+    slips: BTreeMap<usize, Vec<f64>>,
+    /// The closing motions of bodies.
+    pub closing_motions: Vec<Vec<f64>>,
+}
+
+impl Passage {
+    /// What passes from the last load step of a `stage`, which began with this and ended as `solved` with these closing
+    /// motions, to the load steps `next`; `whole` is the problem. Collective.
+    pub fn after(
+        &self,
+        context: &Context<'_>,
+        stage: &Stage<'_>,
+        solved: &Increment,
+        closing_motions: &[Vec<f64>],
+        whole: &Catalog,
+        next: &Range<usize>,
+    ) -> Self {
+        let &Context { comm, plan, .. } = context;
+        let dim = whole.dim;
+        let coming: Vec<usize> = (0..whole.points.len())
+            .filter(|j| stage.points.binary_search(j).is_err())
+            .filter(|&j| whole.is_there(&whole.points[j], next.start))
+            .collect();
+        let entries = || coming.iter().flat_map(|&j| &whole.points[j].entries);
+        let mut wanted: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (at, _) in entries() {
+            wanted.entry(at.subdomain).or_default().push(at.node);
+        }
+        let mut moved = BTreeMap::new();
+        comm.gather(
+            plan.owners(),
+            |b| {
+                let u = &solved.solution.displacement[&b];
+                let nodes = wanted.get(&(b as u32)).into_iter().flatten();
+                let of_node = |&node: &u32| padded(&u[node as usize * dim..][..dim]);
+                nodes.map(of_node).collect::<Vec<[f64; 3]>>()
+            },
+            |b, u| {
+                moved.insert(b as u32, u.into_iter());
+            },
+        );
+        let mut passage = Self {
+            since: match self.since.is_empty() {
+                true => vec![[0.0; 3]; whole.points.len()],
+                false => self.since.clone(),
+            },
+            slips: BTreeMap::new(),
+            closing_motions: closing_motions.to_vec(),
+        };
+        for &j in coming.iter().filter(|_| comm.is_root()) {
+            let mut jump = [0.0; 3];
+            for (at, weight) in &whole.points[j].entries {
+                let u = moved.get_mut(&at.subdomain).and_then(Iterator::next);
+                jump = advance(jump, *weight, u.unwrap_or_default());
+            }
+            passage.since[j] = jump;
+        }
+        comm.gather(
+            &plan.group_owners(),
+            |g| Reals(solved.slips.of(g).0.to_vec()),
+            |g, Reals(slips)| {
+                let mut rest = &slips[..];
+                for &j in &plan.tree.nodes[plan.groups[g].node].points {
+                    let place = stage.points[j as usize];
+                    let (own, others) = rest.split_at(whole.points[place].tangents(dim).len());
+                    rest = others;
+                    if !own.is_empty() {
+                        passage.slips.insert(place, own.to_vec());
+                    }
+                }
+            },
+        );
+        comm.broadcast(&mut passage);
+        passage
+    }
+
+    /// The state in which a `stage` begins: what comes sticks where it is put.
+    pub fn state(&self, context: &Context<'_>, stage: &Stage<'_>) -> StepState {
+        if self.since.is_empty() {
+            return StepState::default();
+        }
+        let of_group = |g: usize| {
+            let points = &context.plan.tree.nodes[context.plan.groups[g].node].points;
+            let of_group = context.groups[&g].points.iter().zip(points);
+            let slips =
+                of_group.flat_map(
+                    |(point, &j)| match self.slips.get(&stage.points[j as usize]) {
+                        Some(slips) => slips.clone(),
+                        None => {
+                            let tangents = point.tangents(context.catalog.dim).iter();
+                            tangents.map(|t| dot(*t, point.since)).collect()
+                        }
+                    },
+                );
+            slips.collect()
+        };
+        StepState {
+            slips: context.groups.keys().map(|&g| (g, of_group(g))).collect(),
+            ..StepState::default()
+        }
+    }
+}
