@@ -6,7 +6,9 @@ use contact_dd_partition::mesh::Mesh;
 
 use crate::support::blocks::Blocks;
 use crate::support::close::close;
-use crate::support::scenes::{BODIES, JOINT, SUPPORTS, built_in_model, model, two_blocks};
+use crate::support::scenes::{
+    BODIES, JOINT, SUPPORTS, built_in, built_in_model, model, two_blocks,
+};
 use crate::support::solution::Solution;
 use crate::support::solver::solve;
 use crate::support::sorts::{Sort, sort};
@@ -206,6 +208,44 @@ fn the_built_in_crack_carries_its_pressure_and_slips() {
         slip = slip.max((a - b).abs());
     }
     close(slip, 4.8209e-3, 0.1 * 4.8209e-3);
+}
+
+/// Sneddon's crack: a fluid's pressure p in it opens it by 4 (1−ν²) p b/E; where the plate is pressed by more than
+/// that, the crack is closed under the rest.
+#[test]
+fn pressure_in_a_crack_opens_it_or_takes_from_its_contact_pressure() {
+    let (text, mesh) = built_in("crack", 0);
+    let (bodies, _) = text.split_once("[[traction]]").unwrap();
+    let (_, contact) = text.split_once("# At its tips").unwrap();
+    let pressed = |sort: Sort, outside: f64| {
+        let scene = format!(
+            "{bodies}
+            [[pressure]]
+            on = ['crack upper', 'crack lower']
+            value = 1e7
+            [[pressure]]
+            on = ['left', 'right', 'top', 'bottom']
+            value = {outside:e}
+            # At its tips{contact}"
+        );
+        solve(&model(&scene, sort.of(&mesh)), 6)
+    };
+    let exact = 4.0 * (1.0 - 0.25 * 0.25) * 1e7 / 25e9;
+    for (name, slack) in [("triangle3", 6e-2), ("triangle6", 2e-2)] {
+        let open = pressed(sort(name), 0.0);
+        let widest = open.points().map(|point| point.gap).fold(0.0, f64::max);
+        assert!(
+            (widest / exact - 1.0).abs() < slack,
+            "{name}: {widest:e}, {exact:e}"
+        );
+        assert_eq!(open.closed(), 0);
+    }
+    for point in pressed(sort("triangle3"), 3e7).points() {
+        assert!(
+            point.closed && (point.pressure / 2e7 - 1.0).abs() < 1e-9,
+            "{point:?}"
+        );
+    }
 }
 
 #[test]
