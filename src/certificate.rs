@@ -39,7 +39,7 @@ pub struct Certificate {
     /// Largest product of contact force and gap over the product of their scales.
     pub complementarity: f64,
     /// The largest of: tangential force beyond its bound, over the largest contact force; way of what sticks, over the
-    /// largest displacement; product of slip and what its force lacks of the bound against it, over that of both scales.
+    /// largest displacement; product of slip and what its force lacks of the bound against it, or has across it, over that of both scales.
     pub friction: f64,
     /// Sum of loads and reactions over the load scale.
     pub force_balance: f64,

@@ -3,6 +3,7 @@
 pub mod conditioning;
 pub mod energy;
 pub mod fixed_active_set;
+mod fixed_conditions;
 pub mod minimum_norm;
 pub mod motions;
 mod reactions;

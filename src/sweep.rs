@@ -23,7 +23,7 @@ use crate::contact::friction::Status;
 use crate::error::Failure;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::problem::InterfaceProblem;
-use crate::interface::s_con::{ConState, ConTotals, SCon};
+use crate::interface::s_con::{ConState, ConTotals, Expected, SCon};
 use crate::vector::largest;
 
 /// Residual that is round-off and nothing else.
@@ -117,7 +117,10 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     ) -> (Self, Residual) {
         let (u, expected) = match start {
             Start::Bilateral => (problem.bilateral_start(), None),
-            Start::Before(u, statuses) => (u, Some(statuses)),
+            Start::Before(u, statuses) => {
+                let expected = statuses.into_iter().map(|of_pair| (of_pair, Vec::new()));
+                (u, Some(expected.collect::<Vec<Expected>>()))
+            }
         };
         let mut sweeps = Self {
             problem,
@@ -138,9 +141,9 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         &mut self.outcome.u
     }
 
-    /// r(U), and a line of the history; the pairs' searches begin at the statuses `expected`, else at those
-    /// of last time.
-    pub fn evaluate(&mut self, expected: Option<&[Vec<Status>]>) -> Residual {
+    /// r(U), and a line of the history; the pairs' searches begin at what is `expected`, else at the statuses of last
+    /// time.
+    pub fn evaluate(&mut self, expected: Option<&[Expected]>) -> Residual {
         let residual = self.residual(expected);
         self.record(&residual);
         residual
@@ -177,8 +180,8 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         Ok(true)
     }
 
-    /// r(U), where the pairs' limits have the statuses `expected`, else those of last time.
-    fn residual(&mut self, expected: Option<&[Vec<Status>]>) -> Residual {
+    /// r(U), where the pairs' limits begin at what is `expected`, else at the statuses of last time.
+    fn residual(&mut self, expected: Option<&[Expected]>) -> Residual {
         let u = &self.outcome.u;
         let totals = (self.s_con).evaluate(self.problem.interface, u, expected, &mut self.state);
         self.outcome.count(&totals, self.s_con.len());

@@ -227,7 +227,9 @@ impl Most {
                 true => 0.5 * (size * way - work),
                 false => bound * way - work,
             };
-            most.not_opposed = larger(most.not_opposed, missing);
+            // That is 0 to the second order where the force isn't along the slip.
+            let aside = (force[0] * slip[1] - force[1] * slip[0]).abs();
+            most.not_opposed = larger(larger(most.not_opposed, missing), aside);
         }
         most
     }

@@ -189,13 +189,16 @@ impl FrictionProblem<'_> {
 
     /// The change of jumps and forces where limits keep these statuses; `bounds` are what the closed ones lack, and the
     /// share of the bound of their point that those have that slip: the change of that force follows from that of the
-    /// normal one, in the direction that the force has.
-    pub fn change(&self, status: &[Status]) -> (Vec<f64>, Vec<f64>) {
+    /// normal one, in the direction that the force has, which `turns` by κ times the slip across it.
+    pub fn change(&self, status: &[Status], turns: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let slips = |status: &Status| status.sign() != 0.0 || *status == Status::Parting;
         if !status.iter().any(slips) {
             let open: Vec<bool> = status.iter().map(|status| !status.is_closed()).collect();
             let trial = self.contact.linear(&open);
             return (trial.jumps, trial.forces);
+        }
+        if turns.iter().any(|turn| *turn != 0.0) {
+            return self.change_discs(status, turns);
         }
         let mut tangents = self.tangents.to_vec();
         for tangent in &mut tangents {

@@ -319,10 +319,10 @@ impl Limits {
     }
 
     /// The statuses of limits where these are those of `conditions`, and what every closed one lacks of its bound
-    /// when the conditions lack that much; the share of its point's bound for one that slips.
-    pub fn fixed(&self, conditions: &[(Status, f64)]) -> (Vec<Status>, Vec<f64>) {
+    /// when the conditions lack that much; share of its point's bound and κ for one that slips.
+    pub fn fixed(&self, conditions: &[(Status, [f64; 2])]) -> (Vec<Status>, Vec<[f64; 2]>) {
         let of_condition = |&(condition, factor): &(usize, f64)| match conditions[condition] {
-            (Status::Closed, missing) => (Status::Closed, missing / factor),
+            (Status::Closed, [missing, _]) => (Status::Closed, [missing / factor, 0.0]),
             other => other,
         };
         self.tightest.iter().map(of_condition).unzip()

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::active_set::{ContactProblem, ContactSolution};
 use super::dependent::DependentConstraints;
 use super::friction::{FrictionProblem, Status};
-use super::limits::{Limits, TangentialLimit};
+use super::limits::{Beside, Limits, TangentialLimit};
 use super::open_factor::OpenFactor;
 use crate::schur::condensed::Condensed;
 use crate::schur::local::multiply_add;
@@ -131,10 +131,24 @@ impl ContactPair {
     }
 
     /// Evaluates S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ, where t(U) within the limits minimizes the pair's energy.
-    /// The search begins at the statuses `expected`, else at those of last time.
-    pub fn evaluate(&mut self, u: &[f64], expected: Option<Vec<Status>>) -> PairResponse {
+    /// The search begins at the statuses `expected`, else at those of last time; in space what slips with friction along
+    /// both tangents begins at the expected change of the jumps.
+    pub fn evaluate(
+        &mut self,
+        u: &[f64],
+        expected: Option<(Vec<Status>, Vec<f64>)>,
+    ) -> PairResponse {
         let m = self.condensed.jumps;
-        let before = expected.unwrap_or_else(|| self.state.status.clone());
+        let expected = expected.unwrap_or_else(|| (self.state.status.clone(), Vec::new()));
+        let (before, changes) = expected;
+        let mut center = self.state.contact.jumps.clone();
+        let of_slips = self.limits.tangents.iter();
+        if of_slips
+            .clone()
+            .any(|tangent| tangent.beside != Beside::Nothing)
+        {
+            (center.iter_mut().zip(changes)).for_each(|(t, change)| *t += change);
+        }
         let mut c = self.load[..m].to_vec();
         let mut c_scale: Vec<f64> = c.iter().map(|f| f.abs()).collect();
         for (j, &u_j) in u.iter().enumerate() {
@@ -153,7 +167,7 @@ impl ContactPair {
             c_scale: &c_scale,
             rows: &self.limits.rows,
             bounds: &self.limits.bounds,
-            center: &self.state.contact.jumps,
+            center: &center,
             scale: u.iter().fold(self.limits.scale, |m, u| m.max(u.abs())),
         };
         let contact = FrictionProblem {

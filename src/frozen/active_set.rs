@@ -66,7 +66,6 @@ pub fn solve(
         .map(|(&g, limits)| (g, limits.bounds.clone()))
         .collect();
     let mut outcome = SweepOutcome {
-        frozen: true,
         ..SweepOutcome::before(Vec::new())
     };
     let (mut exchange, mut descent) = (Exchange::default(), Descent::default());

@@ -169,7 +169,6 @@ pub fn solve(
         .map(|(&g, limits)| (g, limits.bounds.clone()))
         .collect();
     let mut outcome = SweepOutcome {
-        frozen: true,
         ..SweepOutcome::before(Vec::new())
     };
     let mut known = BTreeSet::new();

@@ -18,9 +18,9 @@ use super::problem::InterfaceProblem;
 use crate::contact::active_set::ContactProblem;
 use crate::contact::dependent::DependentConstraints;
 use crate::contact::friction::{FrictionProblem, Status};
-use crate::contact::limits::TangentialLimit;
+use crate::contact::limits::{Beside, TangentialLimit};
 use crate::contact::pair::{CondensedContact, PairResponse};
-use crate::interface::s_con::ConState;
+use crate::interface::s_con::{ConState, Expected};
 use crate::rigid::energy::RigidBasis;
 use crate::schur::local::multiply_add;
 
@@ -66,6 +66,14 @@ pub struct CoupledStep {
     pub slides: bool,
     /// Where it didn't for friction, the conditions of every pair whose status is wrong.
     pub unsettled: Vec<Vec<usize>>,
+}
+
+impl CoupledStep {
+    /// What pairs are to expect of it.
+    pub fn expected(&self) -> Vec<Expected> {
+        let both = self.statuses.iter().cloned();
+        both.zip(self.jumps.iter().cloned()).collect()
+    }
 }
 
 /// The right-hand side after δ is eliminated.
@@ -193,12 +201,13 @@ impl<'a> CoupledContact<'a> {
     }
 
     /// The change that balances `r` on Γ and `loads` on the normal jumps of every pair where limits keep their
-    /// `statuses` and the closed ones still have to close by `missing`.
+    /// `statuses` and the closed ones still have to close by the first of what is `missing`; where a slipping one turns,
+    /// that is its share of its point's bound and κ.
     pub fn solve_fixed(
         &self,
         r: &[f64],
         loads: &[Vec<f64>],
-        missing: &[Vec<f64>],
+        missing: &[Vec<[f64; 2]>],
         statuses: &[Vec<Status>],
     ) -> CoupledStep {
         let loads = loads.concat();
@@ -206,11 +215,12 @@ impl<'a> CoupledContact<'a> {
         let condensed = self.condense(r, loads, scale);
         let status = self.side_by_side(statuses.iter().map(Vec::as_slice));
         let missing = self.side_by_side(missing.iter().map(Vec::as_slice));
+        let (bounds, turns): (Vec<f64>, Vec<f64>) = missing.into_iter().map(<_>::into).unzip();
         let problem = FrictionProblem {
-            contact: self.problem(&condensed, &missing, &[]),
+            contact: self.problem(&condensed, &bounds, &[]),
             tangents: &self.tangents,
         };
-        let (jumps, forces) = problem.change(&status);
+        let (jumps, forces) = problem.change(&status, &turns);
         self.step(r, &condensed, &jumps, forces, &status)
     }
 
@@ -289,6 +299,12 @@ impl<'a> CoupledContact<'a> {
     /// Whether a pair has friction.
     pub fn has_friction(&self) -> bool {
         !self.tangents.is_empty()
+    }
+
+    /// Whether a point slips in a plane.
+    pub fn has_discs(&self) -> bool {
+        let mut tangents = self.tangents.iter();
+        tangents.any(|tangent| tangent.beside != Beside::Nothing)
     }
 
     /// What every pair has of normal jumps, then what every pair has of linearly dependent constraints.

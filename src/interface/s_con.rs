@@ -59,8 +59,11 @@ enum Request {
     Signals,
 }
 
-/// U of a pair, and the statuses that are expected.
-type Question = (Reals, Option<Vec<Status>>);
+/// The statuses that are expected of a pair, and by how much its jumps change; nothing where that isn't known.
+pub type Expected = (Vec<Status>, Vec<f64>);
+
+/// U of a pair, and what is expected.
+type Question = (Reals, Option<(Vec<Status>, Reals)>);
 
 impl<'a> SCon<'a> {
     /// S_CON over `pairs` of this rank; `owners` has the owner of every pair.
@@ -87,13 +90,13 @@ impl<'a> SCon<'a> {
     }
 
     /// Evaluates all pairs whose trace changed and leaves their answers in `state`; a pair's search
-    /// begins at the statuses `expected`. On the root; the other ranks
+    /// begins at what is `expected`. On the root; the other ranks
     /// [`serve`](Self::serve).
     pub fn evaluate(
         &mut self,
         interface: &Interface,
         u: &[f64],
-        expected: Option<&[Vec<Status>]>,
+        expected: Option<&[Expected]>,
         state: &mut ConState,
     ) -> ConTotals {
         let n = self.len();
@@ -106,8 +109,9 @@ impl<'a> SCon<'a> {
         if !moved.is_empty() {
             (self.comm).broadcast(&mut Request::Evaluate(moved.clone()));
             let question = |p: usize| -> Question {
-                let status = expected.map(|all| all[p].clone());
-                (Reals(interface_dofs[p].clone()), status)
+                let of_pair = expected.map(|all| all[p].clone());
+                let of_pair = of_pair.map(|(status, changes)| (status, Reals(changes)));
+                (Reals(interface_dofs[p].clone()), of_pair)
             };
             self.exchange(&moved, question, evaluate, |p, response| {
                 state.responses[p] = response;
@@ -212,7 +216,10 @@ impl<'a> SCon<'a> {
 }
 
 fn evaluate(pair: &mut ContactPair, (Reals(u), expected): Question) -> PairResponse {
-    pair.evaluate(&u, expected)
+    pair.evaluate(
+        &u,
+        expected.map(|(status, Reals(changes))| (status, changes)),
+    )
 }
 
 fn differentiate(pair: &mut ContactPair, Reals(x): Reals) -> Reals {

@@ -34,7 +34,9 @@ pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
         let closed = of_group.closed.iter();
         (
             g,
-            closed.map(|closed| (Status::new(!closed), 0.0)).collect(),
+            closed
+                .map(|closed| (Status::new(!closed), [0.0; 2]))
+                .collect(),
         )
     });
     let answer = fixed.solve(loads.clone(), held.collect(), &BTreeMap::new(), ACCURACY);

@@ -65,12 +65,11 @@ pub struct FixedActiveSetRoot<'a> {
 }
 
 /// The statuses of the limits of a cluster, and what the closed ones still have to close (m), or slipping ones have of
-/// their point's bound.
-type FixedLimits = (Vec<Status>, Vec<f64>);
+/// their point's bound, and how much force a slip across turns (N/m).
+type FixedLimits = (Vec<Status>, Vec<[f64; 2]>);
 
-/// The statuses of the conditions of contact groups, by their number, and what the closed ones still have to close (m), or
-/// slipping ones have of their point's bound.
-pub type FixedConditions = BTreeMap<usize, Vec<(Status, f64)>>;
+/// The same of the conditions of contact groups, by their number.
+pub type FixedConditions = BTreeMap<usize, Vec<(Status, [f64; 2])>>;
 
 impl FixedActiveSetRoot<'_> {
     /// Whether loads can be solved for: without an interface problem, or where the pairs' normal jumps can be
@@ -177,11 +176,14 @@ impl<'a> FixedActiveSet<'a> {
         for (g, of_group) in conditions {
             let (statuses, lacking) = limits[&g].fixed(&of_group);
             if let Some(forces) = forces.get(&g) {
-                laws.insert(g, Law::of_slipping(&limits[&g], &statuses, forces));
+                let group = &self.context.groups[&g];
+                let laws_of_group =
+                    Law::of_slipping(group, &limits[&g], (&statuses, &lacking), forces);
+                laws.insert(g, laws_of_group);
             }
             let is_closed: Vec<bool> = statuses.iter().map(|status| status.is_closed()).collect();
             let lacking = lacking.into_iter().zip(&is_closed);
-            let lacking = lacking.map(|(way, is_closed)| if *is_closed { way } else { 0.0 });
+            let lacking = lacking.map(|([way, _], is_closed)| if *is_closed { way } else { 0.0 });
             missing.insert(g, lacking.collect());
             open.insert(g, is_closed.iter().map(|is_closed| !is_closed).collect());
         }

@@ -5,9 +5,13 @@ use std::collections::BTreeMap;
 
 use crate::certificate::check::{BlockCheck, Most};
 use crate::certificate::{Certificate, certificate};
-use crate::contact::friction::{Status, TangentialCondition};
+use crate::condense::jumps;
+use crate::contact::friction::TangentialCondition;
+use crate::contact::jumps::JumpOf;
+use crate::context::Context;
 use crate::fem::contact_group::ContactGroup;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedConditions};
+use crate::recover::fixed_conditions::{change_forces, conditions};
 use crate::recover::motions::Field;
 use crate::recover::{DiscreteSolution, GroupSolution};
 use crate::sweep::AGAINST_FRICTION;
@@ -17,14 +21,16 @@ const LIMIT: f64 = 4e-15;
 /// Equilibrium relative to the load above which a solution is refined: bodies that move much farther than they
 /// deform have forces that are less than their displacements promise.
 const LIMIT_OF_LOAD: f64 = 1e-11;
+/// Violation of the law of friction above which a solution in space is refined.
+const LIMIT_OF_FRICTION: f64 = 1e-14;
 /// Equilibrium and penetration that are good enough.
 const GOOD: f64 = 1e-14;
-/// Part of its bound below which a force that slips isn't at it: the contact is about to open.
-const AT_BOUND: f64 = 1.0 - 1e-9;
 /// Accuracy of a correction where it is iterated for.
 const CORRECTION: f64 = 1e-6;
 /// Most refinements.
 const MAX_REFINEMENTS: usize = 3;
+/// The same in space with friction, whose forces turn.
+const MAX_REFINEMENTS_OF_SLIPS: usize = 8;
 /// Most exchanges of what sticks and slips.
 const MAX_EXCHANGES: usize = 20;
 
@@ -32,8 +38,15 @@ const MAX_EXCHANGES: usize = 20;
 /// it is that of the whole solution. Collective.
 pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Certificate {
     let mut best = check(fixed, solution);
-    for _ in 0..MAX_REFINEMENTS {
+    let in_space = fixed.context.catalog.dim == 3;
+    let most = match in_space && fixed.context.catalog.has_friction() {
+        true => MAX_REFINEMENTS_OF_SLIPS,
+        false => MAX_REFINEMENTS,
+    };
+    for _ in 0..most {
+        let slips_astray = in_space && best.friction > LIMIT_OF_FRICTION;
         let falls_short = worst(&best) > LIMIT || best.equilibrium_of_load > LIMIT_OF_LOAD;
+        let falls_short = falls_short || slips_astray;
         if !decide(fixed, falls_short) {
             break;
         }
@@ -41,7 +54,10 @@ pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Ce
         correct(fixed, &mut refined);
         let after = check(fixed, &refined);
         let is_nearer = worst(&after) < 0.5 * worst(&best)
-            || worst(&after) < LIMIT && after.equilibrium_of_load < 0.5 * best.equilibrium_of_load;
+            || worst(&after) < LIMIT && after.equilibrium_of_load < 0.5 * best.equilibrium_of_load
+            || worst(&after) < LIMIT.max(worst(&best))
+                && slips_astray
+                && after.friction < 0.5 * best.friction;
         if !decide(fixed, is_nearer) {
             break;
         }
@@ -123,7 +139,7 @@ fn exchange(group: &ContactGroup, solution: &mut GroupSolution) {
             |of: &dyn Fn(usize) -> f64| of_point.iter().map(|one| of(one.number)).sum::<f64>();
         let size = sum(&|j| solution.forces[j].powi(2)).sqrt();
         let work = sum(&|j| -solution.gaps[j] * solution.forces[j]);
-        let sticks = of_point.iter().any(|one| solution.closed[one.number]);
+        let sticks = of_point.iter().all(|one| solution.closed[one.number]);
         let changes = match sticks {
             true => size > bound,
             false => work < 0.0,
@@ -216,6 +232,19 @@ fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate
 /// are 0 along the motion but for theirs. It is left on all nodes that move, where it is least; the
 /// springs at the motions' pins would bear it each at one node.
 fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
+    let context = &fixed.context;
+    let prescribed: BTreeMap<usize, Vec<bool>> = (solution.groups.keys())
+        .map(|&g| (g, prescribed(context, g)))
+        .collect();
+    let conditions: FixedConditions = (solution.groups.iter_mut())
+        .map(|(&g, of_group)| {
+            let of_group = conditions(&context.groups[&g], of_group, &prescribed[&g]);
+            (g, of_group)
+        })
+        .collect();
+    if context.catalog.dim == 3 && context.catalog.has_friction() {
+        solution.share(context, &fixed.step.loads);
+    }
     let residual = |(&b, of_block)| Some((b, fixed.balance(b, of_block)?.residual));
     let mut residuals: BTreeMap<usize, Vec<f64>> =
         solution.blocks.iter().filter_map(residual).collect();
@@ -228,9 +257,6 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
         Some((b, load))
     };
     let loads = residuals.into_iter().filter_map(on_unknowns).collect();
-    let conditions: FixedConditions = (solution.groups.iter())
-        .map(|(&g, of_group)| (g, conditions(&fixed.context.groups[&g], of_group)))
-        .collect();
     let forces = solution.groups.iter();
     let forces = forces.map(|(&g, of_group)| (g, of_group.forces.clone()));
     let change = fixed.solve(loads, conditions.clone(), &forces.collect(), CORRECTION);
@@ -246,6 +272,7 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
                 &fixed.context.groups[&g],
                 of_group,
                 &conditions[&g],
+                &prescribed[&g],
                 &changes,
             );
         }
@@ -253,66 +280,15 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     solution.share(&fixed.context, &fixed.step.loads);
 }
 
-/// The statuses of the conditions of a contact group, what the closed ones lack (m), and what slipping ones have of
-/// their point's bound: in space these forces keep their direction.
-fn conditions(group: &ContactGroup, solution: &GroupSolution) -> Vec<(Status, f64)> {
-    let both = solution.closed.iter().zip(&solution.gaps);
-    let mut conditions: Vec<(Status, f64)> = both
-        .map(|(closed, gap)| (Status::new(!closed), if *closed { *gap } else { 0.0 }))
-        .collect();
-    for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
-        let TangentialCondition { normal, bound, .. } = of_point[0];
-        let squares = of_point
-            .iter()
-            .map(|one| solution.forces[one.number].powi(2));
-        let size = match of_point {
-            [one] => solution.forces[one.number].abs(),
-            _ => squares.sum::<f64>().sqrt(),
-        };
-        let is_closed = solution.closed[normal];
-        let bound = bound.at(solution.forces[normal], is_closed);
-        let parts = is_closed && size < AT_BOUND * bound;
-        for one in of_point.iter().filter(|one| !solution.closed[one.number]) {
-            let force = solution.forces[one.number];
-            conditions[one.number] = match force {
-                0.0 => continue,
-                _ if parts && of_point.len() == 1 => (Status::Parting, 0.0),
-                _ if parts => continue,
-                ahead if ahead > 0.0 => (Status::Forward, ahead / size),
-                back => (Status::Backward, -back / size),
-            };
-        }
-    }
-    conditions
-}
-
-/// Changes the forces of a contact group, whose conditions have these statuses: none holds its sides together, and
-/// friction stays at its bound, in space in the direction that it has.
-fn change_forces(
-    group: &ContactGroup,
-    solution: &mut GroupSolution,
-    conditions: &[(Status, f64)],
-    changes: &[f64],
-) {
-    let normals = group.points.len();
-    for (j, (force, change)) in solution.forces.iter_mut().zip(changes).enumerate() {
-        let keeps = |status| matches!(status, Status::Forward | Status::Backward);
-        if j < normals {
-            *force = (*force + change).max(0.0);
-        } else if group.dim == 2 || !keeps(conditions[j].0) {
-            *force += change;
-        }
-    }
-    for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
-        let TangentialCondition { normal, bound, .. } = of_point[0];
-        let slips = of_point.iter().all(|one| !solution.closed[one.number]);
-        let bound = bound.at(solution.forces[normal], solution.closed[normal]);
-        let of_point = of_point.iter().map(|one| one.number);
-        let parts = group.dim == 3 && of_point.clone().all(|j| conditions[j].0 == Status::Open);
-        let squares = of_point.clone().map(|j| solution.forces[j].powi(2));
-        let size = squares.sum::<f64>().sqrt();
-        for j in of_point.filter(|_| slips && !parts && size != 0.0) {
-            solution.forces[j] *= bound / size;
-        }
-    }
+/// Which conditions of contact group g have jumps that supports prescribe; in the plane friction doesn't ask.
+fn prescribed(context: &Context<'_>, g: usize) -> Vec<bool> {
+    let group = &context.groups[&g];
+    let of = match context.catalog.dim == 3 && !group.friction().is_empty() {
+        true => jumps(context, g, group).map(|jumps| jumps.of),
+        false => Ok(Vec::new()),
+    };
+    let of = of.unwrap_or_default().into_iter();
+    let mut prescribed: Vec<bool> = of.map(|of| of == JumpOf::Prescribed).collect();
+    prescribed.resize(group.conditions().count(), false);
+    prescribed
 }

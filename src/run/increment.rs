@@ -230,7 +230,7 @@ impl Increments<'_> {
         let solution = Solution::new(&fixed, analysis, discrete, stress_of);
         let (energies, energy) = energies(&fixed, &solution, &energies_before);
         if let Some(outcome) = &mut outcome {
-            outcome.accept(&solution.certificate, context.catalog.has_friction());
+            outcome.accept(&solution.certificate);
             outcome.name_unsettled(&unsettled_points(&context, outcome));
         }
         seconds.recover += lap.elapsed().as_secs_f64();

@@ -4,14 +4,19 @@ use std::collections::VecDeque;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Residual, SweepStatus, Sweeps};
+use super::{ROUND_OFF, Residual, SweepStatus, Sweeps};
 use crate::error::Failure;
+use crate::interface::coupled::CoupledContact;
 use crate::vector::axpy;
 
 /// Steps that are remembered.
 const DEPTH: usize = 5;
 /// Sweeps before it gives up, those of a method that it took over from among them.
 const MAX_SWEEPS: usize = 500;
+/// The same where points slip in planes: what sweeps of a hundred don't find ten times as many don't.
+const MAX_SWEEPS_OF_DISCS: usize = 100;
+/// The same where all that is left is a pair whose small problem doesn't converge.
+const MAX_FAILURES: usize = 10;
 
 /// The steps that are remembered.
 #[derive(Default)]
@@ -37,10 +42,19 @@ impl Chords {
 
 impl Sweeps<'_, '_> {
     pub(super) fn anderson(&mut self, mut residual: Residual) -> Result<SweepStatus, Failure> {
-        let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
+        let coupled = CoupledContact::new(self.problem);
+        let most = match coupled.is_some_and(|coupled| coupled.has_discs()) {
+            true => MAX_SWEEPS_OF_DISCS,
+            false => MAX_SWEEPS,
+        };
+        let limit = self.settings.max_sweeps.unwrap_or(most);
         let mut chords = Chords::default();
+        let mut failures = 0;
         while self.goes_on(&residual)? {
-            let hopeless = !residual.relative.is_finite() || self.problem.interface.len == 0;
+            failures += usize::from(residual.relative <= ROUND_OFF);
+            let hopeless = !residual.relative.is_finite()
+                || self.problem.interface.len == 0
+                || failures > MAX_FAILURES;
             if hopeless || self.sweeps_done() >= limit {
                 if self.can_be_refined(&residual) {
                     return Ok(SweepStatus::Converged);

@@ -51,7 +51,7 @@ impl Sweeps<'_, '_> {
             }
             axpy(1.0, &step.u, &mut self.outcome.u);
             let before = residual.relative;
-            residual = self.evaluate(Some(&step.statuses));
+            residual = self.evaluate(Some(&step.expected()));
             let stalled = residual.totals.changed == 0 && residual.relative >= 0.5 * before;
             stalls = if stalled { stalls + 1 } else { 0 };
             if stalls == PATIENCE && !self.is_converged(&residual) {
@@ -103,7 +103,7 @@ impl Sweeps<'_, '_> {
             self.outcome.active_set_iterations += step.steps;
             let coarse = self.outcome.u.clone();
             axpy(1.0, &step.u, &mut self.outcome.u);
-            let after = self.residual(Some(&step.statuses));
+            let after = self.residual(Some(&step.expected()));
             if !step.converged
                 || after.totals.failed_pairs > 0
                 || after.relative > 0.5 * residual.relative

@@ -151,6 +151,27 @@ fn random_scenes_in_space_with_friction_are_answered_rightly() {
     }
 }
 
+/// What slips beside stiff bodies, where refinement changes slips by more than round-off, and forces have to turn with them
+/// (8), or supports leave one direction (225); and what sticks although several contacts hold it (67, 260).
+#[test]
+fn refinement_in_space_keeps_the_law_of_friction() {
+    for seed in [8, 67, 225, 260] {
+        let mut drawn = draw_frictional_in_space(seed, 12);
+        drawn.model.steps.truncate(1);
+        let (verdict, why) = judged(drawn);
+        assert_eq!(verdict, Verdict::Right, "{seed}: {why}");
+    }
+}
+
+/// Nothing acts on them: gaps of round-off would press them together, by forces that are nothing else.
+#[test]
+fn what_touches_in_space_without_a_load_stays_where_it_is() {
+    for seed in [281, 305, 395, 425] {
+        let (verdict, why) = judged(draw_in_space(seed, 12));
+        assert_eq!(verdict, Verdict::Right, "{seed}: {why}");
+    }
+}
+
 /// In some of them what one contact group ties another one ties to others.
 #[test]
 fn random_scenes_are_answered_rightly_by_iteration_between_clusters() {

@@ -23,6 +23,10 @@ use crate::scene::units::Units;
 /// Gaps are exact to this fraction of the scene's coordinates.
 const ROUNDING: f64 = 1e-12;
 
+/// Measured gaps in space are none up to this fraction: round-off of coordinates would hold bodies apart, or press them
+/// together, and where several contacts meet no displacement has all of them.
+const NO_GAP: f64 = 1e-15;
+
 /// Negative gaps are worth a warning beyond this fraction of the side's extent: less is how quadratic
 /// edges follow an arc.
 const SEEN: f64 = 1e-8;
@@ -109,6 +113,14 @@ impl<'a> Contacts<'a> {
                 points
             }
         };
+        let none = if self.mesh.dim == 3 {
+            NO_GAP * self.size
+        } else {
+            0.0
+        };
+        for point in points.iter_mut().filter(|point| point.gap.abs() < none) {
+            point.gap = 0.0;
+        }
         if let Some(gap) = &keys.gap {
             off = 0.0;
             let mut furthest = (0.0, 0.0, 0.0);

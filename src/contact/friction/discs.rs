@@ -153,6 +153,51 @@ impl FrictionProblem<'_> {
         }
     }
 
+    /// The change of jumps and forces where limits keep these statuses and slips turn, as [`Self::change`] says.
+    pub(super) fn change_discs(&self, status: &[Status], turns: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let share = |i: Option<usize>| i.map_or(0.0, |i| self.contact.bounds[i]);
+        let slips = |i: usize| status[i].sign() != 0.0;
+        let mut bounds = self.contact.bounds.to_vec();
+        let mut tangents = self.tangents.to_vec();
+        for tangent in &mut tangents {
+            tangent.bound.cohesion = 0.0;
+            if slips(tangent.limit) {
+                bounds[tangent.limit] = 0.0;
+            }
+            if matches!(tangent.beside, Beside::Prescribed(_)) {
+                tangent.beside = Beside::Nothing;
+            }
+        }
+        let changes = FrictionProblem {
+            contact: ContactProblem {
+                bounds: &bounds,
+                ..self.contact
+            },
+            tangents: &tangents,
+        };
+        let discs = Discs::new(&changes);
+        let act = |point: &Point| match point.own.limit {
+            i if slips(i) => Act::Slips {
+                e: point.tangents.map(share),
+                across: turns[i],
+            },
+            i if status[i].is_closed() => Act::Sticks,
+            _ => Act::Rests,
+        };
+        let state = State {
+            closed: status.iter().map(|status| status.is_closed()).collect(),
+            points: discs.points.iter().map(act).collect(),
+            opened: Vec::new(),
+        };
+        let Place { jumps, mut forces } = discs.step(&discs.start(), &state);
+        for (force, status) in forces.iter_mut().zip(status) {
+            if *status == Status::Open {
+                *force = 0.0;
+            }
+        }
+        (jumps, forces)
+    }
+
     /// The limits whose law isn't fulfilled one step after they had these statuses.
     pub(super) fn unsettled_discs(&self, status: &[Status]) -> Vec<usize> {
         let discs = Discs::new(self);

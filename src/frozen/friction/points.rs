@@ -232,10 +232,28 @@ impl GroupFriction {
 }
 
 impl Law {
-    /// The laws of the points within `limits` that slip as these statuses of limits say, under these `forces` of their
-    /// conditions, whose directions stay; b is what these lack of it.
-    pub fn of_slipping(limits: &Limits, statuses: &[Status], forces: &[f64]) -> Vec<Self> {
+    /// How λ_t turns where forces and jumps of the group change by these.
+    pub fn across(&self, forces: &[f64], jumps: &[f64]) -> [f64; 2] {
+        let mut xi = [0.0; 2];
+        for (xi, &t) in xi.iter_mut().zip(&self.tangents) {
+            *xi = self.own * forces[t] + self.stiffness * jumps[t];
+        }
+        let e = self.direction;
+        let along = xi[0] * e[0] + xi[1] * e[1];
+        [0, 1].map(|k| self.turn * (xi[k] - along * e[k]))
+    }
+
+    /// The laws of the points of a `group` within `limits` that slip as these statuses of limits say, under these `forces`
+    /// of their conditions, whose directions turn with the slip by κ, the second of what is said of limits; b is what
+    /// these lack of it.
+    pub fn of_slipping(
+        group: &ContactGroup,
+        limits: &Limits,
+        (statuses, said): (&[Status], &[[f64; 2]]),
+        forces: &[f64],
+    ) -> Vec<Self> {
         let of_limits = limits.conditions_of_limits();
+        let points: Vec<usize> = group.conditions().map(|one| one.point).collect();
         let law = |tangent: &TangentialLimit| {
             let (tangents, prescribed) = tangent.of_point()?;
             let tangents: Vec<usize> = tangents.into_iter().flatten().collect();
@@ -251,15 +269,17 @@ impl Law {
                 false => bound,
             };
             let slips = tangents.iter().all(|&t| !statuses[t].is_closed());
+            let [_, turns] = said[tangent.limit];
+            let stiffness = group.stiffness_at(points[of_limits[tangent.limit]]);
             (slips && size > 0.0).then(|| Self {
                 direction: direction.map(|e| e / size),
                 tangents,
                 normal: presses,
                 bound: bound - size,
                 slope: tangent.bound.coefficient,
-                turn: 0.0,
+                turn: turns / (turns + stiffness),
                 own: 1.0,
-                stiffness: 0.0,
+                stiffness,
             })
         };
         limits.tangents.iter().filter_map(law).collect()

@@ -70,7 +70,7 @@ impl SlipProblem<'_> {
         Ok(solution)
     }
 
-    /// The forces that follow `laws`, whose directions stay, with the pressures of a solution without them;
+    /// The forces that follow `laws` with the pressures and slips of a solution without them;
     /// GMRES makes what is missed smaller by `reduction`. `None` where none are missed. Collective.
     ///
     /// # Errors
@@ -86,8 +86,9 @@ impl SlipProblem<'_> {
             let mut missed = vec![0.0; jumps.len()];
             for law in laws.get(&g).into_iter().flatten() {
                 let normal = law.normal.map_or(0.0, |n| solution.forces[&g][n]);
-                for (&t, e) in law.tangents.iter().zip(law.direction) {
-                    missed[t] = -(law.bound + law.slope * normal) * e;
+                let across = law.across(&missed, &solution.jumps[&g]);
+                for (k, &t) in law.tangents.iter().enumerate() {
+                    missed[t] = -(law.bound + law.slope * normal) * law.direction[k] - across[k];
                 }
             }
             (g, missed)
@@ -183,15 +184,9 @@ impl SlipProblem<'_> {
             let mut product = vec![0.0; change.len()];
             for law in laws.get(&g).into_iter().flatten() {
                 let normal = law.normal.map_or(0.0, |n| response.forces[&g][n]);
-                let mut xi = [0.0; 2];
-                for (xi, &t) in xi.iter_mut().zip(&law.tangents) {
-                    *xi = law.own * change[t] + law.stiffness * response.jumps[&g][t];
-                }
-                let e = law.direction;
-                let along = xi[0] * e[0] + xi[1] * e[1];
+                let across = law.across(change, &response.jumps[&g]);
                 for (k, &t) in law.tangents.iter().enumerate() {
-                    let across = law.turn * (xi[k] - along * e[k]);
-                    product[t] = change[t] - law.slope * normal * e[k] - across;
+                    product[t] = change[t] - law.slope * normal * law.direction[k] - across[k];
                 }
             }
             (g, product)

@@ -12,7 +12,11 @@ use super::super::random::Random;
 use super::super::solids::{SOLIDS, moved, solid, turned};
 use super::draft::{Draft, noise};
 use super::friction::Friction;
+use super::trial::has_no_equilibrium;
 use super::{Drawn, Family, drawn, matching};
+
+/// Share of the scenes without equilibrium that are kept.
+const KEPT: f64 = 0.2;
 
 /// The families of scenes in space.
 pub const FAMILIES: [Family; 6] = [
@@ -30,10 +34,19 @@ pub fn draw_in_space(seed: u64, cells: usize) -> Drawn {
     draw_from(&FAMILIES, seed, cells)
 }
 
-/// The same with friction, of seeds that count anew.
+/// The same with friction, of seeds that count anew; most that have no equilibrium are drawn once more, and so on.
 #[track_caller]
 pub fn draw_frictional_in_space(seed: u64, cells: usize) -> Drawn {
-    draw_from(&friction::FAMILIES, seed, cells)
+    let mut random = Random::new(seed.rotate_left(32));
+    let mut numbers = seed;
+    loop {
+        let drawn = draw_from(&friction::FAMILIES, numbers, cells);
+        if random.chance(KEPT) || !has_no_equilibrium(&drawn) {
+            return Drawn { seed, ..drawn };
+        }
+        // Of the same family.
+        numbers += (friction::FAMILIES.len() as u64) << 32;
+    }
 }
 
 #[track_caller]

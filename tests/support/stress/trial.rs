@@ -103,6 +103,31 @@ impl Loaded {
     }
 }
 
+/// A scene with the loads of all its steps.
+fn steps(model: &Model) -> Vec<Loaded> {
+    match model.steps.len() {
+        0 => vec![Loaded::new(model.clone())],
+        count => (0..count).map(|k| Loaded::new(at_step(model, k))).collect(),
+    }
+}
+
+/// Whether all steps of a scene have an equilibrium without friction, and with the friction that it has.
+fn balances(drawn: &Drawn, steps: &[Loaded]) -> [Balance; 2] {
+    let without = |step: &Loaded| Balance::without_friction(&step.model, &step.assembled);
+    let held = least(steps.iter().map(without));
+    let with = |step: &Loaded| Balance::new(&step.model, &step.assembled);
+    match (held, drawn.friction) {
+        // What stands without friction stands with it.
+        (Balance::Holds, _) | (_, None) => [held; 2],
+        _ => [held, least(steps.iter().map(with))],
+    }
+}
+
+/// Whether there is certainly no equilibrium in some step.
+pub fn has_no_equilibrium(drawn: &Drawn) -> bool {
+    balances(drawn, &steps(&drawn.model))[1] == Balance::Fails
+}
+
 /// The worst of all.
 fn least(balances: impl Iterator<Item = Balance>) -> Balance {
     let rank = |balance: &Balance| match balance {
@@ -147,21 +172,8 @@ impl Trial {
             findings: None,
             report: None,
         };
-        let steps: Vec<Loaded> = match model.steps.len() {
-            0 => vec![Loaded::new(model.clone())],
-            count => (0..count).map(|k| Loaded::new(at_step(model, k))).collect(),
-        };
-        // What stands without friction stands with it.
-        let without = |step: &Loaded| Balance::without_friction(&step.model, &step.assembled);
-        let held = least(steps.iter().map(without));
-        let balance = match (held, drawn.friction) {
-            (Balance::Holds, _) | (_, None) => held,
-            _ => least(
-                steps
-                    .iter()
-                    .map(|step| Balance::new(&step.model, &step.assembled)),
-            ),
-        };
+        let steps = steps(model);
+        let [held, balance] = balances(drawn, &steps);
         trial.equilibrium = match (balance, drawn.equilibrium) {
             (Balance::Holds, None) if held != Balance::Holds => {
                 trial.by_friction = true;

@@ -253,6 +253,7 @@ impl Discs<'_> {
             scale,
             of_equation,
             springs,
+            may_yield_less: true,
         }
     }
 }

@@ -141,6 +141,9 @@ impl Discs<'_> {
         for steps in 1..=most {
             let target = self.step(&place, &state);
             let look = self.look(&target, Some(&state));
+            if look.merit.is_nan() {
+                break;
+            }
             if let Some(found) = &mut best
                 && look.missed > 0.5 * found.missed
             {
