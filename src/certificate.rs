@@ -4,14 +4,12 @@
 
 pub mod check;
 pub mod energy;
-
-use std::collections::HashMap;
+pub mod shared;
 
 use contact_dd_partition::model::PlaneState;
 use serde::{Deserialize, Serialize};
 
 use self::check::{BlockCheck, External, Most};
-use crate::schur::condensed::InterfaceDof;
 use crate::vector::{larger, largest};
 
 /// Sum of forces, relative to the terms that they are sums of, that is no load.
@@ -70,45 +68,24 @@ impl Certificate {
     }
 }
 
-/// The certificate of the whole solution, of what was checked on blocks and at contact points, where Γ has so
-/// many nodes of `dim` components, in a plane state or in space.
+/// The certificate of the whole solution, of what was checked on blocks, in their order, and of what is largest elsewhere:
+/// at contact points and at shared nodes; in a plane state or in space.
 pub fn certificate(
     checks: &[BlockCheck],
-    at_points: Most,
-    interface_nodes: usize,
-    dim: usize,
+    elsewhere: Most,
     plane: Option<PlaneState>,
 ) -> Certificate {
-    let mut most = at_points;
+    let mut most = elsewhere;
     let mut external = External::default();
-    let mut on_interface = vec![0.0; interface_nodes * dim];
-    let mut interface_scale = vec![0.0; interface_nodes * dim];
-    let mut known: HashMap<u32, Vec<f64>> = HashMap::new();
-    let mut jump = 0.0;
     for check in checks {
-        let interface_dofs = check.trace_dofs.iter().zip(&check.interface_dofs);
-        for ((&InterfaceDof { node, axis }, r), s) in interface_dofs.zip(&check.trace_scale) {
-            let dof = node as usize * dim + axis as usize;
-            on_interface[dof] += r;
-            interface_scale[dof] += s;
-        }
         most.include(check.most);
         external.include(check.external);
-        let displacement = check.shared_displacement.chunks(dim);
-        for (&node, u) in check.shared_nodes.iter().zip(displacement) {
-            let first = known.entry(node).or_insert_with(|| u.to_vec());
-            for (a, b) in first.iter().zip(u) {
-                jump = larger(jump, a - b);
-            }
-        }
     }
     if plane == Some(PlaneState::Axisymmetric) {
         // Around the axis all others cancel.
         external.force = [0.0, external.force[1], 0.0];
         external.moment = [0.0; 3];
     }
-    most.residual = larger(most.residual, largest(&on_interface));
-    most.scale = larger(most.scale, largest(&interface_scale));
     if most.scale < NO_LOAD * most.rest {
         // Bodies that only came to rest: what is left is round-off of their way.
         most.scale = most.rest;
@@ -142,7 +119,7 @@ pub fn certificate(
         .fold(0.0, larger),
         force_balance: to_load * ratio(largest(&external.force), external.force_scale),
         moment_balance: to_load * ratio(largest(&external.moment), moment_scale),
-        interface_jump: ratio(jump, most.displacement),
+        interface_jump: ratio(most.jump, most.displacement),
     }
 }
 

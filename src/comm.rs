@@ -3,13 +3,14 @@
 //! Ranks agree on errors at the end of every phase: nobody leaves between matching calls, so no
 //! rank waits for one that is gone.
 
+pub mod clock;
 mod launcher;
 #[cfg(debug_assertions)]
 mod on_purpose;
 mod start;
+mod ways;
 
 use std::cell::Cell;
-use std::collections::BTreeMap;
 
 use mpi::collective::SystemOperation;
 use mpi::topology::{Process, SimpleCommunicator};
@@ -18,11 +19,11 @@ use rustix::system::uname;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use clock::{Clock, Stamp, Times};
 pub use launcher::{is_first, is_launched};
 use start::current_phase;
 pub use start::{World, is_asked_to_stop, library, phase, start};
 
-use crate::bytes::Reals;
 use crate::error::Failure;
 
 /// The rank that assembles S_0 and writes the results.
@@ -39,6 +40,8 @@ pub struct Comm {
     /// `None` for a single rank that runs without MPI.
     world: Option<SimpleCommunicator>,
     bytes_sent: Cell<u64>,
+    messages_sent: Cell<u64>,
+    clock: Clock,
 }
 
 impl Comm {
@@ -104,17 +107,36 @@ impl Comm {
 
     /// Whether any rank was asked to stop. Collective.
     pub fn is_any_asked_to_stop(&self) -> bool {
-        let mine = i32::from(is_asked_to_stop());
-        self.all_reduce(mine, SystemOperation::max()) != 0
+        self.is_any(is_asked_to_stop())
+    }
+
+    /// Whether any rank says so. Collective.
+    pub fn is_any(&self, mine: bool) -> bool {
+        self.all_reduce(i32::from(mine), SystemOperation::max()) != 0
     }
 
     /// The least, the largest or the sum of `mine` over all ranks. Collective.
     fn all_reduce(&self, mine: i32, by: SystemOperation) -> i32 {
         let mut all = mine;
         if let Some(world) = &self.world {
+            let Stamp { modelled, chain } = self.clock.pause();
+            let mut latest = [0.0; 2];
             world.all_reduce_into(&mine, &mut all, by);
+            world.all_reduce_into(
+                &[modelled, chain][..],
+                &mut latest[..],
+                SystemOperation::max(),
+            );
+            let [modelled, chain] = latest;
+            self.clock
+                .resume_all(Stamp { modelled, chain }, self.hops());
         }
         all
+    }
+
+    /// Hops of a message from one rank to all, or from all to all.
+    fn hops(&self) -> u32 {
+        self.size.next_power_of_two().trailing_zeros()
     }
 
     /// A rank to send to or to receive from.
@@ -145,11 +167,15 @@ impl Comm {
             false => Vec::new(),
         };
         let process = self.process(from);
-        let mut length = bytes.len() as u64;
-        process.broadcast_into(&mut length);
-        bytes.resize(length as usize, 0);
+        let mut head = Head::new(bytes.len(), self.clock.pause());
+        process.broadcast_into(&mut head.0);
+        bytes.resize(head.length(), 0);
         for piece in bytes.chunks_mut(PIECE) {
             process.broadcast_into(piece);
+        }
+        match is_mine {
+            true => self.clock.resume_sender(bytes.len(), self.hops()),
+            false => (self.clock).resume_receiver(head.sent(), bytes.len(), self.hops()),
         }
         if !is_mine {
             *value = self.decode(from, &bytes);
@@ -161,11 +187,27 @@ impl Comm {
         self.bytes_sent.get()
     }
 
+    /// Number of messages that it has sent, broadcasts counted once.
+    pub fn messages_sent(&self) -> u64 {
+        self.messages_sent.get()
+    }
+
+    /// The longest chain of messages, each sent after the one before it had come, that led here.
+    pub fn longest_chain(&self) -> u64 {
+        self.clock.chain()
+    }
+
+    /// Where this rank is in its run.
+    pub fn times(&self) -> Times {
+        self.clock.times()
+    }
+
     fn encode<T: Serialize>(&self, value: &T) -> Vec<u8> {
         match postcard::to_stdvec(value) {
             Ok(bytes) => {
                 let sent = self.bytes_sent.get() + bytes.len() as u64;
                 self.bytes_sent.set(sent);
+                self.messages_sent.set(self.messages_sent.get() + 1);
                 bytes
             }
             Err(why) => self.give_up("can't be sent", &why),
@@ -187,99 +229,44 @@ impl Comm {
     pub fn send<T: Serialize>(&self, to: usize, value: &T) {
         let bytes = self.encode(value);
         let process = self.process(to);
-        process.send(&(bytes.len() as u64));
+        process.send(&Head::new(bytes.len(), self.clock.pause()).0);
         for piece in bytes.chunks(PIECE) {
             process.send(piece);
         }
+        self.clock.resume_sender(bytes.len(), 1);
     }
 
     /// Receives the next value of another rank.
     pub fn receive<T: DeserializeOwned>(&self, from: usize) -> T {
         let process = self.process(from);
-        let mut length = 0u64;
-        process.receive_into(&mut length);
-        let mut bytes = vec![0; length as usize];
+        self.clock.pause();
+        let mut head = Head::default();
+        process.receive_into(&mut head.0);
+        let mut bytes = vec![0; head.length()];
         for piece in bytes.chunks_mut(PIECE) {
             process.receive_into(piece);
         }
+        self.clock.resume_receiver(head.sent(), bytes.len(), 1);
         self.decode(from, &bytes)
     }
+}
 
-    /// Brings one value for each of `owners` to the root, in their order whoever owns what.
-    /// Collective.
-    ///
-    /// `make(i)` is called on the owner of `i`, `take(i, value)` on the root.
-    pub fn gather<T: Serialize + DeserializeOwned>(
-        &self,
-        owners: &[usize],
-        make: impl FnMut(usize) -> T,
-        take: impl FnMut(usize, T),
-    ) {
-        self.route(owners.iter().map(|&owner| (owner, ROOT)), make, take);
+/// What goes ahead of a message: its length, and the sender's stamp.
+#[derive(Clone, Copy, Debug, Default)]
+struct Head([u64; 3]);
+
+impl Head {
+    fn new(length: usize, sent: Stamp) -> Self {
+        Self([length as u64, sent.modelled.to_bits(), sent.chain.to_bits()])
     }
 
-    /// Brings one value of the root to each of `owners`, in their order. Collective.
-    ///
-    /// `make(i)` is called on the root, `take(i, value)` on the owner of `i`.
-    pub fn scatter<T: Serialize + DeserializeOwned>(
-        &self,
-        owners: &[usize],
-        make: impl FnMut(usize) -> T,
-        take: impl FnMut(usize, T),
-    ) {
-        self.route(owners.iter().map(|&owner| (ROOT, owner)), make, take);
+    fn length(self) -> usize {
+        self.0[0] as usize
     }
 
-    /// Brings a value along each of `ways`, from one rank to another, in their order. Collective.
-    ///
-    /// `make(i)` is called where way `i` begins, `take(i, value)` where it ends.
-    pub fn route<T: Serialize + DeserializeOwned>(
-        &self,
-        ways: impl IntoIterator<Item = (usize, usize)>,
-        mut make: impl FnMut(usize) -> T,
-        mut take: impl FnMut(usize, T),
-    ) {
-        for (i, (from, to)) in ways.into_iter().enumerate() {
-            match (from == self.rank(), to == self.rank()) {
-                (true, true) => take(i, make(i)),
-                (true, false) => self.send(to, &make(i)),
-                (false, true) => take(i, self.receive(from)),
-                (false, false) => {}
-            }
-        }
-    }
-
-    /// Brings a list along each of `ways`, from one rank to another, all between two ranks in one message; returns those
-    /// that end here, by the number of their way. Collective.
-    ///
-    /// `make(i)` is called where way `i` begins.
-    pub fn route_lists(
-        &self,
-        ways: &[(usize, usize)],
-        mut make: impl FnMut(usize) -> Vec<f64>,
-    ) -> BTreeMap<usize, Vec<f64>> {
-        let mut bundles: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
-        for (i, &way) in ways.iter().enumerate() {
-            bundles.entry(way).or_default().push(i);
-        }
-        let bundles: Vec<_> = bundles.into_iter().collect();
-        let mut arrived = BTreeMap::new();
-        self.route(
-            bundles.iter().map(|(way, _)| *way),
-            |b| -> Vec<Reals> { bundles[b].1.iter().map(|&i| Reals(make(i))).collect() },
-            |b, lists| arrived.extend(bundles[b].1.iter().copied().zip(lists)),
-        );
-        let lists = arrived.into_iter().map(|(i, Reals(list))| (i, list));
-        lists.collect()
-    }
-
-    /// Brings the value of every rank to the root, which gets them in the order of ranks; the
-    /// others get nothing. Collective.
-    pub fn collect<T: Serialize + DeserializeOwned + Clone>(&self, value: &T) -> Vec<T> {
-        let mut all = Vec::new();
-        let ranks: Vec<usize> = (0..self.size()).collect();
-        self.gather(&ranks, |_| value.clone(), |_, value| all.push(value));
-        all
+    fn sent(self) -> Stamp {
+        let [modelled, chain] = [self.0[1], self.0[2]].map(f64::from_bits);
+        Stamp { modelled, chain }
     }
 }
 

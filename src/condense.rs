@@ -8,8 +8,6 @@ pub mod limits;
 pub mod substitute;
 pub mod tree;
 
-use std::time::Instant;
-
 use contact_dd_partition::problem::Catalog;
 
 use crate::condense::blocks::{CondensedBlock, CondensedBlocks};
@@ -49,14 +47,16 @@ impl Condensation<'_> {
         block: &Block,
         condensed: &mut CondensedBlocks,
     ) -> Result<Condensed, Failure> {
-        let began = Instant::now();
-        let Context { catalog, par, .. } = self.context;
+        let Context {
+            comm, catalog, par, ..
+        } = self.context;
+        let began = comm.times();
         let dofs = Dofs::new(block, &self.loads.blocks[&number])
             .map_err(|TooManyUnknowns| too_large(number))?;
         let fixing_dofs = fixing_dofs_of(number, self.fixing_dofs);
         let (stiffness, springs) = assemble(block, &dofs, &catalog.materials, &fixing_dofs)
             .ok_or_else(|| too_large(number))?;
-        let assembled = Instant::now();
+        let assembled = comm.times();
         let (factor, s) =
             LocalSchur::new(&stiffness, dofs.interior, par).map_err(|error| match error {
                 FactorError::Size => too_large(number),
@@ -76,8 +76,8 @@ impl Condensation<'_> {
             factor,
         };
         condensed.blocks.insert(number, stays);
-        condensed.seconds[0] += (assembled - began).as_secs_f64();
-        condensed.seconds[1] += assembled.elapsed().as_secs_f64();
+        condensed.seconds[0] += assembled - began;
+        condensed.seconds[1] += comm.times() - assembled;
         Ok(of_block)
     }
 

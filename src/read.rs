@@ -6,7 +6,7 @@ use std::ops::Range;
 use contact_dd_partition::error::InputError;
 use contact_dd_partition::mesh::bounding_box::BoundingBox;
 use contact_dd_partition::problem::consistency::Places;
-use contact_dd_partition::problem::copies::NodeCopies;
+use contact_dd_partition::problem::copies::{Disagreement, NodeCopies, OwnNodes};
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::{Catalog, Subdomain};
 
@@ -50,15 +50,11 @@ pub fn collect_groups(
     blocks: &BTreeMap<usize, Block>,
 ) -> Result<BTreeMap<usize, ContactGroup>, Failure> {
     let mut bounds = BoundingBox::EMPTY;
-    comm.gather(
-        plan.owners(),
-        |b| {
-            let points = blocks.get(&b).map_or(&[][..], Block::points);
-            let BoundingBox { low, high } = BoundingBox::around(points);
-            (low, high)
-        },
-        |_, (low, high)| bounds.include(&BoundingBox { low, high }),
-    );
+    blocks
+        .values()
+        .for_each(|block| bounds.include(&BoundingBox::around(block.points())));
+    let boxes = comm.collect(&(bounds.low, bounds.high)).into_iter();
+    boxes.for_each(|(low, high)| bounds.include(&BoundingBox { low, high }));
     let mut extent = bounds.extent();
     comm.broadcast(&mut extent);
     let described = plan.nodes_to_groups(comm, |b, nodes| {
@@ -133,28 +129,31 @@ fn read_subdomains(
     Ok(subdomains)
 }
 
-/// Checks that subdomains agree on the nodes that they share and that no others have one tag.
-/// Collective.
+/// Checks that subdomains agree on the nodes that they share and that no others have one tag, every rank a part of
+/// the nodes. Collective.
 ///
 /// # Errors
 /// The first node for which that isn't so.
 pub fn check_copies(
     comm: &Comm,
     file: &ProblemFile,
-    plan: &Plan,
     blocks: &BTreeMap<usize, Block>,
 ) -> Result<(), Failure> {
-    let mut copies = NodeCopies::new(file.catalog());
-    comm.gather(
-        plan.owners(),
-        |s| {
-            let block = blocks.get(&s);
-            block.map_or_else(Default::default, |block| block.subdomain.own_nodes())
-        },
-        |s, nodes| copies.add(s, nodes),
-    );
-    comm.agree(match comm.is_root() {
-        true => (copies.check()).map_err(|error| Failure::from(file.refuse(error))),
-        false => Ok(()),
-    })
+    let ranks = comm.size();
+    let mut parts = vec![Vec::new(); ranks];
+    for (&s, block) in blocks {
+        let of_block = block.subdomain.own_nodes().parts(ranks).into_iter();
+        for (part, to) in of_block.zip(&mut parts) {
+            to.push((s, part));
+        }
+    }
+    let mut own: Vec<(usize, OwnNodes)> = comm.exchange(parts).into_iter().flatten().collect();
+    own.sort_by_key(|&(s, _)| s);
+    let mut copies = NodeCopies::default();
+    for (s, nodes) in own {
+        copies.add(s, nodes);
+    }
+    let first = comm.collect(&copies.check()).into_iter().flatten().min();
+    let refused = |fault: Disagreement| Failure::from(file.refuse(InputError::new(fault.message)));
+    comm.agree(first.map_or(Ok(()), |fault| Err(refused(fault))))
 }

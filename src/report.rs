@@ -10,7 +10,7 @@ use contact_dd_partition::problem::Catalog;
 use crate::comm::{self, Comm};
 use crate::error::Failure;
 use crate::output::memory::peak_memory_bytes;
-use crate::output::ranks::{PhaseSeconds, RankReport};
+use crate::output::ranks::{PhaseSeconds, RankReport, RankSeconds};
 use crate::output::report::{Build, Report, ReportFile, Status};
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::ResultFile;
@@ -59,16 +59,25 @@ impl Outputs {
 }
 
 /// Brings every rank's times and memory to the root. Collective.
-pub fn collect(comm: &Comm, seconds: &PhaseSeconds, plan: &Plan) -> Vec<RankReport> {
+pub fn collect(comm: &Comm, seconds: &RankSeconds, plan: &Plan) -> Vec<RankReport> {
     let owners = plan.owners().iter().copied();
     let subdomains = owners.filter(|&owner| owner == comm.rank()).count();
-    let mine = (*seconds, peak_memory_bytes(), comm.bytes_sent(), subdomains);
+    let sent = (
+        comm.bytes_sent(),
+        comm.messages_sent(),
+        comm.longest_chain(),
+    );
+    let mine = (*seconds, peak_memory_bytes(), sent, subdomains);
     let all = comm.collect(&mine).into_iter();
     all.map(
-        |(seconds, peak_memory_bytes, bytes_sent, subdomains)| RankReport {
-            seconds,
+        |(seconds, peak_memory_bytes, sent, subdomains)| RankReport {
+            seconds: seconds.elapsed,
+            work: seconds.work,
+            modelled: seconds.modelled,
             peak_memory_bytes,
-            bytes_sent,
+            bytes_sent: sent.0,
+            messages_sent: sent.1,
+            longest_chain: sent.2,
             subdomains,
         },
     )

@@ -20,6 +20,7 @@ use crate::comm::{Comm, phase};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::output::report::ReportFile;
+use crate::output::vtkhdf::beside::FileBeside;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::report::log::RunLog;
 use crate::report::totals::Totals;
@@ -43,7 +44,7 @@ pub enum Ending {
 /// Bad input, a scene without equilibrium, or an output that can't be written; the same on all
 /// ranks.
 pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
-    let began = Instant::now();
+    let (began, start) = (Instant::now(), comm.times());
     // Settings of the command line take precedence over those of the problem file.
     phase("reading");
     let file = comm.agree(ProblemFile::open(&command_line.problem()).map_err(Failure::from))?;
@@ -77,7 +78,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         smallest_pivot: 1.0,
         ..Progress::default()
     };
-    progress.seconds.read = began.elapsed().as_secs_f64();
+    (progress.seconds).add(|s| &mut s.read, comm.times() - start);
     let done = progress.finished.count;
     let left: Vec<Range<usize>> = (all.into_iter()).filter(|steps| steps.end > done).collect();
     // What a later stage can't be is found before the first one is solved.
@@ -93,11 +94,12 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         outputs,
         smallest_pivot,
         finished: Finished { steps, warning, .. },
+        ..
     } = progress
     else {
         return Err(Failure::internal("no load step is left"));
     };
-    seconds.total = began.elapsed().as_secs_f64();
+    seconds.add(|s| &mut s.total, comm.times() - start);
 
     let ranks = collect(comm, &seconds, &plan);
     let converged = steps
@@ -126,7 +128,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
 
 /// Creates the output files, so that a folder that can't be written is found before the work, or opens those of a run
 /// that was stopped after some `finished` load steps.
-/// Collective; the root has the files.
+/// Collective; the root has the files, and all ranks have the result file beside it where they may write to it at once.
 ///
 /// # Errors
 /// A file can't be made.
@@ -134,22 +136,10 @@ fn create_outputs(
     context: &Context<'_>,
     settings: &Settings,
     finished: usize,
-) -> Result<Option<Outputs>, Failure> {
-    let &Context {
-        comm,
-        catalog,
-        plan,
-        blocks,
-        ..
-    } = context;
-    let mut connectivity = Vec::new();
-    comm.gather(
-        plan.owners(),
-        |s| (blocks.get(&s)).map_or(0, |block| block.subdomain.cells.connectivity().len()),
-        |_, length| connectivity.push(length),
-    );
+) -> Result<(Option<Outputs>, Option<FileBeside>), Failure> {
+    let comm = context.comm;
+    let layout = layout(context, settings);
     let create = || -> Result<Outputs, Failure> {
-        let layout = Layout::new(catalog, &connectivity, !settings.no_stress);
         let report = settings.report.as_deref().map(ReportFile::create);
         Ok(Outputs {
             result: match finished {
@@ -159,5 +149,32 @@ fn create_outputs(
             report: report.transpose()?,
         })
     };
-    comm.agree(comm.is_root().then(create).transpose())
+    let outputs = comm.agree(comm.is_root().then(create).transpose())?;
+    // A single rank needs nobody beside it.
+    let result = outputs.as_ref().filter(|_| comm.size() > 1);
+    let mut places = result.and_then(|outputs| outputs.result.places());
+    comm.broadcast(&mut places);
+    let beside = places
+        .and_then(|places| FileBeside::open(&places, &settings.output, &layout, comm.hosts()));
+    let is_alone = comm.is_any(beside.is_none());
+    Ok((outputs, beside.filter(|_| !is_alone)))
+}
+
+/// How much room everything takes in the result file. Collective.
+fn layout(context: &Context<'_>, settings: &Settings) -> Layout {
+    let &Context {
+        comm,
+        catalog,
+        plan,
+        blocks,
+        ..
+    } = context;
+    let mut connectivity = vec![0; plan.blocks()];
+    comm.gather(
+        plan.owners(),
+        |s| (blocks.get(&s)).map_or(0, |block| block.subdomain.cells.connectivity().len()),
+        |s, length| connectivity[s] = length,
+    );
+    comm.broadcast(&mut connectivity);
+    Layout::new(catalog, &connectivity, !settings.no_stress)
 }

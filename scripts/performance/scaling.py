@@ -13,6 +13,7 @@ import signal
 import statistics
 import sys
 
+import numpy as np
 import runs
 from runs import PHASES
 
@@ -38,13 +39,71 @@ def measure(kind, ranks, repetition, arguments):
     path = problem_of(kind, ranks, arguments)
     name = f"{kind}-{ranks}-{repetition}"
     result = arguments.folder / f"{name}.vtkhdf"
-    run = runs.solve(path, ranks, arguments.programs, result, ["--threads", arguments.threads])
+    options = ["--threads", arguments.threads]
+    if arguments.interface:
+        options += ["--interface", arguments.interface]
+    run = runs.solve(path, ranks, arguments.programs, result, options)
     result.unlink()
     run["scaling"] = {"kind": kind, "repetition": repetition}
     reports = arguments.folder / "reports"
     reports.mkdir(exist_ok=True)
     (reports / f"{name}.json").write_text(json.dumps(run, indent=1))
     runs.say(f"{kind}, {ranks} ranks, repetition {repetition}: {run['seconds']['total']:.3f} s")
+
+
+def modelled(group):
+    """What the reports say of ranks with a core each and a network, where they do: the slowest rank's times, the largest
+    number of messages of a rank, the longest chain of them."""
+    def median(of):
+        return round(statistics.median(max(of(rank) for rank in run["per_rank"]) for run in group), 6)
+
+    if any("modelled" not in rank for run in group for rank in run["per_rank"]):
+        return {"modelled_total": ""}
+    return {
+        **{f"modelled_{key}": median(lambda rank: rank["modelled"][key]) for key in [*PHASES, "total"]},
+        "work_total": round(statistics.median(
+            sum(rank["work"]["total"] for rank in run["per_rank"]) for run in group), 6),
+        "messages_sent_by_largest": median(lambda rank: rank["messages_sent"]),
+        "longest_chain": median(lambda rank: rank["longest_chain"]),
+    }
+
+
+def fitted(rows, key, ranks):
+    """What a phase would take on more `ranks`, by its times t = a + b log p + c p on p ranks, none of them negative."""
+    counts = np.array([row["ranks"] for row in rows], dtype=float)
+    times = np.array([row[f"modelled_{key}"] for row in rows])
+    terms = [np.ones_like, np.log2, np.copy]
+    best = (np.inf, 0.0)
+    for chosen in range(1, 8):
+        own = [term for k, term in enumerate(terms) if chosen >> k & 1]
+        matrix = np.stack([term(counts) for term in own], axis=1)
+        # As good in proportion everywhere.
+        weights, *_ = np.linalg.lstsq(matrix / times[:, None], np.ones_like(times), rcond=None)
+        off = np.square(matrix @ weights / times - 1).sum()
+        if (weights >= 0).all() and len(own) <= len(rows) and off < best[0]:
+            best = (off, sum(w * term(np.array([float(ranks)]))[0] for w, term in zip(weights, own)))
+    return best[1]
+
+
+def print_model(rows, far):
+    """Tables of the modelled times, with those that are fitted on `far` ranks at the end."""
+    heads = ["ranks", "dofs", *PHASES, "total", "efficiency", "messages", "chain", "MB of largest"]
+    for kind in sorted({row["kind"] for row in rows}):
+        own = [row for row in rows if row["kind"] == kind and row["modelled_total"] != ""]
+        if not own:
+            continue
+        print(f"\n{kind}\n\n| " + " | ".join(heads) + " |\n|" + "--:|" * len(heads))
+        for row in own:
+            times = [f"{row[f'modelled_{key}']:.3g}" for key in [*PHASES, "total"]]
+            print("| " + " | ".join(map(str, [
+                row["ranks"], row["dofs"], *times, f"{100 * row['efficiency_modelled_total']:.0f} %",
+                round(row["messages_sent_by_largest"]), round(row["longest_chain"]),
+                round(row["peak_memory_of_largest"] / 1e6)])) + " |")
+        for ranks in far if kind == "weak" and len(own) > 2 else []:
+            phases = [fitted(own, key, ranks) for key in PHASES]
+            share = 100 * own[0]["modelled_total"] / sum(phases)
+            cells = [ranks, "fitted", *(f"{t:.3g}" for t in [*phases, sum(phases)]), f"{share:.1f} %", "", "", ""]
+            print("| " + " | ".join(map(str, cells)) + " |")
 
 
 def collect(folder):
@@ -72,11 +131,15 @@ def collect(folder):
             **{key: round(value, 6) for key, value in middle.items()},
             "bytes_sent": round(statistics.median(map(sum, sent))) if known else "",
             "bytes_sent_by_largest": round(statistics.median(map(max, sent))) if known else "",
+            **modelled(group),
+            "peak_memory_of_largest": max(rank["peak_memory_bytes"] for run in group for rank in run["per_rank"]),
             "peak_memory_bytes": max(run["peak_memory_bytes"] for run in group),
         })
     for row in rows:
         first = next(other for other in rows if other["kind"] == row["kind"])
-        for key in ("solve", "total"):
+        for key in ("solve", "total", "modelled_total"):
+            if row[key] == "":
+                continue
             ideal = first[key]
             if row["kind"] == "strong":
                 ideal *= first["ranks"] / row["ranks"]
@@ -86,7 +149,8 @@ def collect(folder):
 
 def write_csv(rows, path):
     with open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
+        names = list(dict.fromkeys(name for row in rows for name in row))
+        writer = csv.DictWriter(file, names, lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
     print(path)
@@ -144,6 +208,8 @@ def main():
     parser.add_argument("--only", choices=["strong", "weak"], help="only this kind")
     parser.add_argument("--repeat", type=int, default=5, help="repetitions (default: %(default)s)")
     parser.add_argument("--repetition", type=int, help="only this one of them, for a job of an array")
+    parser.add_argument("--interface", choices=["direct", "iterative"], help="of contact-dd-mpi (default: its choice)")
+    parser.add_argument("--far", default="1024,4096", help="ranks for which times are fitted (default: %(default)s)")
     parser.add_argument("--threads", type=int, default=1, help="of each rank (default: 1)")
     parser.add_argument("--subdomains", type=int, help="of the fixed problem (default: what suits its size)")
     parser.add_argument("--subdomains-per-rank", type=int, help="of the growing one (default: likewise)")
@@ -176,6 +242,7 @@ def main():
     rows = collect(arguments.folder)
     write_csv(rows, arguments.folder / "scaling.csv")
     draw(rows, arguments.folder / "scaling.svg")
+    print_model(rows, [int(n) for n in arguments.far.split(",") if n])
 
 
 main()

@@ -6,6 +6,7 @@ use std::ops::Range;
 use contact_dd_partition::element::geometry::{advance, cross, dot, padded};
 use serde::{Deserialize, Serialize};
 
+use super::shared::SharedCheck;
 use crate::contact::friction::TangentialCondition;
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
@@ -45,6 +46,8 @@ pub struct Most {
     pub not_opposed: f64,
     /// Displacement (m).
     pub displacement: f64,
+    /// Jump of the displacement across Γ (m).
+    pub jump: f64,
     /// Force that the bodies' closing motions would cause if it weren't rigid (N/m).
     pub rest: f64,
 }
@@ -65,6 +68,7 @@ impl Most {
             astray: larger(self.astray, other.astray),
             not_opposed: larger(self.not_opposed, other.not_opposed),
             displacement: larger(self.displacement, other.displacement),
+            jump: larger(self.jump, other.jump),
             rest: larger(self.rest, other.rest),
         };
     }
@@ -114,37 +118,35 @@ pub struct BlockCheck {
     pub most: Most,
     /// What acts on it from outside.
     pub(super) external: External,
-    /// Its traces on Γ.
-    pub(super) trace_dofs: Vec<InterfaceDof>,
-    /// Residual on them, to be summed over the blocks that share them.
-    #[serde(with = "crate::bytes")]
-    pub(super) interface_dofs: Vec<f64>,
-    #[serde(with = "crate::bytes")]
-    pub(super) trace_scale: Vec<f64>,
-    /// Displacement on the nodes that it shares.
-    pub(super) shared_nodes: Vec<u32>,
-    #[serde(with = "crate::bytes")]
-    pub(super) shared_displacement: Vec<f64>,
 }
 
 impl BlockCheck {
-    /// Checks displacements `u`, node by node.
-    pub fn new(block: &Block, loads: &BlockLoads, balance: &Balance, u: &[f64]) -> Self {
-        let mut check = Self::default();
+    /// Checks displacements `u`, node by node; what it shares with others is for them to [check](SharedCheck), too.
+    pub fn new(
+        block: &Block,
+        loads: &BlockLoads,
+        balance: &Balance,
+        u: &[f64],
+    ) -> (Self, SharedCheck) {
+        let (mut check, mut shared) = (Self::default(), SharedCheck::default());
         check.most.displacement = largest(u);
         check.most.load = balance.largest_load;
-        check.equilibrium(block, loads, balance);
+        check.equilibrium(block, loads, balance, &mut shared);
         for &(node, id) in &block.interface {
-            check.shared_nodes.push(id);
+            shared.nodes.push(id);
             let start = node as usize * block.dim;
-            check
-                .shared_displacement
-                .extend_from_slice(&u[start..start + block.dim]);
+            (shared.displacement).extend_from_slice(&u[start..start + block.dim]);
         }
-        check
+        (check, shared)
     }
 
-    fn equilibrium(&mut self, block: &Block, loads: &BlockLoads, balance: &Balance) {
+    fn equilibrium(
+        &mut self,
+        block: &Block,
+        loads: &BlockLoads,
+        balance: &Balance,
+        shared: &mut SharedCheck,
+    ) {
         let dim = block.dim;
         let frames = support_frames(&loads.supports, block.dim);
         let mut frames = frames.iter().peekable();
@@ -184,9 +186,9 @@ impl BlockCheck {
         }
         for &(node, id) in &block.interface {
             for &(axis, residual, scale) in &of_trace[of_shared[&(node as usize)].clone()] {
-                self.trace_dofs.push(InterfaceDof { node: id, axis });
-                self.interface_dofs.push(residual);
-                self.trace_scale.push(scale);
+                shared.trace_dofs.push(InterfaceDof { node: id, axis });
+                shared.residual.push(residual);
+                shared.scale.push(scale);
             }
         }
     }

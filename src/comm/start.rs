@@ -16,7 +16,7 @@ use signal_hook::flag;
 
 #[cfg(debug_assertions)]
 use super::on_purpose;
-use super::{Comm, launcher};
+use super::{Clock, Comm, launcher};
 use crate::error::Failure;
 
 static PHASE: Mutex<&str> = Mutex::new("starting");
@@ -50,6 +50,8 @@ impl World {
             hosts: self.hosts,
             world,
             bytes_sent: Cell::new(0),
+            messages_sent: Cell::new(0),
+            clock: Clock::start(),
         }
     }
 }

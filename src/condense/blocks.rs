@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use crate::comm::clock::Times;
 use crate::contact::limits::Limits;
 use crate::fem::assembly::Spring;
 use crate::fem::dofs::Dofs;
@@ -44,5 +45,5 @@ pub struct CondensedBlocks {
     /// ϑ: the clusters in contact, by their place among those.
     pub contact: BTreeMap<usize, ContactCluster>,
     /// Time for assembling and for factorizing (s).
-    pub seconds: [f64; 2],
+    pub seconds: [Times; 2],
 }

@@ -1,7 +1,6 @@
 //! Up the hierarchy: blocks are condensed and merged until the clusters are left.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 use crate::comm::is_asked_to_stop;
 use crate::condense::Condensation;
@@ -140,8 +139,8 @@ impl Merging<'_> {
     }
 
     fn merge(&mut self, v: usize, children: Vec<Condensed>) -> Result<(), Failure> {
-        let began = Instant::now();
-        let plan = self.condensation.context.plan;
+        let Context { comm, plan, .. } = self.condensation.context;
+        let began = comm.times();
         let node = &plan.tree.nodes[v];
         let interface_dofs: Vec<&[InterfaceDof]> =
             children.iter().map(|c| &c.interface_dofs[..]).collect();
@@ -160,7 +159,7 @@ impl Merging<'_> {
         .map_err(|FreeInterfaceDof(dof)| self.moves(v, dof))?;
         self.condensed.merges.insert(v, merge);
         self.waiting.insert(v, condensed);
-        self.condensed.seconds[1] += began.elapsed().as_secs_f64();
+        self.condensed.seconds[1] += comm.times() - began;
         Ok(())
     }
 

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::comm::clock::Times;
+
 /// Time that each phase of a run took, in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PhaseSeconds {
@@ -54,16 +56,44 @@ impl PhaseSeconds {
     }
 }
 
+/// The phases of a rank by three clocks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RankSeconds {
+    /// By the clock on the wall.
+    pub elapsed: PhaseSeconds,
+    /// What it worked, without messages and waiting.
+    pub work: PhaseSeconds,
+    /// On a core of its own, messages by the network that is assumed.
+    pub modelled: PhaseSeconds,
+}
+
+impl RankSeconds {
+    /// Adds what was done meanwhile to a phase.
+    pub fn add(&mut self, of: fn(&mut PhaseSeconds) -> &mut f64, times: Times) {
+        *of(&mut self.elapsed) += times.elapsed;
+        *of(&mut self.work) += times.work;
+        *of(&mut self.modelled) += times.modelled;
+    }
+}
+
 /// What one rank had to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct RankReport {
     /// Its time in each phase.
     #[serde(flatten)]
     pub seconds: PhaseSeconds,
+    /// Processor time of each phase, without messages and waiting for them; with several threads, of the first.
+    pub work: PhaseSeconds,
+    /// Time of each phase on a core of its own: its work, and messages by a network of 12.5 GB/s and 2 µs.
+    pub modelled: PhaseSeconds,
     /// Its peak resident memory (bytes).
     pub peak_memory_bytes: u64,
     /// What it sent to other ranks, broadcasts counted once (bytes).
     pub bytes_sent: u64,
+    /// Number of messages that it sent, broadcasts counted once.
+    pub messages_sent: u64,
+    /// Most messages, each sent after the one before it had come, that led to its end.
+    pub longest_chain: u64,
     /// Number of subdomains that it owns.
     pub subdomains: usize,
 }

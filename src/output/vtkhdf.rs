@@ -3,11 +3,13 @@
 //! Every subdomain and every contact condition has its place from the start, so each is written
 //! when it arrives, in any order; subdomains in slabs, so that one slab at a time is in memory.
 
+pub mod beside;
 pub(super) mod column;
 mod contact_table;
 mod grid;
 
 use std::ops::Range;
+use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
 use contact_dd_partition::destination::{self, Destination};
@@ -18,6 +20,7 @@ use contact_dd_partition::scene::units::Units;
 use hdf5::types::VarLenUnicode;
 use hdf5::{File, FileBuilder};
 
+use self::beside::Places;
 use self::contact_table::ContactTables;
 use self::grid::Grid;
 use super::result::{ContactRow, Of, PartitionSize, SubdomainResults};
@@ -181,6 +184,23 @@ impl ResultFile {
     pub fn write_subdomains(&mut self, results: &SubdomainResults) -> Result<(), OutputError> {
         let written = self.grid.write(results, self.step);
         written.map_err(|error| failure(&self.destination, &error))
+    }
+
+    /// Where other ranks find what they fill themselves; `None` where a dataset has no place in the file yet, as in
+    /// one that an older run left.
+    pub fn places(&self) -> Option<Places> {
+        let path = self.destination.temporary().to_path_buf();
+        Some(Places {
+            inode: std::fs::metadata(&path).ok()?.ino(),
+            datasets: self.grid.places()?,
+            finished: self.step,
+            path,
+        })
+    }
+
+    /// Takes all subdomains for written in this load step: the ranks did that [beside each other](beside).
+    pub fn take_as_written(&mut self) {
+        self.grid.take_as_written();
     }
 
     /// Writes contact conditions, each at its place in the table of its contact.

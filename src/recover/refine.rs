@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use crate::certificate::check::{BlockCheck, Most};
+use crate::certificate::shared::at_shared_nodes;
 use crate::certificate::{Certificate, certificate};
 use crate::condense::jumps;
 use crate::contact::friction::TangentialCondition;
@@ -195,34 +196,40 @@ fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate
         let (block, of_block) = (fixed.context.blocks.get(&b)?, solution.blocks.get(&b)?);
         let balance = fixed.balance(b, of_block)?;
         let loads = fixed.step.loads.blocks.get(&b)?;
-        let mut check = BlockCheck::new(block, loads, &balance, &of_block.u);
+        let (mut check, shared) = BlockCheck::new(block, loads, &balance, &of_block.u);
         let stiffness = fixed.condensed.blocks.get(&b)?.diagonal.iter().copied();
         check.most.rest = fixed.closing_motions * stiffness.fold(0.0, f64::max);
-        Some(check)
+        Some((check, shared))
     };
+    let mut own: BTreeMap<usize, BlockCheck> = BTreeMap::new();
+    let mut parts = vec![Vec::new(); comm.size()];
+    for &b in fixed.context.blocks.keys() {
+        let (check, shared) = of_block(b).unwrap_or_default();
+        own.insert(b, check);
+        for (part, to) in shared.parts(comm.size()).into_iter().zip(&mut parts) {
+            to.push((b, part));
+        }
+    }
+    // Nodes are checked by ranks in turn, in the order of blocks.
+    let mut shared = comm.exchange(parts).concat();
+    shared.sort_by_key(|&(b, _)| b);
+    let mut elsewhere = at_shared_nodes(shared.iter().map(|(_, check)| check));
+    for &g in fixed.context.groups.keys() {
+        let (group, of_group) = (&fixed.context.groups[&g], &solution.groups[&g]);
+        let (gaps, forces) = (&of_group.gaps, &of_group.forces);
+        elsewhere.include(Most::at_points(group, gaps, forces, &of_group.closed));
+    }
     let mut checks = Vec::new();
     comm.gather(
         plan.owners(),
-        |b| of_block(b).unwrap_or_default(),
+        |b| own.remove(&b).unwrap_or_default(),
         |_, check| checks.push(check),
     );
-    let mut at_points = Most::default();
-    comm.gather(
-        &plan.group_owners(),
-        |g| {
-            let (group, of_group) = (&fixed.context.groups[&g], &solution.groups[&g]);
-            Most::at_points(group, &of_group.gaps, &of_group.forces, &of_group.closed)
-        },
-        |_, most| at_points.include(most),
-    );
+    for of_rank in comm.collect(&elsewhere) {
+        elsewhere.include(of_rank);
+    }
     match fixed.root {
-        Some(_) => certificate(
-            &checks,
-            at_points,
-            plan.tree.interface_nodes,
-            fixed.context.catalog.dim,
-            fixed.context.catalog.plane,
-        ),
+        Some(_) => certificate(&checks, elsewhere, fixed.context.catalog.plane),
         None => Certificate::default(),
     }
 }

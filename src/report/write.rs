@@ -16,15 +16,17 @@ use crate::fem::contact_group::ContactGroup;
 use crate::output::result::{ContactRow, ContactState, SubdomainResults};
 use crate::output::resultants::ContactResultant;
 use crate::output::vtkhdf::ResultFile;
+use crate::output::vtkhdf::beside::FileBeside;
 use crate::recover::solution::Solution;
 use crate::recover::{GroupSolution, Slips};
 
-/// Streams all subdomains and contact rows to the root, which writes a slab of subdomains as soon
-/// as it is complete. Collective; `file` is the root's.
+/// Writes all subdomains, every rank its own where all can do so `beside` each other; otherwise they are streamed to
+/// the root, which writes a slab of them as soon as it is complete. Contact rows go to the root. Collective; `file` is
+/// the root's.
 ///
 /// On the root the conditions are added up to `contacts` on their way; those that are `absent` are written behind the others.
 ///
-/// The slabs don't depend on who owns what: the same calls write the same numbers on any ranks.
+/// The slabs don't depend on who owns what: the same numbers are written on any ranks.
 ///
 /// # Errors
 /// The file can't be written.
@@ -33,6 +35,7 @@ pub fn write_solution(
     solution: &Solution,
     slips: &Slips,
     mut file: Option<&mut ResultFile>,
+    beside: Option<&mut FileBeside>,
     contacts: &mut [ContactResultant],
     absent: &[ContactRow],
 ) -> Result<(), Failure> {
@@ -46,7 +49,7 @@ pub fn write_solution(
     };
     let parcels = Parcel::cut(comm, &slabs, plan);
     let (mut sent, mut slab) = (SubdomainResults::default(), SubdomainResults::default());
-    for parcel in &parcels {
+    for parcel in parcels.iter().filter(|_| beside.is_none()) {
         match (parcel.owner, comm.is_root()) {
             // What is the root's own needs no message.
             (ROOT, true) => parcel.append_to(&mut slab, context, solution),
@@ -62,6 +65,22 @@ pub fn write_solution(
             write(&mut |file| file.write_subdomains(&slab));
             slab.restart(parcel.subdomains.end);
         }
+    }
+    if let Some(beside) = beside {
+        let own = parcels.iter().filter(|parcel| parcel.owner == comm.rank());
+        let write_own = || {
+            for parcel in own {
+                slab.restart(parcel.subdomains.start);
+                parcel.append_to(&mut slab, context, solution);
+                beside.write(&slab)?;
+            }
+            beside.finish_step(comm.hosts())
+        };
+        comm.agree(write_own().map_err(Failure::from))?;
+        write(&mut |file| {
+            file.take_as_written();
+            Ok(())
+        });
     }
     comm.gather(
         &plan.group_owners(),

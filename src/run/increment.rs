@@ -2,7 +2,6 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 use crate::certificate::energy::{BlockEnergy, EnergyBalance};
 use crate::condense::blocks::CondensedBlocks;
@@ -13,7 +12,7 @@ use crate::error::Failure;
 use crate::frozen::fronts::FrozenFronts;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
-use crate::output::ranks::PhaseSeconds;
+use crate::output::ranks::RankSeconds;
 use crate::recover::energy::energies;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
@@ -72,7 +71,7 @@ impl Increments<'_> {
         k: usize,
         (earlier, at_end): (&[Vec<f64>], &RigidBodyAnalysis),
         before: StepState,
-        seconds: &mut PhaseSeconds,
+        seconds: &mut RankSeconds,
     ) -> Result<Increment, Failure> {
         let end = Moment::end_of(k);
         if !self.context.catalog.has_friction() {
@@ -105,7 +104,7 @@ impl Increments<'_> {
         k: usize,
         earlier: &[Vec<f64>],
         mut state: StepState,
-        seconds: &mut PhaseSeconds,
+        seconds: &mut RankSeconds,
     ) -> Result<Option<Increment>, Failure> {
         let mut way = Way::default();
         let mut work = BTreeMap::new();
@@ -153,7 +152,7 @@ impl Increments<'_> {
         moment: Moment,
         analysis: &RigidBodyAnalysis,
         mut before: StepState,
-        seconds: &mut PhaseSeconds,
+        seconds: &mut RankSeconds,
     ) -> Result<Increment, Failure> {
         let &Self {
             context,
@@ -167,7 +166,7 @@ impl Increments<'_> {
 
         // F, condensed like the blocks, and the bounds on normal jumps.
         log.phase("condensing the load", None);
-        let lap = Instant::now();
+        let lap = comm.times();
         let (start, held_at) = (before.start(), before.slips.clone());
         let energies_before = std::mem::take(&mut before.energies);
         let loads = before.loads(&context, moment, analysis);
@@ -182,11 +181,11 @@ impl Increments<'_> {
             Some(_) => limits_of_groups(&context, &problem.loads)?,
             None => BTreeMap::new(),
         };
-        seconds.interface += lap.elapsed().as_secs_f64();
+        seconds.add(|s| &mut s.interface, comm.times() - lap);
 
         // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the state before.
         log.phase("sweeping", None);
-        let lap = Instant::now();
+        let lap = comm.times();
         let mut found = None;
         let mut outcome = match frozen {
             Some(fronts) => {
@@ -201,11 +200,11 @@ impl Increments<'_> {
                 sweep(&context, settings, log, on_gamma, pairs, start)?
             }
         };
-        seconds.sweeps += lap.elapsed().as_secs_f64();
+        seconds.add(|s| &mut s.sweeps, comm.times() - lap);
 
         // Back-substitution, and the check of the full discrete problem.
         log.phase("recovering", None);
-        let lap = Instant::now();
+        let lap = comm.times();
         let fixed = FixedActiveSet::new(
             context,
             factors,
@@ -233,7 +232,7 @@ impl Increments<'_> {
             outcome.accept(&solution.certificate);
             outcome.name_unsettled(&unsettled_points(&context, outcome));
         }
-        seconds.recover += lap.elapsed().as_secs_f64();
+        seconds.add(|s| &mut s.recover, comm.times() - lap);
         Ok(Increment {
             slips: solution.discrete.slips(&context, &held_at),
             pairs: problem.pairs,

@@ -3,7 +3,6 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::time::Instant;
 
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::read::ProblemFile;
@@ -20,8 +19,9 @@ use crate::fem::block::Block;
 use crate::fem::contact_group::ContactGroup;
 use crate::frozen::fronts::FrozenFronts;
 use crate::output::memory::afford;
-use crate::output::ranks::PhaseSeconds;
+use crate::output::ranks::RankSeconds;
 use crate::output::resultants::Resultants;
+use crate::output::vtkhdf::beside::FileBeside;
 use crate::plan::Plan;
 use crate::plan::cluster::Merging;
 use crate::plan::cost::CostEstimate;
@@ -64,11 +64,13 @@ struct Parts {
 #[derive(Default)]
 pub struct Progress {
     /// Where the time went.
-    pub seconds: PhaseSeconds,
+    pub seconds: RankSeconds,
     /// Who owned what in the last stage.
     pub plan: Option<Plan>,
     /// The files; on the root.
     pub outputs: Option<Outputs>,
+    /// The result file beside the root's, where all ranks may write to it at once.
+    pub beside: Option<FileBeside>,
     /// The smallest pivot of all factorizations relative to its diagonal entry.
     pub smallest_pivot: f64,
     /// Load steps that are done, those of an earlier run among them.
@@ -113,11 +115,12 @@ impl Stages<'_> {
             file,
             ..
         } = self;
-        let lap = Instant::now();
+        let lap = comm.times();
         let Progress {
             seconds,
             plan: last_plan,
             outputs,
+            beside,
             smallest_pivot,
             finished,
         } = progress;
@@ -138,16 +141,17 @@ impl Stages<'_> {
         let analyses = analyse_steps(&context, stage.steps.clone(), &before)?;
         log.phase("creating the outputs", None);
         if last_plan.is_none() {
-            *outputs = create_outputs(&context, settings, finished.count)?;
+            (*outputs, *beside) = create_outputs(&context, settings, finished.count)?;
         }
         let absent = match comm.is_root() {
             true => absent_rows(file.catalog(), stage),
             false => Vec::new(),
         };
-        seconds.read += lap.elapsed().as_secs_f64();
+        seconds.add(|s| &mut s.read, comm.times() - lap);
 
         // S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy.
         log.phase("factorizing", Some(blocks.len()));
+        let lap = comm.times();
         let first = stage.steps.start;
         let condensation = Condensation {
             context,
@@ -155,12 +159,16 @@ impl Stages<'_> {
             fixing_dofs: &analyses[0].motions.fixing_dofs,
         };
         let mut condensed = condense_clusters(&condensation, &analyses[0], &|| log.bar.advance())?;
-        seconds.assemble += condensed.seconds[0];
-        seconds.factorize += condensed.seconds[1];
+        let [assembling, factorizing] = condensed.seconds;
+        let mut condensing = comm.times() - lap - assembling;
+        // Waiting is nobody's time on the wall.
+        condensing.elapsed = factorizing.elapsed;
+        seconds.add(|s| &mut s.assemble, assembling);
+        seconds.add(|s| &mut s.factorize, condensing);
 
         // The root assembles S_0, (15), and the bilateral operator.
         log.phase("assembling the interface problem", None);
-        let lap = Instant::now();
+        let lap = comm.times();
         let frozen = match plan.merging.is_frozen() {
             true => Some(RefCell::new(FrozenFronts::new(
                 &condensation,
@@ -172,7 +180,7 @@ impl Stages<'_> {
             Some(_) => None,
             None => assemble_interface(&context, &condensed)?,
         };
-        seconds.interface += lap.elapsed().as_secs_f64();
+        seconds.add(|s| &mut s.interface, comm.times() - lap);
 
         // Load step by load step: each starts from the state that the one before it left.
         let increments = Increments {
@@ -199,9 +207,8 @@ impl Stages<'_> {
             let solved = increments.step(k, (earlier, at_end), state, seconds);
             let solved = solved.map_err(|failure| context.in_step(failure, k))?;
 
-            // Results travel to the root in slabs of subdomains and are written as they arrive.
             log.phase("writing", None);
-            let lap = Instant::now();
+            let lap = comm.times();
             let mut resultants = Resultants::new(catalog, solved.solution.reactions.clone());
             let result = outputs.as_mut().map(|outputs| &mut outputs.result);
             let contacts = &mut resultants.contacts;
@@ -210,13 +217,14 @@ impl Stages<'_> {
                 &solved.solution,
                 &solved.slips,
                 result,
+                beside.as_mut(),
                 contacts,
                 &absent,
             )?;
             if catalog.plane == Some(PlaneState::Axisymmetric) {
                 resultants.sum_around_axis();
             }
-            seconds.write += lap.elapsed().as_secs_f64();
+            seconds.add(|s| &mut s.write, comm.times() - lap);
             let totals = solved.outcome.clone();
             let totals = totals
                 .map(|o| StepTotals::new(o, &solved.solution, resultants, solved.energy, at_end));
@@ -267,7 +275,7 @@ impl Stages<'_> {
         let available = afford(comm, &costs)?;
         let blocks = comm.agree(read_blocks(comm.rank(), file, &plan))?;
         if first {
-            check_copies(comm, file, &plan, &blocks)?;
+            check_copies(comm, file, &blocks)?;
         }
         let groups = collect_groups(comm, file, catalog, &plan, &blocks)?;
         if merging.is_frozen() && depend_on_each_other(comm, &plan, &groups) {

@@ -1,5 +1,6 @@
 //! The result file, read back by HDF5 itself.
 
+mod beside;
 mod replacing;
 mod time_series;
 

@@ -69,6 +69,7 @@ fn main() -> ExitCode {
     endings::not_converged(&mut trials);
     outputs::unwritable_output(&mut trials);
     outputs::full_disk(&mut trials);
+    outputs::folder_of_the_root_alone(&mut trials);
     outputs::vanished_folder(&mut trials);
     sudden_ends::sudden_ends(&mut trials);
     sudden_ends::in_a_frozen_step(&mut trials);

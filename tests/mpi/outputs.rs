@@ -1,9 +1,12 @@
 //! Outputs that can't be written: exit code 5, one message, the older file as it was.
 
+use std::path::Path;
+
 use rustix::process::{Pid, Signal, kill_process};
 
 use super::*;
-use support::mounted::Mounted;
+use support::mounted::{Mounted, privilege};
+use support::solver::{built, launched};
 
 pub fn unwritable_output(trials: &mut Trials) {
     let outputs: [(&str, &[&str]); 4] = [
@@ -59,6 +62,36 @@ pub fn full_disk(trials: &mut Trials) {
             failed_once(&ended, 5, &[&output.display().to_string(), words]);
         });
     }
+}
+
+/// Ranks that don't see the folder of the result, as on hosts with disks of their own, leave writing to the root.
+pub fn folder_of_the_root_alone(trials: &mut Trials) {
+    trials.once("folder_of_the_root_alone", || {
+        let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 9);
+        let folder = case.folder().join("mounted");
+        fs::create_dir(&folder).unwrap();
+        let Some(privilege) = privilege() else {
+            eprintln!("skipped: nothing may be mounted here");
+            return;
+        };
+        let output = folder.join("result.vtkhdf");
+        let script = "mount -t tmpfs none \"$0\" && \"$@\" && cp \"$0/result.vtkhdf\" \"$0/..\"";
+        let mut command = launched(Path::new("unshare"), 1);
+        command.args([privilege, "sh", "-c", script]).arg(&folder);
+        for separator in ["", ":"] {
+            if !separator.is_empty() {
+                command.args([separator, "-n", "2"]);
+            }
+            command.arg(built()).arg(case.problem());
+            command.arg("-o").arg(&output);
+        }
+        let ended = Running::start(&mut command).wait(LIMIT);
+        assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+        assert!(!output.exists());
+        case.run(&[]);
+        let found = datasets(&case.folder().join("result.vtkhdf"));
+        assert_eq!(found, datasets(&case.result()));
+    });
 }
 
 /// A folder that is gone by the time its result is whole.

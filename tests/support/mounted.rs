@@ -44,7 +44,7 @@ impl Mounted {
 }
 
 /// How one gets a view of file systems in which one may mount: as root, or as one's own root.
-fn privilege() -> Option<&'static str> {
+pub fn privilege() -> Option<&'static str> {
     ["-m", "-rm"].into_iter().find(|&option| {
         let mut mount = Command::new("unshare");
         mount.args([option, "mount", "-t", "tmpfs", "none", "/mnt"]);

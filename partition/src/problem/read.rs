@@ -101,11 +101,13 @@ impl ProblemFile {
     /// The dataset and the row that isn't what it should be.
     pub fn problem(&self) -> Result<Problem, InputError> {
         let subdomains = self.subdomains(0..self.catalog.subdomains.len())?;
-        let mut copies = NodeCopies::new(&self.catalog);
+        let mut copies = NodeCopies::default();
         for subdomain in &subdomains {
             copies.add(subdomain.index, subdomain.own_nodes());
         }
-        (copies.check()).map_err(|error| error.in_file(&self.path))?;
+        if let Some(fault) = copies.check() {
+            return Err(InputError::new(fault.message).in_file(&self.path));
+        }
         let named = self.catalog.points.iter();
         let named = named.flat_map(|point| point.entries.iter().map(|&(node, _)| node));
         let place = |node: SubdomainNode| {

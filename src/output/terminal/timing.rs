@@ -64,8 +64,7 @@ mod tests {
                 ..PhaseSeconds::default()
             },
             peak_memory_bytes: 3 << 20,
-            bytes_sent: 0,
-            subdomains: 1,
+            ..RankReport::default()
         };
         let table = lines(&[rank(1.0), rank(2.0), rank(6.0)]);
         let row = |name| {

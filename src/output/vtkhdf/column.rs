@@ -1,6 +1,7 @@
 //! One dataset: an array with a row for each node, cell or condition.
 
 use bytemuck::Pod;
+use hdf5::plist::dataset_create::AllocTime;
 use hdf5::{Dataset, Group, H5Type, Hyperslab, Result, SliceOrIndex};
 use ndarray::ArrayViewD;
 
@@ -46,6 +47,12 @@ pub(crate) trait List {
 
     /// Fills a dataset from row `start` on.
     fn fill(&self, dataset: &Dataset, start: usize) -> Result<()>;
+
+    /// Its rows as the file has them.
+    fn bytes(&self) -> &[u8];
+
+    /// Bytes of a row.
+    fn row_bytes(&self) -> usize;
 }
 
 impl<R: Row> List for Vec<R> {
@@ -59,6 +66,14 @@ impl<R: Row> List for Vec<R> {
 
     fn fill(&self, dataset: &Dataset, start: usize) -> Result<()> {
         fill(dataset, 0, start, self)
+    }
+
+    fn bytes(&self) -> &[u8] {
+        bytemuck::cast_slice(self)
+    }
+
+    fn row_bytes(&self) -> usize {
+        size_of::<R>()
     }
 }
 
@@ -83,7 +98,9 @@ pub(super) fn empty<R: Row>(
     }
     let steps = (steps > 0).then_some(steps).into_iter();
     let shape: Vec<usize> = steps.chain([rows]).chain(R::WIDTH).collect();
-    group.new_dataset::<R::Number>().shape(shape).create(name)
+    // It has its place in the file from the start.
+    let new = group.new_dataset::<R::Number>().shape(shape);
+    new.alloc_time(Some(AllocTime::Early)).create(name)
 }
 
 /// A column that is filled at once.

@@ -15,18 +15,84 @@ use super::{Layout, column};
 /// columns of numbers are past the 64 KiB up to which HDF5 reads from a file where it writes.
 const SLAB_POINTS: usize = 1 << 14;
 
-/// The grid, and which subdomains have been written.
+/// Where subdomains stand in the datasets of the grid.
 #[derive(Debug)]
-pub(super) struct Grid {
-    /// A dataset for each list that there is; to find one by its name costs as much as to write a small
-    /// subdomain.
-    datasets: Vec<Dataset>,
-    /// The number of its subdomain for each cell.
-    subdomains: Dataset,
+pub(super) struct Placement {
     left_out: Vec<Of>,
     total: PartitionSize,
     sizes: Vec<PartitionSize>,
     starts: Vec<PartitionSize>,
+}
+
+impl Placement {
+    pub(super) fn new(layout: &Layout) -> Self {
+        let sizes = layout.partitions.clone();
+        let mut starts = Vec::with_capacity(sizes.len());
+        let mut total = PartitionSize::default();
+        for size in &sizes {
+            starts.push(total);
+            total.add(size);
+        }
+        Self {
+            left_out: layout.left_out(),
+            total,
+            sizes,
+            starts,
+        }
+    }
+
+    /// Hands the lists of consecutive subdomains in a load step to `put`: with the number of its dataset, and the row
+    /// from which on it has its place there.
+    ///
+    /// # Errors
+    /// Results that don't have the sizes of the layout, or what `put` said.
+    pub(super) fn each(
+        &self,
+        results: &SubdomainResults,
+        step: usize,
+        mut put: impl FnMut(usize, usize, &dyn List) -> Result<()>,
+    ) -> Result<()> {
+        let first = results.first;
+        let end = first + results.sizes.len();
+        let Some(sizes) = self.sizes.get(first..end) else {
+            let (count, index) = (self.sizes.len(), first.max(self.sizes.len()));
+            return Err(format!("subdomain {index} of {count} has no place").into());
+        };
+        check_sizes(results, sizes, &self.left_out)?;
+        let Some(size) = self.starts.get(first) else {
+            return Ok(());
+        };
+        let mut datasets = 0;
+        for (dataset, (field, list)) in written(results, &self.left_out).enumerate() {
+            datasets = dataset + 1;
+            let start = field.per.rows(size, first);
+            let of_a_step = field.per.rows(&self.total, self.sizes.len());
+            match field.of {
+                Of::Mesh if step > 0 => {}
+                Of::Mesh => put(dataset, start, list)?,
+                Of::Solution | Of::Stress | Of::Presence => {
+                    put(dataset, step * of_a_step + start, list)?
+                }
+            }
+        }
+        if step == 0 {
+            let numbers = (first as i32..).zip(sizes);
+            let numbers: Vec<i32> = numbers
+                .flat_map(|(s, size)| repeat_n(s, size.cells))
+                .collect();
+            put(datasets, size.cells, &numbers)?;
+        }
+        Ok(())
+    }
+}
+
+/// The grid, and which subdomains have been written.
+#[derive(Debug)]
+pub(super) struct Grid {
+    /// A dataset for each list that there is, and for the number of its subdomain for each cell; to find one by its
+    /// name costs as much as to write a small subdomain.
+    datasets: Vec<Dataset>,
+    placement: Placement,
     written: Vec<bool>,
 }
 
@@ -50,19 +116,15 @@ impl Grid {
             counts(|size| size.connectivity),
         )?;
 
-        let mut starts = Vec::with_capacity(sizes.len());
-        let mut total = PartitionSize::default();
-        for size in sizes {
-            starts.push(total);
-            total.add(size);
-        }
+        let placement = Placement::new(layout);
+        let total = &placement.total;
         column::group(&group, "PointData")?;
         let subdomains = column::group(&group, "CellData")?;
         let subdomains = column::empty::<i32>(&subdomains, "Subdomain", 0, total.cells)?;
         let steps = layout.times.len().max(1);
         let none = SubdomainResults::default();
         let create = |(field, list): (Field, &dyn List)| {
-            let rows = field.per.rows(&total, sizes.len());
+            let rows = field.per.rows(total, sizes.len());
             let rows = if field.of == Of::Mesh {
                 rows
             } else {
@@ -70,29 +132,32 @@ impl Grid {
             };
             list.empty(&group, field.place, rows)
         };
-        let left_out = layout.left_out();
-        let datasets = written(&none, &left_out)
+        let mut datasets: Vec<Dataset> = written(&none, &placement.left_out)
             .map(create)
             .collect::<Result<_>>()?;
+        datasets.push(subdomains);
         if !layout.times.is_empty() {
-            create_steps(&group, layout, &total)?;
+            create_steps(&group, layout, total)?;
         }
         Ok(Self {
             datasets,
-            subdomains,
-            left_out,
-            total,
-            sizes: sizes.clone(),
-            starts,
             written: vec![false; sizes.len()],
+            placement,
         })
+    }
+
+    /// The first byte of every dataset in the file; `None` where one has no place yet.
+    pub(super) fn places(&self) -> Option<Vec<u64>> {
+        let is_empty = |dataset: &Dataset| dataset.size() == 0;
+        let place = |dataset: &Dataset| dataset.offset().or(is_empty(dataset).then_some(0));
+        self.datasets.iter().map(place).collect()
     }
 
     /// Runs of subdomains of at most [`SLAB_POINTS`] nodes together, or of a single larger one.
     pub(super) fn slabs(&self) -> Vec<Range<usize>> {
         let mut slabs: Vec<Range<usize>> = Vec::new();
         let mut points = 0;
-        for (index, size) in self.sizes.iter().enumerate() {
+        for (index, size) in self.placement.sizes.iter().enumerate() {
             points += size.points;
             match slabs.last_mut() {
                 Some(slab) if points <= SLAB_POINTS => slab.end = index + 1,
@@ -107,36 +172,16 @@ impl Grid {
 
     /// Writes consecutive partitions in a load step.
     pub(super) fn write(&mut self, results: &SubdomainResults, step: usize) -> Result<()> {
-        let first = results.first;
-        let end = first + results.sizes.len();
-        let Some(sizes) = self.sizes.get(first..end) else {
-            let (count, index) = (self.sizes.len(), first.max(self.sizes.len()));
-            return Err(format!("subdomain {index} of {count} has no place").into());
-        };
-        check_sizes(results, sizes, &self.left_out)?;
-        let Some(size) = self.starts.get(first) else {
-            return Ok(());
-        };
-        for (dataset, (field, list)) in self.datasets.iter().zip(written(results, &self.left_out)) {
-            let start = field.per.rows(size, first);
-            let of_a_step = field.per.rows(&self.total, self.sizes.len());
-            match field.of {
-                Of::Mesh if step > 0 => {}
-                Of::Mesh => list.fill(dataset, start)?,
-                Of::Solution | Of::Stress | Of::Presence => {
-                    list.fill(dataset, step * of_a_step + start)?
-                }
-            }
-        }
-        if step == 0 {
-            let numbers = (first as i32..).zip(sizes);
-            let numbers: Vec<i32> = numbers
-                .flat_map(|(s, size)| repeat_n(s, size.cells))
-                .collect();
-            column::fill(&self.subdomains, 0, size.cells, &numbers)?;
-        }
-        self.written[first..end].fill(true);
+        let datasets = &self.datasets;
+        (self.placement).each(results, step, |k, row, list| list.fill(&datasets[k], row))?;
+        let written = results.first..results.first + results.sizes.len();
+        self.written[written].fill(true);
         Ok(())
+    }
+
+    /// Takes all partitions for written: their owners have done so.
+    pub(super) fn take_as_written(&mut self) {
+        self.written.fill(true);
     }
 
     /// Checks that every partition was written in a load step, and makes ready for the next one.

@@ -1,0 +1,152 @@
+//! Values on their ways between ranks: to the root, from it, from any to any.
+
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::{Comm, ROOT};
+use crate::bytes::Reals;
+
+/// Most values that are gathered or scattered at once.
+const AT_ONCE: usize = 4096;
+
+impl Comm {
+    /// Brings one value for each of `owners` to the root, in their order whoever owns what, those of a rank together.
+    /// Collective.
+    ///
+    /// `make(i)` is called on the owner of `i`, `take(i, value)` on the root.
+    pub fn gather<T: Serialize + DeserializeOwned>(
+        &self,
+        owners: &[usize],
+        mut make: impl FnMut(usize) -> T,
+        mut take: impl FnMut(usize, T),
+    ) {
+        for bundles in bundles(owners) {
+            let mut arrived = BTreeMap::new();
+            let ways: Vec<(usize, usize)> = bundles.keys().map(|&owner| (owner, ROOT)).collect();
+            let bundles: Vec<Vec<usize>> = bundles.into_values().collect();
+            self.route(
+                ways,
+                |k| bundles[k].iter().map(|&i| make(i)).collect::<Vec<T>>(),
+                |k, values| arrived.extend(bundles[k].iter().copied().zip(values)),
+            );
+            arrived.into_iter().for_each(|(i, value)| take(i, value));
+        }
+    }
+
+    /// Brings one value of the root to each of `owners`, in their order, those of a rank together. Collective.
+    ///
+    /// `make(i)` is called on the root, `take(i, value)` on the owner of `i`.
+    pub fn scatter<T: Serialize + DeserializeOwned>(
+        &self,
+        owners: &[usize],
+        mut make: impl FnMut(usize) -> T,
+        mut take: impl FnMut(usize, T),
+    ) {
+        for bundles in bundles(owners) {
+            let ways: Vec<(usize, usize)> = bundles.keys().map(|&owner| (ROOT, owner)).collect();
+            let bundles: Vec<Vec<usize>> = bundles.into_values().collect();
+            self.route(
+                ways,
+                |k| bundles[k].iter().map(|&i| make(i)).collect::<Vec<T>>(),
+                |k, values| {
+                    let all = bundles[k].iter().copied().zip(values);
+                    all.for_each(|(i, value)| take(i, value));
+                },
+            );
+        }
+    }
+
+    /// Brings a value along each of `ways`, from one rank to another, in their order. Collective.
+    ///
+    /// `make(i)` is called where way `i` begins, `take(i, value)` where it ends.
+    pub fn route<T: Serialize + DeserializeOwned>(
+        &self,
+        ways: impl IntoIterator<Item = (usize, usize)>,
+        mut make: impl FnMut(usize) -> T,
+        mut take: impl FnMut(usize, T),
+    ) {
+        for (i, (from, to)) in ways.into_iter().enumerate() {
+            match (from == self.rank(), to == self.rank()) {
+                (true, true) => take(i, make(i)),
+                (true, false) => self.send(to, &make(i)),
+                (false, true) => take(i, self.receive(from)),
+                (false, false) => {}
+            }
+        }
+    }
+
+    /// Brings a list along each of `ways`, from one rank to another, all between two ranks in one message; returns those
+    /// that end here, by the number of their way. Collective.
+    ///
+    /// `make(i)` is called where way `i` begins.
+    pub fn route_lists(
+        &self,
+        ways: &[(usize, usize)],
+        mut make: impl FnMut(usize) -> Vec<f64>,
+    ) -> BTreeMap<usize, Vec<f64>> {
+        let mut bundles: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+        for (i, &way) in ways.iter().enumerate() {
+            bundles.entry(way).or_default().push(i);
+        }
+        let bundles: Vec<_> = bundles.into_iter().collect();
+        let mut arrived = BTreeMap::new();
+        self.route(
+            bundles.iter().map(|(way, _)| *way),
+            |b| -> Vec<Reals> { bundles[b].1.iter().map(|&i| Reals(make(i))).collect() },
+            |b, lists| arrived.extend(bundles[b].1.iter().copied().zip(lists)),
+        );
+        let lists = arrived.into_iter().map(|(i, Reals(list))| (i, list));
+        lists.collect()
+    }
+
+    /// Gives every rank the part of all others' that has its number, in the order of ranks. Collective.
+    pub fn exchange<T: Serialize + DeserializeOwned + Default>(&self, mut parts: Vec<T>) -> Vec<T> {
+        let (me, ranks) = (self.rank(), self.size());
+        let mut arrived: Vec<T> = (0..ranks).map(|_| T::default()).collect();
+        // In every round all ranks talk to another one, in pairs, so that none waits for a third.
+        for round in 0..ranks.next_power_of_two() {
+            let other = me ^ round;
+            if other >= ranks {
+                continue;
+            }
+            let part = std::mem::take(&mut parts[other]);
+            arrived[other] = match me.cmp(&other) {
+                Ordering::Equal => part,
+                Ordering::Less => {
+                    self.send(other, &part);
+                    self.receive(other)
+                }
+                Ordering::Greater => {
+                    let arrived = self.receive(other);
+                    self.send(other, &part);
+                    arrived
+                }
+            };
+        }
+        arrived
+    }
+
+    /// Brings the value of every rank to the root, which gets them in the order of ranks; the
+    /// others get nothing. Collective.
+    pub fn collect<T: Serialize + DeserializeOwned + Clone>(&self, value: &T) -> Vec<T> {
+        let mut all = Vec::new();
+        let ranks: Vec<usize> = (0..self.size()).collect();
+        self.gather(&ranks, |_| value.clone(), |_, value| all.push(value));
+        all
+    }
+}
+
+/// The places of each owner among some consecutive ones, by rank.
+fn bundles(owners: &[usize]) -> impl Iterator<Item = BTreeMap<usize, Vec<usize>>> + '_ {
+    let chunks = owners.chunks(AT_ONCE).enumerate();
+    chunks.map(|(chunk, owners)| {
+        let mut of_rank: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (i, &owner) in (chunk * AT_ONCE..).zip(owners) {
+            of_rank.entry(owner).or_default().push(i);
+        }
+        of_rank
+    })
+}

@@ -1,0 +1,98 @@
+//! A result file that every rank fills beside the others: its datasets have their places in it from the start, so
+//! that what a rank found goes there without passing through the root.
+
+use std::fs::{File, OpenOptions};
+use std::os::unix::fs::{FileExt, MetadataExt};
+use std::path::{Path, PathBuf};
+
+use contact_dd_partition::destination;
+use contact_dd_partition::error::OutputError;
+use serde::{Deserialize, Serialize};
+
+use super::super::result::SubdomainResults;
+use super::Layout;
+use super::grid::Placement;
+
+/// File systems on which ranks of several hosts see at once what each other writes, by Linux' numbers for them:
+/// Lustre, GPFS, BeeGFS, CephFS, OrangeFS.
+const COHERENT: [u32; 5] = [
+    0x0bd0_0bd0,
+    0x4750_4653,
+    0x1983_0326,
+    0x00c3_6400,
+    0x2003_0528,
+];
+
+/// Where the datasets are, as the root tells the others.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Places {
+    /// The file, while it isn't complete.
+    pub(super) path: PathBuf,
+    /// Its number on its file system.
+    pub(super) inode: u64,
+    /// The first byte of every dataset of the grid.
+    pub(super) datasets: Vec<u64>,
+    /// Number of load steps that are in it.
+    pub(super) finished: usize,
+}
+
+/// The result file as a rank sees it that writes what is its own.
+#[derive(Debug)]
+pub struct FileBeside {
+    placement: Placement,
+    datasets: Vec<u64>,
+    step: usize,
+    file: File,
+    /// Its final name.
+    path: PathBuf,
+}
+
+impl FileBeside {
+    /// Opens the file that the root made for `path`; `None` where this rank doesn't see it, or several `hosts` may not
+    /// write to it at once.
+    pub fn open(places: &Places, path: &Path, layout: &Layout, hosts: usize) -> Option<Self> {
+        let file = OpenOptions::new().write(true).open(&places.path).ok()?;
+        let is_same = file.metadata().ok()?.ino() == places.inode;
+        let is_coherent = || {
+            let status = rustix::fs::fstatfs(&file).ok()?;
+            Some(COHERENT.contains(&(status.f_type as u32)))
+        };
+        (is_same && (hosts == 1 || is_coherent()?)).then(|| Self {
+            placement: Placement::new(layout),
+            datasets: places.datasets.clone(),
+            step: places.finished,
+            file,
+            path: path.to_path_buf(),
+        })
+    }
+
+    /// Writes what belongs to consecutive subdomains.
+    ///
+    /// # Errors
+    /// The file can't be written, or `results` doesn't have the sizes of the layout.
+    pub fn write(&self, results: &SubdomainResults) -> Result<(), OutputError> {
+        let mut failed = None;
+        let placed = self
+            .placement
+            .each(results, self.step, |dataset, row, list| {
+                let at = self.datasets[dataset] + (row * list.row_bytes()) as u64;
+                let written = self.file.write_all_at(list.bytes(), at);
+                failed = failed.take().or(written.err());
+                Ok(())
+            });
+        placed.map_err(|error| destination::failure(&self.path, error))?;
+        failed.map_or(Ok(()), |error| Err(destination::failure(&self.path, error)))
+    }
+
+    /// Ends a load step, for all hosts to see; what is written from now on belongs to the next one.
+    ///
+    /// # Errors
+    /// What the system said.
+    pub fn finish_step(&mut self, hosts: usize) -> Result<(), OutputError> {
+        self.step += 1;
+        match hosts {
+            1 => Ok(()),
+            _ => (self.file.sync_data()).map_err(|error| destination::failure(&self.path, error)),
+        }
+    }
+}
