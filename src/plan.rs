@@ -86,6 +86,11 @@ impl Plan {
                 costs[v] = cost::weight(&self.tree, v, catalog.dim, self.merging);
             }
         }
+        if self.merging == Merging::Clusters {
+            for &v in &self.tops {
+                costs[v] += choice::between((catalog.dim * self.tree.nodes[v].kept.len()) as f64);
+            }
+        }
         assign(&self.tree, &top, &costs, ranks)
     }
 

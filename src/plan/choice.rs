@@ -20,6 +20,11 @@ const PER_CUBE: f64 = 0.3;
 /// Flops that the coarse problem takes, over the square of its size, in space.
 const PER_COARSE_PAIR: f64 = 12.0;
 
+/// Estimated flops that a cluster with so many unknowns on its boundary takes where iterations run between clusters.
+pub(super) fn between(size: f64) -> f64 {
+    PER_CUBE * size.powi(3) + ITERATIONS * PER_ENTRY * size * size
+}
+
 /// Estimated number of coarse unknowns between the clusters of a tree: of the nodes that the same clusters share, their
 /// rigid motions.
 pub fn coarse_dofs(tree: &Tree, dim: usize) -> usize {
@@ -67,7 +72,7 @@ impl InterfaceTimes {
             let size = (catalog.dim * tree.nodes[c].kept.len()) as f64;
             let below = tree.subtree(c).into_iter();
             let below: f64 = below.map(|v| time(v, Merging::Clusters)).sum();
-            below + PER_CUBE * size.powi(3) + ITERATIONS * PER_ENTRY * size * size
+            below + between(size)
         };
         let coarse = coarse_dofs(&tree, catalog.dim) as f64;
         let clusters: f64 = tree.clusters.iter().map(of_cluster).sum();
