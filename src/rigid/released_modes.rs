@@ -1,7 +1,5 @@
 //! Rigid motions that are free in a solution, because no contact force is left that resists them.
 
-use std::collections::BTreeMap;
-
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +7,7 @@ use super::analysis::Scene;
 use super::forces::Friction;
 use super::free_motion::FreeMotion;
 use super::kinematics::{Kinematics, null_space};
-use super::many_bodies::{MANY, ManyBodies, SparseRow};
+use super::many_bodies::{MANY, ManyBodies};
 use super::nonnegative;
 use super::projection::MotionProducts;
 
@@ -49,20 +47,21 @@ impl Scene {
         if kinematics.len == 0 {
             return ReleasedModes::default();
         }
-        let (held, mut redundant): (Vec<usize>, Vec<usize>) =
-            (0..conditions.len()).partition(|&j| self.holds(j, conditions));
-        redundant.retain(|&j| self.rows[j].friction.is_none());
-        let row = |&j: &usize| kinematics.sparse_row(&self.rows[j]);
-        let held: Vec<SparseRow> = held.iter().map(row).collect();
         if free.is_empty() && kinematics.len >= MANY {
-            let bodies = ManyBodies::new(&kinematics.centers, held.clone());
+            let held = (0..conditions.len()).filter(|&j| self.holds(j, conditions));
+            let rows = held.map(|j| kinematics.sparse_row(&self.rows[j]));
+            let bodies = ManyBodies::new(&kinematics.centers, rows.collect());
             if bodies.is_some_and(|bodies| bodies.hold_all()) {
                 return ReleasedModes::default();
             }
         }
+        let b = kinematics.rows(&self.rows);
+        let (held, mut redundant): (Vec<usize>, Vec<usize>) =
+            (0..conditions.len()).partition(|&j| self.holds(j, conditions));
+        redundant.retain(|&j| self.rows[j].friction.is_none());
         // What is free anyway comes first; the rest is orthogonal to it.
         let known: Vec<DVector<f64>> = free.iter().map(|m| kinematics.unknowns_of(m)).collect();
-        let mut resisted = folded(&held, kinematics.len).insert_rows(0, known.len(), 0.0);
+        let mut resisted = b.select_rows(&held).insert_rows(0, known.len(), 0.0);
         for (i, x) in known.iter().enumerate() {
             resisted.row_mut(i).copy_from(&x.normalize().transpose());
         }
@@ -75,13 +74,10 @@ impl Scene {
             columns.push(x);
         }
         let released = kinematics.described(&self.bodies, &self.names, &motions[free.len()..]);
-        let rows: Vec<SparseRow> = redundant.iter().map(row).collect();
-        let along = |row: &SparseRow, x: &DVector<f64>| row.iter().map(|&(i, b)| b * x[i]).sum();
+        let z = DMatrix::from_fn(kinematics.len, columns.len(), |i, k| columns[k][i]);
         ReleasedModes {
             motions,
-            rows: DMatrix::from_fn(rows.len(), columns.len(), |j, k| {
-                along(&rows[j], &columns[k])
-            }),
+            rows: b.select_rows(&redundant) * z,
             gaps: (redundant.iter())
                 .map(|&j| conditions[j].gap.max(0.0))
                 .collect(),
@@ -102,40 +98,6 @@ impl Scene {
         };
         conditions[j].carrying || self.rows[j].friction.as_ref().is_some_and(can_resist)
     }
-}
-
-/// A matrix of `len` columns that resists what all of these `rows` resist: the many between two bodies become as few
-/// as these have unknowns.
-fn folded(rows: &[SparseRow], len: usize) -> DMatrix<f64> {
-    let mut alike: BTreeMap<Vec<usize>, Vec<&SparseRow>> = BTreeMap::new();
-    for row in rows {
-        let unknowns = row.iter().map(|&(i, _)| i).collect();
-        alike.entry(unknowns).or_default().push(row);
-    }
-    let mut folded: Vec<(&[usize], DMatrix<f64>)> = Vec::new();
-    for (unknowns, rows) in &alike {
-        let of_rows = DMatrix::from_fn(rows.len(), unknowns.len(), |i, k| rows[i][k].1);
-        folded.push((
-            unknowns,
-            match rows.len() > unknowns.len() {
-                true => of_rows.qr().r(),
-                false => of_rows,
-            },
-        ));
-    }
-    let count = folded.iter().map(|(_, of_rows)| of_rows.nrows()).sum();
-    let mut all = DMatrix::zeros(count, len);
-    let mut first = 0;
-    for (unknowns, of_rows) in folded {
-        for (k, &i) in unknowns.iter().enumerate() {
-            let mut column = all.column_mut(i);
-            column
-                .rows_mut(first, of_rows.nrows())
-                .copy_from(&of_rows.column(k));
-        }
-        first += of_rows.nrows();
-    }
-    all
 }
 
 impl ReleasedModes {
@@ -205,26 +167,6 @@ mod tests {
         for (c, e) in c.iter().zip(expected) {
             assert!((c - e).abs() < 1e-14, "{c}, expected {e}");
         }
-    }
-
-    #[test]
-    fn many_rows_between_two_bodies_resist_no_more_when_they_are_folded() {
-        // Twenty rows of rank 2 against unknowns 0 to 3, two against 3 to 5, twenty of rank 3 against 6 to 8.
-        let wave = |i: usize, k: usize| ((3 * i + 7 * k) as f64).sin();
-        let mut rows: Vec<SparseRow> = Vec::new();
-        rows.extend((0..20).map(|i| (0..4).map(|k| (k, wave(i, k))).collect::<SparseRow>()));
-        rows.extend((0..2).map(|i| (3..6).map(|k| (k, (i * k) as f64 + 1.0)).collect()));
-        rows.extend((0..20).map(|i| (6..9).map(|k| (k, ((i * k * k) as f64).cos())).collect()));
-        let dense = DMatrix::from_fn(rows.len(), 10, |j, i| {
-            let at = rows[j].iter().find(|(k, _)| *k == i);
-            at.map_or(0.0, |(_, b)| *b)
-        });
-        let folded = folded(&rows, 10);
-        assert_eq!(folded.shape(), (4 + 2 + 3, 10));
-        let free = null_space(&folded);
-        assert_eq!(free.ncols(), null_space(&dense).ncols());
-        assert_eq!(free.ncols(), 10 - 2 - 2 - 3);
-        assert!((dense * free).amax() < 1e-13);
     }
 
     #[test]
