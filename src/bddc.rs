@@ -148,8 +148,8 @@ impl Bddc {
         })
     }
 
-    /// Freezes which conditions are `open`, for `clusters` some of which were `touched` by that, with a
-    /// `spring`, relative to the diagonal, on all unknowns of conditions between them. The preconditioner is made anew where clusters
+    /// Freezes which conditions are `open`, for `clusters` some of which were `touched` by that, with a `spring`,
+    /// relative to the diagonal, on all unknowns of conditions between them. The preconditioner is made anew where clusters
     /// share other unknowns than before, and wherever S has changed if it is to be `renewed`. Collective.
     ///
     /// # Errors

@@ -154,6 +154,15 @@ impl Plan {
         sought
     }
 
+    /// Marks whatever is above marked nodes of the hierarchy.
+    pub fn mark_above(&self, marked: &mut [bool]) {
+        for v in 0..marked.len() {
+            if let (true, Some(parent)) = (marked[v], self.tree.nodes[v].parent) {
+                marked[parent] = true;
+            }
+        }
+    }
+
     /// Whether node v of the hierarchy is above the last ones that frozen active sets are merged to.
     pub fn is_above_tops(&self, v: usize) -> bool {
         let mut above = Some(v);

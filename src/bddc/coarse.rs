@@ -155,11 +155,7 @@ impl Coarse {
             for (&top, is_remade) in plan.tops.iter().zip(remade) {
                 touched[top] = is_other || *is_remade;
             }
-            for v in 0..touched.len() {
-                if let (true, Some(parent)) = (touched[v], plan.tree.nodes[v].parent) {
-                    touched[parent] = true;
-                }
-            }
+            plan.mark_above(&mut touched);
             factorized = comm.agree(self.merge(context, classes, &touched, share));
             self.share = factorized.is_ok().then_some(share);
             if factorized.is_ok() {

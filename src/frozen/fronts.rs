@@ -267,11 +267,7 @@ impl FrozenFronts {
             touched[plan.groups[g].node] |= changed;
         });
         comm.broadcast(&mut touched);
-        for v in 0..touched.len() {
-            if let (true, Some(parent)) = (touched[v], plan.tree.nodes[v].parent) {
-                touched[parent] = true;
-            }
-        }
+        plan.mark_above(&mut touched);
         touched
     }
 

@@ -19,7 +19,8 @@ struct Share {
 /// above which nothing is merged.
 ///
 /// Each rank gets whole subtrees as far as that balances; the largest ones are split first, and
-/// what is above a split goes to the owner of its most expensive part.
+/// what is above a split goes to the owner of its most expensive part. Where it is about as good, ranks get clusters that
+/// are together in the hierarchy.
 pub(super) fn assign(tree: &Tree, clusters: &[usize], costs: &[f64], ranks: usize) -> Vec<usize> {
     let of_subtree = tree.sums(costs);
     let mut tasks = clusters.to_vec();
