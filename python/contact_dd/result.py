@@ -51,15 +51,22 @@ class Result:
     """Where the nodes are, undeformed; (n, 3)."""
     displacement: Floats
     """Their displacements; (n, 3)."""
+    since: int
+    """The load step at whose end the newest body or contact came, of whose displacements and gaps those count; 0 where
+    none came."""
+    deformation: Floats
+    """Displacements since then, with which what came later lies where it belongs; (n, 3)."""
     stress: Floats
     """Recovered stresses at nodes, XX YY ZZ XY YZ XZ, positive in tension; (n, 6), without rows after `--no-stress`."""
     cells: list[Cells]
-    """The cells of each kind, by rows of `points`."""
+    """The cells of each kind that are there in this step, by rows of `points`."""
     cell_data: dict[str, NDArray[Any]]
-    """Of every cell `Stress`, `PrincipalStress`, `VonMises`, `EnergyError`, `Material`, `Subdomain`."""
+    """Of every cell `Stress`, `PrincipalStress`, `VonMises`, `EnergyError`, `Material`, `Subdomain`; where bodies come
+    or go `Present`, 0 where a cell isn't there."""
     contacts: dict[str, NDArray[Any]]
     """A structured array for each contact, a row for each condition: `position`, `normal`, `gap`, `force`, `pressure`,
-    `status` (0 open, 1 closed, 2 slipping), `node_a`, `node_b`; with friction `tangential_force`, `slip`."""
+    `status` (0 open, 1 closed, 2 slipping), `node_a`, `node_b`; with friction `tangential_force`, `slip`. Of a contact
+    that isn't there every `gap` is NaN."""
 
     convergence: dict[str, NDArray[Any]]
     """A row for each sweep, of each load step the first the bilateral start: `residual`, `active`, `seconds`, with load
@@ -90,25 +97,35 @@ class Result:
         if not 1 <= self.step <= self.steps:
             raise InputError(f"{self.path}: there is no step {step}; expected 1 to {self.steps}")
 
-        stress = self._of_step(grid, "PointData/Stress") if "Stress" in grid["PointData"] else np.zeros((0, 6))
+        has_stress = "Stress" in grid["PointData"]
+        stress = self._of_step(grid, "PointData/Stress", self.step) if has_stress else np.zeros((0, 6))
         kept, row = unique_nodes(grid["PointData/GlobalNodeId"][:], stress)
         self.nodes = grid["PointData/GlobalNodeId"][:][kept]
         self.points = grid["Points"][:][kept]
-        self.displacement = self._of_step(grid, "PointData/Displacement")[kept]
+        self.displacement = self._of_step(grid, "PointData/Displacement", self.step)[kept]
+        self.since = since(self.report.get("steps") or [], self.step)
+        before = self._of_step(grid, "PointData/Displacement", self.since)[kept] if self.since else 0.0
+        self.deformation = self.displacement - before
         self.stress = stress[kept] if len(stress) else stress
-        self.cells = [Cells(kind, members, row[nodes]) for kind, members, nodes in cells_of(grid)]
         constant = ("Material", "Subdomain")
         self.cell_data = {
-            name: grid["CellData"][name][:] if name in constant else self._of_step(grid, f"CellData/{name}")
+            name: grid["CellData"][name][:] if name in constant else self._of_step(grid, f"CellData/{name}", self.step)
             for name in grid["CellData"]
         }
+        cells = [Cells(kind, members, row[nodes]) for kind, members, nodes in cells_of(grid)]
+        is_there = self.cell_data.get("Present", np.ones(len(grid["Types"]))) > 0
+        self.cells = [
+            Cells(of.kind, of.members[there], of.nodes[there])
+            for of, there in ((of, is_there[of.members]) for of in cells)
+            if there.any()
+        ]
         self.convergence = {name: column[:] for name, column in file["convergence"].items()}
         self.contacts = {name: self._contact(table) for name, table in file.get("contact", {}).items()}
 
-    def _of_step(self, grid: h5py.Group, name: str) -> NDArray[Any]:
-        """The rows of this step; those of all steps follow each other."""
+    def _of_step(self, grid: h5py.Group, name: str, step: int) -> NDArray[Any]:
+        """The rows of a step; those of all steps follow each other."""
         rows = len(grid[name]) // self.steps
-        values: NDArray[Any] = grid[name][(self.step - 1) * rows : self.step * rows]
+        values: NDArray[Any] = grid[name][(step - 1) * rows : step * rows]
         return values
 
     def _contact(self, table: h5py.Group) -> NDArray[Any]:
@@ -124,6 +141,12 @@ class Result:
         other = Result(self.path, step)
         other.folder = self.folder
         return other
+
+    @property
+    def contacts_there(self) -> dict[str, NDArray[Any]]:
+        """The contacts that are there in this step."""
+        tables = self.contacts.items()
+        return {name: table for name, table in tables if not len(table) or not np.isnan(table["gap"]).all()}
 
     @property
     def von_mises(self) -> NDArray[np.float64]:
@@ -150,11 +173,14 @@ class Result:
         return figure
 
     def to_pyvista(self) -> pyvista.UnstructuredGrid:
-        """A grid for PyVista with all fields; `grid.warp_by_vector("Displacement")` deforms it."""
+        """A grid for PyVista with all fields, of the bodies that are there; `grid.warp_by_vector("Displacement")`
+        deforms it, where bodies have come `"Deformation"`."""
         import pyvista
 
         grid = pyvista.UnstructuredGrid({cells.kind: cells.nodes for cells in self.cells}, self.points)
         grid.point_data["Displacement"] = self.displacement
+        if self.since:
+            grid.point_data["Deformation"] = self.deformation
         grid.point_data["GlobalNodeId"] = self.nodes
         if len(self.stress):
             grid.point_data["Stress"] = self.stress
@@ -163,6 +189,12 @@ class Result:
         for name, values in self.cell_data.items():
             grid.cell_data[name] = values[order]
         return grid
+
+
+def since(steps: list[dict[str, Any]], step: int) -> int:
+    """The last step before `step`, from 1, behind which something came."""
+    absent = [set(one["absent"]) for one in steps[:step]]
+    return max((k for k in range(1, step) if absent[k - 1] - absent[k]), default=0) if absent else 0
 
 
 def unique_nodes(tags: NDArray[Any], stress: NDArray[Any]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -25,7 +25,7 @@ def write_tables(result: Result, folder: str | Path) -> list[Path]:
     folder = Path(folder)
     sides = sides_of(result)
     paths: list[Path] = []
-    for name, table in result.contacts.items():
+    for name, table in result.contacts_there.items():
         if not len(table):
             continue
         # The last row of a piece that is closed is its first.

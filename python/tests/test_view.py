@@ -12,6 +12,7 @@ import pytest
 
 from contact_dd import Model
 from contact_dd.drawing.page import page
+from contact_dd.tables import write_tables
 
 # Looks at what is drawn, asks for the next field, turns the bodies, and writes down what it saw.
 LOOK = """<script>
@@ -52,7 +53,7 @@ def test_the_view_holds_the_result(scene, name):
     points = arrays(about["points"]).reshape(-1, 3) * about["size"] + about["center"]
     rows = np.searchsorted(result.nodes, arrays(about["nodes"]))
     assert np.allclose(points, result.points[rows], atol=1e-6 * about["size"])
-    a, b, c = (points[corner] for corner in arrays(about["triangles"]).reshape(-1, 3).T)
+    a, b, c = (points[corner] for corner in arrays(about["surfaces"][0]["triangles"]).reshape(-1, 3).T)
     areas = np.cross(b - a, c - a) / 2
     if result.is_in_space:
         # The volume inside: they are closed and look outward.
@@ -101,8 +102,32 @@ def test_a_browser_draws_the_view(scene, name, tmp_path):
     assert colours[0] > 100, found
     assert len(set(sums)) == 3, found
     assert re.match(r"node \d+ at \(.*\) m+: \d", found["here"]), found
-    shown = about["sides" if name == "sphere" else "triangles"]
+    shown = about["surfaces"][0]["sides" if name == "sphere" else "triangles"]
     assert int(found["drawn"]) == shown["length"] / 3
+
+
+def test_what_isnt_there_isnt_drawn_and_what_came_lies_where_it_belongs(scene, tmp_path):
+    last = Model.from_scene(scene("tunnel")).run(folder=tmp_path, progress=False)
+    steps = [last.at_step(k) for k in range(1, 5)]
+    assert [one.since for one in steps] == [0, 0, 2, 2]
+    assert [list(one.contacts_there) for one in steps] == [["face"], [], ["extrados"], ["extrados"]]
+    about, arrays = contents(page(last))
+    points = arrays(about["points"]).reshape(-1, 3) * about["size"]
+    # Rock and core, the rock, rock and lining; the last step's come first.
+    assert [step["surface"] for step in about["steps"]] == [2, 1, 0, 0]
+    quarter = np.pi / 4 * np.array([3**2 - 2.5**2, 0, 3**2]) + 60**2 - np.pi / 4 * 3**2
+    for surface, exact in zip(about["surfaces"], quarter):
+        a, b, c = (points[corner] for corner in arrays(surface["triangles"]).reshape(-1, 3).T)
+        assert np.isclose(np.abs(np.cross(b - a, c - a)[:, 2]).sum() / 2, exact, rtol=1e-4)
+    areas = [one.to_pyvista().compute_cell_sizes()["Area"].sum() for one in steps]
+    assert np.allclose(areas, quarter[[2, 1, 0, 0]], rtol=1e-4)
+    table = last.contacts["extrados"]
+    a, b = (np.searchsorted(last.nodes, table[node]) for node in ("node_a", "node_b"))
+    at = last.points + last.deformation
+    apart = ((at[b] - at[a]) * table["normal"]).sum(axis=1)
+    assert np.allclose(apart, table["gap"], atol=1e-9)
+    assert table["gap"].max() > 5e-3
+    assert [path.name for path in write_tables(last, tmp_path / "tables")] == ["extrados.csv"]
 
 
 def contents(text):

@@ -38,6 +38,11 @@ def canvas(title, units, points):
     return figure, axes
 
 
+def deformation_of(result):
+    """What deformed shapes show, in words."""
+    return f"deformation since step {result.since}" if result.since else "deformation"
+
+
 def lines(axes, points, facets, **style):
     axes.add_collection(LineCollection(curves(points, facets), capstyle="round", **style))
 

@@ -26,6 +26,7 @@ def typical_gaps(result):
     Those of the condition with the median approach: near corners sides may part or meet aslant."""
     ends = result.outline[:, [0, 2]]
     lines = result.points[ends]
+    order = np.argsort(result.tags, kind="stable")
     for table in result.contacts.values():
         closed = np.flatnonzero(table["status"] > 0)
         found = []
@@ -34,10 +35,10 @@ def typical_gaps(result):
             met = opposite(lines, at, normal, result.size)
             if met is None:
                 continue
-            own = np.linalg.norm(result.points - at, axis=1).argmin()
+            own = order[np.searchsorted(result.tags, table["node_a"][k], sorter=order)]
             facet, part, gap = met
-            a, b = result.displacement[ends[facet]]
-            found.append(((result.displacement[own] - (1 - part) * a - part * b) @ normal, gap))
+            a, b = result.deformation[ends[facet]]
+            found.append(((result.deformation[own] - (1 - part) * a - part * b) @ normal, gap))
         if found:
             approach, gap = sorted(found)[len(found) // 2]
             yield gap, approach

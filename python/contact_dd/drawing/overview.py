@@ -9,7 +9,7 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.tri import Triangulation
 
-from contact_dd.drawing.canvas import lines, scale_bar
+from contact_dd.drawing.canvas import deformation_of, lines, scale_bar
 from contact_dd.drawing.contact import pressed_sides
 from contact_dd.drawing.plane import von_mises
 from contact_dd.drawing.units import in_units
@@ -75,7 +75,7 @@ def overview(result, scale):
     figure.colorbar(colours, cax=of_colours, extend=exceeded, label=f"von Mises stress [{unit}]")
     what = "Von Mises stress and contact pressure" if sides else "Von Mises stress"
     step = f", step {result.step} of {result.steps}" if result.steps > 1 else ""
-    title = f"{what}, deformation × {scale:g}{step}"
+    title = f"{what}, {deformation_of(result)} × {scale:g}{step}"
     figure.suptitle(title, y=1 - 0.12 / figure.get_figheight(), va="top", fontsize=12)
     key(figure, sides, largest, has_moved, result.units.stress)
     return figure

@@ -6,7 +6,7 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
-from contact_dd.drawing.canvas import canvas, legend, lines, round_below
+from contact_dd.drawing.canvas import canvas, deformation_of, legend, lines, round_below
 from contact_dd.drawing.units import in_units
 
 # The steps between levels, times a power of ten.
@@ -47,7 +47,7 @@ def contours(result, values, name, unit):
 
 def deformation(result, scale):
     moved = result.deformed(scale)
-    figure, axes = canvas(f"Deformation × {scale:g}", result.units, moved)
+    figure, axes = canvas(f"{deformation_of(result).capitalize()} × {scale:g}", result.units, moved)
     fine = len(result.facets) > 60_000
     facets = result.borders if fine else result.facets
     lines(axes, moved, facets, colors="0.45", linewidths=0.5 if fine else 0.3)

@@ -76,5 +76,5 @@ def known(pictures, name):
 
 def automatic_scale(plane, honest):
     """The round factor with which the largest displacement is about a twentieth of the size, at most `honest`."""
-    largest = np.linalg.norm(plane.displacement, axis=1).max()
+    largest = np.linalg.norm(plane.deformation, axis=1).max()
     return round_below(min(VISIBLE * plane.size / largest, honest)) if largest > 0 else 1.0

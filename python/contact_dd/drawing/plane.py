@@ -19,8 +19,9 @@ class Plane:
         self.step, self.steps = result.step, result.steps
         self.points, self.tags = result.points[:, :2], result.nodes
         self.displacement, self.stress = result.displacement[:, :2], result.stress
+        self.since, self.deformation = result.since, result.deformation[:, :2]
         self.cells, self.cell_stress = result.cells, result.cell_data["Stress"]
-        self.contacts = result.contacts
+        self.contacts = result.contacts_there
         for kind, _, _ in self.cells:
             if kind not in shapes.CELLS:
                 raise InputError(f"{result.path}: VTK cell type {kind} can't be drawn; plane cells can")
@@ -84,14 +85,14 @@ class Plane:
         return np.einsum("pk,pk...->p...", self.weights, values[self.nodes])
 
     def deformed(self, scale):
-        return self.points + scale * self.displacement
+        return self.points + scale * self.deformation
 
     def centers(self):
         """Centre of each cell, the mean of its triangles'."""
         sums = np.zeros((len(self.cell_stress), 2))
         middle = self.at_points(self.points)[self.triangles].mean(axis=1)
         np.add.at(sums, self.cell_of_triangle, middle)
-        return sums / np.bincount(self.cell_of_triangle, minlength=len(sums))[:, None]
+        return sums / np.maximum(np.bincount(self.cell_of_triangle, minlength=len(sums)), 1)[:, None]
 
 
 def curves(points, facets):

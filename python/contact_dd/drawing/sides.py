@@ -25,7 +25,7 @@ class Side:
 
 def sides_of(result):
     """The sides of all contacts that have conditions; none in space, where they are surfaces."""
-    tables = {name: table for name, table in result.contacts.items() if len(table)}
+    tables = {name: table for name, table in result.contacts_there.items() if len(table)}
     if not tables or result.is_in_space:
         return {}
     edges = boundary_edges(result, np.concatenate([table["node_a"] for table in tables.values()]))

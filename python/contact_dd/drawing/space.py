@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.tri import Triangulation
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from contact_dd.drawing.canvas import round_below
+from contact_dd.drawing.canvas import deformation_of, round_below
 from contact_dd.drawing.plane import von_mises
 from contact_dd.drawing.units import in_units, units_of
 from contact_dd.errors import InputError
@@ -68,9 +68,9 @@ class Solid:
         self.result, self.units = result, units_of(result)
         self.faces = surface(result.cells, result.nodes)
         size = np.ptp(result.points, axis=0).max()
-        largest = np.linalg.norm(result.displacement, axis=1).max()
+        largest = np.linalg.norm(result.deformation, axis=1).max()
         self.scale = scale or (round_below(VISIBLE * size / largest) if largest > 0 else 1.0)
-        self.points = result.points + self.scale * result.displacement
+        self.points = result.points + self.scale * result.deformation
         self.pressed = {
             name: table for name, table in result.contacts.items() if table["pressure"].max(initial=0) > 0
         }
@@ -105,7 +105,7 @@ class Solid:
         (values, unit) = in_units(von_mises(self.result.stress), self.units.stress)
         values = self.of_faces(values)
         self.coloured(axes, values, f"von Mises stress [{unit}]", most=np.quantile(values, 0.99))
-        axes.set_title(f"deformation × {self.scale:g}", fontsize=10)
+        axes.set_title(f"{deformation_of(self.result)} × {self.scale:g}", fontsize=10)
 
     def displacement(self, axes):
         size = np.linalg.norm(self.result.displacement, axis=1)

@@ -63,7 +63,12 @@
   };
   const indices = place => place && { count: place.length, of: buffer(numbers(place), gl.ELEMENT_ARRAY_BUFFER) };
   const points = numbers(about.points), nodes = numbers(about.nodes);
-  const [faces, edges, sides] = [about.triangles, about.edges, about.sides].map(indices);
+  // What is there in some step: what of it is drawn, and which nodes it has.
+  const surfaces = about.surfaces.map(({ triangles, edges, sides }) => {
+    const has = new Uint8Array(nodes.length);
+    numbers(triangles).forEach(node => has[node] = 1);
+    return { faces: indices(triangles), edges: indices(edges), sides: indices(sides), has };
+  });
   attribute(0, about.points, 3, gl.FLOAT);
   gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
   for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.LINEAR);
@@ -75,7 +80,7 @@
 
   const input = name => live.querySelector(`[name=${name}]`);
   const round = number => Number(number.toPrecision(3)).toString();
-  let step, field, displacements, values, camera, eye, across, up;
+  let step, field, faces, edges, sides, has, displacements, values, camera, eye, across, up;
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const add = (a, factor, b) => a.map((one, k) => one + factor * b[k]);
   // What is half of the height of the canvas.
@@ -111,6 +116,7 @@
   function choose() {
     step = about.steps[input("step").selectedIndex];
     field = step.fields[input("field").selectedIndex];
+    ({ faces, edges, sides, has } = surfaces[step.surface]);
     displacements = numbers(step.displacements);
     values = numbers(field.values);
     attribute(1, step.displacements, 3, gl.FLOAT);
@@ -170,6 +176,7 @@
     const seen = half() / (canvas.clientHeight / 2);
     let best = -1, depth = -Infinity;
     for (let k = 0; k < nodes.length; k++) {
+      if (!has[k]) continue;
       const at = add(place(k), -1, camera.middle);
       const near = Math.hypot(dot(at, across) / seen - x + canvas.clientWidth / 2,
         canvas.clientHeight / 2 - dot(at, up) / seen - y);

@@ -68,9 +68,9 @@ def view(result, scale, picture):
 def contents(result, scale):
     """What the view holds, and its numbers, packed."""
     numbers = Numbers()
-    solid = Solid(result) if result.is_in_space else None
-    faces = solid.faces if solid else plane_faces(result.cells)
-    kept = np.unique(np.concatenate(faces))
+    steps = steps_of(result)
+    found, of_steps = surfaces_of(steps)
+    kept = np.unique(np.concatenate([face for faces, _ in found for face in faces]))
     row = np.zeros(len(result.nodes), dtype=np.uint32)
     row[kept] = np.arange(len(kept))
     points = result.points[kept]
@@ -81,20 +81,48 @@ def contents(result, scale):
         "center": ((low + high) / 2).tolist(), "size": size, "scale": scale,
         "length": units_of(result).length, "nodes": numbers.place(result.nodes[kept], "<u4"),
         "points": numbers.place((points - (low + high) / 2) / size, "<f4"),
-        "triangles": numbers.place(row[np.concatenate([triangles(face) for face in faces])], "<u4"),
-        "edges": numbers.place(row[np.concatenate([np.stack([f, np.roll(f, -1)], 1) for f in faces])], "<u4"),
+        "surfaces": [surface(row, faces, sides, numbers) for faces, sides in found],
         "maps": {name: numbers.place(map_of(name), "<u1") for name in set(COLOURS.values())},
     }
-    sides = [face for table in solid.pressed.values() for face in solid.side(table)[0]] if solid else []
-    if sides:
-        about["sides"] = numbers.place(row[np.concatenate([triangles(face) for face in sides])], "<u4")
-    about["steps"] = [step(one, kept, size, bool(sides), numbers) for one in steps_of(result, len(kept))]
+    has_sides = any(sides for _, sides in found)
+    about["steps"] = [
+        {**step(one, kept, size, has_sides, numbers), "surface": number} for one, number in zip(steps, of_steps)
+    ]
     return about, numbers.packed()
 
 
-def steps_of(result, count):
+def surfaces_of(steps):
+    """The faces of the bodies, and of sides of contacts that press, for every choice of bodies that are there in some
+    step, and which one each step has."""
+    found, known, of_steps = [], {}, []
+    for one in reversed(steps):
+        key = one.cell_data.get("Present", np.zeros(0)).tobytes()
+        if key not in known:
+            known[key] = len(found)
+            solid = Solid(one) if one.is_in_space else None
+            sides = [face for table in solid.pressed.values() for face in solid.side(table)[0]] if solid else []
+            found.append((solid.faces if solid else plane_faces(one.cells), sides))
+        of_steps.insert(0, known[key])
+    return found, of_steps
+
+
+def surface(row, faces, sides, numbers):
+    """Where the triangles and edges of faces are, and the triangles of sides."""
+    placed = {
+        "triangles": numbers.place(row[np.concatenate([triangles(face) for face in faces])], "<u4"),
+        "edges": numbers.place(row[np.concatenate([np.stack([f, np.roll(f, -1)], 1) for f in faces])], "<u4"),
+    }
+    if sides:
+        placed["sides"] = numbers.place(row[np.concatenate([triangles(face) for face in sides])], "<u4")
+    return placed
+
+
+def steps_of(result):
     """The load steps, the last one alone where they are too much or a node isn't in all the same."""
-    if result.steps * count * 20 > MOST_BYTES:
+    if result.steps == 1:
+        return [result]
+    faces = Solid(result).faces if result.is_in_space else plane_faces(result.cells)
+    if result.steps * len(np.unique(np.concatenate(faces))) * 20 > MOST_BYTES:
         return [result]
     found = [result.at_step(k) for k in range(1, result.steps)]
     return [one for one in found if np.array_equal(one.nodes, result.nodes)] + [result]
@@ -108,13 +136,13 @@ def step(result, kept, size, has_sides, numbers):
     if has_sides:
         tags, points = np.unique(result.nodes, return_inverse=True)
         pressure = np.zeros(len(tags))
-        for table in result.contacts.values():
+        for table in result.contacts_there.values():
             np.maximum.at(pressure, np.searchsorted(tags, table["node_a"]), table["pressure"])
         values["contact pressure"] = (pressure[points[kept]], units.stress)
     steps = result.report.get("steps")
     return {
         "name": steps[result.step - 1]["name"] if steps else "",
-        "displacements": numbers.place(result.displacement[kept] / size, "<f4"),
+        "displacements": numbers.place(result.deformation[kept] / size, "<f4"),
         "fields": [field(name, *of, numbers) for name, of in values.items()],
     }
 

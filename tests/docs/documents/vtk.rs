@@ -32,12 +32,13 @@ const fn case(
 
 const STEPS: &str = "[[step]]\nscale = 0.1\n[[step]]\n[[step]]\nscale = 2\n";
 
-pub const CASES: [Case; 8] = [
+pub const CASES: [Case; 9] = [
     case("on_1_rank", 1, "junction", "triangle3", ""),
     case("on_3_ranks", 3, "junction", "triangle6", ""),
     case("of_8_nodes", 1, "junction", "quad8", ""),
     case("of_9_nodes", 3, "junction", "quad9", ""),
     case("in_load_steps", 2, "junction", "triangle6", STEPS),
+    case("that_come_and_go", 2, "tunnel", "quad8", ""),
     case("in_space", 2, "cube-crack", "tetrahedron4", STEPS),
     case("of_20_nodes", 1, "cube-crack", "hexahedron20", ""),
     case("of_27_nodes", 2, "pin", "hexahedron27", ""),
