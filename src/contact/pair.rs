@@ -288,3 +288,88 @@ impl CondensedContact {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::jumps::JumpOf;
+    use crate::schur::condensed::InterfaceDof;
+
+    const GAPS: [f64; 3] = [0.1, -0.2, 0.05];
+
+    fn number(i: usize) -> f64 {
+        (1.0 + 12.9898 * i as f64).sin()
+    }
+
+    /// Three conditions and four traces of any stiffness.
+    fn pair() -> ContactPair {
+        let (jumps, n) = (GAPS.len(), 7);
+        let root = Mat::from_fn(n, n, |i, j| number(n * i + j));
+        let s = &root * root.transpose() + Mat::<f64>::identity(n, n);
+        let of = |number| JumpOf::Unknown {
+            number,
+            factor: 1.0,
+        };
+        let of: Vec<JumpOf> = (0..jumps).map(of).collect();
+        let condensed = Condensed {
+            jumps,
+            interface_dofs: (0..4).map(|node| InterfaceDof { node, axis: 0 }).collect(),
+            diagonal: (0..n).map(|i| s[(i, i)]).collect(),
+            s,
+            smallest_pivot: 1.0,
+        };
+        let load = (0..n).map(|i| 3.0 * number(100 + i)).collect();
+        let limits = Limits::new(jumps, &of, &GAPS, &[], 0.0);
+        ContactPair::new(Rc::new(condensed), limits, load, None)
+    }
+
+    /// Traces that open and close contacts in many ways.
+    fn traces() -> impl Iterator<Item = Vec<f64>> {
+        (0..100).map(|k| (0..4).map(|i| 2.0 * number(1000 + 4 * k + i)).collect())
+    }
+
+    #[test]
+    fn forces_keep_the_law_and_balance_the_pair() {
+        let (mut pair, mut closed) = (pair(), 0);
+        for u in traces() {
+            let response = pair.evaluate(&u, None);
+            let (forces, _) = pair.conditions();
+            let x = [&response.jumps[..], &u].concat();
+            let load = [&forces[..], &response.reaction].concat();
+            for (i, acting) in load.iter().enumerate() {
+                let held: f64 = (0..7).map(|j| pair.condensed.s[(i, j)] * x[j]).sum();
+                let sign = if i < GAPS.len() { 1.0 } else { -1.0 };
+                assert!((held + sign * acting - pair.load[i]).abs() < 1e-11);
+            }
+            for (i, force) in forces.iter().enumerate() {
+                let gap = GAPS[i] - response.jumps[i];
+                assert!(*force >= 0.0 && gap >= 0.0 && force * gap == 0.0);
+                closed += usize::from(*force > 0.0);
+            }
+        }
+        assert!((50..250).contains(&closed), "{closed}");
+    }
+
+    #[test]
+    fn the_derivative_is_that_of_the_answers() {
+        let (mut pair, mut compared, step) = (pair(), 0, 1e-3);
+        for (u, direction) in traces().zip(traces().skip(1)) {
+            let before = pair.evaluate(&u, None);
+            let slope = pair.derivative(&direction);
+            let there: Vec<f64> = (u.iter().zip(&direction))
+                .map(|(u, d)| u + step * d)
+                .collect();
+            let after = pair.evaluate(&there, None);
+            // Between two kinks the answers are linear.
+            if before.status != after.status {
+                continue;
+            }
+            compared += 1;
+            let change = after.reaction.iter().zip(&before.reaction);
+            for ((after, before), slope) in change.zip(slope) {
+                assert!(((after - before) / step - slope).abs() < 1e-9);
+            }
+        }
+        assert!(compared > 50, "{compared}");
+    }
+}

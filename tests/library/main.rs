@@ -7,7 +7,6 @@
 )]
 
 mod architecture;
-mod extending;
 mod result_file;
 #[path = "../support/mod.rs"]
 mod support;
