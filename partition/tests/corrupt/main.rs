@@ -11,6 +11,8 @@ mod corpus;
 mod mesh;
 mod scene;
 mod solid;
+#[path = "../library/table.rs"]
+mod table;
 
 use std::sync::Once;
 
