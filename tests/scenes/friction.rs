@@ -1,9 +1,9 @@
 //! Contact with friction.
 
 mod cycle;
-mod incline;
+mod held;
+mod increments;
 mod judge;
 mod patch;
 mod random;
-mod reference;
 mod validation;

@@ -1,6 +1,5 @@
 //! Contact of sides whose nodes don't match.
 
-mod invariance;
 mod patch;
 mod round;
 mod sorts;

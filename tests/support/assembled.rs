@@ -11,7 +11,6 @@ use std::collections::BTreeMap;
 use contact_dd_partition::contact_point::Law;
 use contact_dd_partition::model::{Model, PlaneState};
 use faer::sparse::Triplet;
-use nalgebra::{DMatrix, DVector};
 
 use super::isoparametric::{Cell, Reference};
 use super::random::Random;
@@ -50,8 +49,6 @@ pub enum Along {
     Free,
     /// The tangential jump has this value.
     Stuck(f64),
-    /// The force is the bound with this sign.
-    Slips(f64),
     /// The force is this.
     Pushed(f64),
 }
@@ -275,85 +272,31 @@ impl Assembled {
             }
             rhs.push(value * self.scale);
         }
-        let first = n - active.len() - stuck.len();
-        let mut column = vec![None; closed.len()];
-        for (k, &j) in active.iter().enumerate() {
-            column[j] = Some(first + k);
-        }
         for (tangent, along) in self.tangents.iter().zip(along) {
-            let (slope, force) = match *along {
-                Along::Slips(sign) => {
-                    let (slope, constant) = tangent.bound(closed[tangent.condition]);
-                    (sign * slope, sign * constant)
-                }
-                Along::Pushed(force) => (0.0, force),
-                Along::Free | Along::Stuck(_) => continue,
-            };
-            for &(dof, c) in &tangent.row {
-                rhs[dof] -= force * c;
-                if let Some(column) = column[tangent.condition] {
-                    entries.push(Triplet::new(dof, column, slope * c * self.scale));
-                }
+            if let Along::Pushed(force) = along {
+                (tangent.row.iter()).for_each(|&(dof, c)| rhs[dof] -= force * c);
             }
         }
         let x = SparseSystem::new(n, entries, self.dofs, SLACK * self.scale).solve(&rhs);
+        let multipliers = &x[n - active.len() - stuck.len()..];
+        let (of_active, of_stuck) = multipliers.split_at(active.len());
         let mut forces = vec![0.0; closed.len()];
-        for (j, column) in column.iter().enumerate() {
-            forces[j] = column.map_or(0.0, |column| x[column] * self.scale);
+        for (&j, force) in active.iter().zip(of_active) {
+            forces[j] = force * self.scale;
         }
-        let mut tangential = vec![0.0; along.len()];
-        for (i, &(k, _)) in stuck.iter().enumerate() {
-            tangential[k] = x[first + active.len() + i] * self.scale;
-        }
-        for (k, tangent) in self.tangents.iter().enumerate() {
-            match along[k] {
-                Along::Slips(sign) => {
-                    let (grows, constant) = tangent.bound(closed[tangent.condition]);
-                    tangential[k] = sign * (grows * forces[tangent.condition] + constant);
-                }
-                Along::Pushed(force) => tangential[k] = force,
-                Along::Free | Along::Stuck(_) => {}
-            }
+        let pushed = along.iter().map(|along| match along {
+            Along::Pushed(force) => *force,
+            Along::Free | Along::Stuck(_) => 0.0,
+        });
+        let mut tangential: Vec<f64> = pushed.collect();
+        for (&(k, _), force) in stuck.iter().zip(of_stuck) {
+            tangential[k] = force * self.scale;
         }
         Solved {
             u: x[..self.dofs].to_vec(),
             forces,
             tangential,
         }
-    }
-
-    /// The forces r of all conditions and then of all tangents while the former are closed and the latter have the
-    /// jumps `w`, and S: displacements in which the jumps are larger by d have the forces r − S d.
-    pub fn condensed(&self, w: &[f64]) -> (DVector<f64>, DMatrix<f64>) {
-        let conditions = self.conditions.iter().map(|(row, gap)| (row, *gap));
-        let tangents = self.tangents.iter().zip(w).map(|(t, w)| (&t.row, *w));
-        let jumps: Vec<(&Row, f64)> = conditions.chain(tangents).collect();
-        let fixed = self.supports.iter().map(|(row, value)| (row, *value));
-        let rows: Vec<(&Row, f64)> = fixed.chain(jumps.iter().copied()).collect();
-        let n = self.dofs + rows.len();
-        let mut entries = self.stiffness.clone();
-        for (k, (row, _)) in rows.iter().enumerate() {
-            for &(dof, c) in *row {
-                entries.push(Triplet::new(self.dofs + k, dof, c * self.scale));
-                entries.push(Triplet::new(dof, self.dofs + k, c * self.scale));
-            }
-        }
-        let system = SparseSystem::new(n, entries, self.dofs, SLACK * self.scale);
-        let first = n - jumps.len();
-        let forces = |rhs: &[f64]| {
-            let x = system.solve(rhs);
-            DVector::from_iterator(jumps.len(), x[first..].iter().map(|x| x * self.scale))
-        };
-        let values = rows.iter().map(|(_, value)| value * self.scale);
-        let rhs: Vec<f64> = self.load.iter().copied().chain(values).collect();
-        let columns: Vec<_> = (0..jumps.len())
-            .map(|i| {
-                let mut unit = vec![0.0; n];
-                unit[first + i] = self.scale;
-                -forces(&unit)
-            })
-            .collect();
-        (forces(&rhs), DMatrix::from_columns(&columns))
     }
 }
 

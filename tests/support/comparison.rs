@@ -2,10 +2,11 @@
 
 use contact_dd_partition::model::Model;
 
-use super::assembled::Along;
-use super::frictional::Frictional;
+use super::assembled::Assembled;
 use super::monolithic::Monolithic;
-use super::solution::{ContactPoint, Solution};
+use super::scenes::at_step;
+use super::solution::Solution;
+use super::stress::judge::Findings;
 
 /// Fails unless displacement, forces, pressures, gaps and status are those of the reference.
 #[track_caller]
@@ -40,45 +41,25 @@ pub fn compare(model: &Model, reference: &Monolithic, solution: &Solution) {
     }
 }
 
-/// Fails unless every increment is that of the reference with friction.
-#[track_caller]
-pub fn compare_friction(model: &Model, reference: &[Frictional], solutions: &[Solution]) {
-    assert_eq!(reference.len(), solutions.len());
-    for (k, (expected, solution)) in reference.iter().zip(solutions).enumerate() {
-        let (assembled, solved) = (&expected.assembled, &expected.solved);
-        let u = solution.dofs(model);
-        let difference = assembled.energy_difference(&solved.u, &u);
-        assert!(difference <= 1e-11, "{k}: energy difference {difference:e}");
-        let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let (size, force) = (largest(&solved.u), largest(&solved.forces));
-        let points = model
-            .contacts
-            .iter()
-            .flat_map(|c| &solution.contacts[&c.name]);
-        let points: Vec<&ContactPoint> = points.collect();
-        for (point, expected) in points.iter().zip(&solved.forces) {
-            let at = format!("{k}, normal, {:?}", point.position);
-            close(point.force, *expected, 1e-10 * force, &at);
+/// What is wrong with the increments of a model: each has to keep the laws of contact and friction, and to be what follows
+/// from what it says is closed, sticks and slips.
+pub fn faults(model: &Model, increments: &[Solution]) -> Vec<String> {
+    assert_eq!(increments.len(), model.steps.len().max(1));
+    let mut faults = Vec::new();
+    for (k, solution) in increments.iter().enumerate() {
+        let model = match model.steps.is_empty() {
+            true => model.clone(),
+            false => at_step(model, k),
+        };
+        let before = k.checked_sub(1).map(|k| &increments[k]);
+        let mut found = Findings::after(before, &model, &Assembled::new(&model), solution, true);
+        let parts = solution.report["friction"]["increments"].as_u64();
+        if parts.is_some_and(|parts| parts > 1) {
+            found = found.in_parts();
         }
-        for (t, tangent) in assembled.tangents.iter().enumerate() {
-            let point = points[tangent.condition];
-            let at = format!("{k}, tangential, {:?}", point.position);
-            for axis in 0..2 {
-                let along = tangent.direction[axis];
-                let [expected, slip] = [-solved.tangential[t], tangent.jump(&solved.u)];
-                close(
-                    point.tangential_force[axis],
-                    expected * along,
-                    1e-10 * force,
-                    &at,
-                );
-                close(point.slip[axis], slip * along, 1e-11 * size, &at);
-            }
-            assert_eq!(point.closed, expected.closed[tangent.condition], "{at}");
-            let slips = matches!(expected.along[t], Along::Slips(_));
-            assert_eq!(point.slipping, slips && point.closed, "{at}: {point:?}");
-        }
+        faults.extend(found.faults());
     }
+    faults
 }
 
 #[track_caller]

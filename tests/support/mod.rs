@@ -11,7 +11,6 @@ pub mod close;
 pub mod comparison;
 pub mod energy;
 pub mod extruded;
-pub mod frictional;
 pub mod isoparametric;
 pub mod monolithic;
 pub mod mounted;

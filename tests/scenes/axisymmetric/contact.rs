@@ -8,8 +8,7 @@ use contact_dd_partition::model::Model;
 use super::{BODY, POISSON, YOUNG, is_stressed, rectangle};
 use crate::support::blocks::{Blocks, jittered, joined};
 use crate::support::close::close;
-use crate::support::comparison::{compare, compare_friction};
-use crate::support::frictional::Frictional;
+use crate::support::comparison::{compare, faults};
 use crate::support::monolithic::Monolithic;
 use crate::support::scenes::model;
 use crate::support::solids::solid;
@@ -162,7 +161,10 @@ value = [0.0, {push}]
             .map(|point| point.tangential_force[1])
             .sum();
         close(up, -push * area, 1e-10 * push * area);
-        compare_friction(&model, &Frictional::steps(&model), &solve_steps(&model, 2));
+        let mut faults = faults(&model, &solve_steps(&model, 2));
+        // Around an axis radial forces balance themselves.
+        faults.retain(|fault| !fault.starts_with("balance"));
+        assert!(faults.is_empty(), "{faults:?}");
     }
     let pushed = Case::of(&model(&text(2.0 * 0.2 * normal / area), mesh()), 3).run(&[]);
     assert_ne!(pushed.code(), 0);

@@ -12,16 +12,20 @@ use crate::support::solution::{ContactPoint, Solution};
 use crate::support::solver::solve;
 use crate::support::sorts::sort;
 
-/// A block whose lower side is bent on a longer one, of cells of another size, pressed down at one
-/// end; of the last facet that it covers it covers a fifth.
-fn mesh(cells: &str) -> Mesh {
+/// A block whose lower side is bent on a longer one, pressed down at one end: of cells of the same size, or of
+/// another one, where of the last facet that it covers it covers a fifth.
+fn mesh(cells: &str, is_even: bool) -> Mesh {
+    let (start, length, n) = match is_even {
+        true => (0.5, 1.5, 3),
+        false => (0.4, 2.1, 7),
+    };
     let bent = |[s, t]: [f64; 2]| {
-        let x = 0.4 + 2.1 * s;
+        let x = start + length * s;
         [x, 1.0 + 0.6 * t + 2e-5 * (x - 1.2).powi(2) * (1.0 - t)]
     };
     let blocks = Blocks::new()
         .rectangle("zero", [0.0, 2.0], [0.0, 1.0], [4, 3])
-        .mapped("one", [7, 3], bent);
+        .mapped("one", [n, 3], bent);
     sort(cells).of(&blocks.mesh)
 }
 
@@ -89,13 +93,14 @@ impl Place {
 /// how.
 #[track_caller]
 fn is_the_same_at(places: &[Place], seed: Option<u64>) {
-    for (cells, upside_down) in [
-        ("triangle3", false),
-        ("triangle3", true),
-        ("triangle6, quad8 and quad9", true),
+    for (cells, is_even, upside_down) in [
+        ("triangle3", true, false),
+        ("triangle3", false, false),
+        ("triangle3", false, true),
+        ("triangle6, quad8 and quad9", false, true),
     ] {
         let text = text(upside_down);
-        let here = mesh(cells);
+        let here = mesh(cells, is_even);
         let pressed = |tag: i64| {
             let [x, y, _] = here.points[tag as usize - 1];
             let on_top = (y - 1.6).abs() < 1e-9;

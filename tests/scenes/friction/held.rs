@@ -156,6 +156,19 @@ fn alike(first: &Solution, second: &Solution, slack: f64) {
     }
 }
 
+/// A block that is pushed up a wedge with tan α = 0.1 at μ = 0.3 by F begins to slide at F/G = 0.412371, as
+/// (tan α + μ)/(1 − μ tan α) says; NAFEMS benchmark CGS-4.
+#[test]
+fn a_wedge_begins_to_slide_as_the_nafems_benchmark_says() {
+    let limit = 0.4 / 0.97;
+    close(limit, 0.412_371, 1e-6);
+    for (share, code) in [(1.0 - 1e-12, 0), (1.0 + 1e-12, 4), (0.9995, 0), (1.0005, 4)] {
+        let forces = [WEIGHT * limit * share, -WEIGHT];
+        let model = incline(0.1_f64.atan(), forces, "friction = 0.3\ngap = 0.0", [10, 3]);
+        assert_eq!(run(&model, 3).code(), code, "{share}");
+    }
+}
+
 const PUSHED: &str = "plane = 'strain'
 materials.rock = {young = 20e9, poisson = 0.22}
 bodies.block = {material = 'rock', body_force = [0.0, -26e3]}
