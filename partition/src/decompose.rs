@@ -2,6 +2,7 @@
 
 mod bisect;
 mod build;
+mod clumps;
 mod dissect;
 mod flow;
 mod graph;

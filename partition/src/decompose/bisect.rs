@@ -14,17 +14,8 @@ pub(super) const LARGE: usize = 8000;
 /// Vertices of a clump.
 const CLUMP: usize = 8;
 
-/// Layers of clumps on each side of a cut among which it is made shorter.
-const LAYERS: u32 = 4;
-
-/// Vertices by which a direction is judged, at most.
-const SAMPLE: usize = 1024;
-
 /// The golden ratio's fraction.
 const GOLDEN: f64 = 0.618_033_988_749_895;
-
-/// How many of the directions in which a set may be cut are tried.
-const TRIED: usize = 4;
 
 /// What is asked of a cut.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +28,19 @@ pub(super) struct Aim {
     pub price: f64,
     /// Whether METIS is asked, too.
     pub with_metis: bool,
+    /// How hard it is sought.
+    pub effort: Effort,
+}
+
+/// How hard a cut is sought.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    /// How many of the directions in which a set may be cut are tried.
+    pub directions: usize,
+    /// Vertices by which a direction is judged, at most.
+    pub sample: usize,
+    /// Layers of clumps on each side of a cut among which it is made shorter.
+    pub layers: u32,
 }
 
 /// A cut, the better the lower its score.
@@ -53,7 +57,7 @@ pub(super) fn bisect(graph: &Graph, aim: Aim) -> Vec<bool> {
     let count = graph.len();
     let in_halves = || (0..count).map(|i| i < count.div_ceil(2)).collect();
     let candidates: Vec<Vec<bool>> = if count > LARGE {
-        let (clump, clumps) = graph.clumps(CLUMP);
+        let (clump, clumps) = graph.clumps(CLUMP, |_| true);
         let coarse = graph.contracted(&clump, clumps);
         let left = bisect(&coarse, aim);
         refined(graph, &coarse, &clump, left, aim)
@@ -70,14 +74,19 @@ pub(super) fn bisect(graph: &Graph, aim: Aim) -> Vec<bool> {
         ways.map(|way| (0..count).map(|i| way >> i & 1 == 1).collect())
             .collect()
     };
+    best(graph, candidates, aim).unwrap_or_else(in_halves)
+}
+
+/// The best of several cuts; `None` where a side of each is empty.
+pub(super) fn best(graph: &Graph, candidates: Vec<Vec<bool>>, aim: Aim) -> Option<Vec<bool>> {
     let cuts = candidates
         .into_iter()
         .filter_map(|left| Cut::new(graph, left, aim));
     let best = cuts.min_by(|a, b| a.score.total_cmp(&b.score));
-    best.map_or_else(in_halves, |cut| cut.left)
+    best.map(|cut| cut.left)
 }
 
-/// A cut between clumps, and the cheapest ones near it: so near that neither side loses more than may be.
+/// A cut between clumps, and the cheapest ones near it.
 fn refined(
     graph: &Graph,
     coarse: &Graph,
@@ -85,15 +94,22 @@ fn refined(
     left: Vec<bool>,
     aim: Aim,
 ) -> Vec<Vec<bool>> {
-    let most = aim.slack * coarse.size();
-    let mut distance = vec![u32::MAX; coarse.len()];
+    let band = band(coarse, &left, aim);
+    let places: Vec<Place> = clump.iter().map(|&clump| band[clump as usize]).collect();
+    let mut cuts: Vec<Vec<bool>> = cheapest_cuts(graph, &places).into();
+    cuts.push(clump.iter().map(|&clump| left[clump as usize]).collect());
+    cuts
+}
+
+/// What lies between the sides: some layers of vertices next to a cut, so few that neither side loses more than may be.
+pub(super) fn band(graph: &Graph, left: &[bool], aim: Aim) -> Vec<Place> {
+    let most = aim.slack * graph.size();
+    let mut distance = vec![u32::MAX; graph.len()];
     let is_at_cut = |vertex: usize| {
-        let edges = coarse.edges(vertex).iter();
-        edges
-            .clone()
-            .any(|edge| left[edge.to as usize] != left[vertex])
+        let mut edges = graph.edges(vertex).iter();
+        edges.any(|edge| left[edge.to as usize] != left[vertex])
     };
-    let mut near: Vec<usize> = (0..coarse.len())
+    let mut near: Vec<usize> = (0..graph.len())
         .filter(|&vertex| is_at_cut(vertex))
         .collect();
     near.iter().for_each(|&vertex| distance[vertex] = 1);
@@ -103,11 +119,11 @@ fn refined(
         let vertex = near[at];
         at += 1;
         let given = &mut given[usize::from(left[vertex])];
-        *given += f64::from(coarse.dofs[vertex]);
-        if distance[vertex] >= LAYERS || *given > most {
+        *given += f64::from(graph.dofs[vertex]);
+        if distance[vertex] >= aim.effort.layers || *given > most {
             continue;
         }
-        for edge in coarse.edges(vertex) {
+        for edge in graph.edges(vertex) {
             let to = edge.to as usize;
             if distance[to] == u32::MAX {
                 distance[to] = distance[vertex] + 1;
@@ -115,15 +131,12 @@ fn refined(
             }
         }
     }
-    let place = |&clump: &u32| match (distance[clump as usize], left[clump as usize]) {
+    let place = |(&distance, &left): (&u32, &bool)| match (distance, left) {
         (u32::MAX, true) => Place::Left,
         (u32::MAX, false) => Place::Right,
         _ => Place::Between,
     };
-    let places: Vec<Place> = clump.iter().map(place).collect();
-    let mut cuts: Vec<Vec<bool>> = cheapest_cuts(graph, &places).into();
-    cuts.push(clump.iter().map(|&clump| left[clump as usize]).collect());
-    cuts
+    distance.iter().zip(left).map(place).collect()
 }
 
 impl Cut {
@@ -163,25 +176,25 @@ impl Cut {
 
 /// The cheapest cuts across the best of several directions.
 fn geometric(graph: &Graph, aim: Aim) -> Vec<Vec<bool>> {
-    let sample = sample(graph.len());
+    let sample = sample(graph.len(), aim.effort.sample);
     let mut slabs: Vec<(u64, Slab)> = directions(graph, &sample)
         .into_iter()
         .map(|direction| Slab::new(graph, &sample, direction, aim))
         .map(|slab| (slab.price(graph, &sample), slab))
         .collect();
     slabs.sort_by_key(|&(price, _)| price);
-    let tried = slabs.iter().take(TRIED);
+    let tried = slabs.iter().take(aim.effort.directions);
     tried.flat_map(|(_, slab)| slab.cuts(graph)).collect()
 }
 
-/// Vertices out of so many, at most [`SAMPLE`], spread evenly: at multiples of the golden ratio, as equal strides along
+/// Vertices out of so many, at most `most`, spread evenly: at multiples of the golden ratio, as equal strides along
 /// a curve through a regular mesh would find its points in few rows.
-fn sample(len: usize) -> Vec<usize> {
-    if len <= SAMPLE {
+fn sample(len: usize, most: usize) -> Vec<usize> {
+    if len <= most {
         return (0..len).collect();
     }
     let place = |k: usize| (k as f64 * GOLDEN).fract();
-    (0..SAMPLE)
+    (0..most)
         .map(|k| (place(k) * len as f64) as usize)
         .collect()
 }

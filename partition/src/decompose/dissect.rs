@@ -1,11 +1,27 @@
 //! Recursive bisection: the tree of the cuts.
 
-use super::bisect::{Aim, LARGE, bisect};
+use super::bisect::{Aim, Effort, LARGE, bisect};
+use super::clumps::{Cells, Clumps};
 use super::graph::Graph;
 use crate::problem::Hierarchy;
 
 /// Vertices, or clumps of them, of all graphs that METIS is asked to cut; it takes some microseconds for each.
 const METIS_VERTICES: usize = 300_000;
+
+/// Graphs of more vertices are dissected by clumps of them.
+const CLUMPED: usize = 40_000;
+
+/// How hard cuts are sought, and those of small sets of clumps, of which there are many.
+const CAREFUL: Effort = Effort {
+    directions: 4,
+    sample: 1024,
+    layers: 4,
+};
+const QUICK: Effort = Effort {
+    directions: 2,
+    sample: 256,
+    layers: 3,
+};
 
 /// How much larger than with pieces left whole the largest of a number of sets may become by a cut through them.
 const CROOKED: f64 = 1.2;
@@ -19,8 +35,8 @@ const EXACT: (f64, f64) = (0.03, 1.0);
 const ABOVE: (f64, f64) = (0.08, 0.1);
 const BELOW: (f64, f64) = (0.15, 0.02);
 
-/// Vertices from which on both sides of a cut are dissected at the same time.
-const PARALLEL: usize = 50_000;
+/// Dofs from which on both sides of a cut are dissected at the same time.
+const PARALLEL: f64 = 50_000.0;
 
 /// Vertices below which what a cut leaves apart from the rest of a side goes to the other one; in larger sets
 /// later cuts see to it.
@@ -95,16 +111,56 @@ impl Branch {
 /// Dissects a graph of one vertex at least. Of [`Wanted::Sets`] there are at least as many as pieces, and at most
 /// as many as vertices.
 pub(super) fn dissect(graph: Graph, wanted: Wanted) -> Branch {
-    branch(graph, wanted, 0, METIS_VERTICES)
+    match wanted {
+        Wanted::Dofs(most) if most > 0.0 && graph.len() > CLUMPED => {
+            let cells = Cells::new(graph);
+            branch(Set::Clumps(cells.clumps()), wanted, 0, METIS_VERTICES)
+        }
+        _ => branch(Set::Vertices(graph), wanted, 0, METIS_VERTICES),
+    }
 }
 
-fn branch(graph: Graph, wanted: Wanted, level: usize, for_metis: usize) -> Branch {
+/// What is dissected.
+enum Set<'a> {
+    /// Vertices of a graph.
+    Vertices(Graph),
+    /// Clumps of them, where there are many.
+    Clumps(Clumps<'a>),
+}
+
+impl Set<'_> {
+    fn graph(&self) -> &Graph {
+        match self {
+            Self::Vertices(graph) => graph,
+            Self::Clumps(clumps) => &clumps.graph,
+        }
+    }
+
+    /// The sides of a cut.
+    fn halves(self, left: &[bool], aim: Aim) -> [Self; 2] {
+        match self {
+            Self::Vertices(graph) => graph.halves(left).map(Self::Vertices),
+            Self::Clumps(clumps) => clumps.halves(left, aim).map(Self::Clumps),
+        }
+    }
+
+    /// The ids of what a vertex of its graph stands for.
+    fn ids(&self, vertex: usize) -> &[u32] {
+        match self {
+            Self::Vertices(graph) => &graph.ids[vertex..=vertex],
+            Self::Clumps(clumps) => clumps.cells.of(vertex),
+        }
+    }
+}
+
+fn branch(set: Set, wanted: Wanted, level: usize, for_metis: usize) -> Branch {
+    let graph = set.graph();
     let is_leaf = match wanted {
         Wanted::Dofs(most) => graph.len() == 1 || graph.size() <= most,
         Wanted::Sets(count) => count == 1,
     };
     if is_leaf {
-        return leaf(&graph);
+        return leaf(&set);
     }
     let asked = graph.len().min(LARGE);
     let with_metis = asked <= for_metis;
@@ -121,19 +177,28 @@ fn branch(graph: Graph, wanted: Wanted, level: usize, for_metis: usize) -> Branc
         slack,
         price,
         with_metis,
+        effort: match &set {
+            Set::Clumps(_) if level >= PARALLEL_LEVELS => QUICK,
+            _ => CAREFUL,
+        },
     };
-    let left = sides(&graph, aim, wanted);
+    let left = sides(graph, aim, wanted);
     let rest = (for_metis - if with_metis { asked } else { 0 }) / 2;
-    let is_large = graph.len() >= PARALLEL;
-    let [a, b] = graph.halves(&left);
-    let is_joined = a.outside.iter().chain(&b.outside).any(|&weight| weight > 0);
+    let is_large = graph.size() >= PARALLEL;
+    let [a, b] = set.halves(&left, aim);
+    let (of_a, of_b) = (a.graph(), b.graph());
+    let is_joined = of_a
+        .outside
+        .iter()
+        .chain(&of_b.outside)
+        .any(|&weight| weight > 0);
     let wanted = match wanted {
         Wanted::Sets(count) => {
-            let (of_a, of_b) = (a.sizes_of_pieces(), b.sizes_of_pieces());
-            let shares = allotted(&[&of_a[..], &of_b].concat(), count);
-            let share = shares[..of_a.len()].iter().sum::<usize>();
-            let least = of_a.len().max(count.saturating_sub(b.len()));
-            let most = a.len().min(count - of_b.len());
+            let (in_a, in_b) = (of_a.sizes_of_pieces(), of_b.sizes_of_pieces());
+            let shares = allotted(&[&in_a[..], &in_b].concat(), count);
+            let share = shares[..in_a.len()].iter().sum::<usize>();
+            let least = in_a.len().max(count.saturating_sub(of_b.len()));
+            let most = of_a.len().min(count - in_b.len());
             let of_a = share.clamp(least, most);
             [Wanted::Sets(of_a), Wanted::Sets(count - of_a)]
         }
@@ -157,11 +222,12 @@ fn branch(graph: Graph, wanted: Wanted, level: usize, for_metis: usize) -> Branc
 }
 
 /// The pieces of a set that isn't cut any more.
-fn leaf(graph: &Graph) -> Branch {
+fn leaf(set: &Set) -> Branch {
+    let graph = set.graph();
     let (piece, count) = graph.pieces();
     let mut members = vec![Vec::new(); count];
     for (vertex, &piece) in piece.iter().enumerate() {
-        members[piece as usize].push(graph.ids[vertex]);
+        members[piece as usize].extend(set.ids(vertex));
     }
     let mut leaves: Vec<Branch> = members.into_iter().map(Branch::Leaf).collect();
     if leaves.len() == 1 {

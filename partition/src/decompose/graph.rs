@@ -18,11 +18,23 @@ pub(super) struct Edge {
 }
 
 impl Edge {
-    fn new(to: u32, weight: u32, is_facet: bool) -> Self {
+    /// An edge to a vertex.
+    pub fn new(to: u32, weight: u32, is_facet: bool) -> Self {
         Self {
             to,
             packed: weight << 1 | u32::from(is_facet),
         }
+    }
+
+    /// The same edge to another vertex.
+    pub fn towards(self, to: u32) -> Self {
+        Self { to, ..self }
+    }
+
+    /// This edge and another one as one.
+    pub fn joined(self, other: &Self) -> Self {
+        let is_facet = self.is_facet() || other.is_facet();
+        Self::new(self.to, self.weight() + other.weight(), is_facet)
     }
 
     /// What cutting it costs: [`NODE`] for every node that both sides share then.
@@ -173,7 +185,7 @@ impl Graph {
                         return None;
                     }
                     let to = place[edge.to as usize];
-                    Some(Edge { to, ..*edge })
+                    Some(edge.towards(to))
                 }));
                 half.ids.push(self.ids[vertex]);
                 half.dofs.push(self.dofs[vertex]);
@@ -217,13 +229,10 @@ impl Graph {
                     continue;
                 }
                 match list.get_mut(known as usize).filter(|known| known.to == to) {
-                    Some(known) => {
-                        let is_facet = known.is_facet() || edge.is_facet();
-                        *known = Edge::new(to, known.weight() + edge.weight(), is_facet);
-                    }
+                    Some(known) => *known = known.joined(edge),
                     None => {
                         place[to as usize] = list.len() as u32;
-                        list.push(Edge { to, ..*edge });
+                        list.push(edge.towards(to));
                     }
                 }
             }
@@ -240,8 +249,20 @@ impl Graph {
         }
     }
 
-    /// Clumps of about `size` neighbouring vertices each: that of every vertex, and their number.
-    pub fn clumps(&self, size: usize) -> (Vec<u32>, usize) {
+    /// Dofs and centre of some vertices.
+    pub fn middle(&self, vertices: &[u32]) -> (f32, [f32; 3]) {
+        let (mut dofs, mut centre) = (0.0, [0.0; 3]);
+        for &vertex in vertices {
+            let (own, at) = (self.dofs[vertex as usize], self.centres[vertex as usize]);
+            dofs += own;
+            centre = [0, 1, 2].map(|k| centre[k] + at[k] * own);
+        }
+        (dofs, centre.map(|c| c / dofs))
+    }
+
+    /// Clumps of about `size` vertices each that hang together by edges that `joins`: that of every vertex, and their
+    /// number.
+    pub fn clumps(&self, size: usize, joins: impl Fn(Edge) -> bool) -> (Vec<u32>, usize) {
         let mut of = vec![u32::MAX; self.len()];
         let mut count = 0;
         let mut members = Vec::with_capacity(size);
@@ -256,7 +277,7 @@ impl Graph {
             while at < members.len() && members.len() < size {
                 for edge in self.edges(members[at]) {
                     let to = edge.to as usize;
-                    if of[to] == u32::MAX && members.len() < size {
+                    if joins(*edge) && of[to] == u32::MAX && members.len() < size {
                         of[to] = count;
                         members.push(to);
                     }
@@ -267,6 +288,7 @@ impl Graph {
             if members.len() < size / 2 {
                 let others = members.iter().flat_map(|&vertex| self.edges(vertex));
                 let other = others
+                    .filter(|&&edge| joins(edge))
                     .map(|edge| of[edge.to as usize])
                     .find(|&other| other != count && other != u32::MAX);
                 if let Some(other) = other {

@@ -1,0 +1,377 @@
+//! Clumps of cells, which are dissected in their place: cuts run between clumps, and are made shorter among the
+//! cells near them, so that most cells aren't looked at again at every cut.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use super::bisect::{Aim, band, best};
+use super::flow::{Place, cheapest_cuts};
+use super::graph::{Edge, Graph};
+use crate::lists::Lists;
+
+/// Cells of a clump.
+const CLUMP: usize = 8;
+
+/// No vertex yet.
+const NONE: u32 = u32::MAX;
+
+/// All cells of a mesh.
+pub(super) struct Cells {
+    graph: Graph,
+    /// For every cell the number of its clump in the set that it is in now.
+    clump: Vec<AtomicU32>,
+}
+
+/// A set of clumps, each of which hangs together across facets.
+pub(super) struct Clumps<'a> {
+    all: &'a Cells,
+    /// Its vertices are the clumps.
+    pub graph: Graph,
+    /// The cells of every clump.
+    pub cells: Lists<u32>,
+}
+
+/// The clumps near a cut, and on which side of it their cells are.
+struct Near {
+    /// Where every clump is; those between the sides have cells on both.
+    places: Vec<Place>,
+    /// The number of the first cell of every clump between the sides.
+    first: Vec<u32>,
+    /// The cells between the sides, and a vertex for each side.
+    graph: Graph,
+    left: Vec<bool>,
+}
+
+impl Cells {
+    pub fn new(graph: Graph) -> Self {
+        let clump = graph.ids.iter().map(|_| AtomicU32::new(NONE)).collect();
+        Self { graph, clump }
+    }
+
+    /// All of them in clumps.
+    pub fn clumps(&self) -> Clumps<'_> {
+        let (of, count) = self.graph.clumps(CLUMP, Edge::is_facet);
+        let cells = Lists::new(count, of.iter().copied().zip(0..));
+        Clumps::new(self, self.graph.contracted(&of, count), cells)
+    }
+}
+
+impl<'a> Clumps<'a> {
+    fn new(all: &'a Cells, graph: Graph, cells: Lists<u32>) -> Self {
+        for (number, cells) in (0..).zip(cells.iter()) {
+            for &cell in cells {
+                all.clump[cell as usize].store(number, Ordering::Relaxed);
+            }
+        }
+        Self { all, graph, cells }
+    }
+
+    /// The clump of a cell and its place there; `None` where the cell isn't in this set: then its number is that of
+    /// a clump in another one, which may be changing now.
+    fn find(&self, cell: u32) -> Option<(usize, usize)> {
+        let clump = self.all.clump[cell as usize].load(Ordering::Relaxed) as usize;
+        if clump >= self.graph.len() {
+            return None;
+        }
+        let place = self.cells.of(clump).iter().position(|&c| c == cell)?;
+        Some((clump, place))
+    }
+
+    /// The sides of a cut between clumps, once it is as short as it gets near there.
+    pub fn halves(self, left: &[bool], aim: Aim) -> [Self; 2] {
+        let near = self.near(left, aim);
+        let mut vertex_of_clump = vec![NONE; self.graph.len()];
+        let mut vertex_of_cell = vec![NONE; near.left.len()];
+        let mut cells = [0, 1].map(|_| Lists::with_capacity(left.len(), self.cells.items()));
+        let mut clumps = [Vec::new(), Vec::new()];
+        let mut part = Vec::new();
+        let mut stack = Vec::new();
+        for (clump, members) in self.cells.iter().enumerate() {
+            let whole = match near.places[clump] {
+                Place::Left => Some(0),
+                Place::Right => Some(1),
+                Place::Between => None,
+            };
+            if let Some(side) = whole {
+                vertex_of_clump[clump] = clumps[side].len() as u32;
+                clumps[side].push(clump);
+                cells[side].push(members.iter().copied());
+                continue;
+            }
+            let first = near.first[clump] as usize;
+            for start in first..first + members.len() {
+                if vertex_of_cell[start] != NONE {
+                    continue;
+                }
+                let side = usize::from(!near.left[start]);
+                let vertex = clumps[side].len() as u32;
+                vertex_of_cell[start] = vertex;
+                stack.push(start);
+                while let Some(cell) = stack.pop() {
+                    part.push(members[cell - first]);
+                    for edge in near.graph.edges(cell) {
+                        let to = edge.to as usize;
+                        if edge.is_facet()
+                            && (first..first + members.len()).contains(&to)
+                            && near.left[to] == near.left[start]
+                            && vertex_of_cell[to] == NONE
+                        {
+                            vertex_of_cell[to] = vertex;
+                            stack.push(to);
+                        }
+                    }
+                }
+                clumps[side].push(clump);
+                cells[side].push(part.drain(..));
+            }
+        }
+        let graphs = [0, 1].map(|side| {
+            let vertex_at = |(clump, place): (usize, usize)| match near.places[clump] {
+                Place::Between => {
+                    let cell = near.first[clump] as usize + place;
+                    (near.left[cell] == (side == 0)).then(|| vertex_of_cell[cell])
+                }
+                place => ((place == Place::Left) == (side == 0)).then(|| vertex_of_clump[clump]),
+            };
+            self.half(&near.places, &clumps[side], &cells[side], vertex_at)
+        });
+        let all = self.all;
+        let mut cells = cells.into_iter();
+        graphs.map(|graph| Self::new(all, graph, cells.next().unwrap_or_default()))
+    }
+
+    /// The graph of one side, made of `clumps` or of those of their cells that are there; `vertex_at` tells the vertex
+    /// that a cell is in, if it is on this side.
+    fn half(
+        &self,
+        places: &[Place],
+        clumps: &[usize],
+        cells: &Lists<u32>,
+        vertex_at: impl Fn((usize, usize)) -> Option<u32>,
+    ) -> Graph {
+        let fine = &self.all.graph;
+        let count = clumps.len();
+        let mut half = Graph {
+            dim: fine.dim,
+            ids: (0..count as u32).collect(),
+            dofs: Vec::with_capacity(count),
+            centres: Vec::with_capacity(count),
+            outside: Vec::with_capacity(count),
+            edges: Lists::with_capacity(count, 6 * count),
+        };
+        let is_between = |clump: usize| places[clump] == Place::Between;
+        let mut list: Vec<Edge> = Vec::new();
+        for (vertex, &clump) in clumps.iter().enumerate() {
+            let members = cells.of(vertex);
+            let is_cut = is_between(clump);
+            let edges = self.graph.edges(clump);
+            let mut outside = 0;
+            if !is_cut {
+                outside = self.graph.outside[clump];
+                for edge in edges.iter().filter(|edge| !is_between(edge.to as usize)) {
+                    match vertex_at((edge.to as usize, 0)) {
+                        Some(to) => list.push(edge.towards(to)),
+                        None => outside += edge.weight(),
+                    }
+                }
+            }
+            if is_cut || edges.iter().any(|edge| is_between(edge.to as usize)) {
+                for edge in members.iter().flat_map(|&cell| fine.edges(cell as usize)) {
+                    let at = self.find(edge.to);
+                    if !is_cut && !at.is_some_and(|(clump, _)| is_between(clump)) {
+                        continue;
+                    }
+                    match at.and_then(&vertex_at) {
+                        Some(to) if to as usize == vertex => {}
+                        Some(to) => match list.iter_mut().find(|known| known.to == to) {
+                            Some(known) => *known = known.joined(edge),
+                            None => list.push(edge.towards(to)),
+                        },
+                        None => outside += edge.weight(),
+                    }
+                }
+                list.sort_unstable();
+            }
+            let (dofs, centre) = match members.len() == self.cells.of(clump).len() {
+                true => (self.graph.dofs[clump], self.graph.centres[clump]),
+                false => fine.middle(members),
+            };
+            half.dofs.push(dofs);
+            half.centres.push(centre);
+            half.outside.push(outside);
+            half.edges.push(list.drain(..));
+        }
+        half
+    }
+
+    /// The clumps near a cut, and where the cheapest cut runs through them.
+    fn near(&self, left: &[bool], aim: Aim) -> Near {
+        let places = band(&self.graph, left, aim);
+        let fine = &self.all.graph;
+        let mut first = vec![NONE; places.len()];
+        let mut count = 0;
+        for (clump, first) in first.iter_mut().enumerate() {
+            if places[clump] == Place::Between {
+                *first = count;
+                count += self.cells.of(clump).len() as u32;
+            }
+        }
+        let mut graph = Graph {
+            dim: fine.dim,
+            ids: (0..count + 2).collect(),
+            dofs: Vec::with_capacity(count as usize + 2),
+            centres: Vec::new(),
+            outside: Vec::with_capacity(count as usize + 2),
+            edges: Lists::with_capacity(count as usize + 2, 5 * count as usize),
+        };
+        let mut was_left = Vec::with_capacity(count as usize + 2);
+        let mut of_left = Vec::new();
+        let mut list = Vec::new();
+        let between = (0..places.len()).filter(|&clump| places[clump] == Place::Between);
+        for (clump, &cell) in between.flat_map(|clump| {
+            let members = self.cells.of(clump).iter();
+            members.map(move |cell| (clump, cell))
+        }) {
+            let mut outside = 0;
+            for edge in fine.edges(cell as usize) {
+                let Some((clump, place)) = self.find(edge.to) else {
+                    outside += edge.weight();
+                    continue;
+                };
+                list.push(edge.towards(match places[clump] {
+                    Place::Left => {
+                        of_left.push(edge.towards(graph.dofs.len() as u32));
+                        count
+                    }
+                    Place::Right => count + 1,
+                    Place::Between => first[clump] + place as u32,
+                }));
+            }
+            list.sort_unstable();
+            graph.edges.push(list.drain(..));
+            graph.dofs.push(fine.dofs[cell as usize]);
+            graph.outside.push(outside);
+            was_left.push(left[clump]);
+        }
+        graph.edges.push(of_left.into_iter());
+        graph.edges.push(std::iter::empty());
+        for side in [Place::Left, Place::Right] {
+            let whole = || (0..places.len()).filter(|&clump| places[clump] == side);
+            let dofs: f64 = whole().map(|clump| f64::from(self.graph.dofs[clump])).sum();
+            graph.dofs.push(dofs as f32);
+            graph
+                .outside
+                .push(whole().map(|clump| self.graph.outside[clump]).sum());
+            was_left.push(side == Place::Left);
+        }
+        let mut place_of = vec![Place::Between; count as usize];
+        place_of.extend([Place::Left, Place::Right]);
+        let mut candidates = Vec::from(cheapest_cuts(&graph, &place_of));
+        candidates.push(was_left.clone());
+        Near {
+            left: best(&graph, candidates, aim).unwrap_or(was_left),
+            places,
+            first,
+            graph,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::decompose::bisect::Effort;
+
+    const AIM: Aim = Aim {
+        share: 0.5,
+        slack: 0.1,
+        price: 0.1,
+        with_metis: false,
+        effort: Effort {
+            directions: 2,
+            sample: 256,
+            layers: 2,
+        },
+    };
+
+    /// Squares in rows, and contacts between two of these.
+    fn squares(rows: u32, columns: u32) -> Graph {
+        let at = |row: u32, column: u32| row * columns + column;
+        let mut edges = Vec::new();
+        let mut tie =
+            |a: u32, b: u32, edge: Edge| edges.extend([(a, edge.towards(b)), (b, edge.towards(a))]);
+        for row in 0..rows {
+            for column in 0..columns {
+                let own = at(row, column);
+                if column + 1 < columns {
+                    tie(own, own + 1, Edge::new(0, 256, true));
+                }
+                if row + 1 < rows {
+                    tie(
+                        own,
+                        at(row + 1, column),
+                        Edge::new(0, 256, row + 1 != rows / 2),
+                    );
+                }
+            }
+        }
+        let count = (rows * columns) as usize;
+        let mut edges = Lists::new(count, edges.into_iter());
+        edges.sort();
+        Graph {
+            dim: 2,
+            ids: (0..count as u32).collect(),
+            dofs: vec![2.0; count],
+            centres: (0..rows)
+                .flat_map(|row| (0..columns).map(move |column| [column as f32, row as f32, 0.0]))
+                .collect(),
+            outside: vec![0; count],
+            edges,
+        }
+    }
+
+    /// Cuts a set and its halves several times, and tells `check` of each of them, and of its cells' own graph.
+    fn cut(set: Clumps, times: usize, check: &mut impl FnMut(&Clumps, Graph)) {
+        let in_set = |cell| set.find(cell).is_some();
+        let left: Vec<bool> = set.all.graph.ids.iter().map(|&cell| in_set(cell)).collect();
+        let [own, _] = set.all.graph.clone().halves(&left);
+        check(&set, own);
+        if times > 0 {
+            let middle = |k: usize| {
+                let mut all: Vec<f32> = set.graph.centres.iter().map(|c| c[k]).collect();
+                all.sort_by(f32::total_cmp);
+                all[all.len() / 2]
+            };
+            let (k, sum) = (times % 2, middle(times % 2));
+            let left: Vec<bool> = set.graph.centres.iter().map(|c| c[k] < sum).collect();
+            for half in set.halves(&left, AIM) {
+                cut(half, times - 1, check);
+            }
+        }
+    }
+
+    #[test]
+    fn clumps_know_what_lies_between_their_cells_after_every_cut() {
+        let cells = Cells::new(squares(40, 60));
+        let mut cut_apart = 0;
+        cut(cells.clumps(), 4, &mut |set, own| {
+            let number = |&cell: &u32| set.find(cell).unwrap().0 as u32;
+            let clump: Vec<u32> = own.ids.iter().map(number).collect();
+            let expected = own.contracted(&clump, set.graph.len());
+            assert_eq!(set.graph.edges, expected.edges);
+            assert_eq!(set.graph.outside, expected.outside);
+            assert_eq!(set.graph.dofs, expected.dofs);
+            for (centre, expected) in set.graph.centres.iter().zip(expected.centres) {
+                (0..3).for_each(|k| assert!((centre[k] - expected[k]).abs() < 1e-4));
+            }
+            let facet =
+                |a: usize, edge: &Edge| edge.is_facet() && clump[a] == clump[edge.to as usize];
+            assert_eq!(
+                own.parts(facet).1,
+                set.graph.len(),
+                "a clump is in several pieces"
+            );
+            cut_apart += usize::from(set.cells.iter().any(|cells| cells.len() < 4));
+        });
+        assert!(cut_apart > 10, "no cut runs through clumps");
+    }
+}
