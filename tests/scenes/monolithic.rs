@@ -2,10 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
-use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use crate::support::blocks::{Blocks, jittered, shuffled};
 use crate::support::comparison::compare;
@@ -14,7 +11,6 @@ use crate::support::scenes::{
     BODIES, JOINT, LOAD, SUPPORTS, built_in, built_in_model, model, two_block_scene, two_blocks,
 };
 use crate::support::solver::solve;
-use crate::support::sorts::SORTS;
 
 /// Solves `model` in `count` subdomains and fails unless displacement, forces, pressures, gaps and
 /// status are those of the reference. Returns the number of closed conditions.
@@ -263,120 +259,5 @@ fn stiffness_ratios_of_a_million_are_the_monolithic_solution() {
         let model = model(&text, two_blocks().mesh);
         let difference = Monolithic::new(&model).energy_difference(&solve(&model, 7).dofs(&model));
         assert!(difference < 1e-6, "{difference:e}");
-    }
-}
-
-/// A column of blocks in rough contact, none of which can slide or turn over.
-#[derive(Clone, Debug)]
-struct Column {
-    heights: Vec<f64>,
-    /// Logarithm of Young's modulus of each block (Pa).
-    stiffness: Vec<f64>,
-    /// Body force of each block along x (N/m³).
-    force: Vec<f64>,
-    columns: usize,
-    /// Size, wave number and offset of the gaps.
-    gap: [f64; 3],
-    /// Slope of the pressure from above.
-    slope: f64,
-    subdomains: usize,
-}
-
-fn column() -> impl Strategy<Value = Column> {
-    (2..=4_usize).prop_flat_map(|blocks| {
-        (
-            prop::collection::vec(0.3..1.5, blocks),
-            prop::collection::vec(8.0..11.0, blocks),
-            prop::collection::vec(-1e6..1e6, blocks),
-            3..=8_usize,
-            [0.0..1e-3, 0.0..30.0, -1e-3..1e-3],
-            -8.0..8.0,
-            blocks..=10,
-        )
-            .prop_map(
-                |(heights, stiffness, force, columns, gap, slope, subdomains)| Column {
-                    heights,
-                    stiffness,
-                    force,
-                    columns,
-                    gap,
-                    slope,
-                    subdomains,
-                },
-            )
-    })
-}
-
-impl Column {
-    fn model(&self, of: impl Fn(Mesh) -> Mesh) -> Model {
-        let mut blocks = Blocks::new();
-        let mut materials = String::from("plane = 'strain'\n");
-        let mut conditions = String::new();
-        let mut low = 0.0;
-        for (i, height) in self.heights.iter().enumerate() {
-            let rows = (height * self.columns as f64).ceil().max(4.0) as usize;
-            let n = [self.columns, rows];
-            blocks = blocks.rectangle(&format!("b{i}"), [0.0, 1.0], [low, low + height], n);
-            low += height;
-            let (young, force) = (10_f64.powf(self.stiffness[i]), self.force[i]);
-            materials += &format!(
-                "materials.m{i} = {{young = {young}, poisson = 0.3}}
-                bodies.b{i} = {{material = 'm{i}', body_force = [{force}, 0.0]}}\n"
-            );
-            conditions += &format!("[[displacement]]\non = 'b{i} left'\nx = 0.0\n");
-            if i > 0 {
-                let ([a, k, b], below) = (self.gap, i - 1);
-                conditions += &format!(
-                    "[[contact]]
-                    name = 'joint {i}'
-                    sides = ['b{i} bottom', 'b{below} top']
-                    gap = '{a}*sin({k}*x + {i}) + {b}'\n"
-                );
-            }
-        }
-        let (last, slope) = (self.heights.len() - 1, self.slope);
-        let load = format!(
-            "[[displacement]]
-            on = 'b0 bottom'
-            y = 0.0
-            [[pressure]]
-            on = 'b{last} top'
-            value = '1e6*(1 + {slope}*(x - 0.5))'\n"
-        );
-        model(&format!("{materials}{conditions}{load}"), of(blocks.mesh))
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 24,
-        rng_seed: RngSeed::Fixed(20),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
-
-    #[test]
-    fn rough_columns_are_the_monolithic_solution(column in column()) {
-        agrees(&column.model(|mesh| mesh), column.subdomains);
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 10,
-        rng_seed: RngSeed::Fixed(21),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
-
-    #[test]
-    fn rough_columns_of_any_cells_are_the_monolithic_solution(
-        column in column(),
-        sort in prop::sample::select(&SORTS[1..]),
-    ) {
-        agrees(
-            &column.model(|mesh| jittered(sort.of(&mesh), 0.006, 1)),
-            column.subdomains,
-        );
     }
 }

@@ -3,7 +3,7 @@
 mod shapes;
 mod solids;
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 use crate::says::says;
 use contact_dd_partition::element::ElementKind::{Quad4, Quad8, Quad9, Triangle6};
@@ -305,40 +305,5 @@ fn meshes_are_read_back_from_their_files_bit_by_bit() {
         let (made, _) = example.make(0).unwrap();
         assert_eq!(made.title, Scene::read(&scene).unwrap().title);
         assert_eq!(gmsh::read(&dir.path().join("mesh.msh")).unwrap(), mesh);
-    }
-}
-
-#[test]
-fn scenes_name_groups_that_their_meshes_have() {
-    for example in EXAMPLES {
-        let scene: toml::Table = example.scene.parse().unwrap();
-        let mesh = example.mesh(0).unwrap();
-        let mut dims: HashMap<&str, usize> = HashMap::new();
-        for (key, value) in &scene {
-            match value {
-                toml::Value::Table(table) if key == "bodies" => {
-                    dims.extend(table.keys().map(|body| (body.as_str(), mesh.dim)));
-                }
-                toml::Value::Array(entries) => {
-                    for entry in entries {
-                        let keys = ["on", "sides"].map(|key| entry.get(key));
-                        for names in keys.into_iter().flatten() {
-                            let one = names.as_str().into_iter();
-                            let list = names.as_array().into_iter().flatten();
-                            let names = one.chain(list.map(|name| name.as_str().unwrap()));
-                            dims.extend(names.map(|name| (name, mesh.dim - 1)));
-                        }
-                    }
-                }
-                _ => {}
-            }
-        }
-        assert!(dims.len() > 1, "{}", example.name);
-        for (name, dim) in dims {
-            let group = mesh.groups.get(name);
-            let group = group.unwrap_or_else(|| panic!("{}: no {name}", example.name));
-            assert_eq!(group.dim, dim, "{}: {name}", example.name);
-            assert!(!group.members.is_empty());
-        }
     }
 }

@@ -2,13 +2,11 @@
 
 mod file;
 mod kinds;
-mod solids;
 
 use std::collections::BTreeMap;
 
 use contact_dd_partition::mesh::{Mesh, gmsh};
 use file::{FORMS, Form, version_2_2, version_4_1};
-use proptest::prelude::*;
 
 use crate::table::cases;
 
@@ -183,21 +181,5 @@ fn files_of_gmsh_itself_are_read_whatever_options_it_wrote_them_with() {
             *x = (*x * 1e12).round() / 1e12;
         }
         assert_eq!(first.get_or_insert_with(|| mesh.clone()), &mesh, "{file:?}");
-    }
-}
-
-proptest! {
-    #[test]
-    fn no_damage_makes_the_reader_panic(
-        form in 0..3_usize,
-        old in any::<bool>(),
-        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
-    ) {
-        let mut bytes = if old { version_2_2(FORMS[form]) } else { version_4_1(FORMS[form]) };
-        for (place, value) in damage {
-            let place = place.index(bytes.len());
-            bytes[place] = value;
-        }
-        let _ = gmsh::parse(&bytes);
     }
 }

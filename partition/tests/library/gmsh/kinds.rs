@@ -1,48 +1,65 @@
-//! Files of Gmsh itself with quadrilaterals and quadratic cells; `kinds/make.py` says of what.
+//! Files of Gmsh itself with cells of every kind; `kinds/make.py` and `kinds/make3d.py` say of what.
 
 use std::f64::consts::PI;
 
 use contact_dd_partition::element::ElementKind::{self, *};
+use contact_dd_partition::element::geometry::{difference, length};
+use contact_dd_partition::mesh::topology::Topology;
 use contact_dd_partition::mesh::{Mesh, gmsh};
 
-pub fn read(name: &str) -> Mesh {
+fn read(name: &str) -> Mesh {
     let dir = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/library/gmsh/kinds");
     gmsh::read(&dir.join(format!("{name}.msh"))).unwrap()
 }
 
-pub const FORMS: [&str; 4] = ["4.1-ascii", "4.1-binary", "2.2-ascii", "2.2-binary"];
-const CASES: [(&str, [ElementKind; 3]); 3] = [
-    ("linear", [Quad4, Triangle3, Line2]),
-    ("eight", [Quad8, Triangle6, Line3]),
-    ("nine", [Quad9, Triangle6, Line3]),
+const FORMS: [&str; 4] = ["4.1-ascii", "4.1-binary", "2.2-ascii", "2.2-binary"];
+
+/// File, kinds of cells and facets, and how far area or volume are off at most.
+const CASES: [(&str, &[ElementKind], ElementKind, f64); 8] = [
+    ("linear", &[Quad4, Triangle3], Line2, 0.05),
+    ("eight", &[Quad8, Triangle6], Line3, 1e-3),
+    ("nine", &[Quad9, Triangle6], Line3, 1e-3),
+    ("tetrahedra-4", &[Tetrahedron4], Triangle3, 0.2),
+    ("tetrahedra-10", &[Tetrahedron10], Triangle6, 0.02),
+    ("hexahedra-8", &[Hexahedron8], Quad4, 0.2),
+    ("hexahedra-20", &[Hexahedron20], Quad8, 0.02),
+    ("hexahedra-27", &[Hexahedron27], Quad9, 0.02),
 ];
 
 #[test]
-fn quadrilaterals_and_quadratic_cells_are_read_in_every_form() {
-    for (name, [quadrilateral, triangle, line]) in CASES {
+fn cells_of_every_kind_are_read_in_every_form() {
+    for (name, kinds, facet, slack) in CASES {
         let mut first = None;
         for form in FORMS {
             let mut mesh = read(&format!("{name}-{form}"));
-            let count = |kind| mesh.cells.iter().filter(|&(k, _)| k == kind).count();
-            assert_eq!(
-                [count(quadrilateral), count(triangle)],
-                [6, 12],
-                "{name} {form}"
-            );
-            assert_eq!(mesh.cells.len(), 18);
-            assert!((0..18).all(|cell| mesh.measure(cell) > 0.0));
-            let area: f64 = (0..18).map(|cell| mesh.measure(cell)).sum();
-            let slack = if line == Line3 { 1e-3 } else { 0.05 };
-            assert!((area - 0.75 * PI).abs() < slack, "{name} {form}: {area}");
+            assert_eq!(mesh.dim, kinds[0].dim());
+            let has = |kind: &ElementKind| mesh.cells.iter().any(|(of_cell, _)| of_cell == *kind);
+            assert!(kinds.iter().all(has), "{name} {form}");
+            assert!(mesh.cells.iter().all(|(kind, _)| kinds.contains(&kind)));
+            let cells = 0..mesh.cells.len();
+            let sizes: Vec<f64> = cells.map(|cell| mesh.measure(cell)).collect();
+            assert!(sizes.iter().all(|&size| size > 0.0), "{name} {form}");
+            let size: f64 = sizes.iter().sum();
+            assert!((size - 0.75 * PI).abs() < slack, "{name} {form}: {size}");
+            let topology = Topology::new(&mesh);
             for (side, radius) in [("inner", 1.0), ("outer", 2.0)] {
                 let members = &mesh.groups[side].members;
-                assert_eq!(members.len(), 6);
-                for &facet in members {
-                    assert_eq!(mesh.facets.kind(facet as usize), line);
-                    for &node in mesh.facets.nodes_of(facet as usize) {
+                assert!(!members.is_empty());
+                for &member in members {
+                    assert_eq!(mesh.facets.kind(member as usize), facet);
+                    let nodes = mesh.facets.nodes_of(member as usize);
+                    for &node in nodes {
                         let [x, y, _] = mesh.points[node as usize];
-                        assert!((x.hypot(y) - radius).abs() < 1e-8, "{x} {y}");
+                        assert!((x.hypot(y) - radius).abs() < 1e-7, "{x} {y}");
                     }
+                    // The cell has the same nodes, in an order that begins elsewhere.
+                    let [one] = topology.cells_at(nodes)[..] else {
+                        panic!("{name}: a facet of no cell or of two");
+                    };
+                    let (mut of_cell, mut listed) = (one.nodes(&mesh.cells), nodes.to_vec());
+                    of_cell.sort_unstable();
+                    listed.sort_unstable();
+                    assert_eq!(of_cell, listed);
                 }
             }
             for x in mesh.points.iter_mut().flatten() {
@@ -52,48 +69,50 @@ fn quadrilaterals_and_quadratic_cells_are_read_in_every_form() {
             let mut cells: Vec<_> = mesh.cells.iter().map(|(k, n)| (k, n.to_vec())).collect();
             cells.sort();
             let found = (mesh.points, mesh.node_tags, mesh.facets, cells);
-            assert_eq!(
-                first.get_or_insert_with(|| found.clone()),
-                &found,
-                "{name} {form}"
-            );
+            let first = first.get_or_insert_with(|| found.clone());
+            assert_eq!(first, &found, "{name} {form}");
         }
     }
 }
 
 #[test]
-fn nodes_on_edges_lie_in_the_middle_of_their_ends() {
-    for (name, _) in CASES {
+fn nodes_on_edges_and_faces_lie_in_the_middle_of_their_corners() {
+    for (name, ..) in CASES {
         let mesh = read(&format!("{name}-4.1-ascii"));
         for (kind, nodes) in mesh.cells.iter() {
-            let at = |i: usize| mesh.points[nodes[i] as usize];
-            for (_, local) in kind.facets().iter().filter(|(_, local)| local.len() == 3) {
-                let [a, b, middle] = [0, 1, 2].map(|i| at(local[i]));
-                // The arcs of 15° bulge by a share of 0.033 of their length.
-                let far = (0..2).map(|i| (middle[i] - 0.5 * (a[i] + b[i])).abs());
-                let chord = (a[0] - b[0]).hypot(a[1] - b[1]);
-                assert!(far.fold(0.0, f64::max) < 0.05 * chord, "{kind:?}");
+            // Where the linear map of the corners has it.
+            let linear = match (kind.dim(), kind.corners()) {
+                (2, 3) => Triangle3,
+                (2, _) => Quad4,
+                (_, 4) => Tetrahedron4,
+                _ => Hexahedron8,
+            };
+            let at: Vec<[f64; 3]> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
+            let corners = &at[..kind.corners()];
+            let size = length(difference(corners[0], corners[1]));
+            let places = at.iter().zip(kind.node_coordinates());
+            for (local, (x, xi)) in places.enumerate().skip(corners.len()) {
+                let way = difference(*x, linear.position(corners, *xi));
+                // Arcs of up to 45° bulge by a share of 0.1 of their length.
+                assert!(length(way) < 0.2 * size, "{kind:?} {local}: {way:?}");
             }
         }
     }
 }
 
 #[test]
-fn quadratic_cells_are_written_and_read_back_bit_by_bit() {
+fn cells_of_every_kind_are_written_and_read_back_bit_by_bit() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("mesh.msh");
-    for (name, _) in CASES {
+    for (name, ..) in CASES {
         let mut mesh = read(&format!("{name}-4.1-binary"));
         gmsh::write(&mesh, &path).unwrap();
         let mut back = gmsh::read(&path).unwrap();
-        let facets = |mesh: &Mesh| mesh.facets.len();
-        assert_eq!(facets(&back), facets(&mesh));
-        for group in mesh.groups.keys() {
-            assert_eq!(
-                back.groups[group].members.len(),
-                mesh.groups[group].members.len()
-            );
+        assert_eq!(back.facets.len(), mesh.facets.len());
+        for (name, group) in &mesh.groups {
+            assert_eq!(back.groups[name].members.len(), group.members.len());
         }
+        // Facets may come in another order.
         (mesh.facets, back.facets) = Default::default();
         mesh.groups.clear();
         back.groups.clear();

@@ -67,44 +67,9 @@ fn a_body_force_is_that_of_the_volume_and_a_polynomial_one_is_exact() {
 }
 
 #[test]
-fn what_has_no_place_in_space_is_refused_in_words() {
-    let obstacle = |keys: &str| format!("[[contact]]\nname = 'c'\nsides = ['inner']\n{keys}");
-    let identity = "[[1,0,0],[0,1,0],[0,0,1]]";
-    for (text, words) in [
-        ("plane = 'strain'".to_owned(), "'plane' is of plane scenes"),
-        (
-            "bodies.ring.body_force = [0, 1]".into(),
-            "bodies.ring.body_force: a scene in space has vectors of three",
-        ),
-        (
-            "[[traction]]\non = 'inner'\nvalue = [1, 2]".into(),
-            "traction[1].value: a scene in space",
-        ),
-        (
-            obstacle("obstacle = {point = [0, 0], normal = [1, 0]}"),
-            "contact[1].obstacle: a scene in space",
-        ),
-        (
-            obstacle("obstacle = {center = [0, 0], radius = 1}"),
-            "contact[1].obstacle: a scene in space",
-        ),
-        (
-            format!("materials.wood.stiffness = {identity}"),
-            "materials.wood.stiffness: expected 6 rows of 6",
-        ),
-        (
-            "[[bilateral]]\non = 'rim'".into(),
-            "no physical group 'rim'",
-        ),
-        (
-            "[[pressure]]\non = 'ring'\nvalue = 1".into(),
-            "a group of cells",
-        ),
-    ] {
-        let error = made(&text, mesh("hexahedra-8")).unwrap_err();
-        assert!(error.contains(words), "{text}: {error}");
-    }
-    let scene = "mesh = 'a.msh'\nplane = 'strain'\nmaterials.m = {young = 1, poisson = 0}\nbodies.b.material = 'm'\n";
+fn what_belongs_to_the_plane_or_to_space_is_refused_elsewhere() {
+    let error = made("plane = 'strain'", mesh("hexahedra-8")).unwrap_err();
+    says(&error, "'plane' is of plane scenes");
     for (text, words) in [
         (
             "[[pressure]]\non = 'a'\nvalue = 'x+z'",
@@ -115,30 +80,8 @@ fn what_has_no_place_in_space_is_refused_in_words() {
             "a plane scene has no cylinder",
         ),
     ] {
-        let error = Scene::parse(&format!("{scene}{text}"))
-            .unwrap_err()
-            .to_string();
-        says(&error, words);
-    }
-}
-
-#[test]
-fn degenerate_and_folded_cells_are_refused() {
-    for (name, words) in [
-        ("tetrahedra-4", "has no volume"),
-        ("hexahedra-8", "is folded"),
-    ] {
-        let mut mesh = mesh(name);
-        let nodes = mesh.cells.nodes_of(0).to_vec();
-        let at = |i: usize| mesh.points[nodes[i] as usize];
-        // Into the plane of the other corners; or beyond the opposite one.
-        let place = match name {
-            "tetrahedra-4" => [0, 1, 2].map(|k| (at(0)[k] + at(1)[k] + at(2)[k]) / 3.0),
-            _ => [0, 1, 2].map(|k| 1.1 * at(6)[k] - 0.1 * at(0)[k]),
-        };
-        mesh.points[nodes[if name == "tetrahedra-4" { 3 } else { 0 }] as usize] = place;
-        let error = made("", mesh).unwrap_err();
-        says(&error, words);
+        let error = made(&format!("plane = 'strain'\n{text}"), mesh("hexahedra-8"));
+        says(&error.unwrap_err(), words);
     }
 }
 
