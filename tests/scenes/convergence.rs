@@ -1,5 +1,4 @@
-//! Exact displacements, and orders of convergence of energy, stresses and contact pressures, in cells of
-//! all kinds.
+//! Exact displacements, and orders of convergence of energy and stresses, in cells of all kinds.
 
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
@@ -156,97 +155,6 @@ fn energy_and_nodal_stresses_converge_with_the_order_of_the_cells() {
         for effectivity in [coarse[2], fine[2]] {
             assert!((0.9..1.15).contains(&effectivity), "{at}");
         }
-    }
-}
-
-/// A ring shrunk on another: in contact along a circle of radius b, its inner one loaded from
-/// inside by nothing, the interference δ small. With equal materials the pressure in plane strain is
-///
-/// ```text
-/// p = E' δ / (2 b³) · (b² − a²)(c² − b²) / (c² − a²),   E' = E / (1 − ν²)
-/// ```
-fn shrink_fit(sort: Sort, n: usize) -> f64 {
-    let (a, b, c, interference): (f64, f64, f64, f64) = (1.0, 1.5, 2.5, 1e-3);
-    let [young, poisson] = STEEL;
-    let quarter = |r: [f64; 2]| {
-        move |[s, t]: [f64; 2]| {
-            let (radius, angle) = (
-                r[0] + (r[1] - r[0]) * t,
-                (1.0 - s) * std::f64::consts::FRAC_PI_2,
-            );
-            [radius * angle.cos(), radius * angle.sin()]
-        }
-    };
-    let blocks = Blocks::new()
-        .mapped("inner", [2 * n, n], quarter([a, b]))
-        .mapped("outer", [2 * n, n], quarter([b, c]));
-    let mut mesh = sort.of(&blocks.mesh);
-    on_circles(&mut mesh, &[a, b, c]);
-    let text = format!(
-        "plane = 'strain'
-        materials.steel = {{young = {young}, poisson = {poisson}}}
-        bodies.inner.material = 'steel'
-        bodies.outer.material = 'steel'
-        [[bilateral]]
-        on = ['inner left', 'inner right', 'outer left', 'outer right']
-        [[contact]]
-        name = 'fit'
-        sides = ['inner top', 'outer bottom']
-        gap = {}",
-        -interference
-    );
-    let solution = solve(&model(&text, mesh), 3);
-    let stiffness = young / (1.0 - poisson * poisson);
-    let exact = stiffness * interference / (2.0 * b.powi(3)) * (b * b - a * a) * (c * c - b * b)
-        / (c * c - a * a);
-    let points = &solution.contacts["fit"];
-    assert_eq!(
-        points.len(),
-        if sort.is_quadratic {
-            4 * n + 1
-        } else {
-            2 * n + 1
-        }
-    );
-    for point in points {
-        let [x, y, _] = point.position;
-        let along = (point.normal[0] * x + point.normal[1] * y) / b;
-        // The last corners are on a straight support, where the side has one facet alone.
-        let is_end = x.min(y) < 1e-9;
-        if !is_end {
-            close(along, 1.0, if sort.is_quadratic { 1e-6 } else { 1e-12 });
-        }
-    }
-    let errors = points.iter().map(|p| (p.pressure / exact - 1.0).abs());
-    errors.fold(0.0, f64::max)
-}
-
-/// Puts the nodes in the middle of edges whose ends lie on one of the circles on it.
-fn on_circles(mesh: &mut Mesh, radii: &[f64]) {
-    for facet in 0..mesh.facets.len() {
-        let nodes = mesh.facets.nodes_of(facet);
-        let [x, y, _] = mesh.points[nodes[0] as usize];
-        let [x1, y1, _] = mesh.points[nodes[1] as usize];
-        let radius = x.hypot(y);
-        let on_one = (radius - x1.hypot(y1)).abs() < 1e-9;
-        if let (Some(&middle), true) = (nodes.get(2), on_one)
-            && let Some(radius) = radii.iter().find(|r| (*r - radius).abs() < 1e-9)
-        {
-            let [x, y, _] = mesh.points[middle as usize];
-            let far = x.hypot(y);
-            mesh.points[middle as usize] = [x * radius / far, y * radius / far, 0.0];
-        }
-    }
-}
-
-#[test]
-fn the_pressure_of_a_shrink_fit_converges_on_curved_edges() {
-    for name in ["triangle6", "quad8", "quad9"] {
-        let errors = [4, 8].map(|n| shrink_fit(sort(name), n));
-        assert!(
-            errors[1] < 0.35 * errors[0] && errors[1] < 1.5e-3,
-            "{name}: {errors:?}"
-        );
     }
 }
 

@@ -9,18 +9,11 @@ use crate::support::blocks::Blocks;
 use crate::support::close::close;
 use crate::support::comparison::compare;
 use crate::support::monolithic::Monolithic;
-use crate::support::scenes::{BODIES, JOINT, built_in_model, model};
+use crate::support::scenes::{BODIES, HELD, JOINT, built_in_model, model};
 use crate::support::solution::Solution;
 use crate::support::solver::solve;
 use crate::support::statics::{balanced, reaction};
 
-/// The lower block's support.
-const HELD: &str = "
-[[displacement]]
-on = 'lower bottom'
-x = 0.0
-y = 0.0
-";
 /// The upper block's guide against sliding.
 const GUIDED: &str = "
 [[displacement]]
