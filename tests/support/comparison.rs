@@ -41,25 +41,20 @@ pub fn compare(model: &Model, reference: &Monolithic, solution: &Solution) {
     }
 }
 
-/// What is wrong with the increments of a model: each has to keep the laws of contact and friction, and to be what follows
-/// from what it says is closed, sticks and slips.
-pub fn faults(model: &Model, increments: &[Solution]) -> Vec<String> {
+/// What the judge of random scenes finds in the increments of a model, the worst of all: each has to keep the laws of
+/// contact and friction, and to be what follows from what it says is closed, sticks and slips.
+pub fn judged(model: &Model, increments: &[Solution]) -> Findings {
     assert_eq!(increments.len(), model.steps.len().max(1));
-    let mut faults = Vec::new();
-    for (k, solution) in increments.iter().enumerate() {
+    let of_step = |(k, solution): (usize, &Solution)| {
         let model = match model.steps.is_empty() {
             true => model.clone(),
             false => at_step(model, k),
         };
         let before = k.checked_sub(1).map(|k| &increments[k]);
-        let mut found = Findings::after(before, &model, &Assembled::new(&model), solution, true);
-        let parts = solution.report["friction"]["increments"].as_u64();
-        if parts.is_some_and(|parts| parts > 1) {
-            found = found.in_parts();
-        }
-        faults.extend(found.faults());
-    }
-    faults
+        Findings::after(before, &model, &Assembled::new(&model), solution, true)
+    };
+    let all = increments.iter().enumerate().map(of_step);
+    all.reduce(Findings::or).unwrap()
 }
 
 #[track_caller]

@@ -3,7 +3,7 @@
 use contact_dd_partition::model::Model;
 
 use crate::support::blocks::Blocks;
-use crate::support::comparison::faults;
+use crate::support::comparison::judged;
 use crate::support::scenes::{BODIES, model};
 use crate::support::solver::solve_steps;
 use crate::support::sorts::sort;
@@ -36,8 +36,9 @@ scale = { traction = 0.4, pressure = 0.4 }
 #[track_caller]
 fn agrees(model: &Model, count: usize) -> Vec<usize> {
     let solutions = solve_steps(model, count);
-    let faults = faults(model, &solutions);
-    assert!(faults.is_empty(), "{faults:?}");
+    let findings = judged(model, &solutions);
+    assert!(findings.faults().is_empty(), "{:?}", findings.faults());
+    assert!(findings.difference <= Some(1e-11), "{findings:?}");
     solutions
         .iter()
         .map(|solution| solution.slipping())
