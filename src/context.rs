@@ -12,6 +12,12 @@ use crate::fem::contact_group::{ContactGroup, GroupLoads};
 use crate::fem::load::BlockLoads;
 use crate::plan::Plan;
 
+/// Who hears how far a phase has come.
+pub trait Listener {
+    /// So much of the phase, or of a part of it such as a linear system, is done: 0, with which a part begins, to 1.
+    fn done(&self, share: f64);
+}
+
 /// What every phase of a run works on.
 #[derive(Clone, Copy)]
 pub struct Context<'a> {
@@ -27,6 +33,8 @@ pub struct Context<'a> {
     pub groups: &'a BTreeMap<usize, ContactGroup>,
     /// Threads.
     pub par: Par,
+    /// Who hears how far a phase has come.
+    pub listener: &'a dyn Listener,
 }
 
 /// A place on the way through the load steps.

@@ -1,5 +1,6 @@
 //! How a run can fail, and the exit code that says so.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use contact_dd_partition::error::{InputError, OutputError};
@@ -58,6 +59,22 @@ impl Failure {
         Self::new(FailureKind::Interrupted, message)
     }
 
+    /// Where a run that was asked to stop goes on, after `k` of `all` load steps whose results are in `kept`; any other
+    /// failure as it is.
+    pub fn after(mut self, k: usize, all: usize, kept: &Path) -> Self {
+        if self.kind == FailureKind::Interrupted {
+            let kept = kept.display();
+            self.message += &match k {
+                0 => ", before a result was written".to_owned(),
+                k => format!(
+                    ", after {k} of {all} load steps: {kept} has their results; the same command with --restart goes on \
+                     after them"
+                ),
+            };
+        }
+        self
+    }
+
     /// The process's exit code.
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.kind as u8)
@@ -73,5 +90,21 @@ impl From<InputError> for Failure {
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
         Self::new(FailureKind::Output, error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_stops_a_run_hears_how_it_goes_on() {
+        let after = |k| Failure::interrupted("interrupted").after(k, 5, Path::new("x.unfinished"));
+        assert_eq!(after(0).message, "interrupted, before a result was written");
+        let message = after(2).message;
+        assert!(message.starts_with("interrupted, after 2 of 5 load steps: x.unfinished has"));
+        assert!(message.contains("--restart"));
+        let other = Failure::ill_posed("free");
+        assert_eq!(other.clone().after(2, 5, Path::new("x")), other);
     }
 }

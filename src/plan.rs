@@ -74,6 +74,11 @@ impl Plan {
         }
     }
 
+    /// Estimated time of what is done at node v of the hierarchy (flops).
+    pub fn time(&self, v: usize, dim: usize) -> f64 {
+        cost::weight(&self.tree, v, dim, self.merging)
+    }
+
     /// The owner of every node of the hierarchy.
     fn hand_out(&self, catalog: &Catalog, ranks: usize) -> Vec<usize> {
         let top = match self.merging {
@@ -83,7 +88,7 @@ impl Plan {
         let mut costs = vec![0.0; self.tree.nodes.len()];
         for &v in &top {
             for v in self.tree.subtree(v) {
-                costs[v] = cost::weight(&self.tree, v, catalog.dim, self.merging);
+                costs[v] = self.time(v, catalog.dim);
             }
         }
         if self.merging == Merging::Clusters {

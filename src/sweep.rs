@@ -174,7 +174,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         }
         if self.s_con.is_any_asked_to_stop() {
             let done = self.sweeps_done();
-            let message = format!("interrupted after {done} sweeps, before a result was written");
+            let message = format!("interrupted after {done} sweeps");
             return Err(Failure::interrupted(message));
         }
         Ok(true)

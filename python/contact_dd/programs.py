@@ -137,6 +137,8 @@ def show(event: dict[str, Any]) -> None:
             print(f"{dofs} degrees of freedom, {ranks} rank{'s' * (ranks > 1)}", flush=True)
         case {"event": "phase", "phase": phase, "seconds": seconds}:
             print(f"{seconds:8.2f} s  {phase}", flush=True)
+        case {"event": "progress", "phase": phase, "done": done, "seconds": seconds, "seconds_left": left}:
+            print(f"{seconds:8.2f} s  {phase}, {done:.0%}, about {left:.0f} s left", flush=True)
         case {"event": "step", "step": step, "steps": steps, "name": name}:
             print(f"step {step} of {steps}: {name}", flush=True)
         case {"event": "sweep", "sweep": sweep, "residual": residual, "active": active}:

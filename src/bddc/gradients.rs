@@ -86,6 +86,8 @@ impl Gradients<'_> {
             let is_judged = !self.is_stale && self.is_judged && iterations == TRIAL;
             is_judged && rho > GOOD * GOOD * begin
         };
+        let mut done = 0.0_f64;
+        self.context.listener.done(done);
         while rho > enough && iterations < most && !is_slow(iterations, rho) {
             let q = self.multiply(&p);
             let curvature = self.dot(&p, &q);
@@ -103,6 +105,10 @@ impl Gradients<'_> {
                     .for_each(|(p, z)| *p = z + rho / before * *p);
             }
             iterations += 1;
+            done = done.max((begin / rho).ln() / (begin / enough).ln());
+            self.context
+                .listener
+                .done(done.clamp(f64::MIN_POSITIVE, 1.0));
         }
         (x, iterations, rho <= enough)
     }

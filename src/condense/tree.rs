@@ -22,9 +22,14 @@ use crate::schur::merge::{FreeInterfaceDof, Merge, Spare};
 pub fn condense_clusters(
     condensation: &Condensation<'_>,
     analysis: &RigidBodyAnalysis,
-    condensed_one: &dyn Fn(),
 ) -> Result<CondensedBlocks, Failure> {
-    let Context { comm, plan, .. } = condensation.context;
+    let Context {
+        comm,
+        catalog,
+        plan,
+        listener,
+        ..
+    } = condensation.context;
     let mut merging = Merging {
         condensation,
         condensed: CondensedBlocks::default(),
@@ -32,23 +37,31 @@ pub fn condense_clusters(
         spare: Spare::default(),
     };
     let (alone, across) = merging.nodes();
+    let time = |&v: &usize| match plan.node_owners[v] == comm.rank() {
+        true => plan.time(v, catalog.dim),
+        false => 0.0,
+    };
+    let all: f64 = alone.iter().chain(&across).map(time).sum();
+    let mut spent = 0.0;
+    let mut is_done = |v: usize| {
+        spent += time(&v);
+        listener.done((spent / all).clamp(f64::MIN_POSITIVE, 1.0));
+    };
+    listener.done(0.0);
     // First what needs no other rank, depth first, so that little waits at a time.
     let mut merged = alone.into_iter().try_for_each(|v| {
         if is_asked_to_stop() {
-            return Err(Failure::interrupted(
-                "interrupted while factorizing, before a result was written",
-            ));
+            return Err(Failure::interrupted("interrupted while factorizing"));
         }
         merging.own_node(v)?;
-        if v < plan.blocks() {
-            condensed_one();
-        }
+        is_done(v);
         Ok(())
     });
     // Then, while others may still be at their own: what failed here is missed where it should go.
     for v in across {
         let result = merging.node_across_ranks(v);
         merged = merged.and(result);
+        is_done(v);
     }
     comm.agree(merged)?;
     let Merging {

@@ -188,7 +188,7 @@ pub(super) fn go_on(context: &Context<'_>, sweeps: usize) -> Result<(), Failure>
     match context.comm.is_any_asked_to_stop() {
         false => Ok(()),
         true => Err(Failure::interrupted(format!(
-            "interrupted after {sweeps} sweeps, before a result was written"
+            "interrupted after {sweeps} sweeps"
         ))),
     }
 }

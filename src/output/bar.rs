@@ -9,16 +9,43 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// How long a log hears nothing of a run.
 const SILENCE: Duration = Duration::from_secs(10);
 
-/// How often a bar without steps moves.
+/// How often a bar moves by itself.
 const TICK: Duration = Duration::from_millis(100);
+
+/// Steps of the bar.
+const STEPS: u64 = 1000;
 
 /// What a run is doing: a bar on the terminal, now and then a line in a log.
 #[derive(Debug)]
 pub struct Bar {
     bar: ProgressBar,
+    phase: Cell<&'static str>,
+    part: Cell<Part>,
     /// When the log last heard of the run; `None` where there is no log.
     told: Option<Cell<Instant>>,
     began: Instant,
+}
+
+/// A part of a phase, such as a linear system, of which it is known how much is done.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    began: Instant,
+    share: f64,
+}
+
+impl Part {
+    fn new() -> Self {
+        Self {
+            began: Instant::now(),
+            share: 0.0,
+        }
+    }
+
+    /// How long the rest of it takes if it goes on like this (s); `None` where too little is done to tell.
+    fn seconds_left(self, elapsed: Duration) -> Option<f64> {
+        let left = elapsed.as_secs_f64() * (1.0 - self.share) / self.share;
+        (self.share > 0.02 && elapsed > 10 * TICK).then_some(left)
+    }
 }
 
 impl Bar {
@@ -32,6 +59,8 @@ impl Bar {
         };
         let bar = Self {
             bar,
+            phase: Cell::new(""),
+            part: Cell::new(Part::new()),
             told: (!quiet && !shown).then(|| Cell::new(now)),
             began: now,
         };
@@ -47,31 +76,50 @@ impl Bar {
         }
     }
 
-    /// Begins a phase, of so many steps where that is known.
-    pub fn begin(&self, phase: &'static str, steps: Option<usize>) {
+    /// Begins a phase.
+    pub fn begin(&self, phase: &'static str) {
+        self.phase.set(phase);
+        self.part.set(Part::new());
         self.tell(|| phase.to_owned());
-        self.look(match steps {
-            Some(_) => "{msg} [{bar:32}] {pos}/{len} {elapsed}",
-            None => "{msg} {spinner} {elapsed}",
-        });
+        self.look("{msg} {spinner} {elapsed}");
         self.bar.reset();
         self.bar.set_message(phase);
-        match steps {
-            Some(steps) => self.bar.set_length(steps as u64),
-            None => self.bar.unset_length(),
-        }
+        self.bar.unset_length();
         if !self.bar.is_hidden() {
             self.bar.enable_steady_tick(TICK);
         }
     }
 
-    /// One step more is done.
-    pub fn advance(&self) {
-        self.bar.inc(1);
-        self.tell(|| {
-            let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
-            format!("{}, {done} of {all}", self.bar.message())
-        });
+    /// So much of the phase, or of a part of it, is done; 0 begins another part.
+    pub fn done(&self, share: f64) {
+        let mut part = self.part.get();
+        if share == 0.0 {
+            part = Part::new();
+            self.look("{msg} [{bar:32}] {percent} % {prefix} {elapsed}");
+            self.bar.set_length(STEPS);
+        }
+        part.share = share;
+        self.part.set(part);
+        let left = || {
+            let seconds = self.seconds_left();
+            seconds.map_or(String::new(), |s| format!(", {}", in_words(s)))
+        };
+        if !self.bar.is_hidden() {
+            self.bar.set_position((share * STEPS as f64) as u64);
+            self.bar.set_prefix(left());
+        }
+        self.tell(|| format!("{}, {:.0} %{}", self.phase.get(), 100.0 * share, left()));
+    }
+
+    /// What the run is doing.
+    pub fn phase(&self) -> &'static str {
+        self.phase.get()
+    }
+
+    /// How long the rest of the part takes if it goes on like this (s), where that can be told.
+    pub fn seconds_left(&self) -> Option<f64> {
+        let part = self.part.get();
+        part.seconds_left(part.began.elapsed())
     }
 
     /// Tells the log, unless it has heard of the run just now.
@@ -99,5 +147,36 @@ impl Bar {
 impl Drop for Bar {
     fn drop(&mut self) {
         self.finish();
+    }
+}
+
+/// How long something takes yet, in words.
+pub fn in_words(seconds: f64) -> String {
+    match seconds {
+        s if s < 100.0 => format!("about {s:.0} s left"),
+        s if s < 6000.0 => format!("about {:.0} min left", s / 60.0),
+        s => format!("about {:.0} h left", s / 3600.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_takes_as_long_as_what_is_done() {
+        let part = Part {
+            share: 0.25,
+            ..Part::new()
+        };
+        let left = part.seconds_left(Duration::from_secs(40));
+        assert_eq!(left, Some(120.0));
+        assert_eq!(part.seconds_left(Duration::from_millis(1)), None);
+        assert_eq!(Part::new().seconds_left(Duration::from_secs(40)), None);
+        let words = [40.0, 120.0, 7200.0].map(in_words);
+        assert_eq!(
+            words,
+            ["about 40 s left", "about 2 min left", "about 2 h left"]
+        );
     }
 }

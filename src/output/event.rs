@@ -46,6 +46,21 @@ pub enum Event<'a> {
         name: &'a str,
         /// What it stands at on the axis of time.
         time: f64,
+        /// How long it and those to come take, about (s); none before the first one is solved.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        seconds_left: Option<f64>,
+    },
+    /// So much of a phase is done, once a second.
+    Progress {
+        /// Its name.
+        phase: &'static str,
+        /// The share of it, or of the linear system that is iterated in it.
+        done: f64,
+        /// Since the run began (s).
+        seconds: f64,
+        /// How long the rest of it takes, about (s).
+        #[serde(skip_serializing_if = "Option::is_none")]
+        seconds_left: Option<f64>,
     },
     /// A sweep is done.
     Sweep(&'a SweepRecord),

@@ -14,6 +14,7 @@ use contact_dd_partition::message::{ERROR, WARNING};
 use contact_dd_partition::problem::LoadStep;
 use serde::Serialize;
 
+use super::bar::in_words;
 use super::report::{FrictionOfStep, Report, Status, StepReport};
 use crate::certificate::Certificate;
 use crate::plan::cost::CostEstimate;
@@ -21,6 +22,8 @@ use crate::sweep::SweepRecord;
 
 /// Bodies and contacts up to which all that aren't there are named.
 const NAMED: usize = 6;
+/// What is left of a run that takes longer is told (s).
+const LONG: f64 = 10.0;
 /// How the reason is shown for which sweeps ended well.
 const CONVERGED: Style = AnsiColor::Green.on_default();
 
@@ -118,8 +121,14 @@ pub fn settings(settings: &[(&str, String)]) -> String {
     entries.collect()
 }
 
-/// Which load step comes, number k of `count`, and what isn't there in it.
-pub fn step(step: &LoadStep, k: usize, count: usize, absent: &[String]) -> String {
+/// Which load step comes, number k of `count`, what isn't there in it, and how long the rest takes where that is long.
+pub fn step(
+    step: &LoadStep,
+    k: usize,
+    count: usize,
+    absent: &[String],
+    seconds_left: Option<f64>,
+) -> String {
     let LoadStep { name, time, .. } = step;
     let first: Vec<String> = absent
         .iter()
@@ -131,7 +140,14 @@ pub fn step(step: &LoadStep, k: usize, count: usize, absent: &[String]) -> Strin
         None | Some(0) => format!(", without {}", first.join(", ")),
         Some(more) => format!(", without {} and {more} more", first.join(", ")),
     };
-    format!("\nstep {} of {count}: '{name}' at {time}{without}", k + 1)
+    let left = match seconds_left {
+        Some(seconds) if seconds > LONG => format!("; {}", in_words(seconds)),
+        _ => String::new(),
+    };
+    format!(
+        "\nstep {} of {count}: '{name}' at {time}{without}{left}",
+        k + 1
+    )
 }
 
 /// One line of the table of sweeps.

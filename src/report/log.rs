@@ -1,12 +1,14 @@
 //! What a run says of itself on the way: text for people, or events for programs.
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::io::{Write, stdout};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use contact_dd_partition::problem::Catalog;
 
 use crate::comm::{self, Comm};
+use crate::context::Listener;
 use crate::error::Failure;
 use crate::output::bar::Bar;
 use crate::output::event::{self, Event};
@@ -21,6 +23,9 @@ use crate::sweep::SweepRecord;
 
 /// Exit code of sweeps that don't converge.
 const NOT_CONVERGED: u8 = 3;
+
+/// How often programs hear how far a phase has come.
+const PULSE: Duration = Duration::from_secs(1);
 
 /// What validating found in load steps in which the same is there.
 #[derive(Debug)]
@@ -42,7 +47,26 @@ pub struct RunLog<'a> {
     voice: Option<LogFormat>,
     began: Instant,
     /// What shows how far a phase has come.
-    pub bar: Bar,
+    bar: Bar,
+    /// When programs last heard of that.
+    heard: Cell<Instant>,
+    /// The first load step of this run, and when it began.
+    first_step: Cell<Option<(usize, Instant)>>,
+}
+
+impl Listener for RunLog<'_> {
+    fn done(&self, share: f64) {
+        self.bar.done(share);
+        if self.heard.get().elapsed() > PULSE {
+            self.heard.set(Instant::now());
+            self.log(&Event::Progress {
+                phase: self.bar.phase(),
+                done: share,
+                seconds: self.began.elapsed().as_secs_f64(),
+                seconds_left: self.bar.seconds_left(),
+            });
+        }
+    }
 }
 
 impl<'a> RunLog<'a> {
@@ -55,6 +79,8 @@ impl<'a> RunLog<'a> {
             voice,
             began,
             bar: Bar::new(voice != Some(LogFormat::Text)),
+            heard: Cell::new(began),
+            first_step: Cell::new(None),
         }
     }
 
@@ -77,7 +103,7 @@ impl<'a> RunLog<'a> {
     /// The run comes to another phase, of so many steps where that is known.
     pub fn phase(&self, phase: &'static str, steps: Option<usize>) {
         comm::phase(phase);
-        self.bar.begin(phase, steps);
+        self.bar.begin(phase);
         self.log(&Event::Phase {
             phase,
             steps,
@@ -150,12 +176,19 @@ impl<'a> RunLog<'a> {
         let Some(step) = catalog.steps.get(k) else {
             return;
         };
-        self.say(|| terminal::step(step, k, catalog.steps.len(), &catalog.absent_in(k)));
+        let all = catalog.steps.len();
+        let (first, began) = self.first_step.get().unwrap_or((k, Instant::now()));
+        self.first_step.set(Some((first, began)));
+        // The steps to come take as long as those of this run.
+        let of_one = began.elapsed().as_secs_f64() / (k - first) as f64;
+        let seconds_left = (k > first).then_some(of_one * (all - k) as f64);
+        self.say(|| terminal::step(step, k, all, &catalog.absent_in(k), seconds_left));
         self.log(&Event::Step {
             step: k + 1,
-            steps: catalog.steps.len(),
+            steps: all,
             name: &step.name,
             time: step.time,
+            seconds_left,
         });
     }
 

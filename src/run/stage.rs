@@ -34,7 +34,7 @@ use crate::run::create_outputs;
 use crate::run::increment::Increments;
 use crate::run::restart::{Finished, keep};
 use crate::settings::Settings;
-use crate::step::state::{StepState, analyse_steps, stop_if_asked};
+use crate::step::state::{self, StepState, analyse_steps, stop_if_asked};
 
 /// What all stages of a run share.
 #[derive(Clone, Copy)]
@@ -158,7 +158,8 @@ impl Stages<'_> {
             loads: &StepState::default().loads(&context, Moment::end_of(first), &analyses[0]),
             fixing_dofs: &analyses[0].motions.fixing_dofs,
         };
-        let mut condensed = condense_clusters(&condensation, &analyses[0], &|| log.bar.advance())?;
+        let mut condensed = condense_clusters(&condensation, &analyses[0])
+            .map_err(|failure| state::finished(failure, &context, settings, finished.count))?;
         let [assembling, factorizing] = condensed.seconds;
         let mut condensing = comm.times() - lap - assembling;
         // Waiting is nobody's time on the wall.
@@ -205,7 +206,9 @@ impl Stages<'_> {
             let (at_end, earlier) = (&analyses[k - first], &analyses[..k - first]);
             let earlier = earlier.last().map_or(&before, |last| &last.closing_motions);
             let solved = increments.step(k, (earlier, at_end), state, seconds);
-            let solved = solved.map_err(|failure| context.in_step(failure, k))?;
+            let solved = solved.map_err(|failure| {
+                state::finished(context.in_step(failure, k), &context, settings, k)
+            })?;
 
             log.phase("writing", None);
             let lap = comm.times();
@@ -301,6 +304,7 @@ impl Stages<'_> {
             blocks: &parts.blocks,
             groups: &parts.groups,
             par: self.par,
+            listener: self.log,
         }
     }
 }

@@ -117,6 +117,15 @@ pub fn analyse(
     analyse_bodies(context, &loads, before)
 }
 
+/// A failure after k load steps, which says where their results are if it was a signal.
+pub fn finished(failure: Failure, context: &Context<'_>, settings: &Settings, k: usize) -> Failure {
+    failure.after(
+        k,
+        context.catalog.steps.len(),
+        &unfinished(&settings.output),
+    )
+}
+
 /// Ends the run before load step k if a signal asked for that, which sweeps that take long hear by themselves.
 /// Collective.
 ///
@@ -125,11 +134,11 @@ pub fn analyse(
 pub fn stop_if_asked(context: &Context<'_>, settings: &Settings, k: usize) -> Result<(), Failure> {
     match k > 0 && context.comm.is_any_asked_to_stop() {
         false => Ok(()),
-        true => Err(Failure::interrupted(format!(
-            "interrupted after {k} of {} load steps: {} has their results; the same command with \
-             --restart goes on after them",
-            context.catalog.steps.len(),
-            unfinished(&settings.output).display()
-        ))),
+        true => Err(finished(
+            Failure::interrupted("interrupted"),
+            context,
+            settings,
+            k,
+        )),
     }
 }

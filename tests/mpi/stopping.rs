@@ -116,7 +116,7 @@ fn stop_after_one_step(case: &Case, ranks: usize) {
         let all = running.descendants("contact-dd-mpi");
         send(*all.last().unwrap(), Signal::USR1);
     });
-    let words = ["interrupted after 1 of 3 load steps", "--restart"];
+    let words = ["interrupted, after 1 of 3 load steps", "--restart"];
     failed_once(&ended, 6, &words);
     assert!(case.files().contains(&"problem.vtkhdf.unfinished".into()));
 }

@@ -9,8 +9,9 @@ use super::{case, granite, report};
 use crate::support::process::Ended;
 
 /// All kinds of events.
-const EVENTS: [&str; 9] = [
-    "problem", "settings", "phase", "step", "sweep", "warning", "check", "finished", "error",
+const EVENTS: [&str; 10] = [
+    "problem", "settings", "phase", "progress", "step", "sweep", "warning", "check", "finished",
+    "error",
 ];
 
 /// The events of a stream, each with its name.
