@@ -19,6 +19,7 @@ NAMES = ["contact-dd-partition", "contact-dd-mpi"]
 BUILD = """
 source scripts/environment
 cargo build --release --workspace --bins >&2
+scripts/licences >"${CARGO_TARGET_DIR:-$PWD/target}/licences.txt"
 printf '%s' "${CARGO_TARGET_DIR:-$PWD/target}"
 """
 
@@ -36,5 +37,7 @@ class Programs(BuildHookInterface[Any]):
             )
         built = subprocess.run(["bash", "-euc", BUILD], cwd=repository, check=True, stdout=subprocess.PIPE, text=True)
         build_data["shared_scripts"] = {f"{built.stdout}/release/{name}": name for name in NAMES}
+        texts = [f"{built.stdout}/licences.txt", *map(str, repository.glob("LICENSE-*"))]
+        build_data["shared_data"] = {text: f"share/doc/contact-dd/{Path(text).name}" for text in texts}
         build_data["pure_python"] = False
         build_data["tag"] = "py3-none-" + sysconfig.get_platform().replace("-", "_").replace(".", "_")

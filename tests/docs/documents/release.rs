@@ -29,6 +29,7 @@ pub fn solves() {
         cmp package/usr/bin/contact-dd-mpi tarball/bin/contact-dd-mpi
         zgrep -q 'Number of subdomains' tarball/share/man/man1/contact-dd-partition.1.gz
         grep -q '^# metis-sys' tarball/share/doc/contact-dd-mpi*/licences.txt
+        grep -q '^faer 0.*: MIT' tarball/share/doc/contact-dd-mpi*/licences.txt
         dpkg-deb -f made/*.deb Depends | grep -E 'libhdf5.*, (openmpi-bin|mpich)$'
         cd tarball/bin
         ./contact-dd-partition --example granite -n 8 -o granite.h5
