@@ -9,7 +9,7 @@ from pathlib import Path
 import matplotlib
 
 from contact_dd.adaptivity import adapt as solve_adapted
-from contact_dd.comparison import compare
+from contact_dd.comparison import Compared, compare
 from contact_dd.errors import ContactError, InputError, OutputError
 from contact_dd.model import Model, scene_of
 from contact_dd.result import Result
@@ -124,11 +124,11 @@ def table(arguments: argparse.Namespace) -> None:
 
 
 def bars(arguments: argparse.Namespace) -> None:
-    print_bars([Result(path) for path in arguments.results])
+    print_bars(compare([Result(path) for path in arguments.results]))
 
 
-def print_bars(results: list[Result]) -> None:
-    for one in compare(results):
+def print_bars(found: list[Compared]) -> None:
+    for one in found:
         order = "" if one.order is None else f", order {one.order:.1f}"
         error = "and doesn't converge: singular, or finer meshes tell" if one.error is None else f"± {one.error:.2g}"
         on_others = ", ".join(f"{value:.6g}" for value in one.values[:-1])
@@ -142,7 +142,7 @@ def adapt(arguments: argparse.Namespace) -> None:
     # A mesh is made first of all.
     result, rounds = solve_adapted(Model(b"", scene), arguments.error, geometry, ranks=arguments.ranks, folder=folder)
     try:
-        print_bars([one.result for one in rounds])
+        print_bars(compare([one.result for one in rounds], adapted=True))
     except InputError:
         print("one mesh was enough, so that there are no error bars of pressures and forces")
     print(result.path)

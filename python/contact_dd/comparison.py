@@ -9,6 +9,7 @@ from typing import Any
 
 from contact_dd.errors import InputError
 from contact_dd.result import Result
+from contact_dd.sizes import relative_errors
 
 # Meshes whose sizes differ by less tell little.
 LEAST_RATIO = 1.3
@@ -37,24 +38,31 @@ class Compared:
     differences don't become smaller."""
 
 
-def compare(results: Sequence[Result]) -> list[Compared]:
+def compare(results: Sequence[Result], adapted: bool = False) -> list[Compared]:
     """Error bars of the largest pressures, forces, reactions and the work of friction in the last load step, from
     results of one scene on two or three meshes of one kind of cells. Of more results count the finest one and what is
     1.3 times coarser, and 1.3 times again.
 
     With three meshes the order of convergence is observed and the error extrapolated, times 1.25. With two the order is
     taken as 1, and the error times 3: that is often much too large.
+
+    Meshes that have `adapted` have cells of many sizes: there the estimated errors in the energy norm stand for these,
+    and the last mesh is compared with one.
     """
-    # By the size of cells.
+    # By the size of cells, or what stands for it.
     def size(result: Result) -> float:
+        if adapted:
+            return relative_errors(result)[0]
         dofs: float = result.report["dofs"]
         return 1 / (math.cbrt(dofs) if result.is_in_space else math.sqrt(dofs))
 
     found = list[Result]()
     for result in sorted(results, key=size):
-        if not found or (size(result) >= LEAST_RATIO * size(found[0]) and len(found) < 3):
+        if not found or (size(result) >= LEAST_RATIO * size(found[0]) and len(found) < (2 if adapted else 3)):
             found.insert(0, result)
     if len(found) < 2:
+        if adapted:
+            raise InputError(f"expected meshes with estimated errors one {LEAST_RATIO} times the other")
         dofs = ", ".join(str(result.report["dofs"]) for result in results)
         raise InputError(f"meshes with {dofs} degrees of freedom; expected cells {LEAST_RATIO} times smaller in one")
     ratios = [size(coarse) / size(fine) for coarse, fine in zip(found, found[1:], strict=False)]

@@ -46,8 +46,9 @@ def test_the_true_error_is_about_that_asked(scene, tmp_path, asked):
     assert 1 / 3 <= true_error(result) / asked <= 1.3
     assert len(rounds) <= 4
     assert result.report["dofs"] < 16 / asked
-    [peak] = [one for one in compare([one.result for one in rounds]) if one.name.startswith("largest pressure")]
-    assert abs(peak.values[-1] - 9.35135) <= peak.error
+    found = compare([one.result for one in rounds], adapted=True)
+    [peak] = [one for one in found if one.name.startswith("largest pressure")]
+    assert abs(peak.values[-1] - 9.35135) <= peak.error <= 10 * abs(peak.values[-1] - 9.35135)
 
 
 def test_a_script_that_makes_its_mesh_itself_is_run_with_other_sizes(tmp_path):
