@@ -84,9 +84,13 @@ class Solid:
 
     def axes(self, figure, place):
         axes = figure.add_subplot(*place, projection="3d", computed_zorder=False)
-        low, high = self.points.min(axis=0), self.points.max(axis=0)
+        # Of what is there.
+        points = self.points[np.unique(np.concatenate(self.faces))]
+        low, high = points.min(axis=0), points.max(axis=0)
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-        axes.set_box_aspect(high - low, zoom=1.1)
+        # Flat bodies are as wide as the axes across their diagonal.
+        size = high - low
+        axes.set_box_aspect(size, zoom=min(1.1, 0.9 * np.linalg.norm(size) / np.linalg.norm(size[:2])))
         axes.view_init(**VIEW)
         axes.set_axis_off()
         return axes
