@@ -95,7 +95,7 @@ impl Bar {
         let mut part = self.part.get();
         if share == 0.0 {
             part = Part::new();
-            self.look("{msg} [{bar:32}] {percent} % {prefix} {elapsed}");
+            self.look("{msg} [{bar:32}] {percent} %{prefix}, {elapsed} so far");
             self.bar.set_length(STEPS);
         }
         part.share = share;
