@@ -1,7 +1,6 @@
 //! What is to be condensed and merged, and by whom: blocks, their hierarchy, clusters.
 
 mod assign;
-pub mod choice;
 pub mod cluster;
 pub mod cost;
 
@@ -10,8 +9,8 @@ pub mod links;
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
-use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::tree::Tree;
+use contact_dd_partition::problem::{Catalog, choice};
 
 use self::assign::assign;
 use self::cluster::{ClusterPlan, Merging, cluster_nodes};
@@ -76,7 +75,7 @@ impl Plan {
 
     /// Estimated time of what is done at node v of the hierarchy (flops).
     pub fn time(&self, v: usize, dim: usize) -> f64 {
-        cost::weight(&self.tree, v, dim, self.merging)
+        self.tree.time(v, dim, self.merging.is_frozen())
     }
 
     /// The owner of every node of the hierarchy.

@@ -6,6 +6,7 @@ pub mod write;
 
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
+use contact_dd_partition::problem::choice::InterfaceTimes;
 
 use crate::comm::{self, Comm};
 use crate::error::Failure;
@@ -15,7 +16,6 @@ use crate::output::report::{Build, Report, ReportFile, Status};
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
-use crate::plan::choice::InterfaceTimes;
 use crate::plan::cluster::Merging;
 use crate::report::totals::{StepTotals, Totals};
 use crate::settings::Settings;

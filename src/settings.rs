@@ -10,6 +10,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use contact_dd_partition::problem::Catalog;
+use contact_dd_partition::problem::choice::InterfaceTimes;
 use contact_dd_partition::solver::{Positive, SolverSettings};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
@@ -17,7 +18,6 @@ use serde::{Serialize, Serializer};
 use self::command_line::{CommandLine, InterfaceMethod, LogFormat};
 use crate::error::Failure;
 use crate::plan::Plan;
-use crate::plan::choice::InterfaceTimes;
 use crate::plan::cluster::Merging;
 use crate::sweep::{Method, SweepSettings};
 

@@ -3,6 +3,7 @@
 //! The writer and the reader of `problem.h5` share these types; docs/problem-file.md says the
 //! same for somebody who writes one with h5py.
 
+pub mod choice;
 pub mod clusters;
 pub mod consistency;
 pub mod copies;

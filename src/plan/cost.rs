@@ -5,9 +5,8 @@
 //! of blocks of tetrahedra with 49 thousand to a million dofs; where active sets are frozen on 3 of walls with 20 and 107
 //! thousand conditions.
 
-use contact_dd_partition::flops::{Front, condensation};
+use contact_dd_partition::flops::condensation;
 use contact_dd_partition::problem::Catalog;
-use contact_dd_partition::problem::tree::{ACTIVE_SETS, Tree};
 
 use super::Plan;
 use super::cluster::Merging;
@@ -28,28 +27,6 @@ const PER_ENTRY_OF_FACTOR: f64 = 8.0;
 const PER_ENTRY_OF_CLUSTER: f64 = 8.0;
 /// An entry of the contact problem of all pairs, at the root (bytes).
 const PER_PAIR_OF_CONDITIONS: f64 = 33.0;
-
-/// Estimated time of node v of the tree, in flops: its arithmetic, and what goes with it.
-pub(super) fn weight(tree: &Tree, v: usize, dim: usize, merging: Merging) -> f64 {
-    let front = front(tree, v, dim, merging);
-    match merging {
-        _ if v < tree.subdomains => front.time_to_condense(dim),
-        _ if merging.is_frozen() && tree.nodes[v].conditions > 0 => ACTIVE_SETS * front.time(),
-        _ => front.time(),
-    }
-}
-
-/// The front of node v, which keeps all normal jumps under it unless active sets are frozen.
-fn front(tree: &Tree, v: usize, dim: usize, merging: Merging) -> Front {
-    let (front, node) = (tree.front(v, dim), &tree.nodes[v]);
-    match merging.is_frozen() {
-        true => Front {
-            eliminated: front.eliminated,
-            kept: front.kept - node.conditions + tree.own_conditions(v),
-        },
-        false => front,
-    }
-}
 
 /// What a rank needs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -93,7 +70,7 @@ impl Plan {
         for (v, &owner) in
             all.filter(|&(v, _)| self.merging != Merging::Clusters || !self.is_above_tops(v))
         {
-            let front = front(&self.tree, v, catalog.dim, self.merging);
+            let front = self.tree.front_of(v, catalog.dim, self.merging.is_frozen());
             let estimate = &mut estimates[owner];
             estimate.flops += match v < self.blocks() {
                 true => condensation(front.eliminated as f64, front.kept as f64, catalog.dim),

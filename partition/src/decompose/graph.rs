@@ -3,6 +3,7 @@
 
 use super::ties::{hinges, ties};
 use crate::lists::Lists;
+use crate::mesh::Mesh;
 use crate::model::Model;
 
 /// Weight of a node that a cut lets both sides share.
@@ -68,50 +69,15 @@ pub(super) struct Graph {
 impl Graph {
     /// The graph of the cells of a model.
     pub fn new(model: &Model) -> Self {
-        let (mesh, topology) = (&model.mesh, &model.topology);
-        let mut valence = vec![0u32; mesh.points.len()];
-        for &node in mesh.cells.connectivity() {
-            valence[node as usize] += 1;
-        }
-        let share: Vec<f32> = valence
-            .iter()
-            .map(|&n| mesh.dim as f32 / n as f32)
-            .collect();
-        let count = mesh.points.len().max(1) as f64;
-        let middle = [0, 1, 2].map(|k| mesh.points.iter().map(|p| p[k]).sum::<f64>() / count);
-        let points: Vec<[f32; 3]> = (mesh.points.iter())
-            .map(|p| [0, 1, 2].map(|k| (p[k] - middle[k]) as f32))
-            .collect();
-        let mut dofs = Vec::with_capacity(mesh.cells.len());
-        let mut centres = Vec::with_capacity(mesh.cells.len());
-        for (kind, nodes) in mesh.cells.iter() {
-            dofs.push(nodes.iter().map(|&node| share[node as usize]).sum());
-            let corners = &nodes[..kind.corners()];
-            let mut centre = [0.0; 3];
-            for &node in corners {
-                let point = points[node as usize];
-                centre = [0, 1, 2].map(|k| centre[k] + point[k] / corners.len() as f32);
+        let mesh = &model.mesh;
+        let ((dofs, centres), edges) = std::thread::scope(|scope| {
+            let edges = scope.spawn(|| edges_of(model));
+            let cells = dofs_and_centres(mesh);
+            match edges.join() {
+                Ok(edges) => (cells, edges),
+                Err(panic) => std::panic::resume_unwind(panic),
             }
-            centres.push(centre);
-        }
-        let mut ties = ties(model);
-        ties.extend(hinges(model));
-        let ties = ties.iter().flat_map(|&(a, b, weight)| {
-            [(a, b), (b, a)].map(|(from, to)| (from, Edge::new(to, weight, false)))
         });
-        let ties = Lists::new(mesh.cells.len(), ties);
-        let mut edges = Lists::with_capacity(mesh.cells.len(), topology.pairs() + ties.items());
-        let mut list = Vec::new();
-        for cell in 0..mesh.cells.len() {
-            let weight = facet_weight(model, cell);
-            let facets = topology.neighbours(cell).iter();
-            list.extend(facets.map(|&next| Edge::new(next, weight, true)));
-            if !ties.of(cell).is_empty() {
-                list.extend(ties.of(cell));
-                list.sort_unstable();
-            }
-            edges.push(list.drain(..));
-        }
         Self {
             dim: mesh.dim,
             ids: (0..mesh.cells.len() as u32).collect(),
@@ -331,6 +297,60 @@ impl Graph {
     pub fn pieces(&self) -> (Vec<u32>, usize) {
         self.parts(|_, edge| edge.is_facet())
     }
+}
+
+/// Dofs and centre of every cell.
+fn dofs_and_centres(mesh: &Mesh) -> (Vec<f32>, Vec<[f32; 3]>) {
+    let mut valence = vec![0u32; mesh.points.len()];
+    for &node in mesh.cells.connectivity() {
+        valence[node as usize] += 1;
+    }
+    let share: Vec<f32> = valence
+        .iter()
+        .map(|&n| mesh.dim as f32 / n as f32)
+        .collect();
+    let count = mesh.points.len().max(1) as f64;
+    let middle = [0, 1, 2].map(|k| mesh.points.iter().map(|p| p[k]).sum::<f64>() / count);
+    let points: Vec<[f32; 3]> = (mesh.points.iter())
+        .map(|p| [0, 1, 2].map(|k| (p[k] - middle[k]) as f32))
+        .collect();
+    let mut dofs = Vec::with_capacity(mesh.cells.len());
+    let mut centres = Vec::with_capacity(mesh.cells.len());
+    for (kind, nodes) in mesh.cells.iter() {
+        dofs.push(nodes.iter().map(|&node| share[node as usize]).sum());
+        let corners = &nodes[..kind.corners()];
+        let mut centre = [0.0; 3];
+        for &node in corners {
+            let point = points[node as usize];
+            centre = [0, 1, 2].map(|k| centre[k] + point[k] / corners.len() as f32);
+        }
+        centres.push(centre);
+    }
+    (dofs, centres)
+}
+
+/// The edges of every cell.
+fn edges_of(model: &Model) -> Lists<Edge> {
+    let (mesh, topology) = (&model.mesh, &model.topology);
+    let mut ties = ties(model);
+    ties.extend(hinges(model));
+    let ties = ties.iter().flat_map(|&(a, b, weight)| {
+        [(a, b), (b, a)].map(|(from, to)| (from, Edge::new(to, weight, false)))
+    });
+    let ties = Lists::new(mesh.cells.len(), ties);
+    let mut edges = Lists::with_capacity(mesh.cells.len(), topology.pairs() + ties.items());
+    let mut list = Vec::new();
+    for cell in 0..mesh.cells.len() {
+        let weight = facet_weight(model, cell);
+        let facets = topology.neighbours(cell).iter();
+        list.extend(facets.map(|&next| Edge::new(next, weight, true)));
+        if !ties.of(cell).is_empty() {
+            list.extend(ties.of(cell));
+            list.sort_unstable();
+        }
+        edges.push(list.drain(..));
+    }
+    edges
 }
 
 /// What it costs to cut a facet of a cell: its nodes, each shared with the facets around it on the surface of the cut,

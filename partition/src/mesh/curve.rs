@@ -67,7 +67,7 @@ impl Mesh {
                 .fold(extent, f64::max);
         }
         let scale = f64::from((1u32 << BITS) - 1) / extent;
-        let key = |nodes: &[u32]| {
+        let key = move |nodes: &[u32]| {
             let mut centre = [0.0; 3];
             for &node in nodes {
                 let point = self.points[node as usize];
@@ -76,10 +76,22 @@ impl Mesh {
             let [x, y, z] = centre.map(|x| spread((x * scale) as u64));
             x << 2 | y << 1 | z
         };
-        let cells = (0u32..).zip(self.cells.iter());
-        let mut keys: Vec<(u64, u32)> =
-            cells.map(|(cell, (_, nodes))| (key(nodes), cell)).collect();
-        keys.sort_unstable();
+        let mut keys = vec![(0, 0); self.cells.len()];
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let size = keys.len().div_ceil(threads).max(1);
+        std::thread::scope(|scope| {
+            for (part, keys) in keys.chunks_mut(size).enumerate() {
+                scope.spawn(move || {
+                    for (at, entry) in keys.iter_mut().enumerate() {
+                        let cell = part * size + at;
+                        *entry = (key(self.cells.nodes_of(cell)), cell as u32);
+                    }
+                    keys.sort_unstable();
+                });
+            }
+        });
+        // The stable sort merges what is in order already.
+        keys.sort();
         keys.into_iter().map(|(_, cell)| cell).collect()
     }
 }

@@ -24,9 +24,11 @@ impl Mesh {
     /// # Errors
     /// A cell without measure, or whose Jacobian isn't positive everywhere, by its tag.
     pub(crate) fn orient_cells(&mut self) -> Result<(), InputError> {
+        let mut at = Vec::new();
         for cell in 0..self.cells.len() {
-            let measure = self.measure(cell);
-            let size = self.longest_edge(cell).powi(self.dim as i32);
+            self.points_of(cell, &mut at);
+            let measure = self.cells.kind(cell).measure(&at);
+            let size = longest_edge(&at).powi(self.dim as i32);
             if measure.is_nan() || measure.abs() <= (FLAT * size).max(SMALLEST_AREA) {
                 let (missing, place) = match self.dim {
                     3 => ("volume", "in one plane"),
@@ -44,17 +46,24 @@ impl Mesh {
                 for (node, &from) in self.cells.nodes_of_mut(cell).iter_mut().zip(order) {
                     *node = old[from];
                 }
+                self.points_of(cell, &mut at);
             }
-            self.check_jacobian(cell, FLAT * size)?;
+            self.check_jacobian(cell, &at, FLAT * size)?;
         }
         Ok(())
     }
 
-    /// Checks that the Jacobian of a cell is above `floor` everywhere.
-    fn check_jacobian(&self, cell: usize, floor: f64) -> Result<(), InputError> {
+    /// Puts the points of a cell's nodes in place of what `at` holds.
+    fn points_of(&self, cell: usize, at: &mut Vec<[f64; 3]>) {
+        let nodes = self.cells.nodes_of(cell).iter();
+        at.clear();
+        at.extend(nodes.map(|&n| self.points[n as usize]));
+    }
+
+    /// Checks that the Jacobian of a cell, whose nodes are `at` these points, is above `floor` everywhere.
+    fn check_jacobian(&self, cell: usize, at: &[[f64; 3]], floor: f64) -> Result<(), InputError> {
         let (kind, nodes) = (self.cells.kind(cell), self.cells.nodes_of(cell));
-        let at: Vec<_> = nodes.iter().map(|&n| self.points[n as usize]).collect();
-        let Some(fold) = kind.fold(&at, floor) else {
+        let Some(fold) = kind.fold(at, floor) else {
             return Ok(());
         };
         Err(InputError::new(format!(
@@ -95,16 +104,14 @@ impl Mesh {
         }
         Ok(())
     }
+}
 
-    fn longest_edge(&self, cell: usize) -> f64 {
-        let nodes = self.cells.nodes_of(cell);
-        let mut longest: f64 = 0.0;
-        for (i, &a) in nodes.iter().enumerate() {
-            for &b in &nodes[..i] {
-                let (a, b) = (self.points[a as usize], self.points[b as usize]);
-                longest = longest.max(length(difference(a, b)));
-            }
+fn longest_edge(at: &[[f64; 3]]) -> f64 {
+    let mut longest: f64 = 0.0;
+    for (i, &a) in at.iter().enumerate() {
+        for &b in &at[..i] {
+            longest = longest.max(length(difference(a, b)));
         }
-        longest
     }
+    longest
 }

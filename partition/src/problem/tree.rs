@@ -260,6 +260,29 @@ impl Tree {
         }
     }
 
+    /// Estimated time of node v, in flops: its arithmetic, and what goes with it; over all active sets where these are
+    /// frozen.
+    pub fn time(&self, v: usize, dim: usize, is_frozen: bool) -> f64 {
+        let front = self.front_of(v, dim, is_frozen);
+        match v < self.subdomains {
+            true => front.time_to_condense(dim),
+            false if is_frozen && self.nodes[v].conditions > 0 => ACTIVE_SETS * front.time(),
+            false => front.time(),
+        }
+    }
+
+    /// The front of node v, which keeps all normal jumps under it unless active sets are frozen.
+    pub fn front_of(&self, v: usize, dim: usize, is_frozen: bool) -> Front {
+        let (front, node) = (self.front(v, dim), &self.nodes[v]);
+        match is_frozen {
+            true => Front {
+                eliminated: front.eliminated,
+                kept: front.kept - node.conditions + self.own_conditions(v),
+            },
+            false => front,
+        }
+    }
+
     /// Whether it takes fewer flops to eliminate what is above contacts for one active set after the other than to
     /// keep all normal jumps and solve for them at once.
     pub fn freezing_pays(&self, catalog: &Catalog) -> bool {

@@ -2,7 +2,8 @@
 
 use crate::flops::Front;
 use crate::problem::Catalog;
-use crate::problem::tree::{ACTIVE_SETS, Tree};
+use crate::problem::choice::{InterfaceTimes, between};
+use crate::problem::tree::Tree;
 
 /// What the nodes of a problem's hierarchy cost.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +21,8 @@ pub struct Work {
 const GAIN: f64 = 0.2;
 
 impl Work {
-    /// What the hierarchy of `catalog` costs; the speed-up is that over all active sets where these are frozen.
+    /// What the hierarchy of `catalog` costs; the speed-up is that over all active sets where these are frozen, and that
+    /// of iterations between clusters where these take less time.
     pub fn new(catalog: &Catalog) -> Self {
         let (tree, dim) = (Tree::new(catalog), catalog.dim);
         let is_frozen = tree.freezing_pays(catalog);
@@ -28,18 +30,21 @@ impl Work {
             true => tree.frozen_front(v, dim),
             false => tree.front(v, dim),
         };
-        let time = |v: usize| match v < tree.subdomains {
-            true => front(v).time_to_condense(dim),
-            false if is_frozen && tree.nodes[v].conditions > 0 => ACTIVE_SETS * front(v).time(),
-            false => front(v).time(),
+        let iterative = InterfaceTimes::new(catalog).filter(|times| times.is_iterative());
+        let times: Vec<f64> = match iterative {
+            Some(_) => times_to_clusters(&tree, dim),
+            None => (0..tree.nodes.len())
+                .map(|v| tree.time(v, dim, is_frozen))
+                .collect(),
         };
+        let coarse = iterative.map_or(0.0, |times| times.coarse);
         let nodes = 0..tree.nodes.len();
         let costs: Vec<f64> = nodes.map(|v| tree.flops(v, dim)).collect();
         let inner = tree.subdomains..tree.nodes.len();
         Self {
             fronts: inner.map(front).collect(),
             uneven_halves: uneven_halves(&tree, &tree.sums(&costs)),
-            speed_up: speed_up(&tree, time),
+            speed_up: speed_up(&tree, &times, coarse),
         }
     }
 
@@ -63,17 +68,30 @@ impl Work {
     }
 }
 
-/// `time` is that of each node.
-fn speed_up(tree: &Tree, time: impl Fn(usize) -> f64) -> f64 {
-    let mut all = 0.0;
+/// Times of all nodes where nothing is merged above clusters, with those of iterations between them.
+fn times_to_clusters(tree: &Tree, dim: usize) -> Vec<f64> {
+    let mut times = vec![0.0; tree.nodes.len()];
+    for &cluster in &tree.clusters {
+        for v in tree.subtree(cluster) {
+            times[v] = tree.time(v, dim, true);
+        }
+        times[cluster] += between((dim * tree.nodes[cluster].kept.len()) as f64);
+    }
+    times
+}
+
+/// `times` are those of all nodes, `coarse` that of a sparse problem behind them: of nested dissection in space, two
+/// thirds lie on one way.
+fn speed_up(tree: &Tree, times: &[f64], coarse: f64) -> f64 {
+    let mut all = coarse;
     let mut ways = vec![0.0f64; tree.nodes.len()];
-    for v in 0..tree.nodes.len() {
-        let own = time(v);
+    for (v, &own) in times.iter().enumerate() {
         let children = tree.nodes[v].children.iter().map(|&child| ways[child]);
         ways[v] = own + children.fold(0.0, f64::max);
         all += own;
     }
-    all / ways.into_iter().fold(f64::MIN_POSITIVE, f64::max)
+    let way = ways.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+    all / (way + 2.0 / 3.0 * coarse)
 }
 
 /// `below` has the work of every node with all that is under it.

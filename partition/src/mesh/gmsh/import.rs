@@ -103,27 +103,32 @@ fn distinct(mut listed: Vec<Listed<'_>>) -> Result<Distinct<'_>, InputError> {
     }
     let first = first_of_same(&listed);
     let mut places: Vec<u32> = Vec::with_capacity(listed.len());
-    let mut elements: Vec<Listed> = Vec::with_capacity(listed.len());
+    let mut count = 0;
+    for (number, &first) in first.iter().enumerate() {
+        places.push(match first as usize == number {
+            true => count,
+            false => places[first as usize],
+        });
+        count += u32::from(first as usize == number);
+    }
     let mut groups: BTreeMap<i64, Vec<u32>> = BTreeMap::new();
-    for (number, element) in listed.into_iter().enumerate() {
-        let is_first = first[number] as usize == number;
-        let place = match is_first {
-            true => elements.len() as u32,
-            false => places[first[number] as usize],
-        };
-        places.push(place);
-        if is_first {
-            if elements.last().is_some_and(|last| last.tag == element.tag) {
-                return Err(InputError::new(format!(
-                    "the element tag {} occurs twice, with different nodes",
-                    element.tag
-                )));
-            }
-            elements.push(element);
+    let mut rest = &places[..];
+    for alike in listed.chunk_by(|a, b| a.groups == b.groups) {
+        let (of_these, others) = rest.split_at(alike.len());
+        rest = others;
+        for &group in alike[0].groups {
+            groups.entry(group).or_default().extend(of_these);
         }
-        for &group in element.groups {
-            groups.entry(group).or_default().push(place);
-        }
+    }
+    let mut number = 0..;
+    let is_first = |at: Option<usize>| at.is_some_and(|at| first[at] as usize == at);
+    listed.retain(|_| is_first(number.next()));
+    let elements = listed;
+    if let Some(twice) = elements.windows(2).find(|w| w[0].tag == w[1].tag) {
+        return Err(InputError::new(format!(
+            "the element tag {} occurs twice, with different nodes",
+            twice[0].tag
+        )));
     }
     for (group, members) in &mut groups {
         members.sort_unstable();

@@ -5,11 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::problem::Catalog;
-use contact_dd_partition::problem::tree::{ACTIVE_SETS, Tree};
-
-use super::cluster::Merging;
-use super::cost::weight;
+use super::Catalog;
+use super::tree::{ACTIVE_SETS, Tree};
 
 /// Iterations that an active set takes in all, about.
 const ITERATIONS: f64 = 60.0;
@@ -21,7 +18,7 @@ const PER_CUBE: f64 = 0.3;
 const PER_COARSE_PAIR: f64 = 12.0;
 
 /// Estimated flops that a cluster with so many unknowns on its boundary takes where iterations run between clusters.
-pub(super) fn between(size: f64) -> f64 {
+pub fn between(size: f64) -> f64 {
     PER_CUBE * size.powi(3) + ITERATIONS * PER_ENTRY * size * size
 }
 
@@ -50,6 +47,8 @@ pub struct InterfaceTimes {
     pub direct: f64,
     /// Iterations between clusters.
     pub iterative: f64,
+    /// The coarse problem, a part of these.
+    pub coarse: f64,
 }
 
 impl InterfaceTimes {
@@ -62,23 +61,22 @@ impl InterfaceTimes {
             return None;
         }
         let tree = Tree::new(catalog);
-        let merging = match tree.freezing_pays(catalog) {
-            true => Merging::Frozen,
-            false => Merging::All,
-        };
-        let time = |v: usize, merging| weight(&tree, v, catalog.dim, merging);
-        let direct = (0..tree.nodes.len()).map(|v| time(v, merging)).sum();
+        let is_frozen = tree.freezing_pays(catalog);
+        let time = |v: usize, is_frozen| tree.time(v, catalog.dim, is_frozen);
+        let direct = (0..tree.nodes.len()).map(|v| time(v, is_frozen)).sum();
         let of_cluster = |&c: &usize| {
             let size = (catalog.dim * tree.nodes[c].kept.len()) as f64;
             let below = tree.subtree(c).into_iter();
-            let below: f64 = below.map(|v| time(v, Merging::Clusters)).sum();
+            let below: f64 = below.map(|v| time(v, true)).sum();
             below + between(size)
         };
-        let coarse = coarse_dofs(&tree, catalog.dim) as f64;
+        let coarse = (coarse_dofs(&tree, catalog.dim) as f64).powi(2);
+        let coarse = ACTIVE_SETS * PER_COARSE_PAIR * coarse;
         let clusters: f64 = tree.clusters.iter().map(of_cluster).sum();
         Some(Self {
             direct,
-            iterative: clusters + ACTIVE_SETS * PER_COARSE_PAIR * coarse * coarse,
+            iterative: clusters + coarse,
+            coarse,
         })
     }
 
