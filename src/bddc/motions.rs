@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::bddc::classes::Class;
 use crate::context::Context;
-use crate::fem::frame::{Frame, support_frames};
+use crate::fem::frame::{Frame, node_frames};
 use crate::rigid::motion::BodyFrame;
 use crate::schur::condensed::InterfaceDof;
 
@@ -30,7 +30,7 @@ impl SharedNodes {
         let mut nodes = BTreeMap::new();
         for block in context.blocks.values() {
             let supports: Vec<_> = block.subdomain.supports_in(0).collect();
-            let frames = support_frames(&supports, block.dim);
+            let frames = node_frames(block, &supports);
             for &(node, number) in &block.interface {
                 if sought.contains(&number) {
                     let frame = frames.get(&node).unwrap_or(&Frame::CARTESIAN);

@@ -1,5 +1,7 @@
 //! A block: a subdomain, with the nodes that it has on Γ.
 
+use std::collections::BTreeMap;
+
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::problem::tree::Tree;
 use contact_dd_partition::problem::{Subdomain, SubdomainNode};
@@ -12,6 +14,8 @@ pub struct Block {
     /// Its nodes on Γ, those that it shares with others and those of contact points: node and number on
     /// Γ, in ascending order of the second.
     pub interface: Vec<(u32, u32)>,
+    /// Those of them whose displacement along this normal alone is on Γ where they have no supports.
+    pub slides: BTreeMap<u32, [f64; 3]>,
     /// Number of dofs of a node.
     pub dim: usize,
 }
@@ -25,13 +29,16 @@ impl Block {
             subdomain: subdomain.index as u32,
             node: 0,
         };
-        let start = (tree.unshared).partition_point(|&(node, _)| node < first);
+        let start = (tree.unshared).partition_point(|own| own.at < first);
         let own = tree.unshared[start..].iter();
-        let own = own.take_while(|(node, _)| node.subdomain == first.subdomain);
-        interface.extend(own.map(|&(node, number)| (node.node, number)));
+        let own = own.take_while(|own| own.at.subdomain == first.subdomain);
+        interface.extend(own.clone().map(|own| (own.at.node, own.number)));
         Self {
             subdomain,
             interface,
+            slides: own
+                .filter_map(|own| Some((own.at.node, own.slides?)))
+                .collect(),
             dim,
         }
     }

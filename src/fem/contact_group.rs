@@ -336,7 +336,8 @@ impl ContactGroup {
             };
             let supports: Vec<Support> = node.supports.iter().map(support).collect();
             let frame = support_frames(&supports, self.dim).remove(&0);
-            frame.unwrap_or(Frame::CARTESIAN)
+            let along = node.slides.map(|normal| Frame::along(&[normal], self.dim));
+            frame.or(along).unwrap_or(Frame::CARTESIAN)
         };
         self.nodes.iter().map(of_node).collect()
     }

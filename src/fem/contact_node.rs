@@ -23,6 +23,8 @@ pub struct ContactNode {
     pub stiffness: f64,
     /// Directions of its supports, and what they prescribe in every load step (m).
     pub supports: Vec<([f64; 3], Vec<f64>)>,
+    /// The normal along which its displacement alone is on Γ; none where all of it is, as with supports.
+    pub slides: Option<[f64; 3]>,
 }
 
 impl ContactNode {
@@ -58,6 +60,7 @@ impl ContactNode {
                 at: subdomain.points[node as usize],
                 stiffness: stiffness[&node],
                 supports: (start..end).map(support).collect(),
+                slides: (block.slides.get(&node).copied()).filter(|_| start == end),
             }
         };
         nodes.iter().map(of_node).collect()

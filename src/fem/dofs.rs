@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::block::Block;
-use super::frame::{Frame, support_frames};
+use super::frame::{Frame, node_frames};
 use super::load::BlockLoads;
 use super::sites::{Sites, elimination_order};
 use crate::schur::condensed::InterfaceDof;
@@ -41,27 +41,31 @@ impl Dofs {
         if block.nodes() * dim >= u32::MAX as usize {
             return Err(TooManyUnknowns);
         }
-        let frames = support_frames(&loads.supports, dim);
-        let on_interface = block.is_on_interface();
-        let mut is_free = vec![true; block.nodes() * dim];
+        let frames = node_frames(block, &loads.supports);
+        let raw_of = |node: u32| node as usize * dim..(node as usize + 1) * dim;
+        let mut is_interior = vec![true; block.nodes() * dim];
         for (&node, frame) in &frames {
-            for axis in 0..dim {
-                is_free[node as usize * dim + axis] = frame.prescribed[axis].is_none();
+            for (raw, prescribed) in raw_of(node).zip(&frame.prescribed) {
+                is_interior[raw] = prescribed.is_none();
+            }
+        }
+        let mut is_on_interface = vec![false; block.nodes() * dim];
+        for &(node, _) in &block.interface {
+            let is_held = |frame: &Frame| frame.prescribed.iter().any(Option::is_some);
+            let slides =
+                block.slides.contains_key(&node) && !frames.get(&node).is_some_and(is_held);
+            let on_interface = if slides { 1 } else { dim };
+            for raw in raw_of(node).take(on_interface) {
+                is_on_interface[raw] = std::mem::take(&mut is_interior[raw]);
             }
         }
 
         let mut number = vec![u32::MAX; block.nodes() * dim];
         let mut sites = Sites::new(block.nodes());
-        for node in elimination_order(block, |node| {
-            let axes = node as usize * dim..(node as usize + 1) * dim;
-            !on_interface[node as usize] && is_free[axes].contains(&true)
-        }) {
+        for node in elimination_order(block, |node| is_interior[raw_of(node)].contains(&true)) {
             sites.of_node[node as usize] = sites.len() as u32;
-            for axis in 0..dim {
-                let raw = node as usize * dim + axis;
-                if is_free[raw] {
-                    number[raw] = sites.unknown();
-                }
+            for raw in raw_of(node).filter(|&raw| is_interior[raw]) {
+                number[raw] = sites.unknown();
             }
             sites.end();
         }
@@ -69,14 +73,10 @@ impl Dofs {
         let mut interface_dofs = Vec::new();
         for &(node, id) in &block.interface {
             sites.of_node[node as usize] = sites.len() as u32;
-            for axis in 0..dim {
-                let raw = node as usize * dim + axis;
-                if is_free[raw] {
+            for (axis, raw) in (0..).zip(raw_of(node)) {
+                if is_on_interface[raw] {
                     number[raw] = sites.unknown();
-                    interface_dofs.push(InterfaceDof {
-                        node: id,
-                        axis: axis as u32,
-                    });
+                    interface_dofs.push(InterfaceDof { node: id, axis });
                 }
             }
             sites.end();

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::block::Block;
 use crate::vector::axpy;
 use contact_dd_partition::element::geometry::{dot, length};
 use contact_dd_partition::model::Support;
@@ -59,6 +60,17 @@ impl Frame {
         let norm = length(axis);
         axis.map(|x| x / norm)
     }
+}
+
+/// The frames of all nodes of `block` that aren't those of the coordinates: those with `supports`, and those without
+/// that slide, along their normal first.
+pub fn node_frames(block: &Block, supports: &[Support]) -> BTreeMap<u32, Frame> {
+    let mut frames = support_frames(supports, block.dim);
+    for (&node, &normal) in &block.slides {
+        let along = || Frame::along(&[normal], block.dim);
+        frames.entry(node).or_insert_with(along);
+    }
+    frames
 }
 
 /// The frames of all nodes with supports; rows of one node are orthonormal.

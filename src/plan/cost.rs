@@ -95,7 +95,7 @@ impl Plan {
         }
         if self.merging == Merging::Clusters {
             for &v in &self.tops {
-                let kept = (catalog.dim * self.tree.nodes[v].kept.len()) as f64;
+                let kept = self.tree.nodes[v].dofs[1] as f64;
                 estimates[self.node_owners[v]].bytes += PER_ENTRY_OF_CLUSTER * kept * kept;
             }
         }

@@ -31,13 +31,10 @@ impl GroupPlan {
             let point = &catalog.points[j as usize];
             for (&(node, _), of_node) in point.entries.iter().zip(&catalog.point_nodes[j as usize])
             {
-                let own = || {
-                    tree.unshared
-                        .binary_search_by_key(&node, |&(other, _)| other)
-                };
+                let own = || tree.unshared.binary_search_by_key(&node, |own| own.at);
                 let number = of_node
                     .interface
-                    .or_else(|| Some(tree.unshared[own().ok()?].1));
+                    .or_else(|| Some(tree.unshared[own().ok()?].number));
                 interface.insert(node, number.unwrap_or_default());
             }
         }

@@ -4,7 +4,8 @@ use super::graph::NODE;
 use crate::lists::Lists;
 use crate::model::Model;
 
-/// Nodes that a contact point adds to the front that merges its sides: one of each side.
+/// Nodes that a contact point with friction adds to the front that merges its sides: one of each side. Without, sides
+/// are joined along the normal alone: one of the unknowns of a node takes the place of what they share.
 const NODES_OF_POINT: u32 = 2;
 
 /// Pairs of cells of two pieces of the mesh that share a node but no facet, and the weight of that.
@@ -70,7 +71,11 @@ pub(super) fn ties(model: &Model) -> Vec<(u32, u32, u32)> {
         };
         let (side_a, side_b) = (side(1.0), side(-1.0));
         let pairs = side_a.len() * side_b.len();
-        let weight = (NODE * NODES_OF_POINT / pairs.max(1) as u32).max(1);
+        let of_point = match point.law.has_friction() {
+            true => NODE * NODES_OF_POINT,
+            false => NODE / mesh.dim as u32,
+        };
+        let weight = (of_point / pairs.max(1) as u32).max(1);
         for &a in &side_a {
             let others = side_b.iter().filter(|&&b| a != b);
             ties.extend(others.map(|&b| (a, b, weight)));

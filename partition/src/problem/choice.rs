@@ -65,7 +65,7 @@ impl InterfaceTimes {
         let time = |v: usize, is_frozen| tree.time(v, catalog.dim, is_frozen);
         let direct = (0..tree.nodes.len()).map(|v| time(v, is_frozen)).sum();
         let of_cluster = |&c: &usize| {
-            let size = (catalog.dim * tree.nodes[c].kept.len()) as f64;
+            let size = tree.nodes[c].dofs[1] as f64;
             let below = tree.subtree(c).into_iter();
             let below: f64 = below.map(|v| time(v, true)).sum();
             below + between(size)

@@ -28,7 +28,7 @@ const FEW_CONDITIONS: usize = 600;
 const FEW_WITH_FRICTION: usize = 3000;
 
 /// The tree.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tree {
     /// Its nodes: the subdomains, then the inner ones, children before parents.
     pub nodes: Vec<TreeNode>,
@@ -36,10 +36,22 @@ pub struct Tree {
     pub subdomains: usize,
     /// Number of nodes of Γ: those that several subdomains share, then those that one has and contact points name.
     pub interface_nodes: usize,
-    /// The second kind and their numbers on Γ, subdomain by subdomain.
-    pub unshared: Vec<(SubdomainNode, u32)>,
+    /// The second kind, subdomain by subdomain.
+    pub unshared: Vec<UnsharedNode>,
     /// The nodes between which an iterative interface solver works, ascending; none where the file doesn't say.
     pub clusters: Vec<usize>,
+}
+
+/// A node of Γ that one subdomain has and contact points name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnsharedNode {
+    /// The node.
+    pub at: SubdomainNode,
+    /// Its number on Γ.
+    pub number: u32,
+    /// The normal of all points that name it, if they have one and no friction: where it has no supports, its
+    /// displacement along this normal alone is on Γ, and the rest belongs to the interior of the subdomain.
+    pub slides: Option<[f64; 3]>,
 }
 
 /// A node of the tree.
@@ -55,6 +67,8 @@ pub struct TreeNode {
     pub eliminated: Vec<u32>,
     /// Nodes of Γ that subdomains outside share, ascending.
     pub kept: Vec<u32>,
+    /// Unknowns at the nodes that are eliminated, and at those that are kept.
+    pub dofs: [usize; 2],
     /// The contact points that belong to it, by their place in the catalog, ascending.
     pub points: Vec<u32>,
     /// Number of conditions of the contact points that belong to it or to a node under it.
@@ -96,8 +110,8 @@ impl Tree {
             node.of_subdomain = summary.nodes;
         }
         let mut above: Vec<usize> = (0..subdomains).collect();
-        for &(node, _) in &interface.unshared {
-            let subdomain = node.subdomain as usize;
+        for own in &interface.unshared {
+            let subdomain = own.at.subdomain as usize;
             if above[subdomain] == subdomain {
                 above[subdomain] = self.nodes.len();
                 self.nodes[subdomain].parent = Some(self.nodes.len());
@@ -214,6 +228,18 @@ impl Tree {
                 node.kept = kept;
             }
         }
+        let slides = interface.unshared.iter().filter(|own| own.slides.is_some());
+        let slides: BTreeSet<u32> = slides.map(|own| own.number).collect();
+        let dofs_at = |numbers: &[u32]| -> usize {
+            let dofs = numbers.iter().map(|number| match slides.contains(number) {
+                true => 1,
+                false => catalog.dim,
+            });
+            dofs.sum()
+        };
+        for node in &mut self.nodes {
+            node.dofs = [dofs_at(&node.eliminated), dofs_at(&node.kept)];
+        }
     }
 
     /// The lowest node above both, or one of them.
@@ -243,10 +269,11 @@ impl Tree {
     /// The unknowns, `dim` at a node, that node v eliminates and keeps.
     pub fn front(&self, v: usize, dim: usize) -> Front {
         let node = &self.nodes[v];
-        let kept = dim * node.kept.len() + node.conditions;
+        let [eliminated, kept] = node.dofs;
+        let kept = kept + node.conditions;
         let eliminated = match v < self.subdomains {
             true => (dim * node.of_subdomain).saturating_sub(kept),
-            false => (dim * node.eliminated.len()).saturating_sub(self.own_conditions(v)),
+            false => eliminated.saturating_sub(self.own_conditions(v)),
         };
         Front { eliminated, kept }
     }

@@ -106,3 +106,23 @@ fn loads_work_on_unknowns_what_they_work_on_displacements() {
     let on_unknowns: f64 = load.iter().zip(&x).map(|(f, x)| f * x).sum();
     assert!((on_nodes - on_unknowns).abs() < 1e-14);
 }
+
+#[test]
+fn of_a_node_that_slides_the_displacement_along_its_normal_alone_is_on_the_interface() {
+    let mut block = scene();
+    let normal = [0.6, -0.8, 0.0];
+    // Supports of node 1 have its frame.
+    block.slides = [(1, normal), (2, normal)].into();
+    let (dofs, prescribed) = dofs_of(&block);
+    let names = dofs.interface_dofs.iter().map(|dof| (dof.node, dof.axis));
+    assert!(names.eq([(4, 0), (7, 1)]));
+    assert_eq!((dofs.interior, dofs.len()), (2, 4));
+    let mut x = unknowns(&dofs);
+    let before = prescribed.displacement(&dofs, &x);
+    assert!((dot(vector(&before, 2), normal) - x[2]).abs() < 1e-15);
+    // Whatever the interior does leaves it there.
+    x[..2].fill(0.75);
+    let after = prescribed.displacement(&dofs, &x);
+    assert!((dot(vector(&after, 2), normal) - x[2]).abs() < 1e-15);
+    assert!(vector(&before, 2) != vector(&after, 2));
+}

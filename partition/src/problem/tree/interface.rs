@@ -2,8 +2,10 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
+use super::UnsharedNode;
 use crate::contact_point::ContactPoint;
 use crate::disjoint_sets::DisjointSets;
+use crate::element::geometry::{cross, length};
 use crate::lists::Lists;
 use crate::problem::{Catalog, SubdomainNode};
 
@@ -14,11 +16,13 @@ pub(super) struct Interface {
     /// Those of every subdomain.
     pub numbers: Lists<u32>,
     /// Those that one subdomain has, and contact points name.
-    pub unshared: Vec<(SubdomainNode, u32)>,
+    pub unshared: Vec<UnsharedNode>,
     /// Those of every contact point, entry by entry.
     pub of_points: Vec<Vec<u32>>,
 }
 
+/// Sine of the angle between normals up to which they are one: what is left of it is less than what a row of B counts.
+const PARALLEL: f64 = 2e-15;
 /// Share of a point's largest weight that a node has at least whose displacement may be told by others.
 const LEADING: f64 = 0.5;
 
@@ -34,21 +38,32 @@ pub(super) struct System {
 impl Interface {
     pub fn new(catalog: &Catalog) -> Self {
         let mut number: BTreeMap<SubdomainNode, Option<u32>> = BTreeMap::new();
+        let mut slides: BTreeMap<SubdomainNode, Option<[f64; 3]>> = BTreeMap::new();
         for (point, nodes) in catalog.points.iter().zip(&catalog.point_nodes) {
+            let normal = (!point.law.has_friction()).then(|| point.normal());
             for (&(node, _), of_node) in point.entries.iter().zip(nodes) {
                 number.insert(node, of_node.interface);
+                let along = slides.entry(node).or_insert(normal);
+                *along = along
+                    .zip(normal)
+                    .filter(|&(along, normal)| length(cross(along, normal)) <= PARALLEL)
+                    .map(|(along, _)| along);
             }
         }
         let mut count = catalog.interface_nodes as u32;
         let mut unshared = Vec::new();
         for (&node, number) in number.iter_mut().filter(|(_, number)| number.is_none()) {
             *number = Some(count);
-            unshared.push((node, count));
+            unshared.push(UnsharedNode {
+                at: node,
+                number: count,
+                slides: slides[&node],
+            });
             count += 1;
         }
         let shared = (0..).zip(&catalog.interface);
         let shared = shared.flat_map(|(s, list)| list.iter().map(move |&number| (s, number)));
-        let own = unshared.iter().map(|&(node, n)| (node.subdomain, n));
+        let own = unshared.iter().map(|own| (own.at.subdomain, own.number));
         let all = shared.chain(own);
         let of_point = |point: &ContactPoint<SubdomainNode>| {
             let nodes = point.entries.iter();
