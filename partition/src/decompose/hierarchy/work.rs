@@ -75,7 +75,7 @@ fn times_to_clusters(tree: &Tree, dim: usize) -> Vec<f64> {
         for v in tree.subtree(cluster) {
             times[v] = tree.time(v, dim, true);
         }
-        times[cluster] += between((dim * tree.nodes[cluster].kept.len()) as f64);
+        times[cluster] += between(tree.nodes[cluster].dofs[1] as f64);
     }
     times
 }
