@@ -132,7 +132,12 @@ impl Dofs {
     /// The first of the unknowns that are the node's components, if they are.
     fn direct_from(&self, start: usize) -> u32 {
         let base = &self.terms[self.offsets[start] as usize..];
+        // What slides has one of them on Γ.
+        let of_gamma = base
+            .iter()
+            .filter(|&&(dof, _)| dof as usize >= self.interior);
         let direct = base.len() == self.dim
+            && [0, self.dim].contains(&of_gamma.count())
             && base
                 .iter()
                 .enumerate()

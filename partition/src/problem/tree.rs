@@ -266,7 +266,7 @@ impl Tree {
         self.nodes[v].conditions - below
     }
 
-    /// The unknowns, `dim` at a node, that node v eliminates and keeps.
+    /// The unknowns that node v eliminates and keeps, of a subdomain `dim` at each of its nodes.
     pub fn front(&self, v: usize, dim: usize) -> Front {
         let node = &self.nodes[v];
         let [eliminated, kept] = node.dofs;

@@ -126,3 +126,14 @@ fn of_a_node_that_slides_the_displacement_along_its_normal_alone_is_on_the_inter
     assert!((dot(vector(&after, 2), normal) - x[2]).abs() < 1e-15);
     assert!(vector(&before, 2) != vector(&after, 2));
 }
+
+#[test]
+fn what_slides_is_no_run_of_unknowns_though_its_numbers_follow_one_another() {
+    let mut block = scene();
+    block.interface.truncate(1);
+    block.slides = [(2, [0.0, 1.0, 0.0])].into();
+    let (dofs, _) = dofs_of(&block);
+    let numbers = [0, 1].map(|component| dofs.terms(2, component)[0].0 as usize);
+    assert_eq!(numbers, [dofs.interior - 1, dofs.interior]);
+    assert_eq!(dofs.direct(2), None);
+}
