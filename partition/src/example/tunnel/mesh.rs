@@ -45,11 +45,28 @@ fn squares() -> Vec<Square> {
     let (wall, face) = (Some("wall"), Some("face"));
     let ring = Pattern::Grid(THROUGH, 2 * ALONG);
     vec![
-        Square::new("rock", outward, rock, [horizontal, Some("right"), None, wall]).curved(),
-        Square::new("rock", outward, mirrored(rock), [None, Some("top"), vertical, wall]).curved(),
+        Square::new(
+            "rock",
+            outward,
+            rock,
+            [horizontal, Some("right"), None, wall],
+        )
+        .curved(),
+        Square::new(
+            "rock",
+            outward,
+            mirrored(rock),
+            [None, Some("top"), vertical, wall],
+        )
+        .curved(),
         Square::new("core", inward, core, [at_side, face, None, None]).curved(),
         Square::new("core", inward, mirrored(core), [None, face, at_crown, None]).curved(),
-        Square::new("core", grid, quadrilateral(corners), [at_side, None, None, at_crown]),
+        Square::new(
+            "core",
+            grid,
+            quadrilateral(corners),
+            [at_side, None, None, at_crown],
+        ),
         Square::new("lining", ring, of_lining, lining).curved(),
     ]
 }
