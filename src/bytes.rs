@@ -31,7 +31,8 @@ where
     T: Pod,
     D: Deserializer<'de>,
 {
-    deserializer.deserialize_bytes(List(PhantomData))
+    // Asked for bytes that it may lend, a reader of streams gives no more than its buffer holds.
+    deserializer.deserialize_byte_buf(List(PhantomData))
 }
 
 struct List<T>(PhantomData<T>);
@@ -189,6 +190,22 @@ mod tests {
     fn what_was_sent_arrives() {
         let bytes = postcard::to_stdvec(&sent()).unwrap();
         assert_eq!(postcard::from_bytes::<Sent>(&bytes).unwrap(), sent());
+    }
+
+    #[test]
+    fn what_was_kept_is_read_back_however_long_it_is() {
+        // A reader of streams has a buffer of 4096 bytes.
+        for size in [0, 1, 22, 23, 31, 32, 511, 512, 513, 1000] {
+            let kept = Sent {
+                name: "n".repeat(10 * size),
+                list: (0..size).map(|i| 1.0 / i as f64).collect(),
+                lower: Mat::from_fn(size, size, |i, j| if i < j { 0.0 } else { (i + j) as f64 }),
+                matrix: Mat::from_fn(size, 2, |i, j| (10 * i + j) as f64),
+            };
+            let mut bytes = Vec::new();
+            ciborium::into_writer(&kept, &mut bytes).unwrap();
+            assert_eq!(ciborium::from_reader::<Sent, _>(&bytes[..]).unwrap(), kept);
+        }
     }
 
     #[test]

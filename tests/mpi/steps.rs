@@ -11,9 +11,20 @@ pub fn two_blocks_in_steps() -> Model {
 
 /// The same with friction in their joint.
 pub fn two_blocks_with_friction() -> Model {
+    posed_in_steps(&rubbing())
+}
+
+/// The same in cells of second order: the lower block has 1122 dofs.
+pub fn two_fine_blocks_with_friction() -> Model {
+    let mesh = sort("quad9").of(&two_blocks().mesh);
+    model(&format!("{}{STEPS}", rubbing()), mesh)
+}
+
+/// The scene of the two blocks with friction in their joint.
+fn rubbing() -> String {
     let scene = two_block_scene();
     assert!(scene.contains("[[contact]]\n"));
-    posed_in_steps(&scene.replacen("[[contact]]\n", "[[contact]]\nfriction = '0.1+0.2*x'\n", 1))
+    scene.replacen("[[contact]]\n", "[[contact]]\nfriction = '0.1+0.2*x'\n", 1)
 }
 
 /// The same, and another block that is put on the upper one after the first step, and taken away after the second.
@@ -77,18 +88,20 @@ pub fn two_solids_with_friction() -> Model {
 }
 
 fn posed_in_steps(scene: &str) -> Model {
-    let steps = "
-        [[step]]
-        scale = 0.5
-        [[step]]
-        [[step.pressure]]
-        on = 'upper top'
-        value = '1e6*(0.1+1.9*x)'
-        [[step]]
-        scale = { pressure = 2, displacement = 3 }
-        body_force = { upper = [0.0, -1e6] }";
-    model(&format!("{scene}{steps}"), two_blocks().mesh)
+    model(&format!("{scene}{STEPS}"), two_blocks().mesh)
 }
+
+/// Three load steps of the two blocks.
+const STEPS: &str = "
+    [[step]]
+    scale = 0.5
+    [[step]]
+    [[step.pressure]]
+    on = 'upper top'
+    value = '1e6*(0.1+1.9*x)'
+    [[step]]
+    scale = { pressure = 2, displacement = 3 }
+    body_force = { upper = [0.0, -1e6] }";
 
 /// A step that has no solution ends the run before anything is solved, and names itself.
 pub fn no_equilibrium(trials: &mut Trials) {
