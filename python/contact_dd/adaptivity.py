@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from contact_dd.errors import InputError, NotConverged
+from contact_dd.errors import InputError, NotConverged, OutputError
 from contact_dd.geometry import meshed
 from contact_dd.model import Model
 from contact_dd.result import Result
@@ -33,6 +33,7 @@ class Round:
     seconds: float
     """Since the first mesh was begun."""
     result: Result
+    """Of a folder that was given the file is `scene-1.vtkhdf` and so on, in the last round `scene.vtkhdf`."""
 
 
 def adapt(
@@ -52,6 +53,8 @@ def adapt(
     path = None if geometry is None else Path(geometry)
     start, sizes, rounds, aim = time.perf_counter(), None, list[Round](), AIM * error
     while True:
+        if folder is not None and rounds:
+            keep(rounds[-1].result, len(rounds))
         model.mesh = meshed(path, sizes)
         result = model.run(ranks, folder=folder, progress=False)
         found, _ = relative_errors(result)
@@ -68,3 +71,13 @@ def adapt(
         sizes = sizes_for(result, max(aim, found / MOST_PER_ROUND), is_first=len(rounds) == 1)
         if found < 2 * error:
             aim *= AIM
+
+
+def keep(result: Result, number: int) -> None:
+    """Gives the result of a round another name, as the next one is about to be written in its place."""
+    kept = result.path.with_name(f"{result.path.stem}-{number}{result.path.suffix}")
+    try:
+        result.path.replace(kept)
+    except OSError as error:
+        raise OutputError(f"{kept}: can't be written: {error.strerror}") from error
+    result.path = kept

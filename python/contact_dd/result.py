@@ -87,7 +87,8 @@ class Result:
         grid = file["VTKHDF"]
         if "Displacement" not in grid["PointData"]:
             raise InputError(f"{self.path}: is a problem file; contact-dd-mpi {self.path} solves it")
-        self.report = json.loads(file.attrs["report"])
+        self._said = file.attrs["report"]
+        self.report = json.loads(self._said)
         text = {name: value.decode() if isinstance(value, bytes) else value for name, value in file.attrs.items()}
         self.title = text.get("title", "")
         self.units = text.get("units", "m")
@@ -137,8 +138,12 @@ class Result:
         return rows
 
     def at_step(self, step: int) -> Result:
-        """The result of another load step, from 1."""
+        """The result of another load step, from 1. Raises `InputError` where another run has written the file since."""
         other = Result(self.path, step)
+        if other._said != self._said:
+            raise InputError(
+                f"{self.path}: another run has written it since it was read; expected a folder for each run"
+            )
         other.folder = self.folder
         return other
 

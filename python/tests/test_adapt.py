@@ -110,6 +110,26 @@ def test_the_command_writes_the_last_result(scene, tmp_path):
     assert (wrong.returncode, wrong.stderr) == (2, "error: an error of 2.0; expected one above 0 and below 1\n")
 
 
+def test_load_steps_are_adapted_in_a_folder(tmp_path):
+    """Linear contact, so that a step at double load has doubled results, on the mesh of each round."""
+    (tmp_path / "crack.geo").write_text(CRACK)
+    model = Model(b"", {"plane": "strain"})
+    model.body("block", Material(young=5.2e9, poisson=0.18))
+    model.fix("bottom")
+    model.load("top", pressure=1e6)
+    model.contact("crack", "other side", name="crack")
+    model.steps({"scale": 0.5}, {"scale": 1.0})
+    _, rounds = adapt(model, 0.01, tmp_path / "crack.geo", ranks=1, folder=tmp_path / "run", progress=False)
+    assert len(rounds) > 2
+    names = [f"scene-{k}.vtkhdf" for k in range(1, len(rounds))]
+    assert [one.result.path.name for one in rounds] == [*names, "scene.vtkhdf"]
+    for one in rounds:
+        assert Result(one.result.path).report == one.result.report
+        first = one.result.at_step(1)
+        assert np.allclose(2 * first.displacement, one.result.displacement, rtol=1e-6, atol=1e-12)
+    assert any(one.name == "largest pressure of crack" for one in compare([one.result for one in rounds], adapted=True))
+
+
 def test_an_error_that_isnt_reached_is_said(scene, tmp_path, monkeypatch):
     monkeypatch.setattr("contact_dd.adaptivity.MOST_ROUNDS", 1)
     (tmp_path / "hertz.geo").write_text(HERTZ)

@@ -105,6 +105,9 @@ def test_load_steps_are_results_of_their_own(scene, tmp_path):
     assert Result(tmp_path / "run/scene.vtkhdf", 1).displacement.tobytes() == first.displacement.tobytes()
     with pytest.raises(InputError, match="there is no step 3; expected 1 to 2"):
         result.at_step(3)
+    model.run(folder=tmp_path / "run", progress=False)
+    with pytest.raises(InputError, match="scene.vtkhdf: another run has written it since it was read"):
+        result.at_step(1)
     with pytest.raises(InputError, match="is a problem file"):
         Result(tmp_path / "run/scene.h5")
     with pytest.raises(InputError, match="isn't a result"):
