@@ -7,6 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+# How many nodes cells have, by VTK's number of their kind.
+NODES = {5: 3, 22: 6, 9: 4, 23: 8, 28: 9, 10: 4, 24: 10, 12: 8, 25: 20, 29: 27}
+
 
 class Cells(NamedTuple):
     """The cells of one kind."""
@@ -20,7 +23,8 @@ class Cells(NamedTuple):
 
 
 def cells_of(grid: Any) -> list[Cells]:
-    """Cells of every kind of an open grid, their nodes among all nodes of the file."""
+    """Cells of every kind of an open grid, their nodes among all nodes of the file. Raises `ValueError` where they have
+    other nodes than their kind, or some that aren't there."""
     types = grid["Types"][:]
     offsets, connectivity = grid["Offsets"][:], grid["Connectivity"][:]
     starts, ends, nodes = [], [], []
@@ -37,6 +41,10 @@ def cells_of(grid: Any) -> list[Cells]:
     found = []
     for kind in np.unique(types):
         members = np.flatnonzero(types == kind)
-        width = last[members[0]] - first[members[0]]
+        width = NODES.get(int(kind), 0)
+        if width == 0 or (last[members] - first[members] != width).any():
+            raise ValueError(f"there are cells of kind {kind} with other nodes than such have")
         found.append(Cells(int(kind), members, of_cells[first[members, None] + np.arange(width)]))
+    if len(of_cells) and not 0 <= of_cells.min() <= of_cells.max() < len(grid["Points"]):
+        raise ValueError("there are cells of nodes that aren't there")
     return found

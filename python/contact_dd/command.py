@@ -8,9 +8,10 @@ from pathlib import Path
 
 import matplotlib
 
+from contact_dd import files
 from contact_dd.adaptivity import adapt as solve_adapted
 from contact_dd.comparison import Compared, compare
-from contact_dd.errors import ContactError, InputError, OutputError
+from contact_dd.errors import ContactError, InputError
 from contact_dd.model import Model, scene_of
 from contact_dd.result import Result
 from contact_dd.tables import write_tables
@@ -94,12 +95,7 @@ def plot(arguments: argparse.Namespace) -> None:
 
     outdir = arguments.outdir or arguments.result.parent / "figures"
     for name, figure in draw(Result(arguments.result, arguments.step), arguments.only, arguments.scale):
-        path = outdir / f"{name}.png"
-        try:
-            outdir.mkdir(parents=True, exist_ok=True)
-            save(figure, path)
-        except OSError as error:
-            raise OutputError(f"{path}: can't be written: {error.strerror}") from error
+        save(figure, outdir / f"{name}.png")
 
 
 def report(arguments: argparse.Namespace) -> None:
@@ -110,10 +106,7 @@ def report(arguments: argparse.Namespace) -> None:
         # A second result is a likely slip, and would be overwritten.
         raise InputError(f"{path}: isn't the name of a page; expected one that ends in .html")
     text = page(Result(arguments.result), [Result(path) for path in arguments.coarser or ()])
-    try:
-        path.write_text(text)
-    except OSError as error:
-        raise OutputError(f"{path}: can't be written: {error.strerror}") from error
+    files.write(path, text)
     print(path)
 
 

@@ -9,8 +9,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, TypedDict
 
+from contact_dd import folder as folders
 from contact_dd import programs, toml
-from contact_dd.errors import InputError
+from contact_dd.calls import Calls, call
+from contact_dd.errors import InputError, OutputError
 from contact_dd.mesh import MeshSource, deck_of, msh_of
 from contact_dd.result import Result
 
@@ -67,6 +69,8 @@ class Model:
     def __init__(self, mesh: MeshSource, scene: dict[str, Any]) -> None:
         self.mesh: bytes | Path = deck_of(mesh) or msh_of(mesh)
         self.scene = scene
+        self._calls = Calls()
+        self._name = ""
 
     @classmethod
     def from_mesh(
@@ -84,7 +88,9 @@ class Model:
     def from_scene(cls, path: str | Path) -> Model:
         """The model of a `scene.toml`."""
         scene, mesh = scene_of(Path(path))
-        return cls(mesh, scene)
+        model = cls(mesh, scene)
+        model._name = str(path)
+        return model
 
     def body(
         self, group: str, material: Material, body_force: Vector | None = None, *,
@@ -97,9 +103,9 @@ class Model:
         keys = given(**asdict(material))
         name = next((name for name, other in known.items() if other == keys), f"material {len(known) + 1}")
         known[name] = keys
-        self.scene.setdefault("bodies", {})[group] = given(
-            material=name, body_force=body_force, initial_stress=initial_stress, thermal=thermal,
-        )
+        beside = given(body_force=body_force, initial_stress=initial_stress, thermal=thermal)
+        body = self.scene.setdefault("bodies", {})[group] = {"material": name, **beside}
+        self._calls.add(body, call("body", group, **beside))
 
     def fix(
         self, on: Groups, *, x: Number | None = None, y: Number | None = None, z: Number | None = None,
@@ -112,9 +118,10 @@ class Model:
         if normal and components:
             raise InputError("fix: normal=True leaves the other directions free; expected no component beside it")
         if normal:
-            self._add("bilateral", on=on)
+            entry = self._add("bilateral", on=on)
         else:
-            self._add("displacement", on=on, **(components or all_fixed))
+            entry = self._add("displacement", on=on, **(components or all_fixed))
+        self._calls.add(entry, call("fix", on, **components, normal=normal or None))
 
     def load(
         self, on: Groups, *, pressure: Number | None = None, traction: Vector | None = None,
@@ -125,9 +132,9 @@ class Model:
         if pressure is None and traction is None and body_force is None:
             raise InputError(f"load on {on!r}: expected a pressure, a traction or a body force")
         if pressure is not None:
-            self._add("pressure", on=on, value=pressure)
+            self._calls.add(self._add("pressure", on=on, value=pressure), call("load", on, pressure=pressure))
         if traction is not None:
-            self._add("traction", on=on, value=traction)
+            self._calls.add(self._add("traction", on=on, value=traction), call("load", on, traction=traction))
         if body_force is not None:
             for name in [on] if isinstance(on, str) else on:
                 if name not in self.scene.get("bodies", {}):
@@ -147,14 +154,17 @@ class Model:
         `within` is up to which distance."""
         if (between is None) == (a is None) or (a is None) != (b is None):
             raise InputError("contact: expected two sides, or the bodies between which contacts are found")
+        called = name
         if name is None and between is not None:
             name = "contact" if between == "all" else f"contact of {joined(between)}"
         elif name is None and a is not None and b is not None:
             name = f"{joined(a)} on {joined(b)}"
-        self._add(
-            "contact", name=name, sides=[a, b] if between is None else None, between=between, within=within,
-            friction=friction, cohesion=cohesion, tresca=tresca, gap=gap, interference=interference, pairing=pairing,
+        keys = given(
+            between=between, within=within, friction=friction, cohesion=cohesion, tresca=tresca, gap=gap,
+            interference=interference, pairing=pairing,
         )
+        entry = self._add("contact", name=name, sides=[a, b] if between is None else None, **keys)
+        self._calls.add(entry, call("contact", a, b, name=called, **keys))
 
     def obstacle(
         self, side: Groups, *, point: Sequence[float] | None = None, normal: Sequence[float] | None = None,
@@ -165,26 +175,30 @@ class Model:
     ) -> None:
         """A side that may touch a rigid obstacle: a wall (`point`, `normal` out of the wall), a circle or sphere
         (`center`, `radius`), in space a cylinder (`point`, `axis`, `radius`); `inside` keeps the body inside it."""
-        self._add(
-            "contact", name=name or f"{joined(side)} on obstacle", sides=[side],
-            obstacle=given(point=point, normal=normal, center=center, axis=axis, radius=radius, inside=inside),
-            friction=friction, cohesion=cohesion, tresca=tresca, gap=gap, interference=interference,
-        )
+        shape = given(point=point, normal=normal, center=center, axis=axis, radius=radius, inside=inside)
+        keys = given(friction=friction, cohesion=cohesion, tresca=tresca, gap=gap, interference=interference)
+        name_of = name or f"{joined(side)} on obstacle"
+        entry = self._add("contact", name=name_of, sides=[side], obstacle=shape, **keys)
+        self._calls.add(entry, call("obstacle", side, **shape, name=name, **keys))
 
     def steps(self, *steps: Step) -> None:
         """Load steps, one after the other."""
-        self.scene.setdefault("step", []).extend(dict(step) for step in steps)
+        known: list[dict[str, Any]] = self.scene.setdefault("step", [])
+        for step in steps:
+            known.append(dict(step))
+            self._calls.add(known[-1], f"step {len(known)} of steps")
 
     def write(self, folder: str | Path) -> Path:
-        """Writes `scene.toml` and `mesh.msh` into a folder; returns the path of the scene. A deck stays where it is."""
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
+        """Writes `scene.toml` and `mesh.msh` into a folder; returns the path of the scene. A deck stays where it is.
+
+        What the package has written there before is replaced; `InputError` is raised where one of the files is
+        somebody else's, `OutputError` where they can't be written."""
+        for kind in ("materials", "bodies"):
+            if not self.scene.get(kind):
+                raise InputError("the model has no body; expected a call of `body`, which makes a group of cells one")
         mesh = self.mesh if isinstance(self.mesh, Path) else Path("mesh.msh")
-        if isinstance(self.mesh, bytes):
-            (folder / mesh).write_bytes(self.mesh)
-        scene = folder / "scene.toml"
-        scene.write_text(toml.dumps({"mesh": str(mesh), **self.scene}))
-        return scene
+        scene = toml.dumps({"mesh": str(mesh), **self.scene})
+        return folders.write(Path(folder), scene, self.mesh if isinstance(self.mesh, bytes) else None)
 
     def run(
         self, ranks: int = 2, *, folder: str | Path | None = None, subdomains: int | None = None,
@@ -192,26 +206,35 @@ class Model:
     ) -> Result:
         """Solves the model on `ranks` processes.
 
-        Files stand in `folder`, without one as long as the result is in use. `options` are those of
+        Files stand in `folder`, as `write` says, without one as long as the result is in use. `options` are those of
         `contact-dd-mpi`. `progress` prints a line now and then; a function gets the events of `--log json` instead.
 
         Raises the programs' messages as `InputError`, `NotConverged`, `IllPosed` and so on.
         """
-        temporary = tempfile.TemporaryDirectory(prefix="contact-dd-") if folder is None else None
+        try:
+            temporary = tempfile.TemporaryDirectory(prefix="contact-dd-") if folder is None else None
+        except OSError as error:
+            raise OutputError(f"no temporary folder can be made: {error.strerror}") from error
         scene = self.write(temporary.name if temporary else folder or ".")
-        problem = programs.partition(scene, subdomains, progress)
-        result = programs.solve(problem, ranks, options, progress)
+
+        def worded(message: str) -> str:
+            return self._calls.worded(message, self.scene, scene, self._name)
+
+        problem = programs.partition(scene, subdomains, progress, worded)
+        result = programs.solve(problem, ranks, options, progress, worded)
         result.folder = temporary
         return result
 
-    def _add(self, kind: str, **keys: Any) -> None:
-        self.scene.setdefault(kind, []).append(given(**keys))
+    def _add(self, kind: str, **keys: Any) -> dict[str, Any]:
+        entry = given(**keys)
+        self.scene.setdefault(kind, []).append(entry)
+        return entry
 
 
 def scene_of(path: Path) -> tuple[dict[str, Any], Path]:
     """What a `scene.toml` says, and its mesh file."""
     try:
-        scene = tomllib.loads(path.read_text())
+        scene = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise InputError(f"{path}: {error}") from error
     if not isinstance(scene.get("mesh"), str):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 import shutil
 import subprocess
@@ -17,6 +18,7 @@ from contact_dd import errors
 from contact_dd.result import Result
 
 Progress = bool | Callable[[dict[str, Any]], None]
+Worded = Callable[[str], str]
 
 # OpenMPI starts neither as root nor with more ranks than cores unless it is told to; who asks for ranks means it.
 ENVIRONMENT = {
@@ -40,8 +42,12 @@ def find(name: str) -> str:
 
 def launcher(ranks: int) -> list[str]:
     """What starts `ranks` processes: MPIEXEC or mpirun; nothing for one."""
-    if ranks < 1:
-        raise errors.InputError(f"ranks={ranks}; expected 1 or more")
+    try:
+        enough = operator.index(ranks) >= 1
+    except TypeError:
+        enough = False
+    if not enough:
+        raise errors.InputError(f"ranks={ranks!r}; expected a whole number, 1 or more")
     if ranks == 1:
         return []
     named = os.environ.get("MPIEXEC") or "mpirun"
@@ -54,24 +60,28 @@ def launcher(ranks: int) -> list[str]:
     return [found, "-n", str(ranks)]
 
 
-def partition(scene: Path, subdomains: int | None, progress: Progress) -> Path:
-    """Writes the problem file beside a scene."""
+def partition(scene: Path, subdomains: int | None, progress: Progress, worded: Worded = str) -> Path:
+    """Writes the problem file beside a scene. Messages are `worded`."""
     problem = scene.with_suffix(".h5")
     number = [] if subdomains is None else ["-n", str(subdomains)]
 
     def hear(line: str) -> None:
         word, _, rest = line.partition(" ")
         if word == "warning":
-            warnings.warn(rest.strip(), stacklevel=5)
+            warnings.warn(worded(rest.strip()), stacklevel=5)
         elif progress is True and word in ("mesh", "contact"):
             print(line, flush=True)
 
-    run([find("contact-dd-partition"), str(scene), "-o", str(problem), *number], hear)
+    run([find("contact-dd-partition"), str(scene), "-o", str(problem), *number], hear, worded)
     return problem
 
 
-def solve(problem: Path, ranks: int, options: Sequence[str], progress: Progress) -> Result:
-    """Solves a problem file."""
+def solve(
+    problem: Path, ranks: int, options: Sequence[str], progress: Progress, worded: Worded = str
+) -> Result:
+    """Solves a problem file. Messages are `worded`."""
+    if isinstance(options, str):
+        raise errors.InputError(f"options={options!r}; expected a list of them")
     output = problem.with_suffix(".vtkhdf")
 
     def hear(line: str) -> None:
@@ -79,47 +89,50 @@ def solve(problem: Path, ranks: int, options: Sequence[str], progress: Progress)
         if event is None:
             return
         if event["event"] == "warning":
-            warnings.warn(event["message"], stacklevel=5)
+            warnings.warn(worded(event["message"]), stacklevel=5)
         if callable(progress):
             progress(event)
         elif progress:
             show(event)
 
-    command = [*launcher(ranks), find("contact-dd-mpi"), str(problem), "-o", str(output), "--log", "json", *options]
+    command = [*launcher(ranks), find("contact-dd-mpi"), str(problem), "-o", str(output), "--log", "json"]
     try:
-        run(command, hear)
+        run([*command, *map(str, options)], hear, worded)
     except errors.NotConverged as error:
         error.result = Result(output)
         raise
     return Result(output)
 
 
-def run(command: Sequence[str], hear: Callable[[str], None]) -> None:
-    """Runs a program, which is heard line by line. Raises its error."""
-    with (
-        tempfile.TemporaryFile("w+") as said,
-        subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=said, text=True, env={**ENVIRONMENT, **os.environ}
-        ) as program,
-    ):
+def run(command: Sequence[str], hear: Callable[[str], None], worded: Worded) -> None:
+    """Runs a program, which is heard line by line. Raises its error, `worded`."""
+    text: Any = {"encoding": "utf-8", "errors": "replace"}
+    with tempfile.TemporaryFile("w+", **text) as said:
         try:
-            for line in program.stdout or ():
-                hear(line.rstrip("\n"))
-        except BaseException:
-            program.terminate()
-            raise
-        if program.wait() != 0:
-            said.seek(0)
-            raise error_of(program.returncode, said.read())
+            program = subprocess.Popen(
+                command, stdout=subprocess.PIPE, stderr=said, env={**ENVIRONMENT, **os.environ}, **text
+            )
+        except (OSError, ValueError) as error:
+            raise errors.ContactError(f"{command[0]}: can't be started: {error}") from error
+        with program:
+            try:
+                for line in program.stdout or ():
+                    hear(line.rstrip("\n"))
+            except BaseException:
+                program.terminate()
+                raise
+            if program.wait() != 0:
+                said.seek(0)
+                raise error_of(program.returncode, said.read(), worded)
 
 
-def error_of(code: int, said: str) -> errors.ContactError:
+def error_of(code: int, said: str, worded: Worded) -> errors.ContactError:
     """The error of a program that ended with `code`: the message of its event, or all that it said."""
     for line in said.splitlines():
         event = event_of(line)
         if event is not None and event["event"] == "error":
-            return errors.by_exit_code(event["exit_code"], event["message"])
-    return errors.by_exit_code(code, said.strip().removeprefix("error: "))
+            return errors.by_exit_code(event["exit_code"], worded(event["message"]))
+    return errors.by_exit_code(code, worded(said.strip().removeprefix("error: ")))
 
 
 def event_of(line: str) -> dict[str, Any] | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from contact_dd.cells import Cells, cells_of
 from contact_dd.errors import InputError
+from contact_dd.report import report_of
 
 if TYPE_CHECKING:
     import pyvista
@@ -80,7 +80,10 @@ class Result:
         try:
             with h5py.File(self.path) as file:
                 self._read(file, step)
-        except (OSError, KeyError) as error:
+        except ValueError as error:
+            raise InputError(f"{path}: isn't a whole result of contact-dd-mpi: {error}") from error
+        except (OSError, LookupError, TypeError, AttributeError, RuntimeError) as error:
+            # What HDF5 and NumPy raise of a file that has something else where fields should be.
             raise InputError(f"{path}: isn't a result of contact-dd-mpi, a file .vtkhdf") from error
 
     def _read(self, file: h5py.File, step: int | None) -> None:
@@ -88,10 +91,12 @@ class Result:
         if "Displacement" not in grid["PointData"]:
             raise InputError(f"{self.path}: is a problem file; contact-dd-mpi {self.path} solves it")
         self._said = file.attrs["report"]
-        self.report = json.loads(self._said)
+        self.report = report_of(self._said)
         text = {name: value.decode() if isinstance(value, bytes) else value for name, value in file.attrs.items()}
         self.title = text.get("title", "")
         self.units = text.get("units", "m")
+        if self.units not in ("m", "mm"):
+            raise ValueError(f"it is in {self.units!r}; expected units of 'm' or 'mm'")
         self.plane = text.get("plane")
         self.steps = int(grid["Steps"].attrs["NSteps"]) if "Steps" in grid else 1
         self.step = self.steps if step is None else step

@@ -48,6 +48,8 @@ def relative_errors(result: Result) -> tuple[float, Floats]:
         estimate = (result.report["steps"][step - 1] if result.steps > 1 else result.report)["error_estimate"]
         if estimate is None:
             raise InputError("the run made no estimate of the error; expected one without --no-stress")
+        if None in estimate.values():
+            raise InputError(f"{result.path}: the estimate of the error isn't finite")
         norm = np.hypot(estimate["energy_norm"], estimate["error"])
         if norm > 0:
             largest = max(largest, estimate["relative"])

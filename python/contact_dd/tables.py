@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import csv
+import io
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contact_dd.errors import OutputError
+from contact_dd import files
 
 if TYPE_CHECKING:
     from contact_dd.result import Result
@@ -19,7 +20,7 @@ FIRST = ("position", "pressure", "gap", "force", "status")
 
 
 def write_tables(result: Result, folder: str | Path) -> list[Path]:
-    """Writes `<contact>.csv` for every contact that has conditions; returns the paths."""
+    """Writes `<contact>.csv` for every contact that has conditions; returns the paths. Raises `OutputError`."""
     from contact_dd.drawing.sides import sides_of
 
     folder = Path(folder)
@@ -39,14 +40,11 @@ def write_tables(result: Result, folder: str | Path) -> list[Path]:
         if path in paths:
             path = folder / f"{stem} {len(paths) + 1}.csv"
         records = [{**along, **columns(table[row], 3 if result.is_in_space else 2)} for row, along in pieces]
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            with path.open("w", newline="") as file:
-                writer = csv.DictWriter(file, records[0])
-                writer.writeheader()
-                writer.writerows(records)
-        except OSError as error:
-            raise OutputError(f"{path}: can't be written: {error.strerror}") from error
+        text = io.StringIO()
+        writer = csv.DictWriter(text, records[0])
+        writer.writeheader()
+        writer.writerows(records)
+        files.write(path, text.getvalue())
         paths.append(path)
     return paths
 

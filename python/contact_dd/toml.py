@@ -7,6 +7,8 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from contact_dd.errors import InputError
+
 
 def dumps(scene: Mapping[str, Any]) -> str:
     """A scene as text: values first, then a table `[kind.name]` for each entry of a mapping and a `[[kind]]` for
@@ -45,12 +47,17 @@ def is_list_of_tables(value: Any) -> bool:
 
 
 def key(name: str) -> str:
+    if not isinstance(name, str):
+        raise InputError(f"{name!r} can't be a key of a scene; expected a text")
     return name if re.fullmatch("[A-Za-z0-9_-]+", name) else text(name)
 
 
 def text(value: str) -> str:
-    # JSON's escapes are TOML's.
-    return json.dumps(value, ensure_ascii=False)
+    # JSON's escapes are TOML's, which wants one more.
+    written = json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if any("\ud800" <= letter <= "\udfff" for letter in value):
+        raise InputError(f"{value!r} can't stand in a scene; expected whole characters, no halves of them")
+    return written
 
 
 def inline(value: Any) -> str:
@@ -67,4 +74,4 @@ def inline(value: Any) -> str:
         return "{ " + ", ".join(entries(value)) + " }"
     if isinstance(value, list | tuple):
         return "[" + ", ".join(inline(entry) for entry in value) + "]"
-    raise TypeError(f"{value!r} can't stand in a scene; expected a number, a text, a list or a mapping")
+    raise InputError(f"{value!r} can't stand in a scene; expected a number, a text, a list or a mapping")

@@ -116,8 +116,7 @@ def test_load_steps_are_results_of_their_own(scene, tmp_path):
 
 def test_what_a_model_lacks_is_said():
     triangle = b"$MeshFormat\n"
-    model = Model.__new__(Model)
-    model.mesh, model.scene = triangle, {"plane": "strain"}
+    model = Model(triangle, {"plane": "strain"})
     model.body("block", Material(young=1.0, poisson=0.3))
     model.body("other", Material(young=1.0, poisson=0.3))
     assert list(model.scene["materials"]) == ["material 1"]

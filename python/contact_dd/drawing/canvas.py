@@ -8,6 +8,7 @@ from matplotlib.collections import LineCollection
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 from PIL import Image
 
+from contact_dd import files
 from contact_dd.drawing.plane import curves
 from contact_dd.drawing.units import in_units
 
@@ -72,16 +73,19 @@ def round_below(value):
 
 
 def save(figure, path):
-    """Saves a PNG of at most LARGEST_PNG bytes: with a palette, and with fewer pixels if need be."""
+    """Saves a PNG of at most LARGEST_PNG bytes: with a palette, and with fewer pixels if need be. Raises
+    `OutputError`."""
     for dpi in (160, 140, 120, 100, 80, 60):
         drawn = io.BytesIO()
         figure.savefig(drawn, dpi=OVERSAMPLED * dpi)
         image = Image.open(drawn).convert("RGB")
         image = image.resize([side // OVERSAMPLED for side in image.size], Image.Resampling.BOX)
-        with_palette(image).save(path, optimize=True)
-        if path.stat().st_size <= LARGEST_PNG:
+        found = io.BytesIO()
+        with_palette(image).save(found, "PNG", optimize=True)
+        if len(found.getvalue()) <= LARGEST_PNG:
             break
     plt.close(figure)
+    files.write(path, found.getvalue())
     print(path)
 
 

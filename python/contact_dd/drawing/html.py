@@ -38,8 +38,13 @@ ul.warnings li::marker { content: "⚠ "; } code { font-size: .95em }
 """
 
 
+class Html(str):
+    """Text that is HTML already."""
+
+
 def escape(value):
-    return html.escape(str(value))
+    """Any value as HTML."""
+    return value if isinstance(value, Html) else Html(html.escape(str(value)))
 
 
 def short(value):
@@ -48,10 +53,10 @@ def short(value):
 
 
 def table(head, rows, numbers=()):
-    """A table; the columns in `numbers` are set right. Cells are escaped already."""
+    """A table; the columns in `numbers` are set right."""
     def line(tag, cells):
         kinds = (' class="number"' if i in numbers else "" for i in range(len(cells)))
-        return "<tr>" + "".join(f"<{tag}{k}>{c}</{tag}>" for k, c in zip(kinds, cells)) + "</tr>"
+        return "<tr>" + "".join(f"<{tag}{k}>{escape(c)}</{tag}>" for k, c in zip(kinds, cells)) + "</tr>"
 
     return "<table>" + line("th", head) + "".join(line("td", row) for row in rows) + "</table>"
 

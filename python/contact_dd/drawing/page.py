@@ -9,8 +9,9 @@ from matplotlib.ticker import EngFormatter, MaxNLocator
 
 from contact_dd.comparison import compare
 from contact_dd.drawing import space
+from contact_dd.drawing.finite import check_finite
 from contact_dd.drawing.gaps import honest_scale
-from contact_dd.drawing.html import STYLE, axes_of, escape, png, section, short, svg, table
+from contact_dd.drawing.html import STYLE, Html, axes_of, escape, png, section, short, svg, table
 from contact_dd.drawing.overview import overview
 from contact_dd.drawing.pictures import automatic_scale
 from contact_dd.drawing.plane import Plane
@@ -52,7 +53,9 @@ FONTS = {
 
 
 def page(result, coarser=()):
-    """The page of a result, in HTML; with error bars where there are results on coarser meshes."""
+    """The page of a result, in HTML; with error bars where there are results on coarser meshes. Raises `InputError`
+    where a number that is drawn isn't finite."""
+    check_finite(result)
     report, units = result.report, units_of(result)
     with plt.rc_context(FONTS):
         parts = [
@@ -98,23 +101,24 @@ def head(report, result):
     ranks = f"{report['ranks']} rank{'s' * (report['ranks'] > 1)}"
     hosts = f"{report['hosts']} host{'s' * (report['hosts'] > 1)}"
     commit = report["build"]["commit"]
+    build = escape(report["version"] + (f" ({commit[:10]})" if commit else ""))
     cards = [
         (f"{report['dofs']:,}".replace(",", " "), "degrees of freedom"),
         (report["subdomains"], "subdomains"),
         (f"{report['active_contacts']} of {report['contact_conditions']}", "contact conditions closed"),
-        (report["sweeps"], f"sweeps of {escape(report['method'])}"),
+        (report["sweeps"], f"sweeps of {report['method']}"),
         (si(report["seconds"]["total"], "s"), "from start to end"),
         (si(report["peak_memory_bytes"], "B"), "memory of all ranks"),
     ]
     if report.get("error_estimate"):
-        cards.append((f"{100 * report['error_estimate']['relative']:.2g} %", "error of the mesh, estimated"))
+        relative = report["error_estimate"]["relative"]
+        cards.append(("–" if relative is None else f"{100 * relative:.2g} %", "error of the mesh, estimated"))
     return (
-        f'<h1>{escape(result.title) or problem}<span class="badge {"good" if good else "bad"}">{status}</span></h1>'
-        f'<p class="sub">{escape(result.path.name)} of {problem} · {ranks} with {report["threads"]} '
+        f'<h1>{escape(result.title or problem)}<span class="badge {"good" if good else "bad"}">{status}</span></h1>'
+        f'<p class="sub">{escape(result.path.name)} of {problem} · {escape(ranks)} with {escape(report["threads"])} '
         f'thread{"s" * (report["threads"] > 1)} '
-        f'on {hosts} · contact-dd-mpi {escape(report["version"])}{f" ({escape(commit[:10])})" if commit else ""}</p>'
-        '<div class="cards">'
-        + "".join(f'<div class="card"><b>{value}</b><span>{words}</span></div>' for value, words in cards)
+        f'on {escape(hosts)} · contact-dd-mpi {build}</p><div class="cards">'
+        + "".join(f'<div class="card"><b>{escape(value)}</b><span>{escape(name)}</span></div>' for value, name in cards)
         + "</div>"
     )
 
@@ -152,8 +156,8 @@ def certificate(report):
         mark = ""
         if limit is not None:
             holds = value is not None and value <= limit
-            mark = '<b style="color:#17682f">✓</b>' if holds else '<b style="color:#9b1c14">✗</b>'
-        rows.append([mark, name.replace("_", " "), short(value), short(limit) if limit else "", escape(meaning)])
+            mark = Html('<b style="color:#17682f">✓</b>' if holds else '<b style="color:#9b1c14">✗</b>')
+        rows.append([mark, name.replace("_", " "), short(value), short(limit) if limit else "", meaning])
     return section(
         "Certificate: the full discrete problem, checked",
         table(["", "", "found", "at most", ""], rows, numbers=(2, 3)),
@@ -206,7 +210,7 @@ def steps(report, units):
     for axes in (left, right):
         axes.set_xlabel("time")
     rows = [
-        [escape(step["name"]), f"{step['time']:g}", escape(step["status"].replace("_", " ")), step["sweeps"],
+        [step["name"], f"{step['time']:g}", step["status"].replace("_", " "), step["sweeps"],
          step["active_contacts"], si(pressure, units.stress), short(step["certificate"]["equilibrium"]),
          *friction_of(step, report, units)]
         for step, pressure in zip(found[:MOST_ROWS], pressures)
@@ -270,7 +274,7 @@ def curve(axes, name, side, units):
             axes.plot(way, shear[rows], color=SHEAR, lw=1.1)
     least = 0 if shear is None else min(0, shear.min())
     most = max(pressure.max(), 0 if shear is None else shear.max())
-    axes.set_title(name if len(name) < 32 else name[:30] + "…", fontsize=9, loc="left")
+    axes.set_title(name if len(name) < 32 else name[:30] + "…", fontsize=9, loc="left", parse_math=False)
     axes.set_ylim(1.1 * least, 1.1 * most if most > 0 else 1)
     axes.xaxis.set_major_formatter(formatter(units.length))
     axes.yaxis.set_major_formatter(formatter(units.stress))
@@ -310,7 +314,7 @@ def contacts(report, sides, units):
     if not found:
         return ""
     rows = [
-        [escape(c["name"]), f"{c['closed']} of {c['conditions']}", si(c["largest_pressure"], units.stress), *force,
+        [c["name"], f"{c['closed']} of {c['conditions']}", si(c["largest_pressure"], units.stress), *force,
          *friction_of(c, report, units)]
         for c, force in zip(found[:MOST_ROWS], forces(found, units.force))
     ]
@@ -338,7 +342,7 @@ def reactions(report, units):
     if not report["reactions"]:
         return ""
     found = report["reactions"]
-    rows = [[escape(r["support"]), *force] for r, force in zip(found[:MOST_ROWS], forces(found, units.force))]
+    rows = [[r["support"], *force] for r, force in zip(found[:MOST_ROWS], forces(found, units.force))]
     rows = table(["support", *force_head("", found)], rows, numbers=(1, 2, 3))
     return section("Reactions of supports", rows, more(found, ""))
 
@@ -349,7 +353,7 @@ def bars(results):
         return ""
     found = compare(results)
     rows = [
-        [escape(one.name), si(one.values[-1], one.unit, 5), f"± {si(one.error, one.unit, 2)}" if one.error else "–",
+        [one.name, si(one.values[-1], one.unit, 5), f"± {si(one.error, one.unit, 2)}" if one.error else "–",
          "" if one.order is None else f"{one.order:.1f}"]
         for one in found[:MOST_ROWS]
     ]
@@ -368,10 +372,10 @@ def rest(report):
         for name, value in report["settings"].items()
         if value not in (None, False)
     )
-    rows = [["settings", escape(settings)]]
-    rows += [[f"{name} " if i == 0 else "", escape(text)] for name in ("skipped", "fallbacks")
+    rows = [["settings", settings]]
+    rows += [[f"{name} " if i == 0 else "", text] for name in ("skipped", "fallbacks")
              for i, text in enumerate(report[name])]
-    rows += [[name, escape(report["build"][name])] for name in ("mpi", "hdf5", "compiler", "profile", "commit")
+    rows += [[name, report["build"][name]] for name in ("mpi", "hdf5", "compiler", "profile", "commit")
              if report["build"][name]]
     if report["condition_number"] is not None:
         rows.insert(1, ["condition", f"about {short(report['condition_number'])}"])

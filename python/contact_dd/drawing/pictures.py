@@ -11,6 +11,7 @@ import numpy as np
 
 from contact_dd.drawing import space
 from contact_dd.drawing.canvas import round_below
+from contact_dd.drawing.finite import check_finite
 from contact_dd.drawing.gaps import honest_scale
 from contact_dd.drawing.overview import overview
 from contact_dd.drawing.paper import contours, deformation, principal
@@ -50,7 +51,8 @@ PICTURES = {
 
 def draw(result, names=None, scale=None):
     """Draws pictures by their names, one after the other, without any those that there are; in space others than in
-    the plane."""
+    the plane. Raises `InputError` where a number isn't finite."""
+    check_finite(result)
     if result.is_in_space:
         for name in names or ["overview", *space.Solid(result).pictures()]:
             yield name, known(space.PICTURES, name)(result, scale)

@@ -248,7 +248,7 @@ def pressure_map(figure, name, table, units):
     axes.tick_params(labelsize=8)
     axes.set_xlabel(f"[{units.length}]", fontsize=8)
     figure.colorbar(colours, ax=axes, shrink=0.7, label=f"contact pressure [{unit}]")
-    axes.set_title(f"{name}, at most {pressure.max():.4g} {unit}", fontsize=10)
+    axes.set_title(f"{name}, at most {pressure.max():.4g} {unit}", fontsize=10, parse_math=False)
 
 
 PICTURES = {

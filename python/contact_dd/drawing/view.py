@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from contact_dd.drawing import shapes
+from contact_dd.drawing.finite import check_finite
 from contact_dd.drawing.html import escape
 from contact_dd.drawing.space import VIEW, Solid
 from contact_dd.drawing.units import in_units, units_of
@@ -43,7 +44,7 @@ def view(result, scale, picture):
     """The view, in HTML, displacements enlarged by `scale`; `picture` is there where the page is printed or the browser
     can't draw."""
     about, numbers = contents(result, scale)
-    script = Path(__file__).with_name("view.js").read_text()
+    script = Path(__file__).with_name("view.js").read_text(encoding="utf-8")
     turns = "drag to turn, with shift to move" if about["turns"] else "drag to move"
     fields = "".join(f"<option>{escape(field['name'])}</option>" for field in about["steps"][-1]["fields"])
     steps = "".join(f"<option>{escape(step['name'])}</option>" for step in about["steps"])
@@ -69,6 +70,8 @@ def contents(result, scale):
     """What the view holds, and its numbers, packed."""
     numbers = Numbers()
     steps = steps_of(result)
+    for one in steps:
+        check_finite(one)
     found, of_steps = surfaces_of(steps)
     kept = np.unique(np.concatenate([face for faces, _ in found for face in faces]))
     row = np.zeros(len(result.nodes), dtype=np.uint32)
