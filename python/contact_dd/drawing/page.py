@@ -187,6 +187,7 @@ def convergence(report, rows):
     left.set_ylabel("residual")
     right.set_ylim(0, 1.08 * max(1, active.max()))
     right.set_ylabel("closed conditions")
+    right.yaxis.set_major_locator(MaxNLocator(integer=True))
     for axes in (left, right):
         axes.set_xlabel("sweeps of all load steps" if report.get("steps") else "sweep (0: bilateral start)")
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -207,8 +208,12 @@ def steps(report, units):
     right.plot(times, [step["active_contacts"] for step in found], "o-", color="#3a9d5d", ms=4, lw=1.4)
     right.set_ylim(0, None)
     right.set_ylabel("closed conditions")
+    right.yaxis.set_major_locator(MaxNLocator(integer=True))
     for axes in (left, right):
         axes.set_xlabel("time")
+        # As where steps have their numbers for times.
+        if all(float(time).is_integer() for time in times):
+            axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     rows = [
         [step["name"], f"{step['time']:g}", step["status"].replace("_", " "), step["sweeps"],
          step["active_contacts"], si(pressure, units.stress), short(step["certificate"]["equilibrium"]),

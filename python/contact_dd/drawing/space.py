@@ -8,6 +8,7 @@ from matplotlib.tri import Triangulation
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from contact_dd.drawing.canvas import deformation_of, round_below
+from contact_dd.drawing.chart import chart_of
 from contact_dd.drawing.plane import von_mises
 from contact_dd.drawing.units import in_units, units_of
 from contact_dd.errors import InputError
@@ -130,8 +131,13 @@ class Solid:
         colours = plt.cm.ScalarMappable(plt.Normalize(0, most), "inferno_r")
         bodies = [self.points[face] for face in self.faces if looks_here(self.points[face])]
         axes.add_collection3d(Poly3DCollection(bodies, facecolors="0.5", edgecolors="0.4", alpha=0.06, linewidths=0.15))
+        # What doesn't press is seen through: it may lie before what does.
+        presses = values > 0
         polygons = [self.points[face] for face in faces]
-        axes.add_collection3d(Poly3DCollection(polygons, facecolors=colours.to_rgba(values), edgecolors="none"))
+        idle = [polygons[k] for k in np.flatnonzero(~presses)]
+        axes.add_collection3d(Poly3DCollection(idle, facecolors="0.5", edgecolors="0.4", alpha=0.06, linewidths=0.15))
+        loaded = [polygons[k] for k in np.flatnonzero(presses)]
+        axes.add_collection3d(Poly3DCollection(loaded, facecolors=colours.to_rgba(values[presses]), edgecolors="none"))
         axes.figure.colorbar(colours, ax=axes, shrink=0.7, label=f"contact pressure [{unit}]")
         axes.set_title(f"at most {most:.4g} {unit}", fontsize=10)
 
@@ -229,15 +235,11 @@ def overview(result, scale):
 
 
 def pressure_map(figure, name, table, units):
-    """The pressures of a contact, seen along its mean normal."""
+    """The pressures of a contact on its side, flat."""
     axes = figure.add_subplot(1, 2, 2, aspect="equal")
-    normal = table["normal"].mean(axis=0)
-    axis = np.eye(3)[np.abs(normal).argmin()]
-    first = np.cross(axis, normal)
-    first /= np.linalg.norm(first)
-    second = np.cross(normal / np.linalg.norm(normal), first)
-    x, y = table["position"] @ first, table["position"] @ second
-    (pressure, unit) = in_units(table["pressure"], units.stress)
+    chart = chart_of(table)
+    x, y = chart.x, chart.y
+    (pressure, unit) = in_units(table["pressure"][chart.rows], units.stress)
     colours = axes.tripcolor(Triangulation(x, y), pressure, shading="gouraud", cmap="inferno_r", vmin=0)
     axes.plot(x, y, ".", color="0.6", ms=1.5)
     closed = pressure > 0
@@ -246,7 +248,8 @@ def pressure_map(figure, name, table, units):
         half = max(np.ptp(x[closed]), np.ptp(y[closed])) * AROUND / 2
         limit(max(middle - half, of.min()), min(middle + half, of.max()))
     axes.tick_params(labelsize=8)
-    axes.set_xlabel(f"[{units.length}]", fontsize=8)
+    axes.set_xlabel(f"{chart.labels[0]} [{units.length}]", fontsize=8)
+    axes.set_ylabel(f"{chart.labels[1]} [{units.length}]", fontsize=8)
     figure.colorbar(colours, ax=axes, shrink=0.7, label=f"contact pressure [{unit}]")
     axes.set_title(f"{name}, at most {pressure.max():.4g} {unit}", fontsize=10, parse_math=False)
 

@@ -1,0 +1,79 @@
+"""A contact's side in space on paper: seen along its normal, unrolled where it goes around an axis, or the half of it
+that is loaded."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# Cosine of the angle to the mean normal down to which a side is seen along that.
+STEEP = 0.3
+# Of unit normals the part along an axis, root mean square, up to which they stand around it.
+AROUND_AXIS = 0.1
+# Angle that is round-off.
+ON_THE_CUT = 1e-6
+
+
+@dataclass
+class Chart:
+    """Where conditions are on paper."""
+
+    rows: np.ndarray
+    """Which ones are seen."""
+    x: np.ndarray
+    y: np.ndarray
+    labels: tuple[str, str]
+    """What the axes are."""
+
+
+def chart_of(table):
+    """The chart of a contact's table."""
+    normals, points = table["normal"], table["position"]
+    every = np.arange(len(table))
+    mean = normals.mean(axis=0)
+    length = np.linalg.norm(mean)
+    if length > 0 and (normals @ mean).min() > STEEP * length:
+        return seen_along(mean / length, every, points)
+    loaded = table["pressure"] @ normals
+    if np.linalg.norm(loaded) < 1e-3 * table["pressure"].sum():
+        loaded = normals[table["pressure"].argmax()]
+    _, sizes, directions = np.linalg.svd(normals, full_matrices=False)
+    if sizes[-1] < AROUND_AXIS * np.sqrt(len(normals)):
+        return unrolled(directions[-1], loaded, normals, points)
+    loaded = loaded / np.linalg.norm(loaded)
+    return seen_along(loaded, every[normals @ loaded > STEEP], points)
+
+
+def seen_along(normal, rows, points):
+    """As somebody sees it who looks against a normal."""
+    first = np.cross(np.eye(3)[np.abs(normal).argmin()], normal)
+    first /= np.linalg.norm(first)
+    second = np.cross(normal, first)
+    return Chart(rows, points[rows] @ first, points[rows] @ second, (along(first), along(second)))
+
+
+def unrolled(axis, loaded, normals, points):
+    """A side around an axis by the arc length from where it is loaded, and the place along the axis."""
+    axis = axis * np.sign(axis[np.abs(axis).argmax()])
+    first = loaded - (loaded @ axis) * axis
+    first /= np.linalg.norm(first)
+    second = np.cross(axis, first)
+    plane = np.stack([points @ first, points @ second], axis=1)
+    # The circle |p|² = 2 c·p + r² − |c|² that fits best.
+    system = np.column_stack([2 * plane, np.ones(len(plane))])
+    (cx, cy, rest), *_ = np.linalg.lstsq(system, (plane**2).sum(axis=1), rcond=None)
+    radius = np.sqrt(rest + cx**2 + cy**2)
+    arm = plane - (cx, cy)
+    # In a hole normals lead to the axis.
+    inward = (arm * np.stack([normals @ first, normals @ second], axis=1)).sum() < 0
+    angle = np.arctan2(*(-arm.T if inward else arm.T)[::-1])
+    # What lies on the cut lies on one side of it.
+    angle[angle < ON_THE_CUT - np.pi] += 2 * np.pi
+    return Chart(np.arange(len(points)), radius * angle, points @ axis, ("around the axis", along(axis)))
+
+
+def along(direction):
+    """A direction in words: a coordinate's name where it is one."""
+    k = np.abs(direction).argmax()
+    if abs(direction[k]) > 1 - 1e-6:
+        return "−" * bool(direction[k] < 0) + "xyz"[k]
+    return f"along ({', '.join(f'{component:.2f}' for component in direction + 0.0)})"
