@@ -12,6 +12,7 @@ from contact_dd import files
 from contact_dd.adaptivity import adapt as solve_adapted
 from contact_dd.comparison import Compared, compare
 from contact_dd.errors import ContactError, InputError
+from contact_dd.manual import KINDS, Generate, version
 from contact_dd.model import Model, scene_of
 from contact_dd.result import Result
 from contact_dd.tables import write_tables
@@ -33,6 +34,11 @@ def main() -> None:
 def parser() -> argparse.ArgumentParser:
     what = "Draws and reports results of contact-dd-mpi, and adapts meshes."
     top = argparse.ArgumentParser(prog="contact-dd", description=what)
+    top.add_argument("-V", "--version", action="version", version=f"contact-dd {version()}", help="print the version")
+    top.add_argument(
+        "--generate", action=Generate, choices=KINDS, metavar="KIND",
+        help="print the man page or completions for a shell: " + ", ".join(KINDS),
+    )
     commands = top.add_subparsers(required=True, metavar="COMMAND")
 
     drawn = commands.add_parser("plot", help="draw pictures of a result", description="Draws pictures of a result.")

@@ -49,6 +49,10 @@ def compare(results: Sequence[Result], adapted: bool = False) -> list[Compared]:
     Meshes that have `adapted` have cells of many sizes: there the estimated errors in the energy norm stand for these,
     and the last mesh is compared with one.
     """
+    if len(results) < 2:
+        found_of = f"the result {results[0].path} alone" if results else "no result"
+        raise InputError(f"{found_of}; expected two or three results of one scene, on meshes that differ in size")
+
     # By the size of cells, or what stands for it.
     def size(result: Result) -> float:
         if adapted:
