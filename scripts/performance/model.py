@@ -55,9 +55,21 @@ class Tree:
         return 8 * b * (b + 1) / 2
 
 
+class Unfit(Exception):
+    """What was given isn't a problem file and the report of its run; the message says what it is."""
+
+
 def read_tree(path):
     """The tree of a problem file, and what a report says of the problem that it is of."""
-    with h5py.File(path) as file:
+    try:
+        file = h5py.File(path)
+    except OSError as error:
+        raise Unfit(f"{path}: isn't a problem file of contact-dd-partition; expected PROBLEM REPORT") from error
+    with file:
+        if "hierarchy/parent" not in file:
+            raise Unfit(f"{path}: isn't a problem file of contact-dd-partition; expected PROBLEM REPORT")
+        if file.attrs["dimension"] != 2:
+            raise Unfit(f"{path}: is a problem in space; the model is of those in the plane")
         grid = file["VTKHDF"]
         points = grid["NumberOfPoints"][:].astype(np.int64)
         dofs = 2 * len(np.unique(grid["PointData/GlobalNodeId"][:]))
@@ -67,6 +79,10 @@ def read_tree(path):
         nodes = file["interface/node"][:] if "interface" in file else np.zeros(0, int)
         contact = {key: dataset[:] for key, dataset in file["contact"].items()} if "contact" in file else None
         parent = file["hierarchy/parent"][:]
+        names = {
+            kind: sorted(map(str, file[f"{kind}/name"].asstr()[:])) if kind in file else []
+            for kind in ("contact", "support")
+        }
 
     units = len(points)
     of_unit = np.repeat(np.arange(units), np.diff(offset))
@@ -78,7 +94,23 @@ def read_tree(path):
     pairs = np.unique(pairs, axis=0)
     parents = with_one_root(parent)
     tree = fronts(parents, units, pairs, 2 * points, conditions, int(points.sum()), cells)
-    return tree, {"dofs": dofs, "subdomains": units, "contact_conditions": int(conditions.sum())}
+    counts = {"dofs": dofs, "subdomains": units, "contact_conditions": int(conditions.sum())}
+    return tree, {**counts, "contacts": names["contact"], "supports": names["support"], "problem": path.name}
+
+
+def read_report(path):
+    """A report, and what it says of its problem."""
+    try:
+        report = json.loads(path.read_text())
+        said = {name: report[name] for name in ("dofs", "subdomains", "contact_conditions", "ranks")}
+        said["contacts"] = sorted(contact["name"] for contact in report["contacts"])
+        said["supports"] = sorted(support["support"] for support in report["reactions"])
+        said["problem"] = pathlib.Path(report["settings"]["problem"]).name
+    except OSError as error:
+        raise Unfit(f"{path}: can't be read: {error.strerror}") from error
+    except (ValueError, LookupError, TypeError) as error:
+        raise Unfit(f"{path}: isn't a report of contact-dd-mpi; expected PROBLEM REPORT") from error
+    return report, said
 
 
 def of_points(contact, of_unit, nodes, numbers):
@@ -334,13 +366,18 @@ def bottleneck(all_times):
     print(f"{text[0].upper()}{text[1:]}.")
 
 
-def belongs(report, problem, arguments):
-    """Ends unless the report is that of a run of the problem on one rank."""
+def check_belongs(said, problem, arguments):
+    """Raises `Unfit` unless the report is that of a run of the problem on one rank."""
     for name, expected in [*problem.items(), ("ranks", 1)]:
-        if report.get(name) != expected:
-            print(f"scaling predict: {arguments.report}: has {report.get(name)} {name.replace('_', ' ')}; expected "
-                  f"{expected}, the report of a run of {arguments.problem} on one rank", file=sys.stderr)
-            sys.exit(2)
+        if said[name] != expected:
+            raise Unfit(
+                f"{arguments.report}: {name.replace('_', ' ')}: {shown(said[name])}; expected {shown(expected)}, the "
+                f"report of a run of {arguments.problem} on one rank"
+            )
+
+
+def shown(value):
+    return (", ".join(value) or "none") if isinstance(value, list) else value
 
 
 def main():
@@ -356,9 +393,13 @@ def main():
                         help="ranks that the file system serves at full speed at once (default: %(default)s)")
     arguments = parser.parse_args()
 
-    report = json.loads(arguments.report.read_text())
-    tree, problem = read_tree(arguments.problem)
-    belongs(report, problem, arguments)
+    try:
+        tree, problem = read_tree(arguments.problem)
+        report, said = read_report(arguments.report)
+        check_belongs(said, problem, arguments)
+    except Unfit as error:
+        print(f"scaling predict: {error}", file=sys.stderr)
+        sys.exit(2)
     seconds = report["seconds"]
     # Phases don't tell fronts from leaves: the speed of a front is measured here.
     front_flop = dense_flop()
