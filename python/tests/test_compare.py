@@ -1,11 +1,12 @@
 """Error bars by comparison of meshes, against exact answers."""
 
+import edges
 import gmsh
 import numpy as np
 import pytest
 
-from contact_dd import InputError, Material, Model, compare
-from contact_dd.comparison import bar
+from contact_dd import InputError, Material, Model, adapt, compare
+from contact_dd.comparison import bar, numbers_of
 
 
 def on_meshes(scene, name, *options, meshes):
@@ -24,11 +25,23 @@ def holds(one, exact, at_most):
 
 
 def test_the_order_of_powers_is_found():
-    for order in 0.5, 1.0, 1.7:
-        sizes = np.array([1.0, 0.6, 0.25])
+    sizes = np.array([1.0, 0.6, 0.25])
+    for order in 0.5, 0.999, 1.7, 3.0:
         error, seen = bar(3 + 0.1 * sizes**order, sizes[:-1] / sizes[1:], 1e-12)
         assert np.isclose(seen, order)
-        assert np.isclose(error, 1.25 * 0.1 * sizes[-1] ** order)
+        true = 0.1 * sizes[-1] ** order
+        assert np.isclose(error, 1.25 * true) if order < 1 else error > 1.25 * true
+
+
+def test_an_order_above_that_of_cells_widens_the_bar():
+    # Of order 1, the last of them off by chance, so that a difference is small: its order is 20.
+    true, values = 3.0, [3.4, 3.2, 3.1999]
+    error, order = bar(values, [2, 2], 1e-12)
+    assert order > 10
+    assert error >= 0.1
+    # Two that are alike tell no more than that.
+    error, _ = bar([3.4, 3.2, 3.2], [2, 2], 1e-12)
+    assert error >= abs(values[-1] - true)
 
 
 def test_what_grows_or_sways_has_no_order():
@@ -43,7 +56,7 @@ def test_hertz(scene):
     peak = found(results, "largest pressure of contact")
     assert list(peak.values) == sorted(peak.values, reverse=True)
     assert 1.7 < peak.order < 2.3
-    assert holds(peak, 9.35135, at_most=3)
+    assert holds(peak, 9.35135, at_most=8)
     assert holds(found(results[1:], "largest pressure of contact"), 9.35135, at_most=10)
     assert not any(one.error > 1e-8 for one in compare(results) if one.name.startswith("force on contact, y"))
     with pytest.raises(InputError, match="expected cells"):
@@ -103,3 +116,27 @@ def test_rings_of_lame(tmp_path):
     # At the ends of the joint it hasn't begun to converge; that isn't called a small error.
     peak = found(results, "largest pressure of joint")
     assert peak.error is None or abs(peak.values[-1] - pressure) <= peak.error
+
+
+def test_bars_of_linear_cells_with_edges_and_friction_hold_the_truth(tmp_path):
+    """By meshes of second order that have adapted, of forces that are known to some 1e-6. What has no limit has no
+    bar."""
+    barred, off = 0, {}
+    for scene in (edges.rounded_punch, edges.t_slot, edges.dovetail):
+        size = edges.SCENES[scene]
+        best, _ = adapt(scene(size, ("tri", 2)), 1e-3, ranks=1, progress=False)
+        gmsh.finalize()
+        truth = {name: value for (_, name, _), value in numbers_of(best)}
+        for cells in ("tri", "quad"):
+            results = edges.on_meshes(scene, (cells, 1), [size / 2, size / 4, size / 8])
+            found = compare(results)
+            outside, count = edges.outside(found, truth)
+            barred += count
+            off |= {(scene.__name__, cells, name): bars for name, bars in outside.items()}
+            if scene is not edges.rounded_punch:
+                # A sharp edge lies on a face.
+                [pressure] = [one for one in found if one.name.startswith("largest pressure")]
+                assert pressure.error is None
+    assert barred > 25
+    assert len(off) <= 0.05 * barred, off
+    assert max(off.values(), default=0) < 3, off

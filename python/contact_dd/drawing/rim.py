@@ -1,0 +1,33 @@
+"""Pressures at the rims of contacts, where they may be singular."""
+
+import numpy as np
+
+from contact_dd.drawing.sides import sides_of
+from contact_dd.drawing.space import Solid
+
+
+def rim_pressures(result):
+    """By the names of contacts the largest pressure at the rim of side a; 0 where it has none."""
+    if result.is_in_space:
+        solid = Solid(result)
+        tables = {name: table for name, table in result.contacts_there.items() if len(table)}
+        return {name: at_nodes(table, rim_of(result, solid.side(table)[0])) for name, table in tables.items()}
+    found = {}
+    for name, side in sides_of(result).items():
+        open_ends = [rows[[0, -1]] for rows, _ in side.pieces if rows[0] != rows[-1] or len(rows) == 1]
+        ends = np.concatenate(open_ends) if open_ends else np.zeros(0, dtype=int)
+        found[name] = float(side.pressure[ends].max(initial=0.0))
+    return found
+
+
+def rim_of(result, faces):
+    """The tags of nodes on edges of one face only."""
+    if not faces:
+        return np.zeros(0, dtype=int)
+    edges = np.sort(np.concatenate([np.stack([face, np.roll(face, -1)], axis=1) for face in faces]), axis=1)
+    edges, count = np.unique(edges, axis=0, return_counts=True)
+    return result.nodes[np.unique(edges[count == 1])]
+
+
+def at_nodes(table, tags):
+    return float(table["pressure"][np.isin(table["node_a"], tags)].max(initial=0.0))
