@@ -8,9 +8,13 @@ use contact_dd_mpi::output::event;
 use contact_dd_mpi::run::{Ending, run};
 use contact_dd_mpi::settings::command_line::{CommandLine, LogFormat};
 use contact_dd_partition::manual::{Answer, BAD_USAGE};
+use contact_dd_partition::problem::trial;
 
 fn main() -> ExitCode {
     keep_freed_memory();
+    if let Some(code) = trial::answer() {
+        return code;
+    }
     if comm::is_launched() {
         // Launchers show ranks a terminal whatever their output goes to.
         event::without_colours();

@@ -9,14 +9,16 @@ mod stage;
 mod sweeping;
 
 use std::ops::Range;
+use std::path::Path;
 use std::time::Instant;
 
 use contact_dd_partition::problem::read::ProblemFile;
+use contact_dd_partition::problem::trial;
 use faer::Par;
 
 use self::restart::{Finished, finished_steps};
 use self::stage::{Progress, Stages};
-use crate::comm::{Comm, phase};
+use crate::comm::{Comm, is_asked_to_stop, phase};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::output::report::ReportFile;
@@ -47,7 +49,9 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     let (began, start) = (Instant::now(), comm.times());
     // Settings of the command line take precedence over those of the problem file.
     phase("reading");
-    let file = comm.agree(ProblemFile::open(&command_line.problem()).map_err(Failure::from))?;
+    let path = command_line.problem();
+    check_problem(comm, &path)?;
+    let file = comm.agree(ProblemFile::open(&path).map_err(Failure::from))?;
     let settings = &Settings::new(command_line, &file.catalog().solver);
     comm.agree(settings.check_paths())?;
     let par = match settings.threads {
@@ -124,6 +128,23 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         true => Ending::Converged,
         false => Ending::NotConverged,
     })
+}
+
+/// Checks that the HDF5 library can read the problem file, on the root alone. Collective.
+///
+/// # Errors
+/// It isn't there or is damaged, or a signal asked the run to stop.
+fn check_problem(comm: &Comm, path: &Path) -> Result<(), Failure> {
+    let check = || trial::check(path, is_asked_to_stop).err();
+    let mut damage = comm.is_root().then(check).flatten().map(Failure::from);
+    comm.broadcast(&mut damage);
+    match damage {
+        Some(damage) => Err(damage),
+        None if comm.is_any_asked_to_stop() => Err(Failure::interrupted(
+            "interrupted while reading, before a result was written",
+        )),
+        None => Ok(()),
+    }
 }
 
 /// Creates the output files, so that a folder that can't be written is found before the work, or opens those of a run

@@ -18,7 +18,7 @@ use contact_dd_partition::manual::Answer;
 use contact_dd_partition::mesh::{self, Mesh};
 use contact_dd_partition::message::{self, WARNING};
 use contact_dd_partition::model::Model;
-use contact_dd_partition::problem::Problem;
+use contact_dd_partition::problem::{Problem, trial};
 use contact_dd_partition::scene::Scene;
 use rustix::stdio::dup2_stdout;
 
@@ -41,6 +41,9 @@ impl Failure {
 }
 
 fn main() -> ExitCode {
+    if let Some(code) = trial::answer() {
+        return code;
+    }
     let args = match CommandLine::try_parse() {
         Ok(args) => args,
         Err(error) => {
@@ -70,6 +73,7 @@ fn run(args: &CommandLine) -> Result<(), Failure> {
         return Ok(());
     }
     if let Some(path) = &args.info {
+        trial::check(path, || false)?;
         say(&Info::read(path)?.to_string());
         return Ok(());
     }

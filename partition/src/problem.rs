@@ -7,6 +7,7 @@ pub mod choice;
 pub mod clusters;
 pub mod consistency;
 pub mod copies;
+pub mod digest;
 mod friction;
 mod law;
 pub mod read;
@@ -14,6 +15,7 @@ pub mod schema;
 pub mod stage;
 mod strings;
 pub mod tree;
+pub mod trial;
 pub mod vtkhdf;
 pub mod write;
 

@@ -3,10 +3,10 @@
 use std::fmt;
 use std::path::Path;
 
-use hdf5::types::{FixedAscii, TypeDescriptor, VarLenUnicode};
-use hdf5::{Container, File, Group, H5Type};
+use hdf5::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenUnicode};
+use hdf5::{Container, Group, H5Type};
 
-use super::walk::Place;
+use super::walk::{Place, without_locks};
 
 /// What is done to a dataset or an attribute.
 #[derive(Clone, Debug)]
@@ -61,7 +61,7 @@ impl fmt::Display for Change {
 
 /// All changes of what stands at `place`.
 pub fn changes(path: &Path, place: &Place) -> Vec<Change> {
-    let file = File::open(path).unwrap();
+    let file = without_locks().open(path).unwrap();
     let container = open(&file.group(&place.group).unwrap(), place);
     let mut changes = vec![
         Change::Drop,
@@ -118,7 +118,7 @@ pub fn changes(path: &Path, place: &Place) -> Vec<Change> {
 impl Change {
     /// Makes the change in a file.
     pub fn apply(&self, path: &Path, place: &Place) {
-        let file = File::open_rw(path).unwrap();
+        let file = without_locks().open_rw(path).unwrap();
         let group = file.group(&place.group).unwrap();
         let container = open(&group, place);
         let mut shape = container.shape();
@@ -188,6 +188,10 @@ fn read(container: &Container) -> Data {
         TypeDescriptor::Float(_) => Data::Reals(container.read_raw().unwrap()),
         TypeDescriptor::VarLenUnicode => {
             let texts = container.read_raw::<VarLenUnicode>().unwrap();
+            Data::Texts(texts.iter().map(|text| text.as_str().into()).collect())
+        }
+        TypeDescriptor::FixedUnicode(_) => {
+            let texts = container.read_raw::<FixedUnicode<1024>>().unwrap();
             Data::Texts(texts.iter().map(|text| text.as_str().into()).collect())
         }
         TypeDescriptor::FixedAscii(_) => {

@@ -1,10 +1,44 @@
 //! Strings of a file, of variable or fixed length.
 
+use std::fmt::Display;
+use std::str::FromStr;
+
 use hdf5::H5Type;
 use hdf5::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenUnicode};
 
-/// Longest fixed-length string that is read (bytes).
+/// Longest fixed-length string that is read or written (bytes).
 const LONGEST_FIXED: usize = 1024;
+
+/// The type in which texts are written: that of a fixed length where they aren't too long for one, as HDF5 keeps others
+/// in a heap without checksums.
+pub(super) fn type_of(texts: &[String]) -> TypeDescriptor {
+    // Nothing has no length 0 in HDF5.
+    match texts.iter().map(String::len).max().unwrap_or(0).max(1) {
+        length if length <= LONGEST_FIXED => TypeDescriptor::FixedUnicode(length),
+        _ => TypeDescriptor::VarLenUnicode,
+    }
+}
+
+/// Writes texts without NUL to a dataset or attribute of their [type](type_of).
+pub(super) fn write_strings(container: &hdf5::Container, texts: &[String]) -> hdf5::Result<()> {
+    match type_of(texts) {
+        _ if texts.is_empty() => Ok(()),
+        TypeDescriptor::FixedUnicode(_) => {
+            write_as::<FixedUnicode<LONGEST_FIXED>>(container, texts)
+        }
+        _ => write_as::<VarLenUnicode>(container, texts),
+    }
+}
+
+fn write_as<T>(container: &hdf5::Container, texts: &[String]) -> hdf5::Result<()>
+where
+    T: H5Type + FromStr<Err: Display>,
+{
+    let texts = texts.iter().map(|text| text.parse::<T>());
+    let texts: Result<Vec<T>, _> = texts.collect();
+    let texts = texts.map_err(|reason| hdf5::Error::Internal(reason.to_string()))?;
+    container.write_raw(&texts)
+}
 
 /// Reads the strings of a dataset or attribute.
 pub(super) fn read_strings(container: &hdf5::Container) -> Result<Vec<String>, String> {

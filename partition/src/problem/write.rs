@@ -3,18 +3,20 @@
 use std::path::Path;
 
 use hdf5::H5Type;
-use hdf5::types::VarLenUnicode;
+use hdf5::plist::file_access::LibraryVersion;
+use hdf5::types::TypeDescriptor;
 use toml::Value;
 
 use super::law::LawRow;
 use super::schema::{Counts, FIELDS};
-use super::{FORMAT, InitialStress, Problem, Subdomain, VERSION, vtkhdf};
+use super::strings::{type_of, write_strings};
+use super::{FORMAT, InitialStress, Problem, Subdomain, VERSION, digest, vtkhdf};
 use crate::destination::Destination;
 use crate::error::OutputError;
 use crate::model::PlaneState;
 
 impl Problem {
-    /// Writes the problem under a temporary name and renames it when it is whole.
+    /// Writes the problem, with its [digest], under a temporary name and renames it when it is whole.
     ///
     /// # Errors
     /// The file can't be written; what was there before is untouched.
@@ -23,12 +25,18 @@ impl Problem {
         let destination = Destination::new(path)?;
         self.write_all(destination.temporary())
             .map_err(|error| destination.failure(error))?;
+        digest::append(destination.temporary()).map_err(|error| destination.failure(error))?;
         destination.commit()
     }
 
     fn write_all(&self, path: &Path) -> hdf5::Result<()> {
         let file = hdf5::File::with_options()
-            .with_fapl(|access| access.file_locking(false))
+            .with_fapl(|access| {
+                // Of the formats whose metadata have checksums the one that most programs read, and that keeps no
+                // mark of a writer that was killed.
+                access.libver_bounds(LibraryVersion::V18, LibraryVersion::V18);
+                access.file_locking(false)
+            })
             .create(path)?;
         let mut datasets = Datasets {
             file: &file,
@@ -234,21 +242,32 @@ struct Datasets<'a> {
 impl Datasets<'_> {
     /// Writes values row by row, in the shape that the schema says.
     fn put<T: H5Type>(&mut self, path: &str, values: impl Iterator<Item = T>) -> hdf5::Result<()> {
+        let values: Vec<T> = values.collect();
+        let dataset = self.create(path, &T::type_descriptor(), values.len())?;
+        match values.is_empty() {
+            true => Ok(()),
+            false => dataset.write_raw(&values),
+        }
+    }
+
+    /// Makes a dataset for so many values of a type, in the shape that the schema says.
+    fn create(
+        &mut self,
+        path: &str,
+        of: &TypeDescriptor,
+        values: usize,
+    ) -> hdf5::Result<hdf5::Dataset> {
         let field = FIELDS.iter().find(|field| field.path == path);
         let field = field.ok_or_else(|| format!("the schema has no {path}"))?;
-        let values: Vec<T> = values.collect();
         let mut shape = self.counts.shape(field);
-        shape[0] = values.len() / shape[1..].iter().product::<usize>();
+        shape[0] = values / shape[1..].iter().product::<usize>();
         (self.counts.learn(field, &shape))
             .map_err(|expected| format!("{path} has shape {shape:?}; expected {expected}"))?;
         if !self.file.link_exists(field.group()) {
             self.file.create_group(field.group())?;
         }
-        let dataset = self.file.new_dataset::<T>().shape(shape).create(path)?;
-        match values.is_empty() {
-            true => Ok(()),
-            false => dataset.write_raw(&values),
-        }
+        let new = self.file.new_dataset_builder().empty_as(of);
+        new.shape(shape).create(path)
     }
 
     /// Writes which of `count` things are there, row by row; nothing if none is ever `absent`.
@@ -294,13 +313,17 @@ impl Datasets<'_> {
         path: &str,
         strings: impl Iterator<Item = &'v str>,
     ) -> hdf5::Result<()> {
-        let strings = strings.map(variable).collect::<hdf5::Result<Vec<_>>>()?;
-        self.put(path, strings.into_iter())
+        let texts: Vec<String> = strings.map(without_nul).collect();
+        let dataset = self.create(path, &type_of(&texts), texts.len())?;
+        write_strings(&dataset, &texts)
     }
 }
 
 fn text(group: &hdf5::Group, name: &str, value: &str) -> hdf5::Result<()> {
-    attribute(group, name, variable(value)?)
+    let text = [without_nul(value)];
+    let new = group.new_attr_builder().empty_as(&type_of(&text));
+    let attribute = new.create(name)?;
+    write_strings(&attribute, &text)
 }
 
 fn attribute<T: H5Type>(group: &hdf5::Group, name: &str, value: T) -> hdf5::Result<()> {
@@ -308,8 +331,6 @@ fn attribute<T: H5Type>(group: &hdf5::Group, name: &str, value: T) -> hdf5::Resu
 }
 
 /// HDF5's strings end at the first NUL.
-fn variable(text: &str) -> hdf5::Result<VarLenUnicode> {
+fn without_nul(text: &str) -> String {
     text.replace('\0', "\u{fffd}")
-        .parse()
-        .map_err(|reason: hdf5::types::StringError| hdf5::Error::Internal(reason.to_string()))
 }

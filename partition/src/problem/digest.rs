@@ -1,0 +1,123 @@
+//! The digest of a problem file: a trailer behind the HDF5 file, by which a damaged file is known before the HDF5
+//! library, which may crash on one, sees it.
+//!
+//! HDF5 doesn't look behind its end of file, and cuts off what is there whenever it opens the file to write to it. So
+//! the digest is there as long as nobody edited the file, and gone with the first edit.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+use twox_hash::XxHash3_128;
+
+use crate::error::InputError;
+use crate::source;
+
+/// The last bytes of a file that has a digest.
+const MARK: &[u8; 16] = b"contact-dd XXH3\n";
+
+/// Size of the trailer (bytes): the digest, the length of what it is of, both with low bytes first, and the mark.
+const TRAILER: usize = 16 + 8 + MARK.len();
+
+/// How much is read at once (bytes).
+const PIECE: usize = 1 << 18;
+
+/// Whether a file has a digest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Digest {
+    /// It has that of its bytes.
+    Right,
+    /// It has none: another program wrote or edited it.
+    Absent,
+}
+
+impl Digest {
+    /// Reads all of a file and compares it with its digest, if it has one.
+    ///
+    /// # Errors
+    /// It can't be read, or has the digest of other bytes.
+    pub fn of(path: &Path) -> Result<Self, InputError> {
+        let mut file = source::open(path, "a problem file")?;
+        let unreadable = |reason| InputError::new(format!("can't be read: {reason}"));
+        let Some((digest, length)) = trailer(&mut file).map_err(unreadable)? else {
+            return Ok(Self::Absent);
+        };
+        match digest == of_bytes(&mut file, length).map_err(unreadable)? {
+            true => Ok(Self::Right),
+            false => Err(InputError::new(
+                "is damaged: it isn't what its digest is of; expected the file as contact-dd-partition wrote it. Copy \
+                 it again, or make it again",
+            )),
+        }
+    }
+}
+
+/// Adds the digest of a whole HDF5 file to it.
+///
+/// # Errors
+/// What the system said.
+pub fn append(path: &Path) -> io::Result<()> {
+    let mut file = File::options().read(true).append(true).open(path)?;
+    let length = file.metadata()?.len();
+    let digest = of_bytes(&mut file, length)?;
+    let parts = [&digest.to_le_bytes(), &length.to_le_bytes()[..], MARK];
+    file.write_all(&parts.concat())
+}
+
+/// The digest that a file has at its end, and the length of what is before.
+fn trailer(file: &mut File) -> io::Result<Option<(u128, u64)>> {
+    let Some(length) = file.metadata()?.len().checked_sub(TRAILER as u64) else {
+        return Ok(None);
+    };
+    let (mut digest, mut stated, mut mark) = ([0; 16], [0; 8], [0; MARK.len()]);
+    file.seek(SeekFrom::Start(length))?;
+    for part in [&mut digest[..], &mut stated, &mut mark] {
+        file.read_exact(part)?;
+    }
+    // Of another length, it is the end of something else that was appended.
+    let is_there = mark == *MARK && u64::from_le_bytes(stated) == length;
+    Ok(is_there.then_some((u128::from_le_bytes(digest), length)))
+}
+
+/// XXH3 of 128 bits of the first `length` bytes.
+fn of_bytes(file: &mut File, length: u64) -> io::Result<u128> {
+    file.rewind()?;
+    let mut rest = file.take(length);
+    let mut hasher = XxHash3_128::new();
+    let mut piece = vec![0; PIECE];
+    loop {
+        match rest.read(&mut piece)? {
+            0 => return Ok(hasher.finish_128()),
+            read => hasher.write(&piece[..read]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    #[test]
+    fn a_digest_holds_for_its_bytes_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        for length in [0, 1, TRAILER, PIECE, 2 * PIECE + 7] {
+            let bytes: Vec<u8> = (0..length).map(|i| (i * i) as u8).collect();
+            fs::write(&path, &bytes).unwrap();
+            assert_eq!(Digest::of(&path), Ok(Digest::Absent));
+            append(&path).unwrap();
+            assert_eq!(Digest::of(&path), Ok(Digest::Right));
+            let whole = fs::read(&path).unwrap();
+            assert_eq!(whole.len(), length + TRAILER);
+            for at in (0..length).step_by(length.div_ceil(5).max(1)) {
+                let mut changed = whole.clone();
+                changed[at] ^= 1;
+                fs::write(&path, changed).unwrap();
+                let error = Digest::of(&path).unwrap_err().to_string();
+                assert!(error.contains("is damaged"), "{error}");
+            }
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! The trial of a problem file: whether it can be read at all.
+//!
+//! On a damaged file the HDF5 library may crash or never come to an end. A file that has a [digest](super::digest) isn't
+//! damaged. Any other is read first by a process of its own, which is this program, started anew.
+
+use std::ffi::OsStr;
+use std::fmt::Display;
+use std::os::unix::process::ExitStatusExt as _;
+use std::path::Path;
+use std::process::{Child, Command, ExitCode, ExitStatus, Stdio};
+use std::time::Duration;
+use std::{env, fs, io, thread};
+
+use rustix::process::{
+    Resource, Rlimit, Signal, getrlimit, set_parent_process_death_signal, setrlimit,
+};
+use rustix::time::{ClockId, clock_gettime};
+
+use super::digest::Digest;
+use super::read::ProblemFile;
+use crate::error::InputError;
+
+/// Names the file to a process that tries it.
+const FILE: &str = "CONTACT_DD_TRIAL";
+
+/// How many subdomains are read at once.
+const AT_ONCE: usize = 64;
+
+/// The computing time within which each step of reading a small file ends (seconds).
+const PATIENCE: u64 = 1;
+
+/// What a step of reading takes in a debug build, and less than that (bytes in a second).
+const SLOWEST: u64 = 20 << 20;
+
+/// The memory that reading a small file takes, and far more (bytes).
+const MEMORY: u64 = 4 << 30;
+
+/// The memory that reading a large file takes, over its size, and more.
+const MEMORY_OF_SIZE: u64 = 8;
+
+/// How long the wait for the other process is before it is looked at again.
+const PAUSE: Duration = Duration::from_millis(2);
+
+/// Checks that the HDF5 library can read a problem file: by its digest, or by trying. Ends early, without a finding,
+/// once the program `is_asked_to_stop`.
+///
+/// [`answer`] has to be the first that the program calls.
+///
+/// # Errors
+/// The file isn't there or is damaged.
+pub fn check(path: &Path, is_asked_to_stop: fn() -> bool) -> Result<(), InputError> {
+    let checked = match Digest::of(path) {
+        Ok(Digest::Right) => Ok(()),
+        Ok(Digest::Absent) => attempt(path, is_asked_to_stop),
+        Err(error) => Err(error),
+    };
+    checked.map_err(|error| error.in_file(path))
+}
+
+/// Reads the file that this process was started to try, if it was; what is wrong with it in words is told by the one
+/// that comes after.
+pub fn answer() -> Option<ExitCode> {
+    let path = env::var_os(FILE)?;
+    let read = || -> Result<(), InputError> {
+        let limits = Limits::of(Path::new(&path));
+        limits.start();
+        let file = ProblemFile::open(Path::new(&path))?;
+        let count = file.catalog().subdomains.len();
+        for first in (0..count).step_by(AT_ONCE) {
+            limits.extend();
+            file.subdomains(first..count.min(first + AT_ONCE))?;
+        }
+        Ok(())
+    };
+    let _ = read();
+    Some(ExitCode::SUCCESS)
+}
+
+/// Has another process read the file.
+fn attempt(path: &Path, is_asked_to_stop: fn() -> bool) -> Result<(), InputError> {
+    let damaged = |how: &dyn Display| {
+        InputError::new(format!(
+            "is damaged: the HDF5 library {how}. Expected a whole file; make it again"
+        ))
+    };
+    // Where no process can be started the file is read untried.
+    let Ok(child) = start(path.as_os_str()) else {
+        return Ok(());
+    };
+    match wait(child, is_asked_to_stop) {
+        Ok(Some(status)) if !status.success() => Err(match status.signal() {
+            Some(signal) if signal == Signal::XCPU.as_raw() => {
+                damaged(&"doesn't come to an end with it")
+            }
+            _ => damaged(&format!("crashes on it ({status})")),
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn start(path: &OsStr) -> io::Result<Child> {
+    Command::new(env::current_exe()?)
+        .env(FILE, path)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+}
+
+/// How a process ended; `None` if it was ended because the program `is_asked_to_stop`.
+fn wait(mut child: Child, is_asked_to_stop: fn() -> bool) -> io::Result<Option<ExitStatus>> {
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(Some(status));
+        }
+        if is_asked_to_stop() {
+            child.kill()?;
+            child.wait()?;
+            return Ok(None);
+        }
+        thread::sleep(PAUSE);
+    }
+}
+
+/// What a process that tries a file may take.
+struct Limits {
+    memory: u64,
+    /// Computing time of a step (seconds).
+    patience: u64,
+}
+
+impl Limits {
+    fn of(path: &Path) -> Self {
+        let size = fs::metadata(path).map_or(0, |file| file.len());
+        Self {
+            memory: MEMORY + MEMORY_OF_SIZE * size,
+            patience: PATIENCE + size / SLOWEST,
+        }
+    }
+
+    /// Limits the memory and the first step, leaves no core file, and ends with the process that waits.
+    fn start(&self) {
+        let _ = set_parent_process_death_signal(Some(Signal::KILL));
+        limit(Resource::Core, 0);
+        limit(Resource::As, self.memory);
+        self.extend();
+    }
+
+    /// Gives another step its time.
+    fn extend(&self) {
+        let spent = clock_gettime(ClockId::ProcessCPUTime).tv_sec as u64;
+        limit(Resource::Cpu, spent + 1 + self.patience);
+    }
+}
+
+/// Sets a limit, or the one that the system imposes where that is less. What can't be limited goes without.
+fn limit(resource: Resource, most: u64) {
+    let given = getrlimit(resource);
+    let current = given.maximum.map_or(most, |maximum| maximum.min(most));
+    let limited = Rlimit {
+        current: Some(current),
+        ..given
+    };
+    let _ = setrlimit(resource, limited);
+}
