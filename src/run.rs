@@ -21,8 +21,10 @@ use self::stage::{Progress, Stages};
 use crate::comm::{Comm, is_asked_to_stop, phase};
 use crate::context::Context;
 use crate::error::Failure;
+use crate::output::lock::OutputLock;
 use crate::output::report::ReportFile;
 use crate::output::vtkhdf::beside::FileBeside;
+use crate::output::vtkhdf::kept::Kept;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::report::log::RunLog;
 use crate::report::totals::Totals;
@@ -77,6 +79,8 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         log.check(&checked.collect::<Result<Vec<_>, _>>()?);
         return Ok(Ending::Converged);
     }
+    let lock = comm.is_root().then(|| OutputLock::take(&settings.output));
+    let _lock = comm.agree(lock.transpose().map_err(Failure::from))?;
     let mut progress = Progress {
         finished: finished_steps(comm, settings)?,
         smallest_pivot: 1.0,
@@ -148,29 +152,33 @@ fn check_problem(comm: &Comm, path: &Path) -> Result<(), Failure> {
 }
 
 /// Creates the output files, so that a folder that can't be written is found before the work, or opens those of a run
-/// that was stopped after some `finished` load steps.
+/// that was stopped, with what it kept of `finished` load steps.
 /// Collective; the root has the files, and all ranks have the result file beside it where they may write to it at once.
 ///
 /// # Errors
-/// A file can't be made.
+/// A file can't be made, or doesn't hold what was written of finished load steps.
 fn create_outputs(
     context: &Context<'_>,
     settings: &Settings,
-    finished: usize,
+    finished: Option<Kept>,
 ) -> Result<(Option<Outputs>, Option<FileBeside>), Failure> {
     let comm = context.comm;
     let layout = layout(context, settings);
-    let create = || -> Result<Outputs, Failure> {
+    let create = move |layout: &Layout| -> Result<Outputs, Failure> {
         let report = settings.report.as_deref().map(ReportFile::create);
         Ok(Outputs {
             result: match finished {
-                0 => ResultFile::create(&settings.output, &layout)?,
-                steps => ResultFile::resume(&settings.output, &layout, steps)?,
+                None => ResultFile::create(&settings.output, layout)?,
+                Some(kept) => {
+                    let whole = kept.check(&settings.output);
+                    whole.map_err(|error| Failure::input(format!("--restart: {error}")))?;
+                    ResultFile::resume(&settings.output, layout, kept)?
+                }
             },
             report: report.transpose()?,
         })
     };
-    let outputs = comm.agree(comm.is_root().then(create).transpose())?;
+    let outputs = comm.agree(comm.is_root().then(|| create(&layout)).transpose())?;
     // A single rank needs nobody beside it.
     let result = outputs.as_ref().filter(|_| comm.size() > 1);
     let mut places = result.and_then(|outputs| outputs.result.places());

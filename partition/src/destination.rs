@@ -29,9 +29,7 @@ impl Destination {
     /// writable file has.
     pub fn new(path: &Path) -> Result<Self, OutputError> {
         let target = target_of(path)?;
-        let mut prefix = OsString::from(".");
-        prefix.push(target.file_name().unwrap_or_default());
-        prefix.push(".");
+        let prefix = hidden(&target);
         let made = Builder::new()
             .prefix(&prefix)
             .suffix(".part")
@@ -67,10 +65,10 @@ impl Destination {
     /// # Errors
     /// What the system said.
     pub fn keep(&mut self) -> Result<(), OutputError> {
-        let kept = unfinished(&self.target);
-        if *self.temporary == *kept {
+        if self.is_kept() {
             return Ok(());
         }
+        let kept = unfinished(&self.target);
         let fails = |error: io::Error| failure(&self.path, error);
         fs::rename(&self.temporary, &kept).map_err(fails)?;
         let mut temporary = TempPath::try_from_path(kept).map_err(fails)?;
@@ -78,6 +76,16 @@ impl Destination {
         // What had the temporary name has none any more.
         std::mem::replace(&mut self.temporary, temporary).disable_cleanup(true);
         Ok(())
+    }
+
+    /// Whether the temporary file stays where it isn't committed.
+    pub fn is_kept(&self) -> bool {
+        *self.temporary == *unfinished(&self.target)
+    }
+
+    /// The file that is to be.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The file to write to.
@@ -108,18 +116,41 @@ impl Destination {
     }
 }
 
-/// The name of what a run that was stopped kept of the file `path`: `NAME.unfinished`.
+/// The name of what a run that was stopped kept of the file `path`, once links are followed: `NAME.unfinished`.
 pub fn unfinished(path: &Path) -> PathBuf {
-    let mut name = OsString::from(path);
+    let mut name = OsString::from(follow(path));
     name.push(".unfinished");
     PathBuf::from(name)
+}
+
+/// The file `.NAME.ending` beside the file that `path` names, once links are followed.
+///
+/// # Errors
+/// As of [`Destination::new`].
+pub fn beside(path: &Path, ending: &str) -> Result<PathBuf, OutputError> {
+    let target = target_of(path)?;
+    let mut name = hidden(&target);
+    name.push(ending);
+    Ok(folder_of(&target).join(name))
+}
+
+/// The beginning of the names of what stands beside `target` for a while: `.NAME.`.
+fn hidden(target: &Path) -> OsString {
+    let mut name = OsString::from(".");
+    name.push(target.file_name().unwrap_or_default());
+    name.push(".");
+    name
+}
+
+/// The path without links: what a link points to is replaced, not the link.
+fn follow(path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf())
 }
 
 /// The file that `path` names, once links are followed.
 fn target_of(path: &Path) -> Result<PathBuf, OutputError> {
     let fails = |reason: &str| Err(failure(path, reason));
-    // A link is followed: what it points to is replaced, not the link.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let target = follow(path);
     if let Ok(metadata) = fs::metadata(&target) {
         if !metadata.is_file() {
             return fails("it isn't a file");

@@ -1,18 +1,23 @@
 //! The result file: `/VTKHDF`, `/contact`, `/convergence` and the attribute `report`.
 //!
 //! Every subdomain and every contact condition has its place from the start, so each is written
-//! when it arrives, in any order; subdomains in slabs, so that one slab at a time is in memory.
+//! when it arrives, in any order; subdomains in slabs, so that one slab at a time is in memory. After
+//! a load step it is an unfinished file to go on with, by what is [`kept`] beside it.
 
 pub mod beside;
+mod checkpoint;
 pub(super) mod column;
 mod contact_table;
 mod grid;
+pub mod kept;
 
+use std::fs::{self, OpenOptions};
+use std::io;
 use std::ops::Range;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
-use contact_dd_partition::destination::{self, Destination};
+use contact_dd_partition::destination::Destination;
 use contact_dd_partition::error::OutputError;
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::{Catalog, ContactSummary};
@@ -21,8 +26,10 @@ use hdf5::types::VarLenUnicode;
 use hdf5::{File, FileBuilder};
 
 use self::beside::Places;
+use self::checkpoint::Checkpoint;
 use self::contact_table::ContactTables;
 use self::grid::Grid;
+use self::kept::{Kept, forget};
 use super::result::{ContactRow, Of, PartitionSize, SubdomainResults};
 use crate::sweep::SweepRecord;
 
@@ -79,9 +86,6 @@ impl Layout {
     }
 }
 
-/// The dataset of a file of load steps, while it isn't complete, that holds what goes on after those finished.
-const STATE: &str = "unfinished";
-
 /// A result file that is being written, under a temporary name in the folder of the final one.
 ///
 /// Dropped without [`finish`](Self::finish) it leaves nothing behind, unless load steps are finished and
@@ -95,6 +99,10 @@ pub struct ResultFile {
     steps: usize,
     /// The one that is being written.
     step: usize,
+    /// The digests of load steps that are written since the last one was kept.
+    digests: Vec<Vec<u64>>,
+    /// What is kept beside those before.
+    kept: Option<Kept>,
     // Closed before `destination` removes or renames it: fields are dropped in this order.
     file: File,
     destination: Destination,
@@ -106,53 +114,38 @@ impl ResultFile {
     /// # Errors
     /// The file can't be made: no such folder, no permission, a name that something else has.
     pub fn create(path: &Path, layout: &Layout) -> Result<Self, OutputError> {
-        let destination = Destination::new(path)?;
-        Self::open(destination, layout, 0, |options, path| options.create(path))
+        Self::open(Destination::new(path)?, layout, None)
     }
 
-    /// Opens the file of a run that was stopped after `finished` load steps, to go on with it.
+    /// Opens the file of a run that was stopped, to go on after the load steps that it finished, which are
+    /// [checked](Kept::check).
     ///
     /// # Errors
-    /// The file can't be opened, or has another layout.
-    pub fn resume(path: &Path, layout: &Layout, finished: usize) -> Result<Self, OutputError> {
+    /// The file can't be opened or written, or has another layout.
+    pub fn resume(path: &Path, layout: &Layout, kept: Kept) -> Result<Self, OutputError> {
         let destination = Destination::kept(path)?;
-        Self::open(destination, layout, finished, |options, path| {
-            options.open_rw(path)
-        })
-    }
-
-    /// What a run that was stopped [kept](Self::keep) beside its finished load steps; `None` where there is
-    /// no such run.
-    ///
-    /// # Errors
-    /// The file isn't what such a run leaves.
-    pub fn kept_state(path: &Path) -> Result<Option<Vec<u8>>, OutputError> {
-        let kept = destination::unfinished(path);
-        if !kept.exists() {
-            return Ok(None);
-        }
-        let read = || {
-            let file = without_locks().open(&kept)?;
-            file.dataset(STATE)?.read_raw::<u8>()
-        };
-        let why = "isn't what a run that was stopped leaves; expected its load steps";
-        read()
-            .map(Some)
-            .map_err(|_| destination::failure(&kept, why))
+        let file = OpenOptions::new().write(true).open(destination.temporary());
+        let restored = file.and_then(|file| kept.checkpoint.restore(&file));
+        restored.map_err(|error| destination.failure(error))?;
+        Self::open(destination, layout, Some(kept))
     }
 
     fn open(
         destination: Destination,
         layout: &Layout,
-        finished: usize,
-        open: impl Fn(FileBuilder, &Path) -> hdf5::Result<File>,
+        kept: Option<Kept>,
     ) -> Result<Self, OutputError> {
         let make = || {
-            let file = open(without_locks(), destination.temporary())?;
-            attribute(&file, "title", &layout.title)?;
-            attribute(&file, "units", layout.units.length())?;
-            if let Some(plane) = layout.plane {
-                attribute(&file, "plane", plane.name())?;
+            let file = match kept {
+                Some(_) => without_locks().open_rw(destination.temporary())?,
+                None => without_locks().create(destination.temporary())?,
+            };
+            if kept.is_none() {
+                attribute(&file, "title", &layout.title)?;
+                attribute(&file, "units", layout.units.length())?;
+                if let Some(plane) = layout.plane {
+                    attribute(&file, "plane", plane.name())?;
+                }
             }
             let grid = Grid::create(&file, layout)?;
             let contacts = ContactTables::create(&file, &layout.contacts, layout.times.len())?;
@@ -164,7 +157,9 @@ impl ResultFile {
                 contacts,
                 has_steps: !layout.times.is_empty(),
                 steps: layout.times.len().max(1),
-                step: finished,
+                step: kept.as_ref().map_or(0, Kept::finished),
+                digests: Vec::new(),
+                kept,
                 file,
                 destination,
             }),
@@ -191,16 +186,17 @@ impl ResultFile {
     pub fn places(&self) -> Option<Places> {
         let path = self.destination.temporary().to_path_buf();
         Some(Places {
-            inode: std::fs::metadata(&path).ok()?.ino(),
+            inode: fs::metadata(&path).ok()?.ino(),
             datasets: self.grid.places()?,
             finished: self.step,
             path,
         })
     }
 
-    /// Takes all subdomains for written in this load step: the ranks did that [beside each other](beside).
-    pub fn take_as_written(&mut self) {
-        self.grid.take_as_written();
+    /// Takes all subdomains for written in this load step: the ranks did that [beside each other](beside), each with the
+    /// `digests` of what it wrote.
+    pub fn take_as_written(&mut self, digests: &[Vec<u64>]) {
+        self.grid.take_as_written(digests);
     }
 
     /// Writes contact conditions, each at its place in the table of its contact.
@@ -217,34 +213,56 @@ impl ResultFile {
     /// # Errors
     /// A subdomain or a contact condition is missing.
     pub fn finish_step(&mut self) -> Result<(), OutputError> {
-        let grid = self.grid.finish_step();
-        grid.and_then(|()| self.contacts.finish_step())
-            .map_err(|error| failure(&self.destination, &error))?;
+        let mut finish = || {
+            let grid = self.grid.finish_step()?;
+            Ok([grid, self.contacts.finish_step()?].concat())
+        };
+        let digests = finish().map_err(|error| failure(&self.destination, &error))?;
+        self.digests.push(digests);
         self.step += 1;
         Ok(())
     }
 
     /// Keeps what is written so far even if the run is stopped: with the `state` in which it goes on after the
-    /// load steps that are finished.
+    /// load steps that are finished, once these are on the disk as they were written.
     ///
     /// # Errors
-    /// The file can't be written.
+    /// The file can't be written; what was kept before stays.
     pub fn keep(&mut self, state: &[u8]) -> Result<(), OutputError> {
-        let write = || {
-            self.forget_state()?;
-            let new = self.file.new_dataset::<u8>().shape(state.len());
-            new.create(STATE)?.write_raw(state)?;
-            self.file.flush()
-        };
-        write().map_err(|error: hdf5::Error| failure(&self.destination, &error))?;
-        self.destination.keep()
-    }
-
-    fn forget_state(&self) -> hdf5::Result<()> {
-        match self.file.link_exists(STATE) {
-            true => self.file.unlink(STATE),
-            false => Ok(()),
+        let Self {
+            grid,
+            contacts,
+            steps,
+            destination,
+            ..
+        } = self;
+        let of_system = |error: io::Error| destination.failure(error);
+        let of_hdf5 = |error: hdf5::Error| failure(destination, &error);
+        self.file.flush().map_err(of_hdf5)?;
+        let file = fs::File::open(destination.temporary()).map_err(of_system)?;
+        file.sync_data().map_err(of_system)?;
+        if self.kept.is_none() {
+            let columns = grid
+                .columns(*steps)
+                .and_then(|grid| Ok([grid, contacts.columns()?].concat()));
+            let columns = columns.map_err(of_hdf5)?;
+            let checkpoint = Checkpoint::new(&file, columns, *steps).map_err(of_system)?;
+            self.kept = Some(Kept::new(checkpoint));
         }
+        let Some(kept) = &mut self.kept else {
+            return Ok(());
+        };
+        for digests in self.digests.drain(..) {
+            let finished = kept.checkpoint.finish_step(&file, digests);
+            finished.map_err(|why| destination.failure(why))?;
+        }
+        if !destination.is_kept() {
+            // That of an older run isn't the state of this one.
+            forget(destination.path())?;
+            destination.keep()?;
+        }
+        kept.state = state.to_vec();
+        kept.write(destination.path())
     }
 
     /// Writes `/convergence`: a row for the start and one for every sweep, from the history of every load step.
@@ -277,12 +295,12 @@ impl ResultFile {
     /// # Errors
     /// The file can't be written, or results are missing.
     pub fn finish(self, report_json: &str) -> Result<(), OutputError> {
-        (self.forget_state()).map_err(|error| failure(&self.destination, &error))?;
         let Self {
             grid,
             contacts,
             steps,
             step,
+            kept,
             file,
             destination,
             ..
@@ -298,7 +316,11 @@ impl ResultFile {
             file.close()
         };
         write().map_err(|error| failure(&destination, &error))?;
-        destination.commit()
+        let path = destination.path().to_path_buf();
+        destination.commit()?;
+        // The result is whole; a state without load steps to go on from does no harm.
+        let _ = kept.map(|_| forget(&path));
+        Ok(())
     }
 }
 

@@ -76,9 +76,10 @@ pub fn write_solution(
             }
             beside.finish_step(comm.hosts())
         };
-        comm.agree(write_own().map_err(Failure::from))?;
+        let digests = comm.agree(write_own().map_err(Failure::from))?;
+        let digests = comm.collect(&digests);
         write(&mut |file| {
-            file.take_as_written();
+            file.take_as_written(&digests);
             Ok(())
         });
     }

@@ -1,6 +1,6 @@
 //! Going on after the load steps that a stopped run finished.
 //!
-//! After every load step but the last its results are on disk, under the result's name + `.unfinished`, and with
+//! After every load step but the last its results are on disk, under the result's name + `.unfinished`, and beside
 //! them the state that the next step starts from. `--restart` takes both, on any number of ranks.
 
 use std::fs::File;
@@ -9,6 +9,7 @@ use std::io::Read;
 use std::path::Path;
 
 use contact_dd_partition::destination::unfinished;
+use contact_dd_partition::error::InputError;
 use serde::{Deserialize, Serialize};
 
 use crate::bytes::Reals;
@@ -18,7 +19,7 @@ use crate::contact::friction::Status;
 use crate::contact::pair::PairState;
 use crate::context::Context;
 use crate::error::Failure;
-use crate::output::vtkhdf::ResultFile;
+use crate::output::vtkhdf::{ResultFile, kept as file};
 use crate::report::totals::StepTotals;
 use crate::run::passage::Passage;
 use crate::settings::Settings;
@@ -46,7 +47,6 @@ struct Kept {
 /// Two runs that agree in this go the same way.
 #[derive(PartialEq, Serialize, Deserialize)]
 struct Identity {
-    version: String,
     problem: u64,
     settings: String,
 }
@@ -60,7 +60,6 @@ impl Identity {
             threads, no_stress, ..
         } = settings;
         Ok(Self {
-            version: env!("CARGO_PKG_VERSION").into(),
             problem,
             settings: format!("{:?}, {threads} threads, {no_stress}", settings.sweeps()),
         })
@@ -90,6 +89,8 @@ pub struct Finished {
     pub passage: Passage,
     /// The state that the next one starts from; on the root.
     kept: Option<Kept>,
+    /// What there is of the result file; on the root.
+    pub file: Option<file::Kept>,
     /// What a user should know; on the root.
     pub warning: Option<String>,
 }
@@ -107,7 +108,8 @@ pub fn finished_steps(comm: &Comm, settings: &Settings) -> Result<Finished, Fail
         false => Ok(None),
     })?;
     let mut finished = Finished::default();
-    if let Some(mut kept) = kept {
+    if let Some((file, mut kept)) = kept {
+        finished.file = Some(file);
         finished.count = kept.steps.len();
         finished.steps = std::mem::take(&mut kept.steps);
         finished.passage = std::mem::take(&mut kept.passage);
@@ -162,24 +164,25 @@ impl Finished {
     }
 }
 
-fn read(settings: &Settings) -> Result<Option<Kept>, Failure> {
-    let bytes = ResultFile::kept_state(&settings.output)
-        .map_err(|error| Failure::input(format!("--restart: {error}")))?;
-    let Some(bytes) = bytes else {
+fn read(settings: &Settings) -> Result<Option<(file::Kept, Kept)>, Failure> {
+    let unread = |error: InputError| Failure::input(format!("--restart: {error}"));
+    let Some(mut file) = file::Kept::read(&settings.output).map_err(unread)? else {
         return Ok(None);
     };
-    let name = unfinished(&settings.output);
-    let refused = |why: &str| Failure::input(format!("--restart: {}: {why}", name.display()));
-    let kept: Kept = ciborium::from_reader(&bytes[..])
-        .map_err(|_| refused("it is of another version; expected one of this program"))?;
+    let state = std::mem::take(&mut file.state);
+    let kept: Kept = ciborium::from_reader(&state[..])
+        .map_err(|error| unread(file::unread(&file::state_of(&settings.output), &error)))?;
     let run = Identity::new(settings)?;
     let why = match &kept.run {
-        kept if kept.version != run.version => "it is of another version of the program",
         kept if kept.problem != run.problem => "it is of another problem file",
         kept if kept.settings != run.settings => "it is of a run with other settings",
-        _ => return Ok(Some(kept)),
+        _ => return Ok(Some((file, kept))),
     };
-    Err(refused(why))
+    let name = unfinished(&settings.output);
+    Err(Failure::input(format!(
+        "--restart: {}: {why}",
+        name.display()
+    )))
 }
 
 /// Keeps the results of the load steps so far, the `state` after them and what passed to the stage of the next one, for a

@@ -141,7 +141,7 @@ impl Stages<'_> {
         let analyses = analyse_steps(&context, stage.steps.clone(), &before)?;
         log.phase("creating the outputs", None);
         if last_plan.is_none() {
-            (*outputs, *beside) = create_outputs(&context, settings, finished.count)?;
+            (*outputs, *beside) = create_outputs(&context, settings, finished.file.take())?;
         }
         let absent = match comm.is_root() {
             true => absent_rows(file.catalog(), stage),

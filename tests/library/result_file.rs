@@ -1,12 +1,14 @@
 //! The result file, read back by HDF5 itself.
 
 mod beside;
+mod keeping;
 mod replacing;
 mod time_series;
 
 use std::path::Path;
 
 use contact_dd_mpi::output::result::{ContactRow, ContactState, PartitionSize, SubdomainResults};
+use contact_dd_mpi::output::vtkhdf::kept::Kept;
 use contact_dd_mpi::output::vtkhdf::{Layout, ResultFile};
 use contact_dd_mpi::sweep::SweepRecord;
 use contact_dd_partition::contact_point::ContactPoint;
@@ -276,7 +278,8 @@ fn contacts_with_friction_have_tangential_forces_and_slip_in_every_load_step() {
             // As after a run that was stopped.
             file.keep(b"state").unwrap();
             drop(file);
-            file = ResultFile::resume(&path, &in_steps, 1).unwrap();
+            file =
+                ResultFile::resume(&path, &in_steps, Kept::read(&path).unwrap().unwrap()).unwrap();
         }
         let moved = |(point, mut state): ContactRow| {
             state.slip[1] += f64::from(step);

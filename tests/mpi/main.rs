@@ -69,6 +69,7 @@ fn main() -> ExitCode {
     endings::not_converged(&mut trials);
     outputs::unwritable_output(&mut trials);
     outputs::full_disk(&mut trials);
+    outputs::the_same_output(&mut trials);
     outputs::folder_of_the_root_alone(&mut trials);
     outputs::vanished_folder(&mut trials);
     sudden_ends::sudden_ends(&mut trials);
@@ -77,6 +78,7 @@ fn main() -> ExitCode {
     stopping::stopped_while_sweeping(&mut trials);
     stopping::stopped_between_steps(&mut trials);
     stopping::restarted_in_vain(&mut trials);
+    stopping::killed_again_and_again(&mut trials);
     steps::no_equilibrium(&mut trials);
     steps::squeezed(&mut trials);
     steps::not_converged(&mut trials);

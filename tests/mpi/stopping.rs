@@ -5,6 +5,8 @@ use serde_json::Value;
 
 use super::*;
 
+type MakeModel = fn() -> Model;
+
 /// A signal stops a run between two sweeps, with exit code 6, a message and the older result untouched.
 pub fn stopped_while_sweeping(trials: &mut Trials) {
     // A program that is optimized doesn't wait on purpose.
@@ -42,7 +44,7 @@ pub fn stopped_between_steps(trials: &mut Trials) {
         return;
     }
     // Subdomains with more numbers than a reader's buffer holds at once are among them.
-    let cases: [(&str, fn() -> Model, usize); 5] = [
+    let cases: [(&str, MakeModel, usize); 5] = [
         ("", steps::two_blocks_in_steps, 6),
         ("_with_friction", steps::two_blocks_with_friction, 6),
         (
@@ -65,7 +67,7 @@ pub fn stopped_between_steps(trials: &mut Trials) {
 fn stop_between_steps(
     trials: &mut Trials,
     name: &'static str,
-    model: fn() -> Model,
+    model: MakeModel,
     subdomains: usize,
 ) {
     trials.on_all_ranks(&format!("stopped::between_steps{name}"), move |ranks| {
@@ -108,14 +110,22 @@ pub fn restarted_in_vain(trials: &mut Trials) {
         let before = fs::read(&kept).unwrap();
         let ended = case.run_on(ranks, &["--restart", "--tolerance", "1e-9"]);
         failed_once(&ended, 2, &["problem.vtkhdf.unfinished", "other settings"]);
-        let other = Case::of(&steps::two_blocks_in_steps(), 4);
+        let [own, other] = [6, 4].map(|count| Case::of(&steps::two_blocks_in_steps(), count));
+        let state = case.folder().join("problem.vtkhdf.unfinished.state");
         fs::copy(other.problem(), case.problem()).unwrap();
         let ended = case.run_on(ranks, &["--restart"]);
         failed_once(&ended, 2, &["problem.vtkhdf.unfinished", "another problem"]);
         assert!(fs::read(&kept).unwrap() == before);
-        fs::write(&kept, "something else").unwrap();
-        let ended = case.run_on(ranks, &["--restart"]);
-        failed_once(&ended, 2, &["problem.vtkhdf.unfinished", "expected"]);
+        fs::copy(own.problem(), case.problem()).unwrap();
+        for (file, of) in [
+            (kept.clone(), "of load step 1 isn't what was written"),
+            (state, "isn't what a run that was stopped leaves"),
+        ] {
+            fs::write(&file, "something else").unwrap();
+            let ended = case.run_on(ranks, &["--restart"]);
+            failed_once(&ended, 2, &["problem.vtkhdf.unfinished", "expected", of]);
+            assert_eq!(fs::read_to_string(&file).unwrap(), "something else");
+        }
     });
     trials.on_all_ranks("restarted::where_nothing_is", |ranks| {
         let case = Case::of(&steps::two_blocks_in_steps(), 6);
@@ -124,6 +134,59 @@ pub fn restarted_in_vain(trials: &mut Trials) {
         assert!(ended.stdout.contains("this run begins at the start"));
         assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
     });
+}
+
+/// A run that is killed again and again, whatever it is doing, goes on after its last finished load step every time,
+/// and comes to the same bits.
+pub fn killed_again_and_again(trials: &mut Trials) {
+    let case = |ranks: usize| {
+        let mut steps =
+            two_block_scene().replacen("[[contact]]\n", "[[contact]]\nfriction = 0.2\n", 1);
+        for k in 1..=24 {
+            steps += &format!("[[step]]\nscale = {}\n", f64::from(k) / 24.0);
+        }
+        let case = Case::of(&model(&steps, two_blocks().mesh), 6);
+        let ended = case.run_on(ranks, &[]);
+        assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+        let expected = datasets(&case.result());
+        fs::remove_file(case.result()).unwrap();
+        let unfinished = case.folder().join("problem.vtkhdf.unfinished");
+        let (mut first, mut kills) = (Vec::new(), 0);
+        while !case.result().exists() {
+            let running = Running::start(program(ranks).arg(case.problem()).arg("--restart"));
+            let deadline = Instant::now() + LIMIT;
+            while !unfinished.exists() && !case.result().exists() && Instant::now() < deadline {
+                thread::sleep(Duration::from_millis(1));
+            }
+            // Some steps later, in another place every time.
+            let time = if kills == 0 {
+                ended.took / 9
+            } else {
+                ended.took * (20 + 12 * kills) / 50
+            };
+            thread::sleep(time + Duration::from_millis(u64::from(kills)));
+            let all = running.descendants("contact-dd-mpi");
+            if let Some(&one) = all.get(kills as usize % ranks) {
+                send(one, Signal::KILL);
+            }
+            let ended = running.wait(LIMIT);
+            assert!(ended.errors().is_empty(), "{}", ended.stderr);
+            let begun = ended
+                .stdout
+                .lines()
+                .find_map(|line| line.strip_prefix("step "));
+            let begun = begun.and_then(|line| line.split(' ').next()?.parse::<usize>().ok());
+            first.extend(begun);
+            kills += 1;
+        }
+        assert!(first.is_sorted() && first.last() > Some(&1), "{first:?}");
+        assert!(datasets(&case.result()) == expected);
+        assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
+    };
+    for ranks in [1, 3] {
+        let name = format!("restarted::after_kills::on_{ranks}_ranks");
+        trials.once(&name, move || case(ranks));
+    }
 }
 
 /// Stops a run of three load steps between the first two.
@@ -156,7 +219,8 @@ pub fn stopped_while_factorizing(trials: &mut Trials) {
         let mut running = Running::start(program(ranks).arg(case.problem()));
         let deadline = Instant::now() + LIMIT;
         // The result file is made when everything is read.
-        while case.files().len() < 2 && Instant::now() < deadline {
+        let is_made = || case.files().iter().any(|name| name.ends_with(".part"));
+        while !is_made() && Instant::now() < deadline {
             thread::sleep(Duration::from_millis(2));
         }
         let all = running.descendants("contact-dd-mpi");

@@ -42,6 +42,8 @@ pub struct FileBeside {
     placement: Placement,
     datasets: Vec<u64>,
     step: usize,
+    /// Of what was written of each dataset in this load step.
+    digests: Vec<u64>,
     file: File,
     /// Its final name.
     path: PathBuf,
@@ -59,6 +61,7 @@ impl FileBeside {
         };
         (is_same && (hosts == 1 || is_coherent()?)).then(|| Self {
             placement: Placement::new(layout),
+            digests: vec![0; places.datasets.len()],
             datasets: places.datasets.clone(),
             step: places.finished,
             file,
@@ -70,29 +73,37 @@ impl FileBeside {
     ///
     /// # Errors
     /// The file can't be written, or `results` doesn't have the sizes of the layout.
-    pub fn write(&self, results: &SubdomainResults) -> Result<(), OutputError> {
+    pub fn write(&mut self, results: &SubdomainResults) -> Result<(), OutputError> {
         let mut failed = None;
-        let placed = self
-            .placement
-            .each(results, self.step, |dataset, row, list| {
-                let at = self.datasets[dataset] + (row * list.row_bytes()) as u64;
-                let written = self.file.write_all_at(list.bytes(), at);
-                failed = failed.take().or(written.err());
-                Ok(())
-            });
+        let Self {
+            placement,
+            datasets,
+            digests,
+            file,
+            ..
+        } = self;
+        let placed = placement.each(results, self.step, |dataset, row, list| {
+            placement.sum(&mut digests[dataset], row, list);
+            let at = datasets[dataset] + (row * list.row_bytes()) as u64;
+            let written = file.write_all_at(list.bytes(), at);
+            failed = failed.take().or(written.err());
+            Ok(())
+        });
         placed.map_err(|error| destination::failure(&self.path, error))?;
         failed.map_or(Ok(()), |error| Err(destination::failure(&self.path, error)))
     }
 
-    /// Ends a load step, for all hosts to see; what is written from now on belongs to the next one.
+    /// Ends a load step, for all hosts to see; what is written from now on belongs to the next one. Returns the digests of
+    /// the datasets.
     ///
     /// # Errors
     /// What the system said.
-    pub fn finish_step(&mut self, hosts: usize) -> Result<(), OutputError> {
+    pub fn finish_step(&mut self, hosts: usize) -> Result<Vec<u64>, OutputError> {
         self.step += 1;
-        match hosts {
-            1 => Ok(()),
-            _ => (self.file.sync_data()).map_err(|error| destination::failure(&self.path, error)),
+        if hosts > 1 {
+            (self.file.sync_data()).map_err(|error| destination::failure(&self.path, error))?;
         }
+        let none = vec![0; self.digests.len()];
+        Ok(std::mem::replace(&mut self.digests, none))
     }
 }

@@ -5,6 +5,8 @@ use hdf5::plist::dataset_create::AllocTime;
 use hdf5::{Dataset, Group, H5Type, Hyperslab, Result, SliceOrIndex};
 use ndarray::ArrayViewD;
 
+use super::checkpoint::{Column, digest};
+
 /// A row of a dataset: a number, or some.
 pub(crate) trait Row: Pod {
     /// The type of its numbers.
@@ -74,6 +76,53 @@ impl<R: Row> List for Vec<R> {
 
     fn row_bytes(&self) -> usize {
         size_of::<R>()
+    }
+}
+
+/// A dataset that is filled in every load step, or in the first one.
+#[derive(Debug)]
+pub(super) struct Written {
+    dataset: Dataset,
+    /// Number of rows, in every load step where it has them.
+    rows: usize,
+    /// Number of load steps that it has rows for.
+    steps: Option<usize>,
+    /// Of what was written in this load step.
+    digest: u64,
+}
+
+impl Written {
+    /// One that is [`empty`].
+    pub(super) fn empty<R: Row>(
+        group: &Group,
+        name: &str,
+        steps: usize,
+        rows: usize,
+    ) -> Result<Self> {
+        Ok(Self {
+            dataset: empty::<R>(group, name, steps, rows)?,
+            rows,
+            steps: (steps > 0).then_some(steps),
+            digest: 0,
+        })
+    }
+
+    /// [Fills](fill) what it has of a load step from row `start` on.
+    pub(super) fn fill<R: Row>(&mut self, step: usize, start: usize, rows: &[R]) -> Result<()> {
+        let first = self.steps.map_or(start, |_| step * self.rows + start);
+        let of_rows = digest(first, size_of::<R>(), bytemuck::cast_slice(rows));
+        self.digest = self.digest.wrapping_add(of_rows);
+        fill(&self.dataset, step, start, rows)
+    }
+
+    /// Ends a load step; returns the digest of what was written in it.
+    pub(super) fn finish_step(&mut self) -> u64 {
+        std::mem::take(&mut self.digest)
+    }
+
+    /// As it lies in the file.
+    pub(super) fn column(&self) -> Result<Column> {
+        Column::new(&self.dataset, self.rows, self.steps)
     }
 }
 

@@ -1,10 +1,11 @@
 //! `/contact/<name>/`: one row for each contact point.
 
 use contact_dd_partition::problem::ContactSummary;
-use hdf5::{Dataset, File, Group, Result};
+use hdf5::{File, Group, Result};
 
 use super::super::result::ContactRow;
-use super::column;
+use super::checkpoint::Column;
+use super::column::{self, Written};
 
 /// The table of every contact, and which of its rows have been written in a load step.
 #[derive(Debug)]
@@ -15,16 +16,16 @@ pub(super) struct ContactTables {
 #[derive(Debug)]
 struct Table {
     name: String,
-    node_a: Dataset,
-    node_b: Dataset,
-    position: Dataset,
-    normal: Dataset,
-    gap: Dataset,
-    force: Dataset,
-    pressure: Dataset,
-    status: Dataset,
+    node_a: Written,
+    node_b: Written,
+    position: Written,
+    normal: Written,
+    gap: Written,
+    force: Written,
+    pressure: Written,
+    status: Written,
     /// Tangential force and slip, where the contact has friction.
-    friction: Option<[Dataset; 2]>,
+    friction: Option<[Written; 2]>,
     written: Vec<bool>,
 }
 
@@ -57,15 +58,23 @@ impl ContactTables {
         Ok(())
     }
 
-    /// Checks that every row was written in a load step, and makes ready for the next one.
-    pub(super) fn finish_step(&mut self) -> Result<()> {
+    /// All datasets as they lie in the file.
+    pub(super) fn columns(&mut self) -> Result<Vec<Column>> {
+        let all = self.tables.iter_mut().flat_map(Table::columns);
+        all.map(|column| column.column()).collect()
+    }
+
+    /// Checks that every row was written in a load step, and makes ready for the next one; returns the digests of the
+    /// datasets.
+    pub(super) fn finish_step(&mut self) -> Result<Vec<u64>> {
         for Table { name, written, .. } in &mut self.tables {
             if let Some(place) = written.iter().position(|&written| !written) {
                 return Err(format!("contact '{name}': condition {place} is missing").into());
             }
             written.fill(false);
         }
-        Ok(())
+        let all = self.tables.iter_mut().flat_map(Table::columns);
+        Ok(all.map(Written::finish_step).collect())
     }
 }
 
@@ -74,10 +83,10 @@ impl Table {
         let (name, rows) = (&contact.name, contact.conditions);
         let group =
             column::group(parent, name).map_err(|error| format!("contact '{name}': {error}"))?;
-        let tags = |name| column::empty::<i64>(&group, name, 0, rows);
-        let vectors = |name| column::empty::<[f64; 3]>(&group, name, 0, rows);
-        let states = |name| column::empty::<f64>(&group, name, steps, rows);
-        let jumps = |name| column::empty::<[f64; 3]>(&group, name, steps, rows);
+        let tags = |name| Written::empty::<i64>(&group, name, 0, rows);
+        let vectors = |name| Written::empty::<[f64; 3]>(&group, name, 0, rows);
+        let states = |name| Written::empty::<f64>(&group, name, steps, rows);
+        let jumps = |name| Written::empty::<[f64; 3]>(&group, name, steps, rows);
         let friction = || -> Result<_> { Ok([jumps("tangential_force")?, jumps("slip")?]) };
         Ok(Self {
             name: name.clone(),
@@ -88,10 +97,24 @@ impl Table {
             gap: states("gap")?,
             force: states("force")?,
             pressure: states("pressure")?,
-            status: column::empty::<u8>(&group, "status", steps, rows)?,
+            status: Written::empty::<u8>(&group, "status", steps, rows)?,
             friction: contact.has_friction.then(friction).transpose()?,
             written: vec![false; rows],
         })
+    }
+
+    fn columns(&mut self) -> impl Iterator<Item = &mut Written> {
+        let own = [
+            &mut self.node_a,
+            &mut self.node_b,
+            &mut self.position,
+            &mut self.normal,
+            &mut self.gap,
+            &mut self.force,
+            &mut self.pressure,
+            &mut self.status,
+        ];
+        own.into_iter().chain(self.friction.iter_mut().flatten())
     }
 
     /// Writes rows whose places follow each other.
@@ -102,31 +125,33 @@ impl Table {
             let rows = self.written.len();
             return Err(format!("contact '{name}' has {rows} conditions, none at {last}").into());
         };
-        let tags = |column, of: fn(&ContactRow) -> i64| {
-            column::fill(column, 0, start, &run.iter().map(of).collect::<Vec<_>>())
+        let tags = |column: &mut Written, of: fn(&ContactRow) -> i64| {
+            column.fill(0, start, &run.iter().map(of).collect::<Vec<_>>())
         };
-        let vectors = |table, of: fn(&ContactRow) -> [f64; 3]| {
-            column::fill(table, 0, start, &run.iter().map(of).collect::<Vec<_>>())
+        let vectors = |table: &mut Written, of: fn(&ContactRow) -> [f64; 3]| {
+            table.fill(0, start, &run.iter().map(of).collect::<Vec<_>>())
         };
-        let reals = |column, of: fn(&ContactRow) -> f64| {
-            column::fill(column, step, start, &run.iter().map(of).collect::<Vec<_>>())
+        let reals = |column: &mut Written, of: fn(&ContactRow) -> f64| {
+            column.fill(step, start, &run.iter().map(of).collect::<Vec<_>>())
         };
         if step == 0 {
-            tags(&self.node_a, |(point, _)| point.tag_a)?;
-            tags(&self.node_b, |(point, _)| point.tag_b)?;
-            vectors(&self.position, |(point, _)| point.position)?;
-            vectors(&self.normal, |(point, _)| point.normal())?;
+            tags(&mut self.node_a, |(point, _)| point.tag_a)?;
+            tags(&mut self.node_b, |(point, _)| point.tag_b)?;
+            vectors(&mut self.position, |(point, _)| point.position)?;
+            vectors(&mut self.normal, |(point, _)| point.normal())?;
         }
-        reals(&self.gap, |(_, state)| state.gap)?;
-        reals(&self.force, |(_, state)| state.force)?;
-        reals(&self.pressure, |(point, state)| state.force / point.area)?;
+        reals(&mut self.gap, |(_, state)| state.gap)?;
+        reals(&mut self.force, |(_, state)| state.force)?;
+        reals(&mut self.pressure, |(point, state)| {
+            state.force / point.area
+        })?;
         let status: Vec<u8> = run.iter().map(|(_, state)| state.status()).collect();
-        column::fill(&self.status, step, start, &status)?;
-        if let Some([tangential_force, slip]) = &self.friction {
+        self.status.fill(step, start, &status)?;
+        if let Some([tangential_force, slip]) = &mut self.friction {
             let forces: Vec<_> = run.iter().map(|row| row.1.tangential_force).collect();
-            column::fill(tangential_force, step, start, &forces)?;
+            tangential_force.fill(step, start, &forces)?;
             let slips: Vec<_> = run.iter().map(|row| row.1.slip).collect();
-            column::fill(slip, step, start, &slips)?;
+            slip.fill(step, start, &slips)?;
         }
         written.fill(true);
         Ok(())

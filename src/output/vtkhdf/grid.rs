@@ -7,6 +7,7 @@ use contact_dd_partition::problem::vtkhdf;
 use hdf5::{Dataset, File, Group, Result};
 
 use super::super::result::{Field, Of, PartitionSize, SubdomainResults};
+use super::checkpoint::{Column, digest};
 use super::column::List;
 use super::{Layout, column};
 
@@ -22,6 +23,8 @@ pub(super) struct Placement {
     total: PartitionSize,
     sizes: Vec<PartitionSize>,
     starts: Vec<PartitionSize>,
+    /// Whether there are load steps to go on from.
+    is_kept: bool,
 }
 
 impl Placement {
@@ -38,6 +41,15 @@ impl Placement {
             total,
             sizes,
             starts,
+            is_kept: layout.times.len() > 1,
+        }
+    }
+
+    /// Adds rows from `row` on to the digest of their dataset, where there are load steps to go on from.
+    pub(super) fn sum(&self, digest_of_step: &mut u64, row: usize, list: &dyn List) {
+        if self.is_kept {
+            let of_rows = digest(row, list.row_bytes(), list.bytes());
+            *digest_of_step = digest_of_step.wrapping_add(of_rows);
         }
     }
 
@@ -94,6 +106,8 @@ pub(super) struct Grid {
     datasets: Vec<Dataset>,
     placement: Placement,
     written: Vec<bool>,
+    /// Of what was written of each dataset in this load step.
+    digests: Vec<u64>,
 }
 
 impl Grid {
@@ -140,6 +154,7 @@ impl Grid {
             create_steps(&group, layout, total)?;
         }
         Ok(Self {
+            digests: vec![0; datasets.len()],
             datasets,
             written: vec![false; sizes.len()],
             placement,
@@ -172,25 +187,58 @@ impl Grid {
 
     /// Writes consecutive partitions in a load step.
     pub(super) fn write(&mut self, results: &SubdomainResults, step: usize) -> Result<()> {
-        let datasets = &self.datasets;
-        (self.placement).each(results, step, |k, row, list| list.fill(&datasets[k], row))?;
+        let Self {
+            datasets,
+            placement,
+            digests,
+            ..
+        } = self;
+        placement.each(results, step, |k, row, list| {
+            placement.sum(&mut digests[k], row, list);
+            list.fill(&datasets[k], row)
+        })?;
         let written = results.first..results.first + results.sizes.len();
         self.written[written].fill(true);
         Ok(())
     }
 
-    /// Takes all partitions for written: their owners have done so.
-    pub(super) fn take_as_written(&mut self) {
+    /// Takes all partitions for written: their owners have done so, each with these digests.
+    pub(super) fn take_as_written(&mut self, digests: &[Vec<u64>]) {
         self.written.fill(true);
+        for of_rank in digests {
+            for (sum, digest) in self.digests.iter_mut().zip(of_rank) {
+                *sum = sum.wrapping_add(*digest);
+            }
+        }
     }
 
-    /// Checks that every partition was written in a load step, and makes ready for the next one.
-    pub(super) fn finish_step(&mut self) -> Result<()> {
+    /// All datasets as they lie in a file of some load `steps`.
+    pub(super) fn columns(&self, steps: usize) -> Result<Vec<Column>> {
+        let Placement {
+            left_out,
+            total,
+            sizes,
+            ..
+        } = &self.placement;
+        let none = SubdomainResults::default();
+        let fields = written(&none, left_out).map(|(field, _)| {
+            let changes = (field.of != Of::Mesh).then_some(steps);
+            (field.per.rows(total, sizes.len()), changes)
+        });
+        let all = fields.chain([(total.cells, None)]).zip(&self.datasets);
+        all.map(|((rows, steps), dataset)| Column::new(dataset, rows, steps))
+            .collect()
+    }
+
+    /// Checks that every partition was written in a load step, and makes ready for the next one; returns the digests of
+    /// the datasets.
+    pub(super) fn finish_step(&mut self) -> Result<Vec<u64>> {
         if let Some(index) = self.written.iter().position(|&written| !written) {
             return Err(format!("subdomain {index} is missing").into());
         }
         self.written.fill(false);
-        Ok(())
+        let none = vec![0; self.digests.len()];
+        Ok(std::mem::replace(&mut self.digests, none))
     }
 }
 

@@ -40,10 +40,8 @@ fn what_ranks_write_beside_each_other_is_what_the_root_writes_alone() {
         for (k, run) in runs.iter().enumerate() {
             ranks[k % 2].write(&moved(run, step)).unwrap();
         }
-        ranks
-            .iter_mut()
-            .for_each(|rank| rank.finish_step(1).unwrap());
-        file.take_as_written();
+        let digests = ranks.each_mut().map(|rank| rank.finish_step(1).unwrap());
+        file.take_as_written(&digests);
         file.finish_step().unwrap();
         if step == 0 {
             // As between steps of a run that may be stopped, whose file gets another name.

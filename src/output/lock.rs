@@ -1,0 +1,220 @@
+//! The lock on an output, by which one run at a time writes it.
+//!
+//! A lock of the operating system on `.NAME.lock` beside the output: it ends with the process that holds it, however
+//! that ends, and on network file systems that pass locks on (NFS, Lustre with `flock`, GPFS, BeeGFS, CephFS) it holds
+//! for all hosts. What stands in the file is for messages, and for file systems without locks.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read, Seek, Write};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::{fmt, process};
+
+use contact_dd_partition::destination::{beside, failure};
+use contact_dd_partition::error::OutputError;
+use rustix::system::uname;
+
+/// How often a lock is tried for that its holder takes away in that moment.
+const TRIES: usize = 100;
+
+/// The right to write an output, until it is dropped.
+#[derive(Debug)]
+pub struct OutputLock {
+    path: PathBuf,
+    // Closed, and the lock with it, after the file is gone.
+    _file: File,
+}
+
+impl OutputLock {
+    /// Takes the lock on `output`, also that of a run that is gone.
+    ///
+    /// # Errors
+    /// Another run has it, which the message names by host and process; a folder that can't be written.
+    pub fn take(output: &Path) -> Result<Self, OutputError> {
+        let path = beside(output, "lock")?;
+        for _ in 0..TRIES {
+            match attempt(&path) {
+                Ok(Some(file)) => return Ok(Self { path, _file: file }),
+                Ok(None) => {}
+                Err(Refusal::System(error)) => return Err(failure(output, error)),
+                Err(Refusal::Held(why)) => return Err(failure(output, why)),
+            }
+        }
+        Err(failure(output, "other runs lock it again and again"))
+    }
+}
+
+impl Drop for OutputLock {
+    fn drop(&mut self) {
+        // Where it can't be removed it is as good as none: nobody holds it.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// Why a lock can't be had.
+enum Refusal {
+    Held(String),
+    System(io::Error),
+}
+
+impl From<io::Error> for Refusal {
+    fn from(error: io::Error) -> Self {
+        Self::System(error)
+    }
+}
+
+/// The locked file; `None` where its holder has taken it away since it was opened.
+fn attempt(path: &Path) -> Result<Option<File>, Refusal> {
+    let mut options = OpenOptions::new();
+    options.read(true).write(true).create(true).truncate(false);
+    let mut file = options.open(path)?;
+    let mut text = String::new();
+    // What is no text was written by nobody.
+    let _ = file.read_to_string(&mut text);
+    let holder = Holder::read(&text);
+    match file.try_lock() {
+        Ok(()) => {}
+        Err(TryLockError::WouldBlock) => {
+            let who = holder.map_or_else(String::new, |holder| format!(": {holder}"));
+            return Err(Refusal::Held(format!("another run writes it{who}")));
+        }
+        // The file system has no locks.
+        Err(TryLockError::Error(_)) => match holder {
+            Some(holder) if holder.may_live() => {
+                return Err(Refusal::Held(format!(
+                    "another run writes it: {holder}; its file system has no locks that would tell whether that \
+                     is still there: if it isn't, remove {}",
+                    path.display()
+                )));
+            }
+            _ => {}
+        },
+    }
+    if fs::metadata(path).ok().map(|found| found.ino()) != Some(file.metadata()?.ino()) {
+        return Ok(None);
+    }
+    file.set_len(0)?;
+    file.rewind()?;
+    if let Err(error) = file.write_all(Holder::this().line().as_bytes()) {
+        let _ = fs::remove_file(path);
+        return Err(error.into());
+    }
+    Ok(Some(file))
+}
+
+/// Who holds a lock.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Holder {
+    process: u32,
+    /// When it began, as Linux counts (ticks since the host did); another process of the same number began at
+    /// another time.
+    began: u64,
+    host: String,
+}
+
+impl Holder {
+    fn this() -> Self {
+        let process = process::id();
+        Self {
+            process,
+            began: beginning(process).unwrap_or(0),
+            host: this_host(),
+        }
+    }
+
+    fn line(&self) -> String {
+        let Self {
+            process,
+            began,
+            host,
+        } = self;
+        format!("{process} {began} {host}\n")
+    }
+
+    fn read(text: &str) -> Option<Self> {
+        let mut words = text.trim_end().splitn(3, ' ');
+        Some(Self {
+            process: words.next()?.parse().ok()?,
+            began: words.next()?.parse().ok()?,
+            host: words.next()?.to_owned(),
+        })
+    }
+
+    /// Whether it may still be there: nobody sees the processes of another host.
+    fn may_live(&self) -> bool {
+        self.host != this_host() || beginning(self.process) == Some(self.began)
+    }
+}
+
+impl fmt::Display for Holder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "process {} on host '{}'", self.process, self.host)
+    }
+}
+
+fn this_host() -> String {
+    uname().nodename().to_string_lossy().into_owned()
+}
+
+/// When a process of this host began; `None` where there is none.
+fn beginning(process: u32) -> Option<u64> {
+    let status = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
+    // The name, in brackets, may have spaces and brackets; what follows has neither.
+    let (_, fields) = status.rsplit_once(')')?;
+    fields.split_whitespace().nth(19)?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_run_at_a_time_has_the_lock() {
+        let folder = tempfile::tempdir().unwrap();
+        let output = folder.path().join("result.vtkhdf");
+        let held = OutputLock::take(&output).unwrap();
+        let refused = OutputLock::take(&output).unwrap_err().to_string();
+        let process = format!("process {} on host '{}'", process::id(), this_host());
+        for words in ["result.vtkhdf", "another run writes it", &process] {
+            assert!(refused.contains(words), "{refused}");
+        }
+        // By another name it is the same file.
+        fs::write(&output, "of yesterday").unwrap();
+        let link = folder.path().join("link");
+        std::os::unix::fs::symlink(&output, &link).unwrap();
+        OutputLock::take(&link).unwrap_err();
+        OutputLock::take(&folder.path().join("other.vtkhdf")).unwrap();
+        drop(held);
+        drop(OutputLock::take(&link).unwrap());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn what_a_run_left_that_is_gone_is_no_lock() {
+        let folder = tempfile::tempdir().unwrap();
+        let output = folder.path().join("result.vtkhdf");
+        for left in ["", "1 7 elsewhere\n", "something else"] {
+            fs::write(folder.path().join(".result.vtkhdf.lock"), left).unwrap();
+            let lock = OutputLock::take(&output).unwrap();
+            let now = fs::read_to_string(&lock.path).unwrap();
+            assert_eq!(Holder::read(&now), Some(Holder::this()));
+        }
+    }
+
+    #[test]
+    fn without_locks_a_process_of_this_host_is_looked_for() {
+        let this = Holder::this();
+        assert!(this.may_live());
+        let later = Holder {
+            began: this.began + 1,
+            ..this.clone()
+        };
+        assert!(!later.may_live());
+        let elsewhere = Holder {
+            host: "elsewhere".into(),
+            ..later
+        };
+        assert!(elsewhere.may_live());
+        assert_eq!(Holder::read(&this.line()), Some(this));
+    }
+}
