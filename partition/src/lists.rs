@@ -83,6 +83,11 @@ impl<T: Copy> Lists<T> {
         &self.items[self.offsets[list]..self.offsets[list + 1]]
     }
 
+    /// The same to change its items.
+    pub fn of_mut(&mut self, list: usize) -> &mut [T] {
+        &mut self.items[self.offsets[list]..self.offsets[list + 1]]
+    }
+
     /// The items of all lists in order.
     pub fn items_mut(&mut self) -> &mut [T] {
         &mut self.items

@@ -1,8 +1,10 @@
 //! Scenes in space.
 
 pub mod contact;
+mod crack_front;
 mod friction;
 mod invariance;
+mod patch_test;
 
 use std::collections::HashMap;
 

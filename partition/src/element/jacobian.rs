@@ -50,6 +50,17 @@ impl ReferenceElement {
     }
 }
 
+impl ReferenceElement {
+    /// Whether a cell that [folds](Self::fold) can be computed with all the same: a hexahedron of 8 nodes, whose faces
+    /// needn't cross each other where its Jacobian changes sign at a corner, with a Jacobian above `floor` wherever
+    /// its stiffness is integrated. Linear displacements then are exact, as everywhere.
+    pub fn bears_fold(&self, at: &[[f64; 3]], floor: f64) -> bool {
+        let mut points = self.stiffness_points().iter();
+        let mut is_sound = || points.all(|point| self.determinant(&point.gradients, at) > floor);
+        self.domain() == Domain::Cube && self.is_linear() && is_sound()
+    }
+}
+
 /// Where the Jacobian is sampled: places that cut each direction of the unit square or cube into equal parts,
 /// as many as it has degrees there.
 #[derive(Debug)]

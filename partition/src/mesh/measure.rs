@@ -25,6 +25,7 @@ impl Mesh {
     /// A cell without measure, or whose Jacobian isn't positive everywhere, by its tag.
     pub(crate) fn orient_cells(&mut self) -> Result<(), InputError> {
         let mut at = Vec::new();
+        let mut borne = Vec::new();
         for cell in 0..self.cells.len() {
             self.points_of(cell, &mut at);
             let measure = self.cells.kind(cell).measure(&at);
@@ -48,7 +49,17 @@ impl Mesh {
                 }
                 self.points_of(cell, &mut at);
             }
-            self.check_jacobian(cell, &at, FLAT * size)?;
+            borne.extend(self.check_jacobian(cell, &at, FLAT * size)?);
+        }
+        if let Some(first) = borne.first() {
+            let cells = match borne.len() {
+                1 => String::new(),
+                count => format!(", one of {count} such"),
+            };
+            self.warnings.push(format!(
+                "{first}{cells}: it is computed with, as its Jacobian is positive at all points of integration; \
+                 stresses there are less exact"
+            ));
         }
         Ok(())
     }
@@ -60,22 +71,32 @@ impl Mesh {
         at.extend(nodes.map(|&n| self.points[n as usize]));
     }
 
-    /// Checks that the Jacobian of a cell, whose nodes are `at` these points, is above `floor` everywhere.
-    fn check_jacobian(&self, cell: usize, at: &[[f64; 3]], floor: f64) -> Result<(), InputError> {
+    /// Checks that the Jacobian of a cell, whose nodes are `at` these points, is above `floor` everywhere; where it isn't
+    /// and that can be borne, it is said.
+    fn check_jacobian(
+        &self,
+        cell: usize,
+        at: &[[f64; 3]],
+        floor: f64,
+    ) -> Result<Option<String>, InputError> {
         let (kind, nodes) = (self.cells.kind(cell), self.cells.nodes_of(cell));
         let Some(fold) = kind.fold(at, floor) else {
-            return Ok(());
+            return Ok(None);
         };
-        Err(InputError::new(format!(
-            "element {} ({}) is folded: its Jacobian is {:e} at {}, near node {}; \
-             expected a positive one everywhere (corners below 180°, nodes on edges near their \
-             middle)",
+        let found = format!(
+            "element {} ({}) is folded: its Jacobian is {:e} at {}, near node {}",
             self.cell_tags[cell],
             kind.name(),
             fold.jacobian,
             shown(fold.position, self.dim),
             self.node_tags[nodes[fold.node] as usize]
-        )))
+        );
+        match kind.bears_fold(at, floor) {
+            true => Ok(Some(found)),
+            false => Err(InputError::new(format!(
+                "{found}; expected a positive one everywhere (corners below 180°, nodes on edges near their middle)"
+            ))),
+        }
     }
 
     /// Sets the components behind the mesh's dimension to zero.

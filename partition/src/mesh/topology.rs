@@ -1,12 +1,15 @@
 //! Which cells meet at a facet, and what hangs together.
 
+use std::collections::HashMap;
+
 use super::Mesh;
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::lists::Lists;
 
-/// Nodes that tell facets apart: one of four corners has no others with three of them.
-const CORNERS: usize = 3;
+/// Corners that a facet has at most. Three of four don't tell it: at the front of a crack the two facets on its
+/// sides may have them in common.
+const CORNERS: usize = 4;
 
 /// The smallest nodes of a facet, ascending.
 type Key = [u32; CORNERS];
@@ -33,8 +36,8 @@ impl CellFacet {
     }
 }
 
-/// The nodes that tell a facet of these nodes apart: of a face its corners, as it shares all nodes of an edge with
-/// its neighbours.
+/// The corners of a facet of these nodes, in the plane with the node between them: of a face its corners, as it shares
+/// all nodes of an edge with its neighbours.
 fn telling(facet: &[u32]) -> &[u32] {
     match facet.len() {
         6 => &facet[..3],
@@ -43,13 +46,33 @@ fn telling(facet: &[u32]) -> &[u32] {
     }
 }
 
+/// A facet in the list of those with its smallest node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Entry {
+    rest: Rest,
+    /// Which it is of those of these corners whose further nodes differ, from 0: the two sides of a crack may have
+    /// all corners of a facet in common, but not the node in the middle of an edge.
+    sheet: u32,
+    facet: CellFacet,
+}
+
+impl Entry {
+    /// Whether two facets are one.
+    fn is_same(&self, other: &Self) -> bool {
+        self.rest == other.rest && self.sheet == other.sheet
+    }
+}
+
 /// A line or a face where cells meet that differ in what lies within it.
 #[derive(Debug)]
 pub struct Tear {
     /// Two of these cells.
     pub cells: [u32; 2],
-    /// Its corners, those with the smallest numbers.
+    /// Its corners.
     pub corners: Vec<u32>,
+    /// Whether one of the cells has a node in its middle and the other has none; else each has one of its own, as the
+    /// two sides of a crack do.
+    pub hangs: bool,
 }
 
 /// A line or a face of a kind of cells: its local corners and what lies within it.
@@ -83,8 +106,10 @@ impl Seam {
 /// The facets of cells, those of the same nodes beside each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Facets {
-    /// By their smallest node, with the other nodes of their keys.
-    by_node: Lists<(Rest, CellFacet)>,
+    /// By their smallest node.
+    by_node: Lists<Entry>,
+    /// The nodes of those facets that others have the corners of, but not all nodes.
+    nodes: HashMap<CellFacet, Vec<u32>>,
 }
 
 impl Facets {
@@ -98,20 +123,58 @@ impl Facets {
                     _ => local.len(),
                 };
                 let [first, rest @ ..] = key(local[..count].iter().map(|&i| nodes[i]));
-                let cell = cell as u32;
-                let facet = facet as u8;
-                (first, (rest, CellFacet { cell, facet }))
+                let facet = CellFacet {
+                    cell: cell as u32,
+                    facet: facet as u8,
+                };
+                let sheet = 0;
+                (first, Entry { rest, sheet, facet })
             })
         });
         let mut by_node = Lists::new(nodes, all);
         by_node.sort();
-        Self { by_node }
+        let mut facets = Self {
+            by_node,
+            nodes: HashMap::new(),
+        };
+        if cells
+            .iter()
+            .any(|(kind, _)| kind.dim() == 3 && !kind.is_linear())
+        {
+            facets.tell_sheets(cells);
+        }
+        facets
+    }
+
+    /// Tells facets apart that have the same corners but not the same nodes between them.
+    fn tell_sheets(&mut self, cells: &Elements) {
+        let sorted = |entry: &Entry| {
+            let mut nodes = entry.facet.nodes(cells);
+            nodes.sort_unstable();
+            nodes
+        };
+        for list in 0..self.by_node.len() {
+            let list = self.by_node.of_mut(list);
+            for same in list.chunk_by_mut(|a, b| a.rest == b.rest) {
+                // Few facets have the same corners.
+                for at in 1..same.len() {
+                    let nodes = sorted(&same[at]);
+                    let first = same[..at].iter().position(|other| sorted(other) == nodes);
+                    same[at].sheet = first.map_or(at as u32, |first| same[first].sheet);
+                }
+                if same.iter().any(|entry| entry.sheet > 0) {
+                    same.sort_unstable();
+                    let nodes = |entry: &Entry| (entry.facet, entry.facet.nodes(cells));
+                    self.nodes.extend(same.iter().map(nodes));
+                }
+            }
+        }
     }
 
     /// The facets of the same nodes, those of a place after the other.
-    fn places(&self) -> impl Iterator<Item = &[(Rest, CellFacet)]> + Clone {
+    fn places(&self) -> impl Iterator<Item = &[Entry]> + Clone {
         let lists = self.by_node.iter();
-        lists.flat_map(|list| list.chunk_by(|a, b| a.0 == b.0))
+        lists.flat_map(|list| list.chunk_by(Entry::is_same))
     }
 
     /// Whether two facets lead from one node to the same other one, several times faster than finding
@@ -151,7 +214,8 @@ impl Facets {
         self.places().find_map(|same| {
             // Of three cells two are on one side.
             let count = same.len().min(3);
-            let mut pairs = (1..count).flat_map(|i| (0..i).map(move |j| [same[j].1, same[i].1]));
+            let mut pairs =
+                (1..count).flat_map(|i| (0..i).map(move |j| [same[j].facet, same[i].facet]));
             pairs.find(|[a, b]| start(a) == start(b))
         })
     }
@@ -170,31 +234,31 @@ impl Facets {
         if !(has(4) && has(8)) {
             return None;
         }
-        let all = self.by_node.iter().flatten().map(|(_, facet)| *facet);
+        let all = self.by_node.iter().flatten().map(|entry| entry.facet);
         all.filter(|facet| corners(facet) == 4).find_map(|face| {
             let nodes = face.nodes(cells);
             let threes = (0..4).map(|out| (0..4).filter(move |&i| i != out));
             threes.into_iter().find_map(|three| {
                 let half = self.of(key(three.map(|i| nodes[i])));
-                let half = half.iter().find(|(_, half)| corners(half) == 3)?;
-                Some([face, half.1])
+                let half = half.iter().find(|half| corners(&half.facet) == 3)?;
+                Some([face, half.facet])
             })
         })
     }
 
     /// Those with this key.
-    fn of(&self, [first, rest @ ..]: Key) -> &[(Rest, CellFacet)] {
+    fn of(&self, [first, rest @ ..]: Key) -> &[Entry] {
         let list = match first as usize {
             node if node < self.by_node.len() => self.by_node.of(node),
             _ => &[],
         };
-        let start = list.partition_point(|(other, _)| *other < rest);
-        let same = list[start..].partition_point(|(other, _)| *other == rest);
+        let start = list.partition_point(|other| other.rest < rest);
+        let same = list[start..].partition_point(|other| other.rest == rest);
         &list[start..start + same]
     }
 
-    /// A line or a face whose corners cells share, but not what lies between them, if there is any: a node in
-    /// its middle would hang.
+    /// A line or a face whose corners cells share, but not what lies between them, if there is any: first of those where
+    /// one of the cells has a node in its middle that would hang, as the other has none.
     pub fn torn(cells: &Elements, nodes: usize) -> Option<Tear> {
         if cells.iter().all(|(kind, _)| kind.is_linear()) {
             return None;
@@ -212,40 +276,47 @@ impl Facets {
         by_node.sort();
         let torn = |pair: &[(Key, Key, u32)]| {
             let (a, b) = (pair[0], pair[1]);
+            let is_empty = |within: Key| within[0] == u32::MAX;
             (a.0 == b.0 && a.1 != b.1).then(|| Tear {
                 cells: [a.2, b.2],
                 corners: a.0.into_iter().filter(|&node| node != u32::MAX).collect(),
+                hangs: is_empty(a.1) != is_empty(b.1),
             })
         };
-        by_node
-            .iter()
-            .find_map(|list| list.windows(2).find_map(torn))
+        let tears = || (by_node.iter()).flat_map(|list| list.windows(2).filter_map(torn));
+        tears().find(|tear| tear.hangs).or_else(|| tears().next())
     }
 }
 
 impl Mesh {
-    /// Checks that cells which share the ends of an edge share the node between them as well.
+    /// Checks that cells which share the ends of an edge have no node hang in its middle. What a user should know of
+    /// an edge in whose middle each has a node of its own.
     ///
     /// # Errors
-    /// Two that don't, by their tags: such as a linear cell beside a quadratic one, whose node in the
-    /// middle would hang.
-    pub(crate) fn check_edges(&self) -> Result<(), InputError> {
+    /// Two that don't, by their tags: such as a linear cell beside a quadratic one.
+    pub(crate) fn check_edges(&self) -> Result<Option<String>, InputError> {
         let Some(tear) = Facets::torn(&self.cells, self.points.len()) else {
-            return Ok(());
+            return Ok(None);
         };
-        let [a, b] = tear.cells.map(|cell| cell as usize);
-        let [a_name, b_name] = [a, b].map(|cell| self.cells.kind(cell).name());
+        let tags = self.tags_of(&tear.corners);
         let what = match tear.corners.len() {
             2 => "an edge between",
             _ => "a face of",
         };
+        if !tear.hangs {
+            let [a, b] = tear.cells.map(|cell| self.cell_tags[cell as usize]);
+            return Ok(Some(format!(
+                "elements {a} and {b} share {what} the nodes {tags}, but each has a node of its own in its middle: it \
+                 opens there, which is right at the front of a crack alone"
+            )));
+        }
+        let [a, b] = tear.cells.map(|cell| cell as usize);
+        let [a_name, b_name] = [a, b].map(|cell| self.cells.kind(cell).name());
         Err(InputError::new(format!(
-            "elements {} ({a_name}) and {} ({b_name}) share {what} the nodes {}, but not the \
+            "elements {} ({a_name}) and {} ({b_name}) share {what} the nodes {tags}, but not the \
              node in its middle; expected linear or quadratic elements on both of its sides, of the same \
              nodes",
-            self.cell_tags[a],
-            self.cell_tags[b],
-            self.tags_of(&tear.corners)
+            self.cell_tags[a], self.cell_tags[b],
         )))
     }
 }
@@ -262,8 +333,8 @@ impl Topology {
     pub fn new(mesh: &Mesh) -> Self {
         let facets = Facets::new(&mesh.cells, mesh.points.len());
         let pairs = facets.places().flat_map(|same| {
-            let others = move |a: u32| same.iter().map(move |(_, b)| (a, b.cell));
-            same.iter().flat_map(move |(_, a)| others(a.cell))
+            let others = move |a: u32| same.iter().map(move |b| (a, b.facet.cell));
+            same.iter().flat_map(move |a| others(a.facet.cell))
         });
         let mut neighbours = Lists::new(mesh.cells.len(), pairs.filter(|(a, b)| a != b));
         neighbours.sort();
@@ -299,16 +370,21 @@ impl Topology {
         )))
     }
 
-    /// The facets of cells that have exactly these nodes, in any order, in space these corners.
+    /// The facets of cells that have exactly these nodes, in any order, in space these corners; where the facets of
+    /// these corners differ in what lies between them, those that have all these nodes.
     pub fn cells_at(&self, facet_nodes: &[u32]) -> Vec<CellFacet> {
         let found = self.facets.of(key(telling(facet_nodes).iter().copied()));
-        found.iter().map(|&(_, facet)| facet).collect()
+        let has = |facet: &CellFacet| {
+            let nodes = self.facets.nodes.get(facet);
+            nodes.is_none_or(|nodes| facet_nodes.iter().all(|node| nodes.contains(node)))
+        };
+        found.iter().map(|entry| entry.facet).filter(has).collect()
     }
 
     /// The facets of one cell only, in the order of their nodes.
-    pub fn boundary(&self) -> impl Iterator<Item = CellFacet> {
+    pub fn boundary(&self) -> impl Iterator<Item = CellFacet> + Clone {
         self.facets.places().filter_map(|same| match same {
-            [(_, one)] => Some(*one),
+            [one] => Some(one.facet),
             _ => None,
         })
     }

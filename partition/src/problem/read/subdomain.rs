@@ -313,6 +313,9 @@ fn fault_of_cell(kind: ElementKind, nodes: &[u32], points: &[[f64; 3]]) -> Optio
         return Some((0, what));
     }
     let fold = kind.fold(points, 0.0)?;
+    if kind.bears_fold(points, 0.0) {
+        return None;
+    }
     let what = format!(
         "is folded: its Jacobian near the node is {:e}; expected a positive one everywhere",
         fold.jacobian
@@ -337,7 +340,8 @@ fn fault_between_cells(cells: &Elements, points: usize) -> Option<([u32; 2], &'s
     }
     let what = "share the ends of an edge, but not the node between them; expected the same nodes \
                 on both sides";
-    Some((Facets::torn(cells, points)?.cells, what))
+    let tear = Facets::torn(cells, points).filter(|tear| tear.hangs)?;
+    Some((tear.cells, what))
 }
 
 fn take_node_tags(slices: &Slices, rows: Range<usize>) -> Result<Vec<i64>, InputError> {
