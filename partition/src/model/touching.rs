@@ -6,10 +6,12 @@
 
 mod nearest;
 mod patch;
+mod ties;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use self::patch::Patch;
+use self::ties::Ties;
 use super::bodies::Bodies;
 use super::groups;
 use super::skin::{Facing, ROUND_OFF, STANDING_OFF, Skin};
@@ -75,7 +77,8 @@ pub(super) fn contacts(
         true => Vec::new(),
         false => {
             let skin = Skin::new(bodies, topology, scene.plane, |_| true);
-            search(&mut searches, scene, &skin, topology, warnings)?;
+            let ties = Ties::new(bodies, topology);
+            search(&mut searches, scene, &skin, topology, &ties, warnings)?;
             let sides = Sides { scene, skin: &skin };
             sides.written(&searches, &mut groups)?
         }
@@ -104,6 +107,7 @@ fn search(
     scene: &Scene,
     skin: &Skin,
     topology: &Topology,
+    ties: &Ties,
     warnings: &mut Vec<String>,
 ) -> Result<(), InputError> {
     let names: Vec<&str> = scene.bodies.keys().map(String::as_str).collect();
@@ -141,7 +145,15 @@ fn search(
             warnings.extend(parting(skin, &neighbours, &touching, &near, what, unit));
         }
         if search.patches.is_empty() && search.taken == 0 {
-            return Err(nearest::apart(skin, &names, search.between, &near, unit));
+            return Err(match ties.of(search.between, &names) {
+                Some(tied) => InputError::new(format!(
+                    "contact '{what}': no facets face each other between its bodies; {tied}"
+                )),
+                None => nearest::apart(skin, &names, search.between, &near, unit),
+            });
+        }
+        if let Some(tied) = ties.of(search.between, &names) {
+            warnings.push(format!("contact '{what}': {tied}"));
         }
         if search.patches.is_empty() {
             warnings.push(format!(

@@ -67,6 +67,38 @@ fn bodies_that_touch_at_a_point_have_no_contact() {
     assert_eq!(near.contacts.len(), 1);
 }
 
+/// A block whose lower and upper halves are bodies that share the nodes between them, as fragments of a geometry do.
+fn fragments() -> Blocks {
+    let mut blocks = Blocks::new().block("lower", [0.0, 1.0], [0.0, 2.0], [2, 4]);
+    let upper = blocks.mesh.groups["lower"].members.clone();
+    let (lower, upper) = upper.split_at(8);
+    for (name, members) in [("lower", lower), ("upper", upper)] {
+        let (dim, members) = (2, members.to_vec());
+        blocks
+            .mesh
+            .groups
+            .insert(name.into(), Group { dim, members });
+    }
+    blocks
+}
+
+#[test]
+fn bodies_that_share_nodes_are_tied_and_that_is_said() {
+    let tied = "contact 'joints': … 'lower' and 'upper' share the nodes of 2 facets and are tied there; expected \
+                … mesh each by itself, in Gmsh without BooleanFragments";
+    says(&fragments().model(ALL).unwrap_err(), tied);
+    let named = ALL.replace("'all'", "['lower', 'upper']");
+    says(&fragments().model(&named).unwrap_err(), tied);
+    // Where something else touches the others are tied without a contact all the same.
+    let more = fragments().block("lid", [0.0, 1.0], [2.0, 3.0], [2, 2]);
+    let model = more.model(ALL).unwrap();
+    assert_eq!(names(&model), ["joints"]);
+    says(&model.warnings.join("\n"), tied);
+    let named = ALL.replace("'all'", "['lid', 'upper']");
+    let model = more.model(&named).unwrap();
+    assert!(!model.warnings.join("\n").contains("tied"));
+}
+
 #[test]
 fn what_is_apart_is_said_with_the_distance() {
     let error = stack(0.5).model(ALL).unwrap_err();
