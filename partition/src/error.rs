@@ -38,8 +38,36 @@ impl std::fmt::Display for InputError {
             escape(f, &path.display().to_string(), "")?;
             f.write_str(": ")?;
         }
-        escape(f, &self.message, "\n")
+        escape(f, &shortened(&self.message), "\n")
     }
+}
+
+/// Characters of a word of a message that are shown: a value of a file may have any number of them.
+const LONGEST_WORD: usize = 1000;
+
+/// Characters of a message that are shown.
+const LONGEST: usize = 5000;
+
+/// A message whose words, and which itself, isn't longer than somebody would read.
+fn shortened(message: &str) -> String {
+    if message.len() <= LONGEST_WORD {
+        return message.to_owned();
+    }
+    let mut short = String::new();
+    let (mut count, mut in_word) = (0, 0);
+    for c in message.chars() {
+        in_word = if c.is_whitespace() { 0 } else { in_word + 1 };
+        if in_word > LONGEST_WORD {
+            continue;
+        }
+        if count == LONGEST {
+            short.push('…');
+            break;
+        }
+        short.push(if in_word == LONGEST_WORD { '…' } else { c });
+        count += 1;
+    }
+    short
 }
 
 /// Writes text of a file, or the name of one, without control characters but for those `kept`.
@@ -61,4 +89,30 @@ pub struct OutputError {
     pub path: PathBuf,
     /// What the system said.
     pub reason: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_is_short_whatever_it_cites() {
+        let said = |found: &str| {
+            InputError::new(format!(
+                "line 3: expected a number, found `{found}`; expected more"
+            ))
+            .in_file(Path::new("a.inp"))
+            .to_string()
+        };
+        assert_eq!(
+            said("x\u{1b}[31m"),
+            "a.inp: line 3: expected a number, found `x\\u{1b}[31m`; expected more"
+        );
+        let word = said(&"9".repeat(100_000));
+        assert!(word.len() < 1200, "{}", word.len());
+        assert!(word.ends_with("9… expected more"), "{word}");
+        let text = said(&"9 ".repeat(100_000));
+        assert!(text.len() < 5200, "{}", text.len());
+        assert!(text.ends_with('…'), "{text}");
+    }
 }

@@ -29,6 +29,7 @@ use crate::contact_point::ContactPoint;
 use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
+use crate::name;
 use crate::scene::Scene;
 pub use crate::scene::material::PlaneState;
 use crate::scene::units::Units;
@@ -187,7 +188,8 @@ impl Model {
             contacts,
             found,
             prescribed_subdomains,
-            warnings,
+            // Words of a mesh or a deck may hold anything, and each warning is a line of the problem file.
+            warnings: (warnings.iter().map(|text| name::in_a_line(text))).collect(),
         })
     }
 }

@@ -46,17 +46,22 @@ pub fn check_text(text: &str) -> Result<(), &'static str> {
 /// The start of a name as a message shows it, in one line.
 pub fn shown(name: &str) -> String {
     const SHOWN: usize = 60;
-    let mut shown = String::new();
-    for letter in name.chars().take(SHOWN) {
+    match name.char_indices().nth(SHOWN) {
+        None => in_a_line(name),
+        Some((end, _)) => format!("{}…", in_a_line(&name[..end])),
+    }
+}
+
+/// A text in one line, without control characters.
+pub fn in_a_line(text: &str) -> String {
+    let mut line = String::new();
+    for letter in text.chars() {
         match letter.is_control() {
-            true => shown.extend(letter.escape_default()),
-            false => shown.push(letter),
+            true => line.extend(letter.escape_default()),
+            false => line.push(letter),
         }
     }
-    if name.chars().nth(SHOWN).is_some() {
-        shown.push('…');
-    }
-    shown
+    line
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ use self::content::Content;
 use self::cursor::{Cursor, Encoding};
 use super::{Mesh, foreign};
 use crate::error::InputError;
-use crate::source;
+use crate::{name, source};
 
 pub use self::write::write;
 
@@ -134,7 +134,8 @@ fn mesh_format(cursor: &mut Cursor) -> Result<Version, InputError> {
         [number, file_type, data_size] => (number, file_type, data_size),
         _ => {
             return Err(cursor.error(format!(
-                "expected version, file type and data size, such as `4.1 0 8`, found `{line}`"
+                "expected version, file type and data size, such as `4.1 0 8`, found `{}`",
+                name::shown(line)
             )));
         }
     };

@@ -1,7 +1,7 @@
 //! A place in the bytes of an MSH file, from which numbers are read in either encoding.
 
 use crate::error::InputError;
-use crate::magnitude;
+use crate::{magnitude, name};
 
 /// How the numbers of a file are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -267,9 +267,37 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// Bytes of a file as a message shows them.
+/// Bytes of a file as a message shows them: text, or the first of those that aren't.
 fn shown(bytes: &[u8]) -> String {
-    const LONGEST: usize = 40;
-    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]);
-    text.escape_debug().collect()
+    const FIRST: usize = 8;
+    match std::str::from_utf8(bytes) {
+        Ok(text) if !text.chars().any(char::is_control) => name::shown(text),
+        _ => {
+            let first = bytes.iter().take(FIRST);
+            let words: Vec<String> = first.map(|byte| format!("{byte:02x}")).collect();
+            let more = if bytes.len() > FIRST { " …" } else { "" };
+            format!("bytes {}{more}", words.join(" "))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_that_are_no_text_are_shown_by_the_first_of_them() {
+        for (bytes, expected) in [
+            (&b"$EndNodes"[..], "$EndNodes"),
+            (&[0, 255, 16][..], "bytes 00 ff 10"),
+            (
+                &[b'a', 200, 200, 0, 0, 0, 0, 7, 8][..],
+                "bytes 61 c8 c8 00 00 00 00 07 …",
+            ),
+        ] {
+            assert_eq!(shown(bytes), expected);
+        }
+        assert!(shown(&[b'x'; 200]).len() < 70);
+        assert!(shown(&[0xfe; 200]).len() < 40);
+    }
 }

@@ -10,18 +10,22 @@ use crate::{mesh, name};
 pub(super) fn read(cursor: &mut Cursor) -> Result<BTreeMap<(usize, i64), String>, InputError> {
     let line = cursor.line("the number of names")?;
     let Ok(count) = line.parse::<usize>() else {
-        return Err(cursor.error(format!("expected the number of names, found `{line}`")));
+        return Err(cursor.error(format!(
+            "expected the number of names, found `{}`",
+            name::shown(line)
+        )));
     };
     let mut names = BTreeMap::new();
     for _ in 0..count {
         let line = cursor.line("dimension, number and \"name\" of a physical group")?;
         let Some((dim, number, name)) = entry(line) else {
             return Err(cursor.error(format!(
-                "expected dimension, number and \"name\" of a physical group, found `{line}`"
+                "expected dimension, number and \"name\" of a physical group, found `{}`",
+                name::shown(line)
             )));
         };
         if let Err(reason) = name::check_text(name) {
-            return Err(cursor.error(format!("'{name}' {reason}")));
+            return Err(cursor.error(format!("'{}' {reason}", name::shown(name))));
         }
         if !name.is_empty() && names.insert((dim, number), name.to_string()).is_some() {
             return Err(cursor.error(format!(

@@ -7,6 +7,7 @@ use super::cursor::{Cursor, Encoding};
 use super::element_type;
 use crate::element::ElementKind;
 use crate::error::InputError;
+use crate::name;
 
 /// Reads the body of `$Nodes` or `$ParametricNodes`.
 pub(super) fn nodes(
@@ -114,6 +115,6 @@ fn count_line(cursor: &mut Cursor, what: &str, values: usize) -> Result<usize, I
     let line = cursor.line(what)?;
     match line.parse() {
         Ok(count) => cursor.checked(what, count, values),
-        Err(_) => Err(cursor.error(format!("expected {what}, found `{line}`"))),
+        Err(_) => Err(cursor.error(format!("expected {what}, found `{}`", name::shown(line)))),
     }
 }
