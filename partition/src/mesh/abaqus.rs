@@ -12,6 +12,10 @@ mod blocks;
 mod deck;
 mod element_type;
 mod import;
+mod members;
+mod notes;
+mod position;
+mod scope;
 mod sets;
 
 use std::path::Path;

@@ -2,6 +2,8 @@
 
 mod assemblies;
 mod kinds;
+mod latitude;
+mod limits;
 mod mistakes;
 mod scenes;
 

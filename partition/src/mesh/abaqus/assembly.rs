@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::blocks::{Block, Source};
-use super::deck::{Deck, Face, Offsets};
-use crate::element::geometry::{cross, difference, length};
+use super::blocks::{Block, Place, Source};
+use super::deck::{Deck, Face, Offsets, check_name};
+use super::position::{Point, Position};
+use super::scope::Scope;
 use crate::error::InputError;
-
-type Point = [f64; 3];
+use crate::name;
 
 /// Keywords that make nodes and elements of others, or mean other coordinates than they say.
 const REFUSED: [&str; 10] = [
@@ -28,125 +28,173 @@ const SILENT: [&str; 8] = [
     "HEADING", "PREPRINT", "RESTART", "OUTPUT", "PRINT", "FILE", "END ", "ASSEMBLY",
 ];
 
+/// The largest tag that instances may have: another of their tags added to it is still a number.
+const LARGEST_TAG: i64 = 1 << 60;
+
+/// Instances whose numbers are told one by one.
+const TOLD: usize = 20;
+
 /// A deck on its way into one mesh.
 #[derive(Default)]
-pub(super) struct Assembly {
+pub(super) struct Assembly<'a> {
     whole: Deck,
+    /// What belongs to no part and no instance.
+    own: Scope<'a>,
     parts: BTreeMap<String, Deck>,
-    /// The part whose lines are read, by its name in capitals.
-    part: Option<(String, Deck)>,
-    in_instance: bool,
+    /// The part or instance whose blocks are read.
+    open: Option<Open<'a>>,
     skipped: BTreeSet<String>,
 }
 
-impl Assembly {
+/// A part or an instance that isn't at its end yet.
+struct Open<'a> {
+    kind: Kind,
+    /// The part's name in capitals, or the instance's.
+    name: String,
+    place: Place,
+    scope: Scope<'a>,
+}
+
+enum Kind {
+    Part,
+    /// Where it lies, and the name of its part in capitals.
+    Instance(Position, String),
+}
+
+impl Open<'_> {
+    fn word(&self) -> &'static str {
+        match self.kind {
+            Kind::Part => "PART",
+            Kind::Instance(..) => "INSTANCE",
+        }
+    }
+}
+
+impl<'a> Assembly<'a> {
     /// The whole deck, and what to warn of.
-    pub(super) fn read(source: &Source) -> Result<(Deck, Vec<String>), InputError> {
+    pub(super) fn read(source: &'a Source) -> Result<(Deck, Vec<String>), InputError> {
         let mut assembly = Self::default();
         for block in &source.blocks {
             assembly.add(source, block)?;
         }
-        if let Some((name, _)) = assembly.part {
-            let message = format!("the deck ends within the part '{name}'; expected *END PART");
-            return Err(InputError::new(message).in_file(source.path()));
+        if let Some(open) = assembly.open {
+            let (word, name) = (open.word(), name::shown(&open.name));
+            let message = format!(
+                "the deck ends within the {} '{name}'; expected *END {word}",
+                word.to_lowercase()
+            );
+            return Err(source.error(open.place, message));
         }
-        let warnings = assembly.warnings();
+        assembly.own.read(source, &mut assembly.whole)?;
+        let warnings = assembly.warnings(source);
         Ok((assembly.whole, warnings))
     }
 
-    fn add(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
+    fn add(&mut self, source: &'a Source, block: &'a Block) -> Result<(), InputError> {
         let keyword = block.keyword.as_str();
         let refuse = |message: String| Err(source.error(block.place, message));
-        if self.in_instance && ["NODE", "ELEMENT", "NSET", "ELSET", "SURFACE"].contains(&keyword) {
-            return refuse(format!(
-                "*{keyword} within an *INSTANCE isn't read; expected it in its *PART"
-            ));
+        let scope = match &mut self.open {
+            Some(open) => &mut open.scope,
+            None => &mut self.own,
+        };
+        if scope.take(block) {
+            return Ok(());
         }
-        let deck = self.part.as_mut().map_or(&mut self.whole, |(_, deck)| deck);
         match keyword {
-            "NODE" => deck.add_nodes(source, block),
-            "ELEMENT" => deck.add_elements(source, block),
-            "NSET" | "ELSET" => deck.add_set(source, block),
-            "SURFACE" => deck.add_surface(source, block),
-            "PART" => {
-                let name = source.required(block, "NAME")?.to_uppercase();
-                if self.part.is_some() {
-                    return refuse("a *PART within another; expected *END PART before it".into());
+            "PART" | "INSTANCE" => {
+                if let Some(open) = &self.open {
+                    let word = open.word();
+                    return refuse(format!(
+                        "*{keyword} within the {} '{}'; expected *END {word} before it",
+                        word.to_lowercase(),
+                        name::shown(&open.name)
+                    ));
                 }
-                self.part = Some((name, Deck::default()));
+                let name = source.required(block, "NAME")?;
+                check_name(source, block.place, name)?;
+                let (kind, name) = match keyword {
+                    "PART" => (Kind::Part, name.to_uppercase()),
+                    _ => {
+                        let part = self.part(source, block, name)?;
+                        (
+                            Kind::Instance(Position::read(source, block)?, part),
+                            name.to_owned(),
+                        )
+                    }
+                };
+                self.open = Some(Open {
+                    kind,
+                    name,
+                    place: block.place,
+                    scope: Scope::default(),
+                });
                 Ok(())
             }
-            "END PART" => {
-                self.parts.extend(self.part.take());
-                Ok(())
-            }
-            "INSTANCE" => {
-                self.in_instance = true;
-                self.add_instance(source, block)
-            }
-            "END INSTANCE" => {
-                self.in_instance = false;
-                Ok(())
-            }
+            "END PART" | "END INSTANCE" => self.close(source),
             _ if REFUSED.contains(&keyword) => refuse(format!(
                 "*{keyword} isn't read; expected a deck that lists all nodes and elements, in Cartesian coordinates"
             )),
             _ => {
                 if !SILENT.iter().any(|silent| keyword.contains(silent)) {
-                    self.skipped.insert(format!("*{keyword}"));
+                    self.skipped.insert(format!("*{}", name::shown(keyword)));
                 }
                 Ok(())
             }
         }
     }
 
-    /// `*INSTANCE`: a part with a shift and a rotation about the axis through two points, in degrees.
-    fn add_instance(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
+    /// The part that an `*INSTANCE` is of.
+    fn part(&self, source: &Source, block: &Block, name: &str) -> Result<String, InputError> {
         let part_name = source.required(block, "PART")?;
-        let name = source.required(block, "NAME")?;
-        let Some(part) = self.parts.get(&part_name.to_uppercase()) else {
-            let message = format!("there is no part '{part_name}' before this line");
+        let part = part_name.to_uppercase();
+        if !self.parts.contains_key(&part) {
+            let message = format!(
+                "there is no part '{}' before this line",
+                name::shown(part_name)
+            );
             return Err(source.error(block.place, message));
-        };
+        }
         if self.whole.instances.contains_key(&name.to_uppercase()) {
-            let message = format!("there are two instances '{name}'; expected names that differ");
+            let message = format!(
+                "there are two instances '{}'; expected names that differ",
+                name::shown(name)
+            );
             return Err(source.error(block.place, message));
         }
-        let mut rows = Vec::new();
-        for data in &block.data {
-            let items = source.items(data);
-            let row = items
-                .map(|item| source.real(data.place, item, "a number of a shift or a rotation"));
-            rows.push((data.place, row.collect::<Result<Vec<_>, _>>()?));
-        }
-        let mut shift = [0.0; 3];
-        if let Some((_, row)) = rows.first() {
-            for (to, from) in shift.iter_mut().zip(row) {
-                *to = *from;
+        Ok(part)
+    }
+
+    /// The end of a part or an instance; what an instance has of its own, be it its whole mesh, comes to its part.
+    fn close(&mut self, source: &Source) -> Result<(), InputError> {
+        let Some(open) = self.open.take() else {
+            return Ok(());
+        };
+        match open.kind {
+            Kind::Part => {
+                let mut part = Deck::default();
+                open.scope.read(source, &mut part)?;
+                self.parts.insert(open.name, part);
+            }
+            Kind::Instance(position, part) => {
+                let Some(part) = self.parts.get(&part) else {
+                    return Ok(());
+                };
+                let mut own = None;
+                if !open.scope.is_empty() {
+                    let own = own.insert(part.clone());
+                    open.scope.read(source, own)?;
+                    self.whole.notes.join(&own.notes);
+                    self.whole.taken_as.extend(own.taken_as.iter().cloned());
+                }
+                let part = own.as_ref().unwrap_or(part);
+                let placed = self.whole.place(part, &open.name, |at| position.of(at));
+                placed.map_err(|message| source.error(open.place, message))?;
             }
         }
-        let turn = match rows.get(1) {
-            None => None,
-            Some((place, row)) => match row[..] {
-                [a, b, c, d, e, f, angle] if [a, b, c] != [d, e, f] => {
-                    Some(([a, b, c], [d, e, f], angle.to_radians()))
-                }
-                _ => {
-                    let message =
-                        "expected two points on the axis of the rotation and its angle, 7 numbers";
-                    return Err(source.error(*place, message));
-                }
-            },
-        };
-        let place = |point: Point| {
-            let shifted = [0, 1, 2].map(|k| point[k] + shift[k]);
-            turn.map_or(shifted, |(a, b, angle)| turned(shifted, a, b, angle))
-        };
-        self.whole.place(part, name, place);
         Ok(())
     }
 
-    fn warnings(&self) -> Vec<String> {
+    fn warnings(&self, source: &Source) -> Vec<String> {
         let list = |words: &BTreeSet<String>| words.iter().cloned().collect::<Vec<_>>().join(", ");
         let decks = self.parts.values().chain([&self.whole]);
         let taken_as: BTreeSet<String> = decks
@@ -165,13 +213,24 @@ impl Assembly {
                 list(&self.skipped)
             ));
         }
-        for (instance, offsets) in &self.whole.instances {
-            if offsets.nodes != 0 && !instance.is_empty() {
-                warnings.push(format!(
-                    "the nodes of the instance '{instance}' are numbered as in its part + {}, its elements + {}",
-                    offsets.nodes, offsets.elements
-                ));
-            }
+        let mut notes = source.notes.clone();
+        let decks = self.parts.values().chain([&self.whole]);
+        decks.for_each(|deck| notes.join(&deck.notes));
+        warnings.extend(notes.warnings());
+        let moved = self.whole.instances.iter();
+        let mut moved = moved.filter(|(name, offsets)| offsets.nodes != 0 && !name.is_empty());
+        let told = moved.by_ref().take(TOLD).map(|(instance, offsets)| {
+            format!(
+                "the nodes of the instance '{instance}' are numbered as in its part + {}, its elements + {}",
+                offsets.nodes, offsets.elements
+            )
+        });
+        warnings.extend(told);
+        let more = moved.count();
+        if more > 0 {
+            warnings.push(format!(
+                "{more} more instances are numbered on in the same way"
+            ));
         }
         warnings
     }
@@ -179,44 +238,64 @@ impl Assembly {
 
 impl Deck {
     /// Adds a part as an instance; tags that are taken already are moved behind the highest.
-    fn place(&mut self, part: &Self, instance: &str, place: impl Fn(Point) -> Point) {
-        let offset = |taken: &[i64], new: &[i64]| match (taken.iter().max(), new.iter().min()) {
-            (Some(&highest), Some(_)) => highest,
-            _ => 0,
-        };
+    ///
+    /// # Errors
+    /// Tags or counts that are too large, in words.
+    fn place(
+        &mut self,
+        part: &Self,
+        instance: &str,
+        place: impl Fn(Point) -> Point,
+    ) -> Result<(), String> {
+        let offset = |highest: i64, new: &[i64]| if new.is_empty() { 0 } else { highest };
         let offsets = Offsets {
-            nodes: offset(&self.node_tags, &part.node_tags),
-            elements: offset(&self.element_tags, &part.element_tags),
+            nodes: offset(self.highest.nodes, &part.node_tags),
+            elements: offset(self.highest.elements, &part.element_tags),
         };
+        let highest =
+            (offsets.nodes + part.highest.nodes).max(offsets.elements + part.highest.elements);
+        let count =
+            (self.points.len() + part.points.len()).max(self.elements.len() + part.elements.len());
+        if highest > LARGEST_TAG || count > u32::MAX as usize {
+            return Err(format!(
+                "the nodes or elements of the instance '{}' would be numbered up to {highest}, {count} of them; \
+                 expected smaller numbers in its part, or fewer instances",
+                name::shown(instance)
+            ));
+        }
         self.instances.insert(instance.to_uppercase(), offsets);
         let (first_node, first_element) = (self.points.len() as u32, self.elements.len() as u32);
         for (&tag, &point) in part.node_tags.iter().zip(&part.points) {
-            self.node_of
-                .insert(tag + offsets.nodes, self.points.len() as u32);
-            self.node_tags.push(tag + offsets.nodes);
-            self.points.push(place(point));
+            self.push_node(tag + offsets.nodes, place(point));
         }
         for (element, (kind, nodes)) in part.elements.iter().enumerate() {
-            let tag = part.element_tags[element] + offsets.elements;
-            self.element_of.insert(tag, self.elements.len() as u32);
             let nodes: Vec<u32> = nodes.iter().map(|&node| node + first_node).collect();
             self.elements.push(kind, &nodes);
-            self.element_tags.push(tag);
-            self.is_side.push(part.is_side[element]);
+            let tag = part.element_tags[element] + offsets.elements;
+            self.push_tag(tag, part.is_side[element]);
         }
         let name = |set: &str| format!("{instance}.{set}");
         for set in part.node_sets.iter() {
-            let members = set.members.iter().map(|&node| node + first_node);
+            let members = set.members.list().iter().map(|&node| node + first_node);
             self.node_sets
                 .extend(&name(&set.name), set.internal, members);
         }
         for set in part.element_sets.iter() {
-            let members = set.members.iter().map(|&element| element + first_element);
+            let members = set
+                .members
+                .list()
+                .iter()
+                .map(|&element| element + first_element);
             self.element_sets
                 .extend(&name(&set.name), set.internal, members);
         }
+        for set in part.node_surfaces.iter() {
+            let members = set.members.list().iter().map(|&node| node + first_node);
+            self.node_surfaces
+                .extend(&name(&set.name), set.internal, members);
+        }
         for surface in part.surfaces.iter() {
-            let members = surface.members.iter().map(|&face| match face {
+            let members = surface.members.list().iter().map(|&face| match face {
                 Face::Of(element, number) => Face::Of(element + first_element, number),
                 Face::Free(element) => Face::Free(element + first_element),
             });
@@ -225,15 +304,6 @@ impl Deck {
         }
         let all = first_element..self.elements.len() as u32;
         self.element_sets.extend(instance, false, all);
+        Ok(())
     }
-}
-
-/// A point turned about the axis from `a` to `b` (Rodrigues).
-fn turned(point: Point, a: Point, b: Point, angle: f64) -> Point {
-    let axis = difference(b, a).map(|component| component / length(difference(b, a)));
-    let arm = difference(point, a);
-    let across = cross(axis, arm);
-    let along: f64 = (0..3).map(|k| axis[k] * arm[k]).sum();
-    let (sin, cos) = angle.sin_cos();
-    [0, 1, 2].map(|k| a[k] + arm[k] * cos + across[k] * sin + axis[k] * along * (1.0 - cos))
 }

@@ -4,14 +4,25 @@ use std::io::Read as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use super::notes::Notes;
 use crate::error::InputError;
-use crate::{magnitude, source};
+use crate::{magnitude, name, source};
 
 /// Files that may include each other, one in the other: those of a deck that includes itself have no end.
 const DEEPEST: usize = 5;
 
+/// How often files may be included.
+const INCLUSIONS: usize = 10_000;
+
+/// Size of what is included again and again, all together (bytes): what stands in files once has the size that
+/// its user knows.
+const REPEATED: usize = 64 << 20;
+
 /// The largest number of a node or an element: several of them added up are still numbers.
 const LARGEST_TAG: i64 = 1 << 50;
+
+/// What may stand before the text of a file.
+const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// Keywords whose data a parameter `INPUT` takes from another file.
 const WITH_INPUT: [&str; 4] = ["NODE", "ELEMENT", "NSET", "ELSET"];
@@ -51,6 +62,11 @@ impl Block {
 pub(super) struct Source {
     files: Vec<(PathBuf, String)>,
     pub(super) blocks: Vec<Block>,
+    /// What isn't read of the text itself.
+    pub(super) notes: Notes,
+    inclusions: usize,
+    /// Bytes that were read before.
+    repeated: usize,
 }
 
 impl Source {
@@ -59,14 +75,19 @@ impl Source {
         let mut source = Self {
             files: Vec::new(),
             blocks: Vec::new(),
+            notes: Notes::default(),
+            inclusions: 0,
+            repeated: 0,
         };
-        source.add(path, DEEPEST)?;
+        source.files.push((path.to_path_buf(), text(path)?));
+        source.add(0, DEEPEST)?;
+        if source.blocks.is_empty() && !lines(&source.files[0].1).is_empty() {
+            let (line, _) = lines(&source.files[0].1)[0];
+            let message =
+                "expected a keyword, such as *NODE: this isn't a deck of Abaqus or CalculiX";
+            return Err(source.error(Place { file: 0, line }, message));
+        }
         Ok(source)
-    }
-
-    /// The deck that includes all other files.
-    pub(super) fn path(&self) -> &Path {
-        &self.files[0].0
     }
 
     /// An error at a line.
@@ -87,7 +108,7 @@ impl Source {
         number
             .filter(|tag| (1..=LARGEST_TAG).contains(tag))
             .ok_or_else(|| {
-                let found = item.escape_debug();
+                let found = name::shown(item);
                 self.error(
                     at,
                     format!("expected {what}, a positive integer, found `{found}`"),
@@ -95,17 +116,19 @@ impl Source {
             })
     }
 
-    /// A real number, with `e` or Fortran's `d` before the exponent; nothing is 0.
+    /// A real number, with `e` or Fortran's `d` or nothing before the exponent, as in `5.-1`; nothing at all is 0.
     pub(super) fn real(&self, at: Place, item: &str, what: &str) -> Result<f64, InputError> {
         let item = if item.is_empty() { "0" } else { item };
-        let value: f64 = item.replace(['d', 'D'], "e").parse().map_err(|_| {
+        let shown = || name::shown(item);
+        let value = real(item).ok_or_else(|| {
             self.error(
                 at,
-                format!("expected {what}, a number, found `{}`", item.escape_debug()),
+                format!("expected {what}, a number, found `{}`", shown()),
             )
         })?;
-        magnitude::check(value)
-            .map_err(|expected| self.error(at, format!("{what} is {item}; expected {expected}")))
+        magnitude::check(value).map_err(|expected| {
+            self.error(at, format!("{what} is {}; expected {expected}", shown()))
+        })
     }
 
     /// The value of a parameter that has to be there.
@@ -119,10 +142,16 @@ impl Source {
         })
     }
 
-    /// Appends a file; `depth` more may be included in each other.
-    fn add(&mut self, path: &Path, depth: usize) -> Result<(), InputError> {
-        let file = self.files.len();
-        self.files.push((path.to_path_buf(), text(path)?));
+    /// The line of a place in words, with the file where it isn't the deck itself.
+    pub(super) fn place(&self, at: Place) -> String {
+        match at.file {
+            0 => format!("line {}", at.line),
+            file => format!("{}, line {}", self.files[file].0.display(), at.line),
+        }
+    }
+
+    /// Appends the blocks of a file; `depth` more may be included in each other.
+    fn add(&mut self, file: usize, depth: usize) -> Result<(), InputError> {
         let lines = lines(&self.files[file].1);
         let mut next = 0;
         while let Some((line, range)) = lines.get(next).cloned() {
@@ -130,11 +159,13 @@ impl Source {
             let place = Place { file, line };
             let text = &self.files[file].1[range.clone()];
             let Some(head) = text.strip_prefix('*') else {
-                let Some(block) = self.blocks.last_mut() else {
-                    let message = "expected a keyword, such as *NODE: this isn't a deck of Abaqus or CalculiX";
-                    return Err(self.error(place, message));
-                };
-                block.data.push(Data { place, text: range });
+                match self.blocks.last_mut() {
+                    Some(block) => block.data.push(Data { place, text: range }),
+                    None => {
+                        let item = format!("{} `{}`", self.place(place), name::shown(text));
+                        (self.notes).add("text before the first keyword is left out", item);
+                    }
+                }
                 continue;
             };
             let mut head = head.to_owned();
@@ -166,12 +197,52 @@ impl Source {
                     let message = format!("more than {DEEPEST} files are included in each other");
                     return Err(self.error(place, message));
                 };
-                // As Abaqus does, relative to the deck that includes all others.
-                let folder = self.files[0].0.parent().unwrap_or(Path::new(""));
-                self.add(&folder.join(input), depth)?;
+                let file = self.included(place, &input)?;
+                self.add(file, depth)?;
             }
         }
         Ok(())
+    }
+
+    /// The number of a file that a line includes.
+    fn included(&mut self, at: Place, input: &str) -> Result<usize, InputError> {
+        // As Abaqus does, relative to the deck that includes all others.
+        let folder = self.files[0].0.parent().unwrap_or(Path::new(""));
+        let path = folder.join(input);
+        self.inclusions += 1;
+        if self.inclusions > INCLUSIONS {
+            let message = format!(
+                "more than {INCLUSIONS} files are included; expected a deck whose files don't include each other \
+                 again and again"
+            );
+            return Err(self.error(at, message));
+        }
+        let known = self.files.iter().position(|(known, _)| *known == path);
+        let Some(file) = known else {
+            let text = text(&path).map_err(|error| self.error(at, error))?;
+            self.files.push((path, text));
+            return Ok(self.files.len() - 1);
+        };
+        self.repeated += self.files[file].1.len();
+        if self.repeated > REPEATED {
+            let message = format!(
+                "files that are included more than once add up to more than {REPEATED} bytes; expected each once"
+            );
+            return Err(self.error(at, message));
+        }
+        Ok(file)
+    }
+}
+
+/// A number as Fortran reads it.
+fn real(item: &str) -> Option<f64> {
+    let text = item.replace(['d', 'D'], "e");
+    let bytes = text.as_bytes();
+    let is_sign = |&at: &usize| matches!(bytes[at], b'+' | b'-');
+    let bare = (1..bytes.len()).find(is_sign);
+    match bare.filter(|&at| bytes[at - 1].is_ascii_digit() || bytes[at - 1] == b'.') {
+        Some(at) => format!("{}e{}", &text[..at], &text[at..]).parse().ok(),
+        None => text.parse().ok(),
     }
 }
 
@@ -184,10 +255,15 @@ fn text(path: &Path) -> Result<String, InputError> {
     (source::open(path, "a deck of Abaqus or CalculiX").and_then(read))
         .map_err(|error| error.in_file(path))?;
     // Comments and names may be in any encoding.
-    Ok(match String::from_utf8(bytes) {
+    let mut text = match String::from_utf8(bytes) {
         Ok(text) => text,
         Err(other) => String::from_utf8_lossy(other.as_bytes()).into_owned(),
-    })
+    };
+    // Editors put a byte order mark before the text.
+    if text.starts_with(BYTE_ORDER_MARK) {
+        text.drain(..BYTE_ORDER_MARK.len_utf8());
+    }
+    Ok(text)
 }
 
 /// The numbers and the trimmed texts of lines that are neither blank nor a comment.

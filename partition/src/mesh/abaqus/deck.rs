@@ -1,16 +1,17 @@
-//! Nodes, elements, sets and surfaces of a part, or of a deck without parts.
+//! Nodes and elements of a part, or of a deck without parts, and what can be said of them.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use super::blocks::{Block, Data, Place, Source};
-use super::element_type;
+use super::blocks::{Block, Place, Source};
+use super::element_type::{self, ElementType};
+use super::notes::Notes;
 use super::sets::Sets;
 use crate::element::Elements;
 use crate::error::InputError;
 use crate::name;
 
 /// A part of a surface.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Face {
     /// The face of an element, by Abaqus' number.
     Of(u32, usize),
@@ -19,7 +20,7 @@ pub(super) enum Face {
 }
 
 /// Nodes, elements, sets and surfaces.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Deck {
     pub(super) node_tags: Vec<i64>,
     pub(super) points: Vec<[f64; 3]>,
@@ -29,28 +30,35 @@ pub(super) struct Deck {
     /// Elements that can be sides only.
     pub(super) is_side: Vec<bool>,
     pub(super) element_of: HashMap<i64, u32>,
+    /// The tags of elements that are left out, as they are neither cells nor sides.
+    left_out: HashSet<i64>,
     pub(super) node_sets: Sets<u32>,
     pub(super) element_sets: Sets<u32>,
     pub(super) surfaces: Sets<Face>,
+    /// Surfaces that are told by their nodes.
+    pub(super) node_surfaces: Sets<u32>,
     /// What is added to the tags of an instance, by its name in capitals, and under an empty one to those of
     /// the assembly itself.
     pub(super) instances: BTreeMap<String, Offsets>,
+    /// The highest tags.
+    pub(super) highest: Offsets,
     /// Types that are read as others of the same shape, in words.
     pub(super) taken_as: BTreeSet<String>,
+    pub(super) notes: Notes,
 }
 
-/// What is added to the tags of an instance's nodes and elements so that all of a deck differ.
+/// Tags of nodes and elements, or what is added to those of an instance so that all of a deck differ.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Offsets {
     pub(super) nodes: i64,
     pub(super) elements: i64,
 }
 
-/// What the items of a set's data are.
-#[derive(Clone, Copy)]
-enum Of {
-    Nodes,
-    Elements,
+/// An element on its way into the deck.
+struct Listed {
+    place: Place,
+    tag: i64,
+    nodes: Vec<u32>,
 }
 
 impl Deck {
@@ -60,11 +68,14 @@ impl Deck {
             .parameter("SYSTEM")
             .filter(|s| !s.eq_ignore_ascii_case("R"))
         {
-            let message = format!("*NODE has SYSTEM={system}; expected Cartesian coordinates");
+            let message = format!(
+                "*NODE has SYSTEM={}; expected Cartesian coordinates",
+                name::shown(system)
+            );
             return Err(source.error(block.place, message));
         }
-        let first = self.points.len() as u32;
         let offset = self.own_offsets().nodes;
+        let mut listed = Vec::new();
         for data in &block.data {
             let mut items = source.items(data);
             let item = items.next().unwrap_or_default();
@@ -74,18 +85,38 @@ impl Deck {
                 let item = items.next().unwrap_or_default();
                 *coordinate = source.real(data.place, item, &format!("the {axis} coordinate"))?;
             }
-            if self.node_of.insert(tag, self.points.len() as u32).is_some() {
-                return Err(source.error(data.place, format!("the node {tag} occurs twice")));
+            match self.node_of.get(&tag) {
+                Some(&node) if self.points[node as usize] == point => {
+                    let item = format!("{tag} ({})", source.place(data.place));
+                    (self.notes).add("nodes are given twice, at the same place", item);
+                    listed.push(node);
+                }
+                Some(&node) => {
+                    let [there, here] = [self.points[node as usize], point]
+                        .map(|[x, y, z]| format!("({x}, {y}, {z})"));
+                    let message = format!(
+                        "the node {tag} occurs twice, at {there} and at {here}; expected one place"
+                    );
+                    return Err(source.error(data.place, message));
+                }
+                None => listed.push(self.push_node(tag, point)),
             }
-            self.node_tags.push(tag);
-            self.points.push(point);
         }
         if let Some(set) = block.parameter("NSET") {
             check_name(source, block.place, set)?;
-            self.node_sets
-                .extend(set, false, first..self.points.len() as u32);
+            self.node_sets.extend(set, false, listed);
         }
         Ok(())
+    }
+
+    /// Appends a node.
+    pub(super) fn push_node(&mut self, tag: i64, point: [f64; 3]) -> u32 {
+        let node = self.points.len() as u32;
+        self.node_of.insert(tag, node);
+        self.node_tags.push(tag);
+        self.points.push(point);
+        self.highest.nodes = self.highest.nodes.max(tag);
+        node
     }
 
     /// `*ELEMENT`: tag and nodes of each, on as many lines as it takes.
@@ -95,7 +126,15 @@ impl Deck {
         block: &Block,
     ) -> Result<(), InputError> {
         let name = source.required(block, "TYPE")?;
+        let set = block.parameter("ELSET");
+        if let Some(set) = set {
+            check_name(source, block.place, set)?;
+        }
         let Some(found) = element_type::find(name) else {
+            let name = name::shown(name);
+            if element_type::has_no_volume(&name) {
+                return self.leave_out(source, block, &name);
+            }
             let known = element_type::known();
             let message = format!(
                 "elements of type {name} aren't supported; expected one of {known}, also with another \
@@ -112,49 +151,107 @@ impl Deck {
                 .insert(format!("{} as {plain}", name.to_uppercase())),
             _ => false,
         };
-        let first = self.elements.len() as u32;
-        let offsets = self.own_offsets();
-        let mut pending: Option<(Place, i64)> = None;
-        let mut nodes = Vec::new();
-        for data in &block.data {
-            for item in source.items(data).filter(|item| !item.is_empty()) {
-                let Some((_, element)) = pending else {
-                    let tag = source.tag(data.place, item, "the number of an element")?;
-                    pending = Some((data.place, offsets.elements + tag));
-                    continue;
-                };
-                let tag = source.tag(data.place, item, "the number of a node")?;
-                if nodes.len() == found.kind.nodes() {
-                    let message = format!(
-                        "element {element} of type {name} has more than {} nodes",
-                        found.kind.nodes()
-                    );
-                    return Err(source.error(data.place, message));
-                }
-                nodes.push(self.node(source, data.place, offsets.nodes + tag, element)?);
-            }
-            if nodes.len() < found.kind.nodes() {
-                continue;
-            }
-            if let Some((place, element)) = pending.take() {
-                self.add_element(source, place, element, &found, &nodes)?;
-            }
-            nodes.clear();
-        }
-        if let Some((place, element)) = pending {
-            let message = format!(
-                "element {element} has {} nodes; expected {}, as it is of type {name}",
-                nodes.len(),
-                found.kind.nodes()
+        if found.has_modes {
+            self.notes.add(
+                "elements with incompatible modes are solved without them, too stiff in bending (quadratic ones, such as \
+                 C3D20, or several across the thickness are not)",
+                name.to_uppercase(),
             );
-            return Err(source.error(place, message));
         }
-        if let Some(set) = block.parameter("ELSET") {
-            check_name(source, block.place, set)?;
-            self.element_sets
-                .extend(set, false, first..self.elements.len() as u32);
+        let mut members = Vec::new();
+        for element in self.listed(source, block, &found, name)? {
+            members.push(self.add_element(source, &found, &element)?);
+        }
+        if let Some(set) = set {
+            self.element_sets.extend(set, false, members);
         }
         Ok(())
+    }
+
+    /// The elements of a block.
+    fn listed(
+        &mut self,
+        source: &Source,
+        block: &Block,
+        found: &ElementType,
+        name: &str,
+    ) -> Result<Vec<Listed>, InputError> {
+        let offsets = self.own_offsets();
+        let mut elements = Vec::new();
+        let mut pending: Option<Listed> = None;
+        for data in &block.data {
+            for item in source.items(data).filter(|item| !item.is_empty()) {
+                let Some(element) = &mut pending else {
+                    let tag = source.tag(data.place, item, "the number of an element")?;
+                    pending = Some(Listed {
+                        place: data.place,
+                        tag: offsets.elements + tag,
+                        nodes: Vec::new(),
+                    });
+                    continue;
+                };
+                if element.nodes.len() == found.kind.nodes() {
+                    // Other programs pass over them, too.
+                    let item = format!(
+                        "element {} of {name} ({})",
+                        element.tag,
+                        source.place(data.place)
+                    );
+                    (self.notes).add(
+                        "what stands behind the nodes of an element is left out",
+                        item,
+                    );
+                    break;
+                }
+                let tag = source.tag(data.place, item, "the number of a node")?;
+                let Some(&node) = self.node_of.get(&(offsets.nodes + tag)) else {
+                    let message = format!(
+                        "element {} has the node {tag}, which the deck doesn't define",
+                        element.tag
+                    );
+                    return Err(source.error(data.place, message));
+                };
+                element.nodes.push(node);
+            }
+            let is_whole = |element: &mut Listed| element.nodes.len() == found.kind.nodes();
+            elements.extend(pending.take_if(is_whole));
+        }
+        match pending {
+            None => Ok(elements),
+            Some(element) => {
+                let message = format!(
+                    "element {} has {} nodes; expected {}, as it is of type {name}",
+                    element.tag,
+                    element.nodes.len(),
+                    found.kind.nodes()
+                );
+                Err(source.error(element.place, message))
+            }
+        }
+    }
+
+    /// Passes over elements that neither have a volume nor can be sides; sets may have them.
+    fn leave_out(&mut self, source: &Source, block: &Block, name: &str) -> Result<(), InputError> {
+        let offset = self.own_offsets().elements;
+        for data in &block.data {
+            let item = source.items(data).next().unwrap_or_default();
+            if let Ok(tag) = source.tag(data.place, item, "the number of an element") {
+                self.left_out.insert(offset + tag);
+            }
+        }
+        self.notes.add(
+            "elements that are no cells of a body are left out",
+            name.to_uppercase(),
+        );
+        if let Some(set) = block.parameter("ELSET") {
+            self.element_sets.extend(set, false, []);
+        }
+        Ok(())
+    }
+
+    /// Whether there is an element of this tag that is left out.
+    pub(super) fn leaves_out(&self, tag: i64) -> bool {
+        self.left_out.contains(&tag)
     }
 
     /// What is added to tags that belong to no instance: instances have tags of their own.
@@ -162,235 +259,55 @@ impl Deck {
         if self.instances.is_empty() {
             return Offsets::default();
         }
-        let highest = |tags: &[i64]| tags.iter().max().copied().unwrap_or_default();
-        let (nodes, elements) = (highest(&self.node_tags), highest(&self.element_tags));
-        *(self.instances.entry(String::new())).or_insert(Offsets { nodes, elements })
+        let highest = self.highest;
+        *(self.instances.entry(String::new())).or_insert(highest)
     }
 
-    fn node(&self, source: &Source, at: Place, tag: i64, element: i64) -> Result<u32, InputError> {
-        let found = self.node_of.get(&tag).copied();
-        found.ok_or_else(|| {
-            let message =
-                format!("element {element} has the node {tag}, which isn't defined before it");
-            source.error(at, message)
-        })
-    }
-
+    /// Adds an element that isn't there yet; returns its index.
     fn add_element(
         &mut self,
         source: &Source,
-        at: Place,
-        tag: i64,
-        found: &element_type::ElementType,
-        nodes: &[u32],
-    ) -> Result<(), InputError> {
+        found: &ElementType,
+        Listed { place, tag, nodes }: &Listed,
+    ) -> Result<u32, InputError> {
         if let Some(twice) = (1..nodes.len()).find(|&i| nodes[..i].contains(&nodes[i])) {
             let node = self.node_tags[nodes[twice] as usize];
             let message = format!(
                 "element {tag} has the node {node} twice; expected a {} whose nodes all differ",
                 found.kind.name()
             );
-            return Err(source.error(at, message));
+            return Err(source.error(*place, message));
         }
-        if self
-            .element_of
-            .insert(tag, self.elements.len() as u32)
-            .is_some()
-        {
-            return Err(source.error(at, format!("the element {tag} occurs twice")));
+        if let Some(&other) = self.element_of.get(tag) {
+            let at = other as usize;
+            if self.elements.kind(at) != found.kind || self.elements.nodes_of(at) != nodes {
+                let message = format!("the element {tag} occurs twice, with different nodes");
+                return Err(source.error(*place, message));
+            }
+            let item = format!("{tag} ({})", source.place(*place));
+            (self.notes).add("elements are given twice, with the same nodes", item);
+            return Ok(other);
         }
         self.elements.push(found.kind, nodes);
+        Ok(self.push_tag(*tag, found.is_side))
+    }
+
+    /// Gives the element that was appended last its tag.
+    pub(super) fn push_tag(&mut self, tag: i64, is_side: bool) -> u32 {
+        let element = self.element_tags.len() as u32;
+        self.element_of.insert(tag, element);
         self.element_tags.push(tag);
-        self.is_side.push(found.is_side);
-        Ok(())
-    }
-
-    /// `*NSET` and `*ELSET`: tags and names of other sets, or with `GENERATE` first, last and increment.
-    pub(super) fn add_set(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
-        let of = match block.keyword.as_str() {
-            "NSET" => Of::Nodes,
-            _ => Of::Elements,
-        };
-        let name = source.required(block, &block.keyword)?;
-        check_name(source, block.place, name)?;
-        let instance = block.parameter("INSTANCE");
-        let mut members = Vec::new();
-        if let (Of::Nodes, Some(elements)) = (of, block.parameter("ELSET")) {
-            for element in self.members(source, block.place, Of::Elements, instance, elements)? {
-                members.extend(self.elements.nodes_of(element as usize));
-            }
-        }
-        for data in &block.data {
-            if block.parameter("GENERATE").is_some() {
-                members.extend(self.generated(source, data, of, instance)?);
-                continue;
-            }
-            for item in source.items(data).filter(|item| !item.is_empty()) {
-                members.extend(self.members(source, data.place, of, instance, item)?);
-            }
-        }
-        let internal = block.parameter("INTERNAL").is_some();
-        match of {
-            Of::Nodes => self.node_sets.extend(name, internal, members),
-            Of::Elements => self.element_sets.extend(name, internal, members),
-        }
-        Ok(())
-    }
-
-    /// What is there of the numbers from the first to the last.
-    fn generated(
-        &self,
-        source: &Source,
-        data: &Data,
-        of: Of,
-        instance: Option<&str>,
-    ) -> Result<Vec<u32>, InputError> {
-        let items = source.items(data).filter(|item| !item.is_empty());
-        let numbers = items.map(|item| source.tag(data.place, item, "first, last and increment"));
-        let (first, last, step) = match numbers.collect::<Result<Vec<_>, _>>()?[..] {
-            [first, last] => (first, last, 1),
-            [first, last, step] => (first, last, step),
-            _ => {
-                let message = "expected first, last and increment, as the set has GENERATE";
-                return Err(source.error(data.place, message));
-            }
-        };
-        let (indices, offset) = self.numbered(source, data.place, of, instance)?;
-        // Numbers without anything are as common as ranges far beyond the last.
-        let last = last.min(indices.keys().max().copied().unwrap_or_default() - offset);
-        let tags = (first..=last).step_by(step as usize);
-        Ok(tags
-            .filter_map(|tag| indices.get(&(tag + offset)).copied())
-            .collect())
-    }
-
-    /// Indices by tag, and what is added to the tags of an instance.
-    fn numbered(
-        &self,
-        source: &Source,
-        at: Place,
-        of: Of,
-        instance: Option<&str>,
-    ) -> Result<(&HashMap<i64, u32>, i64), InputError> {
-        let offsets = self
-            .instances
-            .get(&instance.unwrap_or_default().to_uppercase());
-        let offsets = match (offsets, instance) {
-            (Some(offsets), _) => *offsets,
-            (None, None) => Offsets::default(),
-            (None, Some(name)) => {
-                let message = format!("there is no instance '{name}' before this line");
-                return Err(source.error(at, message));
-            }
-        };
-        Ok(match of {
-            Of::Nodes => (&self.node_of, offsets.nodes),
-            Of::Elements => (&self.element_of, offsets.elements),
-        })
-    }
-
-    /// The nodes or elements that an item of data means: `7`, `set`, `instance.7`, `instance.set`.
-    fn members(
-        &self,
-        source: &Source,
-        at: Place,
-        of: Of,
-        instance: Option<&str>,
-        item: &str,
-    ) -> Result<Vec<u32>, InputError> {
-        let (what, sets) = match of {
-            Of::Nodes => ("node", &self.node_sets),
-            Of::Elements => ("element", &self.element_sets),
-        };
-        let unknown = || {
-            let message =
-                format!("there is no {what} and no set of {what}s '{item}' before this line");
-            source.error(at, message)
-        };
-        let by_tag = |instance, tag: i64| {
-            let (indices, offset) = self.numbered(source, at, of, instance)?;
-            let index = tag
-                .checked_add(offset)
-                .and_then(|tag: i64| indices.get(&tag));
-            index.map(|&index| vec![index]).ok_or_else(unknown)
-        };
-        if let Ok(tag) = item.parse() {
-            return by_tag(instance, tag);
-        }
-        let local = instance.and_then(|instance| sets.get(&format!("{instance}.{item}")));
-        if let Some(set) = local.or_else(|| sets.get(item)) {
-            return Ok(set.members.clone());
-        }
-        match item
-            .rsplit_once('.')
-            .map(|(instance, tag)| (instance, tag.parse()))
-        {
-            Some((instance, Ok(tag))) => by_tag(Some(instance), tag),
-            _ => Err(unknown()),
-        }
-    }
-
-    /// `*SURFACE`: elements or sets of them with a face each, or nodes.
-    pub(super) fn add_surface(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
-        let name = source.required(block, "NAME")?;
-        check_name(source, block.place, name)?;
-        let internal = block.parameter("INTERNAL").is_some();
-        let kind = block.parameter("TYPE").unwrap_or("ELEMENT").to_uppercase();
-        if !["ELEMENT", "NODE"].contains(&kind.as_str()) || block.parameter("COMBINE").is_some() {
-            let message = format!(
-                "the surface '{name}' isn't made of faces; expected TYPE=ELEMENT or TYPE=NODE"
-            );
-            return Err(source.error(block.place, message));
-        }
-        for data in &block.data {
-            let mut items = source.items(data);
-            let item = items.next().unwrap_or_default();
-            let second = items.next().unwrap_or_default();
-            if kind == "NODE" {
-                let members = self.members(source, data.place, Of::Nodes, None, item)?;
-                self.node_sets.extend(name, internal, members);
-                continue;
-            }
-            let mut faces = Vec::new();
-            for element in self.members(source, data.place, Of::Elements, None, item)? {
-                faces.push(self.face(source, data.place, element, second)?);
-            }
-            self.surfaces.extend(name, internal, faces);
-        }
-        Ok(())
-    }
-
-    fn face(
-        &self,
-        source: &Source,
-        at: Place,
-        element: u32,
-        item: &str,
-    ) -> Result<Face, InputError> {
-        if item.is_empty() {
-            return Ok(Face::Free(element));
-        }
-        let kind = self.elements.kind(element as usize);
-        let number = item
-            .strip_prefix(['S', 's'])
-            .and_then(|number| number.parse().ok());
-        let known = number.filter(|&number| element_type::face(kind, number).is_some());
-        known
-            .map(|number| Face::Of(element, number))
-            .ok_or_else(|| {
-                let tag = self.element_tags[element as usize];
-                let message = format!(
-                    "element {tag}, a {}, has no face `{}`; expected S1 to S{}",
-                    kind.name(),
-                    item.escape_debug(),
-                    kind.facets().len()
-                );
-                source.error(at, message)
-            })
+        self.is_side.push(is_side);
+        self.highest.elements = self.highest.elements.max(tag);
+        element
     }
 }
 
-fn check_name(source: &Source, at: Place, name: &str) -> Result<(), InputError> {
+/// Checks the name of a set.
+///
+/// # Errors
+/// What it mustn't hold, with the line.
+pub(super) fn check_name(source: &Source, at: Place, name: &str) -> Result<(), InputError> {
     name::check_text(name)
         .map_err(|reason| source.error(at, format!("'{}' {reason}", name::shown(name))))
 }

@@ -29,6 +29,13 @@ const OF_CELLS: usize = 8;
 /// formulation, temperature.
 const FORMULATIONS: [char; 6] = ['R', 'I', 'M', 'H', 'S', 'T'];
 
+/// How the names of types begin that neither have a volume nor can be sides: masses, springs, dashpots, rigid
+/// faces, connectors, couplings, beams, pipes and gaps.
+const WITHOUT_VOLUME: [&str; 17] = [
+    "MASS", "ROTARYI", "HEATCAP", "SPRING", "DASHPOT", "R2D2", "R3D3", "R3D4", "RAX2", "RB",
+    "CONN", "DCOUP", "B2", "B3", "PIPE", "GAP", "ITS",
+];
+
 /// What a type is.
 pub(super) struct ElementType {
     pub(super) kind: ElementKind,
@@ -36,6 +43,8 @@ pub(super) struct ElementType {
     pub(super) is_side: bool,
     /// The type of the same shape whose formulation is the one that all elements have here, if this is another.
     pub(super) plain: Option<&'static str>,
+    /// It has incompatible modes, which let it bend.
+    pub(super) has_modes: bool,
 }
 
 /// What the type `name` is; `None` where it isn't supported.
@@ -53,7 +62,14 @@ pub(super) fn find(name: &str) -> Option<ElementType> {
         kind,
         is_side: place >= OF_CELLS,
         plain: (*plain != name).then_some(*plain),
+        has_modes: place < OF_CELLS && name[plain.len()..].contains('I'),
     })
+}
+
+/// Whether elements of a type that isn't supported are no cells, so that the mesh is whole without them.
+pub(super) fn has_no_volume(name: &str) -> bool {
+    let name = name.to_uppercase();
+    WITHOUT_VOLUME.iter().any(|known| name.starts_with(known))
 }
 
 /// The types of cells, to say what is expected.

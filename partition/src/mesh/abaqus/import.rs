@@ -4,11 +4,14 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::deck::{Deck, Face};
 use super::element_type;
+use super::notes::Notes;
 use super::sets::{Set, Sets};
 use crate::element::ElementKind;
 use crate::error::InputError;
+use crate::lists::Lists;
 use crate::mesh::topology::{CellFacet, Topology};
 use crate::mesh::{Group, Mesh, name_of_dim};
+use crate::name;
 
 /// The mesh of a deck.
 pub(super) fn mesh(deck: &Deck, warnings: Vec<String>) -> Result<Mesh, InputError> {
@@ -29,15 +32,18 @@ pub(super) fn mesh(deck: &Deck, warnings: Vec<String>) -> Result<Mesh, InputErro
     mesh.flatten()?;
     mesh.orient_cells()?;
     let topology = Topology::new(&mesh);
-    let (names, facets) = Grouping {
+    let grouping = Grouping {
         deck,
         mesh: &mesh,
         topology: &topology,
+        boundary: Boundary::new(&mesh, &topology),
         node: &node,
         cell: &cell,
         facets: Facets::default(),
-    }
-    .groups();
+        notes: Notes::default(),
+    };
+    let (names, facets, notes) = grouping.groups();
+    mesh.warnings.extend(notes.warnings());
     // Loads are summed in the order of facets, which is to be that of cells.
     let mut order: Vec<usize> = (0..facets.listed.len()).collect();
     order.sort_by_key(|&place| facets.listed[place]);
@@ -114,6 +120,36 @@ impl Facets {
     }
 }
 
+/// The facets of the boundary, by their smallest node.
+struct Boundary(Lists<CellFacet>);
+
+impl Boundary {
+    fn new(mesh: &Mesh, topology: &Topology) -> Self {
+        let smallest = |facet: CellFacet| {
+            let node = facet.nodes(&mesh.cells).into_iter().min();
+            (node.unwrap_or_default(), facet)
+        };
+        Self(Lists::new(
+            mesh.points.len(),
+            topology.boundary().map(smallest),
+        ))
+    }
+
+    /// The facets between `nodes`, and the nodes that they have.
+    fn between(&self, mesh: &Mesh, nodes: &BTreeSet<u32>) -> (Vec<CellFacet>, BTreeSet<u32>) {
+        let mut covered = BTreeSet::new();
+        let mut side = Vec::new();
+        for facet in nodes.iter().flat_map(|&node| self.0.of(node as usize)) {
+            let of_facet = facet.nodes(&mesh.cells);
+            if of_facet.iter().all(|node| nodes.contains(node)) {
+                covered.extend(of_facet);
+                side.push(*facet);
+            }
+        }
+        (side, covered)
+    }
+}
+
 /// Groups by name and dimension.
 type Named = BTreeMap<(String, usize), Vec<u32>>;
 
@@ -125,20 +161,23 @@ struct Grouping<'a> {
     /// The mesh's index of every node of the deck, and of every element that is a cell.
     node: &'a [Option<u32>],
     cell: &'a [Option<u32>],
+    boundary: Boundary,
     facets: Facets,
+    /// What of the sets and surfaces is left out.
+    notes: Notes,
 }
 
 impl Grouping<'_> {
-    fn groups(mut self) -> (Named, Facets) {
+    fn groups(mut self) -> (Named, Facets, Notes) {
         let deck = self.deck;
         let dim = self.mesh.dim;
         let mut groups = Named::new();
         let names = plain_names(deck);
         let plain = |name: &str| names[&name.to_uppercase()].clone();
         for set in shown(&deck.element_sets) {
-            let members = set.members.iter();
+            let members = set.members.list().iter();
             let cells: Vec<u32> = members.filter_map(|&e| self.cell[e as usize]).collect();
-            let facets = self.listed(&set.members);
+            let facets = self.listed(set.members.list());
             for (dim, members) in [(dim, cells), (dim - 1, facets)] {
                 if !members.is_empty() {
                     groups.insert((plain(&set.name), dim), members);
@@ -146,16 +185,31 @@ impl Grouping<'_> {
             }
         }
         for surface in shown(&deck.surfaces) {
-            let facets = self.surface(&surface.members);
+            let facets = self.surface(surface.members.list());
             groups
                 .entry((plain(&surface.name), dim - 1))
                 .or_default()
                 .extend(facets);
         }
-        let boundary: Vec<CellFacet> = self.topology.boundary().collect();
+        for surface in shown(&deck.node_surfaces) {
+            let nodes = self.own_nodes(surface);
+            let (side, covered) = self.boundary.between(self.mesh, &nodes);
+            let name = plain(&surface.name);
+            if side.is_empty() {
+                groups.insert((name, 0), nodes.into_iter().collect());
+                continue;
+            }
+            for &node in nodes.difference(&covered) {
+                let tag = self.mesh.node_tags[node as usize];
+                let item = format!("{tag} of '{}'", name::shown(&name));
+                let what = "nodes of surfaces belong to no facet whose nodes all are in these, and are left out";
+                self.notes.add(what, item);
+            }
+            let facets = self.placed(side);
+            groups.entry((name, dim - 1)).or_default().extend(facets);
+        }
         for set in shown(&deck.node_sets) {
-            let members = set.members.iter();
-            let nodes: BTreeSet<u32> = members.filter_map(|&n| self.node[n as usize]).collect();
+            let nodes = self.own_nodes(set);
             let name = plain(&set.name);
             let says_more = |dim| match groups.get(&(name.clone(), dim)) {
                 Some(members) => self.nodes_of(dim, members) != nodes,
@@ -164,13 +218,26 @@ impl Grouping<'_> {
             if !says_more(dim) || !says_more(dim - 1) {
                 continue;
             }
-            let side = self.side(&nodes, &boundary);
-            match side.filter(|_| !groups.contains_key(&(name.clone(), dim - 1))) {
-                Some(side) => groups.insert((name, dim - 1), side),
-                None => groups.insert((name, 0), nodes.into_iter().collect()),
+            let (side, covered) = self.boundary.between(self.mesh, &nodes);
+            let is_whole = !side.is_empty() && covered.len() == nodes.len();
+            match is_whole && !groups.contains_key(&(name.clone(), dim - 1)) {
+                true => groups.insert((name, dim - 1), self.placed(side)),
+                false => groups.insert((name, 0), nodes.into_iter().collect()),
             };
         }
-        (groups, self.facets)
+        (groups, self.facets, self.notes)
+    }
+
+    /// The nodes of a set that cells have.
+    fn own_nodes(&self, set: &Set<u32>) -> BTreeSet<u32> {
+        let members = set.members.list().iter();
+        members.filter_map(|&n| self.node[n as usize]).collect()
+    }
+
+    /// The places of facets in the list.
+    fn placed(&mut self, facets: Vec<CellFacet>) -> Vec<u32> {
+        let facets = facets.into_iter();
+        facets.map(|facet| self.facets.place(facet)).collect()
     }
 
     /// The nodes of cells or facets.
@@ -191,7 +258,13 @@ impl Grouping<'_> {
         for &element in elements {
             if self.deck.elements.kind(element as usize).dim() + 1 == self.mesh.dim {
                 let nodes = self.deck.elements.nodes_of(element as usize);
-                found.extend(self.facet_of(nodes));
+                let facet = self.facet_of(nodes);
+                if facet.is_none() {
+                    let tag = self.deck.element_tags[element as usize];
+                    let what = "elements that are no faces of cells are left out";
+                    self.notes.add(what, tag.to_string());
+                }
+                found.extend(facet);
             }
         }
         found
@@ -241,29 +314,10 @@ impl Grouping<'_> {
         let facet = *self.topology.cells_at(&nodes?).first()?;
         Some(self.facets.place(facet))
     }
-
-    /// The facets of the boundary between `nodes`, where they have all of these.
-    fn side(&mut self, nodes: &BTreeSet<u32>, boundary: &[CellFacet]) -> Option<Vec<u32>> {
-        let mut covered = BTreeSet::new();
-        let mut side = Vec::new();
-        for facet in boundary {
-            let of_facet = facet.nodes(&self.mesh.cells);
-            if of_facet.iter().all(|node| nodes.contains(node)) {
-                covered.extend(of_facet);
-                side.push(*facet);
-            }
-        }
-        let is_whole = !nodes.is_empty() && covered.len() == nodes.len();
-        is_whole.then(|| {
-            side.into_iter()
-                .map(|facet| self.facets.place(facet))
-                .collect()
-        })
-    }
 }
 
 /// The sets that a user has made.
-fn shown<T>(sets: &Sets<T>) -> impl Iterator<Item = &Set<T>> {
+fn shown<T: Copy + Ord>(sets: &Sets<T>) -> impl Iterator<Item = &Set<T>> {
     sets.iter().filter(|set| !set.internal)
 }
 
@@ -272,6 +326,7 @@ fn shown<T>(sets: &Sets<T>) -> impl Iterator<Item = &Set<T>> {
 fn plain_names(deck: &Deck) -> BTreeMap<String, String> {
     let sets = (shown(&deck.element_sets).map(|set| &set.name))
         .chain(shown(&deck.surfaces).map(|set| &set.name))
+        .chain(shown(&deck.node_surfaces).map(|set| &set.name))
         .chain(shown(&deck.node_sets).map(|set| &set.name));
     let mut names: BTreeMap<String, String> = BTreeMap::new();
     for name in sets {

@@ -9,9 +9,11 @@ use contact_dd_partition::example;
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 use contact_dd_partition::problem::Problem;
+use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::scene::Scene;
 
-use super::read;
+use super::{SQUARES, read};
+use crate::says::says;
 
 /// How a deck says what a side is.
 #[derive(Clone, Copy, Debug)]
@@ -95,9 +97,9 @@ fn deck(mesh: &Mesh, sides: Sides) -> String {
     deck
 }
 
-fn problem(scene: &str, mesh: Mesh) -> Problem {
+fn problem(scene: &str, mesh: Mesh, subdomains: usize) -> Problem {
     let model = Model::new(&Scene::parse(scene).unwrap(), mesh).unwrap();
-    let decomposition = Decomposition::new(&model, Some(4)).unwrap();
+    let decomposition = Decomposition::new(&model, Some(subdomains)).unwrap();
     Problem::new(&model, &decomposition).unwrap()
 }
 
@@ -119,7 +121,23 @@ fn a_scene_makes_the_same_problem_of_a_deck() {
         assert_eq!(of_deck.points, mesh.points);
         assert_eq!(of_deck.cells, mesh.cells);
         of_deck.warnings.clear();
-        let same = problem(example.scene, of_deck) == problem(example.scene, mesh);
+        let same = problem(example.scene, of_deck, 4) == problem(example.scene, mesh, 4);
         assert!(same, "{name}, {kind:?}, {sides:?}");
     }
+}
+
+#[test]
+fn what_a_deck_is_warned_of_is_a_line_of_the_problem_file_whatever_the_deck_holds() {
+    let mesh = read(&format!(
+        "red \u{1b}[31m\n{SQUARES}*FOO\u{1b}[31mred\n*ELEMENT, TYPE=MASS\u{7}\n9, 1\n*NSET, NSET=n\n77\n"
+    ));
+    let scene = "mesh = 'a.inp'\nplane = 'stress'\nmaterials.steel = {young = 200, poisson = 0.25}\n\
+                 bodies.Left.material = 'steel'\nbodies.'Right one'.material = 'steel'\n";
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("problem.h5");
+    problem(scene, mesh.unwrap(), 1).write(&path).unwrap();
+    let read = ProblemFile::open(&path).and_then(|file| file.problem());
+    let said = read.unwrap().catalog.warnings.join(" | ");
+    assert!(!said.contains(char::is_control), "{said:?}");
+    says(&said, r"*FOO\u{1b}[31MRED");
 }

@@ -1,0 +1,75 @@
+//! What a deck holds and isn't read, although other programs would read it or pass over it: to warn of.
+
+use std::collections::BTreeMap;
+
+/// Things that are named one by one.
+const NAMED: usize = 6;
+
+/// Things of one kind.
+#[derive(Clone, Default)]
+struct Tally {
+    first: Vec<String>,
+    count: usize,
+}
+
+/// Kinds of what is left out, in words, and what is of each.
+#[derive(Clone, Default)]
+pub(super) struct Notes(BTreeMap<String, Tally>);
+
+impl Notes {
+    /// Notes a thing; one that is noted already counts once.
+    pub(super) fn add(&mut self, what: &str, thing: String) {
+        let tally = self.0.entry(what.to_owned()).or_default();
+        if tally.first.contains(&thing) {
+            return;
+        }
+        tally.count += 1;
+        if tally.first.len() < NAMED {
+            tally.first.push(thing);
+        }
+    }
+
+    /// Adds other notes.
+    pub(super) fn join(&mut self, other: &Self) {
+        for (what, more) in &other.0 {
+            let mut more = more.clone();
+            let tally = self.0.entry(what.clone()).or_default();
+            let room = NAMED - tally.first.len();
+            tally.count += more.count;
+            tally
+                .first
+                .extend(more.first.drain(..room.min(more.first.len())));
+        }
+    }
+
+    /// A warning for each kind.
+    pub(super) fn warnings(&self) -> impl Iterator<Item = String> {
+        self.0.iter().map(|(what, tally)| {
+            let more = match tally.count - tally.first.len() {
+                0 => String::new(),
+                more => format!(" and {more} more"),
+            };
+            format!("{what}: {}{more}", tally.first.join(", "))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_kind_is_one_warning_however_many_are_of_it() {
+        let mut notes = Notes::default();
+        (0..1000).for_each(|tag| notes.add("nodes are left out", tag.to_string()));
+        let mut other = Notes::default();
+        other.add("nodes are left out", "7".into());
+        other.add("nodes are left out", "7".into());
+        notes.join(&other);
+        let warnings: Vec<String> = notes.warnings().collect();
+        assert_eq!(
+            warnings,
+            ["nodes are left out: 0, 1, 2, 3, 4, 5 and 995 more"]
+        );
+    }
+}

@@ -1,0 +1,64 @@
+//! Where an instance of a part lies.
+
+use super::blocks::{Block, Source};
+use crate::element::geometry::{cross, difference, length};
+use crate::error::InputError;
+
+pub(super) type Point = [f64; 3];
+
+/// A shift, and a rotation about the axis through two points.
+pub(super) struct Position {
+    shift: Point,
+    /// Two points on the axis and the angle (rad).
+    turn: Option<(Point, Point, f64)>,
+}
+
+impl Position {
+    /// That of an `*INSTANCE`, whose angle is in degrees.
+    pub(super) fn read(source: &Source, block: &Block) -> Result<Self, InputError> {
+        let mut rows = Vec::new();
+        for data in &block.data {
+            let items = source.items(data);
+            let row = items
+                .map(|item| source.real(data.place, item, "a number of a shift or a rotation"));
+            rows.push((data.place, row.collect::<Result<Vec<_>, _>>()?));
+        }
+        let mut shift = [0.0; 3];
+        if let Some((_, row)) = rows.first() {
+            for (to, from) in shift.iter_mut().zip(row) {
+                *to = *from;
+            }
+        }
+        let turn = match rows.get(1) {
+            None => None,
+            Some((place, row)) => match row[..] {
+                [a, b, c, d, e, f, angle] if [a, b, c] != [d, e, f] => {
+                    Some(([a, b, c], [d, e, f], angle.to_radians()))
+                }
+                _ => {
+                    let message =
+                        "expected two points on the axis of the rotation and its angle, 7 numbers";
+                    return Err(source.error(*place, message));
+                }
+            },
+        };
+        Ok(Self { shift, turn })
+    }
+
+    /// Where a point of the part lies.
+    pub(super) fn of(&self, point: Point) -> Point {
+        let shifted = [0, 1, 2].map(|k| point[k] + self.shift[k]);
+        self.turn
+            .map_or(shifted, |(a, b, angle)| turned(shifted, a, b, angle))
+    }
+}
+
+/// A point turned about the axis from `a` to `b` (Rodrigues).
+fn turned(point: Point, a: Point, b: Point, angle: f64) -> Point {
+    let axis = difference(b, a).map(|component| component / length(difference(b, a)));
+    let arm = difference(point, a);
+    let across = cross(axis, arm);
+    let along: f64 = (0..3).map(|k| axis[k] * arm[k]).sum();
+    let (sin, cos) = angle.sin_cos();
+    [0, 1, 2].map(|k| a[k] + arm[k] * cos + across[k] * sin + axis[k] * along * (1.0 - cos))
+}
