@@ -10,3 +10,4 @@ mod command_line;
 mod report;
 #[path = "../support/mod.rs"]
 mod support;
+mod test_script;
