@@ -1,14 +1,12 @@
 //! Small random scenes of every family, each with a verdict; `scripts/stress` runs the large suite.
 
-use std::time::Duration;
-
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use crate::support::assembled::Assembled;
 use crate::support::scenes::{BODIES, JOINT, LOAD, SUPPORTS, model, two_block_scene, two_blocks};
 use crate::support::solution::Solution;
-use crate::support::solver::{built, solve};
+use crate::support::solver::{LIMIT, built, solve};
 use crate::support::stress::judge::Findings;
 use crate::support::stress::space::{draw_frictional_in_space, draw_in_space};
 use crate::support::stress::trial::{Trial, Verdict};
@@ -128,7 +126,7 @@ fn newton_gives_up_where_it_gets_no_further() {
     for seed in [193, 475] {
         let mut drawn = draw(seed, 6);
         drawn.ranks = 0;
-        let trial = Trial::of(&drawn, built(), Duration::from_secs(60), None);
+        let trial = Trial::of(&drawn, built(), LIMIT, None);
         assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);
         let sweeps = trial.reported(&["sweeps"]).unwrap();
         assert!(sweeps <= 12.0, "{sweeps} sweeps");
@@ -192,7 +190,7 @@ fn judged(drawn: Drawn) -> (Verdict, String) {
 fn judged_between(mut drawn: Drawn, clusters: Option<usize>) -> (Verdict, String) {
     // Tests of several ranks stand elsewhere.
     drawn.ranks = 0;
-    let trial = Trial::with(&drawn, built(), Duration::from_secs(60), None, clusters);
+    let trial = Trial::with(&drawn, built(), LIMIT, None, clusters);
     let why = format!("{}\n{}", trial.reason, drawn.described());
     (trial.verdict, why)
 }

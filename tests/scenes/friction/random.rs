@@ -1,11 +1,9 @@
 //! Small random scenes with friction, each with a verdict; `scripts/stress` runs the large suite.
 
-use std::time::Duration;
-
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use crate::support::solver::built;
+use crate::support::solver::{LIMIT, built};
 use crate::support::stress::draw_frictional;
 use crate::support::stress::trial::{Trial, Verdict};
 
@@ -23,7 +21,7 @@ proptest! {
         let mut drawn = draw_frictional(seed, 4);
         // Tests of several ranks stand elsewhere.
         drawn.ranks = 0;
-        let trial = Trial::of(&drawn, built(), Duration::from_secs(60), None);
+        let trial = Trial::of(&drawn, built(), LIMIT, None);
         let is_fair = match trial.verdict {
             Verdict::Right | Verdict::NotConverged => true,
             Verdict::Unclear => trial.by_friction,
@@ -40,7 +38,7 @@ fn a_badly_conditioned_scene_with_friction_is_refined_to_round_off() {
     for seed in [603, 626, 865, 895] {
         let mut drawn = draw_frictional(seed, 12);
         drawn.ranks = 0;
-        let trial = Trial::of(&drawn, built(), Duration::from_secs(60), None);
+        let trial = Trial::of(&drawn, built(), LIMIT, None);
         assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
         let findings = trial.findings.unwrap();
         assert!(findings.backward_error < 1e-14, "{seed}: {findings:?}");

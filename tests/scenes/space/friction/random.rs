@@ -1,8 +1,6 @@
 //! Random scenes in space with friction that end in a way of their own.
 
-use std::time::Duration;
-
-use crate::support::solver::built;
+use crate::support::solver::{LIMIT, built};
 use crate::support::stress::space::draw_frictional_in_space;
 use crate::support::stress::trial::{Trial, Verdict};
 
@@ -10,7 +8,7 @@ use crate::support::stress::trial::{Trial, Verdict};
 fn trial(seed: u64, ranks: usize) -> Trial {
     let mut drawn = draw_frictional_in_space(seed, 2);
     drawn.ranks = ranks;
-    Trial::of(&drawn, built(), Duration::from_secs(60), None)
+    Trial::of(&drawn, built(), LIMIT, None)
 }
 
 #[test]
