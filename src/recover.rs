@@ -6,6 +6,7 @@ pub mod fixed_active_set;
 mod fixed_conditions;
 pub mod minimum_norm;
 pub mod motions;
+pub mod penetration;
 mod reactions;
 pub mod refine;
 pub mod solution;

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::element::geometry::{cross, dot, length};
+use crate::element::geometry::{advance, cross, dot, length};
 
 /// A point of a contact: a node of side a with the nodes that lie opposite, a local frame, a gap and a law.
 ///
@@ -16,7 +16,7 @@ use crate::element::geometry::{cross, dot, length};
 pub struct ContactPoint<N> {
     /// Index of its contact among those of the scene.
     pub contact: u32,
-    /// Its place within that contact, along side a.
+    /// Its place within that contact, along the side that has its node.
     pub place: u32,
     /// Nodes and their weights. Those of side a sum to 1, those of side b to −1; an obstacle has none.
     pub entries: Vec<(N, f64)>,
@@ -27,16 +27,17 @@ pub struct ContactPoint<N> {
     pub gap: f64,
     /// The jump ⟦u⟧ when it came (m), from which its slip counts.
     pub since: [f64; 3],
-    /// Tributary area on side a, the integral of its shape function (m, in space m²): pressure is force over
+    /// Tributary area, the integral of its shape function (m, in space m²): pressure is force over
     /// area.
     pub area: f64,
-    /// Undeformed position on side a (m).
+    /// Undeformed position of its node: that on side a, or the one on side b where it has none on side a (m).
     pub position: [f64; 3],
     /// Where its force on side a acts, Σ weight·position over the nodes of side a (m).
     pub force_point: [f64; 3],
-    /// Tag of its node on side a; −1 where there is none.
+    /// Tag of its node on side a; −1 where there are several, as the nodes of side b have the conditions (mortar).
     pub tag_a: i64,
-    /// Tag of its node on side b; −1 for an obstacle and where there are several (mortar).
+    /// Tag of its node on side b; −1 for an obstacle and where there are several, as the nodes of side a have the
+    /// conditions (mortar).
     pub tag_b: i64,
     /// What bounds its force.
     pub law: Law,
@@ -139,6 +140,14 @@ impl<N: Copy> ContactPoint<N> {
         }
     }
 
+    /// The tag of the node that has the condition.
+    pub fn tag(&self) -> i64 {
+        match self.tag_a {
+            -1 => self.tag_b,
+            tag => tag,
+        }
+    }
+
     /// n.
     pub fn normal(&self) -> [f64; 3] {
         self.frame.normal
@@ -190,7 +199,46 @@ impl<N: Copy> ContactPoint<N> {
     }
 }
 
+/// A node of the side of a contact whose nodes have no conditions: where a solution is looked at for penetration.
+///
+/// The jump along its normal, n·Σ weight·u(node), is at most the gap where nothing penetrates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe<N> {
+    /// Index of its contact among those of the scene.
+    pub contact: u32,
+    /// Tag of the node.
+    pub tag: i64,
+    /// The node with weight 1, and the nodes of the facet opposite, whose weights sum to −1.
+    pub entries: Vec<(N, f64)>,
+    /// Outward of its side.
+    pub normal: [f64; 3],
+    /// The gap of the undeformed bodies along it (m).
+    pub gap: f64,
+}
+
 impl ContactPoint<u32> {
+    /// The same point as the other side has it: what its weights, its normal and its nodes are called is exchanged. `on_a`
+    /// tells the nodes of what is side a then, of which `at` says the places (m).
+    pub fn turned(self, on_a: impl Fn(u32) -> bool, at: impl Fn(u32) -> [f64; 3]) -> Self {
+        let entries: Vec<_> = self
+            .entries
+            .iter()
+            .map(|&(n, weight)| (n, -weight))
+            .collect();
+        let of_a = entries.iter().filter(|&&(node, _)| on_a(node));
+        let force_point = of_a.fold([0.0; 3], |sum, &(node, weight)| {
+            advance(sum, weight, at(node))
+        });
+        Self {
+            frame: LocalFrame::new(self.frame.normal.map(|c| -c)),
+            tag_a: self.tag_b,
+            tag_b: self.tag_a,
+            entries,
+            force_point,
+            ..self
+        }
+    }
+
     /// The jump along a `direction`, of ⟦u⟧ of displacements `u`, node by node (m).
     pub fn jump_along(&self, direction: [f64; 3], dim: usize, u: &[f64]) -> f64 {
         self.row_along(direction)

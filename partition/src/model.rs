@@ -25,7 +25,7 @@ mod touching;
 
 pub use self::initial_stress::InitialStress;
 pub use self::steps::ModelStep;
-use crate::contact_point::ContactPoint;
+use crate::contact_point::{ContactPoint, Probe};
 use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
@@ -69,8 +69,10 @@ pub struct Support {
 pub struct Contact {
     /// Name in the scene.
     pub name: String,
-    /// Its points, along side a, over the nodes of the mesh.
+    /// Its points, along the side whose nodes have them, over the nodes of the mesh.
     pub points: Vec<ContactPoint<u32>>,
+    /// Where the side whose nodes have no conditions is looked at for penetration; none where nodes match.
+    pub probes: Vec<Probe<u32>>,
 }
 
 /// A scene on its mesh.
@@ -160,6 +162,8 @@ impl Model {
             contacts: &contacts,
             declared: &declared,
         };
+        let all: Vec<&str> = declared.iter().map(|of| &of.table[..]).collect();
+        diagnostics.check_repeated_contacts(&presence::contacts(scene, &all))?;
         warnings.extend(diagnostics.warnings());
         let prescribed_subdomains = (scene.subdomains.as_ref())
             .map(|names| bodies::prescribed_subdomains(&bodies.mesh, names))

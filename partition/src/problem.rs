@@ -19,7 +19,7 @@ pub mod trial;
 pub mod vtkhdf;
 pub mod write;
 
-use crate::contact_point::ContactPoint;
+use crate::contact_point::{ContactPoint, Probe};
 use crate::element::Elements;
 use crate::element::geometry::{advance, dot};
 use crate::model::{Material, PlaneState, Support};
@@ -283,6 +283,8 @@ pub struct Catalog {
     pub groups: Vec<usize>,
     /// The contact points, group by group.
     pub points: Vec<ContactPoint<SubdomainNode>>,
+    /// Where solutions are looked at for penetration.
+    pub probes: Vec<Probe<SubdomainNode>>,
     /// What is known of the nodes of every contact point.
     pub point_nodes: Vec<Vec<PointNode>>,
     /// The tree along which Schur complements are merged.

@@ -90,7 +90,7 @@ impl Faults {
         let name = |g: usize, point: usize| {
             let point = &context.groups[&g].points[point];
             let contact = &catalog.contacts[point.contact as usize].name;
-            format!("node {} of contact '{contact}'", point.tag_a)
+            format!("node {} of contact '{contact}'", point.tag())
         };
         comm.gather(
             &plan.group_owners(),

@@ -2,7 +2,9 @@
 
 use contact_dd_partition::contact_point::{ContactPoint, Law};
 use contact_dd_partition::element::geometry::{advance, cross, length};
+use contact_dd_partition::magnitude::short;
 use contact_dd_partition::problem::Catalog;
+use contact_dd_partition::scene::units::Units;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,6 +12,10 @@ use super::result::ContactState;
 
 /// Part of its cohesion that a point which slips can lack by round-off.
 const ROUND_OFF: f64 = 1e-6;
+
+/// Penetration over the largest displacement from which on it is worth a warning: on a curve what a facet has whose length is
+/// a third of what is closed.
+const SEEN: f64 = 0.05;
 
 /// A force and its moment about the origin (N and N m, per metre of thickness in the plane; around an axis the force
 /// along it).
@@ -53,6 +59,25 @@ pub struct ContactResultant {
     /// Number of conditions about to open, which slip under a part of their cohesion.
     #[serde(skip)]
     pub parting: usize,
+    /// Largest penetration at the nodes of the side that has no conditions, where nodes don't match (m).
+    pub penetration: f64,
+    /// What those nodes say beside that.
+    #[serde(skip)]
+    pub probed: Option<Probed>,
+    /// Whether the nodes of side b have the conditions.
+    #[serde(skip)]
+    pub on_b: bool,
+}
+
+/// What the nodes of a side without conditions say of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Probed {
+    /// Tag of the node that penetrates farthest.
+    pub deepest: i64,
+    /// How far, over the largest displacement.
+    pub relative: f64,
+    /// Number of nodes that touch the other side.
+    pub touching: usize,
 }
 
 /// What friction does in a load step.
@@ -79,6 +104,7 @@ impl ContactResultant {
     /// Adds what a point carries.
     pub fn add(&mut self, point: &ContactPoint<u32>, state: &ContactState) {
         self.closed += usize::from(state.closed);
+        self.on_b = point.tag_a == -1;
         if let (Some(friction), true) = (&mut self.friction, point.law.has_friction()) {
             friction.add(Friction {
                 sticking: usize::from(state.status() == 1),
@@ -91,6 +117,47 @@ impl ContactResultant {
         self.resultant.add(point.force_point, force);
         self.largest_pressure = self.largest_pressure.max(state.force / point.area);
     }
+
+    /// The warnings of a mesh on which a contact can't be right, in `dim` dimensions; `error` is the estimate of its error.
+    fn of_mesh(&self, dim: usize, units: Units, error: Option<f64>) -> Vec<String> {
+        let Some(probed) = self.probed.filter(|_| self.closed > 0) else {
+            return Vec::new();
+        };
+        let mut warnings = Vec::new();
+        let (own, other) = if self.on_b { ('b', 'a') } else { ('a', 'b') };
+        if probed.relative > SEEN {
+            warnings.push(format!(
+                "contact '{}': at node {} of side {other} the sides penetrate by {} {}, {} of the largest displacement: the \
+                 nodes of side {own} hold them apart, and its facets are too large there; expected smaller ones",
+                self.name,
+                probed.deepest,
+                short(self.penetration),
+                units.length(),
+                percent(probed.relative)
+            ));
+        }
+        let narrow = [(own, self.closed), (other, probed.touching)];
+        if let Some((side, count)) = narrow.into_iter().find(|&(_, count)| count < dim) {
+            let error = error.map_or(String::new(), |error| {
+                format!(
+                    " (the estimate of its error in the energy norm is {})",
+                    percent(error)
+                )
+            });
+            warnings.push(format!(
+                "contact '{}': what is closed is narrower than a facet of side {side}, {count} of whose nodes lie in it, so \
+                 that pressures and how far the bodies approach each other depend on the mesh{error}; expected several \
+                 facets of both sides",
+                self.name
+            ));
+        }
+        warnings
+    }
+}
+
+/// A part of one in words.
+fn percent(part: f64) -> String {
+    format!("{} %", short(100.0 * part))
 }
 
 /// Whether a point slips below the bound of its law, as one without pressure may under a part of its cohesion.
@@ -165,6 +232,13 @@ impl Resultants {
             sum.add(friction);
             sum
         })
+    }
+
+    /// Contacts that can't be right on the mesh of a problem, of whose error there may be an estimate, in words.
+    pub fn warnings_of_mesh(&self, catalog: &Catalog, error: Option<f64>) -> Vec<String> {
+        let contacts = self.contacts.iter();
+        let words = contacts.flat_map(|contact| contact.of_mesh(catalog.dim, catalog.units, error));
+        words.collect()
     }
 
     /// Contacts whose law leaves open what some of their points carry, in words.

@@ -41,6 +41,7 @@ fn catalog() -> Catalog {
         interface: vec![vec![0, 1], vec![1, 2], vec![0, 3], vec![2, 3], vec![0]],
         interface_nodes: 4,
         groups: vec![2],
+        probes: Vec::new(),
         points: vec![point(5, 6), point(7, 8)],
         point_nodes: vec![vec![free(None); 2], vec![free(Some(2)), free(None)]],
         hierarchy: Hierarchy {

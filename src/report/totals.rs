@@ -61,12 +61,15 @@ impl StepTotals {
         resultants: Resultants,
         energy: EnergyBalance,
         analysis: &RigidBodyAnalysis,
+        catalog: &Catalog,
     ) -> Self {
+        let error = solution.estimate.map(|estimate| estimate.relative());
         let warnings = [
             &analysis.motions.warnings[..],
             &solution.minimum_norm.warnings,
             &outcome.notes,
             &resultants.warnings(),
+            &resultants.warnings_of_mesh(catalog, error),
             &Vec::from_iter(energy.warning()),
         ];
         Self {

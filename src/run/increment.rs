@@ -250,7 +250,7 @@ fn unsettled_points(context: &Context<'_>, outcome: &SweepOutcome) -> Vec<String
     let name = |j: u32| {
         let point = &catalog.points[j as usize];
         let contact = &catalog.contacts[point.contact as usize].name;
-        format!("node {} of contact '{contact}'", point.tag_a)
+        format!("node {} of contact '{contact}'", point.tag())
     };
     let pairs = outcome.unsettled.iter().enumerate();
     let points = pairs.flat_map(|(p, conditions)| {

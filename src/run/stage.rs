@@ -26,6 +26,7 @@ use crate::plan::Plan;
 use crate::plan::cluster::Merging;
 use crate::plan::cost::CostEstimate;
 use crate::read::{check_copies, collect_groups, depend_on_each_other, read_blocks};
+use crate::recover::penetration::probe;
 use crate::report::Outputs;
 use crate::report::log::{Checked, RunLog};
 use crate::report::totals::StepTotals;
@@ -224,13 +225,20 @@ impl Stages<'_> {
                 contacts,
                 &absent,
             )?;
+            probe(
+                &context,
+                &solved.solution.displacement,
+                &mut resultants.contacts,
+            );
             if catalog.plane == Some(PlaneState::Axisymmetric) {
                 resultants.sum_around_axis();
             }
             seconds.add(|s| &mut s.write, comm.times() - lap);
             let totals = solved.outcome.clone();
-            let totals = totals
-                .map(|o| StepTotals::new(o, &solved.solution, resultants, solved.energy, at_end));
+            let totals = totals.map(|o| {
+                let solution = &solved.solution;
+                StepTotals::new(o, solution, resultants, solved.energy, at_end, catalog)
+            });
             finished.steps.extend(totals);
             if let Some(next) = next.filter(|next| next.start == k + 1) {
                 let whole = file.catalog();

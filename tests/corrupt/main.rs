@@ -31,7 +31,7 @@ use support::solver::{LIMIT, program};
 use walk::{Place, places};
 
 /// Where a change makes another problem that nothing in the file contradicts.
-const FREE: [&str; 40] = [
+const FREE: [&str; 47] = [
     "/@title",
     "/@plane",
     "/VTKHDF/Points",
@@ -50,6 +50,13 @@ const FREE: [&str; 40] = [
     "/settings/@relaxation",
     "/settings/@tolerance",
     "/warnings",
+    "/probe/contact",
+    "/probe/node",
+    "/probe/normal",
+    "/probe/gap",
+    "/probe/entry_subdomain",
+    "/probe/entry_node",
+    "/probe/entry_weight",
     "/steps/name",
     "/steps/time",
     "/steps/body",

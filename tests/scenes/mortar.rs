@@ -1,5 +1,6 @@
 //! Contact of sides whose nodes don't match.
 
+mod order;
 mod patch;
 mod round;
 mod sorts;

@@ -149,3 +149,58 @@ fn blocks_in_space_that_do_not_match_are_solved_the_same() {
         }
     }
 }
+
+/// Two blocks of quadratic cells whose meshes don't match, on a dome; the upper one `clearance` above the lower one.
+fn dome(clearance: f64) -> Mesh {
+    let bent = |[x, y, z]: [f64; 3]| [x, y, z - 0.3 * (x * x + y * y)];
+    let lower = solid(
+        "lower",
+        Tetrahedron10,
+        [2, 3, 1],
+        between([0.0; 3], [1.0; 3]),
+    );
+    let (low, high) = ([0.0, 0.0, 1.0 + clearance], [1.0, 1.0, 2.0]);
+    let upper = solid("upper", Tetrahedron10, [3, 2, 1], between(low, high));
+    joined(moved(lower, bent), moved(upper, bent))
+}
+
+const BETWEEN: &str = "
+materials.steel = {young = 210e9, poisson = 0.3}
+bodies.lower.material = 'steel'
+bodies.upper.material = 'steel'
+[[contact]]
+name = 'c'
+between = 'all'
+";
+
+#[test]
+fn curved_facets_with_a_clearance_are_not_said_to_overlap() {
+    let found = model(BETWEEN, dome(0.01)).found.concat();
+    assert!(!found.contains("overlap"), "{found}");
+    assert!(found.contains(", gap up to 0.01"), "{found}");
+}
+
+/// Puts the nodes on edges in the middle of their chords.
+fn straightened(mut mesh: Mesh) -> Mesh {
+    for e in 0..mesh.cells.len() {
+        let nodes = mesh.cells.nodes_of(e).to_vec();
+        for (facet, local) in mesh.cells.kind(e).facets() {
+            for (_, edge) in facet.facets() {
+                let [p, q, middle] = [0, 1, 2].map(|k| nodes[local[edge[k]]] as usize);
+                let chord = [0, 1, 2].map(|k| 0.5 * (mesh.points[p][k] + mesh.points[q][k]));
+                mesh.points[middle] = chord;
+            }
+        }
+    }
+    mesh
+}
+
+#[test]
+fn quadratic_facets_that_are_straight_on_a_curve_are_named() {
+    let said = |mesh: Mesh| model(BETWEEN, mesh).warnings.join("; ");
+    let expected = "the quadratic facets of side a are straight and stand off a curve by up to 0.0";
+    let warnings = said(straightened(dome(0.0)));
+    assert!(warnings.contains(expected), "{warnings}");
+    let warnings = said(dome(0.0));
+    assert!(!warnings.contains("straight"), "{warnings}");
+}

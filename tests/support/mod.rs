@@ -15,6 +15,7 @@ pub mod isoparametric;
 pub mod monolithic;
 pub mod mounted;
 pub mod process;
+pub mod punches;
 pub mod random;
 pub mod round;
 pub mod scenes;

@@ -7,7 +7,7 @@ mod points;
 use self::bodies::Bodies;
 use self::groups::Groups;
 use super::Decomposition;
-use crate::contact_point::ContactPoint;
+use crate::contact_point::{ContactPoint, Probe};
 use crate::element::Elements;
 use crate::error::InputError;
 use crate::lists::Lists;
@@ -78,6 +78,7 @@ impl Problem {
             interface_nodes: owners.interface_nodes,
             groups: points.iter().map(Vec::len).collect(),
             points: points.concat(),
+            probes: gather_probes(model, &owners),
             point_nodes: Vec::new(),
             hierarchy: decomposition.hierarchy.clone(),
             warnings,
@@ -282,6 +283,28 @@ fn give_initial_stress(
             k,
         );
     }
+}
+
+/// The probes of all contacts, in their order.
+fn gather_probes(model: &Model, owners: &Owners) -> Vec<Probe<SubdomainNode>> {
+    let place = |node: u32| {
+        let &(subdomain, node) = owners.of.of(node as usize).first()?;
+        Some(SubdomainNode { subdomain, node })
+    };
+    let of_contacts = model.contacts.iter().flat_map(|contact| &contact.probes);
+    let probes = of_contacts.map(|probe| {
+        let entries = probe.entries.iter();
+        Probe {
+            contact: probe.contact,
+            tag: probe.tag,
+            entries: entries
+                .filter_map(|&(node, weight)| Some((place(node)?, weight)))
+                .collect(),
+            normal: probe.normal,
+            gap: probe.gap,
+        }
+    });
+    probes.collect()
 }
 
 /// The contact points of every group, in the order of the scene's contacts.

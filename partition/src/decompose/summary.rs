@@ -39,9 +39,10 @@ impl Summary<'_> {
         let mut pairings = vec![""; self.0.catalog.contacts.len()];
         for point in &self.0.catalog.points {
             let weights: f64 = point.entries.iter().map(|(_, weight)| weight).sum();
-            pairings[point.contact as usize] = match (weights > 0.5, point.tag_b) {
-                (true, _) => ", obstacle",
-                (_, -1) => ", mortar",
+            pairings[point.contact as usize] = match (weights > 0.5, point.tag_a, point.tag_b) {
+                (true, ..) => ", obstacle",
+                (_, -1, _) => ", mortar, conditions at the nodes of side b",
+                (_, _, -1) => ", mortar",
                 _ => ", node by node",
             };
         }

@@ -2,12 +2,13 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::mortar::{self, Mortar};
 use super::node_pairs::Unpaired;
 use super::sides::{Sides, side_nodes};
 use super::steps::Loads;
 use super::supports::PARALLEL;
-use super::surface::{CORNER, Surface, SurfaceFacet};
-use super::{Contact, groups, mortar, node_pairs, obstacle};
+use super::surface::{CORNER, Surface, SurfaceFacet, Turn};
+use super::{Contact, groups, node_pairs, obstacle};
 use crate::contact_point::{ContactPoint, Law};
 use crate::element::geometry::{advance, dot, length};
 use crate::error::InputError;
@@ -34,8 +35,8 @@ const SEEN: f64 = 1e-8;
 /// Part of an interference from which on it matters that straight facets stand off a curve.
 const FELT: f64 = 0.1;
 
-/// Facets of side a that are shorter than this fraction of those of side b are finer.
-const FINER: f64 = 0.6;
+/// Height of the kinks between straight quadratic facets over their size from which on they are those of a curve.
+const KINKED: f64 = 1e-4;
 
 /// Coefficients of friction beyond this are rather angles in degrees, or meant as infinite, which costs digits.
 const STEEP: f64 = 10.0;
@@ -88,6 +89,7 @@ impl<'a> Contacts<'a> {
         let unit = self.units.length();
         let (facets, side_a) = self.side(&keys.side_a, &what)?;
         let mut off = 0.0;
+        let mut probes = Vec::new();
         let mut points = match &keys.partner {
             Partner::Obstacle(obstacle) => {
                 let nodes = side_nodes(self.mesh, &side_a, &what, &HashSet::new())?;
@@ -103,16 +105,24 @@ impl<'a> Contacts<'a> {
                         self.mesh.tags_of(self.mesh.facets.nodes_of(both as usize))
                     )));
                 }
-                let points = self.pairs(&side_a, &side_b, keys.pairing, &what)?;
-                warnings.extend(self.corner(&side_a, &points, &what));
+                let paired = self.pairs(&side_a, &side_b, keys.pairing, &what)?;
+                warnings.extend(self.corner(&side_a, &paired.points, &what));
                 off = side_a.stands_off().max(side_b.stands_off());
-                let is_curved = off > SEEN * side_a.extent();
-                if is_curved && points.iter().any(|point| point.tag_b < 0) {
-                    warnings.extend(finer_first(&side_a, &side_b, &what));
+                warnings.extend(straight_edges(&what, "b", &side_b));
+                warnings.extend(paired.warning);
+                probes = paired.probes;
+                let slack = 2.0 * side_a.kinks().max(side_b.kinks());
+                for probe in &mut probes {
+                    probe.contact = number;
+                    // Straight facets of one curve overlap where nothing presses.
+                    if probe.gap < 0.0 {
+                        probe.gap = (probe.gap + slack).min(0.0);
+                    }
                 }
-                points
+                paired.points
             }
         };
+        warnings.extend(straight_edges(&what, "a", &side_a));
         let none = if self.mesh.dim == 3 {
             NO_GAP * self.size
         } else {
@@ -133,6 +143,12 @@ impl<'a> Contacts<'a> {
                     _ => furthest,
                 };
             }
+            for probe in &mut probes {
+                let place =
+                    (probe.entries.first()).map(|&(node, _)| self.mesh.points[node as usize]);
+                probe.gap = (gap.at(place.unwrap_or_default()))
+                    .map_err(|reason| InputError::new(format!("{what}.gap: {reason}")))?;
+            }
             let (away, given, measured) = furthest;
             if away > side_a.extent() {
                 warnings.push(format!(
@@ -146,7 +162,7 @@ impl<'a> Contacts<'a> {
         if let Some(friction) = &keys.friction {
             for point in &mut points {
                 point.law = (friction.at(point.position)).map_err(|reason| {
-                    InputError::new(format!("{what}.{reason} (node {})", point.tag_a))
+                    InputError::new(format!("{what}.{reason} (node {})", point.tag()))
                 })?;
             }
             warnings.extend(steep_friction(&points, &what));
@@ -186,7 +202,8 @@ impl<'a> Contacts<'a> {
                     return Err(InputError::new(format!(
                         "{what}: at node {} displacements are prescribed on both sides that close \
                          the gap of {} {unit} by {closest} {unit}; expected no penetration",
-                        point.tag_a, point.gap
+                        point.tag(),
+                        point.gap
                     )));
                 }
             }
@@ -205,6 +222,7 @@ impl<'a> Contacts<'a> {
         Ok(Contact {
             name: keys.name.clone(),
             points: kept,
+            probes,
         })
     }
 
@@ -218,8 +236,9 @@ impl<'a> Contacts<'a> {
             let (used, mean) = (normals.get(&tag(node))?, nodes[&node].normal()?);
             Some(dot(*used, mean) > 1.0 - 1e-9)
         };
-        let (node, angle, _) = (side_a.turns().into_iter())
-            .find(|&(node, angle, _)| angle > CORNER && is_mean(node) == Some(true))?;
+        let turn = (side_a.turns().into_iter())
+            .find(|turn| turn.angle > CORNER && is_mean(turn.node) == Some(true))?;
+        let Turn { node, angle, .. } = turn;
         let at = self.mesh.points[node as usize][..self.mesh.dim].iter();
         let at: Vec<String> = at.map(|&c| short(c)).collect();
         Some(format!(
@@ -252,7 +271,7 @@ impl<'a> Contacts<'a> {
         side_b: &Surface,
         pairing: Option<Pairing>,
         what: &str,
-    ) -> Result<Vec<ContactPoint<u32>>, InputError> {
+    ) -> Result<Mortar, InputError> {
         let refused = InputError::about(what);
         let sides = Sides::new(self.mesh, side_a, side_b, what)?;
         let are_weightless = (side_a.facets.iter()).any(|facet| !facet.blending().is_none());
@@ -264,13 +283,17 @@ impl<'a> Contacts<'a> {
                         .into(),
                 ));
             }
-            None if are_weightless => return mortar::points(&sides).map_err(refused),
-            Some(Pairing::Mortar) => return mortar::points(&sides).map_err(refused),
+            None if are_weightless => return mortar::pair(&sides, what).map_err(refused),
+            Some(Pairing::Mortar) => return mortar::pair(&sides, what).map_err(refused),
             Some(Pairing::Nodes) | None => node_pairs::points(&sides),
         };
         match (matched, pairing) {
-            (Ok(points), _) => Ok(points),
-            (Err(Unpaired::Unmatched(_)), None) => mortar::points(&sides).map_err(refused),
+            (Ok(points), _) => Ok(Mortar {
+                points,
+                probes: Vec::new(),
+                warning: None,
+            }),
+            (Err(Unpaired::Unmatched(_)), None) => mortar::pair(&sides, what).map_err(refused),
             (Err(Unpaired::Unmatched(reason) | Unpaired::Apart(reason)), _) => Err(refused(reason)),
         }
     }
@@ -297,6 +320,21 @@ impl<'a> Contacts<'a> {
     }
 }
 
+/// The warning of quadratic facets that are straight and stand for a curve: nodes in their middles are farther from it
+/// than corners are, and pressures oscillate between the two.
+fn straight_edges(what: &str, letter: &str, side: &Surface) -> Option<String> {
+    let is_quadratic = side.facets.iter().any(|facet| !facet.kind.is_linear());
+    let off = side.stands_off();
+    (is_quadratic && off > KINKED * side.facet_size()).then(|| {
+        format!(
+            "{what}: the quadratic facets of side {letter} are straight and stand off a curve by up to {} of their size, so \
+             that pressures oscillate from node to node; expected nodes on edges that lie on the curve, or linear cells, \
+             whose pressures don't",
+            short(off / side.facet_size())
+        )
+    })
+}
+
 /// The warning of a coefficient of friction that is more likely an angle.
 fn steep_friction(points: &[ContactPoint<u32>], what: &str) -> Option<String> {
     let coefficients = points.iter().map(|point| match point.law {
@@ -308,19 +346,6 @@ fn steep_friction(points: &[ContactPoint<u32>], what: &str) -> Option<String> {
         format!(
             "{what}.friction: a coefficient of {}; expected the tangent of the friction angle, a number like 0.6",
             short(largest)
-        )
-    })
-}
-
-/// The warning of a curved contact whose side a is the finer one: its nodes carry the conditions, and
-/// several of them face one straight facet of side b.
-fn finer_first(side_a: &Surface, side_b: &Surface, what: &str) -> Option<String> {
-    let ratio = side_a.facet_size() / side_b.facet_size();
-    (ratio < FINER).then(|| {
-        format!(
-            "{what}: the facets of side a measure {} of those of side b, whose corners its nodes feel; \
-             expected the coarser one of curved sides first",
-            short(ratio)
         )
     })
 }

@@ -9,6 +9,7 @@ use super::bodies::Bodies;
 use super::steps::Loads;
 use super::touching::Declared;
 use super::{Contact, Material, groups};
+use crate::error::InputError;
 use crate::magnitude::short;
 use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::Topology;
@@ -35,7 +36,6 @@ impl Diagnostics<'_> {
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.strains();
         warnings.extend(self.far_apart());
-        warnings.extend(self.repeated_contacts());
         warnings.extend(self.undeclared());
         warnings
     }
@@ -66,7 +66,10 @@ impl Diagnostics<'_> {
 
     /// Two contacts between the same facets, or with the same obstacle: each of them holds what the
     /// other holds already.
-    pub(super) fn repeated_contacts(&self) -> Vec<String> {
+    ///
+    /// # Errors
+    /// Two that are there in the same load step: what they carry would follow from their order.
+    pub(super) fn check_repeated_contacts(&self, absent: &[Vec<u32>]) -> Result<(), InputError> {
         let contacts: Vec<_> = self.declared.iter().map(|of| &of.contact).collect();
         let mesh = &self.bodies.mesh;
         let mut of_facet: HashMap<u32, Vec<(usize, usize)>> = HashMap::new();
@@ -82,20 +85,26 @@ impl Diagnostics<'_> {
                 }
             }
         }
-        let again = common.into_iter().filter_map(|((first, second), common)| {
+        let mut again = common.into_iter().filter_map(|((first, second), common)| {
+            let (first_number, second_number) = (first as u32, second as u32);
             let (first, second) = (contacts[first], contacts[second]);
             let is_repeated = match (&first.partner, &second.partner) {
                 (Partner::Obstacle(one), Partner::Obstacle(other)) => one == other,
                 _ => (common[0][0] && common[1][1]) || (common[0][1] && common[1][0]),
             };
-            is_repeated.then(|| {
-                format!(
-                    "contact '{}': there is contact '{}' between the same facets; what they carry is shared \
-                     out between the two at will",
+            let is_there = |k: &Vec<u32>| !k.contains(&first_number) && !k.contains(&second_number);
+            let are_together = absent.is_empty() || absent.iter().any(is_there);
+            (is_repeated && are_together).then(|| {
+                InputError::new(format!(
+                    "contact '{}': there is contact '{}' between the same facets; expected one contact, or \
+                     steps in which only one of them is there",
                     second.name, first.name
-                )
+                ))
             })
         });
-        again.collect()
+        match again.next() {
+            Some(error) => Err(error),
+            None => Ok(()),
+        }
     }
 }

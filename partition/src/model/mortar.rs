@@ -11,16 +11,20 @@
 //!
 //! so that its multiplier is the normal force on node j. All integrals go over the part of side a
 //! that side b covers (Cichosz and Bischoff 2011), so that a uniform pressure passes whatever the
-//! meshes and wherever the sides end.
+//! meshes and wherever the sides end. On a facet that is covered in part N_k are the shape functions of that part alone:
+//! φ_j changes its sign, and the dual functions of the whole facet would have forces act beyond what is covered.
 
 mod bases;
 mod chart;
 mod cover;
 mod dual;
+mod extent;
 mod field;
 mod foot;
 mod map;
+mod pairing;
 mod polygons;
+mod probes;
 mod root;
 mod rows;
 mod segments;
@@ -29,6 +33,8 @@ mod tests;
 mod weights;
 
 use std::collections::HashMap;
+
+use nalgebra::DMatrix;
 
 use self::cover::{Cover, Opposite};
 use self::field::Field;
@@ -42,13 +48,37 @@ use crate::contact_point::ContactPoint;
 struct Covered<'a> {
     facet: &'a SurfaceFacet,
     cover: Cover,
+    /// What is known of the part that is covered; `None` where it extends over the whole.
+    part: Option<Part>,
 }
 
-/// A contact point for every node of side a that carries a multiplier, along the side.
+/// A covered part of a facet as a facet of its own.
+struct Part {
+    /// Its shape functions as rows of coefficients of those of the facet.
+    functions: DMatrix<f64>,
+    /// Their integrals over what is covered.
+    cover: Cover,
+}
+
+pub(super) use self::foot::{foot, middle};
+pub(super) use self::map::Map;
+pub(super) use self::pairing::{Mortar, pair};
+
+/// What the nodes of side a make of a contact.
+struct Carried {
+    /// A contact point for every node that carries a multiplier, along the side.
+    points: Vec<ContactPoint<u32>>,
+    /// How much is lost of where the sides are nearest to each other (m): the least of the mean gaps over the facets
+    /// around nodes, over the least gap that there is. So far they can go through each other before the first point
+    /// closes.
+    unseen: f64,
+}
+
+/// The contact of two sides whose side a carries the multipliers.
 ///
 /// # Errors
 /// Sides that don't face each other.
-pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, String> {
+fn carried(sides: &Sides) -> Result<Carried, String> {
     let normals: HashMap<u32, [f64; 3]> = (sides.a.nodes().into_iter())
         .filter_map(|(node, at)| Some((node, at.normal()?)))
         .collect();
@@ -63,7 +93,11 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, String> {
         let (cover, back_facing) = opposite.cover(&field);
         any_back_facing |= back_facing;
         if !cover.is_empty() {
-            covered.push(Covered { facet, cover });
+            let part = cover.extent.functions(facet.kind).map(|functions| Part {
+                cover: cover.of_functions(&functions),
+                functions,
+            });
+            covered.push(Covered { facet, cover, part });
         }
     }
     let mut rows: HashMap<u32, Row> = HashMap::new();
@@ -73,13 +107,15 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, String> {
         }
     }
     let plane = sides.a.facets.first().and_then(|facet| facet.plane);
+    let least = |of: fn(&Row) -> f64| rows.values().map(of).fold(f64::INFINITY, f64::min);
+    let unseen = least(Row::mean_gap) - least(|row| row.least_gap);
     let points: Vec<ContactPoint<u32>> = (sides.nodes_a.iter())
-        .filter_map(|a| Some(rows.remove(&a.node)?.point(a, sides.mesh, plane)))
+        .filter_map(|a| Some(rows.remove(&a.node)?.point(a, &normals, sides.mesh, plane)))
         .collect();
     if points.is_empty() {
         return Err(apart(any_back_facing));
     }
-    Ok(points)
+    Ok(Carried { points, unseen })
 }
 
 /// The facets along side a.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::blend::Blending;
 use crate::element::ElementKind;
-use crate::element::geometry::{advance, cross, dot, length};
+use crate::element::geometry::{advance, cross, difference, dot, length};
 use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::bounding_box::BoundingBox;
@@ -16,6 +16,9 @@ const CURVED_DEGREE: usize = 9;
 
 /// Angle between two facets from which on they are no curve but a corner (rad).
 pub(super) const CORNER: f64 = std::f64::consts::FRAC_PI_4;
+
+/// Part of the height of a kink that a facet on a curve has by itself unless it is straight.
+const STRAIGHT: f64 = 0.5;
 
 /// A facet of the boundary.
 #[derive(Clone, Debug)]
@@ -135,6 +138,22 @@ impl SurfaceFacet {
         area[0]
     }
 
+    /// How far nodes on its edges are from the middle of their chords, at most (m).
+    fn sag(&self) -> f64 {
+        let edges: Vec<&[usize]> = match self.kind.dim() {
+            1 => vec![&[0, 1, 2][..self.nodes.len().min(3)]],
+            _ => self.kind.facets().iter().map(|(_, edge)| *edge).collect(),
+        };
+        let of_edge = |edge: &[usize]| match *edge {
+            [start, end, middle] => {
+                let chord = advance(self.at[start], 1.0, self.at[end]).map(|c| 0.5 * c);
+                length(difference(self.at[middle], chord))
+            }
+            _ => 0.0,
+        };
+        edges.into_iter().map(of_edge).fold(0.0, f64::max)
+    }
+
     /// The way from its node `node` to its middle, across `normal`; `None` if it isn't its node.
     fn aside(&self, node: u32, normal: [f64; 3]) -> Option<[f64; 3]> {
         let from = self.nodes.iter().position(|&n| n == node)?;
@@ -191,6 +210,27 @@ impl SurfaceNode {
     pub fn normal(&self) -> Option<[f64; 3]> {
         let size = length(self.area);
         (size > 1e-6 * self.measure).then(|| self.area.map(|c| c / size))
+    }
+}
+
+/// Where two facets meet.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn {
+    /// A node of both.
+    pub node: u32,
+    /// The angle between their normals there (rad).
+    pub angle: f64,
+    /// The larger size of the two (m).
+    size: f64,
+    /// How far the straighter one is from its chords (m).
+    sag: f64,
+}
+
+impl Turn {
+    /// How far chords that turn by the angle stand off an arc: of an arc over the chord h that turns by α the height is
+    /// h α/8 (m).
+    fn height(&self) -> f64 {
+        self.size * self.angle / 8.0
     }
 }
 
@@ -259,16 +299,20 @@ impl Surface {
         nodes
     }
 
-    /// The nodes at which two facets meet at an angle (rad), in space one end of every edge where they do, with the
-    /// larger size of the two (m).
-    pub fn turns(&self) -> Vec<(u32, f64, f64)> {
+    /// Where two facets meet: the nodes, in space one end of every edge.
+    pub fn turns(&self) -> Vec<Turn> {
         let turn = |(node, facets): (u32, &[usize])| {
             let [a, b] = *facets else {
                 return None;
             };
             let (a, b) = (&self.facets[a], &self.facets[b]);
             let cosine = dot(a.normal_at(node), b.normal_at(node)).clamp(-1.0, 1.0);
-            Some((node, cosine.acos(), a.size().max(b.size())))
+            Some(Turn {
+                node,
+                angle: cosine.acos(),
+                size: a.size().max(b.size()),
+                sag: a.sag().min(b.sag()),
+            })
         };
         if self.facets.iter().any(|facet| facet.kind.dim() > 1) {
             let mut edges: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
@@ -291,17 +335,21 @@ impl Surface {
 
     /// How far straight facets stand off a curve that they stand for, at most (m).
     pub fn stands_off(&self) -> f64 {
-        if !self.facets.iter().all(|facet| facet.kind.is_linear()) {
-            return 0.0;
-        }
-        // Of an arc over the chord h that turns by α the height is h α/8.
-        let smooth = self
-            .turns()
-            .into_iter()
-            .filter(|(_, angle, _)| *angle < CORNER);
-        smooth
-            .map(|(_, angle, size)| size * angle / 8.0)
-            .fold(0.0, f64::max)
+        let turns = self.turns();
+        let straight = turns
+            .iter()
+            .filter(|turn| turn.sag <= STRAIGHT * turn.height());
+        Self::largest_height(straight)
+    }
+
+    /// The height of the kinks between facets, at most: straight ones stand off a curve by it, curved ones by less (m).
+    pub fn kinks(&self) -> f64 {
+        Self::largest_height(self.turns().iter())
+    }
+
+    fn largest_height<'a>(turns: impl Iterator<Item = &'a Turn>) -> f64 {
+        let smooth = turns.filter(|turn| turn.angle < CORNER);
+        smooth.map(Turn::height).fold(0.0, f64::max)
     }
 
     /// Its nodes in the middle of facets; the others are corners.

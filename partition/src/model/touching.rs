@@ -137,8 +137,11 @@ fn search(
             let [a, b] = pair.facets.map(|facet| skin.facets[facet].shape.size());
             a.max(b)
         };
-        let (touching, near): (Vec<Facing>, Vec<Facing>) =
+        let (mut touching, mut near): (Vec<Facing>, Vec<Facing>) =
             (pairs.into_iter()).partition(|pair| pair.gap.abs() <= search.tolerance(size(pair)));
+        if search.between.within.is_none() {
+            go_on(&neighbours, &mut touching, &mut near);
+        }
         search.patches = patch::patches(skin, &neighbours, &touching);
         let what = &search.between.name;
         if search.between.within.is_none() {
@@ -164,6 +167,30 @@ fn search(
     Ok(())
 }
 
+/// Takes those of the facets that are `near` to the ones that are `touching` beside which they are, as long as they are no
+/// farther apart than these anywhere: a clearance is the same between smaller facets.
+fn go_on(neighbours: &[Vec<usize>], touching: &mut Vec<Facing>, near: &mut Vec<Facing>) {
+    let most = touching
+        .iter()
+        .map(|pair| pair.gap.abs())
+        .fold(0.0, f64::max);
+    let mut touch: HashSet<[usize; 2]> = touching.iter().map(|pair| pair.facets).collect();
+    loop {
+        let is_beside = |pair: &Facing| {
+            let mut beside = patch::beside(neighbours, pair.facets);
+            pair.gap.abs() <= most && beside.any(|[a, b]| touch.contains(&[a.min(b), a.max(b)]))
+        };
+        let (found, left): (Vec<Facing>, Vec<Facing>) = near.iter().copied().partition(is_beside);
+        if found.is_empty() {
+            break;
+        }
+        touch.extend(found.iter().map(|pair| pair.facets));
+        touching.extend(found);
+        *near = left;
+    }
+    touching.sort_by_key(|pair| pair.facets);
+}
+
 /// The warning of facets that part slowly beside those that touch: they may come into contact.
 fn parting(
     skin: &Skin,
@@ -182,8 +209,9 @@ fn parting(
     let first = first.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
     let node = skin.facets[first.facets[0]].shape.nodes[0];
     Some(format!(
-        "contact '{what}': where what touches ends, as near node {}, sides part slowly, at first by {} {unit}, and loads \
-         may close them; expected within = the distance up to which they belong to it",
+        "contact '{what}': where what touches ends, as near node {}, sides part slowly, in the middle of the next facets \
+         by {} {unit}; should loads bring them together by more than that, give within = how much, no more: what is \
+         beyond adds facets that stay apart",
         skin.mesh.node_tags[node as usize],
         short(first.gap)
     ))

@@ -131,7 +131,7 @@ impl Places {
     /// Whether the force of a point acts where its weights of side a, among them that of node `own`, say.
     fn acts_there(&self, point: &Point, own: SubdomainNode) -> bool {
         let body = |node: SubdomainNode| self.nodes.get(&node).map(|place| place.body);
-        let is_pair = point.entries.len() == 1 || point.tag_b != -1;
+        let is_pair = point.entries.len() == 1 || (point.tag_a != -1 && point.tag_b != -1);
         // Where both sides belong to one body the nodes don't tell on which they are.
         if !is_pair && (point.entries.iter()).all(|&(node, _)| body(node) == body(own)) {
             return true;

@@ -8,6 +8,7 @@ mod header;
 mod hierarchy;
 mod materials;
 mod points;
+mod probes;
 mod settings;
 mod slice;
 mod subdomain;

@@ -108,6 +108,8 @@ pub const LETTERS: &[(char, &str)] = &[
     ('G', "contact groups"),
     ('R', "contact points"),
     ('E', "entries of contact points"),
+    ('V', "probes"),
+    ('H', "entries of probes"),
     ('W', "warnings"),
     ('d', "dimensions of space, 2 or 3"),
     (
@@ -117,7 +119,14 @@ pub const LETTERS: &[(char, &str)] = &[
 ];
 
 /// Groups that may be empty where there is nothing to say. All but `/support` may be absent, too.
-pub const MAY_BE_EMPTY: [&str; 5] = ["/interface", "/support", "/force", "/contact", "/steps"];
+pub const MAY_BE_EMPTY: [&str; 6] = [
+    "/interface",
+    "/support",
+    "/force",
+    "/contact",
+    "/probe",
+    "/steps",
+];
 
 /// Groups that may hold further arrays for ParaView.
 pub const FREE: [&str; 3] = ["/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"];
@@ -226,16 +235,16 @@ pub const FIELDS: &[Field] = &[
         "tributary area on side a, the integral of the point's weight [m, in space m²], above 0; pressure is \
          force over area"),
     field("/contact/position", "R, d", Numbers,
-        "undeformed position on side a, that of `node_a` where there is one [m]"),
+        "undeformed position of the node that has the condition, `node_a` or `node_b` [m]"),
     field("/contact/force_point", "R, d", Numbers,
         "where the force on side a acts [m], Σ weight · position over its nodes of side a: the \
          report's moments follow from it"),
     field("/contact/normal", "R, d", UnitVectors, "unit vector, outward of side a"),
     field("/contact/node_a", "R", Integers,
-        "name (`GlobalNodeId`) of the node on side a, −1 where there is none"),
+        "name (`GlobalNodeId`) of the node on side a, −1 for mortar whose nodes of side b have the conditions"),
     field("/contact/node_b", "R", Integers,
-        "the same on side b; −1 for an obstacle, which has none, and for mortar, which has \
-         several"),
+        "the same on side b; −1 for an obstacle, which has none, and for mortar whose nodes of side a have \
+         the conditions"),
     field("/contact/entry_subdomain", "E", Indices("subdomain", 'N'),
         "subdomain of the entry; one of the point's group"),
     field("/contact/entry_offset", "R + 1", Offsets('E'),
@@ -250,6 +259,15 @@ pub const FIELDS: &[Field] = &[
         "coefficient of friction; 0 but for Coulomb's; with `law` and `shear_bound` or not at all"),
     optional("/contact/shear_bound", "R", NotNegative,
         "bound of the tangential force over `area` [Pa]; 0 where there is no friction"),
+    field("/probe/contact", "V", Indices("contact", 'Q'),
+        "index of the contact of which the probe says whether its sides penetrate where no condition holds them"),
+    field("/probe/node", "V", Integers, "name (`GlobalNodeId`) of its node, on the side without conditions"),
+    field("/probe/normal", "V, d", UnitVectors, "unit vector n, outward of its side"),
+    field("/probe/gap", "V", Numbers, "gap along n [m]; n · Σ weight · u beyond it is penetration"),
+    field("/probe/entry_offset", "V + 1", Offsets('H'), "entries of each probe, at least one"),
+    field("/probe/entry_subdomain", "H", Indices("subdomain", 'N'), "subdomain of the entry"),
+    field("/probe/entry_node", "H", Integers, "node, counted within that subdomain"),
+    field("/probe/entry_weight", "H", Numbers, "weight of the node's displacement"),
     optional("/warnings", "W", Lines, "repeated in the solver's report"),
 ];
 

@@ -1,6 +1,7 @@
 //! Stages: consecutive load steps in which the same bodies and contacts are there.
 
 use std::borrow::Cow;
+use std::collections::HashSet;
 use std::ops::Range;
 
 use super::{Absent, Catalog, SubdomainNode};
@@ -52,14 +53,18 @@ impl Catalog {
 
     /// Whether a contact point is there in load step k.
     pub fn is_there(&self, point: &ContactPoint<SubdomainNode>, k: usize) -> bool {
+        self.are_there(point.contact, &point.entries, k)
+    }
+
+    /// Whether a contact and bodies with these nodes are there in load step k.
+    fn are_there(&self, contact: u32, entries: &[(SubdomainNode, f64)], k: usize) -> bool {
         let Some(absent) = self.steps.get(k).map(|step| &step.absent) else {
             return true;
         };
-        let mut bodies = point
-            .entries
+        let mut bodies = entries
             .iter()
             .map(|(at, _)| self.subdomains[at.subdomain as usize].body);
-        !absent.contacts.contains(&point.contact)
+        !absent.contacts.contains(&contact)
             && bodies.all(|body| !absent.bodies.contains(&(body as u32)))
     }
 
@@ -95,6 +100,14 @@ impl Catalog {
             point.since = since.get(j).copied().unwrap_or_default();
             point.gap += dot(point.since, point.normal());
         }
+        // What came later has its gap from the position in which it came, which probes don't know.
+        let came = points
+            .iter()
+            .filter(|&&j| since.get(j).is_some_and(|since| *since != [0.0; 3]));
+        let came: HashSet<u32> = came.map(|&j| self.points[j].contact).collect();
+        catalog.probes.retain(|probe| {
+            !came.contains(&probe.contact) && self.are_there(probe.contact, &probe.entries, k)
+        });
         let mut first = 0;
         for count in &mut catalog.groups {
             let end = first + *count;

@@ -49,6 +49,9 @@ impl Problem {
         if !self.catalog.contacts.is_empty() {
             self.write_contacts(&mut datasets)?;
         }
+        if !self.catalog.probes.is_empty() {
+            self.write_probes(&mut datasets)?;
+        }
         vtkhdf::mark(&file.group("VTKHDF")?)?;
         file.flush()?;
         file.close()
@@ -196,6 +199,23 @@ impl Problem {
         };
         datasets.put("/initial_stress/cell", rows(|s| &s.cells))?;
         datasets.put("/initial_stress/node", rows(|s| &s.nodes))
+    }
+
+    fn write_probes(&self, datasets: &mut Datasets) -> hdf5::Result<()> {
+        let probes = || self.catalog.probes.iter();
+        datasets.put("/probe/contact", probes().map(|p| i64::from(p.contact)))?;
+        datasets.put("/probe/node", probes().map(|p| p.tag))?;
+        datasets.vectors("/probe/normal", probes().map(|p| &p.normal))?;
+        datasets.put("/probe/gap", probes().map(|p| p.gap))?;
+        datasets.offsets("/probe/entry_offset", probes().map(|p| p.entries.len()))?;
+        let entries = || probes().flat_map(|p| &p.entries);
+        let subdomains = entries().map(|(at, _)| i64::from(at.subdomain));
+        datasets.put("/probe/entry_subdomain", subdomains)?;
+        datasets.put(
+            "/probe/entry_node",
+            entries().map(|(at, _)| i64::from(at.node)),
+        )?;
+        datasets.put("/probe/entry_weight", entries().map(|&(_, weight)| weight))
     }
 
     fn write_contacts(&self, datasets: &mut Datasets) -> hdf5::Result<()> {

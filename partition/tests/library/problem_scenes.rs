@@ -72,6 +72,7 @@ impl Builder {
         self.contacts.push(Contact {
             name: name.into(),
             points,
+            probes: Vec::new(),
         });
     }
 

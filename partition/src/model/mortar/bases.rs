@@ -8,12 +8,6 @@ use super::super::blend::{Blending, of_corners};
 use super::super::surface::SurfaceFacet;
 use crate::element::ElementKind;
 
-/// Share of what is covered around a node that the integral of its function over it has to have for the node to
-/// carry a multiplier. With less, its condition would extrapolate side b from afar, and its multiplier
-/// be next to nothing. Wholly covered, nodes of straight lines have a half. No round number: where sides
-/// overlap by a fifth of a facet, round-off would decide.
-const LEAST: f64 = 0.098_765;
-
 /// The kind of a facet, and its corner on the axis.
 pub(super) type Kind = (ElementKind, Option<usize>);
 
@@ -23,8 +17,8 @@ pub(super) struct Bases {
     /// From one function for each node to one for each corner, which tells apart what a small part of the
     /// facet can.
     pub levels: Vec<DMatrix<f64>>,
-    /// Share of what is covered that each node needs in order to carry a multiplier.
-    pub least: Vec<f64>,
+    /// ∫ of the functions of the nodes over a whole facet, relative to its measure.
+    pub shares: Vec<f64>,
 }
 
 impl Bases {
@@ -46,29 +40,20 @@ impl Bases {
     fn of((kind, on_axis): Kind) -> Self {
         let nodes = kind.nodes();
         let each = Blending::new(kind, on_axis).positive();
-        let whole = || -> Vec<f64> {
-            let mut sums = vec![0.0; nodes];
-            for (xi, weight) in kind.quadrature(4) {
-                let values = kind.shape(xi);
-                (sums.iter_mut().zip(values)).for_each(|(sum, n)| *sum += weight * n);
-            }
-            lift(&each, &sums)
-        };
-        let least = match kind.dim() {
-            1 => vec![LEAST; nodes],
-            _ => {
-                let part = 2.0 * LEAST / kind.domain().measure();
-                whole()
-                    .into_iter()
-                    .map(|integral| part * integral)
-                    .collect()
-            }
-        };
+        let mut integrals = vec![0.0; nodes];
+        for (xi, weight) in kind.quadrature(4) {
+            let values = kind.shape(xi);
+            (integrals.iter_mut().zip(values)).for_each(|(sum, n)| *sum += weight * n);
+        }
+        let whole = kind.domain().measure();
+        let shares = lift(&each, &integrals);
+        let shares = shares.into_iter().map(|integral| integral / whole);
+        let shares = shares.collect();
         let mut levels = vec![each];
         if kind.dim() > 1 && !kind.is_linear() {
             levels.push(of_corners(kind));
         }
-        Self { levels, least }
+        Self { levels, shares }
     }
 }
 
@@ -92,7 +77,8 @@ mod tests {
     fn functions_sum_to_one_and_have_positive_integrals() {
         for kind in [Line2, Line3, Triangle3, Triangle6, Quad4, Quad8, Quad9] {
             let bases = Bases::of((kind, None));
-            assert!(bases.least.iter().all(|&least| least > 0.005), "{kind:?}");
+            assert!(bases.shares.iter().all(|&share| share > 0.02), "{kind:?}");
+            assert!((bases.shares.iter().sum::<f64>() - 1.0).abs() < 1e-14);
             for basis in &bases.levels {
                 for column in basis.column_iter() {
                     assert!((column.sum() - 1.0).abs() < 1e-15, "{kind:?}");

@@ -1,9 +1,11 @@
 //! What of side b covers a facet of side a, piece by piece, and the integrals over it.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::super::ray_search::{FACING, Target};
 use super::super::surface::Surface;
+use super::bases::lift;
+use super::extent::Extent;
 use super::field::Field;
 use super::map::Map;
 use super::polygons::MOST_DEGREE;
@@ -53,6 +55,10 @@ pub(super) struct Cover {
     pub integrals: Vec<f64>,
     /// ∫ N_i N_k (m, in space m²).
     pub mass: DMatrix<f64>,
+    /// ∫ g (m², in space m³).
+    pub gap: f64,
+    /// How far it extends.
+    pub extent: Extent,
     /// The least gap, ends and corners of pieces included (m).
     pub least_gap: f64,
     /// Its pieces.
@@ -66,20 +72,44 @@ impl Cover {
             measure: 0.0,
             integrals: vec![0.0; nodes],
             mass: DMatrix::zeros(nodes, nodes),
+            gap: 0.0,
+            extent: Extent::new(),
             least_gap: f64::INFINITY,
             pieces: Pieces::Overlaps(Vec::new()),
         }
     }
 
-    /// Adds a point of a rule with a weight, where side a has the shape functions `shape`.
-    pub fn add(&mut self, weight: f64, shape: &[f64]) {
+    /// Adds a point of a rule with a weight, where side a has the shape functions `shape` and the gap is `gap` (m).
+    pub fn add(&mut self, weight: f64, shape: &[f64], gap: f64) {
         self.measure += weight;
+        self.gap += weight * gap;
         for (i, &n) in shape.iter().enumerate() {
             self.integrals[i] += weight * n;
             for (k, &m) in shape.iter().enumerate() {
                 self.mass[(i, k)] += weight * n * m;
             }
         }
+    }
+
+    /// The integrals of other functions than the shape functions, rows of coefficients of these; without pieces.
+    pub fn of_functions(&self, functions: &DMatrix<f64>) -> Self {
+        let mut cover = Self::new(functions.nrows());
+        match &self.pieces {
+            // Differences of the functions' integrals would cancel where the part is small.
+            Pieces::Samples(samples) => {
+                for sample in samples {
+                    let shape = functions * DVector::from_column_slice(&sample.shape);
+                    cover.add(sample.weight, shape.as_slice(), sample.gap);
+                }
+            }
+            Pieces::Overlaps(_) => {
+                cover.measure = self.measure;
+                cover.gap = self.gap;
+                cover.integrals = lift(functions, &self.integrals);
+                cover.mass = functions * &self.mass * functions.transpose();
+            }
+        }
+        cover
     }
 
     /// Whether there is nothing.

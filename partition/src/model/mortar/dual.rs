@@ -39,7 +39,7 @@ mod tests {
         let mut cover = Cover::new(2);
         for i in 0..count {
             let at = from + (i as f64 + 0.5) * step;
-            cover.add(step, &Line2.shape([at, 0.0, 0.0]));
+            cover.add(step, &Line2.shape([at, 0.0, 0.0]), 0.0);
         }
         cover
     }

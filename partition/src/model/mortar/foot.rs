@@ -14,7 +14,7 @@ pub(super) const ROUND_OFF: f64 = 1e-9;
 const FAR: f64 = 4.0;
 
 /// ξ in the middle of a facet.
-pub(super) fn middle(domain: Domain) -> Xi {
+pub(in crate::model) fn middle(domain: Domain) -> Xi {
     match domain {
         Domain::Triangle => [1.0 / 3.0; 2],
         _ => [0.0; 2],
@@ -32,7 +32,11 @@ pub(super) fn solve(j: [[f64; 2]; 2], r: Point) -> Point {
 
 /// Where the line through `x` along the unit vector `normal` meets a facet or, a little beyond its edges, what
 /// it goes on as: η, and the distance (m). Newton's method from `start`.
-pub(super) fn foot(facet: &Map, [x, normal]: [[f64; 3]; 2], start: Xi) -> Option<(Xi, f64)> {
+pub(in crate::model) fn foot(
+    facet: &Map,
+    [x, normal]: [[f64; 3]; 2],
+    start: Xi,
+) -> Option<(Xi, f64)> {
     let tangents = LocalFrame::new(normal).tangents;
     let mut eta = start;
     for _ in 0..STEPS {

@@ -9,11 +9,11 @@ use crate::element::geometry::advance;
 const MOST: usize = 9;
 
 /// Reference coordinates on a facet of space.
-pub(super) type Xi = [f64; 2];
+pub(in crate::model) type Xi = [f64; 2];
 
 /// Σ N_i(ξ) v_i of what stands at the nodes of a facet.
 #[derive(Clone, Debug)]
-pub(super) struct Map {
+pub(in crate::model) struct Map {
     coefficients: [[f64; 3]; MOST],
     count: usize,
 }

@@ -188,7 +188,8 @@ fn integrate(
         Some((xi, eta, gap))
     };
     for &corner in &piece.polygon {
-        if let Some((_, _, gap)) = across(corner) {
+        if let Some((xi, _, gap)) = across(corner) {
+            cover.extent.include(xi);
             cover.least_gap = cover.least_gap.min(gap);
         }
     }
@@ -202,7 +203,7 @@ fn integrate(
             };
             let weight = weight * double * chart.density(xi);
             let shape = facet.kind.shape([xi[0], xi[1], 0.0]);
-            cover.add(weight, &shape);
+            cover.add(weight, &shape, gap);
             cover.least_gap = cover.least_gap.min(gap);
             let others = other.kind.shape([eta[0], eta[1], 0.0]);
             for (i, n) in shape.iter().enumerate() {

@@ -1,12 +1,14 @@
 //! What a multiplier's weight covers, gathered facet by facet, and the contact point that comes of it.
 
+use std::collections::HashMap;
+
 use super::super::sides::SideNode;
 use super::super::surface::{Surface, SurfaceFacet};
 use super::Covered;
 use super::cover::{Cover, Overlap, Pieces, Sample};
 use super::weights::Weight;
 use crate::contact_point::{ContactPoint, LocalFrame};
-use crate::element::geometry::{advance, difference, dot};
+use crate::element::geometry::{advance, difference, dot, length};
 use crate::mesh::Mesh;
 use crate::scene::material::PlaneState;
 
@@ -31,7 +33,11 @@ pub(super) struct Row {
     /// ∫ ψ g (m², in space m³).
     gap: f64,
     /// The least gap where ψ isn't zero (m).
-    least_gap: f64,
+    pub least_gap: f64,
+    /// ∫ g and ∫ 1 over the facets there.
+    around: [f64; 2],
+    /// Whether a facet there is covered in part.
+    is_partial: bool,
 }
 
 impl Default for Row {
@@ -42,6 +48,8 @@ impl Default for Row {
             side_b: Vec::new(),
             gap: 0.0,
             least_gap: f64::INFINITY,
+            around: [0.0; 2],
+            is_partial: false,
         }
     }
 }
@@ -56,8 +64,11 @@ fn add(terms: &mut Vec<(u32, f64)>, node: u32, value: f64) {
 impl Row {
     /// Adds what a facet of side a contributes on which ψ is `weight`.
     pub fn add(&mut self, on: &Covered, side_b: &Surface, weight: &Weight) {
-        let Covered { facet, cover } = on;
+        let Covered { facet, cover, part } = on;
+        self.is_partial |= part.is_some();
         self.least_gap = self.least_gap.min(cover.least_gap);
+        self.around[0] += cover.gap;
+        self.around[1] += cover.measure;
         match &cover.pieces {
             Pieces::Samples(samples) => {
                 for sample in samples {
@@ -128,12 +139,17 @@ impl Row {
         }
     }
 
+    /// The mean of the gap over the facets where ψ isn't zero (m).
+    pub fn mean_gap(&self) -> f64 {
+        self.around[0] / self.around[1]
+    }
+
     /// Shifts what side b has of the row so that both sides turn together without changing the gap,
     /// and the point's force has no moment: Σ s_a D_a = Σ s_b M_b with the places s along side a.
     ///
     /// It is so already where the sides are straight. Without it, the ragged facets of round bodies
     /// would keep them from turning against each other.
-    fn balance(&mut self, a: &SideNode, mesh: &Mesh, plane: Option<PlaneState>) {
+    fn balance(&mut self, a: &SideNode, normal: [f64; 3], mesh: &Mesh, plane: Option<PlaneState>) {
         // In multiples of the size of its part of side a, so that no square of a length overflows.
         let size = if mesh.dim == 2 {
             self.area / PlaneState::thickness(plane, self.force_point(a, mesh))
@@ -143,7 +159,7 @@ impl Row {
         let way = |node: u32| difference(mesh.points[node as usize], a.position);
         // Each node takes part as it does already.
         let before = self.side_b.clone();
-        for axis in self.axes(a, mesh) {
+        for axis in self.axes(a, normal, mesh) {
             let place = |node: u32| dot(axis, way(node)) / size;
             let moment =
                 |terms: &[(u32, f64)]| terms.iter().map(|&(n, c)| c * place(n)).sum::<f64>();
@@ -162,8 +178,8 @@ impl Row {
 
     /// The principal axes along side a of where the nodes of side b lie, each as it takes part: what is shifted along
     /// one of them leaves the other as it is.
-    fn axes(&self, a: &SideNode, mesh: &Mesh) -> Vec<[f64; 3]> {
-        let [t_1, t_2] = LocalFrame::new(a.normal).tangents;
+    fn axes(&self, a: &SideNode, normal: [f64; 3], mesh: &Mesh) -> Vec<[f64; 3]> {
+        let [t_1, t_2] = LocalFrame::new(normal).tangents;
         if mesh.dim == 2 {
             return vec![t_1];
         }
@@ -197,6 +213,18 @@ impl Row {
         })
     }
 
+    /// The normal where the force acts: that of node `a`, unless a facet is covered in part and the force acts beside it.
+    fn normal(&self, a: &SideNode, normals: &HashMap<u32, [f64; 3]>) -> [f64; 3] {
+        if !self.is_partial {
+            return a.normal;
+        }
+        let of_node = |node: &u32| normals.get(node).copied().unwrap_or(a.normal);
+        let all = self.side_a.iter();
+        let sum = all.fold([0.0; 3], |sum, (node, c)| advance(sum, *c, of_node(node)));
+        let size = length(sum);
+        sum.map(|c| c / size)
+    }
+
     /// The contact point of node `a`, scaled so that the weights of side a sum to 1: the multiplier is the force
     /// along its normal.
     ///
@@ -206,10 +234,12 @@ impl Row {
     pub fn point(
         mut self,
         a: &SideNode,
+        normals: &HashMap<u32, [f64; 3]>,
         mesh: &Mesh,
         plane: Option<PlaneState>,
     ) -> ContactPoint<u32> {
-        self.balance(a, mesh, plane);
+        let normal = self.normal(a, normals);
+        self.balance(a, normal, mesh, plane);
         let force_point = self.force_point(a, mesh);
         let mut terms = self.side_a;
         for (node, value) in self.side_b {
@@ -227,7 +257,7 @@ impl Row {
             gap: (self.gap / self.area).max(self.least_gap.min(NEARER * self.least_gap)),
             area: self.area,
             force_point,
-            ..ContactPoint::new(entries, a.normal, a.position, tag_a)
+            ..ContactPoint::new(entries, normal, a.position, tag_a)
         }
     }
 }

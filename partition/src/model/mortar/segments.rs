@@ -3,6 +3,7 @@
 
 use super::super::surface::SurfaceFacet;
 use super::cover::{Cover, Opposite, Pieces, Sample};
+use super::extent::Extent;
 use super::field::{Field, ahead, beside, cross};
 use super::root::{ENDS, root};
 use crate::element::geometry::difference;
@@ -28,6 +29,7 @@ pub(super) fn cover(opposite: &Opposite, field: &Field) -> (Cover, bool) {
     cuts.sort_by(f64::total_cmp);
     let mut samples = Samples {
         list: Vec::new(),
+        extent: Extent::new(),
         least_gap: f64::INFINITY,
     };
     let mut any_back_facing = false;
@@ -96,6 +98,7 @@ fn nearest(
 /// The samples of segments, one after the other along a facet.
 struct Samples {
     list: Vec<Sample>,
+    extent: Extent,
     least_gap: f64,
 }
 
@@ -107,6 +110,7 @@ impl Samples {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         for end in ends {
             let (_, gap) = project(field, b, end);
+            self.extent.include([end, 0.0]);
             self.least_gap = self.least_gap.min(gap);
         }
         for (point, weight) in a.kind.quadrature(DEGREE) {
@@ -127,8 +131,9 @@ impl Samples {
     fn cover(self, field: &Field) -> Cover {
         let mut cover = Cover::new(field.facet().nodes.len());
         for sample in &self.list {
-            cover.add(sample.weight, &sample.shape);
+            cover.add(sample.weight, &sample.shape, sample.gap);
         }
+        cover.extent = self.extent;
         cover.least_gap = self.least_gap;
         cover.pieces = Pieces::Samples(self.list);
         cover

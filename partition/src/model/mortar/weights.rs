@@ -17,11 +17,16 @@ const SLIVER: f64 = 0.987_65e-3;
 /// below 100 then. Those of the corners alone may be so much larger. No round numbers either.
 const FLOORS: [f64; 2] = [0.987_65e-3, 0.987_65e-7];
 
+/// Part of a node's integral that has to be covered for it to carry a multiplier, relative to what is covered of the
+/// nodes beside it. With less, its condition would be nearly theirs, and its multiplier be next to nothing. No round
+/// number: where sides overlap by a fifth of a facet, round-off would decide.
+const LEAST: f64 = 0.320_987;
+
 /// Part of the integral that a node needs that has to be left of it when others have handed theirs over.
 const KEPT: f64 = 0.5;
 
 /// Weight of a node in its own condition, relative to all of side a, that it has to have at least.
-const OWN: f64 = 0.098_765;
+const OWN: f64 = 0.009_876_5;
 
 /// The weight ψ of a multiplier on a facet.
 pub(super) enum Weight {
@@ -68,14 +73,28 @@ struct Carrying {
 pub(super) fn weights(sides: &Sides, covered: &[Covered]) -> Vec<Vec<(u32, Weight)>> {
     let bases = Bases::new(covered.iter().map(|on| on.facet));
     let mut around: HashMap<u32, [f64; 2]> = HashMap::new();
-    for Covered { facet, cover } in covered {
-        let Bases { levels, least } = &bases[&Bases::kind(facet)];
-        let integrals = lift(&levels[0], &cover.integrals);
-        for (i, &node) in facet.nodes.iter().enumerate() {
-            let [own, needed] = around.entry(node).or_default();
+    for on in covered {
+        let bases = &bases[&Bases::kind(on.facet)];
+        let integrals = on.integrals(&bases.levels[0]);
+        let area = on.facet.area();
+        for (i, &node) in on.facet.nodes.iter().enumerate() {
+            let [own, whole] = around.entry(node).or_default();
             *own += integrals[i];
-            *needed += least[i] * cover.measure;
+            *whole += bases.shares[i] * area;
         }
+    }
+    // What a node needs follows from how much of it is covered beside it.
+    let part = |node: &u32| around[node][0] / around[node][1];
+    let mut most: HashMap<u32, f64> = HashMap::new();
+    for Covered { facet, .. } in covered {
+        let of_facet = facet.nodes.iter().map(part).fold(0.0, f64::max);
+        for &node in &facet.nodes {
+            let most = most.entry(node).or_default();
+            *most = most.max(of_facet);
+        }
+    }
+    for (node, [_, whole]) in &mut around {
+        *whole *= LEAST * most[node];
     }
     around.retain(|node, _| !sides.shared.contains(node));
     let enough = (around.iter()).filter(|(_, [own, needed])| own >= needed);
@@ -112,10 +131,26 @@ pub(super) fn weights(sides: &Sides, covered: &[Covered]) -> Vec<Vec<(u32, Weigh
     }
 }
 
+impl Covered<'_> {
+    /// The integrals of the functions of what is covered.
+    fn integrals(&self, basis: &DMatrix<f64>) -> Vec<f64> {
+        let cover = self.part.as_ref().map_or(&self.cover, |part| &part.cover);
+        lift(basis, &cover.integrals)
+    }
+
+    /// Their dual basis.
+    fn dual(&self, basis: &DMatrix<f64>, floor: f64) -> Option<DMatrix<f64>> {
+        match &self.part {
+            None => dual_basis(&self.cover, basis, floor),
+            Some(part) => Some(dual_basis(&part.cover, basis, floor)? * &part.functions),
+        }
+    }
+}
+
 impl Carrying {
     /// The weights on a facet of those of its nodes that carry a multiplier.
     fn on(&self, covered: &Covered) -> Vec<(u32, Weight)> {
-        let Covered { facet, cover } = covered;
+        let Covered { facet, cover, .. } = covered;
         let levels = &self.bases[&Bases::kind(facet)].levels;
         let carries = |&i: &usize| self.nodes.contains(&facet.nodes[i]);
         let is_line = facet.kind.dim() == 1;
@@ -129,7 +164,7 @@ impl Carrying {
             };
             if own.len() > 1
                 && is_told_apart
-                && let Some(dual) = dual_basis(cover, basis, floor)
+                && let Some(dual) = covered.dual(basis, floor)
             {
                 let handed = handed_over(&dual, &own);
                 let row = |j: usize| handed.row(j).iter().copied().collect();
@@ -138,7 +173,7 @@ impl Carrying {
                     .collect();
             }
         }
-        let integrals = lift(&levels[0], &cover.integrals);
+        let integrals = covered.integrals(&levels[0]);
         let own = (0..facet.nodes.len()).filter(carries);
         // Of equal ones the first.
         let best = own

@@ -1,6 +1,7 @@
 //! What a facet of the boundary sees along its normal.
 
 use super::super::clip::{Point, area, clip, contains, middle};
+use super::super::mortar::{Map, foot, middle as middle_of};
 use super::super::surface::SurfaceFacet;
 use super::{ROUND_OFF, STANDING_OFF, SkinFacet};
 use crate::contact_point::LocalFrame;
@@ -10,6 +11,10 @@ use crate::mesh::Mesh;
 /// Part of the smaller of two facets that they have in common at least: less is round-off of those that end beside
 /// each other.
 const LEAST: f64 = 1e-6;
+
+/// Overlap relative to the thinner of two cells behind facets from which on it is the material of the body that lies
+/// between them, however wide the cells are.
+const MATERIAL: f64 = 0.5;
 
 /// A facet that is seen.
 pub(super) struct Seen {
@@ -98,7 +103,19 @@ impl<'a> View<'a> {
         let size = own.size().min(shape.size());
         let cell = |of: &SkinFacet| self.mesh.cells.nodes_of(of.place.cell as usize);
         let is_thin = || (cell(self.facet).iter()).any(|node| cell(other).contains(node));
-        gap < -STANDING_OFF * size || (gap < -ROUND_OFF * size && is_thin())
+        gap < -STANDING_OFF * size
+            || (gap < -ROUND_OFF * size && is_thin())
+            || gap < -MATERIAL * self.thickness(self.facet).min(self.thickness(other))
+    }
+
+    /// How far the cell of a facet reaches behind it (m).
+    fn thickness(&self, facet: &SkinFacet) -> f64 {
+        let nodes = self.mesh.cells.nodes_of(facet.place.cell as usize).iter();
+        let depth = |&node: &u32| {
+            let way = difference(facet.shape.at[0], self.mesh.points[node as usize]);
+            dot(way, facet.shape.normal)
+        };
+        nodes.map(depth).fold(0.0, f64::max)
     }
 
     /// The corners of a facet in the plane, counter-clockwise where it looks the same way.
@@ -127,11 +144,18 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The way from `x` along the normal to a facet, or to its plane where rounding has it that it passes by (m).
+    /// The way from `x` along the normal to a facet, or to what it goes on as where it passes by: edges of curved facets
+    /// aren't where the chords between their corners are (m).
     fn height(&self, shape: &SurfaceFacet, x: [f64; 3]) -> f64 {
         let normal = self.frame.normal;
         let crossing = shape.kind.crossing(&shape.at, x, normal);
-        crossing.unwrap_or_else(|| {
+        let beyond = || {
+            let is_curved = shape.kind.dim() > 1 && !shape.kind.is_linear();
+            let map = is_curved.then(|| Map::new(shape.kind, &shape.at))?;
+            let (_, way) = foot(&map, [x, normal], middle_of(shape.kind.domain()))?;
+            Some(way)
+        };
+        crossing.or_else(beyond).unwrap_or_else(|| {
             let to_plane = dot(difference(shape.at[0], x), shape.normal);
             to_plane / dot(normal, shape.normal)
         })

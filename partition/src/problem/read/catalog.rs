@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::contents::Contents;
 use super::header::Header;
-use super::{hierarchy, materials, points, settings};
+use super::{hierarchy, materials, points, probes, settings};
 use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::problem::{
@@ -28,6 +28,7 @@ pub(super) fn read(
     for point in &points {
         contacts[point.contact as usize].has_friction |= point.law.has_friction();
     }
+    let probes = probes::read(contents, &subdomains)?;
     let mut catalog = Catalog {
         title: header.title,
         dim: header.dim,
@@ -43,6 +44,7 @@ pub(super) fn read(
         interface_nodes,
         groups,
         points,
+        probes,
         point_nodes,
         hierarchy: Hierarchy::default(),
         solver: settings::read(file)?,

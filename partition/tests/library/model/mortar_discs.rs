@@ -84,13 +84,35 @@ fn discs_that_touch_leave_the_gap_between_their_circles() {
     );
 }
 
+/// The nodes of the finer side see first where curves touch; facets that fit each other are another matter.
 #[test]
-fn the_finer_of_two_curved_sides_is_not_the_first() {
+fn the_finer_of_two_curved_sides_has_the_conditions_unless_they_fit() {
     let text = "[[contact]]\nname = 'c'\nsides = ['upper top', 'lower top']\n";
-    for (facets, is_warned) in [([50, 33], false), ([50, 90], true)] {
-        let warnings = discs(facets).model(text).unwrap().warnings.join("\n");
-        let said = warnings.contains("expected the coarser one of curved sides first");
-        assert_eq!(said, is_warned, "{warnings}");
+    for (facets, is_turned) in [([50, 33], false), ([50, 90], false), ([50, 12], true)] {
+        let model = discs(facets).model(text).unwrap();
+        assert_eq!(model.warnings, Vec::<String>::new());
+        for point in &model.contacts[0].points {
+            assert_eq!(point.tag_a == -1, is_turned, "{facets:?} {point:?}");
+            assert_eq!(point.tag_b == -1, !is_turned, "{facets:?}");
+        }
+    }
+    // A disc within a ring, whose inner facets are those of its bottom.
+    let fitting = |n: [usize; 2]| {
+        let ring = disc(Blocks::new(), "lower", [0.0; 2], 2.0, n[0], 0.3);
+        let fitted = disc(ring, "upper", [0.0; 2], 1.0, n[1], 0.1);
+        let sides = "sides = ['upper top', 'lower bottom']\n";
+        fitted
+            .model(&format!("[[contact]]\nname = 'c'\n{sides}"))
+            .unwrap()
+    };
+    for (facets, is_warned) in [([50, 33], false), ([33, 90], true)] {
+        let model = fitting(facets);
+        assert!(model.contacts[0].points.iter().all(|point| point.tag_a > 0));
+        let said = model
+            .warnings
+            .join("\n")
+            .contains("expected the coarser one of curved sides");
+        assert_eq!(said, is_warned, "{:?}", model.warnings);
     }
 }
 

@@ -7,7 +7,7 @@ use crate::contact_point::ContactPoint;
 use crate::element::ElementKind::{self, Quad9};
 use crate::element::geometry::{difference, length};
 use crate::mesh::Mesh;
-use crate::model::mortar::points;
+use crate::model::mortar::carried;
 use crate::model::sides::Sides;
 use crate::model::surface::{Surface, SurfaceFacet};
 
@@ -111,7 +111,7 @@ impl Space {
     pub fn points(&self, a: usize, b: usize) -> Vec<ContactPoint<u32>> {
         let (a, b) = (self.surface(a), self.surface(b));
         let sides = Sides::new(&self.mesh, &a, &b, "test").unwrap();
-        points(&sides).unwrap()
+        carried(&sides).unwrap().points
     }
 
     /// ∫ of the shape function of every node over a side, by node.
