@@ -65,7 +65,8 @@ class Result:
     or go `Present`, 0 where a cell isn't there."""
     contacts: dict[str, NDArray[Any]]
     """A structured array for each contact, a row for each condition: `position`, `normal`, `gap`, `force`, `pressure`,
-    `status` (0 open, 1 closed, 2 slipping), `node_a`, `node_b`; with friction `tangential_force`, `slip`. Of a contact
+    `status` (0 open, 1 closed, 2 slipping), `node_a`, `node_b` (-1 but for the node that has the condition, and its
+    partner where nodes match); with friction `tangential_force`, `slip`. Of a contact
     that isn't there every `gap` is NaN."""
 
     convergence: dict[str, NDArray[Any]]

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from contact_dd.drawing.carried import carried
+
 
 @dataclass
 class PressedSide:
@@ -36,7 +38,7 @@ def pressed_sides(result, moved):
     )
     edges = result.tags[edges]
     sides = []
-    for table in result.contacts.values():
+    for table in carried(result.contacts).values():
         tags = table["node_a"]
         if len(tags) == 0:
             continue

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from contact_dd.drawing.carried import carried
+
 # What of the size nobody sees.
 INVISIBLE = 0.002
 
@@ -27,7 +29,7 @@ def typical_gaps(result):
     ends = result.outline[:, [0, 2]]
     lines = result.points[ends]
     order = np.argsort(result.tags, kind="stable")
-    for table in result.contacts.values():
+    for table in carried(result.contacts).values():
         closed = np.flatnonzero(table["status"] > 0)
         found = []
         for k in closed[:: 1 + len(closed) // MOST_LOOKED_AT]:

@@ -8,6 +8,7 @@ from matplotlib.tri import Triangulation
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from contact_dd.drawing.canvas import deformation_of, round_below
+from contact_dd.drawing.carried import carried
 from contact_dd.drawing.chart import chart_of
 from contact_dd.drawing.plane import von_mises
 from contact_dd.drawing.units import in_units, units_of
@@ -73,7 +74,7 @@ class Solid:
         self.scale = scale or (round_below(VISIBLE * size / largest) if largest > 0 else 1.0)
         self.points = result.points + self.scale * result.deformation
         self.pressed = {
-            name: table for name, table in result.contacts.items() if table["pressure"].max(initial=0) > 0
+            name: table for name, table in carried(result.contacts).items() if table["pressure"].max(initial=0) > 0
         }
 
     def has_stress(self):
