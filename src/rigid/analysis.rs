@@ -1,12 +1,14 @@
 //! Which rigid motions are free, whether the load drives one, and where to pin those it doesn't.
 
+mod many;
+
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use super::forces::{Forces, Friction, slips};
 use super::free_motion::FreeMotion;
 use super::kinematics::{Kinematics, null_space};
-use super::many_bodies::{MANY, ManyBodies};
+use super::many_bodies::MANY;
 use super::motion::BodyFrame;
 use crate::error::Failure;
 
@@ -146,8 +148,10 @@ impl Scene {
         }
         let load = kinematics.load(bodies);
         let scale: f64 = bodies.iter().map(|body| body.load_scale).sum();
-        if kinematics.len >= MANY && kinematics.rests(rows, &load, scale) {
-            return Ok(RigidMotions::default());
+        if kinematics.len >= MANY
+            && let Some(found) = self.analyse_many(&kinematics, scale)
+        {
+            return found;
         }
         let b = kinematics.rows(rows);
         let free = null_space(&b);
@@ -167,7 +171,7 @@ impl Scene {
         let unbalanced = forces.residual(&b, &held, nothing * scale);
         if forces.has_friction && !is_nothing(&unbalanced) {
             let drive = forces.drive(&b, &held);
-            if slips(rows, &b, &drive) {
+            if slips(rows, (&b * &drive).as_slice()) {
                 return Err(kinematics.sliding(bodies, names, &drive));
             }
         }
@@ -175,7 +179,10 @@ impl Scene {
             let why = "contact can't hold it";
             return Err(kinematics.ill_posed(bodies, names, &unbalanced, why));
         }
-        let mut motions = kinematics.fix(bodies, names, &free);
+        let columns = free.column_iter();
+        let list = columns.map(|x| kinematics.motion(&x.into_owned()));
+        let fixing_dofs = kinematics.fixing_dofs(bodies, &free);
+        let mut motions = kinematics.fix(bodies, names, list.collect(), fixing_dofs);
         if !is_nothing(&unbalanced) {
             let share = unbalanced.norm() / scale;
             let motion = kinematics.motion(&unbalanced.normalize());
@@ -196,34 +203,23 @@ impl Scene {
         let kinematics = Kinematics::new(self.dim, &self.bodies);
         let load = kinematics.load(&self.bodies);
         let scale: f64 = self.bodies.iter().map(|body| body.load_scale).sum();
+        let sliding =
+            |unbalanced: &DVector<f64>| kinematics.sliding(&self.bodies, &self.names, unbalanced);
+        if kinematics.len >= MANY {
+            let unbalanced = self.unpressed_many(&kinematics, scale);
+            return unbalanced.as_ref().map(sliding);
+        }
         let b = kinematics.rows(&normals);
         let free = null_space(&b);
         let driven = &free * (free.transpose() * &load);
         let held = &load - &driven;
         let left = Forces::new(&normals, |_| true).residual(&b, &held, UNDECIDED * scale);
         let unbalanced = driven + left;
-        (unbalanced.norm() > BALANCE_TOLERANCE * scale)
-            .then(|| kinematics.sliding(&self.bodies, &self.names, &unbalanced))
+        (unbalanced.norm() > BALANCE_TOLERANCE * scale).then(|| sliding(&unbalanced))
     }
 }
 
 impl Kinematics {
-    /// Whether the conditions `rows` certainly hold all motions, and those along normals balance the `load`, where
-    /// all loads are `scale`; if not, it takes longer to find out.
-    fn rests(&self, rows: &[RigidRow], load: &DVector<f64>, scale: f64) -> bool {
-        let bodies = |rows: &mut dyn Iterator<Item = &RigidRow>| {
-            ManyBodies::new(
-                &self.centers,
-                rows.map(|row| self.sparse_row(row)).collect(),
-            )
-        };
-        let mut normals = rows.iter().filter(|row| row.friction.is_none());
-        let rest = bodies(&mut normals)
-            .and_then(|pressing| pressing.rest(load.as_slice(), &vec![0.0; pressing.len()]));
-        rest.is_some_and(|rest| rest.unbalanced <= UNDECIDED * scale)
-            && bodies(&mut rows.iter()).is_some_and(|all| all.hold_all())
-    }
-
     fn ill_posed(
         &self,
         bodies: &[BodyState],
@@ -270,10 +266,14 @@ impl Kinematics {
         (worst, bodies[worst].frame.describe(self.dim, &z))
     }
 
-    /// Pins the free motions, the columns of `free`, and says so.
-    fn fix(&self, bodies: &[BodyState], names: &[String], free: &DMatrix<f64>) -> RigidMotions {
-        let columns = free.column_iter();
-        let motions: Vec<FreeMotion> = columns.map(|x| self.motion(&x.into_owned())).collect();
+    /// What becomes of the free `motions`, which are pinned by `fixing_dofs`, and says so.
+    fn fix(
+        &self,
+        bodies: &[BodyState],
+        names: &[String],
+        motions: Vec<FreeMotion>,
+        fixing_dofs: Vec<FixingDof>,
+    ) -> RigidMotions {
         let fixed = |what: &String| {
             format!(
                 "nothing holds {what}; without load along it, this is fixed so that the mean \
@@ -284,7 +284,7 @@ impl Kinematics {
             warnings: (self.described(bodies, names, &motions).iter())
                 .map(fixed)
                 .collect(),
-            fixing_dofs: self.fixing_dofs(bodies, free),
+            fixing_dofs,
             free: motions,
         }
     }

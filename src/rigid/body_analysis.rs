@@ -11,6 +11,7 @@ use super::cluster_modes::cluster_modes;
 use super::energy::RigidModes;
 use super::motion::BodyFrame;
 use super::rows::rigid_rows;
+use crate::comm::is_asked_to_stop;
 use crate::context::{Context, Loads};
 use crate::error::Failure;
 
@@ -60,18 +61,25 @@ pub fn analyse_bodies(
         rows,
         conditions,
     };
-    let mut analyse = || -> Result<RigidMotions, Failure> {
+    let find = || -> Result<Found, Failure> {
         let pins = scene.hold(|b| catalog.bodies[b].is_absent)?;
-        let mut motions = scene.analyse()?;
-        motions.fixing_dofs.extend(pins);
-        Ok(motions)
+        let found = scene.analyse().map(|mut motions| {
+            motions.fixing_dofs.extend(pins);
+            Found {
+                movable: scene.is_movable(),
+                closing_motions: closing_motions(scene.dim, &scene.bodies, &scene.rows, before),
+                motions,
+            }
+        });
+        // What was found after that may be half of it.
+        match is_asked_to_stop() {
+            false => found,
+            true => Err(Failure::interrupted(
+                "interrupted while analysing rigid motions",
+            )),
+        }
     };
-    let found = comm.agree(comm.is_root().then(&mut analyse).transpose())?;
-    let mut found = found.map(|motions| Found {
-        movable: scene.is_movable(),
-        closing_motions: closing_motions(scene.dim, &scene.bodies, &scene.rows, before),
-        motions,
-    });
+    let mut found = comm.agree(comm.is_root().then(find).transpose())?;
     comm.broadcast(&mut found);
     let Found {
         motions,

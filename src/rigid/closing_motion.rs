@@ -13,8 +13,9 @@ use super::analysis::{BodyState, RigidRow};
 use super::body_analysis::RigidBodyAnalysis;
 use super::forces::{Forces, Friction};
 use super::kinematics::{Kinematics, RANK_TOLERANCE, null_space};
-use super::many_bodies::{MANY, ManyBodies};
+use super::many_bodies::{MANY, ManyBodies, SparseRow};
 use super::motion::BodyFrame;
+use crate::comm::is_asked_to_stop;
 use crate::context::{Context, Loads};
 
 /// Drive that is left, relative to all, that counts as none.
@@ -73,25 +74,23 @@ pub(super) fn closing_motions(
     let load = kinematics.load(bodies).component_mul(&speed);
     let size = bodies.iter().fold(0.0, |m: f64, b| m.max(b.frame.size));
     let touching = TOUCHING * size;
-    if kinematics.len >= MANY && !has_friction {
-        let left = gaps_left(rows, &motions);
-        if let Some(y) = rest(&kinematics, rows, &speed, &load, &left, touching) {
-            move_along(&mut motions, &kinematics, &y.component_mul(&speed));
-            return motions;
-        }
-    }
-    let b = kinematics.rows(rows);
-    let fast = &b * DMatrix::from_diagonal(&speed);
-    let fallen =
-        fall(rows, &fast, &load, gaps_left(rows, &motions), touching).component_mul(&speed);
-    move_along(&mut motions, &kinematics, &fallen);
+    let left = gaps_left(rows, &motions);
+    let resting = match kinematics.len >= MANY {
+        true => rest(&kinematics, rows, &speed, &load, &left, touching),
+        false => None,
+    };
+    let fallen = resting.unwrap_or_else(|| {
+        let fast = kinematics.rows(rows) * DMatrix::from_diagonal(&speed);
+        fall(rows, &fast, &load, left, touching)
+    });
+    move_along(&mut motions, &kinematics, &fallen.component_mul(&speed));
     if has_friction {
         let slip = rows
             .iter()
             .map(|row| jump(row, &motions) - jump(row, &start));
         let back = without_slip(
             rows,
-            &b,
+            &kinematics,
             &slip.collect::<Vec<f64>>(),
             &gaps_left(rows, &motions),
             touching,
@@ -169,6 +168,7 @@ fn speeds(kinematics: &Kinematics, bodies: &[BodyState]) -> DVector<f64> {
 }
 
 /// Where many bodies come to rest, if that is found: they stay where they are if what touches balances the load.
+/// With friction nothing else is found.
 fn rest(
     kinematics: &Kinematics,
     rows: &[RigidRow],
@@ -177,22 +177,34 @@ fn rest(
     left: &[f64],
     touching: f64,
 ) -> Option<DVector<f64>> {
-    let with = |farthest: f64, missing: f64| {
-        let near = rows.iter().zip(left).filter(|(_, left)| **left <= farthest);
-        let (rows, gaps): (Vec<_>, Vec<f64>) = near
-            .map(|(row, left)| {
-                let mut sparse = kinematics.sparse_row(row);
-                sparse.iter_mut().for_each(|(i, b)| *b *= speed[*i]);
-                (sparse, if *left <= touching { 0.0 } else { *left })
-            })
-            .unzip();
-        let rest = ManyBodies::new(&kinematics.centers, rows)?.rest(load.as_slice(), &gaps);
-        rest.filter(|rest| rest.unbalanced <= missing * load.norm())
+    let fast = |row: &RigidRow| {
+        let mut sparse = kinematics.sparse_row(row);
+        sparse.iter_mut().for_each(|(i, b)| *b *= speed[*i]);
+        sparse
     };
-    match with(touching, BALANCED) {
-        Some(_) => Some(DVector::zeros(load.len())),
-        None => with(f64::INFINITY, SPRINGS).map(|rest| DVector::from_vec(rest.motion)),
+    let sparse: Vec<SparseRow> = rows.iter().map(fast).collect();
+    let with = |rows: Vec<SparseRow>, gaps: &[f64], missing: f64| {
+        let rest = ManyBodies::new(&kinematics.centers, rows)?.rest(load.as_slice(), gaps);
+        rest.filter(|rest| rest.unbalanced() <= missing * load.norm())
+    };
+    let is_normal = |j: &usize| rows[*j].friction.is_none();
+    let closed = (0..rows.len()).filter(|&j| is_normal(&j) && left[j] <= touching);
+    let closed: Vec<SparseRow> = closed.map(|j| sparse[j].clone()).collect();
+    let none = vec![0.0; closed.len()];
+    if with(closed, &none, BALANCED).is_some() {
+        return Some(DVector::zeros(load.len()));
     }
+    let forces = Forces::new(rows, |j| left[j] <= touching);
+    if forces.has_friction {
+        let cones = forces.cones(&sparse, false);
+        let none = vec![0.0; cones.len()];
+        return with(cones, &none, BALANCED).map(|_| DVector::zeros(load.len()));
+    }
+    let gaps = left
+        .iter()
+        .map(|&left| if left <= touching { 0.0 } else { left });
+    let gaps: Vec<f64> = gaps.collect();
+    with(sparse, &gaps, SPRINGS).map(|rest| DVector::from_vec(rest.motion))
 }
 
 /// How far to go along `load` within B y ≤ `left`: along what closed contacts leave of the load, until
@@ -208,7 +220,7 @@ fn fall(
     let norms: Vec<f64> = b.row_iter().map(|row| row.norm()).collect();
     for _ in 0..b.nrows() + load.len() {
         let drive = Forces::new(rows, |j| left[j] <= touching).drive(b, load);
-        if drive.norm() <= BALANCED * load.norm() {
+        if drive.norm() <= BALANCED * load.norm() || is_asked_to_stop() {
             break;
         }
         let closing = b * &drive;
@@ -232,7 +244,7 @@ fn fall(
 /// touch do so where they were above each other, however the bodies came there.
 fn without_slip(
     rows: &[RigidRow],
-    b: &DMatrix<f64>,
+    kinematics: &Kinematics,
     slip: &[f64],
     left: &[f64],
     touching: f64,
@@ -245,8 +257,9 @@ fn without_slip(
         .collect();
     let slip = DVector::from_iterator(held.len(), held.iter().map(|&i| slip[i]));
     if slip.iter().all(|slip| slip.abs() <= touching) {
-        return DVector::zeros(b.ncols());
+        return DVector::zeros(kinematics.len);
     }
+    let b = kinematics.rows(rows);
     let kept = null_space(&b.select_rows(&closed));
     if kept.is_empty() {
         return DVector::zeros(b.ncols());
@@ -257,7 +270,7 @@ fn without_slip(
         return DVector::zeros(b.ncols());
     };
     let back = kept * back;
-    let closing = b * &back;
+    let closing = &b * &back;
     let part = (0..rows.len())
         .filter(|&j| !is_closed(j) && closing[j] > ALONG * back.norm())
         .fold(1.0, |part: f64, j| part.min(left[j] / closing[j]));

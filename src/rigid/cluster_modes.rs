@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 
 use faer::Mat;
+use nalgebra::DMatrix;
 
 use super::analysis::{FixingDof, RigidRow, Scene};
 use super::energy::RigidModes;
 use super::kinematics::{Kinematics, null_space};
+use super::many_bodies::SparseRow;
 use crate::context::Context;
 
 /// How far a motion moves a condition, relative to others, that is none.
@@ -29,26 +31,35 @@ impl Scene {
         fixing_dofs: &[FixingDof],
         bodies: impl Fn(usize) -> bool,
     ) -> RigidModes {
-        let rows: Vec<_> = conditions.iter().map(|&j| self.rows[j].clone()).collect();
-        let mut b = kinematics.rows(&rows);
-        // A motion along a side moves it nowhere but by round-off.
-        for mut row in b.row_iter_mut() {
-            let round_off = ROUND_OFF * row.amax();
-            row.apply(|entry| *entry = if entry.abs() > round_off { *entry } else { 0.0 });
+        let own: Vec<usize> = (0..self.bodies.len()).filter(|&b| bodies(b)).collect();
+        let columns: Vec<usize> = own.iter().flat_map(|&b| kinematics.unknowns(b)).collect();
+        let mut place = vec![None; kinematics.len];
+        for (at, &column) in columns.iter().enumerate() {
+            place[column] = Some(at);
         }
-        let columns: Vec<usize> = (0..self.bodies.len())
-            .filter(|&body| bodies(body))
-            .flat_map(|body| kinematics.unknowns(body))
-            .collect();
-        let (mut rows, mut load) = (b.select_columns(&columns), kinematics.load(&self.bodies));
-        load = load.select_rows(&columns);
-        let pinned = kinematics.rows(
-            &fixing_dofs
-                .iter()
-                .filter_map(|fixing_dof| self.fixing_row(fixing_dof))
-                .collect::<Vec<_>>(),
-        );
-        let pinned = pinned.select_columns(&columns);
+        let against = |rows: &mut dyn Iterator<Item = RigidRow>| {
+            let sparse: Vec<SparseRow> = rows.map(|row| kinematics.sparse_row(&row)).collect();
+            let mut b = DMatrix::zeros(sparse.len(), columns.len());
+            for (j, row) in sparse.iter().enumerate() {
+                // A motion along a side moves it nowhere but by round-off.
+                let largest = row
+                    .iter()
+                    .fold(0.0, |m: f64, (_, entry)| m.max(entry.abs()));
+                for &(i, entry) in row {
+                    if let Some(at) = place[i]
+                        && entry.abs() > ROUND_OFF * largest
+                    {
+                        b[(j, at)] = entry;
+                    }
+                }
+            }
+            b
+        };
+        let mut rows = against(&mut conditions.iter().map(|&j| self.rows[j].clone()));
+        let mut load = kinematics.load(&self.bodies).select_rows(&columns);
+        let pins = fixing_dofs.iter();
+        let pins = &mut pins.filter_map(|pin| self.fixing_row(pin, &own));
+        let pinned = against(pins);
         if pinned.iter().any(|&p| p != 0.0) {
             let kept = null_space(&pinned);
             (rows, load) = (rows * &kept, kept.transpose() * load);
@@ -59,9 +70,10 @@ impl Scene {
         }
     }
 
-    /// How motions move a pin.
-    fn fixing_row(&self, fixing_dof: &FixingDof) -> Option<RigidRow> {
-        self.bodies.iter().enumerate().find_map(|(b, body)| {
+    /// How motions move a pin of one of `own` bodies.
+    fn fixing_row(&self, fixing_dof: &FixingDof, own: &[usize]) -> Option<RigidRow> {
+        own.iter().find_map(|&b| {
+            let body = &self.bodies[b];
             let mut nodes = body.candidates.iter();
             let (.., x) =
                 nodes.find(|(s, n, _)| (*s, *n) == (fixing_dof.subdomain, fixing_dof.node))?;

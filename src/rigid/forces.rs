@@ -1,10 +1,13 @@
 //! The forces that contact can give: what normals press and friction holds.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use super::analysis::RigidRow;
 use super::kinematics::{RANK_TOLERANCE, null_space};
+use super::many_bodies::SparseRow;
 use super::nonnegative::{Nearest, nearest, residual, residual_in_span};
 use crate::contact::friction::ForceBound;
 
@@ -127,6 +130,44 @@ impl Forces {
         actions
     }
 
+    /// Whether some can be given only so many times.
+    pub fn are_bounded(&self) -> bool {
+        self.generators.iter().any(|g| g.largest.is_finite())
+    }
+
+    /// The work, on motions of which `rows` hold what each condition makes, of those that can be given any number of
+    /// times; of prisms those around the circular cones instead of those within, if they are to be `wider`.
+    pub fn cones(&self, rows: &[SparseRow], wider: bool) -> Vec<SparseRow> {
+        let factor = match wider && !self.cones.is_empty() {
+            true => 1.0 / half_angle().cos(),
+            false => 1.0,
+        };
+        let unbounded = self.generators.iter().filter(|g| g.largest.is_infinite());
+        let of_generator = |generator: &Generator| {
+            let mut work: BTreeMap<usize, f64> = BTreeMap::new();
+            let normal = generator.normal.map(|j| (j, 1.0));
+            let tangential = generator.tangential.iter();
+            let tangential = tangential.map(|&(i, part)| (i, factor * part));
+            for (condition, part) in normal.into_iter().chain(tangential) {
+                for &(unknown, value) in &rows[condition] {
+                    *work.entry(unknown).or_default() += part * value;
+                }
+            }
+            work.into_iter().collect()
+        };
+        unbounded.map(of_generator).collect()
+    }
+
+    /// λ_t of all conditions where each of the [`cones`](Self::cones) is given so many times, and those are within.
+    pub fn tangential_of_cones(&self, lambda: &[f64], conditions: usize) -> DVector<f64> {
+        let mut lambda = lambda.iter();
+        let given = self.generators.iter().map(|g| match g.largest {
+            largest if largest.is_infinite() => lambda.next().copied().unwrap_or(0.0),
+            _ => 0.0,
+        });
+        self.tangential(&given.collect::<Vec<_>>(), conditions)
+    }
+
     fn largest(&self) -> Vec<f64> {
         self.generators.iter().map(|g| g.largest).collect()
     }
@@ -228,11 +269,12 @@ impl Forces {
     }
 }
 
-/// Whether sides with friction slip on each other in `motion`.
-pub(super) fn slips(rows: &[RigidRow], b: &DMatrix<f64>, motion: &DVector<f64>) -> bool {
-    let moved = b * motion;
-    let far = moved.amax();
-    rows.iter().zip(moved.iter()).any(|(row, along)| {
+/// Whether sides with friction slip on each other in a motion that has `moved` the conditions so far.
+pub(super) fn slips(rows: &[RigidRow], moved: &[f64]) -> bool {
+    let far = moved
+        .iter()
+        .fold(0.0, |far: f64, along| far.max(along.abs()));
+    rows.iter().zip(moved).any(|(row, along)| {
         row.friction.is_some_and(|friction| {
             along.abs() > SLIPS * far && moved[friction.normal].abs() < SLIPS * along.abs()
         })

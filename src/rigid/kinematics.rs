@@ -22,6 +22,8 @@ pub(super) struct Kinematics {
     first: Vec<usize>,
     /// The center of the body of each unknown (m).
     pub centers: Vec<[f64; 3]>,
+    /// The center of each body (m).
+    of_bodies: Vec<[f64; 3]>,
     /// Number of unknowns.
     pub len: usize,
 }
@@ -60,11 +62,21 @@ impl Kinematics {
                 null_space(&DMatrix::from_fn(rows.len(), modes, |i, j| rows[i][j]))
             })
             .collect();
+        Self::of_bases(dim, bases, bodies.iter().map(|body| body.frame.center))
+    }
+
+    /// Those of bodies about these `centers` that have these bases of motions.
+    fn of_bases(
+        dim: usize,
+        bases: Vec<DMatrix<f64>>,
+        of_bodies: impl Iterator<Item = [f64; 3]>,
+    ) -> Self {
         let mut first = Vec::with_capacity(bases.len());
         let mut centers = Vec::new();
-        for (body, basis) in bodies.iter().zip(&bases) {
+        let of_bodies: Vec<[f64; 3]> = of_bodies.collect();
+        for (center, basis) in of_bodies.iter().zip(&bases) {
             first.push(centers.len());
-            centers.extend(std::iter::repeat_n(body.frame.center, basis.ncols()));
+            centers.extend(std::iter::repeat_n(*center, basis.ncols()));
         }
         Self {
             dim,
@@ -72,6 +84,7 @@ impl Kinematics {
             first,
             len: centers.len(),
             centers,
+            of_bodies,
         }
     }
 
@@ -110,6 +123,27 @@ impl Kinematics {
             same
         });
         sparse
+    }
+
+    /// Of every body the motions that conditions `rows` touch, and those that none does, which are free.
+    pub fn touched(&self, rows: &[RigidRow]) -> (Self, Vec<FreeMotion>) {
+        let mut of_body: Vec<Vec<Vec<f64>>> = vec![Vec::new(); self.bodies()];
+        for (body, action) in rows.iter().flat_map(|row| &row.bodies) {
+            let along = self.bases[*body].tr_mul(&DVector::from_column_slice(action));
+            of_body[*body].push(along.iter().copied().collect());
+        }
+        let mut free = Vec::new();
+        let mut bases = Vec::with_capacity(self.bodies());
+        for (body, (basis, rows)) in self.bases.iter().zip(&of_body).enumerate() {
+            let rows = DMatrix::from_fn(rows.len(), basis.ncols(), |i, k| rows[i][k]);
+            let untouched = null_space(&rows);
+            bases.push(basis * null_space(&untouched.transpose()));
+            free.extend((basis * untouched).column_iter().map(|z| FreeMotion {
+                bodies: vec![(body, z.iter().copied().collect())],
+            }));
+        }
+        let centers = self.of_bodies.iter().copied();
+        (Self::of_bases(self.dim, bases, centers), free)
     }
 
     /// The load against them.

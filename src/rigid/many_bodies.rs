@@ -7,20 +7,23 @@
 
 use faer::Par;
 
+use crate::comm::is_asked_to_stop;
 use crate::schur::factor::BoundaryLastCholesky;
 use crate::schur::ordering::nested_dissection;
 use crate::schur::pattern::{Cliques, LowerPattern, SparseSymmetric};
-use crate::vector::{dot, largest};
+use crate::vector::{axpy, dot, largest};
 
 /// Motions from which on there are many.
 pub(super) const MANY: usize = 100;
-/// ε, where load and gaps are about 1.
+/// ε by which bodies come to rest, where load and gaps are about 1.
 const SPRING: f64 = 1e-9;
 /// What may be left of load and gaps, and the products of gaps and forces: round-off of the load grows as
 /// these vanish.
 const ENOUGH: [f64; 3] = [1e-10, 1e-12, 1e-13];
 /// Most steps; 6 to 20 are usual.
 const MOST_STEPS: usize = 60;
+/// How often a change is corrected by what it leaves of the load: high towers are badly conditioned.
+const REFINEMENTS: usize = 2;
 /// How near to the end of its positive part a variable may go in a step.
 const TO_THE_BOUNDARY: f64 = 0.995;
 /// Smallest eigenvalue of BᵀB, relative to the largest, where conditions certainly hold all motions.
@@ -47,8 +50,17 @@ pub(super) struct ManyBodies {
 pub(super) struct Rest {
     /// y.
     pub motion: Vec<f64>,
+    /// f − Bᵀ λ.
+    pub left: Vec<f64>,
+    /// λ.
+    pub forces: Vec<f64>,
+}
+
+impl Rest {
     /// ‖f − Bᵀ λ‖.
-    pub unbalanced: f64,
+    pub fn unbalanced(&self) -> f64 {
+        dot(&self.left, &self.left).sqrt()
+    }
 }
 
 impl ManyBodies {
@@ -97,8 +109,19 @@ impl ManyBodies {
     }
 
     /// How the bodies come to rest under `load` where the conditions have these `gaps`; nothing if that wasn't found.
-    /// By Mehrotra's predictor and corrector.
     pub fn rest(&self, load: &[f64], gaps: &[f64]) -> Option<Rest> {
+        self.rest_on(SPRING, load, gaps)
+    }
+
+    /// What is left of a `load` by the forces λ ≥ 0 that come nearest to balancing it; nothing if that wasn't found.
+    ///
+    /// It is the part of the load along the motions that the conditions allow, as which ε = 1 makes y (Moreau).
+    pub fn residual(&self, load: &[f64]) -> Option<Rest> {
+        self.rest_on(1.0, load, &vec![0.0; self.len()])
+    }
+
+    /// How the bodies come to rest where ε is `spring`, by Mehrotra's predictor and corrector.
+    fn rest_on(&self, spring: f64, load: &[f64], gaps: &[f64]) -> Option<Rest> {
         let n = load.len();
         let force = dot(load, load).sqrt() / (n as f64).sqrt();
         let length = match largest(gaps) {
@@ -108,8 +131,9 @@ impl ManyBodies {
         let mut motion = vec![0.0; n];
         if force == 0.0 {
             return Some(Rest {
+                left: motion.clone(),
+                forces: vec![0.0; self.len()],
                 motion,
-                unbalanced: 0.0,
             });
         }
         let mut f = vec![0.0; n];
@@ -123,7 +147,10 @@ impl ManyBodies {
             lambda: vec![1.0; g.len()],
         };
         for _ in 0..MOST_STEPS {
-            let residual = point.residual(self, &f, &g);
+            if is_asked_to_stop() {
+                return None;
+            }
+            let residual = point.residual(self, spring, &f, &g);
             let complementarity = point.complementarity();
             let size = [
                 largest(&residual.load),
@@ -136,20 +163,21 @@ impl ManyBodies {
                 .all(|(&size, enough)| size <= enough)
             {
                 let of_forces = self.actions(&point.lambda);
-                let missing = f.iter().zip(&of_forces).map(|(f, forces)| f - forces);
+                let missing = |at: usize| force * (f[at] - of_forces[at]);
                 for (motion, &from) in motion.iter_mut().zip(&self.place) {
                     *motion = length * point.y[from];
                 }
                 return Some(Rest {
                     motion,
-                    unbalanced: force * missing.map(|r| r * r).sum::<f64>().sqrt(),
+                    left: self.place.iter().map(|&at| missing(at)).collect(),
+                    forces: point.lambda.iter().map(|lambda| force * lambda).collect(),
                 });
             }
-            let matrix = self.products(|j| point.lambda[j] / point.left[j], SPRING);
+            let matrix = self.products(|j| point.lambda[j] / point.left[j], spring);
             let matrix = factorized(&matrix)?;
             let products = point.left.iter().zip(&point.lambda).map(|(s, l)| -s * l);
             let aim: Vec<f64> = products.collect();
-            let predicted = point.change(self, &matrix, &residual, &aim);
+            let predicted = point.change(self, spring, &matrix, &residual, &aim);
             let mut ahead = point.clone();
             ahead.go(&predicted, point.longest(&predicted));
             let centring = (ahead.complementarity() / complementarity).powi(3) * complementarity;
@@ -157,7 +185,7 @@ impl ManyBodies {
             let aim: Vec<f64> = (aim.iter().zip(of_second_order))
                 .map(|(aim, (s, l))| aim + centring - s * l)
                 .collect();
-            let change = point.change(self, &matrix, &residual, &aim);
+            let change = point.change(self, spring, &matrix, &residual, &aim);
             point.go(&change, TO_THE_BOUNDARY * point.longest(&change));
         }
         None
@@ -188,9 +216,13 @@ impl ManyBodies {
 
     /// B y.
     fn jumps<'a>(&'a self, y: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let of_row = |row: &SparseRow| row.iter().map(|&(i, b)| b * y[i]).sum();
-        self.rows.iter().map(of_row)
+        self.rows.iter().map(|row| jump(row, y))
     }
+}
+
+/// A row of B times y.
+pub(super) fn jump(row: &SparseRow, y: &[f64]) -> f64 {
+    row.iter().map(|&(i, b)| b * y[i]).sum()
 }
 
 /// The unknowns that rows share.
@@ -220,12 +252,12 @@ struct Residual {
 }
 
 impl Point {
-    fn residual(&self, bodies: &ManyBodies, f: &[f64], g: &[f64]) -> Residual {
+    fn residual(&self, bodies: &ManyBodies, spring: f64, f: &[f64], g: &[f64]) -> Residual {
         let forces = bodies.actions(&self.lambda);
         let terms = f.iter().zip(&self.y).zip(&forces);
         let gaps = g.iter().zip(bodies.jumps(&self.y)).zip(&self.left);
         Residual {
-            load: terms.map(|((f, y), r)| f - SPRING * y - r).collect(),
+            load: terms.map(|((f, y), r)| f - spring * y - r).collect(),
             gaps: gaps.map(|((g, jump), s)| g - jump - s).collect(),
         }
     }
@@ -240,6 +272,7 @@ impl Point {
     fn change(
         &self,
         bodies: &ManyBodies,
+        spring: f64,
         matrix: &BoundaryLastCholesky,
         residual: &Residual,
         aim: &[f64],
@@ -258,11 +291,24 @@ impl Point {
             .collect();
         let lambda = aim.iter().zip(&left).zip(both());
         let lambda = lambda.map(|((aim, ds), (s, l))| (aim - l * ds) / s);
-        Self {
+        let mut change = Self {
             lambda: lambda.collect(),
             y,
             left,
+        };
+        for _ in 0..REFINEMENTS {
+            let forces = bodies.actions(&change.lambda);
+            let terms = residual.load.iter().zip(&change.y).zip(&forces);
+            let missing = terms.map(|((load, y), force)| load - spring * y - force);
+            let mut missing: Vec<f64> = missing.collect();
+            matrix.solve(&mut missing);
+            for (j, jump) in bodies.jumps(&missing).enumerate() {
+                change.left[j] -= jump;
+                change.lambda[j] += self.lambda[j] / self.left[j] * jump;
+            }
+            axpy(1.0, &missing, &mut change.y);
         }
+        change
     }
 
     /// The part of a change, 1 at most, at which something ceases to be positive.

@@ -5,6 +5,7 @@ use faer::Mat;
 use nalgebra::{DMatrix, DVector};
 
 use super::columns::Columns;
+use crate::comm::is_asked_to_stop;
 
 /// Slope along a column, relative to b, that is round-off of r.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
@@ -53,7 +54,8 @@ pub fn nearest(a: &DMatrix<f64>, b: &DVector<f64>, largest: &[f64]) -> Nearest {
         let Some((steepest, entering)) = best else {
             break;
         };
-        if steepest <= ROUND_OFF * b.norm() {
+        // Whoever is asked to stop asks for no answer.
+        if steepest <= ROUND_OFF * b.norm() || is_asked_to_stop() {
             break;
         }
         match point.entered(a, largest, entering) {

@@ -50,13 +50,14 @@ impl MotionProducts {
     /// motion in these; none where the body takes no part.
     pub fn add_body(&mut self, shares: &[&[f64]], of_body: &Self) {
         let (n, modes) = (shares.len(), of_body.field.len());
-        for (i, z_i) in shares.iter().enumerate() {
+        let taking_part = || (shares.iter().enumerate()).filter(|(_, z)| !z.is_empty());
+        for (i, z_i) in taking_part() {
             self.field[i] += dot(z_i, &of_body.field);
             let mut row = vec![0.0; modes];
             for (z, of_mode) in z_i.iter().zip(of_body.gram.chunks(modes)) {
                 axpy(*z, of_mode, &mut row);
             }
-            for (j, z_j) in shares.iter().enumerate() {
+            for (j, z_j) in taking_part() {
                 self.gram[i * n + j] += dot(&row, z_j);
             }
         }
@@ -65,11 +66,45 @@ impl MotionProducts {
     /// How much of each motion the field has.
     pub fn coefficients(&self) -> Vec<f64> {
         let n = self.field.len();
-        let gram = DMatrix::from_row_slice(n, n, &self.gram);
-        let rhs = DVector::from_column_slice(&self.field);
-        gram.svd(true, true)
-            .solve(&rhs, 1e-14)
-            .map_or_else(|_| vec![0.0; n], |x| x.iter().copied().collect())
+        let mut coefficients = vec![0.0; n];
+        for together in self.sharing_bodies() {
+            let size = together.len();
+            let gram = |i: usize, j: usize| self.gram[together[i] * n + together[j]];
+            let gram = DMatrix::from_fn(size, size, gram);
+            let rhs = DVector::from_fn(size, |i, _| self.field[together[i]]);
+            if let Ok(found) = gram.svd(true, true).solve(&rhs, 1e-14) {
+                for (&i, found) in together.iter().zip(found.iter()) {
+                    coefficients[i] = *found;
+                }
+            }
+        }
+        coefficients
+    }
+
+    /// The motions whose products with each other aren't nothing, directly or by others.
+    fn sharing_bodies(&self) -> Vec<Vec<usize>> {
+        let n = self.field.len();
+        let mut is_taken = vec![false; n];
+        let mut all = Vec::new();
+        for first in 0..n {
+            if std::mem::replace(&mut is_taken[first], true) {
+                continue;
+            }
+            let mut together = vec![first];
+            let mut next = 0;
+            while next < together.len() {
+                let row = &self.gram[together[next] * n..][..n];
+                for (j, product) in row.iter().enumerate() {
+                    if *product != 0.0 && !std::mem::replace(&mut is_taken[j], true) {
+                        together.push(j);
+                    }
+                }
+                next += 1;
+            }
+            together.sort_unstable();
+            all.push(together);
+        }
+        all
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::analysis::Scene;
+use super::analysis::{RigidRow, Scene};
 use super::forces::Friction;
 use super::free_motion::FreeMotion;
 use super::kinematics::{Kinematics, null_space};
@@ -47,12 +47,20 @@ impl Scene {
         if kinematics.len == 0 {
             return ReleasedModes::default();
         }
-        if free.is_empty() && kinematics.len >= MANY {
+        if kinematics.len >= MANY {
+            // Free anyway are motions of single bodies at least; were more released, they would be more.
             let held = (0..conditions.len()).filter(|&j| self.holds(j, conditions));
-            let rows = held.map(|j| kinematics.sparse_row(&self.rows[j]));
-            let bodies = ManyBodies::new(&kinematics.centers, rows.collect());
-            if bodies.is_some_and(|bodies| bodies.hold_all()) {
-                return ReleasedModes::default();
+            let held: Vec<RigidRow> = held.map(|j| self.rows[j].clone()).collect();
+            let (touched, alone) = kinematics.touched(&held);
+            let rows = held.iter().map(|row| touched.sparse_row(row)).collect();
+            let hold_all =
+                || ManyBodies::new(&touched.centers, rows).is_some_and(|bodies| bodies.hold_all());
+            if alone.len() == free.len() && (touched.len == 0 || hold_all()) {
+                return ReleasedModes {
+                    motions: free.to_vec(),
+                    rows: DMatrix::zeros(0, free.len()),
+                    ..ReleasedModes::default()
+                };
             }
         }
         let b = kinematics.rows(&self.rows);

@@ -1,7 +1,8 @@
 //! Scenes of a few blocks, judged by hand.
 
 use super::*;
-use crate::rigid::squares::{body, scene};
+use crate::rigid::closing_motion::closing_motions;
+use crate::rigid::squares::{body, coulomb, scene};
 
 const DOWN: [f64; 3] = [0.0, -1.0, 0.0];
 
@@ -110,6 +111,70 @@ fn rough_joints_hold_a_tower_however_high_and_in_any_unit() {
     for (slope, unit) in [(1e-2, 1e3), (1e-5, 1.0), (1e-7, 1e-3)] {
         stands(50, slope, unit);
     }
+}
+
+/// Cubes on top of each other, the lowest on the ground, with friction in their joints where there is a coefficient;
+/// the uppermost is pushed aside.
+fn cubes(count: usize, friction: Option<f64>, push: f64) -> Scene {
+    let state = |i: usize| {
+        let (z, push) = (i as f64, if i + 1 == count { push } else { 0.0 });
+        let load = [push, 0.0, -1.0, 0.0, 0.0, 0.0];
+        body([0.0, 0.0, z], [1.0, 1.0, z + 1.0], &load)
+    };
+    let bodies: Vec<BodyState> = (0..count).map(state).collect();
+    let mut rows = Vec::new();
+    for i in 0..count {
+        let row = |x: [f64; 2], along: [f64; 3]| {
+            let at = [x[0], x[1], i as f64];
+            let mut row = bodies[i].row(i, at, along);
+            if i > 0 {
+                let below = bodies[i - 1].row(i - 1, at, along.map(|c| -c));
+                row.bodies.extend(below.bodies);
+            }
+            row
+        };
+        for x in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]] {
+            let normal = rows.len();
+            rows.push(row(x, [0.0, 0.0, -1.0]));
+            for along in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] {
+                rows.extend(friction.map(|mu| row(x, along).rough(normal, coulomb(mu))));
+            }
+        }
+    }
+    scene(3, bodies, rows)
+}
+
+/// Cubes of a tower that is analysed by sparse matrices.
+const HIGH: usize = 100;
+
+#[test]
+fn every_cube_of_a_smooth_tower_slides_and_turns_by_itself() {
+    let tower = cubes(HIGH, None, 0.0);
+    let motions = tower.analyse().unwrap();
+    assert_eq!(motions.free.len(), 3 * HIGH);
+    assert!(motions.free.iter().all(|motion| motion.bodies.len() == 1));
+    assert_eq!(motions.fixing_dofs.len(), 3 * HIGH);
+    let closing = closing_motions(3, &tower.bodies, &tower.rows, &[]);
+    assert!(closing.iter().flatten().all(|z| *z == 0.0));
+    let pushed = cubes(HIGH, None, 0.01).analyse().unwrap_err().message;
+    let last = HIGH - 1;
+    let expected =
+        format!("body 'brick {last}' can move freely under its load: translation along (1.0000");
+    assert!(pushed.starts_with(&expected), "{pushed}");
+}
+
+#[test]
+fn friction_holds_the_uppermost_cube_of_a_tower_up_to_its_coefficient() {
+    let stands = |count, push| {
+        let tower = cubes(count, Some(0.5), push);
+        assert_eq!(tower.analyse(), Ok(RigidMotions::default()), "{count}");
+        let closing = closing_motions(3, &tower.bodies, &tower.rows, &[]);
+        assert!(closing.iter().flatten().all(|z| *z == 0.0), "{count}");
+    };
+    stands(12, 0.4);
+    stands(HIGH, 0.0);
+    let slides = cubes(12, Some(0.5), 0.7).analyse().unwrap_err().message;
+    assert!(slides.starts_with("body 'brick 11' slides"), "{slides}");
 }
 
 /// On two slopes of 1e-5 and 2e-5 below its middle: 3e-10 of the load are more than they hold, and less
