@@ -133,10 +133,15 @@ fn agree(first: &Solution, second: &Solution, place: Place, old: &BTreeMap<i64, 
         let expected = place.turned([x, y]).map(|u| place.factor * u);
         (0..2).for_each(|k| close(u[k], expected[k], slack * size));
     }
-    let by_tag: BTreeMap<i64, &ContactPoint> = first.points().map(|p| (p.tags[0], p)).collect();
+    // The node that has the condition, on either side.
+    let named = |point: &ContactPoint| match point.tags {
+        [-1, b] => b,
+        [a, _] => a,
+    };
+    let by_tag: BTreeMap<i64, &ContactPoint> = first.points().map(|p| (named(p), p)).collect();
     assert_eq!(by_tag.len(), second.points().count());
     for point in second.points() {
-        let other = by_tag[&old[&point.tags[0]]];
+        let other = by_tag[&old[&named(point)]];
         let force = place.factor * other.force;
         close(point.force, force, 10.0 * slack * second.largest_force());
         close(point.gap, place.factor * other.gap, slack * size);
