@@ -22,6 +22,10 @@ const SLOWER: f64 = 0.9;
 const PATIENCE: usize = 3;
 /// What resists a motion relative to springs, that is round-off: nothing does.
 const NO_RESISTANCE: f64 = 1e-10;
+/// Work of loads along a motion that friction doesn't take, relative to the terms that it is a sum of, that is no round-off.
+const SURPLUS: f64 = 1e-9;
+/// Part of the fastest of jumps by which others change that stay as they are.
+const STAYS_OPEN: f64 = 1e-6;
 /// Most changes of dashpots.
 const CHANGES: usize = 24;
 
@@ -73,7 +77,7 @@ impl Discs<'_> {
             let way = largest(&ways);
             if dashpots <= weakest && way > SLOWER * last {
                 sliding += 1;
-                if sliding >= PATIENCE && self.resists(&ways) <= NO_RESISTANCE {
+                if sliding >= PATIENCE && self.slides_on(&found, &ways) {
                     return Rest::Slides;
                 }
             }
@@ -93,6 +97,34 @@ impl Discs<'_> {
             }
         }
         Rest::Unknown
+    }
+
+    /// Whether things slide on and on where jumps go these ways: the bodies don't resist, nothing that is open closes on
+    /// the way, and loads do more work than all contacts take, that press as they do there and hold as much as they can.
+    fn slides_on(&self, found: &Found, ways: &[f64]) -> bool {
+        let Found { place, state, .. } = found;
+        if self.resists(ways) > NO_RESISTANCE {
+            return false;
+        }
+        let along = |row: &[(usize, f64)]| row.iter().map(|&(i, c)| c * ways[i]).sum::<f64>();
+        let rows = self.contact.rows.iter().map(along);
+        let all: Vec<f64> = ways.iter().copied().chain(rows).collect();
+        let far = largest(ways);
+        let [mut taken, mut closes] = [0.0; 2];
+        for i in (0..all.len()).filter(|&i| !self.is_tangential[i]) {
+            match state.closed[i] {
+                true => taken += (place.forces[i] * all[i]).abs(),
+                false => closes = f64::max(closes, all[i]),
+            }
+        }
+        for point in &self.points {
+            let [along, across] = point.tangents.map(|i| i.map_or(0.0, |i| all[i]));
+            taken += self.bound(point, place, &state.closed) * along.hypot(across);
+        }
+        let work = dot(self.contact.c, ways);
+        let terms = self.contact.c.iter().zip(ways);
+        let terms: f64 = terms.map(|(c, way)| (c * way).abs()).sum();
+        closes <= STAYS_OPEN * far && work - taken > SURPLUS * (terms + taken)
     }
 
     /// How much the bodies resist jumps that grow so, relative to springs as stiff as they are.

@@ -211,3 +211,16 @@ fn what_slides_on_and_on_is_seen() {
         );
     }
 }
+
+/// The same with a wall on its way, however far: there is an equilibrium.
+#[test]
+fn what_slides_to_a_wall_does_not_slide_on_and_on() {
+    let mut points = Points::in_space(1, 3, COULOMB);
+    points.set_stiffness(3, |i, j| f64::from(u8::from(i == 0 && j == 0)));
+    points.diagonal = vec![1.0; 3];
+    points.rows.push(vec![(1, 1.0)]);
+    points.bounds = vec![0.0, 0.0, 0.0, 1e9];
+    points.c = vec![1.0, 0.6 * 0.31, 0.8 * 0.31];
+    let [stuck, open] = [Status::Closed, Status::Open];
+    assert!(!points.solve(&mut [stuck, stuck, stuck, open]).slides);
+}
