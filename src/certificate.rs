@@ -30,6 +30,10 @@ pub struct Certificate {
     /// without load, or displacements drive it.
     #[serde(skip)]
     pub load_share: f64,
+    /// The largest displacement over what may move the scene without load: prescribed displacements, gaps, closing
+    /// motions and earlier slips. Forces that are round-off of farther ways are no round-off of a scene without load.
+    #[serde(skip)]
+    pub farther: f64,
     /// Largest penetration over the largest displacement.
     pub penetration: f64,
     /// Largest tension in a contact over the load scale.
@@ -48,6 +52,22 @@ pub struct Certificate {
 }
 
 impl Certificate {
+    /// Whether every check is a number.
+    pub fn is_a_number(&self) -> bool {
+        let checks = [
+            self.equilibrium,
+            self.equilibrium_of_load,
+            self.penetration,
+            self.tension,
+            self.complementarity,
+            self.friction,
+            self.force_balance,
+            self.moment_balance,
+            self.interface_jump,
+        ];
+        !checks.into_iter().any(f64::is_nan)
+    }
+
     /// For every check the worse of two.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
@@ -57,6 +77,7 @@ impl Certificate {
             equilibrium: worse(self.equilibrium, other.equilibrium),
             equilibrium_of_load: worse(self.equilibrium_of_load, other.equilibrium_of_load),
             load_share: worse(self.load_share, other.load_share),
+            farther: worse(self.farther, other.farther),
             penetration: worse(self.penetration, other.penetration),
             tension: worse(self.tension, other.tension),
             complementarity: worse(self.complementarity, other.complementarity),
@@ -107,6 +128,7 @@ pub fn certificate(
         equilibrium: ratio(most.residual, most.scale),
         equilibrium_of_load: ratio(most.residual, most.external),
         load_share: ratio(most.load, most.external),
+        farther: ratio(most.displacement, most.driven),
         penetration: ratio(most.penetration, most.displacement),
         tension: ratio(most.tension, force_scale),
         complementarity: ratio(most.complementarity, most.contact_force * most.displacement),

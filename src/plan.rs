@@ -73,6 +73,16 @@ impl Plan {
         }
     }
 
+    /// What takes over where newton doesn't converge with a `merging`: the direct solver from the iterative one, the dense
+    /// problem of all conditions from frozen active sets.
+    pub fn more_robust(catalog: &Catalog, merging: Merging) -> Option<Merging> {
+        match merging {
+            Merging::Clusters => Some(Self::cheapest(catalog)),
+            Merging::Frozen => Some(Merging::All),
+            _ => None,
+        }
+    }
+
     /// Estimated time of what is done at node v of the hierarchy (flops).
     pub fn time(&self, v: usize, dim: usize) -> f64 {
         self.tree.time(v, dim, self.merging.is_frozen())

@@ -168,6 +168,9 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
 
 /// Why the interface problem was solved as it was.
 fn interface_choice(totals: &Totals<'_>, settings: &Settings) -> String {
+    if let Some(why) = totals.took_over() {
+        return why.into();
+    }
     if settings.interface == Some(totals.interface_solver()) {
         return "asked for".into();
     }
@@ -189,7 +192,8 @@ fn interface_choice(totals: &Totals<'_>, settings: &Settings) -> String {
 /// What may help where the iterative solver didn't converge.
 fn more_robust(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
     let is_iterative = totals.interface_solver() == InterfaceMethod::Iterative;
-    if !is_iterative || totals.status() == Status::Converged {
+    let is_direct = !is_iterative || totals.took_over().is_some();
+    if is_direct || totals.status() == Status::Converged {
         return None;
     }
     if settings.interface.is_none() {
@@ -203,7 +207,10 @@ fn more_robust(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
 /// Why the interface problem was solved directly where the iterative solver was asked for.
 fn solved_directly(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
     let is_asked_for = settings.interface == Some(InterfaceMethod::Iterative);
-    if !is_asked_for || totals.interface_solver() == InterfaceMethod::Iterative {
+    if !is_asked_for
+        || totals.took_over().is_some()
+        || totals.interface_solver() == InterfaceMethod::Iterative
+    {
         return None;
     }
     let why = if settings.method != Method::Newton {

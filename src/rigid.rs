@@ -21,6 +21,7 @@ mod description;
 pub mod energy;
 pub mod forces;
 pub mod free_motion;
+mod friction_limit;
 pub mod infeasible_nodes;
 mod kinematics;
 mod many_bodies;

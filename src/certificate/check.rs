@@ -46,6 +46,8 @@ pub struct Most {
     pub not_opposed: f64,
     /// Displacement (m).
     pub displacement: f64,
+    /// Prescribed displacement, gap, slip before, or closing motion (m).
+    pub driven: f64,
     /// Jump of the displacement across Γ (m).
     pub jump: f64,
     /// Force that the bodies' closing motions would cause if it weren't rigid (N/m).
@@ -68,6 +70,7 @@ impl Most {
             astray: larger(self.astray, other.astray),
             not_opposed: larger(self.not_opposed, other.not_opposed),
             displacement: larger(self.displacement, other.displacement),
+            driven: larger(self.driven, other.driven),
             jump: larger(self.jump, other.jump),
             rest: larger(self.rest, other.rest),
         };
@@ -131,6 +134,8 @@ impl BlockCheck {
         let (mut check, mut shared) = (Self::default(), SharedCheck::default());
         check.most.displacement = largest(u);
         check.most.load = balance.largest_load;
+        let prescribed = loads.supports.iter().map(|support| support.value);
+        check.most.driven = prescribed.fold(0.0, larger);
         check.equilibrium(block, loads, balance, &mut shared);
         for &(node, id) in &block.interface {
             shared.nodes.push(id);

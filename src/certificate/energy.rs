@@ -107,6 +107,18 @@ impl BlockEnergy {
 }
 
 impl EnergyBalance {
+    /// Whether all of it are finite numbers.
+    pub fn is_finite(&self) -> bool {
+        let works = [
+            self.work_of_loads,
+            self.work_of_supports,
+            self.elastic_energy,
+            self.work_of_contacts,
+            self.imbalance,
+        ];
+        works.into_iter().all(f64::is_finite)
+    }
+
     /// That of all blocks, in their order.
     pub fn new(blocks: &[BlockWork]) -> Self {
         let sum = |k: usize| blocks.iter().map(|work| work[k]).sum::<f64>();

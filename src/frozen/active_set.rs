@@ -45,6 +45,23 @@ struct Faults {
     largest: f64,
 }
 
+/// What is open in an active set, and the solution with it.
+pub(super) struct Settled {
+    pub open: BTreeMap<usize, Vec<bool>>,
+    pub solution: FrozenSolution,
+    /// How many conditions are wrong; none where it is found.
+    pub wrong: usize,
+}
+
+/// What an active set is found for: `loads` on the boundaries of the clusters, the jumps at which conditions are closed,
+/// and which conditions stay closed whatever their forces, of every contact group of this rank.
+#[derive(Clone, Copy)]
+pub(super) struct Conditions<'a> {
+    pub loads: &'a BTreeMap<usize, Vec<f64>>,
+    pub bounds: &'a BTreeMap<usize, Vec<f64>>,
+    pub stay: &'a BTreeMap<usize, Vec<bool>>,
+}
+
 /// Finds the active set under `loads` on the boundaries of the clusters, within the `limits` of every contact group
 /// of this rank, from the bilateral problem. Collective.
 ///
@@ -58,24 +75,80 @@ pub fn solve(
     max_steps: Option<usize>,
     observer: &mut dyn FnMut(&SweepRecord),
 ) -> Result<FrozenContact, Failure> {
-    let began = Instant::now();
-    let mut open: BTreeMap<usize, Vec<bool>> = (limits.iter())
-        .map(|(&g, limits)| (g, vec![false; limits.bounds.len()]))
-        .collect();
     let bounds: BTreeMap<usize, Vec<f64>> = (limits.iter())
         .map(|(&g, limits)| (g, limits.bounds.clone()))
         .collect();
-    let mut outcome = SweepOutcome {
-        ..SweepOutcome::before(Vec::new())
+    let of_set = Conditions {
+        loads,
+        bounds: &bounds,
+        stay: &BTreeMap::new(),
     };
+    let mut outcome = SweepOutcome::before(Vec::new());
+    let most = max_steps.unwrap_or(MAX_STEPS);
+    let mut settled = settle(context, fronts, of_set, most, &mut outcome, observer)?;
+    let sweep = outcome.records.len() - 1;
+    outcome.status = match settled.wrong {
+        _ if !settled.solution.is_finite(context.comm) => not_finite(sweep),
+        0 => SweepStatus::Converged,
+        n => SweepStatus::NotConverged(format!(
+            "newton stopped after {sweep} sweeps: {n} conditions aren't settled"
+        )),
+    };
+    settled.solution.cut();
+    end(&mut outcome);
+    let Settled { open, solution, .. } = settled;
+    let conditions = limits.iter().map(|(g, limits)| {
+        let forces = solution.forces[g]
+            .iter()
+            .map(|f| f.max(0.0))
+            .collect::<Vec<_>>();
+        let both = limits
+            .forces(&forces)
+            .into_iter()
+            .zip(limits.closed(open[g].iter().map(|open| !open)));
+        (*g, both.collect())
+    });
+    Ok(FrozenContact {
+        conditions: conditions.collect(),
+        boundaries: solution.boundaries,
+        outcome,
+    })
+}
+
+/// What is said where a linear problem has no finite solution.
+pub(super) fn not_finite(sweep: usize) -> SweepStatus {
+    SweepStatus::NotConverged(format!(
+        "newton stopped after {sweep} sweeps: with the contacts that are closed then, forces and displacements aren't \
+         finite"
+    ))
+}
+
+/// Finds the active set of these conditions, from the bilateral problem, or the one after `most` steps. Collective.
+///
+/// # Errors
+/// Some part of the scene moves freely, or a signal has asked the run to stop.
+pub(super) fn settle(
+    context: &Context<'_>,
+    fronts: &mut FrozenFronts,
+    of_set: Conditions<'_>,
+    most: usize,
+    outcome: &mut SweepOutcome,
+    observer: &mut dyn FnMut(&SweepRecord),
+) -> Result<Settled, Failure> {
+    let began = Instant::now();
+    let bounds = of_set.bounds;
+    let mut open: BTreeMap<usize, Vec<bool>> = (bounds.iter())
+        .map(|(&g, bounds)| (g, vec![false; bounds.len()]))
+        .collect();
     let (mut exchange, mut descent) = (Exchange::default(), Descent::default());
     let (mut changed, mut is_released) = (None, false);
     let (mut last, mut wrong_by) = (None, 1.0_f64);
-    let of_set = ClusterLoads {
-        clusters: loads,
-        prescribed: &bounds,
+    let loads = ClusterLoads {
+        clusters: of_set.loads,
+        prescribed: bounds,
         forces: &BTreeMap::new(),
     };
+    let first = outcome.records.len();
     loop {
         fronts.freeze(context, &open)?;
         let accurate = |fronts: &mut FrozenFronts, tolerance, start: Option<&FrozenSolution>| {
@@ -83,10 +156,10 @@ pub fn solve(
                 tolerance,
                 start: start.map(|start| &start.tops),
             };
-            let mut solution = fronts.solve(context, &open, of_set, accuracy)?;
+            let mut solution = fronts.solve(context, &open, loads, accuracy)?;
             solution.iterations += start.map_or(0, |start| start.iterations);
             let least = ROUND_OFF.max(tolerance);
-            let faults = Faults::of(context, &solution, &bounds, &open, least);
+            let faults = Faults::of(context, &solution, of_set, &open, least);
             Ok::<_, Failure>((solution, faults))
         };
         // No more accurate than the active set, until that seems to be right.
@@ -119,30 +192,12 @@ pub fn solve(
             solves.coarse_dofs = coarse_dofs;
         }
         observer(&record);
-        let gave_up = sweep >= max_steps.unwrap_or(MAX_STEPS);
+        let gave_up = sweep - first >= most || !solution.is_finite(context.comm);
         if faults.count == 0 || gave_up {
-            outcome.status = match faults.count {
-                0 => SweepStatus::Converged,
-                n => SweepStatus::NotConverged(format!(
-                    "newton stopped after {sweep} sweeps: {n} conditions aren't settled"
-                )),
-            };
-            end(&mut outcome);
-            let conditions = limits.iter().map(|(g, limits)| {
-                let forces = solution.forces[g]
-                    .iter()
-                    .map(|f| f.max(0.0))
-                    .collect::<Vec<_>>();
-                let both = limits
-                    .forces(&forces)
-                    .into_iter()
-                    .zip(limits.closed(open[g].iter().map(|open| !open)));
-                (*g, both.collect())
-            });
-            return Ok(FrozenContact {
-                conditions: conditions.collect(),
-                boundaries: solution.boundaries,
-                outcome,
+            return Ok(Settled {
+                open,
+                solution,
+                wrong: faults.count,
             });
         }
         go_on(context, sweep)?;
@@ -156,7 +211,7 @@ pub fn solve(
                 }
                 faults.count
             }
-            false => descent.exchange(context, &faults.wrong, &bounds, &solution.jumps, &mut open),
+            false => descent.exchange(context, &faults.wrong, bounds, &solution.jumps, &mut open),
         });
         last = Some(FrozenSolution {
             iterations: 0,
@@ -198,11 +253,12 @@ impl Faults {
     fn of(
         context: &Context<'_>,
         solution: &FrozenSolution,
-        bounds: &BTreeMap<usize, Vec<f64>>,
+        of_set: Conditions<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
         least: f64,
     ) -> Self {
         let Context { comm, plan, .. } = *context;
+        let Conditions { bounds, stay, .. } = of_set;
         let largest = |all: &BTreeMap<usize, Vec<f64>>| {
             let all = all.values().flatten().filter(|x| x.is_finite());
             all.fold(0.0, |m: f64, x| m.max(x.abs()))
@@ -219,7 +275,8 @@ impl Faults {
         let mut faults = Self::default();
         let of_group = |g: usize| {
             let (mut wrong, mut largest, mut active) = (Vec::new(), 0.0_f64, 0);
-            for (j, &is_open) in open[&g].iter().enumerate() {
+            let stays = |j: usize| stay.get(&g).is_some_and(|stay| stay[j]);
+            for (j, &is_open) in open[&g].iter().enumerate().filter(|&(j, _)| !stays(j)) {
                 let excess = match is_open {
                     true => {
                         (solution.jumps[&g][j] - bounds[&g][j]) / scales[1].max(f64::MIN_POSITIVE)

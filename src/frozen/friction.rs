@@ -20,7 +20,9 @@ use crate::bddc::solution::Accuracy;
 use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::error::Failure;
-use crate::frozen::active_set::{FrozenContact, ROUND_OFF, end, go_on};
+use crate::frozen::active_set::{
+    Conditions, FrozenContact, ROUND_OFF, end, go_on, not_finite, settle,
+};
 use crate::frozen::exchange::LOOSE;
 use crate::frozen::fronts::FrozenFronts;
 use crate::frozen::solution::FrozenSolution;
@@ -149,7 +151,9 @@ fn fingerprint(context: &Context<'_>, groups: &BTreeMap<usize, GroupFriction>) -
 }
 
 /// Finds what every contact point does under `loads` on the boundaries of the clusters, within the `limits` of every
-/// contact group of this rank, from where all are closed and stick. Collective.
+/// contact group of this rank, from where all are closed and stick. Where that comes back to where it was, or nowhere, it
+/// begins anew where those are closed that press while everything sticks along tangents, open or closed: a convex problem,
+/// in which no body is without a hold because contacts open that are far from each other. Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely, or a signal has asked the run to stop.
@@ -171,7 +175,16 @@ pub fn solve(
     let mut outcome = SweepOutcome {
         ..SweepOutcome::before(Vec::new())
     };
-    let mut known = BTreeSet::new();
+    let stay = groups
+        .iter()
+        .map(|(&g, friction)| (g, friction.is_tangential.clone()))
+        .collect();
+    let sticking = Conditions {
+        loads,
+        bounds: &bounds,
+        stay: &stay,
+    };
+    let (mut known, mut is_anew) = (BTreeSet::new(), false);
     let (mut changed, mut wrong_by, mut is_released) = (None, 1.0_f64, false);
     let mut start: Option<FrozenSolution> = None;
     loop {
@@ -227,9 +240,24 @@ pub fn solve(
             solves.coarse_dofs = coarse_dofs;
         }
         observer(&record);
-        let gave_up = sweep >= max_steps.unwrap_or(MAX_STEPS);
-        if faults.count == 0 || gave_up {
+        let is_finite = solved.solution.is_finite(context.comm) && missed.is_finite();
+        let most = max_steps.unwrap_or(MAX_STEPS);
+        let all = known.insert(fingerprint(context, &groups));
+        if !is_anew && sweep < most && (!is_finite || faults.count > 0 && !all) {
+            go_on(context, sweep)?;
+            let left = most - sweep;
+            let settled = settle(context, fronts, sticking, left, &mut outcome, observer)?;
+            for (g, friction) in &mut groups {
+                friction.begin(&settled.open[g]);
+            }
+            known.clear();
+            (is_anew, is_released, changed, start) = (true, false, None, None);
+            wrong_by = 1.0;
+            continue;
+        }
+        if faults.count == 0 || sweep >= most || !is_finite {
             outcome.status = match faults.count {
+                _ if !is_finite => not_finite(sweep),
                 0 if missed <= LAW => SweepStatus::Converged,
                 0 => SweepStatus::NotConverged(format!(
                     "forces of slipping points miss their law by {missed:.1e} of the largest"
@@ -239,6 +267,7 @@ pub fn solve(
                 )),
             };
             end(&mut outcome);
+            solved.cut();
             outcome.name_unsettled(&faults.names(context, &groups));
             let conditions = limits.iter().map(|(g, limits)| {
                 let friction = &groups[g];
@@ -257,7 +286,6 @@ pub fn solve(
             });
         }
         go_on(context, sweep)?;
-        let all = known.insert(fingerprint(context, &groups));
         changed = Some(if all { faults.count } else { 1 });
         let faults = if all { faults } else { faults.last() };
         for (g, of_group) in &faults.of_groups {

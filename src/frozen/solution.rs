@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::fronts::{FrozenFront, FrozenFronts};
 use crate::bddc::solution::{Accuracy, ClusterLoads};
+use crate::comm::Comm;
 use crate::condense::substitute::{Direction, carry};
 use crate::context::Context;
 use crate::error::Failure;
@@ -25,6 +26,24 @@ pub struct FrozenSolution {
     pub iterations: usize,
     /// Whether the preconditioner was too bad, and can be made better.
     pub is_too_far: bool,
+}
+
+impl FrozenSolution {
+    /// Whether it consists of finite numbers, on all ranks. Collective.
+    pub fn is_finite(&self, comm: &Comm) -> bool {
+        let all = [&self.jumps, &self.forces, &self.boundaries];
+        let mut values = all.into_iter().flat_map(BTreeMap::values).flatten();
+        let is_finite = values.all(|x| x.is_finite());
+        comm.decide(!comm.collect(&is_finite).contains(&false))
+    }
+
+    /// Nothing in the place of what is no finite number.
+    pub fn cut(&mut self) {
+        let all = [&mut self.jumps, &mut self.forces, &mut self.boundaries];
+        for x in all.into_iter().flat_map(BTreeMap::values_mut).flatten() {
+            *x = if x.is_finite() { *x } else { 0.0 };
+        }
+    }
 }
 
 impl FrozenFronts {

@@ -78,6 +78,9 @@ pub struct FrictionOfStep {
     pub friction: Friction,
     /// Where the energy came from and went.
     pub energy: EnergyBalance,
+    /// Whether friction is at its limit: nothing else holds a body, and it gives all the force that it can, so that the
+    /// position is one of many; a warning names the motion.
+    pub at_limit: bool,
     /// Number of increments that the load step was solved in, of several load steps the largest; slip and status are said
     /// of the last one.
     pub increments: usize,

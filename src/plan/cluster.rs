@@ -25,6 +25,15 @@ impl Merging {
     pub fn is_frozen(self) -> bool {
         matches!(self, Self::Frozen | Self::Clusters)
     }
+
+    /// What solves with it.
+    pub fn solver(self) -> &'static str {
+        match self {
+            Self::Clusters => "the iterative interface solver",
+            Self::Frozen => "the direct solver with frozen active sets",
+            Self::All | Self::Linear | Self::Groups => "the direct solver",
+        }
+    }
 }
 
 /// The blocks under one node of the hierarchy, condensed onto what other clusters share and onto

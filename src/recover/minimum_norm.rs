@@ -178,6 +178,30 @@ fn released_modes(
     analysis: &RigidBodyAnalysis,
     solution: &DiscreteSolution,
 ) -> Option<ReleasedModes> {
+    let conditions = condition_states(fixed, solution);
+    let scene = analysis.scene.as_ref()?;
+    Some(scene.released_modes(&analysis.motions.free, &conditions))
+}
+
+/// The motions along which a `solution` may slide under the same forces, in words; on the root. Collective.
+pub fn friction_limit(
+    fixed: &FixedActiveSet<'_>,
+    analysis: &RigidBodyAnalysis,
+    solution: &DiscreteSolution,
+) -> Vec<String> {
+    if !analysis.movable || !fixed.context.catalog.has_friction() {
+        return Vec::new();
+    }
+    let conditions = condition_states(fixed, solution);
+    let scene = analysis.scene.as_ref();
+    scene.map_or_else(Vec::new, |scene| scene.friction_limit(&conditions))
+}
+
+/// The states of all conditions in a `solution`, on the root. Collective.
+fn condition_states(
+    fixed: &FixedActiveSet<'_>,
+    solution: &DiscreteSolution,
+) -> Vec<ConditionState> {
     let Context {
         comm, plan, groups, ..
     } = fixed.context;
@@ -208,6 +232,7 @@ fn released_modes(
                     carrying: size > ROUND_OFF * scale(&groups[&g].points[condition.point]),
                     closed: of_group.closed[j],
                     gap: of_group.gaps[j],
+                    force,
                 }
             };
             let conditions = groups[&g].conditions().enumerate();
@@ -215,6 +240,5 @@ fn released_modes(
         },
         |_, of_group| conditions.extend(of_group),
     );
-    let scene = analysis.scene.as_ref()?;
-    Some(scene.released_modes(&analysis.motions.free, &conditions))
+    conditions
 }

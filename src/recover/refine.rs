@@ -16,6 +16,7 @@ use crate::recover::fixed_conditions::{change_forces, conditions};
 use crate::recover::motions::Field;
 use crate::recover::{DiscreteSolution, GroupSolution};
 use crate::sweep::AGAINST_FRICTION;
+use crate::vector::larger;
 
 /// Equilibrium and penetration above which a solution is refined.
 const LIMIT: f64 = 4e-15;
@@ -199,6 +200,7 @@ fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate
         let (mut check, shared) = BlockCheck::new(block, loads, &balance, &of_block.u);
         let stiffness = fixed.condensed.blocks.get(&b)?.diagonal.iter().copied();
         check.most.rest = fixed.closing_motions * stiffness.fold(0.0, f64::max);
+        check.most.driven = check.most.driven.max(fixed.closing_motions);
         Some((check, shared))
     };
     let mut own: BTreeMap<usize, BlockCheck> = BTreeMap::new();
@@ -218,6 +220,8 @@ fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate
         let (group, of_group) = (&fixed.context.groups[&g], &solution.groups[&g]);
         let (gaps, forces) = (&of_group.gaps, &of_group.forces);
         elsewhere.include(Most::at_points(group, gaps, forces, &of_group.closed));
+        let before = fixed.step.loads.groups[&g].gaps.iter().copied();
+        elsewhere.driven = (before.filter(|gap| gap.is_finite())).fold(elsewhere.driven, larger);
     }
     let mut checks = Vec::new();
     comm.gather(

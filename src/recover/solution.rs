@@ -7,7 +7,9 @@ use crate::fem::estimate::CellError;
 use crate::output::resultants::Reaction;
 use crate::recover::conditioning::condition_number;
 use crate::recover::fixed_active_set::FixedActiveSet;
-use crate::recover::minimum_norm::{MinimumNorm, remove_free_modes, take_minimum_norm};
+use crate::recover::minimum_norm::{
+    MinimumNorm, friction_limit, remove_free_modes, take_minimum_norm,
+};
 use crate::recover::reactions::reactions;
 use crate::recover::refine::{exchange_what_is_wrong, refine};
 use crate::recover::stresses::{Stress, error_estimate, stresses};
@@ -30,6 +32,8 @@ pub struct Solution {
     pub condition: Option<f64>,
     /// What became of released modes.
     pub minimum_norm: MinimumNorm,
+    /// The motions along which friction at its bounds lets bodies slide under the same forces, in words; on the root.
+    pub friction_limit: Vec<String>,
     /// What supports carry; on the root.
     pub reactions: Vec<Reaction>,
     /// The estimate of the mesh's error, where there are stresses; on the root.
@@ -37,6 +41,12 @@ pub struct Solution {
 }
 
 impl Solution {
+    /// Whether displacements and stresses are finite everywhere, as far as sums over all of them tell. On the root.
+    pub fn is_finite(&self) -> bool {
+        let estimate = self.estimate.unwrap_or_default();
+        self.certificate.is_a_number() && estimate.error.is_finite() && estimate.energy.is_finite()
+    }
+
     /// Refines a `discrete` solution against the full discrete problem, and recovers stresses if they are asked
     /// for, those of load step `stress_of`. Collective.
     pub fn new(
@@ -64,6 +74,7 @@ impl Solution {
             stress_of.map(|step| stresses(comm, fixed.context.blocks, blocks, catalog, plan, step));
         Self {
             displacement: with_closing_motions(&fixed.context, displacements(blocks), analysis),
+            friction_limit: friction_limit(fixed, analysis, &discrete),
             reactions: reactions(fixed, blocks),
             estimate: (stress.as_ref()).map(|stress| error_estimate(comm, stress, plan)),
             discrete,

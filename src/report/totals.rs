@@ -49,6 +49,8 @@ pub struct StepTotals {
     pub energy: EnergyBalance,
     /// The estimate of the mesh's error, where there are stresses.
     pub estimate: Option<CellError>,
+    /// Whether friction is at its limit: bodies may slide under the same forces.
+    pub at_limit: bool,
     /// What a user should know of it.
     pub warnings: Vec<String>,
 }
@@ -64,9 +66,13 @@ impl StepTotals {
         catalog: &Catalog,
     ) -> Self {
         let error = solution.estimate.map(|estimate| estimate.relative());
+        let converged = outcome.status == SweepStatus::Converged;
+        let slides = solution.friction_limit.iter().filter(|_| converged);
+        let slides: Vec<String> = slides.map(|what| at_limit(what)).collect();
         let warnings = [
             &analysis.motions.warnings[..],
             &solution.minimum_norm.warnings,
+            &slides,
             &outcome.notes,
             &resultants.warnings(),
             &resultants.warnings_of_mesh(catalog, error),
@@ -79,6 +85,7 @@ impl StepTotals {
             resultants,
             energy,
             estimate: solution.estimate,
+            at_limit: !slides.is_empty(),
             warnings: warnings.concat(),
             outcome,
         }
@@ -98,6 +105,7 @@ impl StepTotals {
         friction.map(|friction| FrictionOfStep {
             friction,
             energy: self.energy,
+            at_limit: self.at_limit,
             increments: self.outcome.increments,
             other_solution: self.outcome.other_solution,
         })
@@ -167,6 +175,7 @@ impl Totals<'_> {
                 ..last.friction
             },
             energy: last.energy.since(before.energy),
+            at_limit: before.at_limit || last.at_limit,
             increments: before.increments.max(last.increments),
             other_solution: match before.other_solution {
                 Some(true) => before.other_solution,
@@ -185,6 +194,11 @@ impl Totals<'_> {
             true => InterfaceMethod::Iterative,
             false => InterfaceMethod::Direct,
         }
+    }
+
+    /// Which solver of the interface problem didn't converge before another one took over, and why, in words.
+    pub fn took_over(&self) -> Option<&str> {
+        (self.steps.iter()).find_map(|step| step.outcome.took_over.as_deref())
     }
 
     /// Which other methods had to help, in words.
@@ -230,6 +244,14 @@ impl Totals<'_> {
             })
             .collect()
     }
+}
+
+/// What a user should know of a motion at the limit of friction.
+fn at_limit(motion: &str) -> String {
+    format!(
+        "at the limit of friction: nothing but friction holds {motion}, with all the force that it can give, which is \
+         the same wherever that slides to; the position is one of many"
+    )
 }
 
 fn once_each(words: impl Iterator<Item = String>) -> Vec<String> {

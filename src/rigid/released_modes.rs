@@ -20,6 +20,8 @@ pub struct ConditionState {
     pub closed: bool,
     /// What it has left (m).
     pub gap: f64,
+    /// Its force (N/m).
+    pub force: f64,
 }
 
 /// The released modes of a solution.
@@ -216,6 +218,7 @@ mod tests {
             carrying: carrying[j / 2],
             closed,
             gap: 0.0,
+            force: 0.0,
         };
         let conditions: Vec<ConditionState> = (0..scene.rows.len()).map(condition).collect();
         scene.released_modes(&[], &conditions).motions.len()

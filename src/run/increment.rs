@@ -42,6 +42,8 @@ pub struct Increments<'a> {
     pub interface: Option<&'a (Numbering, Interface)>,
     /// The fronts above all contact, where active sets are frozen.
     pub frozen: Option<&'a RefCell<FrozenFronts>>,
+    /// Whether another solver takes over where this one doesn't converge.
+    pub is_relieved: bool,
 }
 
 /// An increment that was solved, or tried.
@@ -74,7 +76,7 @@ impl Increments<'_> {
         seconds: &mut RankSeconds,
     ) -> Result<Increment, Failure> {
         let end = Moment::end_of(k);
-        if !self.context.catalog.has_friction() {
+        if !self.context.catalog.has_friction() || self.is_relieved {
             return self.solve(end, at_end, before, seconds);
         }
         let at_once = self.solve(end, at_end, before.clone(), seconds)?;
@@ -83,8 +85,8 @@ impl Increments<'_> {
         }
         let (slips, energies) = (before.slips.clone(), before.energies.clone());
         let Some(in_parts) = self.in_halves(k, earlier, before, seconds)? else {
-            let moves_freely = at_once.outcome.as_ref().is_some_and(|o| o.moves_freely);
-            let unheld = (at_end.scene.as_ref().filter(|_| moves_freely)).and_then(Scene::unheld);
+            let slides = at_once.outcome.as_ref().is_some_and(|o| o.slides);
+            let unheld = (at_end.scene.as_ref().filter(|_| slides)).and_then(Scene::unheld);
             self.context.comm.agree(unheld.map_or(Ok(()), Err))?;
             return Ok(at_once);
         };
@@ -137,7 +139,7 @@ impl Increments<'_> {
     }
 
     /// Whether the sweeps converged. Collective.
-    fn is_converged(&self, increment: &Increment) -> bool {
+    pub fn is_converged(&self, increment: &Increment) -> bool {
         let status = increment.outcome.as_ref().map(|outcome| &outcome.status);
         (self.context.comm).decide(status == Some(&SweepStatus::Converged))
     }
@@ -161,6 +163,7 @@ impl Increments<'_> {
             factors,
             interface,
             frozen,
+            ..
         } = self;
         let comm = context.comm;
 
@@ -229,7 +232,10 @@ impl Increments<'_> {
         let solution = Solution::new(&fixed, analysis, discrete, stress_of);
         let (energies, energy) = energies(&fixed, &solution, &energies_before);
         if let Some(outcome) = &mut outcome {
-            outcome.accept(&solution.certificate);
+            outcome.accept(
+                &solution.certificate,
+                solution.is_finite() && energy.is_finite(),
+            );
             outcome.name_unsettled(&unsettled_points(&context, outcome));
         }
         seconds.add(|s| &mut s.recover, comm.times() - lap);

@@ -14,7 +14,7 @@ use crate::condense::Condensation;
 use crate::condense::interface::assemble_interface;
 use crate::condense::tree::condense_clusters;
 use crate::context::{Context, Moment};
-use crate::error::Failure;
+use crate::error::{Failure, FailureKind};
 use crate::fem::block::Block;
 use crate::fem::contact_group::ContactGroup;
 use crate::frozen::fronts::FrozenFronts;
@@ -32,10 +32,11 @@ use crate::report::log::{Checked, RunLog};
 use crate::report::totals::StepTotals;
 use crate::report::write::{absent_rows, write_solution};
 use crate::run::create_outputs;
-use crate::run::increment::Increments;
+use crate::run::increment::{Increment, Increments};
 use crate::run::restart::{Finished, keep};
 use crate::settings::Settings;
 use crate::step::state::{self, StepState, analyse_steps, stop_if_asked};
+use crate::sweep::SweepStatus;
 
 /// What all stages of a run share.
 #[derive(Clone, Copy)]
@@ -59,6 +60,16 @@ struct Parts {
     groups: BTreeMap<usize, ContactGroup>,
     costs: Vec<CostEstimate>,
     available: f64,
+}
+
+/// Where another solver takes over in a stage.
+struct Relief {
+    /// What it merges.
+    merging: Merging,
+    /// The state that it starts from.
+    state: StepState,
+    /// Which one didn't converge, and why, as the root knows it.
+    why: String,
 }
 
 /// What the stages so far have come to.
@@ -85,7 +96,8 @@ impl Stages<'_> {
     /// A part that moves freely, or one for which there is no place.
     pub fn check(&self, steps: Range<usize>) -> Result<Checked, Failure> {
         let stage = self.file.catalog().stage(steps, &[]);
-        let parts = self.parts(&stage, self.settings.check)?;
+        let merging = self.comm.agree(self.settings.merging(&stage.catalog))?;
+        let parts = self.parts(&stage, merging, self.settings.check)?;
         self.log.phase("looking for free rigid motions", None);
         let analyses = analyse_steps(&self.context(&stage, &parts), stage.steps.clone(), &[])?;
         let warnings = analyses
@@ -99,7 +111,8 @@ impl Stages<'_> {
         })
     }
 
-    /// Solves the load `steps` in which the same is there, those from `next` on being another stage. Collective.
+    /// Solves the load `steps` in which the same is there, those from `next` on being another stage. Where the solver that
+    /// was chosen doesn't converge, a more robust one goes on from there. Collective.
     ///
     /// # Errors
     /// As a whole run.
@@ -109,6 +122,43 @@ impl Stages<'_> {
         next: Option<&Range<usize>>,
         progress: &mut Progress,
     ) -> Result<(), Failure> {
+        let stage = (self.file.catalog()).stage(steps, &progress.finished.passage.since);
+        let mut merging = self.comm.agree(self.settings.merging(&stage.catalog))?;
+        let mut relief = None;
+        loop {
+            relief = self.solve_with(merging, relief, &stage, next, progress)?;
+            match &relief {
+                Some(relief) => merging = relief.merging,
+                None => return Ok(()),
+            }
+        }
+    }
+
+    /// What takes over where a `merging` doesn't lead to a solution, if there is memory for it. Collective.
+    fn relief(&self, stage: &Stage<'_>, merging: Merging) -> Option<Merging> {
+        // A limit on sweeps is one on all solvers.
+        if self.settings.max_sweeps.is_some() {
+            return None;
+        }
+        let robust = Plan::more_robust(&stage.catalog, merging)?;
+        let plan = Plan::new(&stage.catalog, self.comm.size(), robust);
+        let costs = plan.cost_estimates(&stage.catalog, self.comm.size());
+        afford(self.comm, &costs).is_ok().then_some(robust)
+    }
+
+    /// Solves the load steps of a `stage` that are left, with this `merging` and from where another solver was relieved;
+    /// returns where a more robust one is to take over. Collective.
+    ///
+    /// # Errors
+    /// As a whole run.
+    fn solve_with(
+        &self,
+        merging: Merging,
+        relieved: Option<Relief>,
+        stage: &Stage<'_>,
+        next: Option<&Range<usize>>,
+        progress: &mut Progress,
+    ) -> Result<Option<Relief>, Failure> {
         let &Self {
             comm,
             settings,
@@ -125,8 +175,7 @@ impl Stages<'_> {
             smallest_pivot,
             finished,
         } = progress;
-        let stage = &file.catalog().stage(steps, &finished.passage.since);
-        let parts = self.parts(stage, last_plan.is_none())?;
+        let parts = self.parts(stage, merging, last_plan.is_none())?;
         let context = self.context(stage, &parts);
         let Context {
             catalog,
@@ -185,6 +234,8 @@ impl Stages<'_> {
         seconds.add(|s| &mut s.interface, comm.times() - lap);
 
         // Load step by load step: each starts from the state that the one before it left.
+        let merging = plan.merging;
+        let relief = self.relief(stage, merging);
         let increments = Increments {
             context,
             settings,
@@ -192,10 +243,12 @@ impl Stages<'_> {
             factors: &condensed,
             interface: interface.as_ref(),
             frozen: frozen.as_ref(),
+            is_relieved: relief.is_some(),
         };
-        let mut state = match finished.count > first {
-            true => finished.state(&context),
-            false => finished.passage.state(&context, stage),
+        let (mut state, mut why) = match relieved {
+            Some(relieved) => (relieved.state, Some(relieved.why)),
+            None if finished.count > first => (finished.state(&context), None),
+            None => (finished.passage.state(&context, stage), None),
         };
         for k in stage
             .steps
@@ -206,10 +259,29 @@ impl Stages<'_> {
             log.step(catalog, k);
             let (at_end, earlier) = (&analyses[k - first], &analyses[..k - first]);
             let earlier = earlier.last().map_or(&before, |last| &last.closing_motions);
+            let before = relief.map(|relief| (relief, state.clone()));
             let solved = increments.step(k, (earlier, at_end), state, seconds);
-            let solved = solved.map_err(|failure| {
+            if let Some((relief, state)) = before
+                && let Some(why) = self.why_relieved(&increments, &solved)
+            {
+                finished.count = k;
+                *last_plan = Some(parts.plan.clone());
+                return Ok(Some(Relief {
+                    merging: relief,
+                    state,
+                    why: format!(
+                        "{} didn't converge ({why}); {} took over",
+                        merging.solver(),
+                        relief.solver()
+                    ),
+                }));
+            }
+            let mut solved = solved.map_err(|failure| {
                 state::finished(context.in_step(failure, k), &context, settings, k)
             })?;
+            if let Some((outcome, why)) = solved.outcome.as_mut().zip(why.take()) {
+                outcome.take_over(why);
+            }
 
             log.phase("writing", None);
             let lap = comm.times();
@@ -272,15 +344,36 @@ impl Stages<'_> {
                 .map_or(1.0, |fronts| fronts.borrow().smallest_pivot),
         });
         *last_plan = Some(parts.plan);
-        Ok(())
+        Ok(None)
     }
 
-    /// What this rank has of a stage, of the `first` one with a word about the problem. Collective.
-    fn parts(&self, stage: &Stage<'_>, first: bool) -> Result<Parts, Failure> {
+    /// Why another solver is to take over where a load step was `solved` so; `None` where it converged, or a signal
+    /// stopped it. Collective.
+    fn why_relieved(
+        &self,
+        increments: &Increments<'_>,
+        solved: &Result<Increment, Failure>,
+    ) -> Option<String> {
+        match solved {
+            Ok(solved) if increments.is_converged(solved) => None,
+            Ok(solved) => {
+                let status = solved.outcome.as_ref().map(|outcome| &outcome.status);
+                Some(match status {
+                    Some(SweepStatus::NotConverged(why)) => why.clone(),
+                    _ => String::new(),
+                })
+            }
+            Err(failure) if failure.kind == FailureKind::IllPosed => Some(failure.message.clone()),
+            Err(_) => None,
+        }
+    }
+
+    /// What this rank has of a stage to be solved with this `merging`, of the `first` one with a word about the problem.
+    /// Collective.
+    fn parts(&self, stage: &Stage<'_>, merging: Merging, first: bool) -> Result<Parts, Failure> {
         let Self { comm, file, .. } = *self;
         let catalog = &stage.catalog;
         phase("reading");
-        let merging = comm.agree(self.settings.merging(catalog))?;
         let mut plan = Plan::new(catalog, comm.size(), merging);
         let costs = plan.cost_estimates(catalog, comm.size());
         let available = afford(comm, &costs)?;

@@ -43,7 +43,7 @@ impl Sweeps<'_, '_> {
             }
             if !step.converged && coupled.has_friction() {
                 self.outcome.unsettled = step.unsettled;
-                self.outcome.moves_freely = step.slides;
+                self.outcome.slides = step.slides;
                 return Ok(self.gave_up(&residual, "statuses of contacts with friction cycle"));
             }
             if !step.converged {

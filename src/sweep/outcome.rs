@@ -11,10 +11,13 @@ const NOT_BALANCED: f64 = 1e-13;
 const ROUND_OFF_OF_TERMS: f64 = 1e-12;
 /// Share of loads in the forces on nodes from which these aren't round-off of a scene without load.
 const LOADED: f64 = 1e-2;
+/// Displacement over what may move a scene without load from which forces are no round-off of that.
+const TOO_FAR: f64 = 1e3;
 /// Violation of the law of friction of an answer that isn't one.
 pub const AGAINST_FRICTION: f64 = 1e-9;
 /// Equilibrium relative to the load of an answer that says nothing.
 const NOT_BALANCED_OF_LOAD: f64 = 1e-3;
+
 /// The same where what isn't balanced moves.
 const MOVES: f64 = 1e-2;
 
@@ -83,9 +86,11 @@ pub struct SweepOutcome {
     pub increments: usize,
     /// Whether another solution with friction was found, where it was looked for.
     pub other_solution: Option<bool>,
-    /// Whether an active set was found under which something moves freely, so that forces aren't balanced; or something
-    /// was seen to slide on and on.
-    pub moves_freely: bool,
+    /// Whether something slides on and on: there are forces of all contacts by their laws, and a motion that nothing
+    /// resists, along which loads do more work than these forces take; or such forces leave nodes without balance.
+    pub slides: bool,
+    /// Which solver didn't converge before this one took over, and why, in words.
+    pub took_over: Option<String>,
     /// The conditions of every pair whose status cycles, where friction keeps sweeps from converging.
     pub unsettled: Vec<Vec<usize>>,
 }
@@ -107,7 +112,8 @@ impl SweepOutcome {
             iterative: None,
             increments: 1,
             other_solution: None,
-            moves_freely: false,
+            slides: false,
+            took_over: None,
             unsettled: Vec::new(),
         }
     }
@@ -142,6 +148,13 @@ impl SweepOutcome {
         }
     }
 
+    /// Remembers that another solver didn't converge in the same load step, for this reason.
+    pub fn take_over(&mut self, why: String) {
+        self.notes.push(why.clone());
+        self.fell_back(&why);
+        self.took_over = Some(why);
+    }
+
     /// Says that a load step took several increments.
     pub fn count_increments(&mut self, increments: usize) {
         self.increments = increments;
@@ -151,18 +164,20 @@ impl SweepOutcome {
         ));
     }
 
-    /// Takes back that the sweeps converged if the full discrete problem says otherwise: their
-    /// residual is relative to terms that may be far larger than the load.
-    pub fn accept(&mut self, certificate: &Certificate) {
+    /// Takes back that the sweeps converged if the full discrete problem says otherwise, as their
+    /// residual is relative to terms that may be far larger than the load, or if not all results are `finite`.
+    pub fn accept(&mut self, certificate: &Certificate, finite: bool) {
         let Certificate {
             equilibrium,
             equilibrium_of_load,
             load_share,
+            farther,
             penetration,
             friction,
             ..
         } = *certificate;
-        let not_round_off = equilibrium > ROUND_OFF_OF_TERMS || load_share > LOADED;
+        let not_round_off =
+            equilibrium > ROUND_OFF_OF_TERMS || load_share > LOADED || farther > TOO_FAR;
         let unbalanced = equilibrium > NOT_BALANCED
             || (not_round_off && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
         if friction > AGAINST_FRICTION && self.status == SweepStatus::Converged {
@@ -170,14 +185,21 @@ impl SweepOutcome {
                 "contacts break the law of friction by {friction:.1e} of the largest force or displacement"
             ));
         }
-        let failed = unbalanced || penetration > NOT_BALANCED || equilibrium.is_nan();
+        let failed = unbalanced || penetration > NOT_BALANCED || !certificate.is_a_number();
         if failed && self.status == SweepStatus::Converged {
-            self.moves_freely = equilibrium_of_load > MOVES;
+            self.slides = equilibrium_of_load > MOVES;
             self.status = SweepStatus::NotConverged(format!(
                 "the forces on the nodes are balanced to {equilibrium:.1e} of their terms and \
                  {equilibrium_of_load:.1e} of the largest load, and contacts penetrate by \
                  {penetration:.1e} of the largest displacement: the scene is too badly conditioned"
             ));
+        }
+        if !finite && self.status == SweepStatus::Converged {
+            self.status = SweepStatus::NotConverged(
+                "some of displacements, stresses, forces and energies are no finite numbers: loads or stiffnesses are \
+                 too large or too small, or something moves without end"
+                    .into(),
+            );
         }
     }
 }
@@ -186,22 +208,25 @@ impl SweepOutcome {
 mod tests {
     use super::*;
 
-    fn status(
-        [equilibrium, equilibrium_of_load, load_share, penetration]: [f64; 4],
-    ) -> SweepStatus {
+    fn status(certificate: &Certificate, finite: bool) -> SweepStatus {
         let mut outcome = SweepOutcome {
             status: SweepStatus::Converged,
             ..SweepOutcome::before(Vec::new())
         };
-        let certificate = Certificate {
+        outcome.accept(certificate, finite);
+        outcome.status
+    }
+
+    fn certificate(
+        [equilibrium, equilibrium_of_load, load_share, penetration]: [f64; 4],
+    ) -> Certificate {
+        Certificate {
             equilibrium,
             equilibrium_of_load,
             load_share,
             penetration,
             ..Certificate::default()
-        };
-        outcome.accept(&certificate);
-        outcome.status
+        }
     }
 
     #[test]
@@ -213,7 +238,17 @@ mod tests {
             // A scene without load, where reactions are round-off.
             [1e-16, 0.8, 0.0, 0.0],
         ] {
-            assert_eq!(status(good), SweepStatus::Converged, "{good:?}");
+            let certificate = certificate(good);
+            assert_eq!(
+                status(&certificate, true),
+                SweepStatus::Converged,
+                "{good:?}"
+            );
+            assert_ne!(
+                status(&certificate, false),
+                SweepStatus::Converged,
+                "{good:?}"
+            );
         }
         for bad in [
             [1e-9, 1e-8, 0.9, 0.0],
@@ -223,7 +258,29 @@ mod tests {
             [6e-12, 9e-5, 0.5, 0.0],
             [f64::NAN, 0.0, 0.9, 0.0],
         ] {
-            assert_ne!(status(bad), SweepStatus::Converged, "{bad:?}");
+            assert_ne!(
+                status(&certificate(bad), true),
+                SweepStatus::Converged,
+                "{bad:?}"
+            );
         }
+    }
+
+    #[test]
+    fn what_went_farther_than_anything_moved_it_is_no_scene_without_load() {
+        let round_off = certificate([1e-16, 1.0, 1e-230, 0.0]);
+        for (farther, accepted) in [(1.0, true), (300.0, true), (1e7, false), (1e245, false)] {
+            let went = Certificate {
+                farther,
+                ..round_off
+            };
+            let status = status(&went, true);
+            assert_eq!(status == SweepStatus::Converged, accepted, "{farther:e}");
+        }
+        let no_number = Certificate {
+            force_balance: f64::NAN,
+            ..Certificate::default()
+        };
+        assert_ne!(status(&no_number, true), SweepStatus::Converged);
     }
 }

@@ -4,6 +4,7 @@ mod cycle;
 mod held;
 mod increments;
 mod judge;
+mod limit;
 mod patch;
 mod random;
 mod validation;

@@ -1,6 +1,7 @@
 //! The iterative interface solver between clusters of subdomains.
 
 use contact_dd_partition::element::ElementKind::{Hexahedron8, Tetrahedron10};
+use contact_dd_partition::model::Model;
 
 use crate::space::contact::rocking_scene;
 use crate::support::blocks::{Blocks, joined};
@@ -347,5 +348,66 @@ fn the_solver_that_takes_less_time_is_chosen_and_said_to_be() {
         assert_eq!(solution.report["interface_solver"], "direct");
         let choice = &solution.report["interface_choice"];
         assert_eq!(choice, "nothing to choose between", "{name}");
+    }
+}
+
+/// Two blocks that friction holds on each other, far below a ball that one active set would lift the upper one to.
+fn blocks_below_a_ball(steps: &str, cells: [usize; 3]) -> Model {
+    let block = |name, z: f64| {
+        let box_of = between([0.0, 0.0, z], [2.0, 1.0, z + 1.0]);
+        solid(name, Hexahedron8, cells, box_of)
+    };
+    let text = format!(
+        "materials.steel = {{young = 210e9, poisson = 0.3}}
+        [bodies]
+        lower = {{material = 'steel', body_force = [0, 0, -77e3]}}
+        upper = {{material = 'steel', body_force = [0, 0, -77e3]}}
+        [[displacement]]
+        on = 'lower z0'
+        x = 0
+        y = 0
+        z = 0
+        [[pressure]]
+        on = 'upper z1'
+        value = 1e6
+        [[contact]]
+        name = 'joint'
+        between = ['lower', 'upper']
+        within = 1e-3
+        friction = 0.5
+        [[contact]]
+        name = 'ball'
+        sides = ['upper z1']
+        obstacle = {{center = [0.5, 0.5, 6.0], radius = 3.0}}
+        {steps}"
+    );
+    model(&text, joined(block("lower", 0.0), block("upper", 1.0)))
+}
+
+#[test]
+fn what_friction_holds_far_from_other_contacts_is_solved_as_directly() {
+    let coming = "[[step]]\n[[step]]\nadd = 'upper'";
+    for (steps, cells, clusters) in [
+        ("", [2, 2, 2], 1),
+        ("", [4, 2, 2], 4),
+        (coming, [4, 2, 2], 4),
+    ] {
+        let case = Case::in_clusters(&blocks_below_a_ball(steps, cells), 8, clusters);
+        let solved = |ranks, args: &[&str]| {
+            let ended = case.run_on(ranks, args);
+            assert_eq!(ended.code(), 0, "{clusters}: {}", ended.stderr);
+            let mut all = Solution::increments(&case.result(), !steps.is_empty());
+            all.iter().for_each(Solution::check_certificate);
+            all.pop().unwrap()
+        };
+        let [direct, iterative, on_ranks] = [(0, &[][..]), (0, &ITERATIVE), (3, &ITERATIVE)]
+            .map(|(ranks, args)| solved(ranks, args));
+        assert_eq!(iterative.displacement, on_ranks.displacement);
+        let taken = iterative.report["interface_iterations"].as_array();
+        assert!(clusters == 1 || taken.is_some_and(|taken| !taken.is_empty()));
+        let difference = difference(&direct, &iterative);
+        assert!(difference < 1e-10, "{clusters}: {difference:e}");
+        assert_eq!(direct.closed(), iterative.closed());
+        assert!(iterative.report["sweeps"].as_u64() < Some(60), "{clusters}");
     }
 }

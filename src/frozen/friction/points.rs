@@ -127,12 +127,8 @@ impl GroupFriction {
                 stiffness: group.stiffness_at(of_jumps[tangent.limit]),
             });
         }
-        let slips = points.iter().map(|point| match point.prescribed {
-            0.0 => Act::Sticks,
-            _ => Act::Slips,
-        });
         let mut friction = Self {
-            acts: slips.collect(),
+            acts: vec![Act::Sticks; points.len()],
             points,
             bounds: limits.bounds.clone(),
             open: vec![false; limits.jumps()],
@@ -140,8 +136,21 @@ impl GroupFriction {
             of_jumps,
             is_tangential,
         };
-        friction.settle(&[limits.bounds.clone(), friction.forces.clone()]);
+        friction.begin(&vec![false; limits.jumps()]);
         friction
+    }
+
+    /// Goes back to where those normal jumps are open, and all points stick whose sides are closed.
+    pub fn begin(&mut self, open: &[bool]) {
+        self.open.copy_from_slice(open);
+        self.forces.fill(0.0);
+        for (act, point) in self.acts.iter_mut().zip(&self.points) {
+            *act = match point.prescribed {
+                0.0 => Act::Sticks,
+                _ => Act::Slips,
+            };
+        }
+        self.settle(&[self.bounds.clone(), self.forces.clone()]);
     }
 
     /// The points that slip.

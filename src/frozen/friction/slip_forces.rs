@@ -29,6 +29,14 @@ pub(super) struct Solved {
 }
 
 impl Solved {
+    /// Nothing in the place of what is no finite number.
+    pub fn cut(&mut self) {
+        self.solution.cut();
+        for x in self.groups.values_mut().flatten().flatten() {
+            *x = if x.is_finite() { *x } else { 0.0 };
+        }
+    }
+
     /// What a `solution` says, where these `groups` have their slip forces. Collective.
     pub fn new(
         context: &Context<'_>,

@@ -1,0 +1,68 @@
+//! Friction at its limit.
+
+use contact_dd_partition::element::ElementKind::Hexahedron8;
+use contact_dd_partition::model::Model;
+
+use crate::support::blocks::joined;
+use crate::support::scenes::model;
+use crate::support::solids::{between, solid};
+use crate::support::solver::Case;
+
+const FRICTION: f64 = 0.1;
+const PRESSURE: f64 = 1e5;
+
+/// A block on another one that is held below, with `more` acting on it.
+fn on_a_block(more: &str) -> Model {
+    let mesh = joined(
+        solid(
+            "b0",
+            Hexahedron8,
+            [1, 1, 2],
+            between([0.0; 3], [1.0, 1.0, 0.3]),
+        ),
+        solid(
+            "b1",
+            Hexahedron8,
+            [1, 1, 1],
+            between([0.0, 0.0, 0.3], [1.0, 1.0, 0.6]),
+        ),
+    );
+    let text = format!(
+        "materials.m0 = {{young = 1e9, poisson = 0.2}}
+        materials.m1 = {{young = 1e9, poisson = 0.2}}
+        [bodies]
+        b0 = {{material = 'm0'}}
+        b1 = {{material = 'm1'}}
+        [[displacement]]
+        on = 'b0 z0'
+        x = 0
+        y = 0
+        z = 0
+        [[pressure]]
+        on = 'b1 z1'
+        value = {PRESSURE:e}
+        [[contact]]
+        name = 'c0'
+        sides = ['b1 z0', 'b0 z1']
+        friction = {FRICTION}
+        {more}"
+    );
+    model(&text, mesh)
+}
+
+/// With a share of all that it can give: where the block slides to nothing tells.
+#[test]
+fn a_block_that_friction_holds_with_all_that_it_has_is_said_to_be_at_the_limit() {
+    let most = FRICTION * PRESSURE;
+    for (share, is_at_limit) in [(0.99, false), (1.0 - 1e-9, true)] {
+        // Pushed where it lies, so that its pressure stays what it is.
+        let push = share * most;
+        let push = format!("[[traction]]\non = 'b1 z0'\nvalue = [0, {push:e}, 0]");
+        let solution = Case::of(&on_a_block(&push), 2).solve(&[]);
+        let friction = &solution.report["friction"];
+        assert_eq!(friction["at_limit"], is_at_limit, "{share}");
+        let warnings = solution.report["warnings"].to_string();
+        let words = "at the limit of friction: nothing but friction holds 'b1' (translation along (0.0000, 1.0000, 0.0000))";
+        assert_eq!(warnings.contains(words), is_at_limit, "{share}: {warnings}");
+    }
+}
