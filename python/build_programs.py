@@ -1,7 +1,7 @@
 """Builds contact-dd-partition and contact-dd-mpi, which become scripts of the wheel.
 
-What is missing for that is said by its Debian packages. Where CONTACT_DD_BIN names a folder of built programs, or for
-an editable installation, the wheel is pure Python.
+What is missing for that is said by its Debian packages; cargo's progress is shown on the terminal. Where
+CONTACT_DD_BIN names a folder of built programs, or for an editable installation, the wheel is pure Python.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sysconfig
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +36,20 @@ class Programs(BuildHookInterface[Any]):
                 f"the programs can't be built: {check.stderr.strip()}; scripts/setup installs it. For programs that "
                 "are built already name their folder in CONTACT_DD_BIN"
             )
-        built = subprocess.run(["bash", "-euc", BUILD], cwd=repository, check=True, stdout=subprocess.PIPE, text=True)
+        with ExitStack() as stack:
+            try:
+                # pip keeps what a build prints to itself; this takes minutes, so it is shown where somebody looks.
+                progress = stack.enter_context(open("/dev/tty", "w"))
+            except OSError:
+                progress = None
+            command = ["bash", "-euc", BUILD]
+            built = subprocess.run(
+                command, cwd=repository, check=False, stdout=subprocess.PIPE, stderr=progress, text=True
+            )
+        if built.returncode != 0:
+            raise SystemExit(
+                f"the programs can't be built: cargo ended with {built.returncode}; what it said stands above"
+            )
         build_data["shared_scripts"] = {f"{built.stdout}/release/{name}": name for name in NAMES}
         texts = [f"{built.stdout}/licences.txt", *map(str, repository.glob("LICENSE-*"))]
         build_data["shared_data"] = {text: f"share/doc/contact-dd/{Path(text).name}" for text in texts}

@@ -5,16 +5,15 @@ Every repetition runs all of them one after the other; a ratio is the median of 
 ratios, a time the median of the times.
 """
 
-import argparse
 import json
 import math
 import os
-import pathlib
 import signal
 import statistics
 import sys
 import time
 
+import options
 import reference
 import runs
 import wall
@@ -27,8 +26,6 @@ PARDISO_ONE = "PARDISO, 1 thread"
 CHOLMOD = "CHOLMOD, 1 thread"
 ACTIVE_SET = "active set on PARDISO, 2 threads"
 PARTITION = "partition tool"
-# Walls of bricks: bricks in the length, courses, cells in the height of a brick.
-WALLS = {"wall": (10, 6, 30), "many": (18, 20, 18)}
 # Factorizations of the active set, for the choice of what suits it.
 TYPICAL_STEPS = 8
 # The solver's agreement with the references, as the difference of displacements: more than the
@@ -177,11 +174,11 @@ def targets(sizes, walls):
     of("2M", "partition tool over whole run", 0.35, lambda size: ratio(size, PARTITION, "total", TWO))
     of("2M", "flops over nested dissection's, no contact", 1.15, lambda size: over_dissection(size, "without"))
     of("2M", "flops over nested dissection's, contacts", 1.25, lambda size: over_dissection(size, "with contacts"))
-    if WALLS["wall"] in walls:
-        row("wall of bricks, whole run, s", 1.5, median(walls[WALLS["wall"]], TWO))
-        row("wall of bricks, 2 ranks over 1", 0.65, ratio(walls[WALLS["wall"]], TWO, "total", ONE))
-    if WALLS["many"] in walls:
-        row("20k conditions over the same wall tied", 3, ratio(walls[WALLS["many"]], TWO, "total", "tied"))
+    if options.WALLS["wall"] in walls:
+        row("wall of bricks, whole run, s", 1.5, median(walls[options.WALLS["wall"]], TWO))
+        row("wall of bricks, 2 ranks over 1", 0.65, ratio(walls[options.WALLS["wall"]], TWO, "total", ONE))
+    if options.WALLS["many"] in walls:
+        row("20k conditions over the same wall tied", 3, ratio(walls[options.WALLS["many"]], TWO, "total", "tied"))
     if "80k" in sizes and "2M" in sizes:
         small, large = sizes["80k"], sizes["2M"]
         growth = median(large, TWO) / median(small, TWO)
@@ -327,17 +324,7 @@ def mkl_version():
 def main():
     # Where nobody reads on, as behind `| head`, there is nothing more to do.
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
-    parser = argparse.ArgumentParser(prog="bench", description=__doc__.splitlines()[0])
-    parser.add_argument("--sizes", default="5k,80k,500k,2M", help="dofs, by commas (default: %(default)s)")
-    parser.add_argument("--walls", default="wall,many", help="walls of bricks, '' for none (default: %(default)s)")
-    parser.add_argument("--repeat", type=int, default=5, help="repetitions (default: %(default)s)")
-    parser.add_argument("--subdomains", type=int, help="of the problem (default: what suits the size)")
-    parser.add_argument("--programs", type=pathlib.Path, default=runs.default_programs(),
-                        help="folder of the two programs, which are then not built")
-    parser.add_argument("--markdown", action="store_true", help="tables in Markdown")
-    parser.add_argument("--tables", type=pathlib.Path, metavar="FILE",
-                        help="measures nothing, prints the tables of an earlier measurements.json")
-    arguments = parser.parse_args()
+    arguments = options.bench(sys.argv[1:])
     if arguments.tables:
         show(json.loads(arguments.tables.read_text()), arguments.markdown)
         return
@@ -346,8 +333,8 @@ def main():
     if os.getloadavg()[0] > 0.7 * len(os.sched_getaffinity(0)):
         runs.say(f"bench: the machine is busy (load {os.getloadavg()[0]:.1f}): times and ratios will be off")
     runs.FOLDER.mkdir(parents=True, exist_ok=True)
-    tasks = [("sizes", measure, runs.count(size)) for size in arguments.sizes.split(",") if size]
-    tasks += [("walls", measure_wall, WALLS[name]) for name in arguments.walls.split(",") if name]
+    tasks = [("sizes", measure, size) for size in arguments.sizes]
+    tasks += [("walls", measure_wall, options.WALLS[name]) for name in arguments.walls]
     for kind, measure_one, size in tasks:
         measured[kind].append(measure_one(size, arguments))
         (runs.FOLDER / "measurements.json").write_text(json.dumps(measured, indent=1))

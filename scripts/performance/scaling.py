@@ -4,16 +4,15 @@ Every run leaves its report in FOLDER/reports; scaling.csv and scaling.svg are m
 that are there, so that runs may be added later or come from several jobs.
 """
 
-import argparse
 import csv
 import json
 import os
-import pathlib
 import signal
 import statistics
 import sys
 
 import numpy as np
+import options
 import runs
 from runs import PHASES
 
@@ -48,7 +47,14 @@ def measure(kind, ranks, repetition, arguments):
     reports = arguments.folder / "reports"
     reports.mkdir(exist_ok=True)
     (reports / f"{name}.json").write_text(json.dumps(run, indent=1))
-    runs.say(f"{kind}, {ranks} ranks, repetition {repetition}: {run['seconds']['total']:.3f} s")
+    runs.say(f"{kind}, {ranks} ranks, repetition {repetition}: {run['seconds']['total']:.3f} s by the clock, "
+             f"{modelled_total(run)} s with a core for each rank, modelled")
+
+
+def modelled_total(run):
+    """Seconds of the slowest rank, each with a core of its own."""
+    times = [rank["modelled"]["total"] for rank in run["per_rank"] if "modelled" in rank]
+    return f"{max(times):.3f}" if times else "?"
 
 
 def modelled(group):
@@ -92,7 +98,7 @@ def print_model(rows, far):
         own = [row for row in rows if row["kind"] == kind and row["modelled_total"] != ""]
         if not own:
             continue
-        print(f"\n{kind}\n\n| " + " | ".join(heads) + " |\n|" + "--:|" * len(heads))
+        print(f"\n{kind} scaling, modelled times in s: a core for each rank, messages by a network (docs/scaling.md)\n\n| " + " | ".join(heads) + " |\n|" + "--:|" * len(heads))
         for row in own:
             times = [f"{row[f'modelled_{key}']:.3g}" for key in [*PHASES, "total"]]
             print("| " + " | ".join(map(str, [
@@ -198,32 +204,12 @@ def draw(rows, path):
 def main():
     # Where nobody reads on, as behind `| head`, there is nothing more to do.
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
-    parser = argparse.ArgumentParser(prog="scaling", description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=pathlib.Path, help="for reports/, scaling.csv and scaling.svg")
-    parser.add_argument("--ranks", help="numbers of ranks, by commas (default: 1, 2, 4, ... all cores)")
-    parser.add_argument("--strong", type=runs.count, default=500_000, metavar="DOFS",
-                        help="dofs of the fixed problem (default: 500k)")
-    parser.add_argument("--weak", type=runs.count, default=250_000, metavar="DOFS",
-                        help="dofs for each rank (default: 250k)")
-    parser.add_argument("--only", choices=["strong", "weak"], help="only this kind")
-    parser.add_argument("--repeat", type=int, default=5, help="repetitions (default: %(default)s)")
-    parser.add_argument("--repetition", type=int, help="only this one of them, for a job of an array")
-    parser.add_argument("--interface", choices=["direct", "iterative"], help="of contact-dd-mpi (default: its choice)")
-    parser.add_argument("--far", default="1024,4096", help="ranks for which times are fitted (default: %(default)s)")
-    parser.add_argument("--threads", type=int, default=1, help="of each rank (default: 1)")
-    parser.add_argument("--subdomains", type=int, help="of the fixed problem (default: what suits its size)")
-    parser.add_argument("--subdomains-per-rank", type=int, help="of the growing one (default: likewise)")
-    parser.add_argument("--problem", type=pathlib.Path, help="problem file for strong scaling, nothing else")
-    parser.add_argument("--programs", type=pathlib.Path, default=runs.default_programs(),
-                        help="folder of the two programs, which are then not built")
-    parser.add_argument("--prepare", action="store_true", help="makes the problem files, runs nothing")
-    parser.add_argument("--collect", action="store_true", help="runs nothing, makes CSV and SVG of the reports")
-    arguments = parser.parse_args()
+    arguments = options.scaling(sys.argv[1:])
     arguments.folder.mkdir(parents=True, exist_ok=True)
 
     if not arguments.collect:
         cores = len(os.sched_getaffinity(0))
-        ranks = [int(n) for n in arguments.ranks.split(",")] if arguments.ranks else ranks_up_to(cores)
+        ranks = arguments.ranks or ranks_up_to(cores)
         kinds = [arguments.only] if arguments.only else ["strong", "weak"]
         if arguments.problem:
             kinds = ["strong"]
@@ -242,7 +228,7 @@ def main():
     rows = collect(arguments.folder)
     write_csv(rows, arguments.folder / "scaling.csv")
     draw(rows, arguments.folder / "scaling.svg")
-    print_model(rows, [int(n) for n in arguments.far.split(",") if n])
+    print_model(rows, arguments.far)
 
 
 main()

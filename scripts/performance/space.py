@@ -5,7 +5,6 @@ Every repetition runs all of them one after the other, on 2 ranks; a ratio is th
 the median of the times.
 """
 
-import argparse
 import glob
 import json
 import os
@@ -17,6 +16,7 @@ import time
 
 import h5py
 import numpy as np
+import options
 import runs
 
 HERE = pathlib.Path(__file__).parent
@@ -93,21 +93,15 @@ def row(problem):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="bench --dim 3", description=__doc__.splitlines()[0])
-    parser.add_argument("--dim", type=int, choices=[3], help="what chooses this")
-    parser.add_argument("--cells", default="24,40", help="along an edge, by commas (default: %(default)s; 68 make a million dofs)")
-    parser.add_argument("--repeat", type=int, default=3, help="repetitions (default: %(default)s)")
-    parser.add_argument("--programs", type=pathlib.Path, default=runs.default_programs(),
-                        help="folder of the two programs, which are then not built")
-    arguments = parser.parse_args()
+    arguments = options.space(sys.argv[1:])
     runs.FOLDER.mkdir(parents=True, exist_ok=True)
     print(f"{time.strftime('%Y-%m-%d')}, {runs.machine()}. Medians of {arguments.repeat}, times in s, 2 ranks.\n")
     heads = ["problem", "dofs", "conditions", "interface", "whole run", "CG + GAMG", "ratio", "µs a dof and rank",
              "memory, GB", "iterations", "of GAMG"]
     print("| " + " | ".join(heads) + " |")
     print("|---|" + "--:|" * (len(heads) - 1))
-    for cells in arguments.cells.split(","):
-        for problem in measure(int(cells), arguments):
+    for cells in arguments.cells:
+        for problem in measure(cells, arguments):
             print("| " + " | ".join(map(str, row(problem))) + " |", flush=True)
 
 

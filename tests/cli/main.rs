@@ -8,6 +8,7 @@
 
 mod command_line;
 mod report;
+mod scripts;
 #[path = "../support/mod.rs"]
 mod support;
 mod test_script;
