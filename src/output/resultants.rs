@@ -178,7 +178,7 @@ fn is_parting(point: &ContactPoint<u32>, state: &ContactState) -> bool {
 /// What a condition that prescribes displacements exerts on the bodies.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reaction {
-    /// The condition: its kind, its number among those, and where it holds.
+    /// The condition: its kind, its number among those, where it holds, and which others hold a part of it.
     pub support: String,
     /// What acts on the bodies.
     #[serde(flatten)]

@@ -50,9 +50,14 @@ impl Loads {
     ) -> Result<Self, InputError> {
         let loadings = scene.loadings();
         let mut all = Vec::with_capacity(loadings.len());
+        let mut names = Vec::new();
         let absent = presence::bodies(scene);
         for (k, loading) in loadings.iter().enumerate() {
             let supports = supports::supports(scene, loading, &bodies.mesh, topology)?;
+            if k == 0 {
+                names = supports.names(supports::names(scene, loading, &bodies.mesh));
+            }
+            let supports = supports.rows;
             let (forces, initial) = loads::forces(scene, loading, bodies, topology, materials)?;
             all.push((supports, forces, initial));
             if let (Some(absent), Some(loads)) = (absent.get(k), all.last_mut()) {
@@ -88,7 +93,7 @@ impl Loads {
         let forces = (loaded.iter().copied().zip(at_loaded(&all[0].1))).collect();
         let (supports, _, initial_stress) = all.swap_remove(0);
         Ok(Self {
-            names: supports::names(scene, &loadings[0], &bodies.mesh),
+            names,
             steps,
             forces,
             supports,

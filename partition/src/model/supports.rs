@@ -1,6 +1,6 @@
 //! Γ_u and Γ_o: what is prescribed at each node, as orthonormal rows.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::surface::Surface;
 use super::{Support, groups};
@@ -48,13 +48,37 @@ fn on_axis(scene: &Scene, mesh: &Mesh) -> impl Iterator<Item = u32> {
     nodes.filter_map(move |(node, x)| (is_ring && x[0] == 0.0).then_some(node))
 }
 
-/// The supports of a loading of `scene`, ascending by node, the rows of one node orthonormal.
+/// The supports of a loading.
+pub(super) struct Supports {
+    /// Ascending by node, the rows of one node orthonormal.
+    pub rows: Vec<Support>,
+    /// For every condition those before it that hold a part of what it prescribes: at nodes that both have, the force
+    /// along the direction of the earlier one is counted as that one's.
+    holders: Vec<BTreeSet<usize>>,
+}
+
+impl Supports {
+    /// Says of the `names` of the conditions what others hold of theirs.
+    pub fn names(&self, names: Vec<String>) -> Vec<String> {
+        let short = |holder: &usize| names[*holder].split(" on ").next().unwrap_or_default();
+        let named = names.iter().zip(&self.holders).map(|(name, holders)| {
+            let holders: Vec<&str> = holders.iter().map(short).collect();
+            match holders.is_empty() {
+                true => name.clone(),
+                false => format!("{name}, without what {} holds of it", holders.join(" or ")),
+            }
+        });
+        named.collect()
+    }
+}
+
+/// The supports of a loading of `scene`.
 pub(super) fn supports(
     scene: &Scene,
     loading: &Loading,
     mesh: &Mesh,
     topology: &Topology,
-) -> Result<Vec<Support>, InputError> {
+) -> Result<Supports, InputError> {
     let names = names(scene, loading, mesh);
     let mut numbered = names.iter().enumerate();
     let mut rows: BTreeMap<u32, Vec<Row>> = BTreeMap::new();
@@ -91,7 +115,10 @@ pub(super) fn supports(
     if let Some((axis, _)) = numbered.next() {
         on_axis(scene, mesh).for_each(|node| add(node, [1.0, 0.0, 0.0], 0.0, axis));
     }
-    let mut supports = Vec::new();
+    let mut supports = Supports {
+        rows: Vec::new(),
+        holders: vec![BTreeSet::new(); names.len()],
+    };
     for (node, rows) in rows {
         orthonormal(node, mesh, &names, &rows, &mut supports)?;
     }
@@ -117,14 +144,19 @@ fn corner_normals(surface: &Surface, node: u32, mut facets: Vec<usize>) -> Vec<[
         .collect()
 }
 
-/// Appends the orthonormal rows that say the same as `rows`: what one adds to those before it.
+/// Appends the orthonormal rows that say the same as `rows`: what one adds to those before it, which are remembered
+/// where they hold a part of it.
 fn orthonormal(
     node: u32,
     mesh: &Mesh,
     names: &[String],
     rows: &[Row],
-    supports: &mut Vec<Support>,
+    supports: &mut Supports,
 ) -> Result<(), InputError> {
+    let Supports {
+        rows: supports,
+        holders,
+    } = supports;
     let start = supports.len();
     let scale = rows.iter().map(|row| row.value.abs()).fold(0.0, f64::max);
     for (index, row) in rows.iter().enumerate() {
@@ -133,6 +165,10 @@ fn orthonormal(
         for _ in 0..2 {
             for before in &supports[start..] {
                 let overlap = dot(direction, before.direction);
+                let holder = before.condition as usize;
+                if overlap.abs() > PARALLEL && holder != row.condition {
+                    holders[row.condition].insert(holder);
+                }
                 direction = advance(direction, -overlap, before.direction);
                 value -= overlap * before.value;
             }

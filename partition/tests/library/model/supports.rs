@@ -60,6 +60,44 @@ fn displacements_that_agree_are_one_and_those_that_dont_are_named() {
 }
 
 #[test]
+fn a_condition_is_named_with_those_that_hold_a_part_of_it() {
+    let left = "[[displacement]]\non = 'b left'\n";
+    let bottom = "[[displacement]]\non = 'b bottom'\n";
+    let names = |blocks: &Blocks, text: &str| blocks.model(text).unwrap().support_names;
+    // The corner belongs to both; along perpendicular directions nothing is shared.
+    let rollers = names(&square(), &format!("{left}x = 0\n{bottom}y = 0\n"));
+    assert_eq!(
+        rollers,
+        [
+            "displacement[1] on 'b left'",
+            "displacement[2] on 'b bottom'"
+        ]
+    );
+    let clamped = names(&square(), &format!("{left}x = 0\n{bottom}x = 0\ny = 0\n"));
+    assert_eq!(clamped[0], "displacement[1] on 'b left'");
+    assert_eq!(
+        clamped[1],
+        "displacement[2] on 'b bottom', without what displacement[1] holds of it"
+    );
+    // Bilateral sides that meet at an angle share its direction in part.
+    let skewed = square().moved(|[x, y, z]| [x + 0.5 * y, y, z]);
+    let sides = "[[bilateral]]\non = 'b left'\n[[bilateral]]\non = 'b bottom'\n";
+    assert_eq!(
+        names(&skewed, sides)[1],
+        "bilateral[2] on 'b bottom', without what bilateral[1] holds of it"
+    );
+    assert_eq!(names(&square(), sides)[1], "bilateral[2] on 'b bottom'");
+    // Conditions on other sides share no node.
+    let opposite =
+        "[[displacement]]\non = 'b left'\nx = 0\n[[displacement]]\non = 'b right'\nx = 0\ny = 0\n";
+    assert!(
+        names(&square(), opposite)
+            .iter()
+            .all(|name| !name.contains("without"))
+    );
+}
+
+#[test]
 fn bilateral_prescribes_the_normal_of_an_inclined_side() {
     let (c, s) = (0.6, 0.8);
     let blocks = square().moved(|[x, y, z]| [c * x - s * y, s * x + c * y, z]);
