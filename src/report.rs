@@ -103,9 +103,13 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         ));
     }
     if certificate.equilibrium_of_load > 1e-6 {
+        let why = match totals.status() {
+            Status::Converged => "the scene is badly conditioned",
+            Status::NotConverged => "the sweeps haven't converged",
+        };
         warnings.push(format!(
-            "the forces on the nodes are balanced to {:.1e} of the largest load only: the scene is \
-             badly conditioned, and stresses and contact forces are no better than that",
+            "the forces on the nodes are balanced to {:.1e} of the largest load only: {why}, and stresses and contact \
+             forces are no better than that",
             certificate.equilibrium_of_load
         ));
     }

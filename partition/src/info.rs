@@ -140,7 +140,9 @@ impl fmt::Display for Info {
         let catalog = &self.problem.catalog;
         let entry =
             |f: &mut fmt::Formatter<'_>, name: &str, value: &str| writeln!(f, "{name:<13} {value}");
-        entry(f, "title", &catalog.title)?;
+        if !catalog.title.is_empty() {
+            entry(f, "title", &catalog.title)?;
+        }
         let size = format!(
             "{}, {:.1} MB, version {VERSION} of the format",
             self.name,

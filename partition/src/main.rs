@@ -193,7 +193,9 @@ fn output(args: &CommandLine, stem: &Path) -> PathBuf {
 
 /// Prints what the problem file holds, which contacts were `found`, and what to do with it.
 fn report(problem: &Problem, found: &[String], output: &Path) {
-    say(&format!("title         {}", problem.catalog.title));
+    if !problem.catalog.title.is_empty() {
+        say(&format!("title         {}", problem.catalog.title));
+    }
     say(&problem.summary().to_string());
     if !problem.catalog.solver.is_empty() {
         say(&format!("settings      {}", problem.catalog.solver));

@@ -3,7 +3,7 @@
 mod abaqus;
 pub mod bounding_box;
 mod curve;
-mod foreign;
+pub mod foreign;
 pub mod gmsh;
 mod measure;
 pub mod topology;
@@ -66,6 +66,6 @@ fn name_of_dim(name: &str, dim: usize) -> String {
 pub struct Group {
     /// Dimension of its members.
     pub dim: usize,
-    /// Indices of cells (`dim` that of the mesh), facets (one less) or nodes (0, of curves in space, too), ascending.
+    /// Indices of cells (`dim` that of the mesh), facets (one less) or nodes (0, and 1 in space: those of curves), ascending.
     pub members: Vec<u32>,
 }

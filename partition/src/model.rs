@@ -164,7 +164,7 @@ impl Model {
         };
         let all: Vec<&str> = declared.iter().map(|of| &of.table[..]).collect();
         diagnostics.check_repeated_contacts(&presence::contacts(scene, &all))?;
-        warnings.extend(diagnostics.warnings());
+        warnings.extend(diagnostics.warnings()?);
         let prescribed_subdomains = (scene.subdomains.as_ref())
             .map(|names| bodies::prescribed_subdomains(&bodies.mesh, names))
             .transpose()?;

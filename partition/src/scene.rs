@@ -21,6 +21,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::error::InputError;
+use crate::mesh::foreign;
 use crate::solver::SolverSettings;
 use crate::source;
 use condition::{Bilateral, Body, Displacement, Names, Pressure, Traction};
@@ -42,6 +43,9 @@ pub struct Scene {
     /// The units that messages and pictures name.
     #[serde(default)]
     pub units: Units,
+    /// Whether loads beyond the stiffness are meant.
+    #[serde(default)]
+    pub large_strains: bool,
     /// Plane state; `None` for three dimensions.
     pub plane: Option<PlaneState>,
     /// Materials by name.
@@ -80,6 +84,15 @@ impl Scene {
     /// What is wrong with it, with line and key.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let parsed = source::text(path, "a scene in TOML").and_then(|text| Self::parse(&text));
+        let parsed =
+            parsed.map_err(
+                |error| match foreign::instead_of_scene(path, &source::head(path)) {
+                    Some(what) if path.is_file() => InputError::new(format!(
+                        "is {what}; expected a scene in TOML, whose key 'mesh' names the mesh"
+                    )),
+                    _ => error,
+                },
+            );
         let mut scene = parsed.map_err(|error| error.in_file(path))?;
         if let Some(folder) = path.parent() {
             scene.mesh = folder.join(&scene.mesh);

@@ -26,6 +26,17 @@ pub fn open(path: &Path, what: &str) -> Result<File, InputError> {
     }
 }
 
+/// The first bytes of a file, none where it can't be read, by which its format is told.
+pub fn head(path: &Path) -> Vec<u8> {
+    const LENGTH: u64 = 64;
+    let mut bytes = Vec::new();
+    if let Ok(file) = open(path, "") {
+        // What can't be read here is said by whoever reads the file.
+        let _ = file.take(LENGTH).read_to_end(&mut bytes);
+    }
+    bytes
+}
+
 /// Reads a file that somebody wrote by hand. `what` is what it should hold.
 ///
 /// # Errors

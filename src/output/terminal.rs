@@ -11,7 +11,9 @@ use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
 use contact_dd_partition::message::{ERROR, WARNING};
-use contact_dd_partition::problem::LoadStep;
+use contact_dd_partition::model::PlaneState;
+use contact_dd_partition::problem::{Catalog, LoadStep};
+use contact_dd_partition::scene::units::Units;
 use serde::Serialize;
 
 use super::bar::in_words;
@@ -160,8 +162,14 @@ pub fn sweep(line: &SweepRecord) -> String {
 }
 
 /// All that follows the sweeps: why they ended (`reason`, in words), the certificate, the timing table, what
-/// was skipped, warnings, and where the results are.
-pub fn closing(reason: &str, report: &Report, result: &Path) -> String {
+/// was skipped, warnings, and where the results are; with the units of the problem's `catalog`.
+pub fn closing(reason: &str, report: &Report, catalog: &Catalog, result: &Path) -> String {
+    let units = catalog.units;
+    // Around an axis forces are those of the whole ring.
+    let dim = match catalog.plane {
+        Some(PlaneState::Axisymmetric) => 3,
+        _ => catalog.dim,
+    };
     let style = match report.status {
         Status::Converged => CONVERGED,
         Status::NotConverged => ERROR,
@@ -183,13 +191,16 @@ pub fn closing(reason: &str, report: &Report, result: &Path) -> String {
     }
     if let Some(FrictionOfStep { friction, .. }) = report.friction {
         lines.push(format!(
-            "friction     {} conditions stick, {} slip; work {:.4e}",
-            friction.sticking, friction.slipping, friction.dissipated_work
+            "friction     {} conditions stick, {} slip; work {:.4e} {}",
+            friction.sticking,
+            friction.slipping,
+            friction.dissipated_work,
+            units.work(dim)
         ));
     }
     lines.push(String::new());
-    lines.extend(steps(&report.steps));
-    lines.extend(resultants::lines(&report.resultants));
+    lines.extend(steps(&report.steps, units));
+    lines.extend(resultants::lines(&report.resultants, units, dim));
     lines.push(String::new());
     lines.extend(timing::lines(&report.per_rank));
     lines.push(String::new());
@@ -207,14 +218,15 @@ pub fn closing(reason: &str, report: &Report, result: &Path) -> String {
 }
 
 /// A line a load step; nothing where there is none.
-fn steps(steps: &[StepReport]) -> Vec<String> {
+fn steps(steps: &[StepReport], units: Units) -> Vec<String> {
     if steps.is_empty() {
         return Vec::new();
     }
     let has_friction = steps[0].friction.is_some();
     let slipping = if has_friction { "  slipping" } else { "" };
+    let pressure = format!("pressure {}", units.stress());
     let head = format!(
-        " step        time    sweeps    active{slipping}      pressure   equilibrium  name"
+        " step        time    sweeps    active{slipping}  {pressure:>12}   equilibrium  name"
     );
     let line = |(k, step): (usize, &StepReport)| {
         let contacts = step.resultants.contacts.iter();

@@ -214,7 +214,7 @@ impl<'a> RunLog<'a> {
         outputs.finish(totals, &report)?;
         self.bar.finish();
         let reason = reason(totals);
-        self.say(|| terminal::closing(&reason, &report, &self.settings.output));
+        self.say(|| terminal::closing(&reason, &report, totals.catalog, &self.settings.output));
         for warning in &report.warnings {
             match self.voice {
                 Some(LogFormat::Text) => {}

@@ -53,9 +53,9 @@ impl Summary<'_> {
     fn sizes_of_groups(&self) -> String {
         let sizes = self.groups();
         let words = [
-            (1..=1, "single"),
-            (2..=2, "in pairs"),
-            (3..=usize::MAX, "larger"),
+            (1..=1, "of a single one"),
+            (2..=2, "of two"),
+            (3..=usize::MAX, "of three or more"),
         ];
         let words = words.map(|(sought, word)| {
             let count = sizes.iter().filter(|&size| sought.contains(size)).count();
@@ -64,7 +64,7 @@ impl Summary<'_> {
         let words: Vec<String> = words.into_iter().flatten().collect();
         match words.is_empty() {
             true => "none".into(),
-            false => words.join(", "),
+            false => format!("{} subdomains joined by contact", words.join(", ")),
         }
     }
 }
@@ -90,7 +90,7 @@ impl fmt::Display for Summary<'_> {
         let fronts = work.fronts.iter().map(|f| f.eliminated + f.kept);
         writeln!(
             f,
-            "hierarchy     {} merges, {:.3e} flops, largest front {} dofs, halves {:.3}",
+            "hierarchy     {} merges, {:.3e} flops, largest front {} dofs; the costliest part takes {:.3} times the mean",
             fronts.len(),
             work.of_fronts(),
             fronts.max().unwrap_or(0),

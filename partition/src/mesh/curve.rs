@@ -39,9 +39,9 @@ impl Mesh {
         }
         for group in self.groups.values_mut() {
             let new = match group.dim {
-                0 => &new_node,
                 dim if dim == self.dim => &new_cell,
-                _ => continue,
+                dim if dim + 1 == self.dim => continue,
+                _ => &new_node,
             };
             let members = group.members.iter_mut();
             members.for_each(|member| *member = new[*member as usize]);

@@ -52,7 +52,7 @@ fn read_unnamed(path: &Path) -> Result<Mesh, InputError> {
         .map_err(unreadable)?;
     let first = b"$MeshFormat";
     if !bytes.windows(first.len()).any(|w| w == first) {
-        return Err(foreign::refusal(path));
+        return Err(foreign::refusal(path, &bytes));
     }
     file.read_to_end(&mut bytes).map_err(unreadable)?;
     parse(&bytes)
@@ -119,7 +119,7 @@ fn contents(bytes: &[u8]) -> Result<Content, InputError> {
     ] {
         if empty {
             return Err(InputError::new(format!(
-                "the mesh is empty, it has no ${section}; expected one that gmsh -2 has made of a geometry"
+                "the mesh is empty, it has no ${section}; expected one that gmsh -2, in space gmsh -3, has made of a geometry"
             )));
         }
     }

@@ -33,11 +33,14 @@ pub(super) struct Diagnostics<'a> {
 
 impl Diagnostics<'_> {
     /// A warning for each.
-    pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = self.strains();
+    ///
+    /// # Errors
+    /// One that is too large to be anything else.
+    pub fn warnings(&self) -> Result<Vec<String>, InputError> {
+        let mut warnings = self.strains()?;
         warnings.extend(self.far_apart());
         warnings.extend(self.undeclared());
-        warnings
+        Ok(warnings)
     }
 
     /// The largest extent of the bodies (m).

@@ -104,6 +104,7 @@ fn find<'a>(
             match mesh.dim - group.dim {
                 0 => Members::Cells.word(),
                 1 => Members::Facets.word(),
+                _ if group.dim == 1 => "curves",
                 _ => "points",
             }
         ))),

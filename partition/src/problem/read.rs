@@ -23,6 +23,7 @@ use super::copies::NodeCopies;
 use super::{Catalog, Problem, Subdomain, SubdomainNode};
 use crate::error::InputError;
 use crate::mesh::bounding_box::BoundingBox;
+use crate::mesh::foreign;
 use crate::source;
 
 /// An open problem file whose catalog was read and checked.
@@ -31,6 +32,32 @@ pub struct ProblemFile {
     path: PathBuf,
     contents: Contents,
     catalog: Catalog,
+}
+
+/// How an HDF5 file begins.
+const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
+
+/// The error about a file that somebody wrote by hand, or a mesh, with the command that makes a problem file of it.
+fn instead_of_problem(path: &Path) -> Option<InputError> {
+    let head = source::head(path);
+    if head.starts_with(HDF5) {
+        return None;
+    }
+    let shown = path.display();
+    let is_scene = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    let message = match foreign::instead_of_scene(path, &head) {
+        _ if is_scene => format!(
+            "is a scene; expected a problem file: contact-dd-partition {shown} -o {} makes one of it",
+            path.with_extension("h5").display()
+        ),
+        Some(what) if path.extension().is_none_or(|ending| ending != "h5") => format!(
+            "is {what}; expected a problem file, which contact-dd-partition makes of a scene in TOML that names the mesh"
+        ),
+        _ => return None,
+    };
+    Some(InputError::new(message))
 }
 
 impl ProblemFile {
@@ -45,6 +72,9 @@ impl ProblemFile {
     fn open_unnamed(path: &Path) -> Result<Self, InputError> {
         // The library distinguishes few of the reasons for which a file doesn't open.
         source::open(path, "a problem file")?;
+        if let Some(error) = instead_of_problem(path) {
+            return Err(error);
+        }
         hdf5::silence_errors(true);
         // Locks fail on some network file systems, and nobody writes under this name in place.
         let file = hdf5::File::with_options()

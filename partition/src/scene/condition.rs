@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
 use super::initial::{InitialStress, Thermal};
-use super::number::{Constant, ConstantVector, Number, Vector, expected_components};
+use super::number::{Constant, ConstantVector, Number, OR_IN_SPACE, Vector, expected_components};
 
 /// Names of physical groups: one, or a list without repetition.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -245,7 +245,9 @@ impl Obstacle {
             Self::HalfSpace { point, .. } => point.dim,
             Self::Ball { center, .. } => center.dim,
             Self::Cylinder { .. } if dim == 2 => {
-                return Some("a plane scene has no cylinder; expected a circle".into());
+                return Some(format!(
+                    "a plane scene has no cylinder; expected a circle{OR_IN_SPACE}"
+                ));
             }
             Self::Cylinder { point, .. } => point.dim,
         };

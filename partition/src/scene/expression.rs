@@ -163,6 +163,9 @@ impl Parser<'_> {
             Some(found) if found.is_alphabetic() => Err(format!(
                 "expected an operator, found '{found}'; a number has no unit, a product a '*'"
             )),
+            Some(',') if self.text[self.at..].contains(|c: char| c.is_ascii_digit()) => {
+                Err("expected an operator, found ','; numbers have a decimal point".into())
+            }
             Some(found) => Err(format!("expected an operator, found '{found}'")),
         }
     }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use super::condition::{Displacement, Pressure, Traction};
 use super::contact::{Contact, Declaration, Partner};
 use super::material::{Elasticity, PlaneState};
+use super::number::OR_IN_SPACE;
 use super::place::{self, Step};
 use super::{Scene, suggest};
 use crate::error::InputError;
@@ -133,8 +134,10 @@ impl Scene {
                 Some(_) => (3, "in 2 dimensions", None),
                 None => (6, "in 3 dimensions", Some("a scene in space has none")),
             };
-            let fault = (stiffness.size() != rows)
-                .then(|| format!("expected {rows} rows of {rows} numbers {place}"));
+            let fault = (stiffness.size() != rows).then(|| {
+                let or_in_space = if rows < 6 { OR_IN_SPACE } else { "" };
+                format!("expected {rows} rows of {rows} numbers {place}{or_in_space}")
+            });
             check(at(["materials", name, "stiffness"]), fault);
             let fault = out_of_plane.and(others).map(String::from);
             check(at(["materials", name, "out_of_plane"]), fault);
@@ -249,7 +252,7 @@ fn wrong_loads(
     for (index, displacement) in displacement.iter().enumerate() {
         for (component, key) in displacement.components.iter().zip(["x", "y", "z"]) {
             let fault = component.as_ref().and_then(|number| match key {
-                "z" if dim == 2 => Some("a plane scene has no 'z'".into()),
+                "z" if dim == 2 => Some(format!("a plane scene has no 'z'{OR_IN_SPACE}")),
                 _ => number.fault(dim),
             });
             check(path("displacement", index, key), fault);

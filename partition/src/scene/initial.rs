@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use super::material::PlaneState;
-use super::number::{Constant, Number};
+use super::number::{Constant, Number, OR_IN_SPACE};
 
 /// σ_0, a number for each component (Pa).
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -20,7 +20,10 @@ impl InitialStress {
         };
         match self.0.len() == count {
             true => self.0.iter().find_map(|number| number.fault(dim)),
-            false => Some(format!("expected {count} numbers, {order}")),
+            false => {
+                let or_in_space = plane.map_or("", |_| OR_IN_SPACE);
+                Some(format!("expected {count} numbers, {order}{or_in_space}"))
+            }
         }
     }
 
@@ -43,7 +46,7 @@ impl InitialStress {
 
     /// Whether it is the same everywhere.
     pub fn is_constant(&self) -> bool {
-        self.0.iter().all(|n| matches!(n, Number::Constant(_)))
+        self.0.iter().all(Number::is_constant)
     }
 }
 

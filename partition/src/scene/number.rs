@@ -30,10 +30,17 @@ impl Number {
         }
     }
 
+    /// Whether it is the same everywhere.
+    pub fn is_constant(&self) -> bool {
+        matches!(self, Self::Constant(_))
+    }
+
     /// Why it has no value in space of `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> Option<String> {
         match self {
-            Self::Varying(expression) if dim == 2 => expression.fault_in_plane(),
+            Self::Varying(expression) if dim == 2 => {
+                (expression.fault_in_plane()).map(|fault| format!("{fault}{OR_IN_SPACE}"))
+            }
             _ => None,
         }
     }
@@ -139,7 +146,7 @@ impl TryFrom<Vec<Number>> for Vector {
         match components.len() {
             2 | 3 => Ok(Self(components)),
             count => Err(format!(
-                "a vector of {count} components; expected one for each direction of space"
+                "a vector of {count} components; expected one for each direction of space, and in numbers a decimal point"
             )),
         }
     }
@@ -173,14 +180,17 @@ impl Vector {
 
     /// Whether it is the same everywhere.
     pub fn is_constant(&self) -> bool {
-        self.0.iter().all(|n| matches!(n, Number::Constant(_)))
+        self.0.iter().all(Number::is_constant)
     }
 }
+
+/// What to do about 'plane' where a value is one of space.
+pub(super) const OR_IN_SPACE: &str = "; where the mesh is one of space, 'plane' is left out";
 
 /// What was expected of a vector.
 pub(super) fn expected_components(dim: usize) -> String {
     match dim {
-        2 => "a plane scene has vectors of two components".into(),
+        2 => format!("a plane scene has vectors of two components{OR_IN_SPACE}"),
         _ => "a scene in space has vectors of three components".into(),
     }
 }

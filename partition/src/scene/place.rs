@@ -61,13 +61,71 @@ pub fn located(text: &str, error: &Error) -> InputError {
         })
         .map(|(_, entry)| entry.path)
         .unwrap_or_default();
-    compose(text, start, &path, &with_advice(error.message(), &path))
+    // A key of the scene itself is missing before the first table.
+    let start = match is_missing && path.is_empty() {
+        true => Some(first_table(text).map_or(0, |(start, _)| start)),
+        false => start,
+    };
+    let message = with_advice(text, error.message(), &path);
+    compose(text, start, &path, &message)
+}
+
+/// Keys of the scene itself, and what each may be.
+const OF_SCENE: [(&str, &str); 5] = [
+    ("title", "\"…\""),
+    ("mesh", "\"mesh.msh\""),
+    ("units", "\"mm\""),
+    ("plane", "\"strain\""),
+    ("subdomains", "[…]"),
+];
+
+/// Where the first table stands, and its head.
+fn first_table(text: &str) -> Option<(usize, &str)> {
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        if line.trim_start().starts_with('[') {
+            return Some((start, line.trim()));
+        }
+        start += line.len();
+    }
+    None
+}
+
+/// Where a key of the scene itself belongs; nothing for a key of a table, to which `path` leads.
+fn above(text: &str, key: &str, path: &[Step]) -> String {
+    if path.is_empty() && ["materials", "bodies"].contains(&key) {
+        return format!("; expected a table [{key}.NAME] for each");
+    }
+    let known = OF_SCENE.iter().find(|(known, _)| *known == key);
+    let Some((_, value)) = known.filter(|_| path.is_empty()) else {
+        return String::new();
+    };
+    let place = match first_table(text) {
+        Some((_, head)) => format!(" above {head}"),
+        None => String::new(),
+    };
+    format!("; expected {key} = {value}{place}")
 }
 
 /// What `serde` said of the value at `path`, with the nearest known word for one that isn't known, and
 /// brackets for a table that should be a list.
-fn with_advice(message: &str, path: &[Step]) -> String {
+fn with_advice(text: &str, message: &str, path: &[Step]) -> String {
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    if let ([missing], true) = (&quoted[..], message.starts_with("missing field")) {
+        return format!(
+            "the key '{missing}' is missing{}",
+            above(text, missing, path)
+        );
+    }
+    let is_of_scene = path.len() > 1 && OF_SCENE.iter().any(|(key, _)| quoted.first() == Some(key));
+    if let (&[found, ..], true, true) = (
+        &quoted[..],
+        is_of_scene,
+        message.starts_with("unknown field"),
+    ) {
+        let belongs = above(text, found, &[]);
+        return format!("unknown key '{found}', which isn't of a table but of the scene{belongs}");
+    }
     let unknown = ["field", "variant"].map(|what| message.starts_with(&format!("unknown {what}")));
     if let ([found, known @ ..], true) = (&quoted[..], unknown.contains(&true)) {
         let word = if unknown[0] { "key" } else { "value" };

@@ -1,24 +1,120 @@
 //! The known word that an unknown one was probably meant to be.
 
-/// What other programs call what a scene has another word for, or doesn't have.
-const ELSEWHERE: [(&str, &str); 7] = [
-    ("e modulus youngs", "Young's modulus is 'young'"),
-    ("nu ν", "Poisson's ratio is 'poisson'"),
+/// Words of other programs, the key that means the same in a scene, and what to do where that key isn't known.
+const ELSEWHERE: [(&str, Option<&str>, &str); 23] = [
     (
-        "density rho gravity weight acceleration",
-        "weight is a body's body_force = [0.0, -density*gravity]",
+        "e modulus youngs emod young_modulus youngs_modulus elastic_modulus elasticity",
+        Some("young"),
+        "Young's modulus is a material's 'young'",
     ),
     (
-        "load loads force forces",
+        "nu ν pr poissons poisson_ratio poissons_ratio",
+        Some("poisson"),
+        "Poisson's ratio is a material's 'poisson'",
+    ),
+    (
+        "g shear shear_modulus k bulk bulk_modulus lambda lame",
+        None,
+        "of a material the scene has 'young' and 'poisson': E = 2 G (1 + ν) = 3 K (1 − 2 ν)",
+    ),
+    (
+        "ex ey ez exx eyy ezz e1 e2 e3 gxy gyz gxz g12 g13 g23 nuxy nuyz nuxz nu12 nu13 nu23 orthotropic",
+        Some("stiffness"),
+        "a material that isn't the same in all directions has a matrix 'stiffness'",
+    ),
+    (
+        "yield yield_stress sigma_y plastic plasticity hardening",
+        None,
+        "materials are linearly elastic",
+    ),
+    (
+        "density rho ρ weight acceleration gravity self_weight",
+        None,
+        "weight is a body's body_force = [0.0, -density*gravity], in space with three numbers",
+    ),
+    (
+        "alpha α cte expansion thermal_expansion temperature",
+        Some("thermal"),
+        "heat is a body's thermal = { expansion = …, temperature = … }",
+    ),
+    (
+        "prestress insitu in_situ sigma0",
+        Some("initial_stress"),
+        "stress before loading is a body's 'initial_stress'",
+    ),
+    (
+        "load loads force forces cload dload neumann",
+        Some("body_force"),
         "loads are 'pressure', 'traction' and a body's 'body_force'",
     ),
     (
-        "support supports fixed fix boundary constraint dirichlet",
+        "support supports fixed fix boundary constraint constraints bc spc dirichlet encastre",
+        None,
         "supports are 'displacement' and 'bilateral'",
     ),
-    ("friction mu μ", "contacts are without friction"),
+    (
+        "symmetry roller rollers",
+        Some("bilateral"),
+        "what slides along a plane, as at one of symmetry, is [[bilateral]]",
+    ),
+    (
+        "mu μ friction friction_coefficient coefficient cof fric",
+        Some("friction"),
+        "friction is the key 'friction' of a [[contact]]",
+    ),
+    (
+        "master slave primary secondary target source side_a side_b surface_a surface_b",
+        Some("sides"),
+        "a [[contact]] has two 'sides'",
+    ),
+    (
+        "clearance offset initial_gap adjust",
+        Some("gap"),
+        "a gap in place of the meshes' is the key 'gap' of a [[contact]]",
+    ),
+    (
+        "penalty penalty_stiffness contact_stiffness normal_stiffness augmented kn",
+        None,
+        "contact is exact: there is no penalty to choose",
+    ),
+    (
+        "tie tied bonded glue",
+        None,
+        "bodies whose meshes share nodes are tied",
+    ),
+    (
+        "set nset elset group surface region location where boundaries",
+        Some("on"),
+        "where a condition holds is its key 'on'",
+    ),
+    (
+        "magnitude amount p",
+        Some("value"),
+        "how large a load is is its key 'value'",
+    ),
+    (
+        "tol eps epsilon",
+        Some("tolerance"),
+        "the tolerance is the key 'tolerance' of [solver]",
+    ),
+    (
+        "iterations max_iterations maxiter max_iter",
+        Some("max_sweeps"),
+        "the most sweeps are the key 'max_sweeps' of [solver]",
+    ),
+    (
+        "dim dimension type analysis",
+        Some("plane"),
+        "the scene's key 'plane' is \"strain\", \"stress\" or \"axisymmetric\"; in space it has none",
+    ),
+    (
+        "3d space solid",
+        None,
+        "in space the key 'plane' is left out",
+    ),
     (
         "thickness",
+        None,
         "forces are those of a thickness of 1, and all is in proportion to it",
     ),
 ];
@@ -37,6 +133,9 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 pub fn hint<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     let lower = word.to_lowercase();
     let candidates: Vec<&str> = candidates.into_iter().collect();
+    let elsewhere =
+        (ELSEWHERE.iter()).find(|(words, ..)| words.split(' ').any(|word| word == lower));
+    let meant = elsewhere.and_then(|(_, key, _)| key.filter(|key| candidates.contains(key)));
     let like = |candidate: &&str| {
         let known = candidate.to_lowercase();
         let holds = |a: &str, b: &str| b.chars().count() > 2 && a.contains(b);
@@ -44,13 +143,12 @@ pub fn hint<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> St
             || holds(&lower, &known)
             || distance(&lower, candidate) <= word.chars().count().div_ceil(3)
     };
-    if let Some(near) = nearest(word, candidates.into_iter().filter(like)) {
-        return format!("; did you mean '{near}'?");
+    let near = meant.or_else(|| nearest(word, candidates.into_iter().filter(like)));
+    match (near, elsewhere) {
+        (Some(near), _) => format!("; did you mean '{near}'?"),
+        (None, Some((.., advice))) => format!("; {advice}."),
+        (None, None) => String::new(),
     }
-    (ELSEWHERE.iter())
-        .find(|(words, _)| words.split(' ').any(|word| word == lower))
-        .map(|(_, advice)| format!("; {advice}."))
-        .unwrap_or_default()
 }
 
 /// [`hint`] and all that is known.
@@ -99,5 +197,44 @@ mod tests {
         let other = hint("force", ["title", "mesh"]);
         assert!(other.starts_with("; loads are 'pressure'"), "{other}");
         assert!(hint("E", ["young", "on"]).contains("'young'"));
+    }
+
+    #[test]
+    fn words_of_other_programs_are_answered_with_the_key_here_or_its_place() {
+        let material = &["young", "poisson", "stiffness", "out_of_plane"][..];
+        let contact = &[
+            "name", "sides", "between", "gap", "friction", "cohesion", "tresca",
+        ][..];
+        let body = &["material", "body_force", "initial_stress", "thermal"][..];
+        for (word, known, expected) in [
+            ("E", material, "did you mean 'young'"),
+            ("nu", material, "did you mean 'poisson'"),
+            ("mu", contact, "did you mean 'friction'"),
+            ("mu", material, "'friction' of a [[contact]]"),
+            ("friction", body, "'friction' of a [[contact]]"),
+            ("rho", material, "body_force = [0.0, -density*gravity]"),
+            ("density", body, "body_force = [0.0, -density*gravity]"),
+            ("alpha", body, "did you mean 'thermal'"),
+            ("E1", material, "did you mean 'stiffness'"),
+            ("master", contact, "did you mean 'sides'"),
+            ("clearance", contact, "did you mean 'gap'"),
+            ("penalty", contact, "no penalty"),
+            ("nset", &["on", "value"], "did you mean 'on'"),
+            ("3d", &["strain", "stress"], "'plane' is left out"),
+        ] {
+            let said = hint(word, known.iter().copied());
+            assert!(said.contains(expected), "{word}: {said}");
+        }
+    }
+
+    #[test]
+    fn every_word_of_other_programs_is_answered_once() {
+        let mut words: Vec<&str> = ELSEWHERE
+            .iter()
+            .flat_map(|(words, ..)| words.split(' '))
+            .collect();
+        words.sort_unstable();
+        let twice = words.windows(2).find(|pair| pair[0] == pair[1]);
+        assert_eq!(twice, None);
     }
 }

@@ -23,7 +23,8 @@ pub(super) fn described(text: &str, start: usize, error: &Error) -> String {
     let is_repeated = error.message().contains("duplicate key");
     let advice = match line.trim().trim_start_matches('[').split_once(']') {
         Some((table, _)) if is_repeated => double_brackets(table.trim()),
-        _ => line.split_once('=').and_then(|(key, value)| {
+        _ => decimal_comma(line).or_else(|| {
+            let (key, value) = line.split_once('=')?;
             let value = value.split('#').next().unwrap_or_default();
             of_value(key.trim(), value.trim())
         }),
@@ -49,6 +50,24 @@ pub(super) fn double_brackets(table: &str) -> Option<String> {
         .then(|| format!("expected [[{table}]] in double brackets, once for each"))
 }
 
+/// Advice for a number with a decimal comma behind any `key =` of the line, as in a table `{ … }`.
+fn decimal_comma(line: &str) -> Option<String> {
+    let line = line.split('#').next().unwrap_or_default();
+    line.match_indices('=').find_map(|(at, _)| {
+        let is_of_key = |c: char| c.is_alphanumeric() || "_-".contains(c);
+        let before = line[..at].trim_end();
+        let key = before.trim_end_matches(is_of_key).len();
+        let (whole, behind) = line[at + 1..].trim_start().split_once(',')?;
+        whole.parse::<f64>().ok()?;
+        let end = behind.find(|c: char| !(c.is_ascii_digit() || "eE+-".contains(c)));
+        let digits = &behind[..end.unwrap_or(behind.len())];
+        let pointed = format!("{whole}.{digits}");
+        let is_number =
+            digits.starts_with(|c: char| c.is_ascii_digit()) && pointed.parse::<f64>().is_ok();
+        is_number.then(|| format!("expected a decimal point: {} = {pointed}", &before[key..]))
+    })
+}
+
 /// Advice for what stands behind `key =`.
 fn of_value(key: &str, value: &str) -> Option<String> {
     if matches!(value, "True" | "TRUE" | "False" | "FALSE") {
@@ -60,10 +79,6 @@ fn of_value(key: &str, value: &str) -> Option<String> {
     let is_number = number.parse::<f64>().is_ok();
     let mut rest = rest.trim_start().chars();
     match (rest.next()?, rest.next()) {
-        (',', Some(digit)) if is_number && digit.is_ascii_digit() => {
-            let pointed = value.replacen(',', ".", 1);
-            Some(format!("expected a decimal point: {key} = {pointed}"))
-        }
         (letter, _) if is_number && (letter.is_alphabetic() || "%°".contains(letter)) => {
             Some(format!("a number has no unit: {key} = {number}"))
         }
@@ -87,6 +102,15 @@ mod tests {
             ("young = 210e9Pa", "a number has no unit: young = 210e9"),
             ("young = 210 GPa # E", "a number has no unit: young = 210"),
             ("young = 5,2e9", "expected a decimal point: young = 5.2e9"),
+            (
+                "m = { young = 5.2e9, poisson = 0,18 }",
+                "expected a decimal point: poisson = 0.18",
+            ),
+            (
+                "m = { young = 5,2e9, poisson = 0.18 }",
+                "expected a decimal point: young = 5.2e9",
+            ),
+            ("poisson = -0,18 # granite", "point: poisson = -0.18"),
             ("young = 5.2*10^9", "expected quotes: young = \"5.2*10^9\""),
             ("value = sin(x)", "expected quotes: value = \"sin(x)\""),
             ("on = top", "expected quotes: on = \"top\""),

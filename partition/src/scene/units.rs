@@ -37,6 +37,19 @@ impl Units {
         }
     }
 
+    /// That of work, in the plane per thickness.
+    pub fn work(self, dim: usize) -> &'static str {
+        match dim {
+            2 => self.pick("J/m", "mJ/mm"),
+            _ => self.pick("J", "mJ"),
+        }
+    }
+
+    /// That of forces per volume.
+    pub fn body_force(self) -> &'static str {
+        self.pick("N/m³", "N/mm³")
+    }
+
     /// That of stresses.
     pub fn stress(self) -> &'static str {
         self.pick("Pa", "MPa")

@@ -143,7 +143,10 @@ fn nothing_but_a_problem_file_is_told_of() {
     let written = program(&["--example", "patch", "--write-scene", "."], dir.path());
     assert!(written.status.success(), "{written:?}");
     for (file, word) in [
-        ("scene.toml", "isn't a whole HDF5 file"),
+        (
+            "scene.toml",
+            "contact-dd-partition scene.toml -o scene.h5 makes one",
+        ),
         ("nothing.h5", "expected a problem file"),
         (".", "it isn't a file; expected a problem file"),
     ] {

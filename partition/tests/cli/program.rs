@@ -67,6 +67,28 @@ fn the_program_says_how_the_sides_of_a_contact_are_paired() {
 }
 
 #[test]
+fn what_is_printed_of_a_problem_is_in_words_and_has_no_empty_line() {
+    let dir = tempfile::tempdir().unwrap();
+    let written = program(&["--example", "patch", "--write-scene", "."], dir.path());
+    assert!(written.status.success(), "{written:?}");
+    let path = dir.path().join("scene.toml");
+    let scene = std::fs::read_to_string(&path).unwrap();
+    let untitled: Vec<&str> = scene
+        .lines()
+        .filter(|line| !line.starts_with("title"))
+        .collect();
+    std::fs::write(&path, untitled.join("\n")).unwrap();
+    for args in [&["scene.toml", "-n", "4"][..], &["--info", "scene.h5"]] {
+        let output = program(args, dir.path());
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(said.contains("subdomains joined by contact"), "{said}");
+        assert!(said.contains("the costliest part takes 1."), "{said}");
+        let is_empty = |line: &str| line.split_whitespace().count() == 1;
+        assert!(!said.lines().any(is_empty), "{said}");
+    }
+}
+
+#[test]
 fn the_program_lists_every_example() {
     let output = program(&["--list-examples"], Path::new("."));
     let list = String::from_utf8(output.stdout).unwrap();

@@ -66,6 +66,15 @@ fn what_is_wrong_between_scene_and_mesh_is_said_with_the_scene() {
 }
 
 #[test]
+fn a_scene_of_any_name_is_read() {
+    let dir = scene();
+    let path = dir.path();
+    fs::rename(path.join("scene.toml"), path.join("scene.geo")).unwrap();
+    let made = (program().args(["scene.geo", "-n", "2"]).current_dir(path)).output();
+    assert!(made.unwrap().status.success());
+}
+
+#[test]
 fn a_wrong_file_is_refused_with_what_was_expected() {
     let dir = scene();
     let mut command = program();
@@ -73,8 +82,20 @@ fn a_wrong_file_is_refused_with_what_was_expected() {
     let made = command.args(args).current_dir(dir.path()).output().unwrap();
     assert!(made.status.success(), "{made:?}");
     fs::write(dir.path().join("block.geo"), "Point(1) = {0, 0, 0};").unwrap();
-    let expected = "isn't UTF-8 text; expected a scene in TOML";
-    refused(dir.path(), &["problem.h5"], expected);
+    fs::copy(dir.path().join("mesh.msh"), dir.path().join("mesh.txt")).unwrap();
+    for (file, what) in [
+        (
+            "problem.h5",
+            "is an HDF5 file, perhaps a problem file, which contact-dd-mpi solves",
+        ),
+        ("mesh.msh", "is a mesh in Gmsh's format"),
+        ("mesh.txt", "is a mesh in Gmsh's format"),
+        ("block.geo", "is a Gmsh geometry"),
+    ] {
+        let expected = format!("{file}: {what}; expected a scene in TOML, whose key 'mesh'");
+        refused(dir.path(), &[file], &expected);
+    }
+    refused(dir.path(), &["nothing.geo"], "nothing.geo: can't be read");
     let path = dir.path().join("scene.toml");
     let text = fs::read_to_string(&path).unwrap();
     let wanted = "expected a mesh in Gmsh's format";

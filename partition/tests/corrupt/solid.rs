@@ -105,7 +105,7 @@ on = "bottom" => on = "botom"
 on = "top" => on = "corner"
     'corner' is a group of points; expected one of facets
 on = "top" => on = "edge"
-    'edge' is a group of points; expected one of facets
+    'edge' is a group of curves; expected one of facets
 on = "top" => on = "upper body"
     'upper body' is a group of cells; expected one of facets
 on = "top"\nvalue = "1e6*(1-x*y)" => on = "top"\nvalue = "1/(x-x)"

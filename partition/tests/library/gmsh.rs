@@ -132,6 +132,33 @@ fn what_is_wrong_with_a_file_is_said_with_its_place() {
     }
 }
 
+/// What is said of a square of triangles in the plane x = 0, with this line among the physical names.
+fn upright(name: &str) -> String {
+    let names = match name.is_empty() {
+        true => String::new(),
+        false => format!("$PhysicalNames\n1\n{name}\n$EndPhysicalNames\n"),
+    };
+    let text = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{names}$Nodes\n4\n1 0 0 0\n2 0 1 0\n3 0 1 1\n4 0 0 1\n$EndNodes\n\
+         $Elements\n2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 4\n$EndElements\n"
+    );
+    gmsh::parse(text.as_bytes()).unwrap_err().to_string()
+}
+
+#[test]
+fn a_surface_in_space_is_said_to_have_no_volume() {
+    assert!(
+        upright("").contains(
+            "gmsh -3, not gmsh -2, makes them, and a file holds those of a Physical Volume"
+        )
+    );
+    let said = upright("3 7 \"die\"");
+    assert!(
+        said.contains("the group 'die' of volumes is empty: gmsh -3"),
+        "{said}"
+    );
+}
+
 #[test]
 fn every_truncated_file_is_an_error() {
     for bytes in FORMS.map(version_4_1).iter().chain(&FORMS.map(version_2_2)) {

@@ -290,9 +290,42 @@ fn a_body_is_what_hangs_together() {
         .iter()
         .map(|b| b.name.as_str())
         .collect();
-    assert_eq!(names, ["die #1", "plate", "die #2"]);
+    assert_eq!(names.len(), 3);
+    assert_eq!(names[1], "plate");
+    // The point that tells a piece lies in one of its cells, and of no other.
+    for (body, number) in [(0, 1), (2, 2)] {
+        let point = names[body]
+            .strip_prefix(&format!("die #{number} at ("))
+            .unwrap();
+        let point: Vec<f64> = (point.strip_suffix(')').unwrap().split(", "))
+            .map(|x| x.parse().unwrap())
+            .collect();
+        let holds = |cell: usize| {
+            let at = (model.mesh.cells.nodes_of(cell).iter())
+                .map(|&node| model.mesh.points[node as usize]);
+            let around = at.fold(
+                [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
+                |[low, high], x| {
+                    [
+                        [0, 1].map(|k| x[k].min(low[k])),
+                        [0, 1].map(|k| x[k].max(high[k])),
+                    ]
+                },
+            );
+            (0..2).all(|k| around[0][k] < point[k] && point[k] < around[1][k])
+        };
+        let within: Vec<usize> = (0..model.mesh.cells.len())
+            .filter(|&cell| holds(cell))
+            .collect();
+        assert!(!within.is_empty());
+        assert!(
+            within.iter().all(|cell| cell / 16 == body),
+            "{} {within:?}",
+            names[body]
+        );
+    }
 
     let glued = Decomposition::of_cells(&model, vec![0; model.mesh.cells.len()], 1);
     let message = Problem::new(&model, &glued).unwrap_err().to_string();
-    says(&message, "\"die #1\" and \"plate\"");
+    says(&message, "\"die #1 at ( … and \"plate\"");
 }

@@ -1,12 +1,14 @@
 //! The tables of what contacts and supports carry.
 
+use contact_dd_partition::scene::units::Units;
+
 use crate::output::resultants::{ContactResultant, Reaction, Resultant, Resultants};
 
 /// Most lines that are printed of a table; the report has all.
 const LINES: usize = 12;
 
-/// Contacts and reactions.
-pub(super) fn lines(resultants: &Resultants) -> Vec<String> {
+/// Contacts and reactions, of a problem whose forces are those of `dim` dimensions.
+pub(super) fn lines(resultants: &Resultants, units: Units, dim: usize) -> Vec<String> {
     let Resultants {
         contacts,
         reactions,
@@ -23,6 +25,12 @@ pub(super) fn lines(resultants: &Resultants) -> Vec<String> {
         true => "force x      force y      force z",
         false => "force x      force y     moment z",
     };
+    let force = units.force(dim);
+    let last = if in_space { force } else { units.moment(dim) };
+    let of_forces = format!(
+        "{:width$} {:>12} {force:>12} {force:>12} {last:>12}",
+        "", ""
+    );
     let forces = |resultant: &Resultant| {
         let [x, y, z] = resultant.force;
         let last = if in_space { z } else { resultant.moment[2] };
@@ -47,18 +55,22 @@ pub(super) fn lines(resultants: &Resultants) -> Vec<String> {
     };
     let slipping = if has_friction { "   slipping" } else { "" };
     let head = format!("{title:<width$}       closed      {columns}     pressure{slipping}");
+    let head = format!("{head}\n{of_forces} {:>12}", units.stress());
     let mut lines = table(head, contacts, contact);
-    let head = format!("{:<width$}                   {columns}", "support");
+    let head = format!(
+        "{:<width$}                   {columns}\n{of_forces}",
+        "support"
+    );
     lines.extend(table(head, reactions, support));
     lines
 }
 
-/// The head and a line for each of `all`; nothing where there is none.
+/// The lines of the head and a line for each of `all`; nothing where there is none.
 fn table<T>(head: String, all: &[T], line: impl Fn(&T) -> String) -> Vec<String> {
     if all.is_empty() {
         return Vec::new();
     }
-    let mut lines = vec![head];
+    let mut lines: Vec<String> = head.lines().map(str::to_owned).collect();
     lines.extend(all.iter().take(LINES).map(line));
     if let Some(rest @ 1..) = all.len().checked_sub(LINES) {
         lines.push(format!("… and {rest} more in the report"));
@@ -77,9 +89,9 @@ mod tests {
             contacts: vec![ContactResultant::default(); 15],
             reactions: vec![Reaction::default(); 2],
         };
-        let lines = lines(&resultants);
-        assert_eq!(lines.len(), 1 + 12 + 1 + 1 + 2);
-        assert!(lines[13].contains("… and 3 more"));
+        let lines = lines(&resultants, Units::Metre, 2);
+        assert_eq!(lines.len(), 2 + 12 + 1 + 2 + 2);
+        assert!(lines[14].contains("… and 3 more"));
     }
 
     #[test]
@@ -88,16 +100,52 @@ mod tests {
             contacts: vec![ContactResultant::default(); 2],
             reactions: Vec::new(),
         };
+        let lines = |resultants: &Resultants| lines(resultants, Units::Metre, 2);
         assert!(lines(&resultants)[0].ends_with("pressure"));
         let slips = Friction {
             slipping: 7,
             ..Friction::default()
         };
         resultants.contacts[1].friction = Some(slips);
-        let [head, without, with] = &lines(&resultants)[..] else {
-            panic!("three lines");
+        let [head, _, without, with] = &lines(&resultants)[..] else {
+            panic!("four lines");
         };
         assert!(head.ends_with("slipping") && without.ends_with('-') && with.ends_with(" 7"));
         assert!([without, with].iter().all(|line| line.len() == head.len()));
+    }
+
+    #[test]
+    fn every_number_has_its_unit_above_it() {
+        let resultants = Resultants {
+            contacts: vec![ContactResultant::default()],
+            reactions: vec![Reaction::default()],
+        };
+        for (units, dim, expected) in [
+            (Units::Metre, 2, ["N/m", "N/m", "N", "Pa"]),
+            (Units::Millimetre, 2, ["N/mm", "N/mm", "N", "MPa"]),
+            (Units::Millimetre, 3, ["N", "N", "N mm", "MPa"]),
+        ] {
+            let lines = lines(&resultants, units, dim);
+            let ends = |line: &str, word: &str| {
+                line.match_indices(word)
+                    .last()
+                    .map(|(at, _)| at + word.len())
+            };
+            assert!(lines[1].ends_with(expected[3]) && lines[1].len() == lines[2].len());
+            for [units, numbers] in [[&lines[1], &lines[2]], [&lines[4], &lines[5]]] {
+                let words: Vec<&str> = units
+                    .split("  ")
+                    .map(str::trim)
+                    .filter(|w| !w.is_empty())
+                    .collect();
+                assert_eq!(words, expected[..words.len()]);
+                // The moment, or the third component, ends where its unit does.
+                let end = ends(units, expected[2]).unwrap();
+                assert!(
+                    numbers[..end].ends_with("e0") && end <= numbers.len(),
+                    "{units}\n{numbers}"
+                );
+            }
+        }
     }
 }

@@ -27,10 +27,29 @@ fn a_wrong_file_is_refused_with_what_was_expected() {
     let folder = case.folder();
     let patch = example::find("patch").unwrap();
     patch.write(&patch.mesh(0).unwrap(), folder).unwrap();
-    for file in ["scene.toml", "mesh.msh"] {
-        let words = [file, "isn't a whole HDF5 file", "contact-dd-partition"];
-        refused(&[file], folder, &words);
+    for (file, words) in [
+        (
+            "scene.toml",
+            "is a scene; expected a problem file: contact-dd-partition scene.toml -o scene.h5",
+        ),
+        (
+            "mesh.msh",
+            "is a mesh in Gmsh's format; expected a problem file, which contact-dd-partition makes",
+        ),
+    ] {
+        refused(&[file], folder, &[file, words]);
     }
+    assert_eq!(case.run(&[]).code(), 0);
+    let result = case.result();
+    let result = result.to_str().unwrap();
+    refused(
+        &[result],
+        folder,
+        &[
+            result,
+            "is a result of contact-dd-mpi; expected the problem file",
+        ],
+    );
     refused(&["nothing.h5"], folder, &["nothing.h5", "No such file"]);
 }
 

@@ -4,6 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::decompose::Decomposition;
 use crate::disjoint_sets::DisjointSets;
+use crate::element::geometry::{advance, difference, length};
+use crate::magnitude::short;
+use crate::mesh::bounding_box::BoundingBox;
 use crate::model::Model;
 
 /// The bodies of a mesh, in the order of their first cell.
@@ -16,7 +19,7 @@ pub(super) struct Bodies {
 
 impl Bodies {
     /// Finds the bodies and names each after the scene's body: those of a piece that holds several
-    /// are joined by "+", the pieces of one that falls apart are numbered "#1", "#2" ...
+    /// are joined by "+", the pieces of one that falls apart are numbered "#1", "#2" ... and told by a point inside.
     pub fn new(model: &Model) -> Self {
         let cells = &model.mesh.cells;
         let mut sets = DisjointSets::new(model.mesh.points.len());
@@ -39,17 +42,58 @@ impl Bodies {
             }
             of_cell.push(*body);
         }
+        let names = scene_bodies.iter().map(|set| {
+            let names: Vec<&str> = set
+                .iter()
+                .map(|&b| model.bodies[b as usize].as_str())
+                .collect();
+            names.join("+")
+        });
         Self {
-            names: numbered(scene_bodies.iter().map(|set| {
-                let names: Vec<&str> = set
-                    .iter()
-                    .map(|&b| model.bodies[b as usize].as_str())
-                    .collect();
-                names.join("+")
-            })),
+            names: numbered(
+                &names.collect::<Vec<_>>(),
+                &points_inside(model, &of_cell),
+                model.mesh.dim,
+            ),
             of_cell,
         }
     }
+}
+
+/// A point inside of every body: the middle of the cell that is nearest to the middle of the box around it.
+fn points_inside(model: &Model, of_cell: &[usize]) -> Vec<[f64; 3]> {
+    let mesh = &model.mesh;
+    let points = |cell: usize| {
+        mesh.cells
+            .nodes_of(cell)
+            .iter()
+            .map(|&node| mesh.points[node as usize])
+    };
+    let count = of_cell.iter().max().map_or(0, |last| last + 1);
+    let mut boxes = vec![BoundingBox::EMPTY; count];
+    for (cell, &body) in of_cell.iter().enumerate() {
+        let around = BoundingBox::around(
+            mesh.cells
+                .nodes_of(cell)
+                .iter()
+                .map(|&node| &mesh.points[node as usize]),
+        );
+        boxes[body].include(&around);
+    }
+    let mut nearest = vec![(f64::INFINITY, [0.0; 3]); count];
+    for (cell, &body) in of_cell.iter().enumerate() {
+        let share = 1.0 / mesh.cells.nodes_of(cell).len() as f64;
+        let middle = points(cell).fold([0.0; 3], |sum, x| advance(sum, share, x));
+        let BoundingBox { low, high } = boxes[body];
+        let distance = length(difference(
+            middle,
+            [0, 1, 2].map(|k| 0.5 * (low[k] + high[k])),
+        ));
+        if distance < nearest[body].0 {
+            nearest[body] = (distance, middle);
+        }
+    }
+    nearest.into_iter().map(|(_, x)| x).collect()
 }
 
 impl Bodies {
@@ -62,22 +106,20 @@ impl Bodies {
     }
 }
 
-/// Numbers the names that occur more than once.
-fn numbered(names: impl Iterator<Item = String>) -> Vec<String> {
-    let names: Vec<String> = names.collect();
+/// Numbers the names that occur more than once, and adds a point of each.
+fn numbered(names: &[String], points: &[[f64; 3]], dim: usize) -> Vec<String> {
     let mut total: BTreeMap<&str, usize> = BTreeMap::new();
-    for name in &names {
+    for name in names {
         *total.entry(name).or_default() += 1;
     }
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
-    names
-        .iter()
-        .map(|name| {
+    (names.iter().zip(points))
+        .map(|(name, x)| {
             let number = seen.entry(name).or_default();
             *number += 1;
             match total[name.as_str()] {
                 1 => name.clone(),
-                _ => format!("{name} #{number}"),
+                _ => format!("{name} #{number} at ({})", x.map(short)[..dim].join(", ")),
             }
         })
         .collect()

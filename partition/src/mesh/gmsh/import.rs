@@ -31,8 +31,9 @@ pub(super) fn mesh(content: Content) -> Result<Mesh, InputError> {
     let dim = dim.unwrap_or_default();
     if dim < ElementKind::Triangle3.dim() {
         return Err(InputError::new(
-            "the mesh has no cells: expected triangles or quadrilaterals, or tetrahedra or hexahedra in space (a file of Gmsh holds \
-             only what is in a physical group, unless Mesh.SaveAll is set)",
+            "the mesh has no cells: expected triangles or quadrilaterals (gmsh -2), or tetrahedra or hexahedra in space (gmsh -3); \
+             a file of Gmsh holds only what is in a physical group, a Physical Surface or Physical Volume, unless \
+             Mesh.SaveAll is set",
         ));
     }
     let mut cells = listed(&content.blocks, dim);
@@ -45,6 +46,8 @@ pub(super) fn mesh(content: Content) -> Result<Mesh, InputError> {
         ..Mesh::default()
     };
     let index = keep_nodes(&content.nodes, &cells, &mut mesh)?;
+    (mesh.flatten())
+        .map_err(|error| InputError::new(format!("{error}{}", without_volumes(&content))))?;
     let mut of_cell = Vec::new();
     for cell in &cells.elements {
         of_cell.clear();
@@ -73,11 +76,7 @@ pub(super) fn mesh(content: Content) -> Result<Mesh, InputError> {
     }
     mesh.groups = names::by_name(groups, &content.names)?
         .into_iter()
-        .map(|(name, (of, members))| {
-            // Of curves in space there are nodes alone.
-            let dim = if of + 1 < dim { 0 } else { of };
-            (name, Group { dim, members })
-        })
+        .map(|(name, (dim, members))| (name, Group { dim, members }))
         .collect();
     Ok(mesh)
 }
@@ -195,8 +194,22 @@ fn keep_nodes(
         mesh.points.push(nodes.points[node]);
         mesh.node_tags.push(nodes.tags[node]);
     }
-    mesh.flatten()?;
     Ok(index)
+}
+
+/// What to do about a mesh in space without cells of volume.
+fn without_volumes(content: &Content) -> String {
+    let volume = content.names.keys().find(|(dim, _)| *dim == 3);
+    let name = volume.and_then(|key| content.names.get(key));
+    let how = match name {
+        Some(name) => {
+            format!("the group '{name}' of volumes is empty: gmsh -3, not gmsh -2, makes its cells")
+        }
+        None => {
+            "gmsh -3, not gmsh -2, makes them, and a file holds those of a Physical Volume".into()
+        }
+    };
+    format!("; if the bodies are those of space, it has no cells with a volume: {how}")
 }
 
 fn renumbered(nodes: &[u32], index: &[Option<u32>]) -> Vec<u32> {

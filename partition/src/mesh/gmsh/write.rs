@@ -56,12 +56,20 @@ impl<'a> Plan<'a> {
             .groups
             .iter()
             .enumerate()
-            .map(|(number, (name, group))| (group.dim, number + 1, name.as_str()))
+            .map(|(number, (name, group))| {
+                // Of curves in space there are nodes alone.
+                let dim = if group.dim + 1 < mesh.dim {
+                    0
+                } else {
+                    group.dim
+                };
+                (dim, number + 1, name.as_str())
+            })
             .collect();
         let groups_of = |dim: usize, count: usize| {
             let mut groups = vec![Vec::new(); count];
-            for (&(_, number, _), group) in names.iter().zip(mesh.groups.values()) {
-                if group.dim == dim {
+            for (&(group_dim, number, _), group) in names.iter().zip(mesh.groups.values()) {
+                if group_dim == dim {
                     for &member in &group.members {
                         groups[member as usize].push(number);
                     }

@@ -3,30 +3,61 @@
 
 use super::Diagnostics;
 use crate::element::geometry::length;
+use crate::error::InputError;
 use crate::magnitude::short;
 use crate::mesh::topology::CellFacet;
 use crate::model::groups;
 use crate::scene::condition::Names;
 
-/// Strain that nobody means: by then small strains are no approximation.
+/// Strain that hardly anybody means: by then small strains are no approximation.
 const LARGE: f64 = 0.1;
 
+/// Strain that is a mistake unless the scene says that it isn't: by then the bodies are twice as long, or gone.
+const ABSURD: f64 = 1.0;
+
+/// An estimated strain, and what makes it.
+struct Estimate {
+    strain: f64,
+    words: String,
+}
+
 impl Diagnostics<'_> {
-    /// Pressures and tractions not much below the stiffness, and displacements beyond the bodies' size.
-    pub(super) fn strains(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
+    /// Loads not much below the stiffness, and displacements beyond the bodies' size.
+    ///
+    /// # Errors
+    /// A load beyond the stiffness, unless the scene has `large_strains`.
+    pub(super) fn strains(&self) -> Result<Vec<String>, InputError> {
+        let mut estimates = self.of_bodies();
         for loading in self.scene.loadings() {
             for (index, traction) in loading.traction.iter().enumerate() {
                 let size = |x| Ok(loading.scale.traction * length(traction.value.at(x)?));
                 let label = loading.traction_label(index, &traction.on);
-                warnings.extend(self.strain(&label, &traction.on, size));
+                estimates.extend(self.of_side(&label, &traction.on, size));
             }
             for (index, pressure) in loading.pressure.iter().enumerate() {
                 let size = |x| Ok(loading.scale.pressure * pressure.value.at(x)?);
                 let label = loading.pressure_label(index, &pressure.on);
-                warnings.extend(self.strain(&label, &pressure.on, size));
+                estimates.extend(self.of_side(&label, &pressure.on, size));
             }
         }
+        let is_absurd = |estimate: &&Estimate| estimate.strain > ABSURD;
+        if let Some(absurd) = estimates
+            .iter()
+            .find(is_absurd)
+            .filter(|_| !self.scene.large_strains)
+        {
+            // What is expected stands for the question.
+            let fact = absurd.words.rsplit_once("; ");
+            return Err(InputError::new(format!(
+                "{}; expected loads in the unit of the stiffness, or large_strains = true in the scene, where this is \
+                 meant",
+                fact.map_or(&*absurd.words, |(fact, _)| fact)
+            )));
+        }
+        let large = estimates
+            .into_iter()
+            .filter(|estimate| estimate.strain > LARGE);
+        let mut warnings: Vec<String> = large.map(|estimate| estimate.words).collect();
         let (extent, unit) = (self.extent(), self.scene.units.length());
         for (i, support) in self.loads.supports.iter().enumerate() {
             let values = self.loads.values(i).into_iter();
@@ -43,16 +74,102 @@ impl Diagnostics<'_> {
         // Said once for all nodes and steps.
         warnings.sort();
         warnings.dedup_by_key(|warning| warning.split(": ").next().map(str::to_owned));
-        warnings
+        Ok(warnings)
     }
 
-    /// The warning of a load whose size at a place is `size`; values that aren't finite have been refused.
-    fn strain(
+    /// Body forces, initial stresses and heat.
+    fn of_bodies(&self) -> Vec<Estimate> {
+        let (mesh, extent) = (&self.bodies.mesh, self.extent());
+        let (force, stress) = (self.scene.units.body_force(), self.scene.units.stress());
+        let mut first_cells = vec![None; self.scene.bodies.len()];
+        for (cell, &body) in self.bodies.cell_body.iter().enumerate() {
+            first_cells[body as usize].get_or_insert(cell);
+        }
+        let mut estimates = Vec::new();
+        for loading in self.scene.loadings() {
+            for (index, (name, body)) in self.scene.bodies.iter().enumerate() {
+                let Some(first) = first_cells[index] else {
+                    continue;
+                };
+                let material = &self.materials[self.bodies.cell_material[first] as usize];
+                let stiffness = material.stiffness.largest();
+                let largest =
+                    |is_constant: bool, size: &dyn Fn([f64; 3]) -> Result<f64, String>| {
+                        // What is the same everywhere needn't be asked for twice.
+                        let last = if is_constant {
+                            first + 1
+                        } else {
+                            mesh.cells.len()
+                        };
+                        let own = (first..last)
+                            .filter(|&cell| self.bodies.cell_body[cell] as usize == index);
+                        let nodes = own.flat_map(|cell| mesh.cells.nodes_of(cell));
+                        nodes
+                            .filter_map(|&node| size(mesh.points[node as usize]).ok())
+                            .fold(0.0, |most: f64, size| most.max(size.abs()))
+                    };
+                let against = |what: String, strain: f64| Estimate {
+                    strain,
+                    words: format!(
+                        "body '{name}': {what} of a stiffness of {} {stress} make strains of about {}, where small ones \
+                         are meant; are their units the same?",
+                        short(stiffness),
+                        short(strain)
+                    ),
+                };
+                if let Some(given) = loading.body_force[index] {
+                    let scale = loading.scale.body_force;
+                    let most = largest(given.is_constant(), &|x| Ok(scale * length(given.at(x)?)));
+                    let what = format!(
+                        "body forces of up to {} {force} on bodies that measure {} {}",
+                        short(most),
+                        short(extent),
+                        self.scene.units.length()
+                    );
+                    estimates.push(against(what, most * extent / stiffness));
+                }
+                if let Some(given) = &body.initial_stress {
+                    let scale = loading.scale.initial_stress;
+                    let most = largest(given.is_constant(), &|x| {
+                        Ok(scale
+                            * given
+                                .at(x)?
+                                .iter()
+                                .fold(0.0, |most: f64, s| most.max(s.abs())))
+                    });
+                    let what = format!(
+                        "initial stresses of up to {} {stress} in a material",
+                        short(most)
+                    );
+                    estimates.push(against(what, most / stiffness));
+                }
+                if let Some(thermal) = &body.thermal {
+                    let temperature = loading.temperature[index].unwrap_or(&thermal.temperature);
+                    let scale = loading.scale.thermal * thermal.expansion.0;
+                    let strain = largest(temperature.is_constant(), &|x| {
+                        Ok(scale * temperature.at(x)?)
+                    });
+                    estimates.push(Estimate {
+                        strain,
+                        words: format!(
+                            "body '{name}': heat makes strains of about {}, where small ones are meant; is the expansion \
+                             that of one degree?",
+                            short(strain)
+                        ),
+                    });
+                }
+            }
+        }
+        estimates
+    }
+
+    /// What a load makes whose size at a place of a side is `size`; values that aren't finite have been refused.
+    fn of_side(
         &self,
         label: &str,
         on: &Names,
         size: impl Fn([f64; 3]) -> Result<f64, String>,
-    ) -> Option<String> {
+    ) -> Option<Estimate> {
         let mesh = &self.bodies.mesh;
         let facets = groups::facets(mesh, on, label).ok()?;
         let loaded = facets.into_iter().filter_map(|facet| {
@@ -70,14 +187,15 @@ impl Diagnostics<'_> {
         });
         let unit = self.scene.units.stress();
         let (load, stiffness, name) = loaded.max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
-        (load > LARGE * stiffness).then(|| {
-            format!(
+        Some(Estimate {
+            strain: load / stiffness,
+            words: format!(
                 "{label}: up to {} {unit} on '{name}' of a stiffness of {} {unit} make strains of about {}, where \
                  small ones are meant; are their units the same?",
                 short(load),
                 short(stiffness),
                 short(load / stiffness)
-            )
+            ),
         })
     }
 }

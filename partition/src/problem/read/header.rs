@@ -75,6 +75,11 @@ fn text(file: &hdf5::File, name: &str, otherwise: &str) -> Result<String, InputE
 
 fn check_format(file: &hdf5::File) -> Result<(), InputError> {
     if !attribute::is_there(file, "format") {
+        if attribute::is_there(file, "report") {
+            return Err(InputError::new(
+                "is a result of contact-dd-mpi; expected the problem file that it was made from",
+            ));
+        }
         return Err(InputError::new(format!(
             "is an HDF5 file, but no problem file: it has no attribute format = \"{FORMAT}\". \
              contact-dd-partition makes a problem file of a scene and a mesh"

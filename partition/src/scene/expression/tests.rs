@@ -57,7 +57,10 @@ fn what_is_wrong_is_named_with_its_character() {
         ("1e999", "too large"),
         ("é", "isn't known"),
         ("min(1)", "expected ','"),
-        ("1,5", "expected an operator, found ','"),
+        (
+            "1,5",
+            "expected an operator, found ','; numbers have a decimal point",
+        ),
     ] {
         let message = Expression::parse(text).unwrap_err();
         assert!(message.contains(expected), "{text}: {message}");

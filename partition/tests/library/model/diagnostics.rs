@@ -104,16 +104,16 @@ fn loads_beyond_the_stiffness_and_ways_beyond_the_size_are_named() {
     let load =
         |value: &str| format!("{HELD}{CONTACT}[[pressure]]\non = 'upper top'\nvalue = {value}\n");
     assert_eq!(warned(&stack(0.0), &load("2")), "");
-    let said = warned(&stack(0.0), &load("'-1e3*x'"));
+    let said = warned(&stack(0.0), &load("'-100*x'"));
     says(
         &said,
-        "pressure[1] on 'upper top': up to 2000 Pa on 'steel' of a stiffness of 240 Pa",
+        "pressure[1] on 'upper top': up to 200 Pa on 'steel' of a stiffness of 240 Pa",
     );
-    let traction = "[[traction]]\non = 'upper top'\nvalue = [0, 300]\n";
+    let traction = "[[traction]]\non = 'upper top'\nvalue = [0, 150]\n";
     let scaled = format!("{HELD}{CONTACT}{traction}[[step]]\nscale = 0.01\n[[step]]\nscale = 1\n");
     let said = warned(&stack(0.0), &scaled);
     assert!(
-        said.starts_with("traction[1] on 'upper top': up to 300 Pa"),
+        said.starts_with("traction[1] on 'upper top': up to 150 Pa"),
         "{said}"
     );
     assert_eq!(said.lines().count(), 1);
@@ -124,6 +124,51 @@ fn loads_beyond_the_stiffness_and_ways_beyond_the_size_are_named() {
         "displacement[2] on 'upper top': a displacement of 5 m, and the bodies measure 2 m",
     );
     assert_eq!(said.lines().count(), 1);
+}
+
+#[test]
+fn loads_beyond_the_stiffness_are_refused_unless_the_scene_says_that_they_are_meant() {
+    let body = |key: &str| {
+        format!(
+            "bodies.lower = {{ material = 'steel', {key} }}\nbodies.upper.material = 'steel'\n{HELD}{CONTACT}"
+        )
+    };
+    let side = |list: &str, value: &str| {
+        format!("{HELD}{CONTACT}[[{list}]]\non = 'upper top'\nvalue = {value}\n")
+    };
+    let scaled = format!(
+        "{}[[step]]\nscale = 0.1\n[[step]]\nscale = 100\n",
+        side("pressure", "5")
+    );
+    for (scene, expected) in [
+        (
+            side("pressure", "'-1e3*x'"),
+            "pressure[1] on 'upper top': up to 2000 Pa … strains of about 8.333",
+        ),
+        (
+            side("traction", "[0, 300]"),
+            "traction[1] on 'upper top': up to 300 Pa",
+        ),
+        (scaled, "pressure[1] on 'upper top'"),
+        (
+            body("body_force = [0, -25e3]"),
+            "body 'lower': body forces of up to 25000 N/m³",
+        ),
+        (
+            body("initial_stress = [-5e6, -5e6, 0, 0]"),
+            "body 'lower': initial stresses of up to 5e6 Pa",
+        ),
+        (
+            body("thermal = { expansion = 12, temperature = 80 }"),
+            "body 'lower': heat makes strains of about 960",
+        ),
+    ] {
+        let said = stack(0.0).model(&scene).unwrap_err();
+        says(&said, expected);
+        says(&said, "large_strains = true");
+        let said = warned(&stack(0.0), &format!("large_strains = true\n{scene}"));
+        says(&said, expected);
+    }
 }
 
 #[test]

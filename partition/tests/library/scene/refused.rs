@@ -78,11 +78,11 @@ poisson = 0.18 => poisson = 0.1\nout_of_plane = [0,0,0]
 -25e3 => inf
     line 15: bodies.block.body_force[2]: inf isn't a finite number
 -25e3] => -25e3, 0]
-    line 15: bodies.block.body_force: a plane scene
+    line 15: bodies.block.body_force: a plane scene has vectors of two components; where the mesh is one of space, 'plane' is left out
 -25e3] => 1, 2, 3]
     line 15: bodies.block.body_force: a vector of 4
 x = 0.0\n => z = 0.0\n
-    line 21: displacement[1].z: a plane scene has no 'z'
+    line 21: displacement[1].z: a plane scene has no 'z'; where the mesh is one of space, 'plane' is left out
 x = 0.0\ny = "1e-3*x"\n =>
     displacement[1]: it prescribes nothing
 1e-3*x => 1e-3*r
@@ -94,7 +94,7 @@ plane = "strain" => plane = "strain"\nunits = 'cm'
 1e-3*x => 1/0
     line 22: displacement[1].y: '1/0' is inf
 on = "bottom" =>
-    displacement[1]: missing field `on`
+    displacement[1]: the key 'on' is missing
 ["axis", "side"] => []
     line 24: bilateral[1].on: an empty list
 ["axis", "side"] => ['a', 'a']
@@ -110,7 +110,7 @@ name = "left crack" => name = ""
 name = "left crack" => name = "."
     line 32: contact[1].name: '.' means
 name = "left crack" =>
-    contact[1]: missing field `name`
+    contact[1]: the key 'name' is missing
 name = "table" => name = "left crack"
     line 38: contact[2].name: contact[1] has the name 'left crack' already
 ["base"] => ["base", "top"]
@@ -162,7 +162,19 @@ sides = ["left crack lower", ["left crack upper", "more"]] => between = 7
 "2*pi" => 0
     line 45: contact[3] 'ring'.obstacle.radius: the radius is 0
 mesh  = "block.msh" =>
-    missing field `mesh`
+    the key 'mesh' is missing
+mesh  = "block.msh" =>
+    line 5: the key 'mesh' is missing; expected mesh = "mesh.msh" above [materials.granite]
+poisson = 0.18 => poisson = 0.18\nmesh = "block.msh"
+    line 9: materials.granite.mesh: unknown key 'mesh', which isn't of a table but of the scene; expected mesh
+poisson = 0.18 => poisson = 0.18\nmu = 0.3
+    line 9: materials.granite.mu: unknown key 'mu'; friction is the key 'friction' of a [[contact]]
+poisson = 0.18 => poisson = 0,18
+    expected a decimal point: poisson = 0.18
+poisson = 0.18 => poisson = "0,18"
+    found ','; numbers have a decimal point
+friction = 0.6 => mu = 0.6
+    did you mean 'friction'?
 mesh  = "block.msh" => mesh = ''
     line 2: mesh: expected the name of a file
 young = 5.2e9 => young = 5.2e9\nyoung = 1
@@ -236,7 +248,7 @@ fn stress_and_heat_that_cannot_be_are_refused_at_their_key() {
         ),
         (
             "thermal = {expansion = 1e-5}",
-            "missing field `temperature`",
+            "the key 'temperature' is missing",
         ),
         (
             "thermal = {expansion = 1e-5, temperature = 'z'}",
