@@ -341,7 +341,7 @@ impl Datasets<'_> {
 
 fn text(group: &hdf5::Group, name: &str, value: &str) -> hdf5::Result<()> {
     let text = [without_nul(value)];
-    let new = group.new_attr_builder().empty_as(&type_of(&text));
+    let new = group.new_attr_builder().empty_as(type_of(&text));
     let attribute = new.create(name)?;
     write_strings(&attribute, &text)
 }

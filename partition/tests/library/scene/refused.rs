@@ -164,7 +164,7 @@ sides = ["left crack lower", ["left crack upper", "more"]] => between = 7
 mesh  = "block.msh" =>
     the key 'mesh' is missing
 mesh  = "block.msh" =>
-    line 5: the key 'mesh' is missing; expected mesh = "mesh.msh" above [materials.granite]
+    line 6: the key 'mesh' is missing; expected mesh = "mesh.msh" above [materials.granite]
 poisson = 0.18 => poisson = 0.18\nmesh = "block.msh"
     line 9: materials.granite.mesh: unknown key 'mesh', which isn't of a table but of the scene; expected mesh
 poisson = 0.18 => poisson = 0.18\nmu = 0.3
