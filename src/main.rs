@@ -7,8 +7,12 @@ use contact_dd_mpi::error::Failure;
 use contact_dd_mpi::output::event;
 use contact_dd_mpi::run::{Ending, run};
 use contact_dd_mpi::settings::command_line::{CommandLine, LogFormat};
+use contact_dd_partition::allocator::Allocator;
 use contact_dd_partition::manual::{Answer, BAD_USAGE};
 use contact_dd_partition::problem::trial;
+
+#[global_allocator]
+static ALLOCATOR: Allocator = Allocator;
 
 fn main() -> ExitCode {
     keep_freed_memory();
@@ -60,10 +64,12 @@ fn solve(comm: &Comm, command_line: &CommandLine) -> ExitCode {
 /// Answers a command line that asks for no run.
 fn tell(answer: &Answer) -> ExitCode {
     match answer {
-        Answer::Refusal(why) => event::error(LogFormat::of_this_program(), BAD_USAGE, why),
+        Answer::Refusal(why) => {
+            event::error(LogFormat::of_this_program(), BAD_USAGE, why);
+            ExitCode::from(BAD_USAGE)
+        }
         Answer::Text(_) => answer.print(),
     }
-    answer.exit_code()
 }
 
 /// Says why the program ends.

@@ -77,6 +77,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     if settings.check {
         let checked = all.into_iter().map(|steps| stages.check(steps));
         log.check(&checked.collect::<Result<Vec<_>, _>>()?);
+        comm.agree(log.heard())?;
         return Ok(Ending::Converged);
     }
     let lock = comm.is_root().then(|| OutputLock::take(&settings.output));
@@ -123,7 +124,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
                 ranks,
                 warnings: settings.unused().into_iter().chain(warning).collect(),
             };
-            log.finish(&totals, outputs)
+            log.finish(&totals, outputs).and_then(|()| log.heard())
         }
         _ => Ok(()),
     };

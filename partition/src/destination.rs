@@ -1,6 +1,6 @@
 //! A file that appears under its name only when it is complete.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, Write};
 use std::os::unix::fs::PermissionsExt;
@@ -13,13 +13,19 @@ use crate::error::OutputError;
 /// A name for a file and, in the same folder, the temporary file that will take it.
 ///
 /// Dropped without [`commit`](Self::commit), the temporary file is removed and what stood under the
-/// name stays. A run that is killed leaves its temporary file behind, `.NAME.….part`.
+/// name stays. A run that is killed leaves its temporary file behind, `.NAME.….part`, until the next one with the
+/// same name removes it.
 #[derive(Debug)]
 pub struct Destination {
     path: PathBuf,
     target: PathBuf,
     temporary: TempPath,
+    /// Tells others, as long as it is open and locked, that the temporary file is somebody's.
+    owned: Option<File>,
 }
+
+/// How often a temporary file is made that another program takes for a left one before it is locked.
+const TRIES: usize = 10;
 
 impl Destination {
     /// Makes the temporary file for `path`.
@@ -30,17 +36,29 @@ impl Destination {
     pub fn new(path: &Path) -> Result<Self, OutputError> {
         let target = target_of(path)?;
         let prefix = hidden(&target);
-        let made = Builder::new()
-            .prefix(&prefix)
-            .suffix(".part")
-            // The umask applies: the same permissions as any file that the user makes.
-            .permissions(Permissions::from_mode(0o666))
-            .tempfile_in(folder_of(&target));
-        Ok(Self {
-            path: path.to_path_buf(),
-            temporary: made.map_err(|error| failure(path, error))?.into_temp_path(),
-            target,
-        })
+        remove_left(folder_of(&target), &prefix);
+        for _ in 0..TRIES {
+            let made = Builder::new()
+                .prefix(&prefix)
+                .suffix(PART)
+                // The umask applies: the same permissions as any file that the user makes.
+                .permissions(Permissions::from_mode(0o666))
+                .tempfile_in(folder_of(&target));
+            let (file, temporary) = made.map_err(|error| failure(path, error))?.into_parts();
+            // Where files can't be locked, none is taken for a left one.
+            if file.lock().is_err() || temporary.exists() {
+                return Ok(Self {
+                    path: path.to_path_buf(),
+                    temporary,
+                    target,
+                    owned: Some(file),
+                });
+            }
+        }
+        Err(failure(
+            path,
+            "its temporary file is removed by others again and again",
+        ))
     }
 
     /// The file that an earlier run [kept](Self::keep) for `path`, to be completed.
@@ -56,6 +74,7 @@ impl Destination {
             path: path.to_path_buf(),
             temporary,
             target,
+            owned: None,
         })
     }
 
@@ -75,6 +94,8 @@ impl Destination {
         temporary.disable_cleanup(true);
         // What had the temporary name has none any more.
         std::mem::replace(&mut self.temporary, temporary).disable_cleanup(true);
+        // Nobody takes that name for a left file; who wants to look into it may lock it.
+        self.owned = None;
         Ok(())
     }
 
@@ -121,6 +142,27 @@ pub fn unfinished(path: &Path) -> PathBuf {
     let mut name = OsString::from(follow(path));
     name.push(".unfinished");
     PathBuf::from(name)
+}
+
+/// The end of the names of temporary files.
+const PART: &str = ".part";
+
+/// Removes temporary files that killed programs left: those that nobody holds.
+fn remove_left(folder: &Path, prefix: &OsStr) {
+    let prefix = prefix.as_encoded_bytes();
+    let is_part = |name: &OsStr| {
+        let name = name.as_encoded_bytes();
+        name.starts_with(prefix) && name.ends_with(PART.as_bytes())
+    };
+    // Where the folder can't be read, or a file not be removed, what was left stays.
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if is_part(&entry.file_name()) {
+            let file = File::options().read(true).write(true).open(entry.path());
+            if file.is_ok_and(|file| file.try_lock().is_ok()) {
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
 }
 
 /// The file `.NAME.ending` beside the file that `path` names, once links are followed.
@@ -224,6 +266,39 @@ mod tests {
         complete.commit().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "after");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_killed_programs_left_is_removed_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("result");
+        let others = [
+            ".result.part.bak",
+            ".result2.abc.part",
+            "result.abc.part",
+            ".results",
+        ];
+        for name in [".result.abcdef.part", ".result.123456.part"]
+            .iter()
+            .chain(&others)
+        {
+            fs::write(folder.path().join(name), "half").unwrap();
+        }
+        let first = Destination::new(&path).unwrap();
+        let second = Destination::new(&path).unwrap();
+        let names = || {
+            let all = fs::read_dir(folder.path()).unwrap();
+            let names = all.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+            let mut names: Vec<String> = names.collect();
+            names.sort();
+            names
+        };
+        assert!(first.temporary().exists() && second.temporary().exists());
+        assert_eq!(names().len(), others.len() + 2);
+        drop((first, second));
+        let mut others = others.map(String::from);
+        others.sort();
+        assert_eq!(names(), others);
     }
 
     #[test]

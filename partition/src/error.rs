@@ -82,7 +82,7 @@ fn escape(f: &mut std::fmt::Formatter<'_>, text: &str, kept: &str) -> std::fmt::
 }
 
 /// The program's result file can't be written. Exit code 5.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 #[error("{path}: can't be written: {reason}")]
 pub struct OutputError {
     /// The file.

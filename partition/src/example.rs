@@ -8,6 +8,7 @@ mod cubes;
 mod pattern;
 mod squares;
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use self::cubes::Cube;
@@ -118,22 +119,57 @@ impl Example {
     }
 
     /// Writes `scene.toml`, `mesh.msh` and the geometry, where it is one of Gmsh, into `directory`,
-    /// which is made where it isn't there, and returns the path of the scene.
+    /// which is made where it isn't there, and returns the path of the scene. What is there stays, unless this
+    /// program wrote it and nobody edited it.
     ///
     /// # Errors
-    /// The files can't be written.
+    /// The files can't be written, or there are others of their names.
     pub fn write(&self, mesh: &Mesh, directory: &Path) -> Result<PathBuf, OutputError> {
-        std::fs::create_dir_all(directory).map_err(|e| OutputError {
+        fs::create_dir_all(directory).map_err(|e| OutputError {
             path: directory.to_path_buf(),
             reason: e.to_string(),
         })?;
-        gmsh::write(mesh, &directory.join(MESH))?;
         let scene = directory.join("scene.toml");
-        destination::write_bytes(&scene, |out| out.write_all(self.scene.as_bytes()))?;
+        let mut text = Vec::new();
+        gmsh::write_to(&mut text, mesh).map_err(|e| destination::failure(&scene, e))?;
+        let mut files = vec![
+            (directory.join(MESH), text),
+            (scene.clone(), self.scene.into()),
+        ];
         if let Shape::Gmsh { geometry, .. } = self.shape {
             let path = directory.join(self.name).with_extension("geo");
-            destination::write_bytes(&path, |out| out.write_all(geometry.as_bytes()))?;
+            files.push((path, geometry.into()));
+        }
+        // None is written where one can't be.
+        files.retain(|(path, text)| fs::read(path).ok().as_ref() != Some(text));
+        let others = files.iter().filter(|(path, _)| path.exists());
+        let mut others = others.filter(|(path, _)| !is_ours(path));
+        if let Some((other, _)) = others.next() {
+            let why = "another file is there, with changes of yours perhaps; expected another folder behind \
+                       --write-scene, or that file moved away";
+            return Err(destination::failure(other, why));
+        }
+        for (path, text) in &files {
+            destination::write_bytes(path, |out| out.write_all(text))?;
         }
         Ok(scene)
     }
+}
+
+/// Whether a file is as this program writes one: a built-in scene or geometry, or a mesh in the very form of this
+/// program, whichever its size and cells. Neither Gmsh writes it so, nor does an editor leave it so.
+fn is_ours(path: &Path) -> bool {
+    let Ok(bytes) = fs::read(path) else {
+        return false;
+    };
+    let is_built_in = |example: &Example| match example.shape {
+        Shape::Gmsh { geometry, .. } if bytes == geometry.as_bytes() => true,
+        _ => bytes == example.scene.as_bytes(),
+    };
+    let is_written = || {
+        let mut text = Vec::new();
+        let mesh = gmsh::read(path);
+        mesh.is_ok_and(|mesh| gmsh::write_to(&mut text, &mesh).is_ok()) && bytes == text
+    };
+    EXAMPLES.iter().any(is_built_in) || is_written()
 }

@@ -32,6 +32,7 @@
 //! **The problem file** ([`problem`]) is defined once, for its writer here and for its reader in
 //! `contact-dd-mpi`. It gets its name when it is whole ([`destination`]).
 
+pub mod allocator;
 pub mod command_line;
 pub mod contact_point;
 #[cfg(feature = "metis")]

@@ -2,12 +2,13 @@
 
 use std::ffi::{c_int, c_void};
 use std::fs::File;
-use std::io::{Write as _, stdout};
+use std::io::stdout;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::ptr::null_mut;
 
 use clap::{CommandFactory, Parser};
+use contact_dd_partition::allocator::Allocator;
 use contact_dd_partition::command_line::{CommandLine, MANUAL};
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::decompose::hierarchy::Work;
@@ -40,6 +41,9 @@ impl Failure {
     }
 }
 
+#[global_allocator]
+static ALLOCATOR: Allocator = Allocator;
+
 fn main() -> ExitCode {
     if let Some(code) = trial::answer() {
         return code;
@@ -47,9 +51,7 @@ fn main() -> ExitCode {
     let args = match CommandLine::try_parse() {
         Ok(args) => args,
         Err(error) => {
-            let answer = Answer::of(&error);
-            answer.print();
-            return answer.exit_code();
+            return Answer::of(&error).print();
         }
     };
     match run(&args) {
@@ -63,18 +65,19 @@ fn main() -> ExitCode {
 
 fn run(args: &CommandLine) -> Result<(), Failure> {
     if let Some(document) = args.generate {
-        Answer::Text(MANUAL.write(document, CommandLine::command())).print();
-        return Ok(());
+        return Ok(message::say(
+            &MANUAL.write(document, CommandLine::command()),
+        )?);
     }
     if args.list_examples {
         for example in EXAMPLES {
-            say(&format!("{:<10} {}", example.name, example.about));
+            say(&format!("{:<10} {}", example.name, example.about))?;
         }
         return Ok(());
     }
     if let Some(path) = &args.info {
         trial::check(path, || false)?;
-        say(&Info::read(path)?.to_string());
+        say(&Info::read(path)?.to_string())?;
         return Ok(());
     }
     let Some(source) = read(args)? else {
@@ -90,7 +93,7 @@ fn run(args: &CommandLine) -> Result<(), Failure> {
         problem.catalog.choose_clusters(args.clusters);
     }
     problem.write(&source.output)?;
-    report(&problem, &model.found, &source.output);
+    report(&problem, &model.found, &source.output)?;
     Ok(())
 }
 
@@ -134,7 +137,9 @@ fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
         let stem = path.file_stem().unwrap_or(path.as_os_str());
         let output = output(args, Path::new(stem));
         keep(path, &output)?;
-        keep(&scene.mesh, &output)?;
+        for file in mesh::files(&scene.mesh, &output) {
+            keep(&file, &output)?;
+        }
         return Ok(Some(Source {
             mesh: mesh::read(&scene.mesh)?.along_curve(),
             scene,
@@ -153,12 +158,12 @@ fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
             keep(&scene, output)?;
             keep(&directory.join(example::MESH), output)?;
         }
-        say(&format!("scene         {}", scene.display()));
+        say(&format!("scene         {}", scene.display()))?;
         if args.output.is_none() {
             say(&format!(
                 "next          contact-dd-partition {}",
                 scene.display()
-            ));
+            ))?;
             return Ok(None);
         }
     }
@@ -192,31 +197,31 @@ fn output(args: &CommandLine, stem: &Path) -> PathBuf {
 }
 
 /// Prints what the problem file holds, which contacts were `found`, and what to do with it.
-fn report(problem: &Problem, found: &[String], output: &Path) {
+fn report(problem: &Problem, found: &[String], output: &Path) -> Result<(), OutputError> {
     if !problem.catalog.title.is_empty() {
-        say(&format!("title         {}", problem.catalog.title));
+        say(&format!("title         {}", problem.catalog.title))?;
     }
-    say(&problem.summary().to_string());
+    say(&problem.summary().to_string())?;
     if !problem.catalog.solver.is_empty() {
-        say(&format!("settings      {}", problem.catalog.solver));
+        say(&format!("settings      {}", problem.catalog.solver))?;
     }
     for contact in found {
-        say(&format!("found         {contact}"));
+        say(&format!("found         {contact}"))?;
     }
     for warning in &problem.catalog.warnings {
-        say(&format!("{WARNING}warning{WARNING:#}       {warning}"));
+        say(&format!("{WARNING}warning{WARNING:#}       {warning}"))?;
     }
     let output = output.display();
-    say(&format!("written       {output}"));
+    say(&format!("written       {output}"))?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let launcher = match Work::new(&problem.catalog).useful_ranks().min(cores) {
         1 => String::new(),
         ranks => format!("mpirun -n {ranks} "),
     };
-    say(&format!("next          {launcher}contact-dd-mpi {output}"));
+    say(&format!("next          {launcher}contact-dd-mpi {output}"))
 }
 
-/// Prints a line. Where nobody reads any more, as behind `| head`, there is nobody to tell.
-fn say(line: &str) {
-    let _ = writeln!(anstream::stdout(), "{line}");
+/// Prints a line.
+fn say(line: &str) -> Result<(), OutputError> {
+    message::say(&format!("{line}\n"))
 }

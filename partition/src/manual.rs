@@ -15,6 +15,9 @@ use crate::message;
 /// Exit code of bad usage.
 pub const BAD_USAGE: u8 = 2;
 
+/// Exit code of output that can't be written.
+const UNWRITABLE: u8 = 5;
+
 /// What stands in a program's manual beside its options, which the parser knows.
 #[derive(Clone, Copy, Debug)]
 pub struct Manual {
@@ -70,21 +73,20 @@ impl Answer {
         }
     }
 
-    /// What the program ends with.
-    pub fn exit_code(&self) -> ExitCode {
+    /// Prints the answer; returns what the program ends with.
+    pub fn print(&self) -> ExitCode {
         match self {
-            Self::Text(_) => ExitCode::SUCCESS,
-            Self::Refusal(_) => ExitCode::from(BAD_USAGE),
-        }
-    }
-
-    /// Prints the answer. A closed pipe is nobody's error.
-    pub fn print(&self) {
-        match self {
-            Self::Text(text) => {
-                let _ = write!(anstream::stdout(), "{text}");
+            Self::Text(text) => match message::say(text) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(error) => {
+                    message::error(&error.to_string());
+                    ExitCode::from(UNWRITABLE)
+                }
+            },
+            Self::Refusal(why) => {
+                message::error(why);
+                ExitCode::from(BAD_USAGE)
             }
-            Self::Refusal(why) => message::error(why),
         }
     }
 }

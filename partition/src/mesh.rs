@@ -9,7 +9,7 @@ mod measure;
 pub mod topology;
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::element::Elements;
 use crate::error::InputError;
@@ -43,6 +43,17 @@ pub fn read(path: &Path) -> Result<Mesh, InputError> {
     match path.extension() {
         Some(ending) if ending.eq_ignore_ascii_case("inp") => abaqus::read(path),
         _ => gmsh::read(path),
+    }
+}
+
+/// The files that a mesh is read from, as far as `output`, which is there, may be one of them: that of the mesh, and those
+/// that a deck includes.
+pub fn files(path: &Path, output: &Path) -> Vec<PathBuf> {
+    match path.extension() {
+        Some(ending) if output.exists() && ending.eq_ignore_ascii_case("inp") => {
+            abaqus::files(path)
+        }
+        _ => vec![path.to_path_buf()],
     }
 }
 

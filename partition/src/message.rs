@@ -1,15 +1,40 @@
-//! Errors and warnings of both programs on stderr, in colour where a terminal shows them.
+//! What both programs say: results on stdout, errors and warnings on stderr, in colour where a terminal shows them.
 
-use std::io::{Write, stderr};
+use std::io::{self, ErrorKind, Write, stderr};
 
 use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
+
+use crate::error::OutputError;
 
 /// How the word "error:" is shown.
 pub const ERROR: Style = AnsiColor::Red.on_default().bold();
 
 /// How the word "warning:" is shown.
 pub const WARNING: Style = AnsiColor::Yellow.on_default().bold();
+
+/// Prints on stdout. Where nobody reads any more, as behind `| head`, there is nobody to tell.
+///
+/// # Errors
+/// It can't be written otherwise, as on a full disk.
+pub fn say(text: &str) -> Result<(), OutputError> {
+    let mut stdout = anstream::stdout();
+    heard((stdout.write_all(text.as_bytes())).and_then(|()| stdout.flush()))
+}
+
+/// What becomes of something `said` on stdout, see [`say`].
+///
+/// # Errors
+/// It can't be written.
+pub fn heard(said: io::Result<()>) -> Result<(), OutputError> {
+    match said {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            let (path, reason) = ("stdout".into(), error.to_string());
+            Err(OutputError { path, reason })
+        }
+        _ => Ok(()),
+    }
+}
 
 /// Prints an error.
 pub fn error(text: &str) {

@@ -28,7 +28,21 @@ pub fn available_memory_bytes() -> Option<u64> {
     let limits = limits
         .iter()
         .filter_map(|file| read_to_string(file).ok()?.trim().parse().ok());
-    limits.chain(left).min()
+    limits.chain(left).chain(address_space()).min()
+}
+
+/// What is left of the address space that this process may have (`ulimit -v`), where that is limited (bytes).
+fn address_space() -> Option<u64> {
+    let limits = read_to_string("/proc/self/limits").ok()?;
+    let limit = limit_of(&limits, "Max address space")?;
+    let status = read_to_string("/proc/self/status").ok()?;
+    Some(limit.saturating_sub(kibibytes(&status, "VmSize:")?))
+}
+
+/// The limit `name` that now holds (bytes), by Linux' table of them; `None` where it is unlimited.
+fn limit_of(limits: &str, name: &str) -> Option<u64> {
+    let line = limits.lines().find_map(|line| line.strip_prefix(name))?;
+    line.split_whitespace().next()?.parse().ok()
 }
 
 /// The files with the limits of the control groups that `/proc/self/cgroup` names, and of those above
@@ -139,6 +153,15 @@ mod tests {
                 "/sys/fs/cgroup/memory.max",
             ]
         );
+    }
+
+    #[test]
+    fn a_limit_is_the_one_that_holds_now() {
+        let limits = "Limit                     Soft Limit           Hard Limit           Units     \n\
+                      Max resident set          unlimited            unlimited            bytes     \n\
+                      Max address space         2048000              4096000              bytes     \n";
+        assert_eq!(limit_of(limits, "Max address space"), Some(2_048_000));
+        assert_eq!(limit_of(limits, "Max resident set"), None);
     }
 
     #[cfg(target_os = "linux")]

@@ -1,10 +1,12 @@
 //! What a run says of itself on the way: text for people, or events for programs.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 use std::collections::BTreeSet;
-use std::io::{Write, stdout};
+use std::io::stdout;
 use std::time::{Duration, Instant};
 
+use contact_dd_partition::error::OutputError;
+use contact_dd_partition::message;
 use contact_dd_partition::problem::Catalog;
 
 use crate::comm::{self, Comm};
@@ -52,6 +54,8 @@ pub struct RunLog<'a> {
     heard: Cell<Instant>,
     /// The first load step of this run, and when it began.
     first_step: Cell<Option<(usize, Instant)>>,
+    /// Why something that was said couldn't be written. A run goes on: it writes its results to a file.
+    unheard: OnceCell<OutputError>,
 }
 
 impl Listener for RunLog<'_> {
@@ -81,22 +85,39 @@ impl<'a> RunLog<'a> {
             bar: Bar::new(voice != Some(LogFormat::Text)),
             heard: Cell::new(began),
             first_step: Cell::new(None),
+            unheard: OnceCell::new(),
         }
     }
 
     /// Prints lines, where text is what is printed.
     fn say(&self, text: impl FnOnce() -> String) {
         if self.voice == Some(LogFormat::Text) {
-            let text = text();
-            // A closed pipe is no reason to stop a run that writes its results to a file.
-            (self.bar).aside(|| drop(writeln!(anstream::stdout(), "{text}")));
+            let text = text() + "\n";
+            (self.bar).aside(|| self.remember(message::say(&text)));
         }
     }
 
     /// Prints an event, where that is what is printed.
     fn log(&self, event: &Event<'_>) {
         if self.voice == Some(LogFormat::Json) {
-            let _ = event.write(stdout());
+            self.remember(message::heard(event.write(stdout())));
+        }
+    }
+
+    fn remember(&self, said: Result<(), OutputError>) {
+        if let Err(error) = said {
+            let _ = self.unheard.set(error);
+        }
+    }
+
+    /// Whether all that was said could be written; a closed pipe is nobody's error.
+    ///
+    /// # Errors
+    /// The first that couldn't.
+    pub fn heard(&self) -> Result<(), Failure> {
+        match self.unheard.get() {
+            None => Ok(()),
+            Some(error) => Err(error.clone().into()),
         }
     }
 

@@ -70,6 +70,8 @@ fn main() -> ExitCode {
     outputs::unwritable_output(&mut trials);
     outputs::full_disk(&mut trials);
     outputs::the_same_output(&mut trials);
+    outputs::full_terminal(&mut trials);
+    outputs::little_memory(&mut trials);
     outputs::folder_of_the_root_alone(&mut trials);
     outputs::vanished_folder(&mut trials);
     sudden_ends::sudden_ends(&mut trials);

@@ -104,6 +104,60 @@ pub fn the_same_output(trials: &mut Trials) {
     });
 }
 
+/// What can't be printed is an error, but no reason not to write the result.
+pub fn full_terminal(trials: &mut Trials) {
+    let runs: [(&str, &[&str]); 4] = [
+        ("text", &[]),
+        ("json", &["--log", "json"]),
+        ("check", &["--check"]),
+        ("help", &["--help"]),
+    ];
+    for (name, args) in runs {
+        trials.once(&format!("full_terminal::{name}"), move || {
+            let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 3);
+            let left = case.folder().join(".problem.vtkhdf.abcdef.part");
+            fs::write(&left, "of a run that was killed").unwrap();
+            let script = "exec \"$0\" \"$@\" >/dev/full";
+            let mut command = launched(Path::new("sh"), 0);
+            command.args(["-c", script]).arg(built());
+            command.arg(case.problem()).args(args);
+            let ended = Running::start(&mut command).wait(LIMIT);
+            assert_eq!(ended.code(), 5, "{}", ended.stderr);
+            assert!(ended.stderr.contains("stdout"), "{}", ended.stderr);
+            assert!(ended.stderr.contains("No space left"), "{}", ended.stderr);
+            let is_solved = args.is_empty() || args[0] == "--log";
+            assert_eq!(case.result().exists(), is_solved);
+            assert_eq!(left.exists(), !is_solved);
+        });
+    }
+}
+
+/// A limit on memory that is too small, whenever that comes out.
+pub fn little_memory(trials: &mut Trials) {
+    for ranks in [0, 2] {
+        trials.once(&format!("little_memory::on_{ranks}_ranks"), move || {
+            let case = Case::of(&built_in_model("granite", 2), 12);
+            let limits = [80, 100, 130, 160, 200].map(|megabytes| {
+                // The launcher needs more than the limit.
+                let script = format!("ulimit -v {}; exec \"$0\" \"$@\"", megabytes << 10);
+                let mut command = launched(Path::new("sh"), ranks);
+                command
+                    .args(["-c", &script])
+                    .arg(built())
+                    .arg(case.problem());
+                let ended = Running::start(&mut command).wait(LIMIT);
+                let said = format!("{megabytes} MB: {}{}", ended.stdout, ended.stderr);
+                // An abort would be a signal, 128 and more in a launcher's words.
+                assert!(ended.code() < 128, "{said}");
+                said
+            });
+            let words = ["out of memory", "of memory, and"];
+            let is_told = |said: &String| words.iter().any(|word| said.contains(word));
+            assert!(limits.iter().any(is_told), "{limits:?}");
+        });
+    }
+}
+
 /// Ranks that don't see the folder of the result, as on hosts with disks of their own, leave writing to the root.
 pub fn folder_of_the_root_alone(trials: &mut Trials) {
     trials.once("folder_of_the_root_alone", || {

@@ -18,10 +18,18 @@ mod position;
 mod scope;
 mod sets;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::Mesh;
 use crate::error::InputError;
+
+/// A deck and the files that it includes; the deck alone where it can't be read, which is told who reads it.
+pub fn files(path: &Path) -> Vec<PathBuf> {
+    match blocks::Source::read(path) {
+        Ok(source) => source.paths().map(Path::to_path_buf).collect(),
+        Err(_) => vec![path.to_path_buf()],
+    }
+}
 
 /// Reads the mesh of a deck, with the files that it includes.
 ///

@@ -27,7 +27,7 @@ use super::{Mesh, foreign};
 use crate::error::InputError;
 use crate::{name, source};
 
-pub use self::write::write;
+pub use self::write::{write, write_to};
 
 /// Within how many bytes a mesh says that it is one.
 const HEAD: u64 = 1 << 20;

@@ -6,6 +6,7 @@ mod full_disk;
 mod info;
 #[path = "../../../tests/support/mounted.rs"]
 mod mounted;
+mod outputs;
 mod program;
 mod refusals;
 #[path = "../library/says.rs"]

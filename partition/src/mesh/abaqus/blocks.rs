@@ -90,6 +90,11 @@ impl Source {
         Ok(source)
     }
 
+    /// All files.
+    pub(super) fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.files.iter().map(|(path, _)| path.as_path())
+    }
+
     /// An error at a line.
     pub(super) fn error(&self, at: Place, message: impl std::fmt::Display) -> InputError {
         InputError::new(format!("line {}: {message}", at.line)).in_file(&self.files[at.file].0)

@@ -20,14 +20,20 @@ use crate::mesh::bounding_box::BoundingBox;
 /// # Errors
 /// The file can't be written.
 pub fn write(mesh: &Mesh, path: &Path) -> Result<(), OutputError> {
-    destination::write_bytes(path, |out| {
-        let plan = Plan::new(mesh);
-        writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat")?;
-        plan.write_names(out)?;
-        plan.write_entities(out, mesh)?;
-        plan.write_nodes(out, mesh)?;
-        plan.write_elements(out, mesh)
-    })
+    destination::write_bytes(path, |out| write_to(out, mesh))
+}
+
+/// Writes what [`write()`] writes.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
+    let plan = Plan::new(mesh);
+    writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat")?;
+    plan.write_names(out)?;
+    plan.write_entities(out, mesh)?;
+    plan.write_nodes(out, mesh)?;
+    plan.write_elements(out, mesh)
 }
 
 /// Elements of one kind in the same groups; an entity of the file.
