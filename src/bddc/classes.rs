@@ -58,7 +58,7 @@ impl Class {
 
     /// Whether all of its unknowns are coarse ones, as those of a vertex.
     pub fn is_coarse(&self) -> bool {
-        self.is_partial && self.clusters.len() > 2 || self.size() <= SMALL
+        self.is_partial && self.turned.is_none() || self.size() <= SMALL
     }
 }
 
@@ -142,7 +142,7 @@ impl Classes {
                 dofs: of_class,
                 turned: None,
             };
-            if class.is_partial && !class.is_coarse() {
+            if class.is_partial && class.size() > SMALL {
                 class.turned = turned(&class, dofs, ties);
             }
             classes.list.push(class);
@@ -151,7 +151,8 @@ impl Classes {
     }
 }
 
-/// The combinations of the unknowns of a class that its two clusters have, of which one doesn't have all.
+/// The combinations of the unknowns of a class that its two clusters have, of which one doesn't have all; `None` where
+/// there are more clusters, or combinations that neither has.
 fn turned(class: &Class, dofs: &[Vec<InterfaceDof>], ties: &Ties) -> Option<Turned> {
     let [a, b] = class.clusters[..] else {
         return None;
@@ -211,7 +212,7 @@ fn turned(class: &Class, dofs: &[Vec<InterfaceDof>], ties: &Ties) -> Option<Turn
     }
     let [both, first, second] = columns.each_ref().map(Vec::len);
     let columns = columns.concat();
-    Some(Turned {
+    (columns.len() == n).then(|| Turned {
         q: Mat::from_fn(n, n, |i, j| columns[j][i]),
         ends: [0, both, both + first, both + first + second],
     })

@@ -266,6 +266,12 @@ impl Stages<'_> {
             {
                 finished.count = k;
                 *last_plan = Some(parts.plan.clone());
+                // Of another solver the state on Γ says nothing.
+                let state = StepState {
+                    interface: None,
+                    pairs: BTreeMap::new(),
+                    ..state
+                };
                 return Ok(Some(Relief {
                     merging: relief,
                     state,

@@ -9,7 +9,8 @@ use crate::support::scenes::{built_in, built_in_model, checkerboard, columns, mo
 use crate::support::solids::{between, solid};
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, LIMIT, built, problem};
-use crate::support::stress::space::draw_in_space;
+use crate::support::stress::draw_frictional;
+use crate::support::stress::space::{draw_frictional_in_space, draw_in_space};
 use crate::support::stress::trial::{Trial, Verdict};
 
 const ITERATIVE: [&str; 2] = ["--interface", "iterative"];
@@ -409,5 +410,25 @@ fn what_friction_holds_far_from_other_contacts_is_solved_as_directly() {
         assert!(difference < 1e-10, "{clusters}: {difference:e}");
         assert_eq!(direct.closed(), iterative.closed());
         assert!(iterative.report["sweeps"].as_u64() < Some(60), "{clusters}");
+    }
+}
+
+/// In the middle of load steps, and where an active set leaves combinations of unknowns to neither of two clusters.
+#[test]
+fn what_does_not_converge_between_clusters_is_solved_directly_from_there() {
+    // The direct solver doesn't converge with the second one, either.
+    for (drawn, verdict) in [
+        (draw_frictional(900_095, 12), Verdict::Right),
+        (draw_frictional_in_space(910_050, 12), Verdict::NotConverged),
+    ] {
+        let trial = Trial::with(&drawn, built(), LIMIT, None, Some(8));
+        let seed = drawn.seed;
+        assert_eq!(trial.verdict, verdict, "{seed}: {}", trial.reason);
+        let report = trial.report.unwrap();
+        let words = "didn't converge";
+        for said in ["warnings", "fallbacks", "interface_choice"] {
+            let is_said = report[said].to_string().contains(words);
+            assert!(is_said, "{seed}: {}", report[said]);
+        }
     }
 }
