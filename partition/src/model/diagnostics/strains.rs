@@ -12,8 +12,9 @@ use crate::scene::condition::Names;
 /// Strain that hardly anybody means: by then small strains are no approximation.
 const LARGE: f64 = 0.1;
 
-/// Strain that is a mistake unless the scene says that it isn't: by then the bodies are twice as long, or gone.
-const ABSURD: f64 = 1.0;
+/// Strain that is a mistake unless the scene says that it isn't. A unit of length or stress that is wrong makes a factor of a
+/// thousand or a million of it; scenes of round numbers that mean nothing come to ten.
+const ABSURD: f64 = 100.0;
 
 /// An estimated strain, and what makes it.
 struct Estimate {
@@ -25,7 +26,7 @@ impl Diagnostics<'_> {
     /// Loads not much below the stiffness, and displacements beyond the bodies' size.
     ///
     /// # Errors
-    /// A load beyond the stiffness, unless the scene has `large_strains`.
+    /// A load far beyond the stiffness, unless the scene has `large_strains`.
     pub(super) fn strains(&self) -> Result<Vec<String>, InputError> {
         let mut estimates = self.of_bodies();
         for loading in self.scene.loadings() {

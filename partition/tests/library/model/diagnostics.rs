@@ -127,7 +127,7 @@ fn loads_beyond_the_stiffness_and_ways_beyond_the_size_are_named() {
 }
 
 #[test]
-fn loads_beyond_the_stiffness_are_refused_unless_the_scene_says_that_they_are_meant() {
+fn loads_far_beyond_the_stiffness_are_refused_unless_the_scene_says_that_they_are_meant() {
     let body = |key: &str| {
         format!(
             "bodies.lower = {{ material = 'steel', {key} }}\nbodies.upper.material = 'steel'\n{HELD}{CONTACT}"
@@ -138,16 +138,16 @@ fn loads_beyond_the_stiffness_are_refused_unless_the_scene_says_that_they_are_me
     };
     let scaled = format!(
         "{}[[step]]\nscale = 0.1\n[[step]]\nscale = 100\n",
-        side("pressure", "5")
+        side("pressure", "500")
     );
     for (scene, expected) in [
         (
-            side("pressure", "'-1e3*x'"),
-            "pressure[1] on 'upper top': up to 2000 Pa … strains of about 8.333",
+            side("pressure", "'-1e5*x'"),
+            "pressure[1] on 'upper top': up to 2e5 Pa … strains of about 833.3",
         ),
         (
-            side("traction", "[0, 300]"),
-            "traction[1] on 'upper top': up to 300 Pa",
+            side("traction", "[0, 3e4]"),
+            "traction[1] on 'upper top': up to 30000 Pa",
         ),
         (scaled, "pressure[1] on 'upper top'"),
         (
