@@ -20,6 +20,7 @@ pub struct Destination {
     path: PathBuf,
     target: PathBuf,
     temporary: TempPath,
+    is_kept: bool,
     /// Tells others, as long as it is open and locked, that the temporary file is somebody's.
     owned: Option<File>,
 }
@@ -50,6 +51,7 @@ impl Destination {
                 return Ok(Self {
                     path: path.to_path_buf(),
                     temporary,
+                    is_kept: false,
                     target,
                     owned: Some(file),
                 });
@@ -73,6 +75,7 @@ impl Destination {
         Ok(Self {
             path: path.to_path_buf(),
             temporary,
+            is_kept: true,
             target,
             owned: None,
         })
@@ -96,12 +99,13 @@ impl Destination {
         std::mem::replace(&mut self.temporary, temporary).disable_cleanup(true);
         // Nobody takes that name for a left file; who wants to look into it may lock it.
         self.owned = None;
+        self.is_kept = true;
         Ok(())
     }
 
     /// Whether the temporary file stays where it isn't committed.
     pub fn is_kept(&self) -> bool {
-        *self.temporary == *unfinished(&self.target)
+        self.is_kept
     }
 
     /// The file that is to be.
@@ -266,6 +270,22 @@ mod tests {
         complete.commit().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "after");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_is_kept_is_kept_once_by_whichever_path() {
+        // A path is relative to where a program is started.
+        let folder = tempfile::tempdir_in(".").unwrap();
+        let relative = Path::new(folder.path().file_name().unwrap()).join("result");
+        for path in [folder.path().join("result"), relative] {
+            let mut destination = Destination::new(&path).unwrap();
+            assert!(!destination.is_kept());
+            destination.keep().unwrap();
+            assert!(destination.is_kept(), "{}", path.display());
+            drop(destination);
+            assert!(Destination::kept(&path).unwrap().is_kept());
+            assert!(unfinished(&path).exists());
+        }
     }
 
     #[test]

@@ -8,14 +8,18 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
-use std::{fmt, process};
+use std::time::{Duration, Instant};
+use std::{fmt, process, thread};
 
 use contact_dd_partition::destination::{beside, failure};
 use contact_dd_partition::error::OutputError;
 use rustix::system::uname;
 
-/// How often a lock is tried for that its holder takes away in that moment.
-const TRIES: usize = 100;
+/// How long a lock is waited for: that of a run which was killed holds until the system has taken back its memory.
+const PATIENCE: Duration = Duration::from_secs(3);
+
+/// How long until it is tried for again.
+const PAUSE: Duration = Duration::from_millis(50);
 
 /// The right to write an output, until it is dropped.
 #[derive(Debug)]
@@ -32,15 +36,19 @@ impl OutputLock {
     /// Another run has it, which the message names by host and process; a folder that can't be written.
     pub fn take(output: &Path) -> Result<Self, OutputError> {
         let path = beside(output, "lock")?;
-        for _ in 0..TRIES {
-            match attempt(&path) {
+        let since = Instant::now();
+        loop {
+            let why = match attempt(&path) {
                 Ok(Some(file)) => return Ok(Self { path, _file: file }),
-                Ok(None) => {}
+                Ok(None) => "other runs lock it again and again".to_owned(),
                 Err(Refusal::System(error)) => return Err(failure(output, error)),
-                Err(Refusal::Held(why)) => return Err(failure(output, why)),
+                Err(Refusal::Held(why)) => why,
+            };
+            if since.elapsed() > PATIENCE {
+                return Err(failure(output, why));
             }
+            thread::sleep(PAUSE);
         }
-        Err(failure(output, "other runs lock it again and again"))
     }
 }
 
@@ -184,8 +192,11 @@ mod tests {
         std::os::unix::fs::symlink(&output, &link).unwrap();
         OutputLock::take(&link).unwrap_err();
         OutputLock::take(&folder.path().join("other.vtkhdf")).unwrap();
+        // Who is on the way out is waited for.
+        let waiting = thread::spawn(move || drop(OutputLock::take(&link).unwrap()));
+        thread::sleep(2 * PAUSE);
         drop(held);
-        drop(OutputLock::take(&link).unwrap());
+        waiting.join().unwrap();
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 

@@ -110,13 +110,14 @@ pub fn restarted_in_vain(trials: &mut Trials) {
         let before = fs::read(&kept).unwrap();
         let ended = case.run_on(ranks, &["--restart", "--tolerance", "1e-9"]);
         failed_once(&ended, 2, &["problem.vtkhdf.unfinished", "other settings"]);
-        let [own, other] = [6, 4].map(|count| Case::of(&steps::two_blocks_in_steps(), count));
+        let own = fs::read(case.problem()).unwrap();
+        let other = Case::of(&steps::two_blocks_in_steps(), 4);
         let state = case.folder().join("problem.vtkhdf.unfinished.state");
         fs::copy(other.problem(), case.problem()).unwrap();
         let ended = case.run_on(ranks, &["--restart"]);
         failed_once(&ended, 2, &["problem.vtkhdf.unfinished", "another problem"]);
         assert!(fs::read(&kept).unwrap() == before);
-        fs::copy(own.problem(), case.problem()).unwrap();
+        fs::write(case.problem(), &own).unwrap();
         for (file, of) in [
             (kept.clone(), "of load step 1 isn't what was written"),
             (state, "isn't what a run that was stopped leaves"),
@@ -153,7 +154,10 @@ pub fn killed_again_and_again(trials: &mut Trials) {
         let unfinished = case.folder().join("problem.vtkhdf.unfinished");
         let (mut first, mut kills) = (Vec::new(), 0);
         while !case.result().exists() {
-            let running = Running::start(program(ranks).arg(case.problem()).arg("--restart"));
+            // As users do: by paths that are relative to the folder.
+            let mut command = program(ranks);
+            command.current_dir(case.folder());
+            let running = Running::start(command.args(["problem.h5", "--restart"]));
             let deadline = Instant::now() + LIMIT;
             while !unfinished.exists() && !case.result().exists() && Instant::now() < deadline {
                 thread::sleep(Duration::from_millis(1));
