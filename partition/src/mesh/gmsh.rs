@@ -22,10 +22,10 @@ use std::io::Read as _;
 use std::path::Path;
 
 use self::content::Content;
-use self::cursor::{Cursor, Encoding};
+use self::cursor::{Cursor, Encoding, shown};
 use super::{Mesh, foreign};
 use crate::error::InputError;
-use crate::{name, source};
+use crate::source;
 
 pub use self::write::{write, write_to};
 
@@ -135,7 +135,7 @@ fn mesh_format(cursor: &mut Cursor) -> Result<Version, InputError> {
         _ => {
             return Err(cursor.error(format!(
                 "expected version, file type and data size, such as `4.1 0 8`, found `{}`",
-                name::shown(line)
+                shown(line.as_bytes())
             )));
         }
     };

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::blocks::{Block, Place, Source};
 use super::deck::{Deck, Face, Offsets, check_name};
+use super::notes::Notes;
 use super::position::{Point, Position};
 use super::scope::Scope;
 use crate::error::InputError;
@@ -181,7 +182,9 @@ impl<'a> Assembly<'a> {
                 };
                 let mut own = None;
                 if !open.scope.is_empty() {
+                    // What the part's notes say is said with the part.
                     let own = own.insert(part.clone());
+                    own.notes = Notes::default();
                     open.scope.read(source, own)?;
                     self.whole.notes.join(&own.notes);
                     self.whole.taken_as.extend(own.taken_as.iter().cloned());

@@ -32,13 +32,15 @@ impl Notes {
     /// Adds other notes.
     pub(super) fn join(&mut self, other: &Self) {
         for (what, more) in &other.0 {
-            let mut more = more.clone();
             let tally = self.0.entry(what.clone()).or_default();
-            let room = NAMED - tally.first.len();
             tally.count += more.count;
-            tally
-                .first
-                .extend(more.first.drain(..room.min(more.first.len())));
+            for thing in &more.first {
+                match tally.first.contains(thing) {
+                    true => tally.count -= 1,
+                    false if tally.first.len() < NAMED => tally.first.push(thing.clone()),
+                    false => {}
+                }
+            }
         }
     }
 
@@ -63,8 +65,8 @@ mod tests {
         let mut notes = Notes::default();
         (0..1000).for_each(|tag| notes.add("nodes are left out", tag.to_string()));
         let mut other = Notes::default();
-        other.add("nodes are left out", "7".into());
-        other.add("nodes are left out", "7".into());
+        other.add("nodes are left out", "1000".into());
+        other.add("nodes are left out", "5".into());
         notes.join(&other);
         let warnings: Vec<String> = notes.warnings().collect();
         assert_eq!(

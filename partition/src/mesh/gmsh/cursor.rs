@@ -55,7 +55,7 @@ impl<'a> Cursor<'a> {
     fn error_at(&self, at: usize, message: impl std::fmt::Display) -> InputError {
         let section = match self.section {
             "" => String::new(),
-            name => format!(" in ${name}"),
+            name => format!(" in ${}", shown(name.as_bytes())),
         };
         let place = match self.encoding {
             Encoding::Ascii => {
@@ -109,6 +109,7 @@ impl<'a> Cursor<'a> {
         let rest = &self.bytes[self.at..];
         let found = rest.windows(end.len()).position(|w| w == end.as_bytes());
         let Some(offset) = found else {
+            let end = shown(end.as_bytes());
             return Err(self.error(format!("the file ends before {end}")));
         };
         self.at += offset + end.len();
@@ -268,7 +269,7 @@ impl<'a> Cursor<'a> {
 }
 
 /// Bytes of a file as a message shows them: text, or the first of those that aren't.
-fn shown(bytes: &[u8]) -> String {
+pub(super) fn shown(bytes: &[u8]) -> String {
     const FIRST: usize = 8;
     match std::str::from_utf8(bytes) {
         Ok(text) if !text.chars().any(char::is_control) => name::shown(text),

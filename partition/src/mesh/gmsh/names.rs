@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::cursor::Cursor;
+use super::cursor::{Cursor, shown};
 use crate::error::InputError;
 use crate::{mesh, name};
 
@@ -12,7 +12,7 @@ pub(super) fn read(cursor: &mut Cursor) -> Result<BTreeMap<(usize, i64), String>
     let Ok(count) = line.parse::<usize>() else {
         return Err(cursor.error(format!(
             "expected the number of names, found `{}`",
-            name::shown(line)
+            shown(line.as_bytes())
         )));
     };
     let mut names = BTreeMap::new();
@@ -21,11 +21,11 @@ pub(super) fn read(cursor: &mut Cursor) -> Result<BTreeMap<(usize, i64), String>
         let Some((dim, number, name)) = entry(line) else {
             return Err(cursor.error(format!(
                 "expected dimension, number and \"name\" of a physical group, found `{}`",
-                name::shown(line)
+                shown(line.as_bytes())
             )));
         };
         if let Err(reason) = name::check_text(name) {
-            return Err(cursor.error(format!("'{}' {reason}", name::shown(name))));
+            return Err(cursor.error(format!("'{}' {reason}", shown(name.as_bytes()))));
         }
         if !name.is_empty() && names.insert((dim, number), name.to_string()).is_some() {
             return Err(cursor.error(format!(

@@ -3,11 +3,10 @@
 //! An element in several physical groups is listed once for each.
 
 use super::content::{Content, groups};
-use super::cursor::{Cursor, Encoding};
+use super::cursor::{Cursor, Encoding, shown};
 use super::element_type;
 use crate::element::ElementKind;
 use crate::error::InputError;
-use crate::name;
 
 /// Reads the body of `$Nodes` or `$ParametricNodes`.
 pub(super) fn nodes(
@@ -115,6 +114,9 @@ fn count_line(cursor: &mut Cursor, what: &str, values: usize) -> Result<usize, I
     let line = cursor.line(what)?;
     match line.parse() {
         Ok(count) => cursor.checked(what, count, values),
-        Err(_) => Err(cursor.error(format!("expected {what}, found `{}`", name::shown(line)))),
+        Err(_) => Err(cursor.error(format!(
+            "expected {what}, found `{}`",
+            shown(line.as_bytes())
+        ))),
     }
 }

@@ -177,15 +177,24 @@ fn a_mistake_is_short_however_long_its_words_are() {
 #[test]
 fn no_damage_makes_the_reader_panic() {
     let deck = format!("{SQUARES}*NSET, NSET=n, GENERATE\n1, 3, 1\n*SURFACE, NAME=s\nLeft, S1\n");
-    for cut in (0..deck.len()).filter(|&cut| deck.is_char_boundary(cut)) {
-        let _ = read(&deck[..cut]);
-        let changed = format!("{}9{}", &deck[..cut], &deck[cut..]);
-        let _ = read(&changed);
-        let lost = format!(
-            "{}{}",
-            &deck[..cut],
-            deck.get(cut + 1..).unwrap_or_default()
-        );
-        let _ = read(&lost);
+    let assembly = "*PART, NAME=P\n*NODE\n1, 0.\n2, 1.\n3, 1., 1.\n*ELEMENT, TYPE=CPS3I, ELSET=E\n1, 1, 2, 3\n\
+                    *ELEMENT, TYPE=T2D2, ELSET=S\n2, 1, 2\n*SURFACE, NAME=A\nS, SPOS\n*END PART\n\
+                    *INSTANCE, NAME=I, PART=P\n1., 2.\n0., 0., 0., 0., 0., 1., 90.\n*ELEMENT, TYPE=MASS\n9, 1\n\
+                    *NSET, NSET=N, ELSET=E\n1, 7\n*END INSTANCE\n*INSTANCE, NAME=J, PART=P\n*END INSTANCE\n\
+                    *SURFACE, NAME=U, COMBINE=UNION\nI.A, T\n*SURFACE, NAME=T, TYPE=NODE\nM, 1.\n\
+                    *NSET, NSET=M\nI.N, J.1\n*NODE, NSET=R\n1, 5.-1\n";
+    assert!(read(assembly).is_ok());
+    for deck in [&deck, assembly] {
+        for cut in (0..deck.len()).filter(|&cut| deck.is_char_boundary(cut)) {
+            let _ = read(&deck[..cut]);
+            let changed = format!("{}9{}", &deck[..cut], &deck[cut..]);
+            let _ = read(&changed);
+            let lost = format!(
+                "{}{}",
+                &deck[..cut],
+                deck.get(cut + 1..).unwrap_or_default()
+            );
+            let _ = read(&lost);
+        }
     }
 }
