@@ -53,11 +53,13 @@ impl ReferenceElement {
 impl ReferenceElement {
     /// Whether a cell that [folds](Self::fold) can be computed with all the same: a hexahedron of 8 nodes, whose faces
     /// needn't cross each other where its Jacobian changes sign at a corner, with a Jacobian above `floor` wherever
-    /// its stiffness is integrated. Linear displacements then are exact, as everywhere.
+    /// its stiffness is integrated. Linear displacements then are exact, as everywhere. One with two nodes at the same
+    /// place is no hexahedron.
     pub fn bears_fold(&self, at: &[[f64; 3]], floor: f64) -> bool {
         let mut points = self.stiffness_points().iter();
         let mut is_sound = || points.all(|point| self.determinant(&point.gradients, at) > floor);
-        self.domain() == Domain::Cube && self.is_linear() && is_sound()
+        let is_collapsed = || (1..at.len()).any(|i| at[..i].contains(&at[i]));
+        self.domain() == Domain::Cube && self.is_linear() && !is_collapsed() && is_sound()
     }
 }
 

@@ -234,6 +234,15 @@ impl Turn {
     }
 }
 
+/// Whether a facet that is none of a cell has all of its nodes in one: three corners of four.
+fn is_part_of_face(mesh: &Mesh, nodes: &[u32]) -> bool {
+    mesh.cells.iter().any(|(kind, of_cell)| {
+        let mut facets = kind.facets().iter();
+        facets
+            .any(|(_, local)| (nodes.iter()).all(|node| local.iter().any(|&i| of_cell[i] == *node)))
+    })
+}
+
 /// A piece of the boundary.
 #[derive(Clone, Debug)]
 pub(super) struct Surface {
@@ -257,6 +266,9 @@ impl Surface {
             };
             let cell_facet = match topology.cells_at(listed).as_slice() {
                 [one] => *one,
+                [] if mesh.dim == 3 && is_part_of_face(mesh, listed) => {
+                    return Err(refused("is only a part of a face of a cell"));
+                }
                 [] => return Err(refused("belongs to no cell of a body")),
                 [_, _] => {
                     return Err(refused(
@@ -269,9 +281,6 @@ impl Surface {
             let cell = mesh.cells.nodes_of(cell_facet.cell as usize);
             let kind = mesh.cells.kind(cell_facet.cell as usize);
             let (kind, local) = kind.facets()[cell_facet.facet as usize];
-            if mesh.facets.kind(facet as usize).corners() < kind.corners() {
-                return Err(refused("is only a part of a face of a cell"));
-            }
             let nodes: Vec<u32> = local.iter().map(|&i| cell[i]).collect();
             let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
             Ok(SurfaceFacet::new(kind, nodes, at, plane))

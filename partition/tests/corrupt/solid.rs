@@ -15,7 +15,7 @@ const MESHES: &str = r#"
 1 2 3 4 5 6 7 8\n => 1 2 3 4 6 5 8 7\n
     element 9 has no volume
 1 2 3 4 5 6 7 8\n => 1 2 3 4 5 6 7 7\n
-    the group 'lower face' is empty
+    is folded: its Jacobian is 0e0
 2 2 2 9 10 11 15\n => 2 2 2 9 10 10 15\n
     element 10 has no volume
 2 2 2 9 10 11 15\n => 2 2 2 9 10 11 99\n
@@ -45,7 +45,7 @@ const MESHES: &str = r#"
 7 2 2 6 6 13 14 15\n => 7 2 2 6 6 9 11 15\n
     lies between two cells
 4 3 2 4 4 5 6 7 8\n => 4 2 2 4 4 5 6 7\n
-    the facet of nodes 5, 6, 7 belongs to no cell
+    is only a part of a face
 7 2 2 6 6 13 14 15\n => 7 2 2 6 6 13 15 16\n
     the element 7 is listed twice
 3 3 2 3 3 1 4 3 2\n => 3 3 2 4 4 1 4 3 2\n
