@@ -1,7 +1,5 @@
 """Contacts as the side sees them whose nodes have the conditions."""
 
-import numpy as np
-
 
 def carried(tables):
     """The tables of contacts, by their names, each with the nodes that have its conditions as those of side a."""
