@@ -12,7 +12,7 @@ use crate::comm::{self, Comm};
 use crate::error::Failure;
 use crate::output::memory::peak_memory_bytes;
 use crate::output::ranks::{PhaseSeconds, RankReport, RankSeconds};
-use crate::output::report::{Build, Report, ReportFile, Status};
+use crate::output::report::{Build, ContactOperator, Report, ReportFile, Status};
 use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
@@ -134,11 +134,13 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         method: settings.method.name().into(),
         sweeps: sum(StepTotals::sweeps),
         active_set_iterations: sum(|step| step.outcome.active_set_iterations),
+        linear_solves: sum(|step| step.linear_solves),
         fallbacks: totals.fallbacks(),
         interface_residual: (totals.steps.iter())
             .fold(0.0, |worst: f64, step| worst.max(step.outcome.residual)),
         interface_solver: totals.interface_solver(),
         interface_choice: interface_choice(totals, settings),
+        contact_operator: contact_operator(plan),
         interface_iterations: (totals.steps.iter())
             .flat_map(|step| step.interface_iterations().iter().copied())
             .collect(),
@@ -167,6 +169,15 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         settings_from: settings.from.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
         build: Build::of_this_program(comm::library()),
+    }
+}
+
+/// What contact conditions were solved with, of the stage that came last.
+fn contact_operator(plan: &Plan) -> ContactOperator {
+    match plan.merging {
+        Merging::All | Merging::Linear | Merging::Groups => ContactOperator::Dense,
+        Merging::Clusters if !plan.has_one_cluster() => ContactOperator::Bddc,
+        Merging::Frozen | Merging::Clusters => ContactOperator::Tree,
     }
 }
 

@@ -10,6 +10,7 @@
 
 mod accuracy;
 mod iterations;
+mod record;
 mod stability;
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -38,6 +39,10 @@ enum Study {
     Accuracy(accuracy::Arguments),
     /// Counts the iterations of the interface solver between more and more clusters.
     Iterations(iterations::Arguments),
+    /// Runs random scenes of all kinds and writes a line on each.
+    Record(record::Arguments),
+    /// Says in what a record differs from an older one.
+    Compare(record::compare::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -46,5 +51,7 @@ fn main() -> ExitCode {
         Study::Validation(arguments) => validation::run(&arguments),
         Study::Accuracy(arguments) => accuracy::run(&arguments),
         Study::Iterations(arguments) => iterations::run(&arguments),
+        Study::Record(arguments) => record::run(&arguments),
+        Study::Compare(arguments) => record::compare::run(&arguments),
     }
 }

@@ -4,7 +4,7 @@
 
 mod axes;
 mod document;
-mod random;
+pub mod random;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use self::random::{Draw, Ran};
 use crate::support::stress::space::{draw_frictional_in_space, draw_in_space};
-use crate::support::stress::trial::Verdict;
+use crate::support::stress::trial::{Interface, Verdict};
 use crate::support::stress::{draw, draw_frictional};
 
 /// Runs scenes that are hard on the solver and says what became of each.
@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         jobs: arguments.jobs,
         limit: Duration::from_secs(arguments.limit),
         keep: arguments.keep.clone(),
-        clusters: arguments.clusters,
+        interface: (arguments.clusters).map_or(Interface::Chosen, Interface::Iterative),
     };
     let told = !arguments.only.is_empty();
     let seeds = match told {

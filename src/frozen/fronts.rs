@@ -45,6 +45,8 @@ pub struct FrozenFronts {
     spare: Spare,
     /// The smallest pivot of the last factorization, relative to its diagonal entry.
     pub smallest_pivot: f64,
+    /// Number of loads that they were solved for.
+    pub solves: usize,
     /// What works between the nodes that nothing here is above, where these aren't the roots of the hierarchy.
     pub(super) bddc: Option<Bddc>,
 }
@@ -85,6 +87,7 @@ impl FrozenFronts {
             spring: 0.0,
             spare: Spare::default(),
             smallest_pivot: f64::INFINITY,
+            solves: 0,
             bddc: None,
         };
         for (c, cluster) in plan.clusters.iter().enumerate() {

@@ -59,6 +59,7 @@ impl FrozenFronts {
         loads: ClusterLoads<'_>,
         accuracy: Accuracy<'_>,
     ) -> Result<FrozenSolution, Failure> {
+        self.solves += 1;
         let mut solution = self.solve_as_it_is(context, loads, accuracy);
         // One made again of the classes known to need it, then one that all classes were looked into for.
         for _ in 0..2 {

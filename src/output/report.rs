@@ -25,6 +25,18 @@ pub enum Status {
     NotConverged,
 }
 
+/// What contact conditions are solved with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactOperator {
+    /// A matrix of the conditions, of all or of each group.
+    Dense,
+    /// The fronts of the hierarchy, eliminated again for every active set.
+    Tree,
+    /// The same within clusters, and between them iterations preconditioned by BDDC.
+    Bddc,
+}
+
 /// What the mesh does to the stress, after Zienkiewicz and Zhu, in the energy norm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct ErrorEstimate {
@@ -51,6 +63,9 @@ pub struct StepReport {
     pub sweeps: usize,
     /// Number of linear systems solved within contact problems.
     pub active_set_iterations: usize,
+    /// Number of linear problems solved for contact conditions: those within contact problems, or with fixed active sets
+    /// one for every load; those of tries that were given up among them.
+    pub linear_solves: usize,
     /// Relative residual of the interface problem at the end.
     pub interface_residual: f64,
     /// Iterations of the interface solver in the start and in every sweep; empty where it is direct.
@@ -99,6 +114,9 @@ pub struct Report {
     pub sweeps: usize,
     /// Number of linear systems solved within contact problems.
     pub active_set_iterations: usize,
+    /// Number of linear problems solved for contact conditions: those within contact problems, or with fixed active sets
+    /// one for every load; those of tries that were given up among them.
+    pub linear_solves: usize,
     /// Which other methods had to help, in words.
     pub fallbacks: Vec<String>,
     /// Relative residual of the interface problem at the end.
@@ -107,6 +125,8 @@ pub struct Report {
     pub interface_solver: InterfaceMethod,
     /// Why it was solved like that, in words.
     pub interface_choice: String,
+    /// What the contact conditions were solved with.
+    pub contact_operator: ContactOperator,
     /// Iterations of the interface solver in the start and in every sweep, load step after load step; empty where it is
     /// direct.
     pub interface_iterations: Vec<usize>,

@@ -37,6 +37,8 @@ pub struct Totals<'a> {
 pub struct StepTotals {
     /// What the sweeps found.
     pub outcome: SweepOutcome,
+    /// Linear problems solved for contact conditions, in tries that were given up, too.
+    pub linear_solves: usize,
     /// Closed conditions.
     pub active: usize,
     /// The certificate.
@@ -87,6 +89,7 @@ impl StepTotals {
             estimate: solution.estimate,
             at_limit: !slides.is_empty(),
             warnings: warnings.concat(),
+            linear_solves: 0,
             outcome,
         }
     }
@@ -233,6 +236,7 @@ impl Totals<'_> {
                 status: totals.status(),
                 sweeps: totals.sweeps(),
                 active_set_iterations: totals.outcome.active_set_iterations,
+                linear_solves: totals.linear_solves,
                 interface_residual: totals.outcome.residual,
                 interface_iterations: totals.interface_iterations().to_vec(),
                 active_contacts: totals.active,

@@ -1,6 +1,6 @@
 //! An increment of load: from the state before it to the state after it.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
 use crate::certificate::energy::{BlockEnergy, EnergyBalance};
@@ -44,6 +44,8 @@ pub struct Increments<'a> {
     pub frozen: Option<&'a RefCell<FrozenFronts>>,
     /// Whether another solver takes over where this one doesn't converge.
     pub is_relieved: bool,
+    /// Linear problems that were solved for contact conditions, in tries that were given up, too; on the root.
+    pub linear_solves: &'a Cell<usize>,
 }
 
 /// An increment that was solved, or tried.
@@ -138,6 +140,11 @@ impl Increments<'_> {
         }
     }
 
+    /// Counts linear problems that were solved.
+    fn count(&self, solves: usize) {
+        self.linear_solves.set(self.linear_solves.get() + solves);
+    }
+
     /// Whether the sweeps converged. Collective.
     pub fn is_converged(&self, increment: &Increment) -> bool {
         let status = increment.outcome.as_ref().map(|outcome| &outcome.status);
@@ -193,14 +200,18 @@ impl Increments<'_> {
         let mut outcome = match frozen {
             Some(fronts) => {
                 let (fronts, loads) = (&mut fronts.borrow_mut(), &problem.condensed);
+                let before = fronts.solves;
                 let contact = sweep_frozen(&context, settings, log, fronts, loads, &limits)?;
+                self.count(fronts.solves - before);
                 let outcome = contact.outcome.clone();
                 found = Some(contact);
                 comm.is_root().then_some(outcome)
             }
             None => {
                 let (on_gamma, pairs) = (problem.interface.as_ref(), &mut problem.pairs);
-                sweep(&context, settings, log, on_gamma, pairs, start)?
+                let outcome = sweep(&context, settings, log, on_gamma, pairs, start)?;
+                self.count(outcome.as_ref().map_or(0, |o| o.active_set_iterations));
+                outcome
             }
         };
         seconds.add(|s| &mut s.sweeps, comm.times() - lap);

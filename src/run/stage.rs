@@ -1,6 +1,6 @@
 //! A stage: load steps in which the same bodies and contacts are there, and which share one factorization.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -87,6 +87,8 @@ pub struct Progress {
     pub smallest_pivot: f64,
     /// Load steps that are done, those of an earlier run among them.
     pub finished: Finished,
+    /// Linear problems that were solved for contact conditions since the last of them; on the root.
+    pub linear_solves: Cell<usize>,
 }
 
 impl Stages<'_> {
@@ -174,6 +176,7 @@ impl Stages<'_> {
             beside,
             smallest_pivot,
             finished,
+            linear_solves,
         } = progress;
         let parts = self.parts(stage, merging, last_plan.is_none())?;
         let context = self.context(stage, &parts);
@@ -244,6 +247,7 @@ impl Stages<'_> {
             interface: interface.as_ref(),
             frozen: frozen.as_ref(),
             is_relieved: relief.is_some(),
+            linear_solves,
         };
         let (mut state, mut why) = match relieved {
             Some(relieved) => (relieved.state, Some(relieved.why)),
@@ -315,7 +319,10 @@ impl Stages<'_> {
             let totals = solved.outcome.clone();
             let totals = totals.map(|o| {
                 let solution = &solved.solution;
-                StepTotals::new(o, solution, resultants, solved.energy, at_end, catalog)
+                StepTotals {
+                    linear_solves: linear_solves.take(),
+                    ..StepTotals::new(o, solution, resultants, solved.energy, at_end, catalog)
+                }
             });
             finished.steps.extend(totals);
             if let Some(next) = next.filter(|next| next.start == k + 1) {

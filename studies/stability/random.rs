@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::support::stress::Drawn;
 use crate::support::stress::friction::Law;
-use crate::support::stress::trial::{Trial, Verdict};
+use crate::support::stress::trial::{Interface, Trial, Verdict};
 
 /// Makes the scene of a seed, with blocks of so many cells.
 pub type Draw = fn(u64, usize) -> Drawn;
@@ -19,8 +19,8 @@ pub struct Runs {
     pub jobs: usize,
     pub limit: Duration,
     pub keep: Option<PathBuf>,
-    /// Clusters between which the iterative interface solver works, where it is asked for.
-    pub clusters: Option<usize>,
+    /// The interface solver that is asked for.
+    pub interface: Interface,
 }
 
 /// A scene that was run; of its model nothing is kept.
@@ -74,7 +74,7 @@ impl Runs {
             &self.binary,
             self.limit,
             self.keep.as_deref(),
-            self.clusters,
+            self.interface,
         );
         let ran = Ran::new(&drawn, trial, began);
         if told || ran.trial.verdict != Verdict::Right || ran.is_short() {

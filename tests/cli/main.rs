@@ -7,6 +7,7 @@
 )]
 
 mod command_line;
+mod records;
 mod report;
 mod scripts;
 #[path = "../support/mod.rs"]

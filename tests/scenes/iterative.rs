@@ -11,7 +11,7 @@ use crate::support::solution::Solution;
 use crate::support::solver::{Case, LIMIT, built, problem};
 use crate::support::stress::draw_frictional;
 use crate::support::stress::space::{draw_frictional_in_space, draw_in_space};
-use crate::support::stress::trial::{Trial, Verdict};
+use crate::support::stress::trial::{Interface, Trial, Verdict};
 
 const ITERATIVE: [&str; 2] = ["--interface", "iterative"];
 
@@ -85,7 +85,7 @@ fn displacements_and_contacts_are_those_of_the_direct_solver_in_space() {
 fn scenes_in_space_that_are_hard_to_settle_are_solved_between_clusters() {
     for seed in [2, 29, 55, 220, 331] {
         let drawn = draw_in_space(seed, 12);
-        let trial = Trial::with(&drawn, built(), LIMIT, None, Some(8));
+        let trial = Trial::with(&drawn, built(), LIMIT, None, Interface::Iterative(8));
         assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
     }
 }
@@ -421,7 +421,7 @@ fn what_does_not_converge_between_clusters_is_solved_directly_from_there() {
         (draw_frictional(900_095, 12), Verdict::Right),
         (draw_frictional_in_space(910_050, 12), Verdict::NotConverged),
     ] {
-        let trial = Trial::with(&drawn, built(), LIMIT, None, Some(8));
+        let trial = Trial::with(&drawn, built(), LIMIT, None, Interface::Iterative(8));
         let seed = drawn.seed;
         assert_eq!(trial.verdict, verdict, "{seed}: {}", trial.reason);
         let report = trial.report.unwrap();

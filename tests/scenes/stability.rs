@@ -9,7 +9,7 @@ use crate::support::solution::Solution;
 use crate::support::solver::{LIMIT, built, solve};
 use crate::support::stress::judge::Findings;
 use crate::support::stress::space::{draw_frictional_in_space, draw_in_space};
-use crate::support::stress::trial::{Trial, Verdict};
+use crate::support::stress::trial::{Interface, Trial, Verdict};
 use crate::support::stress::{Balance, Drawn, draw, draw_uneven};
 
 /// What the judge finds in the solution of two blocks after `tamper`.
@@ -175,7 +175,7 @@ fn what_touches_in_space_without_a_load_stays_where_it_is() {
 fn random_scenes_are_answered_rightly_by_iteration_between_clusters() {
     for seed in 0..16 {
         for drawn in [draw(seed, 4), draw_uneven(seed, 4)] {
-            let (verdict, why) = judged_between(drawn, Some(6));
+            let (verdict, why) = judged_between(drawn, Interface::Iterative(6));
             assert_eq!(verdict, Verdict::Right, "{seed}: {why}");
         }
     }
@@ -183,14 +183,14 @@ fn random_scenes_are_answered_rightly_by_iteration_between_clusters() {
 
 /// The verdict on a scene, and what to say of it.
 fn judged(drawn: Drawn) -> (Verdict, String) {
-    judged_between(drawn, None)
+    judged_between(drawn, Interface::Chosen)
 }
 
-/// The same by iteration between so many clusters.
-fn judged_between(mut drawn: Drawn, clusters: Option<usize>) -> (Verdict, String) {
+/// The same with an interface solver.
+fn judged_between(mut drawn: Drawn, interface: Interface) -> (Verdict, String) {
     // Tests of several ranks stand elsewhere.
     drawn.ranks = 0;
-    let trial = Trial::with(&drawn, built(), LIMIT, None, clusters);
+    let trial = Trial::with(&drawn, built(), LIMIT, None, interface);
     let why = format!("{}\n{}", trial.reason, drawn.described());
     (trial.verdict, why)
 }

@@ -183,15 +183,83 @@ pub fn datasets(result: &Path) -> BTreeMap<String, Vec<u64>> {
                     .map(as_bits)
                     .collect()
             }
-            let values = match dataset.dtype().unwrap().to_descriptor().unwrap() {
-                TypeDescriptor::Float(_) => bits::<f64>(&dataset, |x| x.to_bits()),
-                _ => bits::<i64>(&dataset, |x| *x as u64),
+            let values = match is_real(&dataset) {
+                true => bits::<f64>(&dataset, |x| x.to_bits()),
+                false => bits::<i64>(&dataset, |x| *x as u64),
             };
             all.insert(dataset.name(), values);
         }
     }
     all.retain(|name, _| !name.ends_with("/seconds"));
     all
+}
+
+fn is_real(dataset: &hdf5::Dataset) -> bool {
+    let descriptor = dataset.dtype().unwrap().to_descriptor().unwrap();
+    matches!(descriptor, TypeDescriptor::Float(_))
+}
+
+/// Numbers of a result by their kind, the last parts of their datasets' names: lengths, forces and statuses.
+const KINDS: [&[&str]; 3] = [
+    &["displacement", "gap", "slip"],
+    &["force", "tangential_force"],
+    &["status"],
+];
+
+/// The largest difference between displacements, jumps, forces and statuses of two result files, relative to the largest
+/// number of the same kind, and the dataset where that is; infinite where one has what the other hasn't.
+pub fn difference(a: &Path, b: &Path) -> (f64, String) {
+    let (a, b) = (numbers(a), numbers(b));
+    let mut worst = (0.0, "all".to_owned());
+    for kind in KINDS {
+        let is_one = |name: &&String| {
+            kind.iter()
+                .any(|last| name.rsplit('/').next() == Some(last))
+        };
+        let names: Vec<&String> = a.keys().chain(b.keys()).filter(is_one).collect();
+        let values = names.iter().filter_map(|name| a.get(*name)).flatten();
+        let values = values.filter(|x| x.is_finite());
+        let size = values.fold(f64::MIN_POSITIVE, |m: f64, x| m.max(x.abs()));
+        for name in names {
+            let difference = match (a.get(name), b.get(name)) {
+                (Some(a), Some(b)) if a.len() == b.len() => farthest(a, b) / size,
+                _ => f64::INFINITY,
+            };
+            if difference > worst.0 {
+                worst = (difference, name.clone());
+            }
+        }
+    }
+    worst
+}
+
+/// Every dataset of a result file.
+fn numbers(result: &Path) -> BTreeMap<String, Vec<f64>> {
+    let file = File::open(result).unwrap();
+    let number = |is_real: bool, bits: u64| match is_real {
+        true => f64::from_bits(bits),
+        false => bits as i64 as f64,
+    };
+    let all = datasets(result).into_iter().map(|(name, values)| {
+        let is_real = is_real(&file.dataset(&name).unwrap());
+        let values = values.into_iter().map(|bits| number(is_real, bits));
+        (name, values.collect())
+    });
+    all.collect()
+}
+
+/// The largest difference of two lists; infinite where one has no number and the other has one.
+fn farthest(a: &[f64], b: &[f64]) -> f64 {
+    let differences = a
+        .iter()
+        .zip(b)
+        .map(|(a, b)| match (a.is_nan(), b.is_nan()) {
+            (true, true) => 0.0,
+            (false, false) if a == b => 0.0,
+            (false, false) => (a - b).abs(),
+            _ => f64::INFINITY,
+        });
+    differences.fold(0.0, f64::max)
 }
 
 /// The part of a list that belongs to step k of so many.

@@ -14,6 +14,7 @@ mod inclusions;
 pub mod judge;
 pub mod manufactured;
 mod obstacles;
+pub mod record;
 pub mod rigid;
 pub mod space;
 mod towers;

@@ -79,6 +79,11 @@ pub struct Trial {
     pub by_friction: bool,
     /// Whether a load step was made in parts, after it didn't converge as a whole.
     pub in_parts: bool,
+    /// The program's exit code, and the time that it took (s).
+    pub exit: Option<i32>,
+    pub seconds: f64,
+    /// What it said when it failed.
+    pub message: String,
     pub dofs: usize,
     pub conditions: usize,
     pub subdomains: usize,
@@ -138,27 +143,41 @@ fn least(balances: impl Iterator<Item = Balance>) -> Balance {
     balances.max_by_key(rank).unwrap_or(Balance::Holds)
 }
 
-/// What asks for the iterative interface solver.
-const ITERATIVE: [&str; 2] = ["--interface", "iterative"];
+/// The interface solver that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interface {
+    /// The program chooses.
+    Chosen,
+    Direct,
+    /// The iterative one between so many clusters, about.
+    Iterative(usize),
+}
+
+impl Interface {
+    fn options(self) -> &'static [&'static str] {
+        match self {
+            Self::Chosen => &[],
+            Self::Direct => &["--interface", "direct"],
+            Self::Iterative(_) => &["--interface", "iterative"],
+        }
+    }
+}
 
 impl Trial {
     /// Runs `binary` on a scene, `limit` at most; with `keep` the problem file is copied there.
     pub fn of(drawn: &Drawn, binary: &Path, limit: Duration, keep: Option<&Path>) -> Self {
-        Self::with(drawn, binary, limit, keep, None)
+        Self::with(drawn, binary, limit, keep, Interface::Chosen)
     }
 
-    /// The same with the iterative interface solver between so many `clusters`, where some are asked for.
+    /// The same with an `interface` solver.
     pub fn with(
         drawn: &Drawn,
         binary: &Path,
         limit: Duration,
         keep: Option<&Path>,
-        clusters: Option<usize>,
+        interface: Interface,
     ) -> Self {
-        let args = match clusters {
-            Some(_) => &ITERATIVE[..],
-            None => &[],
-        };
+        let args = interface.options();
         let model = &drawn.model;
         let mut trial = Self {
             verdict: Verdict::Right,
@@ -166,6 +185,9 @@ impl Trial {
             equilibrium: drawn.equilibrium,
             by_friction: false,
             in_parts: false,
+            exit: None,
+            seconds: 0.0,
+            message: String::new(),
             dofs: model.mesh.dim * model.mesh.points.len(),
             conditions: model.contacts.iter().map(|c| c.points.len()).sum(),
             subdomains: 0,
@@ -193,8 +215,8 @@ impl Trial {
         });
         let case = match problem {
             Ok(mut problem) => {
-                if clusters.is_some() {
-                    problem.catalog.choose_clusters(clusters);
+                if let Interface::Iterative(clusters) = interface {
+                    problem.catalog.choose_clusters(Some(clusters));
                 }
                 Case::new(&problem)
             }
@@ -212,6 +234,9 @@ impl Trial {
             .unwrap();
         }
         let ended = Running::start(launched(binary, 0).arg(case.problem()).args(args)).wait(limit);
+        trial.exit = ended.status.and_then(|status| status.code());
+        trial.seconds = ended.took.as_secs_f64();
+        trial.message = ended.errors().join(" ");
         trial.judge(drawn, &steps, &case, &ended);
         if drawn.ranks > 0 && trial.verdict == Verdict::Right {
             let mut command = launched(binary, drawn.ranks);
@@ -230,7 +255,7 @@ impl Trial {
         let Some(status) = ended.status else {
             return self.ends(Verdict::Hung, format!("after {:.0?}", ended.took));
         };
-        let message = ended.errors().join(" ");
+        let message = self.message.clone();
         match (status.code(), self.equilibrium) {
             (Some(4), None) if self.by_friction => {
                 return self.ends(Verdict::Unclear, message);
