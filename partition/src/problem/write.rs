@@ -37,6 +37,7 @@ impl Problem {
                 access.libver_bounds(LibraryVersion::V18, LibraryVersion::V18);
                 access.file_locking(false)
             })
+            .with_fcpl(|root| root.obj_track_times(false))
             .create(path)?;
         let mut datasets = Datasets {
             file: &file,
@@ -70,7 +71,7 @@ impl Problem {
         if catalog.solver.is_empty() {
             return Ok(());
         }
-        let settings = file.create_group("settings")?;
+        let settings = group(file, "settings")?;
         let values = toml::Table::try_from(catalog.solver).map_err(|error| error.to_string())?;
         for (name, value) in &values {
             match value {
@@ -283,9 +284,7 @@ impl Datasets<'_> {
         shape[0] = values / shape[1..].iter().product::<usize>();
         (self.counts.learn(field, &shape))
             .map_err(|expected| format!("{path} has shape {shape:?}; expected {expected}"))?;
-        if !self.file.link_exists(field.group()) {
-            self.file.create_group(field.group())?;
-        }
+        group(self.file, field.group())?;
         let new = self.file.new_dataset_builder().empty_as(of);
         new.shape(shape).create(path)
     }
@@ -337,6 +336,22 @@ impl Datasets<'_> {
         let dataset = self.create(path, &type_of(&texts), texts.len())?;
         write_strings(&dataset, &texts)
     }
+}
+
+/// A group at a path, made with all above it that aren't there: without the time, so that the same problem is the same
+/// file whenever it is written.
+fn group(file: &hdf5::File, path: &str) -> hdf5::Result<hdf5::Group> {
+    let mut group = file.group("/")?;
+    for name in path.split('/').filter(|name| !name.is_empty()) {
+        group = match group.link_exists(name) {
+            true => group.group(name)?,
+            false => {
+                let new = group.create_group_builder().obj_track_times(false);
+                new.create(name)?
+            }
+        };
+    }
+    Ok(group)
 }
 
 fn text(group: &hdf5::Group, name: &str, value: &str) -> hdf5::Result<()> {
