@@ -93,9 +93,21 @@ impl Mesh {
         );
         match kind.bears_fold(at, floor) {
             true => Ok(Some(found)),
-            false => Err(InputError::new(format!(
-                "{found}; expected a positive one everywhere (corners below 180°, nodes on edges near their middle)"
-            ))),
+            false => Err(InputError::new(match collapsed(at) {
+                Some(both) => {
+                    let [a, b] = both.map(|i| self.node_tags[nodes[i] as usize]);
+                    let why = match a == b {
+                        true => format!("it has the node {a} twice"),
+                        false => format!("its nodes {a} and {b} are at one place"),
+                    };
+                    format!(
+                        "{found}: {why}; expected nodes that all differ, or triangles or tetrahedra in its place"
+                    )
+                }
+                None => format!(
+                    "{found}; expected a positive one everywhere (corners below 180°, nodes on edges near their middle)"
+                ),
+            })),
         }
     }
 
@@ -125,6 +137,11 @@ impl Mesh {
         }
         Ok(())
     }
+}
+
+/// Two of these points that are one.
+fn collapsed(at: &[[f64; 3]]) -> Option<[usize; 2]> {
+    (1..at.len()).find_map(|b| Some([at[..b].iter().position(|a| *a == at[b])?, b]))
 }
 
 fn longest_edge(at: &[[f64; 3]]) -> f64 {

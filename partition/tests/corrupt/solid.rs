@@ -15,7 +15,7 @@ const MESHES: &str = r#"
 1 2 3 4 5 6 7 8\n => 1 2 3 4 6 5 8 7\n
     element 9 has no volume
 1 2 3 4 5 6 7 8\n => 1 2 3 4 5 6 7 7\n
-    is folded: its Jacobian is 0e0
+    near node 7: it has the node 7 twice; expected nodes that all differ
 2 2 2 9 10 11 15\n => 2 2 2 9 10 10 15\n
     element 10 has no volume
 2 2 2 9 10 11 15\n => 2 2 2 9 10 11 99\n
