@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,31 +47,39 @@ def adapt(
     `geometry` is a file that Gmsh meshes, with the groups of the model; without one it is Gmsh's current model. The
     first mesh has the sizes that the geometry asks for; the last one is that of the model then. Cells are quadratic.
 
-    Raises `NotConverged` where the error is still larger after 12 rounds.
+    Warns of what is wrong with the last mesh. Raises `NotConverged` where the error is still larger after 12 rounds.
     """
     if not 0 < error < 1:
         raise InputError(f"an error of {error}; expected one above 0 and below 1")
     path = None if geometry is None else Path(geometry)
     start, sizes, rounds, aim = time.perf_counter(), None, list[Round](), AIM * error
-    while True:
-        if folder is not None and rounds:
-            keep(rounds[-1].result, len(rounds))
-        model.mesh = meshed(path, sizes)
-        result = model.run(ranks, folder=folder, progress=False)
-        found, _ = relative_errors(result)
-        rounds.append(Round(result.report["dofs"], found, time.perf_counter() - start, result))
-        if progress:
-            last = rounds[-1]
-            print(f"round {len(rounds)}: {last.dofs:8} dofs, error {found:.2%}, {last.seconds:.1f} s", flush=True)
-        if found <= error:
-            return result, rounds
-        if len(rounds) == MOST_ROUNDS:
-            late = NotConverged(f"after {MOST_ROUNDS} meshes the error is {found:.2g}, above {error:g}")
-            late.result = result
-            raise late
-        sizes = sizes_for(result, max(aim, found / MOST_PER_ROUND), is_first=len(rounds) == 1)
-        if found < 2 * error:
-            aim *= AIM
+    said: list[warnings.WarningMessage] = []
+    try:
+        while True:
+            if folder is not None and rounds:
+                keep(rounds[-1].result, len(rounds))
+            model.mesh = meshed(path, sizes)
+            # What is wrong with a mesh that another one takes the place of is no matter.
+            with warnings.catch_warnings(record=True) as said:
+                warnings.simplefilter("always")
+                result = model.run(ranks, folder=folder, progress=False)
+            found, _ = relative_errors(result)
+            rounds.append(Round(result.report["dofs"], found, time.perf_counter() - start, result))
+            if progress:
+                last = rounds[-1]
+                print(f"round {len(rounds)}: {last.dofs:8} dofs, error {found:.2%}, {last.seconds:.1f} s", flush=True)
+            if found <= error:
+                return result, rounds
+            if len(rounds) == MOST_ROUNDS:
+                late = NotConverged(f"after {MOST_ROUNDS} meshes the error is {found:.2g}, above {error:g}")
+                late.result = result
+                raise late
+            sizes = sizes_for(result, max(aim, found / MOST_PER_ROUND), is_first=len(rounds) == 1)
+            if found < 2 * error:
+                aim *= AIM
+    finally:
+        for message, category in dict.fromkeys((str(one.message), one.category) for one in said):
+            warnings.warn(message, category, stacklevel=2)
 
 
 def keep(result: Result, number: int) -> None:

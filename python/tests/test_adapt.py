@@ -2,7 +2,9 @@
 
 import subprocess
 import sys
+import warnings
 
+import edges
 import gmsh
 import numpy as np
 import pytest
@@ -139,3 +141,27 @@ def test_an_error_that_isnt_reached_is_said(scene, tmp_path, monkeypatch):
     assert raised.value.result.report["dofs"] == 210
     with pytest.raises(InputError, match="there is no such file; expected the geometry"):
         adapt(model, 0.01, tmp_path / "other.geo")
+
+
+def test_the_last_mesh_alone_is_warned_of():
+    """A punch with flanks that part slowly, which is said with the place on each mesh."""
+    try:
+        edges.start(1.0)
+        punch, p = edges.polygon([(-2, 0), (2, 0), (6, 0.4), (6, 3), (-6, 3), (-6, 0.4)])
+        block, b = edges.polygon([(-8, -6), (8, -6), (8, 0), (-8, 0)])
+        bodies = {"punch": (punch, edges.STEEL), "block": (block, edges.ALUMINIUM)}
+        model = edges.model_of(("tri", 2), "strain", bodies, {"top": [p[3]], "ground": [b[0]]})
+        model.fix("ground")
+        model.load("top", traction=[0, -3])
+        model.contact(between="all", friction=0.3)
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            result, rounds = adapt(model, 0.05, ranks=1, progress=False)
+    finally:
+        gmsh.finalize()
+    assert len(rounds) > 1
+    parting = [str(one.message) for one in said if "part slowly" in str(one.message)]
+    assert len(parting) == 1
+    assert parting[0] in result.report["warnings"]
+    assert any("part slowly" in words and words != parting[0] for words in rounds[0].result.report["warnings"])
+    assert not any("straight" in str(one.message) for one in said)

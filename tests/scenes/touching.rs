@@ -3,12 +3,13 @@
 use contact_dd_partition::element::ElementKind::{self, Hexahedron8, Tetrahedron4, Tetrahedron10};
 use contact_dd_partition::mesh::Mesh;
 
-use crate::support::blocks::joined;
+use crate::support::blocks::{Blocks, joined};
 use crate::support::close::close;
-use crate::support::scenes::{built_in, model};
+use crate::support::scenes::{BODIES, HELD, built_in, model};
 use crate::support::solids::{between, moved, solid, turned};
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, solve};
+use crate::support::sorts::sort;
 use crate::support::statics::reaction;
 
 /// Fails unless two solutions have the same displacements but for `slack`, relative to the largest.
@@ -231,4 +232,28 @@ fn quadratic_facets_that_are_straight_on_a_curve_are_named() {
     assert!(warnings.contains(expected), "{warnings}");
     let warnings = said(dome(0.0));
     assert!(!warnings.contains("straight"), "{warnings}");
+}
+
+#[test]
+fn a_corner_between_flat_facets_is_no_curve() {
+    let height = |bend: f64, curve: f64| {
+        let mut blocks = Blocks::new()
+            .rectangle("lower", [0.0, 4.0], [0.0, 1.0], [16, 2])
+            .rectangle("upper", [0.0, 4.0], [1.0, 2.0], [16, 2]);
+        let first = blocks.mesh.points.len() / 2;
+        for x in &mut blocks.mesh.points[first..] {
+            x[1] += bend * (x[0] - 2.0).max(0.0) + curve * (x[0] - 2.0).powi(2);
+        }
+        let mesh = sort("quad8").of(&blocks.mesh);
+        let scene = format!(
+            "{BODIES}{HELD}[[contact]]\nname = 'c'\nsides = ['upper bottom', 'lower top']\n"
+        );
+        model(&scene, mesh).warnings.join("; ")
+    };
+    assert!(
+        !height(0.1, 0.0).contains("straight"),
+        "{}",
+        height(0.1, 0.0)
+    );
+    assert!(height(0.0, 0.02).contains("facets of side a are straight"));
 }

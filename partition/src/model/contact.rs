@@ -324,7 +324,7 @@ impl<'a> Contacts<'a> {
 /// than corners are, and pressures oscillate between the two.
 fn straight_edges(what: &str, letter: &str, side: &Surface) -> Option<String> {
     let is_quadratic = side.facets.iter().any(|facet| !facet.kind.is_linear());
-    let off = side.stands_off();
+    let off = side.stands_off_curve();
     (is_quadratic && off > KINKED * side.facet_size()).then(|| {
         format!(
             "{what}: the quadratic facets of side {letter} are straight and stand off a curve by up to {} of their size, so \

@@ -218,6 +218,8 @@ impl SurfaceNode {
 pub(super) struct Turn {
     /// A node of both.
     pub node: u32,
+    /// The two, by their places on the surface.
+    facets: [usize; 2],
     /// The angle between their normals there (rad).
     pub angle: f64,
     /// The larger size of the two (m).
@@ -231,6 +233,11 @@ impl Turn {
     /// h α/8 (m).
     fn height(&self) -> f64 {
         self.size * self.angle / 8.0
+    }
+
+    /// Whether the straighter one is straight beside what that says.
+    fn is_straight(&self) -> bool {
+        self.sag <= STRAIGHT * self.height()
     }
 }
 
@@ -314,10 +321,12 @@ impl Surface {
             let [a, b] = *facets else {
                 return None;
             };
+            let both = [a, b];
             let (a, b) = (&self.facets[a], &self.facets[b]);
             let cosine = dot(a.normal_at(node), b.normal_at(node)).clamp(-1.0, 1.0);
             Some(Turn {
                 node,
+                facets: both,
                 angle: cosine.acos(),
                 size: a.size().max(b.size()),
                 sag: a.sag().min(b.sag()),
@@ -345,10 +354,24 @@ impl Surface {
     /// How far straight facets stand off a curve that they stand for, at most (m).
     pub fn stands_off(&self) -> f64 {
         let turns = self.turns();
-        let straight = turns
-            .iter()
-            .filter(|turn| turn.sag <= STRAIGHT * turn.height());
-        Self::largest_height(straight)
+        Self::largest_height(turns.iter().filter(|turn| turn.is_straight()))
+    }
+
+    /// How far straight facets stand off a curve that goes on over them, at most: it turns at two ends of a facet, where a
+    /// corner between two flat parts turns at one (m).
+    pub fn stands_off_curve(&self) -> f64 {
+        let mut heights = vec![[0.0_f64; 2]; self.facets.len()];
+        for turn in self.turns() {
+            if turn.is_straight() && turn.angle < CORNER {
+                for facet in turn.facets {
+                    let [most, second] = &mut heights[facet];
+                    *second = second.max(turn.height().min(*most));
+                    *most = most.max(turn.height());
+                }
+            }
+        }
+        let seconds = heights.into_iter().map(|[_, second]| second);
+        seconds.fold(0.0, f64::max)
     }
 
     /// The height of the kinks between facets, at most: straight ones stand off a curve by it, curved ones by less (m).

@@ -27,6 +27,11 @@ use crate::scene::contact::{Between, Contact, Declaration};
 /// Distance up to which facets beside those that touch are thought to come into contact, relative to their size.
 const NEAR: f64 = 0.25;
 
+/// Gap in the middle of the facets next to those that touch, relative to their size, up to which loads may close it: sides
+/// part by twice that slope, and what closes a slope has strains of about half of it (Hertz: p_0/E* = a/(2R)), by then no
+/// small ones.
+const CLOSING: f64 = 0.1;
+
 /// A contact of the scene, and what is known of it where it was found.
 pub(super) struct Declared {
     pub contact: Contact,
@@ -203,7 +208,10 @@ fn parting(
     let touch: HashSet<[usize; 2]> = touching.iter().map(|pair| pair.facets).collect();
     let goes_on = |pair: &&Facing| {
         let mut beside = patch::beside(neighbours, pair.facets);
-        pair.gap > 0.0 && beside.any(|[a, b]| touch.contains(&[a.min(b), a.max(b)]))
+        let [a, b] = pair.facets.map(|facet| skin.facets[facet].shape.size());
+        pair.gap > 0.0
+            && pair.gap <= CLOSING * a.max(b)
+            && beside.any(|[a, b]| touch.contains(&[a.min(b), a.max(b)]))
     };
     let first = near.iter().filter(goes_on);
     let first = first.min_by(|a, b| a.gap.total_cmp(&b.gap))?;

@@ -243,6 +243,24 @@ fn what_parts_slowly_is_warned_of() {
 }
 
 #[test]
+fn a_flank_is_warned_of_up_to_the_slope_that_small_strains_close() {
+    for (slope, is_said) in [(0.15, true), (0.25, false), (0.45, false)] {
+        for cells in [8, 32] {
+            let mut punch = Blocks::new()
+                .block("lower", [0.0, 4.0], [0.0, 1.0], [cells, 2])
+                .block("upper", [0.0, 4.0], [1.0, 2.0], [cells, 2]);
+            let first = punch.mesh.points.len() / 2;
+            for x in &mut punch.mesh.points[first..] {
+                x[1] += slope * (x[0] - 2.0).max(0.0);
+            }
+            let warnings = punch.model(ALL).unwrap().warnings.concat();
+            let found = warnings.contains("part slowly");
+            assert_eq!(found, is_said, "{slope} {cells}: {warnings}");
+        }
+    }
+}
+
+#[test]
 fn the_coarser_of_curved_sides_is_first_whatever_the_name() {
     let mut round = Blocks::new()
         .block("lower", [0.0, 2.0], [0.0, 1.0], [40, 8])
