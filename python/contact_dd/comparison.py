@@ -50,8 +50,10 @@ def compare(results: Sequence[Result], adapted: bool = False) -> list[Compared]:
 
     With three meshes the order of convergence is observed and the error extrapolated, times 1.25; of an order above 1
     with 1, and from the difference that this leads one to expect where that is larger. With two the order is taken as
-    1, and the error times 3: that is often much too large. Where the pressure at the rim of a contact grows from mesh
-    to mesh, its largest has no bar.
+    1, and the error times 3: that is often much too large. The work of friction is known no better than energies are
+    on the finest mesh, to half the square of the estimated error in their norm. Where the pressure at the rim of a
+    contact grows from mesh to mesh, or is the largest and bends there, its largest has no bar; neither has what would
+    have one longer than itself.
 
     Meshes that have `adapted` have cells of many sizes: there the estimated errors in the energy norm stand for these,
     and the last mesh is compared with one.
@@ -80,7 +82,7 @@ def compare(results: Sequence[Result], adapted: bool = False) -> list[Compared]:
     numbers = [dict(numbers_of(result)) for result in found]
     if any(one.keys() != numbers[0].keys() for one in numbers):
         raise InputError("the results are of several scenes: their contacts or supports differ")
-    endless = growing(found[-2:], ratios[-1])
+    endless = without_limit(found[-2:], ratios[-1])
     scales = dict[str, float]()
     for one in numbers:
         for (kind, _, _), value in one.items():
@@ -91,9 +93,11 @@ def compare(results: Sequence[Result], adapted: bool = False) -> list[Compared]:
         values = tuple(one[key] for one in numbers)
         if max(abs(value) for value in values) > ROUND_OFF * scales[kind]:
             error, order = bar(values, ratios, ROUND_OFF * scales[kind])
-            is_pressure = kind.startswith(PRESSURE)
-            # One that is longer than the pressure says nothing.
-            if is_pressure and (name in endless or error is not None and error > values[-1]):
+            is_force = kind == "force"
+            if kind == "work" and error is not None:
+                error = max(error, energy_error(found[-1]))
+            # One that is longer than the number says nothing of a pressure or of work, which are above 0.
+            if name in endless or not is_force and error is not None and error > values[-1]:
                 error = None
             compared.append(Compared(name, unit, values, error, order))
     return compared
@@ -153,11 +157,20 @@ def numbers_of(result: Result) -> Iterator[tuple[tuple[str, str, str], float]]:
         yield ("work", "work of friction", units.work), report["friction"]["dissipated_work"]
 
 
-def growing(meshes: Sequence[Result], ratio: float) -> set[str]:
+def energy_error(result: Result) -> float:
+    """Half the square of the estimated error in the energy norm, in the load step where it is largest: by so much energies
+    are off."""
+    steps = result.report["steps"] or [result.report]
+    estimates = [step["error_estimate"] for step in steps if step["error_estimate"]]
+    return max((0.5 * float(estimate["error"]) ** 2 for estimate in estimates), default=0.0)
+
+
+def without_limit(meshes: Sequence[Result], ratio: float) -> set[str]:
     """The names of largest pressures of contacts at whose rim the pressure grows from one of two meshes to the next, as
-    at an edge or a tip. It need not be the largest yet."""
+    at an edge or a tip, or bends. It need not be the largest yet."""
     # With it comes matplotlib.
-    from contact_dd.drawing.rim import rim_pressures
+    from contact_dd.drawing.rim import bent_at_rim, rim_pressures
 
     coarse, fine = (rim_pressures(mesh) for mesh in meshes)
-    return {PRESSURE + name for name, pressure in fine.items() if pressure > ratio**GROWTH * coarse.get(name, 0.0) > 0}
+    grow = {name for name, pressure in fine.items() if pressure > ratio**GROWTH * coarse.get(name, 0.0) > 0}
+    return {PRESSURE + name for name in grow | bent_at_rim(meshes[-1])}
