@@ -57,7 +57,16 @@ pub(super) fn body_states(
         context.plan.owners(),
         |s| {
             let frame = &frames[catalog.subdomains[s].body];
-            of_subdomain(context.blocks[&s].points(), &loads.blocks[&s], dim, frame)
+            let (points, loads) = (context.blocks[&s].points(), &loads.blocks[&s]);
+            let mut part = of_subdomain(points, loads, dim, frame);
+            // No support moves a body along a motion that none has.
+            for held in held_by_symmetry(catalog) {
+                for row in &mut part.supports {
+                    let free = row.iter_mut().zip(&held);
+                    free.for_each(|(entry, held)| *entry *= 1.0 - held);
+                }
+            }
+            part
         },
         |s, part| {
             let state = &mut states[catalog.subdomains[s].body];

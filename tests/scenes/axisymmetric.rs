@@ -249,3 +249,30 @@ fn a_problem_file_has_no_node_on_the_other_side_of_the_axis() {
         ended.stderr
     );
 }
+
+/// Lamé: u = A r + B/r with σ_r = 0 on the outer face, in plane strain; the inner face is moved outwards.
+#[test]
+fn a_ring_that_supports_widen_is_that_of_lame() {
+    let (inner, outer, poisson, moved) = (1.0_f64, 2.0_f64, 0.3, 1e-3);
+    let blocks = Blocks::new().rectangle("ring", [inner, outer], [0.0, 0.25], [24, 4]);
+    let text = format!(
+        "plane = 'axisymmetric'
+        materials.steel = {{young = 2e11, poisson = {poisson}}}
+        bodies.ring.material = 'steel'
+        [[displacement]]
+        on = 'ring left'
+        x = {moved}
+        [[displacement]]
+        on = ['ring bottom', 'ring top']
+        y = 0"
+    );
+    let shape = |r: f64| (1.0 - 2.0 * poisson) * r + outer * outer / r;
+    let exact = |r: f64| moved * shape(r) / shape(inner);
+    for name in ["quad9", "triangle6"] {
+        let model = model(&text, sort(name).of(&blocks.mesh));
+        let solution = solve(&model, 3);
+        for (tag, x) in model.mesh.node_tags.iter().zip(&model.mesh.points) {
+            close(solution.displacement[tag][0], exact(x[0]), 1e-5 * moved);
+        }
+    }
+}
