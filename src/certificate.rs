@@ -4,12 +4,14 @@
 
 pub mod check;
 pub mod energy;
+pub mod scales;
 pub mod shared;
 
 use contact_dd_partition::model::PlaneState;
 use serde::{Deserialize, Serialize};
 
 use self::check::{BlockCheck, External, Most};
+use self::scales::Scales;
 use crate::vector::{larger, largest};
 
 /// Sum of forces, relative to the terms that they are sums of, that is no load.
@@ -49,6 +51,9 @@ pub struct Certificate {
     pub moment_balance: f64,
     /// Largest jump of the displacement across Γ over the largest displacement.
     pub interface_jump: f64,
+    /// The scales of what was checked.
+    #[serde(skip)]
+    pub scales: Scales,
 }
 
 impl Certificate {
@@ -85,15 +90,18 @@ impl Certificate {
             force_balance: worse(self.force_balance, other.force_balance),
             moment_balance: worse(self.moment_balance, other.moment_balance),
             interface_jump: worse(self.interface_jump, other.interface_jump),
+            scales: self.scales.and(other.scales),
         }
     }
 }
 
 /// The certificate of the whole solution, of what was checked on blocks, in their order, and of what is largest elsewhere:
-/// at contact points and at shared nodes; in a plane state or in space.
+/// at contact points and at shared nodes; in a plane state or in space. What is nothing beside the scales of the load steps
+/// `before` is measured by these.
 pub fn certificate(
     checks: &[BlockCheck],
     elsewhere: Most,
+    before: Scales,
     plane: Option<PlaneState>,
 ) -> Certificate {
     let mut most = elsewhere;
@@ -107,6 +115,8 @@ pub fn certificate(
         external.force = [0.0, external.force[1], 0.0];
         external.moment = [0.0; 3];
     }
+    let scales = Scales::of(&most);
+    before.replace_nothing(&mut most);
     if most.scale < NO_LOAD * most.rest {
         // Bodies that only came to rest: what is left is round-off of their way.
         most.scale = most.rest;
@@ -142,6 +152,7 @@ pub fn certificate(
         force_balance: to_load * ratio(largest(&external.force), external.force_scale),
         moment_balance: to_load * ratio(largest(&external.moment), moment_scale),
         interface_jump: ratio(most.jump, most.displacement),
+        scales,
     }
 }
 

@@ -17,4 +17,5 @@ pub mod polynomial;
 pub mod prescribed;
 pub mod recovery;
 mod sites;
+pub mod strain;
 pub mod stress;

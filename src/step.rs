@@ -5,6 +5,7 @@ pub mod way;
 
 use std::collections::BTreeMap;
 
+use crate::certificate::scales::Scales;
 use crate::condense::blocks::{CondensedBlocks, ContactCluster};
 use crate::condense::clusters::make_load_exact;
 use crate::condense::limits::limits_of_clusters;
@@ -23,6 +24,7 @@ use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::energy::RigidModes;
 use crate::schur::local::CondensedLoad;
 use crate::step::state::StepState;
+use crate::vector::largest;
 
 /// The problem of a load step, as this rank holds it.
 #[derive(Debug)]
@@ -37,6 +39,8 @@ pub struct StepProblem<'a> {
     pub pairs: BTreeMap<usize, ContactPair>,
     /// S_0 U + S_CON(U) = F; on the root.
     pub interface: Option<InterfaceProblem<'a>>,
+    /// The scales of the load steps before; on the root.
+    pub earlier: Scales,
 }
 
 /// What a load step's problem is made of beside its loads.
@@ -62,27 +66,33 @@ impl<'a> Loading<'a> {
         let prescribed = |(&b, loads)| Some((b, Prescribed::new(context.blocks.get(&b)?, loads)));
         let prescribed = loads.blocks.iter().filter_map(prescribed).collect();
         let limits = limits_of_clusters(context, &loads)?;
-        let condensed = self.condense(&loads, &prescribed);
+        let earlier = before.scales;
+        let (condensed, largest_load) = self.condense(&loads, &prescribed);
         let pairs = self.pairs(limits, &condensed, before);
-        let interface = self.assemble(&pairs, &condensed);
+        let elsewhere = earlier.terms.max(largest_load);
+        let interface = self.assemble(&pairs, &condensed, elsewhere);
         Ok(StepProblem {
             loads,
             prescribed,
             condensed,
             pairs,
             interface,
+            earlier,
         })
     }
 
     /// Condenses the loads of all blocks up the hierarchy, f_Γ − K_ΓI K_II⁻¹ f_I; returns the load of every
-    /// node of this rank. Collective.
+    /// node of this rank, and the largest one on any unknown of any block, which the root knows. Collective.
     fn condense(
         &self,
         loads: &Loads,
         prescribed: &BTreeMap<usize, Prescribed>,
-    ) -> BTreeMap<usize, CondensedLoad> {
+    ) -> (BTreeMap<usize, CondensedLoad>, f64) {
         let Context {
-            catalog, blocks, ..
+            comm,
+            catalog,
+            blocks,
+            ..
         } = self.context;
         let of_block = |(&b, loads)| {
             let (block, factors) = (blocks.get(&b)?, self.factors.blocks.get(&b)?);
@@ -95,7 +105,12 @@ impl<'a> Loading<'a> {
             context: self.context,
             condensed: self.factors,
         };
-        factors.condense(loads.blocks.iter().filter_map(of_block).collect())
+        let of_blocks: BTreeMap<usize, Vec<f64>> =
+            loads.blocks.iter().filter_map(of_block).collect();
+        let own = of_blocks.values().map(|load| largest(load));
+        let largest_loads = comm.collect(&own.fold(0.0, f64::max)).into_iter();
+        let largest_load = largest_loads.fold(0.0, f64::max);
+        (factors.condense(of_blocks), largest_load)
     }
 
     /// The clusters in contact of this rank under their loads.
@@ -117,17 +132,20 @@ impl<'a> Loading<'a> {
                 let (on_jumps, _) = load.split_at_mut(condensed.jumps);
                 make_load_exact(on_jumps, &limits.defining, drive, &condensed.diagonal);
             }
-            let before = before.pairs.remove(&p);
+            // Without load a pair is at rest: from elsewhere round-off would decide what closes.
+            let is_loaded = load.iter().any(|&f| f != 0.0);
+            let before = before.pairs.remove(&p).filter(|_| is_loaded);
             Some((p, ContactPair::new(condensed.clone(), limits, load, before)))
         };
         self.factors.contact.iter().filter_map(pair).collect()
     }
 
-    /// Assembles F on the root. Collective.
+    /// Assembles F on the root; `elsewhere` forces are up to this large. Collective.
     fn assemble(
         &self,
         pairs: &BTreeMap<usize, ContactPair>,
         loads: &BTreeMap<usize, CondensedLoad>,
+        elsewhere: f64,
     ) -> Option<InterfaceProblem<'a>> {
         let Context { comm, plan, .. } = self.context;
         let mut of_clusters = Vec::new();
@@ -156,6 +174,7 @@ impl<'a> Loading<'a> {
             numbering,
             &of_clusters,
             &drive,
+            elsewhere,
         ))
     }
 

@@ -191,7 +191,10 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         let (r_max, scale_max) = (largest(&r), largest(&scale));
         Residual {
             r,
-            relative: if r_max == 0.0 { 0.0 } else { r_max / scale_max },
+            relative: match r_max {
+                0.0 => 0.0,
+                r_max => r_max / self.problem.residual_scale(scale_max),
+            },
             totals,
         }
     }

@@ -8,11 +8,12 @@ use contact_dd_partition::element::reference::Domain;
 use contact_dd_partition::model::{Material, PlaneState};
 
 use super::block::{Block, BlockCell};
-use super::elasticity::{MAX_DOFS, MAX_NODES, stiffness_points, strain, stress};
+use super::elasticity::{MAX_DOFS, MAX_NODES, Voigt, stiffness_points, strain, stress};
 use super::estimate::{CellError, Compliance};
 use super::patch::PatchSum;
 use super::polynomial::NodalStress;
 use super::recovery::Recovery;
+use super::strain::LargestStrain;
 use crate::vector::axpy;
 
 /// The stresses of a block.
@@ -20,6 +21,8 @@ use crate::vector::axpy;
 pub struct BlockStress {
     /// Of every cell (Pa), order XX YY ZZ XY YZ XZ.
     pub cells: Vec<[f64; 6]>,
+    /// The largest strain of a cell.
+    pub largest_strain: LargestStrain,
     /// What is recovered in each material, ascending.
     pub recoveries: Vec<Recovery>,
 }
@@ -52,12 +55,16 @@ impl BlockStress {
         patches.iter_mut().for_each(PatchSum::clear);
         patches.resize_with(block.nodes() * present.len(), || PatchSum::empty(block.dim));
         let mut cells = Vec::with_capacity(block.subdomain.cells.len());
+        let mut largest_strain = LargestStrain::default();
         let mut local = LocalCell::empty();
         for cell in block.cells() {
             local.take(block, &cell, u);
             let material = &materials[cell.material];
-            let mean = local.mean(material, plane);
+            let (mean, strain, measure) = local.mean(material, plane);
             cells.push(mean);
+            largest_strain.include(&strain, material.stiffness.size(), measure, || {
+                local.middle()
+            });
             let Ok(place) = present.binary_search(&cell.material) else {
                 continue;
             };
@@ -82,7 +89,11 @@ impl BlockStress {
             .zip(patches.chunks(block.nodes().max(1))))
         .map(|(material, patches)| Recovery::new(block, material, patches))
         .collect();
-        Self { cells, recoveries }
+        Self {
+            cells,
+            largest_strain,
+            recoveries,
+        }
     }
 
     /// The stresses at nodes, and the estimate, for the same displacements; `initial` is the stress of cells that needs
@@ -191,17 +202,32 @@ impl LocalCell {
         }
     }
 
-    /// The mean stress.
-    fn mean(&self, material: &Material, plane: Option<PlaneState>) -> [f64; 6] {
-        let (mut sum, mut measure) = ([0.0; 6], 0.0);
+    /// The mean stress, the mean strain, and the measure.
+    fn mean(&self, material: &Material, plane: Option<PlaneState>) -> ([f64; 6], Voigt, f64) {
+        let (mut sum, mut strains, mut measure) = ([0.0; 6], [0.0; 6], 0.0);
         let components = material.stiffness.size();
         for point in stiffness_points(&self.kind, components) {
             let (strain, weight) = strain(point, &self.points, &self.u, components);
             let sigma = stress(material, plane, &strain);
             axpy(weight, &sigma, &mut sum);
+            axpy(weight, &strain, &mut strains);
             measure += weight;
         }
-        sum.map(|s| s / measure)
+        (
+            sum.map(|s| s / measure),
+            strains.map(|e| e / measure),
+            measure,
+        )
+    }
+
+    /// The mean of its corners (m).
+    fn middle(&self) -> [f64; 3] {
+        let corners = &self.points[..self.kind.corners()];
+        let mut middle = [0.0; 3];
+        for corner in corners {
+            axpy(1.0 / corners.len() as f64, corner, &mut middle);
+        }
+        middle
     }
 
     /// Where a point is (m).

@@ -6,6 +6,13 @@ use super::numbering::Numbering;
 use super::operator::{Interface, diagonal_of};
 use crate::rigid::energy::{RigidBasis, RigidModes};
 
+/// Part of the largest scale, of the load or of the load steps before, below which a scale is of their round-off alone.
+pub const NOTHING: f64 = 1e-12;
+
+/// Part of what forces are round-off of to which a residual of them is relative: with the tolerance of sweeps that is
+/// round-off again.
+const LEFT: f64 = 1e-3;
+
 /// What loads a cluster.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ClusterLoad {
@@ -30,16 +37,20 @@ pub struct InterfaceProblem<'a> {
     pub motions: RigidBasis,
     /// The largest displacement that is prescribed in a cluster in contact (m).
     pub scale: f64,
+    /// The largest force elsewhere in the bodies, or in a load step before (N/m).
+    elsewhere: f64,
 }
 
 impl<'a> InterfaceProblem<'a> {
     /// Assembles F of the `loads` of all clusters, in their order; `modes` has the pairs' normal jumps
-    /// against the rigid motions of the bodies, and the load along these.
+    /// against the rigid motions of the bodies, and the load along these; `elsewhere` in the bodies, or before, forces are
+    /// up to this large.
     pub fn new(
         interface: &'a Interface,
         numbering: &Numbering,
         loads: &[ClusterLoad],
         modes: &RigidModes,
+        elsewhere: f64,
     ) -> Self {
         let zeros = || vec![0.0; interface.len];
         let (mut f, mut f_bilateral, mut f_scale) = (zeros(), zeros(), zeros());
@@ -61,7 +72,14 @@ impl<'a> InterfaceProblem<'a> {
             f_bilateral,
             motions: RigidBasis::new(modes, &diagonal_of(&interface.laws)),
             scale: loads.iter().fold(0.0, |m, load| m.max(load.scale)),
+            elsewhere,
         }
+    }
+
+    /// Whether nothing acts on Γ and the clusters in contact but what their contacts are held to.
+    pub fn is_unloaded(&self) -> bool {
+        let mut all = self.f.iter().chain(&self.f_bilateral);
+        all.all(|&f| f == 0.0)
     }
 
     /// U^0: the solution of the bilateral problem (16)-(17).
@@ -70,6 +88,15 @@ impl<'a> InterfaceProblem<'a> {
         let mut u: Vec<f64> = parts.map(|(a, b)| a + b).collect();
         self.interface.solver.solve(&mut u);
         u
+    }
+
+    /// What a residual is relative to whose terms are at most this large: to these, or where they are round-off to a part
+    /// of what they are round-off of.
+    pub fn residual_scale(&self, terms: f64) -> f64 {
+        match terms < NOTHING * self.elsewhere {
+            true => LEFT * self.elsewhere,
+            false => terms,
+        }
     }
 
     /// F − S_0 U and the scale of its terms.

@@ -233,7 +233,12 @@ fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate
         elsewhere.include(of_rank);
     }
     match fixed.root {
-        Some(_) => certificate(&checks, elsewhere, fixed.context.catalog.plane),
+        Some(_) => certificate(
+            &checks,
+            elsewhere,
+            fixed.step.earlier,
+            fixed.context.catalog.plane,
+        ),
         None => Certificate::default(),
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::certificate::Certificate;
 use crate::fem::estimate::CellError;
+use crate::fem::strain::LargestStrain;
 use crate::output::resultants::Reaction;
 use crate::recover::conditioning::condition_number;
 use crate::recover::fixed_active_set::FixedActiveSet;
@@ -12,7 +13,7 @@ use crate::recover::minimum_norm::{
 };
 use crate::recover::reactions::reactions;
 use crate::recover::refine::{exchange_what_is_wrong, refine};
-use crate::recover::stresses::{Stress, error_estimate, stresses};
+use crate::recover::stresses::{Stress, error_estimate, largest_strain, stresses};
 use crate::recover::{DiscreteSolution, displacements};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::closing_motion::with_closing_motions;
@@ -38,6 +39,8 @@ pub struct Solution {
     pub reactions: Vec<Reaction>,
     /// The estimate of the mesh's error, where there are stresses; on the root.
     pub estimate: Option<CellError>,
+    /// The largest strain of a cell, where there are stresses, and the block that has it; on the root.
+    pub largest_strain: Option<(usize, LargestStrain)>,
 }
 
 impl Solution {
@@ -77,6 +80,7 @@ impl Solution {
             friction_limit: friction_limit(fixed, analysis, &discrete),
             reactions: reactions(fixed, blocks),
             estimate: (stress.as_ref()).map(|stress| error_estimate(comm, stress, plan)),
+            largest_strain: (stress.as_ref()).map(|stress| largest_strain(comm, stress, plan)),
             discrete,
             stress,
             certificate,

@@ -13,6 +13,7 @@ use crate::fem::estimate::CellError;
 use crate::fem::patch::PatchSum;
 use crate::fem::polynomial::Polynomial;
 use crate::fem::recovery::Recovery;
+use crate::fem::strain::LargestStrain;
 use crate::fem::stress::BlockStress;
 use crate::plan::Plan;
 use crate::recover::BlockSolution;
@@ -26,6 +27,8 @@ pub struct Stress {
     pub nodes: Vec<[f64; 6]>,
     /// Estimated error of every cell.
     pub errors: Vec<CellError>,
+    /// The largest strain of a cell.
+    pub largest_strain: LargestStrain,
 }
 
 /// What blocks know in parts of a node on Γ in one material.
@@ -99,6 +102,7 @@ pub fn stresses(
             cells,
             nodes,
             errors,
+            largest_strain: stress.largest_strain,
         };
         Some((b, stress))
     };
@@ -223,4 +227,23 @@ pub fn error_estimate(comm: &Comm, stresses: &BTreeMap<usize, Stress>, plan: &Pl
         |_, sum| total.add(sum),
     );
     total
+}
+
+/// The largest strain of a cell, and the block that has it, on the root; of equal ones the first. Collective.
+pub fn largest_strain(
+    comm: &Comm,
+    stresses: &BTreeMap<usize, Stress>,
+    plan: &Plan,
+) -> (usize, LargestStrain) {
+    let mut largest = (0, LargestStrain::default());
+    comm.gather(
+        plan.owners(),
+        |b| (stresses.get(&b)).map_or_else(LargestStrain::default, |s| s.largest_strain),
+        |b, strain: LargestStrain| {
+            if largest.1.add(strain) {
+                largest.0 = b;
+            }
+        },
+    );
+    largest
 }

@@ -1,5 +1,6 @@
 //! Everything the report is made of, gathered on the root: load step by load step, then together.
 
+use contact_dd_partition::magnitude::short;
 use contact_dd_partition::problem::Catalog;
 
 use crate::recover::solution::Solution;
@@ -7,7 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::certificate::Certificate;
 use crate::certificate::energy::EnergyBalance;
+use crate::certificate::scales::Scales;
 use crate::fem::estimate::CellError;
+use crate::fem::strain::{LARGE, LargestStrain};
 use crate::output::ranks::RankReport;
 use crate::output::report::{ErrorEstimate, FrictionOfStep, Status, StepReport};
 use crate::output::resultants::{Friction, Resultants};
@@ -15,6 +18,10 @@ use crate::plan::Plan;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::settings::command_line::InterfaceMethod;
 use crate::sweep::{SweepOutcome, SweepStatus};
+
+/// Part of the bodies with large strains from which on these are worth a warning: at an edge or a tip strains are as large as
+/// cells are small.
+const SEEN: f64 = 1e-3;
 
 /// A whole run.
 pub struct Totals<'a> {
@@ -53,6 +60,8 @@ pub struct StepTotals {
     pub estimate: Option<CellError>,
     /// Whether friction is at its limit: bodies may slide under the same forces.
     pub at_limit: bool,
+    /// The scales of its solution, if it converged.
+    pub scales: Scales,
     /// What a user should know of it.
     pub warnings: Vec<String>,
 }
@@ -78,6 +87,11 @@ impl StepTotals {
             &outcome.notes,
             &resultants.warnings(),
             &resultants.warnings_of_mesh(catalog, error),
+            &Vec::from_iter(
+                solution
+                    .largest_strain
+                    .and_then(|s| large_strain(s, catalog)),
+            ),
             &Vec::from_iter(energy.warning()),
         ];
         Self {
@@ -88,6 +102,10 @@ impl StepTotals {
             energy,
             estimate: solution.estimate,
             at_limit: !slides.is_empty(),
+            scales: match converged {
+                true => solution.certificate.scales,
+                false => Scales::default(),
+            },
             warnings: warnings.concat(),
             linear_solves: 0,
             outcome,
@@ -248,6 +266,24 @@ impl Totals<'_> {
             })
             .collect()
     }
+}
+
+/// What a user should know of the largest strain, that of a block, where it isn't small.
+fn large_strain((block, largest): (usize, LargestStrain), catalog: &Catalog) -> Option<String> {
+    if largest.large <= SEEN * largest.whole {
+        return None;
+    }
+    let body = &catalog.bodies[catalog.subdomains[block].body].name;
+    let at = largest.at.map(short);
+    Some(format!(
+        "body '{body}': strains of up to {} at ({}) {}, where small ones are meant, above {} in {} % of the bodies; are the \
+         units of loads, displacements and stiffness the same?",
+        short(largest.size),
+        at[..catalog.dim].join(", "),
+        catalog.units.length(),
+        short(LARGE),
+        short(100.0 * largest.large / largest.whole)
+    ))
 }
 
 /// What a user should know of a motion at the limit of friction.

@@ -4,6 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
 use crate::certificate::energy::{BlockEnergy, EnergyBalance};
+use crate::certificate::scales::Scales;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::limits::limits_of_groups;
 use crate::contact::pair::ContactPair;
@@ -12,6 +13,7 @@ use crate::error::Failure;
 use crate::frozen::fronts::FrozenFronts;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
+use crate::interface::problem::InterfaceProblem;
 use crate::output::ranks::RankSeconds;
 use crate::recover::energy::energies;
 use crate::recover::fixed_active_set::FixedActiveSet;
@@ -25,7 +27,7 @@ use crate::settings::Settings;
 use crate::step::Loading;
 use crate::step::state::{StepState, analyse};
 use crate::step::way::Way;
-use crate::sweep::{Method, SweepOutcome, SweepStatus};
+use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
 
 /// What all increments share: what was made of matrices.
 #[derive(Clone, Copy)]
@@ -62,6 +64,8 @@ pub struct Increment {
     energies: BTreeMap<usize, BlockEnergy>,
     /// The balance of this one, and of those before it in the load step; on the root.
     pub energy: EnergyBalance,
+    /// The scales of this one and those before, as far as they converged; on the root.
+    scales: Scales,
 }
 
 impl Increments<'_> {
@@ -177,7 +181,7 @@ impl Increments<'_> {
         // F, condensed like the blocks, and the bounds on normal jumps.
         log.phase("condensing the load", None);
         let lap = comm.times();
-        let (start, held_at) = (before.start(), before.slips.clone());
+        let (mut start, held_at) = (before.start(), before.slips.clone());
         let energies_before = std::mem::take(&mut before.energies);
         let loads = before.loads(&context, moment, analysis);
         let loading = Loading {
@@ -187,6 +191,9 @@ impl Increments<'_> {
             analysis,
         };
         let mut problem = loading.problem(loads, before)?;
+        if (problem.interface.as_ref()).is_some_and(InterfaceProblem::is_unloaded) {
+            start = Start::Bilateral;
+        }
         let limits = match frozen {
             Some(_) => limits_of_groups(&context, &problem.loads)?,
             None => BTreeMap::new(),
@@ -242,11 +249,15 @@ impl Increments<'_> {
         let stress_of = (!settings.no_stress).then_some(moment.step);
         let solution = Solution::new(&fixed, analysis, discrete, stress_of);
         let (energies, energy) = energies(&fixed, &solution, &energies_before);
+        let mut scales = problem.earlier;
         if let Some(outcome) = &mut outcome {
             outcome.accept(
                 &solution.certificate,
                 solution.is_finite() && energy.is_finite(),
             );
+            if outcome.status == SweepStatus::Converged {
+                scales = scales.and(solution.certificate.scales);
+            }
             outcome.name_unsettled(&unsettled_points(&context, outcome));
         }
         seconds.add(|s| &mut s.recover, comm.times() - lap);
@@ -257,6 +268,7 @@ impl Increments<'_> {
             solution,
             energies,
             energy,
+            scales,
         })
     }
 }
@@ -286,12 +298,14 @@ impl Increment {
         method: Method,
     ) -> StepState {
         let outcome = self.outcome.as_ref();
-        StepState::after(self.pairs.clone(), slips, energies, outcome, method)
+        let from = (outcome, self.scales);
+        StepState::after(self.pairs.clone(), slips, energies, from, method)
     }
 
     /// The state that it leaves.
     pub fn into_state(self, method: Method) -> StepState {
         let outcome = self.outcome.as_ref();
-        StepState::after(self.pairs, self.slips.jumps, self.energies, outcome, method)
+        let from = (outcome, self.scales);
+        StepState::after(self.pairs, self.slips.jumps, self.energies, from, method)
     }
 }

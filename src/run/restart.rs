@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::bytes::Reals;
 use crate::certificate::energy::BlockEnergy;
+use crate::certificate::scales::Scales;
 use crate::comm::Comm;
 use crate::contact::friction::Status;
 use crate::contact::pair::PairState;
@@ -126,6 +127,12 @@ pub fn finished_steps(comm: &Comm, settings: &Settings) -> Result<Finished, Fail
 }
 
 impl Finished {
+    /// The scales of the finished load steps that converged; on the root.
+    pub fn scales(&self) -> Scales {
+        let steps = self.steps.iter().map(|step| step.scales);
+        steps.fold(Scales::default(), Scales::and)
+    }
+
     /// The state that the load step after the finished ones starts from, in the middle of a stage. Collective.
     pub fn state(&mut self, context: &Context<'_>) -> StepState {
         let comm = context.comm;

@@ -254,6 +254,7 @@ impl Stages<'_> {
             None if finished.count > first => (finished.state(&context), None),
             None => (finished.passage.state(&context, stage), None),
         };
+        state.scales = finished.scales();
         for k in stage
             .steps
             .clone()

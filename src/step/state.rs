@@ -6,6 +6,7 @@ use std::ops::Range;
 use contact_dd_partition::destination::unfinished;
 
 use crate::certificate::energy::BlockEnergy;
+use crate::certificate::scales::Scales;
 use crate::contact::friction::Status;
 use crate::contact::pair::{ContactPair, PairState};
 use crate::context::{Context, Loads, Moment};
@@ -28,17 +29,19 @@ pub struct StepState {
     pub slips: BTreeMap<usize, Vec<f64>>,
     /// Where there is friction, what the balance of energy needs of the blocks of this rank.
     pub energies: BTreeMap<usize, BlockEnergy>,
+    /// The scales of the load steps that converged so far; on the root.
+    pub scales: Scales,
 }
 
 impl StepState {
-    /// The state after a step that ended with `outcome`, which the root has, `slips` and `energies`. A step that went nowhere is no
+    /// The state after a step that ended with `outcome` and `scales`, which the root has, `slips` and `energies`. A step that went nowhere is no
     /// place to start from; neither are others for picard, whose relaxation is that of the contacts that the
     /// bilateral solution leaves closed.
     pub fn after(
         pairs: BTreeMap<usize, ContactPair>,
         slips: BTreeMap<usize, Vec<f64>>,
         energies: BTreeMap<usize, BlockEnergy>,
-        outcome: Option<&SweepOutcome>,
+        (outcome, scales): (Option<&SweepOutcome>, Scales),
         method: Method,
     ) -> Self {
         let pairs = pairs.into_iter();
@@ -50,6 +53,7 @@ impl StepState {
             pairs: pairs.map(|(p, pair)| (p, pair.into_state())).collect(),
             slips,
             energies,
+            scales,
         }
     }
 

@@ -20,6 +20,12 @@ pub fn two_fine_blocks_with_friction() -> Model {
     model(&format!("{}{STEPS}", rubbing()), mesh)
 }
 
+/// The same, unloaded in the middle step.
+pub fn two_blocks_unloaded() -> Model {
+    let steps = "[[step]]\n[[step]]\nscale = 0\n[[step]]\n";
+    model(&format!("{}{steps}", rubbing()), two_blocks().mesh)
+}
+
 /// The scene of the two blocks with friction in their joint.
 fn rubbing() -> String {
     let scene = two_block_scene();

@@ -44,7 +44,7 @@ pub fn stopped_between_steps(trials: &mut Trials) {
         return;
     }
     // Subdomains with more numbers than a reader's buffer holds at once are among them.
-    let cases: [(&str, MakeModel, usize); 5] = [
+    let cases: [(&str, MakeModel, usize); 6] = [
         ("", steps::two_blocks_in_steps, 6),
         ("_with_friction", steps::two_blocks_with_friction, 6),
         (
@@ -53,6 +53,7 @@ pub fn stopped_between_steps(trials: &mut Trials) {
             2,
         ),
         ("_in_stages", steps::two_blocks_in_stages, 6),
+        ("_before_one_without_load", steps::two_blocks_unloaded, 6),
         (
             "_with_friction_in_space",
             steps::two_solids_with_friction,

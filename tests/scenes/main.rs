@@ -28,7 +28,9 @@ mod space;
 mod stability;
 mod stages;
 mod steps;
+mod strains;
 #[path = "../support/mod.rs"]
 mod support;
 mod touching;
+mod unloaded;
 mod validation;
