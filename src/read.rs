@@ -11,7 +11,7 @@ use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::{Catalog, Subdomain};
 
 use crate::comm::Comm;
-use crate::contact::jumps::JumpOf;
+use crate::contact::limits::Limits;
 use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::contact_group::ContactGroup;
@@ -91,7 +91,8 @@ pub fn collect_groups(
     comm.agree(groups.map_err(|error| Failure::from(file.refuse(error))))
 }
 
-/// Whether some contact points bound combinations of the others' normal jumps. Collective.
+/// Whether the limits of some contact group have linearly dependent rows, D t ≤ d: conditions on combinations of others'
+/// jumps, or with friction on a jump that another condition has, too. Collective.
 pub fn depend_on_each_other(
     comm: &Comm,
     plan: &Plan,
@@ -99,9 +100,12 @@ pub fn depend_on_each_other(
 ) -> bool {
     let depends = groups.iter().any(|(&g, group)| {
         let node = &plan.tree.nodes[plan.groups[g].node];
-        let jumps = group.jumps(&node.eliminated);
-        let is_other = |of: &JumpOf| matches!(of, JumpOf::Combination(_));
-        jumps.is_err() || jumps.is_ok_and(|jumps| jumps.of.iter().any(is_other))
+        group.jumps(&node.eliminated).map_or(true, |jumps| {
+            // Which rows there are doesn't depend on the gaps.
+            let (friction, gaps) = (group.friction(), vec![0.0; jumps.of.len()]);
+            let limits = Limits::new(jumps.pivots.len(), &jumps.of, &gaps, &friction, 0.0);
+            !limits.rows.is_empty()
+        })
     });
     comm.decide(comm.collect(&depends).contains(&true))
 }

@@ -432,3 +432,13 @@ fn what_does_not_converge_between_clusters_is_solved_directly_from_there() {
         }
     }
 }
+
+/// Supports leave two conditions with friction one and the same jump, each with a bound of its own: what holds one of
+/// them isn't in the fronts.
+#[test]
+fn conditions_with_friction_that_share_a_jump_are_solved_directly() {
+    let drawn = draw_frictional(125_777, 12);
+    let trial = Trial::with(&drawn, built(), LIMIT, None, Interface::Iterative(8));
+    assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);
+    assert_eq!(trial.report.unwrap()["contact_operator"], "dense");
+}
