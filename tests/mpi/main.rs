@@ -80,6 +80,7 @@ fn main() -> ExitCode {
     stopping::stopped_while_sweeping(&mut trials);
     stopping::stopped_between_steps(&mut trials);
     stopping::restarted_in_vain(&mut trials);
+    stopping::restarted_from_damage(&mut trials);
     stopping::killed_again_and_again(&mut trials);
     steps::no_equilibrium(&mut trials);
     steps::squeezed(&mut trials);

@@ -1,8 +1,11 @@
 //! Runs that a signal stops.
 
+use std::time::{SystemTime, UNIX_EPOCH};
+
 use rustix::process::Signal;
 use serde_json::Value;
 
+use super::support::random::Random;
 use super::*;
 
 type MakeModel = fn() -> Model;
@@ -135,6 +138,56 @@ pub fn restarted_in_vain(trials: &mut Trials) {
         assert_eq!(ended.code(), 0, "{}", ended.stderr);
         assert!(ended.stdout.contains("this run begins at the start"));
         assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
+    });
+}
+
+/// Of what is kept with some bytes changed, cut off or added, `--restart` makes the result of the whole run or refuses it in
+/// words; `DAMAGES=500` takes as many of each file.
+pub fn restarted_from_damage(trials: &mut Trials) {
+    if cfg!(not(debug_assertions)) {
+        return;
+    }
+    trials.once("restarted::from_damage", || {
+        let count = std::env::var("DAMAGES").map_or(12, |count| count.parse().unwrap());
+        let case = Case::of(&steps::two_blocks_with_friction(), 6);
+        let ended = case.run(&[]);
+        assert_eq!(ended.code(), 0, "{}", ended.stderr);
+        let expected = datasets(&case.result());
+        stop_after_one_step(&case, 1);
+        let names = [
+            "problem.vtkhdf.unfinished",
+            "problem.vtkhdf.unfinished.state",
+        ];
+        let kept = names.map(|name| (case.folder().join(name), name));
+        let whole = kept.each_ref().map(|(path, _)| fs::read(path).unwrap());
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap();
+        for seed in (0..2 * count).map(|i| now.as_millis() as u64 + i) {
+            for ((path, _), bytes) in kept.iter().zip(&whole) {
+                fs::write(path, bytes).unwrap();
+            }
+            let mut random = Random::new(seed);
+            let file = (seed % 2) as usize;
+            let mut bytes = whole[file].clone();
+            let end = match random.count(0, 1) {
+                0 => bytes.len().min(4000),
+                _ => bytes.len(),
+            } - 1;
+            match random.count(0, 3) {
+                0 => bytes.truncate(random.count(0, end)),
+                1 => bytes.resize(bytes.len() + random.count(1, 5000), 7),
+                _ => {
+                    for _ in 0..random.count(1, 100) {
+                        bytes[random.count(0, end)] = random.count(0, 255) as u8;
+                    }
+                }
+            }
+            fs::write(&kept[file].0, bytes).unwrap();
+            let ended = case.run(&["--restart"]);
+            match ended.code() {
+                0 => assert!(datasets(&case.result()) == expected, "seed {seed}"),
+                _ => failed_once(&ended, 2, &[names[0], "expected"]),
+            }
+        }
     });
 }
 
