@@ -14,7 +14,8 @@ const FITTING: f64 = 2.0;
 const ROUND_OFF: f64 = 1e-6;
 
 /// Part of what side a doesn't see that side b may not see for it to carry the multipliers in its place: facets of √½ of
-/// the size on a curve.
+/// the size on a curve. What is larger turns more contacts over and brings their orders nearer: of 26 punches on blocks these
+/// are 0.36 of the estimated error apart on average with 0.1, 0.29 with 0.5, 0.27 with 1.
 const BETTER: f64 = 0.5;
 
 /// Facets of side a that are shorter than this fraction of those of side b are finer.

@@ -165,8 +165,8 @@ fn no_weight_is_large_however_little_of_a_facet_is_covered() {
         for slave in ["lower", "upper"] {
             for row in conditions(&blocks, &contact(slave)) {
                 let own = row.entries[0].1;
-                // On a part of a facet forces act beside the node.
-                assert!(own > 0.0, "{row:?}");
+                // On a part of a facet forces act beside the node; one that has less hands over.
+                assert!(own > 0.009_8, "{row:?}");
                 // Both ends of a facet carry what a narrow block presses on its middle.
                 if n != [4, 1] && n != [1, 3] {
                     assert!(row.row().all(|(_, c)| c[1].abs() < 8.0), "{row:?}");
