@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::magnitude::short;
 use contact_dd_partition::problem::Catalog;
 use faer::Par;
 
 use crate::comm::Comm;
-use crate::error::Failure;
+use crate::error::{Failure, FailureKind};
 use crate::fem::block::Block;
 use crate::fem::contact_group::{ContactGroup, GroupLoads};
 use crate::fem::load::BlockLoads;
@@ -17,6 +18,10 @@ pub trait Listener {
     /// So much of the phase, or of a part of it such as a linear system, is done: 0, with which a part begins, to 1.
     fn done(&self, share: f64);
 }
+
+/// Ratio of the stiffnesses of materials from which round-off of the stiffest, in the sums over a mesh, may be more than
+/// the softest.
+const INDISTINCT: f64 = 1e11;
 
 /// What every phase of a run works on.
 #[derive(Clone, Copy)]
@@ -95,6 +100,32 @@ impl Context<'_> {
                 .map(|(&g, group)| (g, GroupLoads::new(group, k)))
                 .collect(),
         }
+    }
+
+    /// A failure that a pivot says, which isn't positive: where the materials' stiffnesses differ by more than digits
+    /// tell, this is no proof that something moves, and it is said instead.
+    pub fn of_pivot(&self, failure: Failure) -> Failure {
+        let all = || self.catalog.materials.iter();
+        let soft = all().map(|m| (m.stiffness.smallest(), &m.name));
+        let stiff = all().map(|m| (m.stiffness.largest(), &m.name));
+        let soft = soft.min_by(|a, b| a.0.total_cmp(&b.0));
+        let stiff = stiff.max_by(|a, b| a.0.total_cmp(&b.0));
+        let (Some((least, soft)), Some((most, stiff))) = (soft, stiff) else {
+            return failure;
+        };
+        let ratio = most / least;
+        // What is no number isn't small.
+        if failure.kind != FailureKind::IllPosed || ratio < INDISTINCT {
+            return failure;
+        }
+        Failure::input(format!(
+            "the largest stiffness, of '{stiff}', is {} times the smallest, of '{soft}' (of one material: against a change \
+             of volume and of shape), and numbers of 16 digits don't tell what the softest part is held by; expected \
+             less than {} times; found where {}",
+            short(ratio),
+            short(INDISTINCT),
+            failure.message
+        ))
     }
 
     /// A failure that says in which load step it was.

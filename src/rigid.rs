@@ -27,8 +27,11 @@ mod kinematics;
 mod many_bodies;
 pub mod motion;
 pub mod nonnegative;
+mod null_space;
 pub mod projection;
+mod proof;
 pub mod released_modes;
 mod rows;
 #[cfg(test)]
 mod squares;
+mod unheld_motions;

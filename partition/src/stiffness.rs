@@ -45,6 +45,12 @@ impl Stiffness {
         (0..self.size).map(|i| self[i][i]).fold(0.0, f64::max)
     }
 
+    /// Its smallest eigenvalue: what resists the strain that costs least.
+    pub fn smallest(&self) -> f64 {
+        let c = DMatrix::from_row_slice(self.size, self.size, &self.values);
+        c.symmetric_eigenvalues().min()
+    }
+
     /// Whether it is symmetric positive definite.
     pub fn is_elastic(&self) -> bool {
         let c = DMatrix::from_row_slice(self.size, self.size, &self.values);

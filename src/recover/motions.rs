@@ -8,7 +8,7 @@ use crate::fem::block::Block;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::motion::BodyFrame;
-use crate::rigid::projection::MotionProducts;
+use crate::rigid::projection::{BodyProducts, MotionProducts};
 use crate::vector::axpy;
 
 /// What blocks know of a field on a node that several of them have.
@@ -58,8 +58,8 @@ impl<'a> Motions<'a> {
         let catalog = fixed.context.catalog;
         let dim = catalog.dim;
         let first_of = first_blocks(catalog);
-        let zeros = || MotionProducts::zeros(BodyFrame::count(dim));
-        let mut of_bodies: Vec<MotionProducts> = self.frames.iter().map(|_| zeros()).collect();
+        let zeros = || BodyProducts::zeros(BodyFrame::count(dim));
+        let mut of_bodies: Vec<BodyProducts> = self.frames.iter().map(|_| zeros()).collect();
         fixed.context.comm.gather(
             fixed.context.plan.owners(),
             |b| {
@@ -82,8 +82,8 @@ impl<'a> Motions<'a> {
             |b, products| of_bodies[catalog.subdomains[b].body].add(&products),
         );
         let mut total = MotionProducts::zeros(self.list.len());
-        for (body, products) in of_bodies.iter().enumerate() {
-            total.add_body(&self.shares(body), products);
+        for (shares, products) in self.shares().iter().zip(&of_bodies) {
+            total.add_body(shares, products);
         }
         total
     }
@@ -98,14 +98,16 @@ impl<'a> Motions<'a> {
     ) {
         let dim = fixed.context.catalog.dim;
         let first_of = first_blocks(fixed.context.catalog);
+        let shares = self.shares();
         for (b, field) in fields {
             let Some(block) = fixed.context.blocks.get(&b) else {
                 continue;
             };
             let body = block.subdomain.body;
             let mut taken = vec![0.0; BodyFrame::count(dim)];
-            for (share, c) in self.shares(body).iter().zip(coefficients) {
-                axpy(*c, share, &mut taken);
+            for &(motion, share) in shares.get(body).into_iter().flatten() {
+                let c = coefficients.get(motion).copied().unwrap_or_default();
+                axpy(c, share, &mut taken);
             }
             let is_first = first_in(block, b, &first_of);
             for (node, x) in block.points().iter().enumerate() {
@@ -117,13 +119,15 @@ impl<'a> Motions<'a> {
         }
     }
 
-    /// What body `body` does in each of the motions; nothing where it takes no part.
-    fn shares(&self, body: usize) -> Vec<&'a [f64]> {
-        let of_motion = |motion: &'a FreeMotion| {
-            let own = motion.bodies.iter().find(|(b, _)| *b == body);
-            own.map_or(&[][..], |(_, z)| z)
-        };
-        self.list.iter().map(of_motion).collect()
+    /// What every body does in the motions that it takes part in, by their numbers.
+    fn shares(&self) -> Vec<Vec<(usize, &'a [f64])>> {
+        let mut shares = vec![Vec::new(); self.frames.len()];
+        for (number, motion) in self.list.iter().enumerate() {
+            for (body, z) in &motion.bodies {
+                shares[*body].push((number, &z[..]));
+            }
+        }
+        shares
     }
 }
 

@@ -7,9 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use super::forces::{Forces, Friction, slips};
 use super::free_motion::FreeMotion;
-use super::kinematics::{Kinematics, null_space};
+use super::kinematics::Kinematics;
 use super::many_bodies::MANY;
 use super::motion::BodyFrame;
+use super::null_space::null_space;
+use super::proof::Loaded;
 use crate::error::Failure;
 
 /// Load along a free motion, relative to all loads, that counts as none.
@@ -168,22 +170,30 @@ impl Scene {
             false => UNDECIDED,
         };
         let is_nothing = |left: &DVector<f64>| left.norm() <= nothing * scale;
-        let unbalanced = forces.residual(&b, &held, nothing * scale);
-        if forces.has_friction && !is_nothing(&unbalanced) {
-            let drive = forces.drive(&b, &held);
-            if slips(rows, (&b * &drive).as_slice()) {
-                return Err(kinematics.sliding(bodies, names, &drive));
+        let loaded = Loaded {
+            rows,
+            b: &b,
+            load: &held,
+            scale,
+        };
+        let found = forces.unbalanced(&loaded, nothing * scale);
+        let unbalanced = found.left;
+        if let Some(proof) = &found.proof {
+            let may_slide = forces.has_friction && !is_nothing(&unbalanced);
+            let along = may_slide.then(|| loaded.along_sides(proof));
+            if let Some(along) = along.filter(|z| slips(rows, (&b * z).as_slice())) {
+                return Err(kinematics.sliding(bodies, names, &along));
             }
-        }
-        if !balanced(&unbalanced) {
-            let why = "contact can't hold it";
-            return Err(kinematics.ill_posed(bodies, names, &unbalanced, why));
+            if !balanced(&unbalanced) {
+                let why = "contact can't hold it";
+                return Err(kinematics.ill_posed(bodies, names, proof, why));
+            }
         }
         let columns = free.column_iter();
         let list = columns.map(|x| kinematics.motion(&x.into_owned()));
         let fixing_dofs = kinematics.fixing_dofs(bodies, &free);
         let mut motions = kinematics.fix(bodies, names, list.collect(), fixing_dofs);
-        if !is_nothing(&unbalanced) {
+        if !is_nothing(&unbalanced) && found.proof.is_some() {
             let share = unbalanced.norm() / scale;
             let motion = kinematics.motion(&unbalanced.normalize());
             motions.warnings.push(format!(
@@ -213,8 +223,14 @@ impl Scene {
         let free = null_space(&b);
         let driven = &free * (free.transpose() * &load);
         let held = &load - &driven;
-        let left = Forces::new(&normals, |_| true).residual(&b, &held, UNDECIDED * scale);
-        let unbalanced = driven + left;
+        let loaded = Loaded {
+            rows: &normals,
+            b: &b,
+            load: &held,
+            scale,
+        };
+        let found = Forces::new(&normals, |_| true).unbalanced(&loaded, UNDECIDED * scale);
+        let unbalanced = driven + found.left;
         (unbalanced.norm() > BALANCE_TOLERANCE * scale).then(|| sliding(&unbalanced))
     }
 }

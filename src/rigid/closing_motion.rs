@@ -12,9 +12,10 @@ use nalgebra::{DMatrix, DVector};
 use super::analysis::{BodyState, RigidRow};
 use super::body_analysis::RigidBodyAnalysis;
 use super::forces::{Forces, Friction};
-use super::kinematics::{Kinematics, RANK_TOLERANCE, null_space};
+use super::kinematics::Kinematics;
 use super::many_bodies::{MANY, ManyBodies, SparseRow};
 use super::motion::BodyFrame;
+use super::null_space::{RANK_TOLERANCE, null_space};
 use crate::comm::is_asked_to_stop;
 use crate::context::{Context, Loads};
 
@@ -22,6 +23,9 @@ use crate::context::{Context, Loads};
 const BALANCED: f64 = 1e-9;
 /// The same where springs that hold many bodies take a part of it: these move some thousand times their gaps.
 const SPRINGS: f64 = 1e-6;
+/// Motions from which on dense matrices would take gigabytes: where sparse ones don't find how bodies come to rest, they
+/// stay where they are, and the solver moves them.
+const TOO_MANY: usize = 3000;
 /// Distance, relative to the size of the scene, that counts as none.
 const TOUCHING: f64 = 1e-12;
 /// Cosine between a motion and a condition's row below which the motion doesn't close it.
@@ -75,9 +79,16 @@ pub(super) fn closing_motions(
     let size = bodies.iter().fold(0.0, |m: f64, b| m.max(b.frame.size));
     let touching = TOUCHING * size;
     let left = gaps_left(rows, &motions);
-    let resting = match kinematics.len >= MANY {
-        true => rest(&kinematics, rows, &speed, &load, &left, touching),
-        false => None,
+    let is_open = left.iter().any(|&left| left > touching && left.is_finite());
+    let resting = match is_open {
+        // No gap is left that could close.
+        false => Some(DVector::zeros(load.len())),
+        true if kinematics.len >= MANY => {
+            let found = rest(&kinematics, rows, &speed, &load, &left, touching);
+            let is_left = kinematics.len > TOO_MANY || is_asked_to_stop();
+            found.or_else(|| is_left.then(|| DVector::zeros(load.len())))
+        }
+        true => None,
     };
     let fallen = resting.unwrap_or_else(|| {
         let fast = kinematics.rows(rows) * DMatrix::from_diagonal(&speed);

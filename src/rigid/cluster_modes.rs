@@ -7,8 +7,9 @@ use nalgebra::DMatrix;
 
 use super::analysis::{FixingDof, RigidRow, Scene};
 use super::energy::RigidModes;
-use super::kinematics::{Kinematics, null_space};
+use super::kinematics::Kinematics;
 use super::many_bodies::SparseRow;
+use super::null_space::null_space;
 use crate::context::Context;
 
 /// How far a motion moves a condition, relative to others, that is none.

@@ -4,13 +4,19 @@
 //! H, of either sign, of motions that have none, and a load c that drives them otherwise than the
 //! load of the bodies does. Both are known exactly, from geometry.
 
+use std::collections::BTreeMap;
+
+use contact_dd_partition::disjoint_sets::DisjointSets;
 use faer::Mat;
 use serde::{Deserialize, Serialize};
 
+use crate::comm::is_asked_to_stop;
 use crate::vector::{axpy, dot};
 
 /// Part of a motion, relative to all of it, that is new.
 const INDEPENDENT: f64 = 1e-8;
+/// Motions from which on those that have no normal jump in common are told apart.
+const MANY: usize = 100;
 
 /// Normal jumps against rigid motions: R, a row a normal jump and a column a motion, and the load Rᵀ c
 /// along them.
@@ -38,9 +44,19 @@ impl Default for RigidModes {
 #[derive(Clone, Debug, Default)]
 pub struct RigidBasis {
     root: Vec<f64>,
-    q: Vec<Vec<f64>>,
+    /// The normal jumps that motions connect, ascending.
+    parts: Vec<Vec<usize>>,
+    q: Vec<Direction>,
     /// Qᵀ D^(−½) c.
     load: Vec<f64>,
+}
+
+/// A column of Q, which is zero outside of a part.
+#[derive(Clone, Debug)]
+struct Direction {
+    part: usize,
+    /// Its entries there.
+    values: Vec<f64>,
 }
 
 impl RigidBasis {
@@ -48,30 +64,49 @@ impl RigidBasis {
     /// that what is left for stiff ones leaves theirs alone, to which it would be far more.
     pub fn new(drive: &RigidModes, diagonal: &[f64]) -> Self {
         let root: Vec<f64> = diagonal.iter().map(|k| k.max(0.0).sqrt()).collect();
+        let (parts, part_of_row) = parts(&drive.rows, root.len());
         let mut basis = Self {
             root,
+            parts,
             ..Self::default()
         };
-        let scaled = |column: faer::ColRef<'_, f64>| -> Vec<f64> {
-            let products = column.iter().zip(&basis.root);
-            products.map(|(r, root)| r * root).collect()
+        let scaled = |column: faer::ColRef<'_, f64>| -> Option<Direction> {
+            let first = column.iter().position(|r| *r != 0.0)?;
+            let part = *part_of_row.get(first)?;
+            let rows = basis.parts[part].iter();
+            let values = rows.map(|&row| column[row] * basis.root[row]);
+            Some(Direction {
+                part,
+                values: values.collect(),
+            })
         };
-        let columns = drive.rows.col_iter().map(scaled);
-        let mut motions: Vec<(f64, Vec<f64>, f64)> = (columns.zip(&drive.load))
-            .map(|(v, &load)| (dot(&v, &v).sqrt(), v, load))
+        let columns = drive.rows.col_iter().zip(&drive.load);
+        let mut motions: Vec<(f64, Direction, f64)> = columns
+            .filter_map(|(column, &load)| {
+                let v = scaled(column)?;
+                Some((dot(&v.values, &v.values).sqrt(), v, load))
+            })
             .collect();
         motions.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
+        let mut of_part: Vec<Vec<usize>> = vec![Vec::new(); basis.parts.len()];
         for (whole, mut v, mut load) in motions {
+            // Whoever is asked to stop asks for no answer.
+            if is_asked_to_stop() {
+                break;
+            }
             for _ in 0..2 {
-                for (q, load_of_q) in basis.q.iter().zip(&basis.load) {
-                    let along = dot(&v, q);
+                for &k in &of_part[v.part] {
+                    let (q, load_of_q) = (&basis.q[k].values, basis.load[k]);
+                    let along = dot(&v.values, q);
                     load -= along * load_of_q;
-                    axpy(-along, q, &mut v);
+                    axpy(-along, q, &mut v.values);
                 }
             }
-            let left = dot(&v, &v).sqrt();
+            let left = dot(&v.values, &v.values).sqrt();
             if left > INDEPENDENT * whole {
-                basis.q.push(v.iter().map(|v| v / left).collect());
+                v.values.iter_mut().for_each(|v| *v /= left);
+                of_part[v.part].push(basis.q.len());
+                basis.q.push(v);
                 basis.load.push(load / left);
             }
         }
@@ -79,21 +114,23 @@ impl RigidBasis {
     }
 
     /// H ← Pᵀ H P, where P takes the motions out.
+    ///
+    /// In the scale of energies P H P = H − Q Xᵀ − X Qᵀ with X = H Q − ½ Q (Qᵀ H Q).
     pub fn remove_energy(&self, h: &mut Mat<f64>) {
-        let (n, rank) = (h.nrows(), self.q.len());
+        let rank = self.q.len();
         if rank == 0 {
             return;
         }
-        // In the scale of energies P H P = H − Q Xᵀ − X Qᵀ with X = H Q − ½ Q (Qᵀ H Q).
-        let q = Mat::from_fn(n, rank, |i, k| self.q[k][i]);
-        let scaled = Mat::from_fn(n, n, |i, j| match self.root[i] * self.root[j] {
+        let scaled = |i: usize, j: usize| match self.root[i] * self.root[j] {
             0.0 => 0.0,
             product => h[(i, j)] / product,
-        });
-        let hq = &scaled * &q;
-        let qhq = q.transpose() * &hq;
-        let x = &hq - &q * &qhq * faer::Scale(0.5);
-        let change = &q * x.transpose();
+        };
+        let n = h.nrows();
+        let scaled = Mat::from_fn(n, n, scaled);
+        let change = match rank >= MANY && self.parts.len() > 1 {
+            true => self.change_by_parts(&scaled),
+            false => self.change_at_once(&scaled),
+        };
         for j in 0..n {
             for i in j..n {
                 let of_both = change[(i, j)] + change[(j, i)];
@@ -102,6 +139,60 @@ impl RigidBasis {
                 h[(j, i)] = value;
             }
         }
+    }
+
+    /// Q Xᵀ, by dense matrices.
+    fn change_at_once(&self, scaled: &Mat<f64>) -> Mat<f64> {
+        let n = self.root.len();
+        let mut q = Mat::zeros(n, self.q.len());
+        for (k, Direction { part, values }) in self.q.iter().enumerate() {
+            for (&row, value) in self.parts[*part].iter().zip(values) {
+                q[(row, k)] = *value;
+            }
+        }
+        let hq = scaled * &q;
+        let qhq = q.transpose() * &hq;
+        let x = &hq - &q * &qhq * faer::Scale(0.5);
+        &q * x.transpose()
+    }
+
+    /// X Qᵀ, where every motion has to do with one part of the normal jumps alone.
+    fn change_by_parts(&self, scaled: &Mat<f64>) -> Mat<f64> {
+        let (n, rank) = (self.root.len(), self.q.len());
+        let entries = |k: usize| {
+            let Direction { part, values } = &self.q[k];
+            self.parts[*part]
+                .iter()
+                .copied()
+                .zip(values.iter().copied())
+        };
+        // H Q, X in the end, a row for each motion.
+        let mut x: Vec<Vec<f64>> = vec![vec![0.0; n]; rank];
+        for (k, x) in x.iter_mut().enumerate() {
+            for (row, q) in entries(k) {
+                let column = scaled.col(row);
+                (x.iter_mut().zip(column.iter())).for_each(|(x, h)| *x += h * q);
+            }
+        }
+        let half_qhq: Vec<Vec<f64>> = (x.iter())
+            .map(|hq| {
+                let of_motion = |k: usize| entries(k).map(|(row, q)| q * hq[row]).sum::<f64>();
+                (0..rank).map(|k| 0.5 * of_motion(k)).collect()
+            })
+            .collect();
+        for (x, half) in x.iter_mut().zip(&half_qhq) {
+            for (k, half) in half.iter().enumerate().filter(|(_, half)| **half != 0.0) {
+                entries(k).for_each(|(row, q)| x[row] -= q * half);
+            }
+        }
+        let mut change = Mat::zeros(n, n);
+        for (k, x) in x.iter().enumerate() {
+            for (row, q) in entries(k) {
+                let column = change.col_mut(row);
+                (column.iter_mut().zip(x)).for_each(|(change, x)| *change += x * q);
+            }
+        }
+        change
     }
 
     /// Gives c the part along the motions that the bodies' load has.
@@ -115,17 +206,42 @@ impl RigidBasis {
     }
 
     fn set(&self, c: &mut [f64], exact: impl Fn(usize) -> f64) {
-        for (k, q) in self.q.iter().enumerate() {
-            let scaled = c.iter().zip(&self.root).zip(q);
-            let found: f64 = scaled
-                .map(|((c, root), q)| if *root > 0.0 { c / root * q } else { 0.0 })
-                .sum();
+        for (k, Direction { part, values }) in self.q.iter().enumerate() {
+            let entries = || self.parts[*part].iter().zip(values);
+            let term = |(&row, q): (&usize, &f64)| match self.root[row] {
+                root if root > 0.0 => c[row] / root * q,
+                _ => 0.0,
+            };
+            let found: f64 = entries().map(term).sum();
             let missing = exact(k) - found;
-            for ((c, root), q) in c.iter_mut().zip(&self.root).zip(q) {
-                *c += missing * root * q;
+            for (&row, q) in entries() {
+                c[row] += missing * self.root[row] * q;
             }
         }
     }
+}
+
+/// The rows that columns connect, part by part, and the part of every row.
+fn parts(matrix: &Mat<f64>, rows: usize) -> (Vec<Vec<usize>>, Vec<usize>) {
+    let mut sets = DisjointSets::new(rows);
+    for column in matrix.col_iter() {
+        let mut own = (0..rows.min(column.nrows())).filter(|&row| column[row] != 0.0);
+        if let Some(first) = own.next() {
+            own.for_each(|row| sets.unite(first as u32, row as u32));
+        }
+    }
+    let mut of_root = BTreeMap::new();
+    let mut parts: Vec<Vec<usize>> = Vec::new();
+    let mut part_of_row = Vec::with_capacity(rows);
+    for row in 0..rows {
+        let part = *of_root.entry(sets.find(row as u32)).or_insert(parts.len());
+        if part == parts.len() {
+            parts.push(Vec::new());
+        }
+        parts[part].push(row);
+        part_of_row.push(part);
+    }
+    (parts, part_of_row)
 }
 
 #[cfg(test)]
@@ -152,6 +268,33 @@ mod tests {
         RigidBasis::new(&drive, &STIFFNESS).remove_energy(&mut h);
         assert!((&h * &drive.rows).norm_max() < 1e-15);
         assert!((&h - &exact).norm_max() < 1e-8);
+    }
+
+    /// Motions of rows that others don't share, in no order, and a matrix that connects all.
+    #[test]
+    fn parts_by_themselves_lose_the_same_energy() {
+        let noise = |s: usize| ((s as f64 * 78.233).sin() * 43758.5453).fract();
+        let n = 15;
+        let rows = Mat::from_fn(n, 6, |i, k| match i % 3 == k % 3 {
+            true => noise(10 * i + k + 1),
+            false => 0.0,
+        });
+        let drive = RigidModes {
+            load: vec![0.0; rows.ncols()],
+            rows,
+        };
+        let diagonal: Vec<f64> = (0..n).map(|i| 1.0 + i as f64).collect();
+        let basis = RigidBasis::new(&drive, &diagonal);
+        assert_eq!((basis.parts.len(), basis.q.len()), (3, 6));
+        let h = Mat::from_fn(n, n, |i, j| noise(i.min(j) * 40 + i.max(j) + 3));
+        let root = &basis.root;
+        let scaled = Mat::from_fn(n, n, |i, j| h[(i, j)] / (root[i] * root[j]));
+        let at_once = basis.change_at_once(&scaled);
+        let by_parts = basis.change_by_parts(&scaled);
+        assert!((by_parts.transpose() - at_once).norm_max() < 1e-15);
+        let mut without = h.clone();
+        basis.remove_energy(&mut without);
+        assert!((&without * &drive.rows).norm_max() < 1e-13);
     }
 
     /// A soft body without load on a stiff one that two conditions hold: what round-off leaves of the

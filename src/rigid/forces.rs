@@ -6,9 +6,10 @@ use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use super::analysis::RigidRow;
-use super::kinematics::{RANK_TOLERANCE, null_space};
 use super::many_bodies::SparseRow;
 use super::nonnegative::{Nearest, nearest, residual, residual_in_span};
+use super::null_space::{RANK_TOLERANCE, null_space};
+use super::proof::Loaded;
 use crate::contact::friction::ForceBound;
 
 /// Part of the fastest motion of a condition with which sides slip.
@@ -17,6 +18,11 @@ const SLIPS: f64 = 0.1;
 const NOTHING: f64 = 1e-15;
 /// Part of what is left that more forces leave if they aren't worth it.
 const WORTH_IT: f64 = 0.9;
+/// Coefficient of friction from which cones are nearly half spaces.
+const STEEP: f64 = 1e3;
+/// Work along a motion that proves that nothing balances a load, relative to that along the one before, if it is worth
+/// another one: the motion is told, and the steepest one tells most.
+const WORTH_TURNING: f64 = 1.0 + 1e-10;
 /// How often cones get more forces.
 const REFINEMENTS: usize = 40;
 /// Half of the directions in a tangential plane that stand for all.
@@ -45,6 +51,15 @@ struct Generator {
     /// Tangential conditions, and their part.
     tangential: Vec<(usize, f64)>,
     largest: f64,
+}
+
+/// What forces leave of a load.
+#[derive(Debug)]
+pub(super) struct Unbalanced {
+    /// It, 0 where they balance it.
+    pub left: DVector<f64>,
+    /// A motion along which the load does more work than forces take.
+    pub proof: Option<DVector<f64>>,
 }
 
 /// Forces that contact can give: the sums of these.
@@ -97,6 +112,10 @@ impl Forces {
         if closed && slope == 0.0 {
             add(Some(normal), Vec::new(), f64::INFINITY);
         } else if closed {
+            if slope > STEEP {
+                // The edges are nearly against each other: pressure alone would be a difference of large forces.
+                add(Some(normal), Vec::new(), f64::INFINITY);
+            }
             for direction in &along {
                 let tangential = direction.iter().map(|&(i, part)| (i, slope * part));
                 add(Some(normal), tangential.collect(), f64::INFINITY);
@@ -128,11 +147,6 @@ impl Forces {
             }
         }
         actions
-    }
-
-    /// Whether some can be given only so many times.
-    pub fn are_bounded(&self) -> bool {
-        self.generators.iter().any(|g| g.largest.is_finite())
     }
 
     /// The work, on motions of which `rows` hold what each condition makes, of those that can be given any number of
@@ -172,35 +186,78 @@ impl Forces {
         self.generators.iter().map(|g| g.largest).collect()
     }
 
-    /// What these forces leave of a `load`, 0 where they balance it; a norm up to `nothing` decides that.
-    pub fn residual(
-        &mut self,
-        b: &DMatrix<f64>,
-        load: &DVector<f64>,
-        nothing: f64,
-    ) -> DVector<f64> {
-        let in_span = self.residual_in_span(b, load);
-        match in_span {
-            Some(left) if left.norm() <= nothing => left,
-            in_span => {
-                let nearest = self.nearest(b, load).left;
-                let in_span = in_span.filter(|left| left.norm() < nearest.norm());
-                in_span.unwrap_or(nearest)
+    /// What these forces leave of a load, and the motion that proves that none balance it; a norm up to `nothing` is
+    /// balance. Circular cones get more forces until one or the
+    /// other is certain.
+    pub fn unbalanced(&mut self, loaded: &Loaded<'_>, nothing: f64) -> Unbalanced {
+        let Loaded { b, load, .. } = *loaded;
+        let in_span = self.in_span(b, load);
+        if let Some((left, _)) = &in_span
+            && left.norm() <= nothing
+        {
+            return Unbalanced {
+                left: left.clone(),
+                proof: None,
+            };
+        }
+        let mut found = nearest(&self.actions(b), load, &self.largest());
+        let in_turned = || {
+            let (_, along) = in_span.as_ref()?;
+            loaded.proof(along, &[])
+        };
+        let mut proven = match self.cones.is_empty() {
+            true => in_turned(),
+            false => None,
+        };
+        proven = proven.or_else(|| loaded.proof(&found.left, &self.normal(&found.lambda, b)));
+        let refinements = match self.cones.is_empty() {
+            true => 0,
+            false => REFINEMENTS,
+        };
+        for _ in 0..refinements {
+            if found.left.norm() <= nothing {
+                break;
             }
+            self.refine(
+                &self.tangential(&found.lambda, b.nrows()),
+                f64::EPSILON * load.norm(),
+            );
+            self.refine(&(b * &found.left), f64::EPSILON * found.left.norm());
+            found = nearest(&self.actions(b), load, &self.largest());
+            let next = loaded.proof(&found.left, &self.normal(&found.lambda, b));
+            let work = |z: &Option<DVector<f64>>| z.as_ref().map_or(0.0, |z| load.dot(z));
+            let is_better = work(&next) > WORTH_TURNING * work(&proven);
+            if proven.is_some() && !is_better {
+                break;
+            }
+            proven = next.or(proven);
+        }
+        if found.left.norm() > nothing {
+            proven = proven.or_else(in_turned);
+        }
+        let in_span = in_span.map(|(left, _)| left);
+        Unbalanced {
+            left: (in_span.filter(|left| left.norm() < found.left.norm())).unwrap_or(found.left),
+            proof: proven,
         }
     }
 
-    fn residual_in_span(&self, b: &DMatrix<f64>, load: &DVector<f64>) -> Option<DVector<f64>> {
+    /// What they leave of a load in what they span, and the motion along which it drives there.
+    fn in_span(
+        &self,
+        b: &DMatrix<f64>,
+        load: &DVector<f64>,
+    ) -> Option<(DVector<f64>, DVector<f64>)> {
         let (actions, largest) = (self.actions(b), self.largest());
         if !self.has_friction {
-            let (left, _) = residual_in_span(&actions, load, &largest, RANK_TOLERANCE)?;
-            return Some(left);
+            let found = residual_in_span(&actions, load, &largest, RANK_TOLERANCE)?;
+            return Some((found.left, found.drive));
         }
         // What conditions hold along tangents spans as much as they do, however little friction they have.
         let held = null_space(&null_space(b).transpose());
         let (actions, load) = (held.tr_mul(&actions), held.tr_mul(load));
-        let (left, outside) = residual_in_span(&actions, &load, &largest, NOTHING)?;
-        Some(held * (left + outside))
+        let found = residual_in_span(&actions, &load, &largest, NOTHING)?;
+        Some((&held * (found.left + found.outside), held * found.drive))
     }
 
     /// What drives the bodies of a `load` that these forces don't balance.
@@ -255,6 +312,17 @@ impl Forces {
                 });
             }
         }
+    }
+
+    /// λ_n of all conditions, of which `b` has rows.
+    fn normal(&self, lambda: &[f64], b: &DMatrix<f64>) -> Vec<f64> {
+        let mut forces = vec![0.0; b.nrows()];
+        for (generator, lambda) in self.generators.iter().zip(lambda) {
+            if let Some(normal) = generator.normal {
+                forces[normal] += lambda;
+            }
+        }
+        forces
     }
 
     /// λ_t of all conditions.

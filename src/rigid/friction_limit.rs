@@ -4,8 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::analysis::{RigidRow, Scene};
-use super::kinematics::{Kinematics, null_space};
-use super::many_bodies::{MANY, ManyBodies};
+use super::kinematics::Kinematics;
 use super::released_modes::ConditionState;
 
 /// Part of what friction can give from which it is at its limit.
@@ -38,20 +37,15 @@ impl Scene {
         if kinematics.len == 0 || at_bound.is_empty() {
             return Vec::new();
         }
-        if kinematics.len >= MANY {
-            let sparse = rows.iter().map(|row| kinematics.sparse_row(row)).collect();
-            let bodies = ManyBodies::new(&kinematics.centers, sparse);
-            if bodies.is_some_and(|bodies| bodies.hold_all()) {
-                return Vec::new();
-            }
-        }
-        let free = null_space(&kinematics.rows(&rows));
+        let Some(free) = kinematics.unheld(&rows, &[]) else {
+            return Vec::new();
+        };
         if free.ncols() == 0 {
             return Vec::new();
         }
         let tangents = at_bound.iter().flat_map(|point| &point.tangents);
         let tangents: Vec<RigidRow> = tangents.map(|&j| self.rows[j].clone()).collect();
-        let slips = kinematics.rows(&tangents) * &free;
+        let slips = kinematics.jumps(&tangents, &free);
         let of_points = |value: &dyn Fn(&AtBound, usize) -> f64| {
             let values = at_bound.iter().flat_map(|point| {
                 let of_point = point.tangents.iter();

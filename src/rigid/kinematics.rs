@@ -1,16 +1,13 @@
 //! The motions that supports leave to the bodies of a scene.
 
-use faer::Mat;
 use nalgebra::{DMatrix, DVector};
 
 use super::analysis::{BodyState, RigidRow};
 use super::free_motion::FreeMotion;
-use super::many_bodies::SparseRow;
+use super::many_bodies::{MANY, SparseRow};
 use super::motion::BodyFrame;
-
-/// Relative size below which a singular value is zero: a support that is this much shorter than
-/// the body it holds doesn't hold it.
-pub(super) const RANK_TOLERANCE: f64 = 1e-9;
+use super::null_space::null_space;
+use super::unheld_motions::unheld_motions;
 
 /// The motions that supports leave to all bodies, side by side.
 pub(super) struct Kinematics {
@@ -26,29 +23,6 @@ pub(super) struct Kinematics {
     of_bodies: Vec<[f64; 3]>,
     /// Number of unknowns.
     pub len: usize,
-}
-
-/// An orthonormal basis of the x with B x = 0.
-pub(super) fn null_space(b: &DMatrix<f64>) -> DMatrix<f64> {
-    let n = b.ncols();
-    if b.nrows() == 0 {
-        return DMatrix::identity(n, n);
-    }
-    // Rows beyond the number of unknowns are folded into R first: R x = 0 is B x = 0.
-    let full = Mat::from_fn(b.nrows().max(n), n, |i, j| {
-        if i < b.nrows() { b[(i, j)] } else { 0.0 }
-    });
-    let r = full.qr().thin_R().to_owned();
-    let upper = Mat::from_fn(n, n, |i, j| if i <= j { r[(i, j)] } else { 0.0 });
-    let Ok(svd) = upper.svd() else {
-        return DMatrix::zeros(n, 0);
-    };
-    let (sizes, v) = (svd.S().column_vector(), svd.V());
-    let largest = sizes.iter().copied().fold(0.0, f64::max);
-    let kept: Vec<usize> = (0..n)
-        .filter(|&i| sizes[i] <= RANK_TOLERANCE * largest)
-        .collect();
-    DMatrix::from_fn(n, kept.len(), |i, j| v[(i, kept[j])])
 }
 
 impl Kinematics {
@@ -107,7 +81,49 @@ impl Kinematics {
         b
     }
 
-    /// The same where a row touches few bodies.
+    /// The jumps that `motions`, a column each, make of conditions.
+    pub fn jumps(&self, rows: &[RigidRow], motions: &DMatrix<f64>) -> DMatrix<f64> {
+        if self.len < MANY {
+            return self.rows(rows) * motions;
+        }
+        let mut jumps = DMatrix::zeros(rows.len(), motions.ncols());
+        for (j, row) in rows.iter().enumerate() {
+            let row = self.sparse_row(row);
+            for (k, motion) in motions.column_iter().enumerate() {
+                jumps[(j, k)] = row.iter().map(|&(i, b)| b * motion[i]).sum();
+            }
+        }
+        jumps
+    }
+
+    /// An orthonormal basis of the motions that the conditions `rows` don't hold, without those `known`, a column each;
+    /// nothing where a signal stopped that.
+    pub fn unheld(&self, rows: &[RigidRow], known: &[FreeMotion]) -> Option<DMatrix<f64>> {
+        if self.len < MANY {
+            let mut b = self.rows(rows).insert_rows(0, known.len(), 0.0);
+            for (i, motion) in known.iter().enumerate() {
+                let x = self.unknowns_of(motion).normalize();
+                b.row_mut(i).copy_from(&x.transpose());
+            }
+            return Some(null_space(&b));
+        }
+        let of_known = |motion: &FreeMotion| -> SparseRow {
+            let mut x = self.sparse_motion(motion);
+            let size = x.iter().map(|(_, z)| z * z).sum::<f64>().sqrt();
+            x.iter_mut().for_each(|(_, z)| *z /= size);
+            x
+        };
+        let mut sparse: Vec<SparseRow> = known.iter().map(of_known).collect();
+        sparse.extend(rows.iter().map(|row| self.sparse_row(row)));
+        let motions = unheld_motions(&self.centers, &sparse)?;
+        let mut unheld = DMatrix::zeros(self.len, motions.len());
+        for (motion, mut column) in motions.iter().zip(unheld.column_iter_mut()) {
+            motion.iter().for_each(|&(i, z)| column[i] = z);
+        }
+        Some(unheld)
+    }
+
+    /// A row of B, sparse as it touches few bodies.
     pub fn sparse_row(&self, row: &RigidRow) -> SparseRow {
         let mut sparse = SparseRow::new();
         for (body, action) in &row.bodies {
@@ -172,6 +188,16 @@ impl Kinematics {
     /// Number of bodies.
     pub fn bodies(&self) -> usize {
         self.bases.len()
+    }
+
+    /// A motion, given body by body, in the unknowns of these bodies.
+    pub fn sparse_motion(&self, motion: &FreeMotion) -> SparseRow {
+        let mut sparse = SparseRow::new();
+        for (b, z) in &motion.bodies {
+            let own = self.bases[*b].tr_mul(&DVector::from_column_slice(z));
+            sparse.extend(self.unknowns(*b).zip(own.iter().copied()));
+        }
+        sparse
     }
 
     /// A motion, given body by body, in the unknowns.

@@ -7,6 +7,7 @@
 
 use faer::Par;
 
+use super::null_space::RANK_TOLERANCE;
 use crate::comm::is_asked_to_stop;
 use crate::schur::factor::BoundaryLastCholesky;
 use crate::schur::ordering::nested_dissection;
@@ -26,9 +27,9 @@ const MOST_STEPS: usize = 60;
 const REFINEMENTS: usize = 2;
 /// How near to the end of its positive part a variable may go in a step.
 const TO_THE_BOUNDARY: f64 = 0.995;
-/// Smallest eigenvalue of BᵀB, relative to the largest, where conditions certainly hold all motions.
-const HELD: f64 = 1e-12;
-/// Steps of inverse iteration that find it within a factor of some few.
+/// Springs beside BᵀB, relative to the largest of it, that let inverse iteration find what nothing holds.
+const SHIFT: f64 = 1e-14;
+/// Steps of inverse iteration, after which what is held as weakly as by these springs is gone.
 const ITERATIONS: usize = 12;
 
 /// A row of B.
@@ -87,25 +88,50 @@ impl ManyBodies {
         self.rows.len()
     }
 
-    /// Whether the conditions certainly hold every motion, were they all closed; if not, some may be free.
-    pub fn hold_all(&self) -> bool {
+    /// An orthonormal basis of the motions that none of the conditions holds, were they all closed, one after the other by
+    /// inverse iteration, each pinned before the next is sought; nothing where a signal stopped that.
+    ///
+    /// What a motion is held by is summed up from B itself: BᵀB has lost the half of its digits.
+    pub fn unheld(&self) -> Option<Vec<Vec<f64>>> {
         let n = self.place.len();
         let gram = self.products(|_| 1.0, 0.0);
         let mut row_sums = vec![0.0; n];
         gram.multiply_add_absolute(&vec![1.0; n], &mut row_sums);
-        let Some(factor) = factorized(&gram).filter(|factor| factor.smallest_pivot() > HELD) else {
-            return false;
-        };
-        // No motion is orthogonal to this one for a reason.
-        let mut x: Vec<f64> = (0..n).map(|i| 1.0 + (12.9898 * i as f64).sin()).collect();
-        let mut smallest = f64::INFINITY;
-        for _ in 0..ITERATIONS {
-            let before = dot(&x, &x).sqrt();
-            x.iter_mut().for_each(|x| *x /= before);
-            factor.solve(&mut x);
-            smallest = 1.0 / dot(&x, &x).sqrt();
+        let most = largest(&row_sums);
+        let (mut pins, mut motions): (Vec<usize>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+        while motions.len() < n {
+            if is_asked_to_stop() {
+                return None;
+            }
+            let spring = if most > 0.0 { SHIFT * most } else { 1.0 };
+            let mut matrix = self.products(|_| 1.0, spring);
+            for &pin in &pins {
+                matrix.add(&[pin as u32], |_, _| most);
+            }
+            let factor = factorized(&matrix)?;
+            // No motion is orthogonal to this one for a reason.
+            let mut x: Vec<f64> = (0..n).map(|i| 1.0 + (12.9898 * i as f64).sin()).collect();
+            for _ in 0..ITERATIONS {
+                factor.solve(&mut x);
+                normalize(&mut x);
+            }
+            let held: f64 = self.jumps(&x).map(|jump| jump * jump).sum();
+            let pinned: f64 = pins.iter().map(|&pin| most * x[pin] * x[pin]).sum();
+            if held + pinned > RANK_TOLERANCE.powi(2) * most {
+                break;
+            }
+            let farthest = (0..n).max_by(|&a, &b| x[a].abs().total_cmp(&x[b].abs()));
+            pins.extend(farthest);
+            for _ in 0..2 {
+                for z in &motions {
+                    axpy(-dot(z, &x), z, &mut x);
+                }
+            }
+            normalize(&mut x);
+            motions.push(x);
         }
-        smallest > HELD * largest(&row_sums)
+        let given = |x: Vec<f64>| self.place.iter().map(|&at| x[at]).collect();
+        Some(motions.into_iter().map(given).collect())
     }
 
     /// How the bodies come to rest under `load` where the conditions have these `gaps`; nothing if that wasn't found.
@@ -223,6 +249,11 @@ impl ManyBodies {
 /// A row of B times y.
 pub(super) fn jump(row: &SparseRow, y: &[f64]) -> f64 {
     row.iter().map(|&(i, b)| b * y[i]).sum()
+}
+
+fn normalize(x: &mut [f64]) {
+    let size = dot(x, x).sqrt();
+    x.iter_mut().for_each(|x| *x /= size);
 }
 
 /// The unknowns that rows share.

@@ -76,13 +76,13 @@ pub fn nearest(a: &DMatrix<f64>, b: &DVector<f64>, largest: &[f64]) -> Nearest {
 /// tells a direction in which columns hardly act from one in which they don't.
 ///
 /// With A = V Σ Uᵀ, A λ = b where Uᵀ λ = Σ⁻¹ Vᵀ b; what is left there is V Σ times it here. What
-/// A's columns don't span at all, singular values up to `least` of the largest, is left out; it comes second.
+/// A's columns don't span at all, singular values up to `least` of the largest, is left out.
 pub fn residual_in_span(
     a: &DMatrix<f64>,
     b: &DVector<f64>,
     largest: &[f64],
     least: f64,
-) -> Option<(DVector<f64>, DVector<f64>)> {
+) -> Option<InSpan> {
     let rows = Mat::from_fn(a.ncols(), a.nrows(), |i, j| a[(j, i)]);
     let svd = rows.thin_svd().ok()?;
     let (u, sizes, v) = (svd.U(), svd.S().column_vector(), svd.V());
@@ -100,7 +100,26 @@ pub fn residual_in_span(
     };
     let spanned = |row: usize| kept.iter().map(|&i| v[(row, i)] * along(i)).sum::<f64>();
     let outside = DVector::from_fn(a.nrows(), |row, _| b[row] - spanned(row));
-    Some((DVector::from_fn(a.nrows(), |row, _| back(row)), outside))
+    let along = |row: usize| {
+        let terms = kept.iter().zip(left.iter());
+        terms.map(|(&i, left)| v[(row, i)] / sizes[i] * left).sum()
+    };
+    Some(InSpan {
+        drive: DVector::from_fn(a.nrows(), |row, _| along(row)),
+        left: DVector::from_fn(a.nrows(), |row, _| back(row)),
+        outside,
+    })
+}
+
+/// What [`residual_in_span`] finds.
+pub struct InSpan {
+    /// r.
+    pub left: DVector<f64>,
+    /// What A's columns don't span of b.
+    pub outside: DVector<f64>,
+    /// The direction that r is in the turned problem, V Σ⁻¹ times it: along it b does more work than such λ take up, as
+    /// Farkas says of r in [`nearest`].
+    pub drive: DVector<f64>,
 }
 
 /// A λ within its bounds whose entries between these, those of the passive columns, come nearest to b.
@@ -233,8 +252,9 @@ mod tests {
             let some = |j: usize| noise(seed * 13 + j).abs() * largest[j].min(1.0);
             let inside = &a * DVector::from_fn(m, |j, _| some(j));
             assert!(nearest(&a, &inside, &largest).left.norm() < 1e-13, "{seed}");
-            let (in_span, outside) = residual_in_span(&a, &inside, &largest, 1e-9).unwrap();
-            assert!(in_span.norm() < 1e-12, "{seed}: {in_span}");
+            let in_span = residual_in_span(&a, &inside, &largest, 1e-9).unwrap();
+            assert!(in_span.left.norm() < 1e-12, "{seed}: {}", in_span.left);
+            let outside = in_span.outside;
             assert!(outside.norm() < 1e-12, "{seed}: {outside}");
         }
     }

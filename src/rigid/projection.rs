@@ -1,20 +1,23 @@
 //! Taking rigid motions out of a field on nodes, of displacements or of forces.
 
+use std::collections::BTreeMap;
+
+use contact_dd_partition::disjoint_sets::DisjointSets;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use crate::vector::{axpy, dot};
 
-/// Sums over nodes of the products of rigid motions with each other and with a field.
+/// Sums over the nodes of a body of the products of its rigid motions with each other and with a field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MotionProducts {
+pub struct BodyProducts {
     /// Σ z_i·z_j.
-    pub gram: Vec<f64>,
+    gram: Vec<f64>,
     /// Σ z_i·v.
-    pub field: Vec<f64>,
+    field: Vec<f64>,
 }
 
-impl MotionProducts {
+impl BodyProducts {
     /// Sums over no nodes, for `n` motions.
     pub fn zeros(n: usize) -> Self {
         Self {
@@ -45,31 +48,59 @@ impl MotionProducts {
         axpy(1.0, &other.gram, &mut self.gram);
         axpy(1.0, &other.field, &mut self.field);
     }
+}
 
-    /// Adds what a body has, `of_body` with its own rigid motions, where `shares` are those of each
-    /// motion in these; none where the body takes no part.
-    pub fn add_body(&mut self, shares: &[&[f64]], of_body: &Self) {
-        let (n, modes) = (shares.len(), of_body.field.len());
-        let taking_part = || (shares.iter().enumerate()).filter(|(_, z)| !z.is_empty());
-        for (i, z_i) in taking_part() {
+/// The products of rigid motions of many bodies with each other, where they have a body in common, and with a field.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MotionProducts {
+    /// Σ z_i·z_j.
+    gram: BTreeMap<(usize, usize), f64>,
+    /// Σ z_i·v.
+    field: Vec<f64>,
+}
+
+impl MotionProducts {
+    /// Those of `n` motions without a body.
+    pub fn zeros(n: usize) -> Self {
+        Self {
+            gram: BTreeMap::new(),
+            field: vec![0.0; n],
+        }
+    }
+
+    /// Adds what a body has, `of_body` with its own rigid motions, where `shares` are those of some motions, by their
+    /// numbers, in these.
+    pub fn add_body(&mut self, shares: &[(usize, &[f64])], of_body: &BodyProducts) {
+        let modes = of_body.field.len();
+        for &(i, z_i) in shares {
             self.field[i] += dot(z_i, &of_body.field);
             let mut row = vec![0.0; modes];
             for (z, of_mode) in z_i.iter().zip(of_body.gram.chunks(modes)) {
                 axpy(*z, of_mode, &mut row);
             }
-            for (j, z_j) in taking_part() {
-                self.gram[i * n + j] += dot(&row, z_j);
+            for &(j, z_j) in shares {
+                *self.gram.entry((i, j)).or_default() += dot(&row, z_j);
             }
         }
     }
 
+    /// Σ z_i·z_j of all motions.
+    pub fn gram(&self) -> DMatrix<f64> {
+        let n = self.field.len();
+        let mut gram = DMatrix::zeros(n, n);
+        self.gram.iter().for_each(|(&at, &value)| gram[at] = value);
+        gram
+    }
+
     /// How much of each motion the field has.
     pub fn coefficients(&self) -> Vec<f64> {
-        let n = self.field.len();
-        let mut coefficients = vec![0.0; n];
+        let mut coefficients = vec![0.0; self.field.len()];
         for together in self.sharing_bodies() {
             let size = together.len();
-            let gram = |i: usize, j: usize| self.gram[together[i] * n + together[j]];
+            let gram = |i: usize, j: usize| {
+                let product = self.gram.get(&(together[i], together[j]));
+                product.copied().unwrap_or_default()
+            };
             let gram = DMatrix::from_fn(size, size, gram);
             let rhs = DVector::from_fn(size, |i, _| self.field[together[i]]);
             if let Ok(found) = gram.svd(true, true).solve(&rhs, 1e-14) {
@@ -83,26 +114,18 @@ impl MotionProducts {
 
     /// The motions whose products with each other aren't nothing, directly or by others.
     fn sharing_bodies(&self) -> Vec<Vec<usize>> {
-        let n = self.field.len();
-        let mut is_taken = vec![false; n];
-        let mut all = Vec::new();
-        for first in 0..n {
-            if std::mem::replace(&mut is_taken[first], true) {
-                continue;
+        let mut sets = DisjointSets::new(self.field.len());
+        for (&(i, j), _) in self.gram.iter().filter(|(_, product)| **product != 0.0) {
+            sets.unite(i as u32, j as u32);
+        }
+        let mut of_root: BTreeMap<u32, usize> = BTreeMap::new();
+        let mut all: Vec<Vec<usize>> = Vec::new();
+        for i in 0..self.field.len() {
+            let at = *of_root.entry(sets.find(i as u32)).or_insert(all.len());
+            if at == all.len() {
+                all.push(Vec::new());
             }
-            let mut together = vec![first];
-            let mut next = 0;
-            while next < together.len() {
-                let row = &self.gram[together[next] * n..][..n];
-                for (j, product) in row.iter().enumerate() {
-                    if *product != 0.0 && !std::mem::replace(&mut is_taken[j], true) {
-                        together.push(j);
-                    }
-                }
-                next += 1;
-            }
-            together.sort_unstable();
-            all.push(together);
+            all[at].push(i);
         }
         all
     }
@@ -116,7 +139,7 @@ mod tests {
     fn products_of_motions_follow_from_those_of_their_bodies() {
         let units = |x: f64| [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, x, 0.0]];
         let shares = [[0.3, -0.2, 0.7], [1.0, 0.4, 0.0]];
-        let (mut of_body, mut direct) = (MotionProducts::zeros(3), MotionProducts::zeros(3));
+        let (mut of_body, mut direct) = (BodyProducts::zeros(3), BodyProducts::zeros(3));
         for (x, v) in [(0.0, [0.3, 0.1]), (2.0, [-0.2, 0.7]), (0.5, [1.0, 0.4])] {
             of_body.add_node(&units(x));
             of_body.add_value(&units(x), &v);
@@ -126,8 +149,9 @@ mod tests {
             direct.add_value(&moves, &v);
         }
         let mut combined = MotionProducts::zeros(3);
-        combined.add_body(&[&shares[0], &shares[1], &[]], &of_body);
-        let pairs = combined.gram.iter().zip(&direct.gram);
+        combined.add_body(&[(0, &shares[0]), (1, &shares[1])], &of_body);
+        let gram = combined.gram();
+        let pairs = gram.iter().zip(&direct.gram);
         for (a, b) in pairs.chain(combined.field.iter().zip(&direct.field)) {
             assert!((a - b).abs() < 1e-14);
         }
@@ -138,12 +162,14 @@ mod tests {
         let nodes: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.5, 3.0, 0.0]];
         let moves = |x: &[f64; 3]| [[1.0, 0.0, 0.0], [-x[1], x[0], 0.0]];
         let u = [[0.3, 0.1], [-0.2, 0.7], [1.0, 0.4]];
-        let mut products = MotionProducts::zeros(2);
+        let mut products = BodyProducts::zeros(2);
         for (x, u) in nodes.iter().zip(&u) {
             products.add_node(&moves(x));
             products.add_value(&moves(x), u);
         }
-        let c = products.coefficients();
+        let mut of_motions = MotionProducts::zeros(2);
+        of_motions.add_body(&[(0, &[1.0, 0.0]), (1, &[0.0, 1.0])], &products);
+        let c = of_motions.coefficients();
         for motion in 0..2 {
             let left: f64 = nodes
                 .iter()

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::analysis::{RigidRow, Scene};
 use super::forces::Friction;
 use super::free_motion::FreeMotion;
-use super::kinematics::{Kinematics, null_space};
-use super::many_bodies::{MANY, ManyBodies};
+use super::kinematics::Kinematics;
+use super::many_bodies::MANY;
 use super::nonnegative;
 use super::projection::MotionProducts;
 
@@ -49,35 +49,26 @@ impl Scene {
         if kinematics.len == 0 {
             return ReleasedModes::default();
         }
-        if kinematics.len >= MANY {
-            // Free anyway are motions of single bodies at least; were more released, they would be more.
-            let held = (0..conditions.len()).filter(|&j| self.holds(j, conditions));
-            let held: Vec<RigidRow> = held.map(|j| self.rows[j].clone()).collect();
-            let (touched, alone) = kinematics.touched(&held);
-            let rows = held.iter().map(|row| touched.sparse_row(row)).collect();
-            let hold_all =
-                || ManyBodies::new(&touched.centers, rows).is_some_and(|bodies| bodies.hold_all());
-            if alone.len() == free.len() && (touched.len == 0 || hold_all()) {
-                return ReleasedModes {
-                    motions: free.to_vec(),
-                    rows: DMatrix::zeros(0, free.len()),
-                    ..ReleasedModes::default()
-                };
-            }
-        }
-        let b = kinematics.rows(&self.rows);
         let (held, mut redundant): (Vec<usize>, Vec<usize>) =
             (0..conditions.len()).partition(|&j| self.holds(j, conditions));
         redundant.retain(|&j| self.rows[j].friction.is_none());
-        // What is free anyway comes first; the rest is orthogonal to it.
-        let known: Vec<DVector<f64>> = free.iter().map(|m| kinematics.unknowns_of(m)).collect();
-        let mut resisted = b.select_rows(&held).insert_rows(0, known.len(), 0.0);
-        for (i, x) in known.iter().enumerate() {
-            resisted.row_mut(i).copy_from(&x.normalize().transpose());
-        }
-        let found = null_space(&resisted);
+        let of_conditions = |numbers: &[usize]| -> Vec<RigidRow> {
+            numbers.iter().map(|&j| self.rows[j].clone()).collect()
+        };
+        // What is free anyway comes first; the rest is orthogonal to it. Where a signal stopped that, the run ends before
+        // it matters.
+        let found = kinematics.unheld(&of_conditions(&held), free);
+        let found = found.unwrap_or_else(|| DMatrix::zeros(kinematics.len, 0));
         let mut motions = free.to_vec();
-        let mut columns = known;
+        if found.is_empty() && kinematics.len >= MANY {
+            return ReleasedModes {
+                motions,
+                rows: DMatrix::zeros(0, free.len()),
+                ..ReleasedModes::default()
+            };
+        }
+        let mut columns: Vec<DVector<f64>> =
+            free.iter().map(|m| kinematics.unknowns_of(m)).collect();
         for x in found.column_iter() {
             let x = x.into_owned();
             motions.push(kinematics.motion(&x));
@@ -87,7 +78,7 @@ impl Scene {
         let z = DMatrix::from_fn(kinematics.len, columns.len(), |i, k| columns[k][i]);
         ReleasedModes {
             motions,
-            rows: b.select_rows(&redundant) * z,
+            rows: kinematics.jumps(&of_conditions(&redundant), &z),
             gaps: (redundant.iter())
                 .map(|&j| conditions[j].gap.max(0.0))
                 .collect(),
@@ -122,8 +113,10 @@ impl ReleasedModes {
             .map(|(gap, opened)| -gap - opened)
             .collect();
         let most = missing.iter().fold(0.0, |m: f64, x| m.max(*x));
-        let gram = DMatrix::from_row_slice(n, n, &products.gram);
-        let Some(factor) = gram.cholesky().filter(|_| most > 0.0) else {
+        if most <= 0.0 {
+            return free;
+        }
+        let Some(factor) = products.gram().cholesky() else {
             return free;
         };
         // With c = free + L⁻ᵀ y, ‖y‖ is to be least.
@@ -153,14 +146,17 @@ impl ReleasedModes {
 mod tests {
     use super::*;
     use crate::contact::friction::ForceBound;
+    use crate::rigid::projection::BodyProducts;
     use crate::rigid::squares::{coulomb, scene, square};
 
     /// A displacement of one node along two motions, x and y.
     fn products(u: [f64; 2]) -> MotionProducts {
-        let mut products = MotionProducts::zeros(2);
+        let mut of_node = BodyProducts::zeros(2);
         let moves = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-        products.add_node(&moves);
-        products.add_value(&moves, &u);
+        of_node.add_node(&moves);
+        of_node.add_value(&moves, &u);
+        let mut products = MotionProducts::zeros(2);
+        products.add_body(&[(0, &[1.0, 0.0]), (1, &[0.0, 1.0])], &of_node);
         products
     }
 

@@ -208,7 +208,8 @@ impl Increments<'_> {
             Some(fronts) => {
                 let (fronts, loads) = (&mut fronts.borrow_mut(), &problem.condensed);
                 let before = fronts.solves;
-                let contact = sweep_frozen(&context, settings, log, fronts, loads, &limits)?;
+                let contact = sweep_frozen(&context, settings, log, fronts, loads, &limits)
+                    .map_err(|failure| context.of_pivot(failure))?;
                 self.count(fronts.solves - before);
                 let outcome = contact.outcome.clone();
                 found = Some(contact);
@@ -216,7 +217,8 @@ impl Increments<'_> {
             }
             None => {
                 let (on_gamma, pairs) = (problem.interface.as_ref(), &mut problem.pairs);
-                let outcome = sweep(&context, settings, log, on_gamma, pairs, start)?;
+                let outcome = sweep(&context, settings, log, on_gamma, pairs, start)
+                    .map_err(|failure| context.of_pivot(failure))?;
                 self.count(outcome.as_ref().map_or(0, |o| o.active_set_iterations));
                 outcome
             }

@@ -211,8 +211,10 @@ impl Stages<'_> {
             loads: &StepState::default().loads(&context, Moment::end_of(first), &analyses[0]),
             fixing_dofs: &analyses[0].motions.fixing_dofs,
         };
-        let mut condensed = condense_clusters(&condensation, &analyses[0])
-            .map_err(|failure| state::finished(failure, &context, settings, finished.count))?;
+        let mut condensed = condense_clusters(&condensation, &analyses[0]).map_err(|failure| {
+            let failure = context.of_pivot(failure);
+            state::finished(failure, &context, settings, finished.count)
+        })?;
         let [assembling, factorizing] = condensed.seconds;
         let mut condensing = comm.times() - lap - assembling;
         // Waiting is nobody's time on the wall.
@@ -232,7 +234,8 @@ impl Stages<'_> {
         };
         let interface = match frozen {
             Some(_) => None,
-            None => assemble_interface(&context, &condensed)?,
+            None => assemble_interface(&context, &condensed)
+                .map_err(|failure| context.of_pivot(failure))?,
         };
         seconds.add(|s| &mut s.interface, comm.times() - lap);
 

@@ -18,7 +18,7 @@ pub const AGAINST_FRICTION: f64 = 1e-9;
 /// Equilibrium relative to the load of an answer that says nothing.
 const NOT_BALANCED_OF_LOAD: f64 = 1e-3;
 
-/// The same where what isn't balanced moves.
+/// The same where what isn't balanced may be a body that nothing holds.
 const MOVES: f64 = 1e-2;
 
 /// Most contact points that are named.
@@ -87,7 +87,7 @@ pub struct SweepOutcome {
     /// Whether another solution with friction was found, where it was looked for.
     pub other_solution: Option<bool>,
     /// Whether something slides on and on: there are forces of all contacts by their laws, and a motion that nothing
-    /// resists, along which loads do more work than these forces take; or such forces leave nodes without balance.
+    /// resists, along which loads do more work than these forces take.
     pub slides: bool,
     /// Which solver didn't converge before this one took over, and why, in words.
     pub took_over: Option<String>,
@@ -187,11 +187,14 @@ impl SweepOutcome {
         }
         let failed = unbalanced || penetration > NOT_BALANCED || !certificate.is_a_number();
         if failed && self.status == SweepStatus::Converged {
-            self.slides = equilibrium_of_load > MOVES;
+            let moves = match equilibrium_of_load > MOVES {
+                true => ", or something slides or parts on and on",
+                false => "",
+            };
             self.status = SweepStatus::NotConverged(format!(
                 "the forces on the nodes are balanced to {equilibrium:.1e} of their terms and \
                  {equilibrium_of_load:.1e} of the largest load, and contacts penetrate by \
-                 {penetration:.1e} of the largest displacement: the scene is too badly conditioned"
+                 {penetration:.1e} of the largest displacement: the scene is too badly conditioned{moves}"
             ));
         }
         if !finite && self.status == SweepStatus::Converged {

@@ -1,6 +1,7 @@
 //! Contact with friction.
 
 mod cycle;
+mod extremes;
 mod held;
 mod increments;
 mod judge;

@@ -1,18 +1,22 @@
 //! The analysis of many bodies: motions of one body that no condition touches are free, and sparse matrices show
-//! whether the conditions hold all others and balance the load.
+//! which others the conditions leave and whether they balance the load.
 
 use nalgebra::DVector;
 
-use super::{BALANCE_TOLERANCE, LOAD_TOLERANCE, RigidMotions, RigidRow, Scene, UNDECIDED};
+use super::{
+    BALANCE_TOLERANCE, FixingDof, LOAD_TOLERANCE, RigidMotions, RigidRow, Scene, UNDECIDED,
+};
 use crate::error::Failure;
 use crate::rigid::forces::{Forces, slips};
 use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::kinematics::Kinematics;
 use crate::rigid::many_bodies::{ManyBodies, Rest, SparseRow, jump};
+use crate::rigid::proof::proves_sparse;
+use crate::rigid::unheld_motions::unheld_motions;
 use crate::vector::dot;
 
-/// Load that contact can't balance, relative to all loads, that is more than the interior points leave.
-const CERTAIN: f64 = 1e-6;
+/// Unknown motions up to which dense matrices decide what sparse ones don't.
+const FEW: usize = 300;
 
 /// The conditions against the motions that they touch.
 struct Touched<'a> {
@@ -22,9 +26,19 @@ struct Touched<'a> {
     load: DVector<f64>,
 }
 
+/// What is found of a load and the forces of many contacts.
+enum Balance {
+    /// They balance it.
+    Holds,
+    /// A motion along which it does more work than they can take, and whether bodies slide in it.
+    Fails(DVector<f64>, bool),
+    /// Neither is certain.
+    Undecided,
+}
+
 impl Scene {
-    /// The free motions of many bodies, where all loads are `scale`; nothing where dense matrices alone can tell: where
-    /// several bodies have a free motion together, or what holds them is almost nothing.
+    /// The free motions of many bodies, where all loads are `scale`; nothing where dense matrices are to tell. Where they
+    /// would take too long, a load of which it isn't certain that nothing balances it is left to the solver.
     pub(super) fn analyse_many(
         &self,
         kinematics: &Kinematics,
@@ -36,11 +50,8 @@ impl Scene {
         for motion in &alone {
             let own = motion.bodies.iter();
             let along: f64 = own.map(|(b, z)| dot(z, &bodies[*b].load)).sum();
-            driven.axpy(along, &kinematics.unknowns_of(motion), 1.0);
-        }
-        if driven.norm() > LOAD_TOLERANCE * scale {
-            let why = "nothing holds it";
-            return Some(Err(kinematics.ill_posed(bodies, names, &driven, why)));
+            let own = kinematics.sparse_motion(motion);
+            own.iter().for_each(|&(i, z)| driven[i] += along * z);
         }
         let touched = Touched {
             sparse: self.rows.iter().map(|r| touched.sparse_row(r)).collect(),
@@ -48,15 +59,48 @@ impl Scene {
             rows: &self.rows,
             kinematics: touched,
         };
-        if touched.are_held()? && touched.are_balanced(scale) {
-            return Some(Ok(self.fix_alone(kinematics, alone)));
+        let is_driven = |driven: &DVector<f64>| driven.norm() > LOAD_TOLERANCE * scale;
+        let nothing_holds = |kinematics: &Kinematics, driven: &DVector<f64>| {
+            Some(Err(kinematics.ill_posed(
+                bodies,
+                names,
+                driven,
+                "nothing holds it",
+            )))
+        };
+        if is_driven(&driven) {
+            return nothing_holds(kinematics, &driven);
         }
-        let (unbalanced, is_sliding) = touched.unbalanced(scale)?;
-        let kinematics = &touched.kinematics;
-        Some(Err(match is_sliding {
-            true => kinematics.sliding(bodies, names, &unbalanced),
-            false => kinematics.ill_posed(bodies, names, &unbalanced, "contact can't hold it"),
-        }))
+        let together = unheld_motions(&touched.kinematics.centers, &touched.sparse);
+        let together = match kinematics.len > FEW {
+            // Where a signal stopped that, nothing is asked for.
+            true => together.unwrap_or_default(),
+            false => together?,
+        };
+        let mut driven = DVector::zeros(touched.kinematics.len);
+        for motion in &together {
+            let along = jump(motion, touched.load.as_slice());
+            motion.iter().for_each(|&(i, z)| driven[i] += along * z);
+        }
+        if is_driven(&driven) {
+            return nothing_holds(&touched.kinematics, &driven);
+        }
+        let motions = || {
+            let together = together.iter().map(|motion| touched.motion(motion));
+            self.fix_all(kinematics, alone, together.collect())
+        };
+        match touched.balance(scale) {
+            Balance::Holds => Some(Ok(motions())),
+            Balance::Undecided if kinematics.len > FEW => Some(Ok(motions())),
+            Balance::Undecided => None,
+            Balance::Fails(motion, is_sliding) => {
+                let kinematics = &touched.kinematics;
+                Some(Err(match is_sliding {
+                    true => kinematics.sliding(bodies, names, &motion),
+                    false => kinematics.ill_posed(bodies, names, &motion, "contact can't hold it"),
+                }))
+            }
+        }
     }
 
     /// The load that normal forces can't balance, if it is more than round-off.
@@ -72,37 +116,78 @@ impl Scene {
         (rest.unbalanced() > BALANCE_TOLERANCE * scale).then(|| DVector::from_vec(rest.left))
     }
 
-    /// Pins motions of single bodies.
-    fn fix_alone(&self, kinematics: &Kinematics, alone: Vec<FreeMotion>) -> RigidMotions {
-        let mut fixing_dofs = Vec::new();
-        for of_body in alone.chunk_by(|one, other| one.bodies[0].0 == other.bodies[0].0) {
-            let body = std::slice::from_ref(&self.bodies[of_body[0].bodies[0].0]);
-            let kinematics = Kinematics::new(self.dim, body);
-            let columns = of_body.iter().map(|motion| {
-                let z = motion.bodies.iter().map(|(_, z)| (0, z.clone()));
-                kinematics.unknowns_of(&FreeMotion {
-                    bodies: z.collect(),
-                })
-            });
-            let columns: Vec<DVector<f64>> = columns.collect();
-            let free = nalgebra::DMatrix::from_columns(&columns);
-            fixing_dofs.extend(kinematics.fixing_dofs(body, &free));
+    /// Pins motions of single bodies, and those that bodies have `together`.
+    fn fix_all(
+        &self,
+        kinematics: &Kinematics,
+        alone: Vec<FreeMotion>,
+        together: Vec<FreeMotion>,
+    ) -> RigidMotions {
+        let mut motions = alone;
+        motions.extend(together);
+        // Each with those that have a body in common, one after the other.
+        let mut part_of_body: Vec<Option<usize>> = vec![None; self.bodies.len()];
+        let mut parts: Vec<Vec<usize>> = Vec::new();
+        for (k, motion) in motions.iter().enumerate() {
+            let own = || motion.bodies.iter().map(|&(b, _)| b);
+            let known: Vec<usize> = own().filter_map(|b| part_of_body[b]).collect();
+            let part = known.first().copied().unwrap_or(parts.len());
+            if part == parts.len() {
+                parts.push(Vec::new());
+            }
+            parts[part].push(k);
+            for other in known.into_iter().filter(|&other| other != part) {
+                let moved = std::mem::take(&mut parts[other]);
+                parts[part].extend(moved);
+                (part_of_body.iter_mut().filter(|p| **p == Some(other)))
+                    .for_each(|p| *p = Some(part));
+            }
+            own().for_each(|b| part_of_body[b] = Some(part));
         }
-        kinematics.fix(&self.bodies, &self.names, alone, fixing_dofs)
+        let fixing_dofs = parts
+            .iter()
+            .flat_map(|part| self.pins(part.iter().map(|&k| &motions[k])));
+        let fixing_dofs = fixing_dofs.collect();
+        kinematics.fix(&self.bodies, &self.names, motions, fixing_dofs)
+    }
+
+    /// Pins for motions of few bodies.
+    fn pins<'a>(&self, motions: impl Iterator<Item = &'a FreeMotion> + Clone) -> Vec<FixingDof> {
+        let mut own: Vec<usize> = motions
+            .clone()
+            .flat_map(|motion| motion.bodies.iter().map(|&(b, _)| b))
+            .collect();
+        own.sort_unstable();
+        own.dedup();
+        let bodies: Vec<_> = own.iter().map(|&b| self.bodies[b].clone()).collect();
+        let kinematics = Kinematics::new(self.dim, &bodies);
+        let columns = motions.map(|motion| {
+            let z = motion.bodies.iter();
+            let z = z.filter_map(|(b, z)| Some((own.binary_search(b).ok()?, z.clone())));
+            kinematics.unknowns_of(&FreeMotion {
+                bodies: z.collect(),
+            })
+        });
+        let columns: Vec<DVector<f64>> = columns.collect();
+        match columns.is_empty() {
+            true => Vec::new(),
+            false => kinematics.fixing_dofs(&bodies, &nalgebra::DMatrix::from_columns(&columns)),
+        }
     }
 }
 
 impl Touched<'_> {
-    /// Whether the conditions certainly hold every motion that they touch.
-    fn are_held(&self) -> Option<bool> {
-        let centers = &self.kinematics.centers;
-        Some(centers.is_empty() || ManyBodies::new(centers, self.sparse.clone())?.hold_all())
+    /// A motion by its unknowns, body by body.
+    fn motion(&self, motion: &SparseRow) -> FreeMotion {
+        let mut x = DVector::zeros(self.kinematics.len);
+        motion.iter().for_each(|&(i, z)| x[i] = z);
+        self.kinematics.motion(&x)
     }
 
-    /// Whether forces that contact can give balance the load: along normals, or with friction.
-    fn are_balanced(&self, scale: f64) -> bool {
+    /// Whether forces that contact can give balance the load, along normals or with friction.
+    fn balance(&self, scale: f64) -> Balance {
         if self.kinematics.len == 0 {
-            return true;
+            return Balance::Holds;
         }
         let balance = |rows: Vec<SparseRow>| {
             let rest = ManyBodies::new(&self.kinematics.centers, rows)
@@ -110,22 +195,26 @@ impl Touched<'_> {
             rest.is_some_and(|rest| rest.unbalanced() <= UNDECIDED * scale)
         };
         let forces = Forces::new(self.rows, |_| true);
-        balance(self.normals()) || forces.has_friction && balance(forces.cones(&self.sparse, false))
+        if balance(self.normals())
+            || forces.has_friction && balance(forces.cones(&self.sparse, false))
+        {
+            return Balance::Holds;
+        }
+        self.fails(&forces, scale).unwrap_or(Balance::Undecided)
     }
 
-    /// The load that contact can't balance, and whether bodies slide under it; nothing where it isn't certain.
-    fn unbalanced(&self, scale: f64) -> Option<(DVector<f64>, bool)> {
-        let forces = Forces::new(self.rows, |_| true);
-        if forces.are_bounded() {
-            return None;
-        }
+    /// The motion that proves that the load isn't balanced; nothing where none is found.
+    fn fails(&self, forces: &Forces, scale: f64) -> Option<Balance> {
         let left = self.residual(forces.cones(&self.sparse, true), &self.load)?;
-        if left.unbalanced() <= CERTAIN * scale {
+        let load = self.load.as_slice();
+        if left.unbalanced() <= BALANCE_TOLERANCE * scale
+            || !proves_sparse(self.rows, &self.sparse, load, scale, &left.left)
+        {
             return None;
         }
         let unbalanced = DVector::from_vec(left.left);
         if !forces.has_friction {
-            return Some((unbalanced, false));
+            return Some(Balance::Fails(unbalanced, false));
         }
         // As a few bodies slip: tangential forces are taken from the load, and normal ones balance what they can.
         let held = forces.tangential_of_cones(&left.forces, self.rows.len());
@@ -136,8 +225,8 @@ impl Touched<'_> {
         let drive = self.residual(self.normals(), &rest)?.left;
         let moved: Vec<f64> = self.sparse.iter().map(|row| jump(row, &drive)).collect();
         Some(match slips(self.rows, &moved) {
-            true => (DVector::from_vec(drive), true),
-            false => (unbalanced, false),
+            true => Balance::Fails(DVector::from_vec(drive), true),
+            false => Balance::Fails(unbalanced, false),
         })
     }
 

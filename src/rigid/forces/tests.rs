@@ -242,3 +242,50 @@ fn a_cube_on_an_incline_slides_from_the_friction_angle_on_in_every_direction() {
         assert!(found.message.contains("slides"), "{found}");
     }
 }
+
+/// On nine points, in a direction in which none of the tangents nor a corner of a polygon lies.
+#[test]
+fn a_cube_on_many_points_is_held_up_to_its_friction_along_no_special_direction() {
+    let down = [0.0, 0.0, -1.0];
+    let along = |k: usize| 0.5 * (k as f64 - 1.0);
+    let points: Vec<_> = (0..9)
+        .map(|k| ([along(k % 3), along(k / 3), -0.5], down))
+        .collect();
+    for coefficient in [0.3, 1.7] {
+        let pushed = |push: f64| {
+            let [x, y] = [0.6 * push, 0.8 * push];
+            let mut body = block(&[x, y, -1.0, 0.0, 0.0, 0.0]);
+            let moment = body.frame.action(3, &[0.0, 0.0, -0.5], &[x, y, 0.0]);
+            body.load[3..].copy_from_slice(&moment[3..]);
+            scene(body, &points, coulomb(coefficient)).analyse()
+        };
+        for below in [0.5, 1.0 - 1e-6, 1.0 - 1e-9, 1.0 - 1e-12] {
+            let found = pushed(coefficient * below);
+            assert_eq!(found, Ok(RigidMotions::default()), "{below}");
+        }
+        for above in [1.0 + 1e-6, 1.0 + 1e-3, 1.1, 2.0] {
+            let failure = pushed(coefficient * above).unwrap_err();
+            assert!(failure.message.contains("slides"), "{failure}");
+        }
+    }
+}
+
+#[test]
+fn whatever_friction_there_is_what_presses_is_held() {
+    for coefficient in [1e3, 1e6, 1e12, 1e15] {
+        for push in [0.0, 0.3, -0.9] {
+            let found = on_floor([push, -1.0, 0.0], coulomb(coefficient));
+            assert_eq!(found, Ok(RigidMotions::default()), "{coefficient} {push}");
+        }
+        let lifted = on_floor([0.3, 1.0, 0.0], coulomb(coefficient));
+        assert!(lifted.is_err(), "{coefficient}");
+        let down = [0.0, 0.0, -1.0];
+        let corners = [[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]];
+        let corners = corners.map(|[x, y]| ([x, y, -0.5], down));
+        for push in [[0.0, 0.0], [0.1, -0.2]] {
+            let body = block(&[push[0], push[1], -1.0, 0.0, 0.1, 0.0]);
+            let found = scene(body, &corners, coulomb(coefficient)).analyse();
+            assert_eq!(found, Ok(RigidMotions::default()), "{coefficient} {push:?}");
+        }
+    }
+}

@@ -1,6 +1,7 @@
 //! Loads that can't go with the stiffness, and displacements that can't go with the bodies' size:
 //! their units are likely to differ.
 
+use super::Contact;
 use super::Diagnostics;
 use crate::element::geometry::length;
 use crate::error::InputError;
@@ -26,7 +27,7 @@ impl Diagnostics<'_> {
     /// Loads not much below the stiffness, and displacements beyond the bodies' size.
     ///
     /// # Errors
-    /// A load far beyond the stiffness, unless the scene has `large_strains`.
+    /// A load far beyond the stiffness, or a gap, unless the scene has `large_strains`.
     pub(super) fn strains(&self) -> Result<Vec<String>, InputError> {
         let mut estimates = self.of_bodies();
         for loading in self.scene.loadings() {
@@ -41,6 +42,7 @@ impl Diagnostics<'_> {
                 estimates.extend(self.of_side(&label, &pressure.on, size));
             }
         }
+        estimates.extend(self.of_gaps());
         let is_absurd = |estimate: &&Estimate| estimate.strain > ABSURD;
         if let Some(absurd) = estimates
             .iter()
@@ -50,7 +52,7 @@ impl Diagnostics<'_> {
             // What is expected stands for the question.
             let fact = absurd.words.rsplit_once("; ");
             return Err(InputError::new(format!(
-                "{}; expected loads in the unit of the stiffness, or large_strains = true in the scene, where this is \
+                "{}; expected loads and gaps in the units of stiffness and mesh, or large_strains = true in the scene, where this is \
                  meant",
                 fact.map_or(&*absurd.words, |(fact, _)| fact)
             )));
@@ -76,6 +78,27 @@ impl Diagnostics<'_> {
         warnings.sort();
         warnings.dedup_by_key(|warning| warning.split(": ").next().map(str::to_owned));
         Ok(warnings)
+    }
+
+    /// Sides that their gaps press into each other, far beyond what bodies of their size can mean.
+    fn of_gaps(&self) -> Vec<Estimate> {
+        let (extent, unit) = (self.extent(), self.scene.units.length());
+        let of_contact = |contact: &Contact| {
+            let gaps = contact.points.iter().map(|point| point.gap);
+            let gap = gaps.reduce(f64::min).filter(|gap| -gap > ABSURD * extent)?;
+            Some(Estimate {
+                strain: -gap / extent,
+                words: format!(
+                    "contact '{}': a gap of {} {unit} presses bodies that measure {} {unit} into each other, and makes \
+                     strains of about {}, where small ones are meant; are their units the same?",
+                    contact.name,
+                    short(gap),
+                    short(extent),
+                    short(-gap / extent)
+                ),
+            })
+        };
+        self.contacts.iter().filter_map(of_contact).collect()
     }
 
     /// Body forces, initial stresses and heat.

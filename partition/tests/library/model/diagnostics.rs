@@ -162,6 +162,10 @@ fn loads_far_beyond_the_stiffness_are_refused_unless_the_scene_says_that_they_ar
             body("thermal = { expansion = 12, temperature = 80 }"),
             "body 'lower': heat makes strains of about 960",
         ),
+        (
+            format!("{HELD}{CONTACT}gap = -1e10\n"),
+            "contact 'c': a gap of -1e10 m presses bodies that measure 2 m … strains of about 5e9",
+        ),
     ] {
         let said = stack(0.0).model(&scene).unwrap_err();
         says(&said, expected);

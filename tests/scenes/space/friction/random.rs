@@ -47,3 +47,15 @@ fn a_block_in_space_that_slides_towards_an_obstacle_is_not_said_to_slide_on_and_
         );
     }
 }
+
+/// Rigid blocks could be held, so that nothing proves that elastic ones slide.
+#[test]
+fn a_block_in_space_that_friction_could_hold_is_not_said_to_slide() {
+    for seed in [20032, 20039, 20067] {
+        let mut drawn = draw_frictional_in_space(seed, 12);
+        drawn.ranks = 0;
+        let trial = Trial::of(&drawn, built(), LIMIT, None);
+        let is_known = [Verdict::Right, Verdict::NotConverged].contains(&trial.verdict);
+        assert!(is_known, "{seed}: {:?} {}", trial.verdict, trial.reason);
+    }
+}
