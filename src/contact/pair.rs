@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::active_set::{ContactProblem, ContactSolution};
 use super::dependent::DependentConstraints;
 use super::friction::{FrictionProblem, Status};
-use super::limits::{Beside, Limits, TangentialLimit};
+use super::limits::{Limits, TangentialLimit};
 use super::open_factor::OpenFactor;
 use crate::schur::condensed::Condensed;
 use crate::schur::local::multiply_add;
@@ -131,8 +131,7 @@ impl ContactPair {
     }
 
     /// Evaluates S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ, where t(U) within the limits minimizes the pair's energy.
-    /// The search begins at the statuses `expected`, else at those of last time; in space what slips with friction along
-    /// both tangents begins at the expected change of the jumps.
+    /// The search begins at the statuses `expected`, else at those of last time; what slips with friction begins at the expected change of the jumps.
     pub fn evaluate(
         &mut self,
         u: &[f64],
@@ -142,11 +141,7 @@ impl ContactPair {
         let expected = expected.unwrap_or_else(|| (self.state.status.clone(), Vec::new()));
         let (before, changes) = expected;
         let mut center = self.state.contact.jumps.clone();
-        let of_slips = self.limits.tangents.iter();
-        if of_slips
-            .clone()
-            .any(|tangent| tangent.beside != Beside::Nothing)
-        {
+        if !self.limits.tangents.is_empty() {
             (center.iter_mut().zip(changes)).for_each(|(t, change)| *t += change);
         }
         let mut c = self.load[..m].to_vec();

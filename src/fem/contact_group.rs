@@ -192,16 +192,27 @@ impl ContactGroup {
 
     /// How stiff the bodies are against a jump at a point, about (N/m).
     pub fn stiffness_at(&self, point: usize) -> f64 {
-        let point = &self.points[point];
-        let width = if self.dim == 3 {
-            point.area.sqrt()
-        } else {
-            1.0
-        };
+        let width = self.width_at(point);
         let of_entry = |&(node, weight): &(u32, f64)| {
             weight * weight / (self.nodes[node as usize].stiffness * width)
         };
-        1.0 / point.entries.iter().map(of_entry).sum::<f64>()
+        1.0 / self.points[point].entries.iter().map(of_entry).sum::<f64>()
+    }
+
+    /// The largest stiffness of the nodes of a point (N/m): the round-off of its force is relative to this times the
+    /// displacements.
+    pub fn largest_stiffness_at(&self, point: usize) -> f64 {
+        let entries = self.points[point].entries.iter();
+        let stiffness = entries.map(|(node, _)| self.nodes[*node as usize].stiffness);
+        self.width_at(point) * stiffness.fold(0.0, f64::max)
+    }
+
+    /// The width of the surface around a point (m), 1 in the plane.
+    fn width_at(&self, point: usize) -> f64 {
+        match self.dim == 3 {
+            true => self.points[point].area.sqrt(),
+            false => 1.0,
+        }
     }
 
     /// What displacements `u`, node by node, leave of the jumps that conditions allow: the gaps g − n·⟦u⟧, and the

@@ -13,7 +13,7 @@ use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::balance::Balance;
-use crate::frozen::friction::points::Law;
+use crate::frozen::friction::slip_law::SlipLaw;
 use crate::frozen::friction::slip_problem::{Forces, Laws, SlipProblem};
 use crate::frozen::fronts::FrozenFronts;
 use crate::frozen::solution::FrozenSolution;
@@ -178,7 +178,7 @@ impl<'a> FixedActiveSet<'a> {
             if let Some(forces) = forces.get(&g) {
                 let group = &self.context.groups[&g];
                 let laws_of_group =
-                    Law::of_slipping(group, &limits[&g], (&statuses, &lacking), forces);
+                    SlipLaw::of_slipping(group, &limits[&g], (&statuses, &lacking), forces);
                 laws.insert(g, laws_of_group);
             }
             let is_closed: Vec<bool> = statuses.iter().map(|status| status.is_closed()).collect();

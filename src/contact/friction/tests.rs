@@ -121,10 +121,8 @@ fn coulomb_s_friction_may_have_several_solutions() {
     }
 }
 
-/// Exchanges of all wrong statuses at once cycle in some of these.
 #[test]
-fn a_path_leads_where_exchanges_do_not() {
-    let mut alone = 0;
+fn lemke_s_path_ends_at_solutions_whatever_the_coefficient() {
     for seed in 0..120 {
         let bound = ForceBound {
             coefficient: 0.5 + 0.04 * (seed % 50) as f64,
@@ -133,14 +131,12 @@ fn a_path_leads_where_exchanges_do_not() {
         };
         let mut points = Points::new(6 + seed % 15, 29 * seed + 3, bound);
         (0..points.c.len()).for_each(|i| points.h[(i, i)] -= 1.9);
-        let (solution, _) = points.solved(&format!("seed {seed}"), 1e-10);
-        alone += usize::from(!solution.fell_back);
+        points.solved(&format!("seed {seed}"), 1e-10);
         let (reached, _) = points.with(|problem| problem.follow(0));
         let reached = reached.expect("the path ends");
-        let left = points.with(|problem| problem.unsettled(&reached.status));
+        let left = unsettled_from(&points, &reached.jumps, &reached.status);
         assert!(left.is_empty(), "seed {seed}: {left:?}");
     }
-    assert!(alone < 120, "{alone}");
 }
 
 /// It would open where it sticks or slips under all of its cohesion, and penetrate where it has none.
@@ -188,10 +184,9 @@ fn a_body_that_only_contact_stops_falls_until_it_does() {
     }
 }
 
-/// Every point slips, some one way and some the other: where the body is between them, only the path says.
+/// Every point slips, some one way and some the other, and nothing else holds the body between them.
 #[test]
 fn given_friction_lets_a_free_body_slip_both_ways() {
-    let mut astray = 0;
     for seed in 0..100 {
         let mut points = Points::new(
             4,
@@ -211,21 +206,18 @@ fn given_friction_lets_a_free_body_slip_both_ways() {
         }
         points.bounds.fill(0.0);
         points.c = vec![2.0, 2.0, 2.0, 2.0, 1.0, 1.2, -0.9, -1.3];
-        let (end, _) = points.with(|problem| problem.follow(0));
-        let end = end.expect("the path ends");
-        let unsettled = |center: &[f64]| {
-            points.with(|problem| {
-                let contact = ContactProblem {
-                    center,
-                    ..problem.contact
-                };
-                let tangents = problem.tangents;
-                FrictionProblem { contact, tangents }.unsettled(&end.status)
-            })
-        };
-        let left = unsettled(&end.jumps);
-        assert!(left.is_empty(), "seed {seed}: {left:?}");
-        astray += usize::from(!unsettled(&[5.0; 8]).is_empty());
+        points.solved(&format!("seed {seed}"), 1e-10);
     }
-    assert!(astray > 0);
+}
+
+/// The limits whose law isn't fulfilled one step after they had these statuses at these jumps.
+fn unsettled_from(points: &Points, center: &[f64], status: &[Status]) -> Vec<usize> {
+    points.with(|problem| {
+        let contact = ContactProblem {
+            center,
+            ..problem.contact
+        };
+        let tangents = problem.tangents;
+        FrictionProblem { contact, tangents }.unsettled(status)
+    })
 }

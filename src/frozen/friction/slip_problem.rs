@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use faer::linalg::solvers::SolveLstsq;
 use faer::{Col, Mat};
 
-use super::points::Law;
+use super::slip_law::SlipLaw;
 use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::context::Context;
 use crate::error::Failure;
@@ -28,7 +28,7 @@ const LEAST_EXACT: f64 = 0.1;
 /// Forces on the jumps of every contact group of this rank.
 pub type Forces = BTreeMap<usize, Vec<f64>>;
 /// The laws of the slipping points of every contact group of this rank.
-pub type Laws = BTreeMap<usize, Vec<Law>>;
+pub type Laws = BTreeMap<usize, Vec<SlipLaw>>;
 
 /// What a frozen active set is solved for with.
 #[derive(Clone, Copy)]
@@ -85,11 +85,7 @@ impl SlipProblem<'_> {
         let of_group = |(&g, jumps): (&usize, &Vec<f64>)| {
             let mut missed = vec![0.0; jumps.len()];
             for law in laws.get(&g).into_iter().flatten() {
-                let normal = law.normal.map_or(0.0, |n| solution.forces[&g][n]);
-                let across = law.across(&missed, &solution.jumps[&g]);
-                for (k, &t) in law.tangents.iter().enumerate() {
-                    missed[t] = -(law.bound + law.slope * normal) * law.direction[k] - across[k];
-                }
+                law.add_missed(&solution.forces[&g], |i| jumps[i], false, &mut missed);
             }
             (g, missed)
         };
@@ -181,13 +177,10 @@ impl SlipProblem<'_> {
         };
         let response = fronts.solve(self.context, self.open, loads, accuracy)?;
         let of_group = |(&g, change): (&usize, &Vec<f64>)| {
-            let mut product = vec![0.0; change.len()];
+            let (mut product, mut forces) = (vec![0.0; change.len()], response.forces[&g].clone());
+            axpy(1.0, change, &mut forces);
             for law in laws.get(&g).into_iter().flatten() {
-                let normal = law.normal.map_or(0.0, |n| response.forces[&g][n]);
-                let across = law.across(change, &response.jumps[&g]);
-                for (k, &t) in law.tangents.iter().enumerate() {
-                    product[t] = change[t] - law.slope * normal * law.direction[k] - across[k];
-                }
+                law.add_missed(&forces, |i| response.jumps[&g][i], true, &mut product);
             }
             (g, product)
         };

@@ -14,7 +14,9 @@ use faer::Mat;
 use faer::linalg::solvers::SolveCore;
 use faer::{Conj, MatMut};
 
-use super::{Discs, Found, Place, Point};
+use super::{Discs, Found};
+use crate::contact::law::PointLaw;
+use crate::contact::laws;
 
 /// Steps at most.
 const STEPS: usize = 100;
@@ -37,7 +39,7 @@ const LEAST_BOUND: f64 = 1e-10;
 const SPRING: f64 = 1e-13;
 
 /// Where the path is.
-struct Iterate {
+struct Central {
     jumps: Vec<f64>,
     /// λ and y of every limit that isn't tangential and has a bound.
     forces: Vec<f64>,
@@ -84,9 +86,9 @@ impl Discs<'_> {
             if left < next {
                 next = NEARER * left;
                 let place = scaled.place(&at);
-                let mut state = self.look(&place, None).state;
+                let mut state = self.laws.residual(&place, None, 0.0).statuses;
                 // Near the solution what would open may be about to open.
-                state.opened = vec![true; self.points.len()];
+                state.opened = vec![true; self.laws.points.len()];
                 let found = self.newton(&place, &state, POLISHING);
                 if found.converged() {
                     let steps = steps + found.steps;
@@ -104,14 +106,14 @@ impl<'a> Scaled<'a> {
     fn new(discs: &'a Discs<'a>) -> Self {
         let contact = &discs.contact;
         let m = contact.c.len();
-        let root: Vec<f64> = discs.stiffness.iter().map(|r| r.sqrt()).collect();
+        let root: Vec<f64> = discs.laws.stiffness.iter().map(|r| r.sqrt()).collect();
         let bounds: Vec<f64> = contact
             .bounds
             .iter()
             .zip(&root)
             .map(|(g, r)| g * r)
             .collect();
-        let is_normal = (bounds.iter().zip(&discs.is_tangential))
+        let is_normal = (bounds.iter().zip(&discs.laws.is_tangential))
             .map(|(bound, tangential)| bound.is_finite() && !tangential)
             .collect();
         Self {
@@ -141,7 +143,7 @@ impl<'a> Scaled<'a> {
         sum - self.bounds[i]
     }
 
-    fn first(&self) -> Iterate {
+    fn first(&self) -> Central {
         let m = self.c.len();
         let bounded = |i: usize| match self.is_normal[i] {
             true => self.bounds[i],
@@ -154,8 +156,8 @@ impl<'a> Scaled<'a> {
             let of = |is_normal: &bool| if *is_normal { value } else { 0.0 };
             self.is_normal.iter().map(of).collect()
         };
-        let points = self.discs.points.len();
-        Iterate {
+        let points = self.discs.laws.points.len();
+        Central {
             jumps: (self.discs.contact.center.iter().zip(&self.root))
                 .map(|(t, r)| t * r)
                 .collect(),
@@ -167,9 +169,9 @@ impl<'a> Scaled<'a> {
     }
 
     /// b of a point and its derivatives by λ and y.
-    fn bound(&self, point: &Point, at: &Iterate) -> [f64; 3] {
-        let own = &point.own.bound;
-        let tangential = self.root[point.own.limit];
+    fn bound(&self, point: &PointLaw, at: &Central) -> [f64; 3] {
+        let own = &point.bound;
+        let tangential = self.root[point.first];
         let cohesion = own.cohesion / tangential;
         let Some(n) = point.normal else {
             return [if own.only_closed { 0.0 } else { cohesion }, 0.0, 0.0];
@@ -188,13 +190,18 @@ impl<'a> Scaled<'a> {
     }
 
     /// The mean of λ y and γ b (1 − |ρ|²)/2.
-    fn measure(&self, at: &Iterate) -> f64 {
+    fn measure(&self, at: &Central) -> f64 {
         let normal = at
             .forces
             .iter()
             .zip(&at.gaps)
             .map(|(force, gap)| force * gap);
-        let points = self.discs.points.iter().zip(at.rho.iter().zip(&at.gamma));
+        let points = self
+            .discs
+            .laws
+            .points
+            .iter()
+            .zip(at.rho.iter().zip(&at.gamma));
         let points = points.map(|(point, (rho, gamma))| {
             0.5 * gamma * self.bound(point, at)[0] * (1.0 - square(*rho))
         });
@@ -203,14 +210,14 @@ impl<'a> Scaled<'a> {
             .iter()
             .filter(|is_normal| **is_normal)
             .count();
-        let count = count + self.discs.points.len();
+        let count = count + self.discs.laws.points.len();
         (normal.sum::<f64>() + points.sum::<f64>()) / count.max(1) as f64
     }
 
     /// All forces, those of points b ρ.
-    fn forces(&self, at: &Iterate) -> Vec<f64> {
+    fn forces(&self, at: &Central) -> Vec<f64> {
         let mut forces = at.forces.clone();
-        for (point, rho) in self.discs.points.iter().zip(&at.rho) {
+        for (point, rho) in self.discs.laws.points.iter().zip(&at.rho) {
             let [bound, ..] = self.bound(point, at);
             for (i, rho) in point.tangents.into_iter().zip(rho) {
                 if let Some(i) = i {
@@ -221,7 +228,7 @@ impl<'a> Scaled<'a> {
         forces
     }
 
-    fn place(&self, at: &Iterate) -> Place {
+    fn place(&self, at: &Central) -> laws::Iterate {
         let m = self.c.len();
         let jumps = at.jumps.iter().zip(&self.root).map(|(t, r)| t / r);
         let of_rows = self.forces(at).into_iter().zip(&self.root).skip(m);
@@ -230,7 +237,7 @@ impl<'a> Scaled<'a> {
     }
 
     /// A step towards the point of the path that has `epsilon`; the part of it that could be gone.
-    fn advance(&self, at: &mut Iterate, epsilon: f64) -> Option<f64> {
+    fn advance(&self, at: &mut Central, epsilon: f64) -> Option<f64> {
         let forces = self.forces(at);
         let all = 0..forces.len();
         let ways: Vec<f64> = all.clone().map(|i| self.way(i, &at.jumps)).collect();
@@ -250,7 +257,7 @@ impl<'a> Scaled<'a> {
             factors.push((i, i, force / gap));
             changes[i] = (epsilon - force * gap + force * missed[i]) / gap;
         }
-        let points = || self.discs.points.iter().zip(&at.rho).zip(&at.gamma);
+        let points = || self.discs.laws.points.iter().zip(&at.rho).zip(&at.gamma);
         let mut locals = Vec::new();
         for ((point, rho), gamma) in points() {
             let [bound, by_force, by_gap] = self.bound(point, at);
@@ -260,7 +267,7 @@ impl<'a> Scaled<'a> {
                 by_normal = by_force * at.forces[n] / at.gaps[n] - by_gap;
                 change = by_force * changes[n] - by_gap * missed[n];
             }
-            let prescribed = point.prescribed * self.root[point.own.limit];
+            let prescribed = point.prescribed * self.root[point.first];
             let slip = point.tangents.map(|i| i.map_or(prescribed, |i| ways[i]));
             let local = Local {
                 bound,

@@ -10,9 +10,11 @@
 
 use faer::Mat;
 
-use super::{Act, Discs, Place, Point, State};
+use super::Discs;
 use crate::contact::active_set::FORCE_TOLERANCE;
-use crate::contact::friction::linear::{SPRING, System, YIELD};
+use crate::contact::friction::system::{SPRING, System, YIELD};
+use crate::contact::law::{PointLaw, PointStatus};
+use crate::contact::laws::{Iterate, Statuses};
 
 /// An equation while it is put together: Σ factor·force + Σ factor·jump = constant, all of limits.
 #[derive(Default)]
@@ -28,17 +30,23 @@ struct Equation {
 
 impl Discs<'_> {
     /// Where the linear problem of a `state` is solved, from a place nearby.
-    pub(super) fn step(&self, place: &Place, state: &State) -> Place {
+    pub(super) fn step(&self, place: &Iterate, state: &Statuses) -> Iterate {
         let m = place.jumps.len();
         let (mut jumps, mut of_rows) = (place.jumps.clone(), place.forces[m..].to_vec());
         let mut equations: Vec<Option<Equation>> = (0..place.forces.len())
             .map(|i| self.normal(i, state.closed[i]))
             .collect();
-        for (point, act) in self.points.iter().zip(&state.points) {
+        for (point, act) in self.laws.points.iter().zip(&state.points) {
             for (k, i) in point.tangents.into_iter().enumerate() {
                 if let Some(i) = i {
                     equations[i] = match (act, point.normal) {
-                        (&Act::Parts { e, across }, Some(n)) => self.parts(point, n, k, e, across),
+                        (
+                            &PointStatus::Parts {
+                                direction: e,
+                                turning: across,
+                            },
+                            Some(n),
+                        ) => self.parts(point, n, k, e, across),
                         _ => self.slides(point, k, i, act, &state.closed),
                     };
                 }
@@ -59,14 +67,14 @@ impl Discs<'_> {
                 let ways = equation
                     .ways
                     .iter()
-                    .map(|&(i, c)| c * self.beyond(i, &start));
+                    .map(|&(i, c)| c * self.laws.beyond(i, &start));
                 (equation.constant - forces.sum::<f64>() - ways.sum::<f64>()) / equation.scale
             })
             .collect();
         // Where motions without resistance are balanced already, round-off mustn't drive them.
         let rests = |system: &System, left: &[f64]| {
             system.unknowns.iter().zip(left).all(|(&i, left)| {
-                let scale = self.force_scale(i, &start) / self.stiffness[i].sqrt();
+                let scale = self.force_scale(i, &start) / self.laws.stiffness[i].sqrt();
                 i < m && left.abs() <= FORCE_TOLERANCE * scale
             })
         };
@@ -96,7 +104,7 @@ impl Discs<'_> {
     fn force_is(&self, i: usize) -> Equation {
         Equation {
             forces: vec![(i, 1.0)],
-            scale: self.stiffness[i].sqrt(),
+            scale: self.laws.stiffness[i].sqrt(),
             spring: SPRING,
             ..Equation::default()
         }
@@ -105,7 +113,7 @@ impl Discs<'_> {
     fn way_is_none(&self, i: usize) -> Equation {
         Equation {
             ways: vec![(i, 1.0)],
-            scale: 1.0 / self.stiffness[i].sqrt(),
+            scale: 1.0 / self.laws.stiffness[i].sqrt(),
             spring: -YIELD,
             ..Equation::default()
         }
@@ -114,24 +122,31 @@ impl Discs<'_> {
     /// The equation of limit i, which is a point's tangential one number k.
     fn slides(
         &self,
-        point: &Point,
+        point: &PointLaw,
         k: usize,
         i: usize,
-        act: &Act,
+        act: &PointStatus,
         closed: &[bool],
     ) -> Option<Equation> {
         let of_jump = i < self.contact.c.len();
         let (e, across) = match *act {
-            Act::Rests => return of_jump.then(|| self.force_is(i)),
-            Act::Sticks => return (!of_jump).then(|| self.way_is_none(i)),
-            Act::Slips { e, across } | Act::Parts { e, across } => (e, across),
+            PointStatus::Open => return of_jump.then(|| self.force_is(i)),
+            PointStatus::Sticks => return (!of_jump).then(|| self.way_is_none(i)),
+            PointStatus::Slips {
+                direction: e,
+                turning: across,
+            }
+            | PointStatus::Parts {
+                direction: e,
+                turning: across,
+            } => (e, across),
         };
         let mut equation = self.force_is(i);
         equation.forces.clear();
         if !of_jump {
             equation.spring = 0.0;
         }
-        let weight = self.stiffness[i] / (self.stiffness[i] + across);
+        let weight = self.laws.stiffness[i] / (self.laws.stiffness[i] + across);
         let unit = |a: usize, b: usize| if a == b { 1.0 } else { 0.0 };
         // Where the other force isn't an unknown, the law of this one stands alone.
         let alone = point.tangents[1].is_none();
@@ -150,7 +165,7 @@ impl Discs<'_> {
             equation.ways.push((other, of_way));
         }
         let share = e[k] * if alone { weight } else { 1.0 };
-        let bound = &point.own.bound;
+        let bound = &point.bound;
         let pressed = point.normal.filter(|&n| closed[n]);
         if pressed.is_some() || !bound.only_closed {
             equation.constant += share * bound.cohesion;
@@ -165,7 +180,7 @@ impl Discs<'_> {
     /// is across.
     fn parts(
         &self,
-        point: &Point,
+        point: &PointLaw,
         n: usize,
         k: usize,
         e: [f64; 2],
@@ -174,8 +189,8 @@ impl Discs<'_> {
         let mut equation = self.force_is(n);
         equation.spring = 0.0;
         if let ([Some(first), Some(second)], 1) = (point.tangents, k) {
-            equation.scale = self.stiffness[first].sqrt();
-            let weight = self.stiffness[first] / (self.stiffness[first] + across);
+            equation.scale = self.laws.stiffness[first].sqrt();
+            let weight = self.laws.stiffness[first] / (self.laws.stiffness[first] + across);
             let normal = [(first, -weight * e[1]), (second, weight * e[0])];
             equation.forces = normal.to_vec();
             equation.ways = normal.map(|(i, c)| (i, -across * c)).to_vec();
@@ -230,8 +245,8 @@ impl Discs<'_> {
         }
         let scale: Vec<f64> = (unknowns.iter())
             .map(|&i| match i < m {
-                true => self.stiffness[i].sqrt(),
-                false => 1.0 / self.stiffness[i].sqrt(),
+                true => self.laws.stiffness[i].sqrt(),
+                false => 1.0 / self.laws.stiffness[i].sqrt(),
             })
             .collect();
         let of_equation: Vec<f64> = equations.iter().flatten().map(|e| e.scale).collect();
@@ -251,9 +266,7 @@ impl Discs<'_> {
             a,
             unknowns,
             scale,
-            of_equation,
             springs,
-            may_yield_less: true,
         }
     }
 }

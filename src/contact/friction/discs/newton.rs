@@ -1,20 +1,26 @@
 //! Semismooth Newton on discs, and dashpots where it gets no further.
 
-use super::{Act, Discs, Found, Look, Place, Rest, State};
+use std::convert::Infallible;
+
+use super::{Discs, Found, Rest};
 use crate::contact::active_set::{ContactProblem, FORCE_TOLERANCE};
-use crate::contact::friction::Status;
+use crate::contact::friction::{ATTEMPTS, FrictionProblem, Status};
+use crate::contact::laws::{Iterate, LawResidual, Statuses};
+use crate::contact::newton::{
+    ContactOperator, NewtonSettings, NewtonStep, OnGroups, StepAccuracy, TotalResidual, newton,
+};
 use crate::vector::{dot, largest};
 
 /// Most steps of Newton's method.
 const STEPS: usize = 40;
 /// The same between two changes of dashpots.
 const DAMPED_STEPS: usize = 15;
-/// Part of a step that is too small.
-const SMALLEST: f64 = 1e-3;
-/// Part of the merit, for every part of a step, by which that has to lessen it.
-const LESSENS: f64 = 1e-4;
+/// What may be missed of the law, relative to what acts.
+const LAW: f64 = 1e-9;
 /// What is missed that can't be less.
 const ROUND_OFF: f64 = 1e-15;
+/// Force, relative to its terms, up to which a limit keeps its status.
+const STAYS: f64 = 1e-15;
 /// Dashpots, relative to stiffness and time: the first, the weakest and the strongest ones.
 const DASHPOTS: [f64; 3] = [0.1, 1e-4, 10.0];
 /// Part of the way before that isn't less, and how often that may be.
@@ -32,9 +38,13 @@ const CHANGES: usize = 24;
 impl Discs<'_> {
     /// The solution, found from where these statuses are right, whether that took more than Newton's method, and whether
     /// things slide on and on.
-    pub(super) fn solve(&self, status: &[Status]) -> (Found, bool, bool) {
+    pub(super) fn solve(
+        &self,
+        problem: &FrictionProblem<'_>,
+        status: &[Status],
+    ) -> (Found, bool, bool) {
         let start = self.start();
-        let state = self.begin(status, &start);
+        let state = self.laws.begin(status, &start);
         let at_once = self.newton(&start, &state, STEPS);
         if at_once.converged() {
             return (at_once, false, false);
@@ -43,6 +53,11 @@ impl Discs<'_> {
             return (found, true, false);
         }
         let mut steps = at_once.steps;
+        if !problem.has_discs() {
+            let found = self.along_lemke_s_path(problem, &mut steps);
+            let found = found.unwrap_or(at_once);
+            return (Found { steps, ..found }, true, false);
+        }
         match self.with_dashpots(&start, &state, &mut steps) {
             Rest::Found(found) => (Found { steps, ..found }, true, false),
             Rest::Slides => (Found { steps, ..at_once }, true, true),
@@ -50,15 +65,38 @@ impl Discs<'_> {
         }
     }
 
+    /// The solution at the end of Lemke's path.
+    fn along_lemke_s_path(
+        &self,
+        problem: &FrictionProblem<'_>,
+        steps: &mut usize,
+    ) -> Option<Found> {
+        for attempt in 0..ATTEMPTS {
+            let (end, exchanges) = problem.follow(attempt);
+            *steps += exchanges;
+            let Some(end) = end else { continue };
+            // Where nothing resists, what slips both ways is between both there, and not just anywhere.
+            let start = self.place(end.jumps, vec![0.0; self.contact.rows.len()]);
+            let mut state = self.laws.begin(&end.status, &start);
+            state.opened.fill(true);
+            let found = self.newton(&start, &state, STEPS);
+            *steps += found.steps;
+            if found.converged() {
+                return Some(found);
+            }
+        }
+        None
+    }
+
     /// The place from which open jumps go where the load drives them.
-    pub(super) fn start(&self) -> Place {
+    pub(super) fn start(&self) -> Iterate {
         let rows = self.contact.rows.len();
         self.place(self.contact.center.to_vec(), vec![0.0; rows])
     }
 
     /// Goes from one position to the next of a problem with dashpots, which weaken as long as that is found; to no end
     /// where things slide on and on.
-    fn with_dashpots(&self, start: &Place, state: &State, steps: &mut usize) -> Rest {
+    fn with_dashpots(&self, start: &Iterate, state: &Statuses, steps: &mut usize) -> Rest {
         let [mut dashpots, weakest, strongest] = DASHPOTS;
         let (mut place, mut state) = (start.clone(), state.clone());
         let (mut last, mut sliding) = (f64::INFINITY, 0);
@@ -111,15 +149,15 @@ impl Discs<'_> {
         let all: Vec<f64> = ways.iter().copied().chain(rows).collect();
         let far = largest(ways);
         let [mut taken, mut closes] = [0.0; 2];
-        for i in (0..all.len()).filter(|&i| !self.is_tangential[i]) {
+        for i in (0..all.len()).filter(|&i| !self.laws.is_tangential[i]) {
             match state.closed[i] {
                 true => taken += (place.forces[i] * all[i]).abs(),
                 false => closes = f64::max(closes, all[i]),
             }
         }
-        for point in &self.points {
+        for point in &self.laws.points {
             let [along, across] = point.tangents.map(|i| i.map_or(0.0, |i| all[i]));
-            taken += self.bound(point, place, &state.closed) * along.hypot(across);
+            taken += self.laws.bound(point, place, &state.closed) * along.hypot(across);
         }
         let work = dot(self.contact.c, ways);
         let terms = self.contact.c.iter().zip(ways);
@@ -133,18 +171,18 @@ impl Discs<'_> {
         self.contact.subtract(ways, &mut forces);
         let springs = ways
             .iter()
-            .zip(&self.stiffness)
+            .zip(&self.laws.stiffness)
             .map(|(way, r)| r * way * way);
         -dot(ways, &forces) / springs.sum::<f64>()
     }
 
     /// The solution where every jump is held by a dashpot at where it is.
-    fn damped(&self, dashpots: f64, place: &Place, state: &State) -> Found {
+    fn damped(&self, dashpots: f64, place: &Iterate, state: &Statuses) -> Found {
         let contact = &self.contact;
         let mut h = contact.h.to_owned();
         let (mut c, mut c_scale) = (contact.c.to_vec(), contact.c_scale.to_vec());
         for (i, t) in place.jumps.iter().enumerate() {
-            let own = dashpots * self.stiffness[i];
+            let own = dashpots * self.laws.stiffness[i];
             h[(i, i)] += own;
             c[i] += own * t;
             c_scale[i] += (own * t).abs();
@@ -156,86 +194,110 @@ impl Discs<'_> {
                 c_scale: &c_scale,
                 ..*contact
             },
-            points: self.points.clone(),
-            is_tangential: self.is_tangential.clone(),
-            stiffness: self.stiffness.clone(),
+            laws: self.laws.clone(),
             acting: self.acting,
         };
         damped.newton(place, state, DAMPED_STEPS)
     }
 
-    /// Newton's method from a place where limits do this.
-    pub(super) fn newton(&self, start: &Place, state: &State, most: usize) -> Found {
-        let mut place = start.clone();
-        let mut state = state.clone();
-        let mut merit = f64::INFINITY;
-        let mut best: Option<Found> = None;
-        for steps in 1..=most {
-            let target = self.step(&place, &state);
-            let look = self.look(&target, Some(&state));
-            if look.merit.is_nan() {
-                break;
-            }
-            if let Some(found) = &mut best
-                && look.missed > 0.5 * found.missed
-            {
-                found.steps = steps;
-                break;
-            }
-            if look.missed <= FORCE_TOLERANCE {
-                let found = Found {
-                    place: target.clone(),
-                    state: state.clone(),
-                    missed: look.missed,
-                    steps,
-                };
-                let exact = found.missed <= ROUND_OFF;
-                best = Some(found);
-                if exact {
-                    break;
-                }
-            }
-            let opened = look.state.opened.clone();
-            (place, merit, state) = self.part_of_way(place, merit, target, look);
-            state.opened = opened;
-        }
-        best.unwrap_or(Found {
+    /// Newton's method from an iterate, by the equations of these statuses first.
+    pub(super) fn newton(&self, start: &Iterate, state: &Statuses, most: usize) -> Found {
+        let settings = NewtonSettings {
+            most,
+            patience: most,
+            tolerance: FORCE_TOLERANCE,
+            acceptable: FORCE_TOLERANCE,
+            round_off: ROUND_OFF,
+            law: LAW,
+        };
+        let Ok(found) = newton(
+            &mut Dense(self),
+            &only(self.laws.clone()),
+            &only(start.clone()),
+            &only(state.clone()),
+            settings,
+        );
+        let (at, statuses) = (found.at.into_values(), found.statuses.into_values());
+        let (place, state) = at
+            .zip(statuses)
+            .next()
+            .unwrap_or_else(|| (start.clone(), state.clone()));
+        Found {
             place,
             state,
-            missed: f64::INFINITY,
-            steps: most,
-        })
+            missed: found.missed,
+            steps: found.steps,
+        }
+    }
+}
+
+/// A dense problem as the one group of an operator.
+struct Dense<'d, 'a>(&'d Discs<'a>);
+
+/// The number of its group.
+const ONLY: usize = 0;
+
+fn only<T>(of_group: T) -> OnGroups<T> {
+    OnGroups::from([(ONLY, of_group)])
+}
+
+impl ContactOperator for Dense<'_, '_> {
+    type Error = Infallible;
+
+    fn step(
+        &mut self,
+        from: &OnGroups<Iterate>,
+        statuses: &OnGroups<Statuses>,
+        _: StepAccuracy,
+    ) -> Result<OnGroups<Iterate>, Infallible> {
+        Ok(only(self.0.step(&from[&ONLY], &statuses[&ONLY])))
     }
 
-    /// The part of the way from a place with this `merit` to a `target` that lessens it; the whole way if none does.
-    fn part_of_way(
+    fn between(
         &self,
-        place: Place,
-        merit: f64,
-        target: Place,
-        whole: Look,
-    ) -> (Place, f64, State) {
-        let lessens = |look: &Look, part: f64| look.merit <= (1.0 - LESSENS * part) * merit;
-        // The law of what parts is no function of the place.
-        let parts = |act: &Act| matches!(act, Act::Parts { .. });
-        let parts = whole.state.points.iter().any(parts);
-        if merit == f64::INFINITY || parts || lessens(&whole, 1.0) {
-            return (target, whole.merit, whole.state);
+        from: &OnGroups<Iterate>,
+        to: &OnGroups<Iterate>,
+        part: f64,
+    ) -> OnGroups<Iterate> {
+        let (from, to) = (&from[&ONLY], &to[&ONLY]);
+        let between = |a: &[f64], b: &[f64]| -> Vec<f64> {
+            a.iter().zip(b).map(|(a, b)| a + part * (b - a)).collect()
+        };
+        let m = from.jumps.len();
+        let jumps = between(&from.jumps, &to.jumps);
+        only(
+            self.0
+                .place(jumps, between(&from.forces[m..], &to.forces[m..])),
+        )
+    }
+
+    fn force_scales(&self, at: &OnGroups<Iterate>) -> OnGroups<Vec<f64>> {
+        let at = &at[&ONLY];
+        let all = 0..at.forces.len();
+        only(all.map(|i| self.0.force_scale(i, at)).collect())
+    }
+
+    fn total(&self, residuals: &OnGroups<LawResidual>) -> TotalResidual {
+        let total = residuals[&ONLY].of_group();
+        TotalResidual {
+            merit: total.merit.sqrt(),
+            ..total
         }
-        let m = place.jumps.len();
-        let mut part = 0.5;
-        while part >= SMALLEST {
-            let between = |a: &[f64], b: &[f64]| -> Vec<f64> {
-                a.iter().zip(b).map(|(a, b)| a + part * (b - a)).collect()
-            };
-            let jumps = between(&place.jumps, &target.jumps);
-            let there = self.place(jumps, between(&place.forces[m..], &target.forces[m..]));
-            let look = self.look(&there, None);
-            if lessens(&look, part) {
-                return (there, look.merit, look.state);
-            }
-            part *= 0.5;
-        }
-        (target, whole.merit, whole.state)
+    }
+
+    fn acting(&self) -> f64 {
+        self.0.acting
+    }
+
+    fn slack(&self) -> f64 {
+        STAYS
+    }
+
+    fn accuracy(&self, _: f64) -> StepAccuracy {
+        StepAccuracy::Full
+    }
+
+    fn record(&mut self, _: NewtonStep) -> Result<(), Infallible> {
+        Ok(())
     }
 }

@@ -1,0 +1,112 @@
+//! The dense system of equations of fixed statuses, in the scale of energies; springs where it is singular.
+
+use faer::linalg::solvers::{PartialPivLu, SolveCore};
+use faer::{Conj, Mat, MatMut};
+
+use crate::vector::largest;
+
+/// Pivot of the scaled matrix, or size of what it makes of something of size 1, below which it is taken as singular.
+const SINGULAR: f64 = 1e-13;
+/// Stiffness of the springs that make it regular then, in that scale.
+pub(super) const SPRING: f64 = 1e-12;
+/// How much closed rows that depend on each other give way, in that scale: their forces share what one could carry.
+pub(super) const YIELD: f64 = 1e-6;
+/// Part of that where refinements leave more than this of what is solved for: soft bodies between stiff ones carry a small
+/// part of what their rows could.
+const LESS: f64 = 1e-3;
+const BENT: f64 = 1e-12;
+/// Most refinements of a solution that springs have bent.
+const MAX_REFINEMENTS: usize = 40;
+
+/// A x = b in the scale of energies.
+pub(super) struct System {
+    pub a: Mat<f64>,
+    /// Which limits the unknowns are of: jumps that aren't closed, then rows that are closed or slip.
+    pub unknowns: Vec<usize>,
+    /// What an unknown is in that scale: jump or force times this.
+    pub scale: Vec<f64>,
+    /// A spring on every jump, and what gives way in every closed row, where A is singular.
+    pub springs: Vec<f64>,
+}
+
+impl System {
+    /// A⁻¹ b, 0 where A is singular and b `is_balanced`.
+    pub fn solve(&self, b: Vec<f64>, is_balanced: impl Fn() -> bool) -> Vec<f64> {
+        let n = b.len();
+        let lu = self.a.partial_piv_lu();
+        if !is_singular(&lu, n) {
+            return self.refine(&lu, &b, 1);
+        }
+        if is_balanced() {
+            return vec![0.0; n];
+        }
+        let x = self.refine(&self.held(1.0), &b, MAX_REFINEMENTS);
+        let missed = |x: &[f64]| largest(&self.left(&b, x));
+        if missed(&x) <= BENT * largest(&b) {
+            return x;
+        }
+        let stiffer = self.refine(&self.held(LESS), &b, MAX_REFINEMENTS);
+        match missed(&stiffer) < missed(&x) {
+            true => stiffer,
+            false => x,
+        }
+    }
+
+    /// A with its springs, of which those of rows are a part only.
+    fn held(&self, part: f64) -> PartialPivLu<f64> {
+        let mut held = self.a.clone();
+        for (k, &spring) in self.springs.iter().enumerate() {
+            let of_row = spring.abs() == YIELD;
+            held[(k, k)] += if of_row { part * spring } else { spring };
+        }
+        held.partial_piv_lu()
+    }
+
+    /// b − A x.
+    fn left(&self, b: &[f64], x: &[f64]) -> Vec<f64> {
+        let mut left = b.to_vec();
+        for (column, &x) in self.a.col_iter().zip(x) {
+            for (left, a) in left.iter_mut().zip(column.iter()) {
+                *left -= a * x;
+            }
+        }
+        left
+    }
+
+    /// A⁻¹ b by factors that are nearly those of A.
+    fn refine(&self, lu: &PartialPivLu<f64>, b: &[f64], most: usize) -> Vec<f64> {
+        let mut x = b.to_vec();
+        apply(lu, &mut x);
+        let mut last = f64::INFINITY;
+        for _ in 0..most {
+            let mut left = self.left(b, &x);
+            let size = left.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
+            if size == 0.0 || size > 0.9 * last || size.is_nan() {
+                break;
+            }
+            last = size;
+            apply(lu, &mut left);
+            for (x, dx) in x.iter_mut().zip(left) {
+                *x += dx;
+            }
+        }
+        x
+    }
+}
+
+/// Whether A is singular but for round-off. Where what is unresisted has little of the last unknowns, no pivot says so,
+/// but it is most of A⁻¹ times anything.
+fn is_singular(lu: &PartialPivLu<f64>, n: usize) -> bool {
+    if (0..n).any(|k| lu.U()[(k, k)].abs() <= SINGULAR) {
+        return true;
+    }
+    let mut x: Vec<f64> = (0..n).map(|i| (1.0 + 12.9898 * i as f64).sin()).collect();
+    let size = largest(&x);
+    apply(lu, &mut x);
+    size <= SINGULAR * largest(&x)
+}
+
+fn apply(lu: &PartialPivLu<f64>, x: &mut [f64]) {
+    let n = x.len();
+    lu.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(x, n, 1));
+}

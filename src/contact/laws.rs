@@ -1,0 +1,321 @@
+//! The laws of all points of a contact problem, or of a contact group: what every limit should do at an iterate, and what
+//! it misses.
+
+use std::mem::discriminant;
+
+use super::dependent::DependentConstraints;
+use super::friction::Status;
+use super::law::{PointLaw, PointStatus};
+use super::limits::TangentialLimit;
+
+/// The laws of all limits.
+#[derive(Clone, Debug)]
+pub struct ContactLaws<'a> {
+    /// g, then d (m): where limits are closed, or stick.
+    pub bounds: &'a [f64],
+    /// D.
+    pub rows: &'a DependentConstraints,
+    /// The points with friction.
+    pub points: Vec<PointLaw>,
+    /// Whether a limit is that of a tangential jump.
+    pub is_tangential: Vec<bool>,
+    /// r of every limit (N/m).
+    pub stiffness: Vec<f64>,
+}
+
+/// The statuses of all limits.
+#[derive(Clone, Debug)]
+pub struct Statuses {
+    /// Whether every limit that isn't tangential is closed.
+    pub closed: Vec<bool>,
+    /// The points with friction.
+    pub points: Vec<PointStatus>,
+    /// Which points have been open since the search began.
+    pub opened: Vec<bool>,
+}
+
+/// Jumps and forces of an iterate.
+#[derive(Clone, Debug, Default)]
+pub struct Iterate {
+    /// t (m).
+    pub jumps: Vec<f64>,
+    /// λ = c − H t − Dᵀ μ, then μ (N/m).
+    pub forces: Vec<f64>,
+}
+
+/// What the laws say of an iterate.
+#[derive(Clone, Debug)]
+pub struct LawResidual {
+    /// What all limits should do there.
+    pub statuses: Statuses,
+    /// The limits whose status is wrong, where those before are known.
+    pub wrong: Vec<usize>,
+    /// Σ x²/r of what every limit misses of its law, as a force x.
+    pub squares: f64,
+    /// The largest of what they miss, relative to the scales of forces, where these are known.
+    pub missed: f64,
+}
+
+impl<'a> ContactLaws<'a> {
+    /// The laws of limits with these `bounds`, `rows` and `tangents`, with r of every limit (N/m).
+    pub fn new(
+        bounds: &'a [f64],
+        rows: &'a DependentConstraints,
+        tangents: &[TangentialLimit],
+        mut stiffness: Vec<f64>,
+    ) -> Self {
+        let mut is_tangential = vec![false; stiffness.len()];
+        let mut points = Vec::new();
+        for tangent in tangents {
+            is_tangential[tangent.limit] = true;
+            let Some(([_, second], _)) = tangent.of_point() else {
+                continue;
+            };
+            // The same along both tangents, however they are turned.
+            let mean = second.map_or(stiffness[tangent.limit], |other| {
+                0.5 * (stiffness[tangent.limit] + stiffness[other])
+            });
+            for i in [Some(tangent.limit), second].into_iter().flatten() {
+                stiffness[i] = mean;
+            }
+            points.extend(PointLaw::new(tangent, mean));
+        }
+        Self {
+            bounds,
+            rows,
+            points,
+            is_tangential,
+            stiffness,
+        }
+    }
+
+    /// How far limit i is beyond its bound, or has slipped (m).
+    pub fn beyond(&self, i: usize, at: &Iterate) -> f64 {
+        let m = at.jumps.len();
+        let value = match at.jumps.get(i) {
+            Some(t) => *t,
+            None => self.rows.value(i - m, &at.jumps),
+        };
+        value - self.bounds[i]
+    }
+
+    /// Slip (m) and force (N/m) of a point.
+    pub fn tangential(&self, point: &PointLaw, at: &Iterate) -> [[f64; 2]; 2] {
+        let slip = |i: usize| self.beyond(i, at);
+        [
+            [
+                point.tangents[0].map_or(0.0, slip),
+                point.tangents[1].map_or(point.prescribed, slip),
+            ],
+            point
+                .tangents
+                .map(|tangent| tangent.map_or(0.0, |i| at.forces[i])),
+        ]
+    }
+
+    /// The bound of a point's force (N/m).
+    pub fn bound(&self, point: &PointLaw, at: &Iterate, closed: &[bool]) -> f64 {
+        let is_closed = point.normal.is_some_and(|n| closed[n]);
+        let pressed = point.normal.filter(|_| is_closed);
+        point
+            .bound
+            .at(pressed.map_or(0.0, |n| at.forces[n]), is_closed)
+    }
+
+    fn reach(&self, point: &PointLaw, at: &Iterate, bound: f64) -> [f64; 2] {
+        let [slip, force] = self.tangential(point, at);
+        point.reach(slip, force, bound)
+    }
+
+    /// The status of point k whose cohesion vanishes as it opens, where it parted `before` or would open once more; `None`
+    /// where the statuses `now` are right.
+    fn parting(
+        &self,
+        k: usize,
+        at: &Iterate,
+        before: &Statuses,
+        now: &Statuses,
+    ) -> Option<PointStatus> {
+        let point = &self.points[k];
+        let bound = point.bound;
+        let n = point.normal?;
+        if !bound.only_closed || bound.cohesion == 0.0 || point.prescribed != 0.0 {
+            return None;
+        }
+        let [slip, force] = self.tangential(point, at);
+        let [way, size] = [slip, force].map(|v| v[0].hypot(v[1]));
+        let parts = || match way > 0.0 {
+            true => PointStatus::Parts {
+                direction: slip.map(|s| s / way),
+                turning: point.turning(size / way),
+            },
+            false => PointStatus::Parts {
+                direction: force.map(|f| f / size),
+                turning: 0.0,
+            },
+        };
+        let along = |v: [f64; 2], e: [f64; 2]| v[0] * e[0] + v[1] * e[1];
+        match before.points[k] {
+            PointStatus::Slips { .. } | PointStatus::Sticks
+                if now.points[k] == PointStatus::Open =>
+            {
+                (before.opened[k] && way + size > 0.0).then(parts)
+            }
+            PointStatus::Parts { direction, .. } if along(force, direction) < 0.0 || way == 0.0 => {
+                Some(PointStatus::Open)
+            }
+            PointStatus::Parts { direction, .. } if along(slip, direction) < 0.0 => {
+                Some(PointStatus::Sticks)
+            }
+            PointStatus::Parts { .. } if size > bound.cohesion => {
+                let whole = bound.at(at.forces[n], true);
+                Some(point.status(self.reach(point, at, whole), whole, 0.0))
+            }
+            PointStatus::Parts { .. } => Some(parts()),
+            _ => None,
+        }
+        .filter(|_| before.closed[n])
+    }
+
+    /// The statuses of limits with these `status` at an iterate.
+    pub fn begin(&self, status: &[Status], at: &Iterate) -> Statuses {
+        let closed: Vec<bool> = status.iter().map(|status| status.is_closed()).collect();
+        let of_point = |point: &PointLaw| {
+            let own = status[point.first];
+            let is_closed = point.normal.is_some_and(|n| closed[n]);
+            if !is_closed && point.bound.only_closed {
+                return PointStatus::Open;
+            }
+            let [slip, _] = self.tangential(point, at);
+            let size = slip[0].hypot(slip[1]);
+            let (direction, turning) = match size > 0.0 {
+                true => {
+                    let bound = self.bound(point, at, &closed);
+                    (slip.map(|s| s / size), point.turning(bound / size))
+                }
+                false => ([own.sign(), 0.0], 0.0),
+            };
+            match own {
+                Status::Parting if size > 0.0 && point.prescribed == 0.0 => PointStatus::Parts {
+                    direction,
+                    turning: 0.0,
+                },
+                _ if own.is_closed() && point.prescribed == 0.0 || direction == [0.0; 2] => {
+                    PointStatus::Sticks
+                }
+                _ => PointStatus::Slips { direction, turning },
+            }
+        };
+        Statuses {
+            points: self.points.iter().map(of_point).collect(),
+            closed,
+            opened: vec![false; self.points.len()],
+        }
+    }
+
+    /// What the laws say of an iterate; limits keep the statuses `before` within a share `stays` of the scales of forces
+    /// that stand beside them.
+    pub fn residual(
+        &self,
+        at: &Iterate,
+        before: Option<(&Statuses, &[f64])>,
+        stays: f64,
+    ) -> LawResidual {
+        let slack = |i: usize, was: Option<bool>| match (was, before) {
+            (Some(true), Some((_, scales))) => stays * scales[i],
+            (Some(false), Some((_, scales))) => -stays * scales[i],
+            _ => 0.0,
+        };
+        let closed: Vec<bool> = (0..at.forces.len())
+            .map(|i| {
+                let xi = at.forces[i] + self.stiffness[i] * self.beyond(i, at);
+                let was = before.map(|(before, _)| before.closed[i]);
+                !self.is_tangential[i] && xi > -slack(i, was)
+            })
+            .collect();
+        let of_point = |(k, point): (usize, &PointLaw)| {
+            let is_closed = point.normal.is_some_and(|n| closed[n]);
+            if !is_closed && point.bound.only_closed {
+                return PointStatus::Open;
+            }
+            let stuck = before.map(|(before, _)| before.points[k] == PointStatus::Sticks);
+            let bound = self.bound(point, at, &closed);
+            let xi = self.reach(point, at, bound);
+            point.status(xi, bound, slack(point.first, stuck))
+        };
+        let mut statuses = Statuses {
+            points: self.points.iter().enumerate().map(of_point).collect(),
+            closed,
+            opened: Vec::new(),
+        };
+        if let Some((before, _)) = before {
+            for (k, point) in self.points.iter().enumerate() {
+                if let (Some(n), Some(right)) =
+                    (point.normal, self.parting(k, at, before, &statuses))
+                {
+                    statuses.closed[n] = right != PointStatus::Open;
+                    statuses.points[k] = right;
+                }
+            }
+            let open = statuses.points.iter().map(|s| *s == PointStatus::Open);
+            statuses.opened = open.zip(&before.opened).map(|(a, b)| a || *b).collect();
+        }
+        let missed = self.missed(at, &statuses);
+        let squares = missed.iter().zip(&self.stiffness);
+        let squares = squares.map(|(x, r)| x * x / r).sum::<f64>();
+        let relative = before.map(|(_, scales)| {
+            let all = missed.iter().zip(scales).filter(|(x, _)| **x != 0.0);
+            all.map(|(x, scale)| x.abs() / scale).fold(0.0, f64::max)
+        });
+        LawResidual {
+            wrong: before.map_or_else(Vec::new, |(before, _)| self.wrong(before, &statuses)),
+            squares,
+            missed: relative.unwrap_or(f64::INFINITY),
+            statuses,
+        }
+    }
+
+    /// The limits whose statuses differ, the first tangential one of a point.
+    fn wrong(&self, before: &Statuses, now: &Statuses) -> Vec<usize> {
+        let closed = before.closed.iter().zip(&now.closed).enumerate();
+        let normals = closed.filter(|(_, (a, b))| a != b).map(|(i, _)| i);
+        let points = self
+            .points
+            .iter()
+            .zip(before.points.iter().zip(&now.points));
+        let points = points.filter(|(_, (a, b))| discriminant(*a) != discriminant(*b));
+        normals
+            .chain(points.map(|(point, _)| point.first))
+            .collect()
+    }
+
+    /// What every limit misses of its law, as a force (N/m).
+    pub fn missed(&self, at: &Iterate, statuses: &Statuses) -> Vec<f64> {
+        let normal = |i: usize| match statuses.closed[i] {
+            true => -self.stiffness[i] * self.beyond(i, at),
+            false => at.forces[i],
+        };
+        let mut missed: Vec<f64> = (0..at.forces.len()).map(normal).collect();
+        for (point, status) in self.points.iter().zip(&statuses.points) {
+            let bound = self.bound(point, at, &statuses.closed);
+            let xi = self.reach(point, at, bound);
+            let [_, force] = self.tangential(point, at);
+            for (k, i) in point.tangents.into_iter().enumerate() {
+                let Some(i) = i else { continue };
+                let right = match status {
+                    PointStatus::Open => 0.0,
+                    PointStatus::Sticks => xi[k],
+                    PointStatus::Slips { direction: e, .. } => bound * e[k],
+                    PointStatus::Parts { direction: e, .. } => {
+                        e[k] * (e[0] * force[0] + e[1] * force[1])
+                    }
+                };
+                missed[i] = at.forces[i] - right;
+            }
+            if let (PointStatus::Parts { .. }, Some(n)) = (status, point.normal) {
+                missed[n] = at.forces[n];
+            }
+        }
+        missed
+    }
+}

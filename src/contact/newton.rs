@@ -1,0 +1,296 @@
+//! Semismooth Newton on the laws of contact: a status for every limit makes the problem linear, the solution of that says
+//! which statuses are wrong.
+//!
+//! All wrong statuses change at once. What is missed of the laws, in the norm of energies, is the merit of a step, which is
+//! halved as long as it doesn't lessen that: all iterates keep λ = c − H t − Dᵀ μ, so a part of a step needs no further solve.
+//!
+//! S. Hüeber, G. Stadler, B. Wohlmuth, *A primal-dual active set algorithm for three-dimensional contact problems with
+//! Coulomb friction*, SIAM J. Sci. Comput. 30 (2008).
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::law::PointStatus;
+use super::laws::{ContactLaws, Iterate, LawResidual, Statuses};
+use crate::vector::larger;
+
+/// Part of a step that is too small.
+const SMALLEST: f64 = 1e-3;
+/// Part of the merit, for every part of a step, by which that has to lessen it.
+const LESSENS: f64 = 1e-4;
+
+/// One of a kind for every contact group of this rank; a dense problem is a single group.
+pub type OnGroups<T> = BTreeMap<usize, T>;
+
+/// What answers for given statuses. Its methods are collective.
+pub trait ContactOperator {
+    /// Why there is no answer: some part of the scene moves freely, or a signal has asked the run to stop.
+    type Error;
+
+    /// The jumps and forces at which the equations of these statuses hold, near an iterate; rough ones where the solver is
+    /// iterative and that is enough.
+    ///
+    /// # Errors
+    /// There is no answer.
+    fn step(
+        &mut self,
+        from: &OnGroups<Iterate>,
+        statuses: &OnGroups<Statuses>,
+        accuracy: StepAccuracy,
+    ) -> Result<OnGroups<Iterate>, Self::Error>;
+
+    /// The iterate `part` of the way from one to another.
+    fn between(
+        &self,
+        from: &OnGroups<Iterate>,
+        to: &OnGroups<Iterate>,
+        part: f64,
+    ) -> OnGroups<Iterate>;
+
+    /// The terms that the force of every limit is a sum of (N/m).
+    fn force_scales(&self, at: &OnGroups<Iterate>) -> OnGroups<Vec<f64>>;
+
+    /// Share of these scales up to which a limit keeps its status.
+    fn slack(&self) -> f64;
+
+    /// The residual of all groups on all ranks.
+    fn total(&self, residuals: &OnGroups<LawResidual>) -> TotalResidual;
+
+    /// The norm of energies of the forces that act before anything moves, or infinity where it isn't known.
+    fn acting(&self) -> f64;
+
+    /// How accurate a step has to be as long as statuses are wrong, and so much is missed of the laws.
+    fn accuracy(&self, missed: f64) -> StepAccuracy;
+
+    /// Takes note of a step.
+    ///
+    /// # Errors
+    /// A signal has asked the run to stop.
+    fn record(&mut self, step: NewtonStep) -> Result<(), Self::Error>;
+}
+
+/// How accurately a step is solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepAccuracy {
+    /// As accurate as what is missed of the laws, relative to the largest force, lets be of use.
+    Rough(f64),
+    /// To round-off.
+    Full,
+}
+
+/// What all groups on all ranks miss of the laws.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct TotalResidual {
+    /// Σ x²/r of what limits miss, then its square root.
+    pub merit: f64,
+    /// The largest, relative to the scales of forces.
+    pub missed: f64,
+    /// Number of closed normal jumps.
+    pub active: usize,
+    /// Number of wrong statuses.
+    pub wrong: usize,
+    /// Whether a point parts, so that the merit doesn't measure a part of a step.
+    pub parts: bool,
+}
+
+impl TotalResidual {
+    /// Adds that of another group.
+    pub fn include(&mut self, other: Self) {
+        self.merit += other.merit;
+        self.missed = larger(self.missed, other.missed);
+        self.active += other.active;
+        self.wrong += other.wrong;
+        self.parts |= other.parts;
+    }
+}
+
+/// A step.
+#[derive(Clone, Copy, Debug)]
+pub struct NewtonStep {
+    /// The residual at its end.
+    pub total: TotalResidual,
+    /// Number of statuses that changed before it; the first has none.
+    pub changed: Option<usize>,
+}
+
+/// How far Newton's method goes.
+#[derive(Clone, Copy, Debug)]
+pub struct NewtonSettings {
+    /// Most steps.
+    pub most: usize,
+    /// Most steps in a row without a smaller merit.
+    pub patience: usize,
+    /// What may be missed of the laws, relative to the scales of forces.
+    pub tolerance: f64,
+    /// The same where steps make it no smaller and no status is wrong.
+    pub acceptable: f64,
+    /// What can't be less, for which no step is made once the tolerance is met.
+    pub round_off: f64,
+    /// The merit, relative to what acts, above which forces are no measure: what slides away has small ones beside the terms
+    /// of its way.
+    pub law: f64,
+}
+
+/// Where Newton's method ends.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Jumps and forces.
+    pub at: OnGroups<Iterate>,
+    /// The statuses whose equations these fulfil.
+    pub statuses: OnGroups<Statuses>,
+    /// What is missed of the laws, relative to the scales of forces; infinite where the method doesn't converge.
+    pub missed: f64,
+    /// Linear systems solved.
+    pub steps: usize,
+}
+
+/// Newton's method from an iterate, by the equations of `statuses` first. Collective.
+///
+/// # Errors
+/// The operator has no answer.
+pub fn newton<O: ContactOperator>(
+    operator: &mut O,
+    laws: &OnGroups<ContactLaws<'_>>,
+    start: &OnGroups<Iterate>,
+    statuses: &OnGroups<Statuses>,
+    settings: NewtonSettings,
+) -> Result<Found, O::Error> {
+    let (mut at, mut statuses) = (start.clone(), statuses.clone());
+    let (mut merit, mut changed) = (f64::INFINITY, None);
+    let (mut least, mut patience) = (f64::INFINITY, settings.patience);
+    let (mut accuracy, mut missed) = (operator.accuracy(f64::INFINITY), f64::INFINITY);
+    let mut best: Option<Found> = None;
+    for steps in 1..=settings.most {
+        let target = operator.step(&at, &statuses, accuracy)?;
+        let (look, total) = look(operator, laws, &target, Some(&statuses), settings);
+        operator.record(NewtonStep { total, changed })?;
+        if total.merit.is_nan() {
+            break;
+        }
+        if let Some(found) = &mut best
+            && total.missed > 0.5 * found.missed
+        {
+            found.steps = steps;
+            break;
+        }
+        let is_full = accuracy == StepAccuracy::Full;
+        let is_enough = is_full && total.missed <= settings.tolerance;
+        let stalls = is_full && total.wrong == 0 && total.missed > 0.5 * missed;
+        let stalls = stalls && !is_enough && total.missed <= settings.acceptable;
+        if is_enough || stalls {
+            best = Some(Found {
+                at: target.clone(),
+                statuses: statuses.clone(),
+                missed: total.missed,
+                steps,
+            });
+            if total.missed <= settings.round_off || stalls {
+                break;
+            }
+        }
+        patience = match total.merit < least {
+            true => settings.patience,
+            false => patience.saturating_sub(1),
+        };
+        if patience == 0 {
+            break;
+        }
+        least = least.min(total.merit);
+        accuracy = match total.wrong {
+            0 => StepAccuracy::Full,
+            _ => operator.accuracy(total.missed),
+        };
+        (missed, changed) = (total.missed, Some(total.wrong));
+        let opened: OnGroups<Vec<bool>> = look
+            .iter()
+            .map(|(&g, of_group)| (g, of_group.statuses.opened.clone()))
+            .collect();
+        (at, merit, statuses) =
+            part_of_way(operator, laws, (at, merit), target, (look, total), settings);
+        for (g, opened) in opened {
+            if let Some(of_group) = statuses.get_mut(&g) {
+                of_group.opened = opened;
+            }
+        }
+    }
+    Ok(best.unwrap_or(Found {
+        at,
+        statuses,
+        missed: f64::INFINITY,
+        steps: settings.most,
+    }))
+}
+
+/// What the laws say of an iterate, which within round-off keeps the statuses `before`; only the merit counts where these
+/// aren't known. Collective.
+pub fn look<O: ContactOperator>(
+    operator: &O,
+    laws: &OnGroups<ContactLaws<'_>>,
+    at: &OnGroups<Iterate>,
+    before: Option<&OnGroups<Statuses>>,
+    settings: NewtonSettings,
+) -> (OnGroups<LawResidual>, TotalResidual) {
+    let scales = before.map(|_| operator.force_scales(at));
+    let of_group = |(&g, laws): (&usize, &ContactLaws<'_>)| {
+        let known = before.zip(scales.as_ref());
+        (
+            g,
+            laws.residual(
+                &at[&g],
+                known.map(|(before, scales)| (&before[&g], &scales[&g][..])),
+                operator.slack(),
+            ),
+        )
+    };
+    let residuals = laws.iter().map(of_group).collect();
+    let mut total = operator.total(&residuals);
+    if total.merit > settings.law * operator.acting() {
+        total.missed = f64::INFINITY;
+    }
+    (residuals, total)
+}
+
+/// The part of the way from an iterate with this merit to a `target` that lessens it; the whole way if none does. Collective.
+fn part_of_way<O: ContactOperator>(
+    operator: &O,
+    laws: &OnGroups<ContactLaws<'_>>,
+    (from, merit): (OnGroups<Iterate>, f64),
+    target: OnGroups<Iterate>,
+    (whole, of_whole): (OnGroups<LawResidual>, TotalResidual),
+    settings: NewtonSettings,
+) -> (OnGroups<Iterate>, f64, OnGroups<Statuses>) {
+    let lessens = |total: TotalResidual, part: f64| total.merit <= (1.0 - LESSENS * part) * merit;
+    let statuses = |residuals: OnGroups<LawResidual>| {
+        let all = residuals.into_iter();
+        all.map(|(g, residual)| (g, residual.statuses)).collect()
+    };
+    if merit == f64::INFINITY || of_whole.parts || lessens(of_whole, 1.0) {
+        return (target, of_whole.merit, statuses(whole));
+    }
+    let mut part = 0.5;
+    while part >= SMALLEST {
+        let there = operator.between(&from, &target, part);
+        let (residuals, total) = look(operator, laws, &there, None, settings);
+        if lessens(total, part) {
+            return (there, total.merit, statuses(residuals));
+        }
+        part *= 0.5;
+    }
+    (target, of_whole.merit, statuses(whole))
+}
+
+impl LawResidual {
+    /// That of one group.
+    pub fn of_group(&self) -> TotalResidual {
+        let Statuses { closed, points, .. } = &self.statuses;
+        let parts = |status: &PointStatus| matches!(status, PointStatus::Parts { .. });
+        TotalResidual {
+            merit: self.squares,
+            missed: self.missed,
+            active: closed.iter().filter(|closed| **closed).count(),
+            wrong: self.wrong.len(),
+            parts: points.iter().any(parts),
+        }
+    }
+}

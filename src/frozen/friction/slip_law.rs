@@ -1,0 +1,204 @@
+//! The linear law of a slipping point: its force follows what presses, and turns with the slip.
+//!
+//! With e, b = c + μ λ, κ and P = I − e eᵀ, whatever r > 0, what a force λ_t misses is
+//!
+//! ```text
+//! R = e (eᵀ λ_t − b) + w (P λ_t − κ P s),    w = r / (r + κ)
+//! ```
+//!
+//! and e λ in the place of the first part where the contact is about to open. w keeps R as large as forces are.
+
+use crate::contact::friction::Status;
+use crate::contact::law::{PointLaw, PointStatus};
+use crate::contact::limits::{Limits, TangentialLimit};
+use crate::fem::contact_group::ContactGroup;
+
+/// The linear law of a slipping point.
+#[derive(Clone, Debug)]
+pub struct SlipLaw {
+    tangents: [Option<usize>; 2],
+    normal: Option<usize>,
+    /// e.
+    direction: [f64; 2],
+    /// b without pressure (N/m).
+    constant: f64,
+    /// μ.
+    slope: f64,
+    /// w.
+    weight: f64,
+    /// κ (N/m).
+    turning: f64,
+    /// The slip along the second tangent where supports prescribe it (m).
+    prescribed: f64,
+    /// Whether the contact is about to open.
+    parts: bool,
+}
+
+impl SlipLaw {
+    /// The law of a point with this status, whose normal jump is closed or not; `None` where it doesn't slip.
+    pub fn new(point: &PointLaw, status: &PointStatus, is_closed: bool) -> Option<Self> {
+        let (direction, turning, parts) = match *status {
+            PointStatus::Slips { direction, turning } => (direction, turning, false),
+            PointStatus::Parts { direction, turning } => (direction, turning, true),
+            PointStatus::Open | PointStatus::Sticks => return None,
+        };
+        let normal = point.normal.filter(|_| is_closed);
+        let coheres = normal.is_some() || !point.bound.only_closed;
+        Some(Self {
+            tangents: point.tangents,
+            normal,
+            direction,
+            constant: if coheres { point.bound.cohesion } else { 0.0 },
+            slope: normal.map_or(0.0, |_| point.bound.coefficient),
+            weight: point.stiffness / (point.stiffness + turning),
+            turning,
+            prescribed: point.prescribed,
+            parts,
+        })
+    }
+
+    /// The laws of the points of a `group` within `limits` that slip as these statuses of limits say, under these `forces`
+    /// of their conditions, whose directions turn with the slip by the second of `shares`; the constant part of the bound
+    /// is what these lack of it.
+    pub fn of_slipping(
+        group: &ContactGroup,
+        limits: &Limits,
+        (statuses, shares): (&[Status], &[[f64; 2]]),
+        forces: &[f64],
+    ) -> Vec<Self> {
+        let of_limits = limits.conditions_of_limits();
+        let points: Vec<usize> = group.conditions().map(|one| one.point).collect();
+        let law = |tangent: &TangentialLimit| {
+            let (tangents, prescribed) = tangent.of_point()?;
+            let mut direction = [0.0; 2];
+            for (e, t) in direction.iter_mut().zip(tangents.into_iter().flatten()) {
+                *e = forces[of_limits[t]];
+            }
+            let presses = tangent.normal.filter(|&n| statuses[n].is_closed());
+            let normal = presses.map_or(0.0, |n| forces[of_limits[n]]);
+            let bound = tangent.bound.at(normal, presses.is_some());
+            let size = match prescribed == 0.0 {
+                true => direction[0].hypot(direction[1]),
+                false => bound,
+            };
+            let mut all = tangents.into_iter().flatten();
+            let slips = all.all(|t| !statuses[t].is_closed());
+            let [_, turning] = shares[tangent.limit];
+            let stiffness = group.stiffness_at(points[of_limits[tangent.limit]]);
+            (slips && size > 0.0).then(|| Self {
+                direction: direction.map(|e| e / size),
+                tangents,
+                normal: presses,
+                constant: bound - size,
+                slope: tangent.bound.coefficient,
+                weight: stiffness / (stiffness + turning),
+                turning,
+                prescribed: 0.0,
+                parts: false,
+            })
+        };
+        limits.tangents.iter().filter_map(law).collect()
+    }
+
+    /// Adds to `missed` what the `forces` of limits miss with these slips; of a change, without what is constant.
+    pub fn add_missed(
+        &self,
+        forces: &[f64],
+        slip: impl Fn(usize) -> f64,
+        is_change: bool,
+        missed: &mut [f64],
+    ) {
+        let constant = |value: f64| if is_change { 0.0 } else { value };
+        let e = self.direction;
+        let dot = |v: [f64; 2]| v[0] * e[0] + v[1] * e[1];
+        let across = |v: [f64; 2]| [0, 1].map(|k| v[k] - dot(v) * e[k]);
+        let force = self.tangents.map(|t| t.map_or(0.0, |t| forces[t]));
+        let slips = [
+            self.tangents[0].map_or(0.0, &slip),
+            self.tangents[1].map_or(constant(self.prescribed), &slip),
+        ];
+        let pressure = self.normal.map_or(0.0, |n| forces[n]);
+        let turned = across(slips).map(|s| self.turning * s);
+        let bound = constant(self.constant) + self.slope * pressure;
+        // Where the other force isn't an unknown, the law of this one stands alone.
+        let alone = self.tangents[1].is_none();
+        let along = match (self.parts, alone) {
+            (true, _) => e.map(|e| e * pressure),
+            (false, true) => [self.weight * (force[0] - e[0] * bound), 0.0],
+            (false, false) => e.map(|e| e * (dot(force) - bound)),
+        };
+        let rest = if alone { [0.0; 2] } else { across(force) };
+        for (k, t) in self.tangents.into_iter().enumerate() {
+            if let Some(t) = t {
+                missed[t] += along[k] + self.weight * (rest[k] - turned[k]);
+            }
+        }
+    }
+
+    /// The force of a point under this pressure (N/m) whose slip is along e.
+    pub fn set_first(&self, forces: &[f64], first: &mut [f64]) {
+        let e = self.direction;
+        let pressure = self.normal.map_or(0.0, |n| forces[n].max(0.0));
+        let known = self.tangents.map(|t| t.map_or(0.0, |t| forces[t]));
+        let size = match self.parts {
+            true => known[0] * e[0] + known[1] * e[1],
+            false => self.constant + self.slope * pressure,
+        };
+        for (t, e) in self.tangents.into_iter().zip(e) {
+            if let Some(t) = t {
+                first[t] = size * e;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::law::ForceBound;
+
+    const POINT: PointLaw = PointLaw {
+        normal: Some(0),
+        first: 1,
+        tangents: [Some(1), Some(2)],
+        prescribed: 0.0,
+        bound: ForceBound {
+            coefficient: 0.4,
+            cohesion: 0.1,
+            only_closed: true,
+        },
+        stiffness: 3.0,
+    };
+
+    /// λ_t − b ξ/|ξ|, what the law itself misses.
+    fn natural_map(forces: [f64; 3], slips: [f64; 2]) -> [f64; 2] {
+        let bound = POINT.bound.at(forces[0], true);
+        let xi = POINT.reach(slips, [forces[1], forces[2]], bound);
+        let size = xi[0].hypot(xi[1]);
+        [0, 1].map(|k| forces[k + 1] - bound * xi[k] / size)
+    }
+
+    #[test]
+    fn what_the_linear_law_misses_changes_as_what_the_law_misses() {
+        let (forces, slips, step) = ([2.0, 0.5, -0.9], [0.3, -0.7], 1e-6);
+        let bound = POINT.bound.at(forces[0], true);
+        let xi = POINT.reach(slips, [forces[1], forces[2]], bound);
+        let law = SlipLaw::new(&POINT, &POINT.status(xi, bound, 0.0), true).unwrap();
+        for direction in 0..5 {
+            let mut unit = [0.0; 5];
+            unit[direction] = 1.0;
+            let mut change = [0.0; 3];
+            let slip = |t: usize| unit[2 + t];
+            law.add_missed(&unit[..3], slip, true, &mut change);
+            let moved = |by: f64| {
+                let forces = [0, 1, 2].map(|i| forces[i] + by * unit[i]);
+                natural_map(forces, [0, 1].map(|k| slips[k] + by * unit[3 + k]))
+            };
+            let (ahead, back) = (moved(step), moved(-step));
+            for k in 0..2 {
+                let slope = (ahead[k] - back[k]) / (2.0 * step);
+                assert!((change[k + 1] - slope).abs() < 1e-8, "{direction} {k}");
+            }
+        }
+    }
+}
