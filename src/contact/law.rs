@@ -36,7 +36,7 @@ impl ForceBound {
 }
 
 /// The status of a contact point along its tangents.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum PointStatus {
     /// Open: no tangential force.
     Open,

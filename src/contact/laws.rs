@@ -3,6 +3,8 @@
 
 use std::mem::discriminant;
 
+use serde::{Deserialize, Serialize};
+
 use super::dependent::DependentConstraints;
 use super::friction::Status;
 use super::law::{PointLaw, PointStatus};
@@ -24,7 +26,7 @@ pub struct ContactLaws<'a> {
 }
 
 /// The statuses of all limits.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Statuses {
     /// Whether every limit that isn't tangential is closed.
     pub closed: Vec<bool>,
@@ -210,6 +212,23 @@ impl<'a> ContactLaws<'a> {
             points: self.points.iter().map(of_point).collect(),
             closed,
             opened: vec![false; self.points.len()],
+        }
+    }
+
+    /// Puts the statuses of another load step in the place of `own`, but those of slips that supports prescribe.
+    pub fn take_over(&self, known: &Statuses, own: &mut Statuses) {
+        if known.closed.len() != own.closed.len() || known.points.len() != own.points.len() {
+            return;
+        }
+        own.closed.clone_from(&known.closed);
+        let points = self
+            .points
+            .iter()
+            .zip(own.points.iter_mut().zip(&known.points));
+        for (point, (own, known)) in points {
+            if point.prescribed == 0.0 {
+                *own = *known;
+            }
         }
     }
 

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use crate::bddc::solution::{Accuracy, ClusterLoads};
+use crate::contact::laws::Statuses;
 use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::error::Failure;
@@ -28,6 +29,8 @@ pub struct FrozenContact {
     pub conditions: BTreeMap<usize, Vec<(f64, bool)>>,
     /// The unknowns on the boundary of every cluster.
     pub boundaries: BTreeMap<usize, Vec<f64>>,
+    /// The statuses of all limits of every contact group, from which the next load step begins; none where they aren't right.
+    pub statuses: BTreeMap<usize, Statuses>,
     /// How they got there; the same on all ranks but for times.
     pub outcome: SweepOutcome,
 }
@@ -63,7 +66,7 @@ pub(super) struct Conditions<'a> {
 }
 
 /// Finds the active set under `loads` on the boundaries of the clusters, within the `limits` of every contact group
-/// of this rank, from the bilateral problem. Collective.
+/// of this rank, from the statuses of the load step `before`, else from the bilateral problem. Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely, or a signal has asked the run to stop.
@@ -71,7 +74,7 @@ pub fn solve(
     context: &Context<'_>,
     fronts: &mut FrozenFronts,
     limits: &BTreeMap<usize, Limits>,
-    loads: &BTreeMap<usize, Vec<f64>>,
+    (loads, before): (&BTreeMap<usize, Vec<f64>>, &BTreeMap<usize, Statuses>),
     max_steps: Option<usize>,
     observer: &mut dyn FnMut(&SweepRecord),
 ) -> Result<FrozenContact, Failure> {
@@ -85,7 +88,22 @@ pub fn solve(
     };
     let mut outcome = SweepOutcome::before(Vec::new());
     let most = max_steps.unwrap_or(MAX_STEPS);
-    let mut settled = settle(context, fronts, of_set, most, &mut outcome, observer)?;
+    let first = bounds.iter().map(|(&g, bounds)| {
+        let known = before
+            .get(&g)
+            .filter(|known| known.closed.len() == bounds.len());
+        let open = known.map(|known| known.closed.iter().map(|closed| !closed).collect());
+        (g, open.unwrap_or_else(|| vec![false; bounds.len()]))
+    });
+    let first = first.collect();
+    let mut settled = settle(
+        context,
+        fronts,
+        of_set,
+        (first, most),
+        &mut outcome,
+        observer,
+    )?;
     let sweep = outcome.records.len() - 1;
     outcome.status = match settled.wrong {
         _ if !settled.solution.is_finite(context.comm) => not_finite(sweep),
@@ -108,9 +126,24 @@ pub fn solve(
             .zip(limits.closed(open[g].iter().map(|open| !open)));
         (*g, both.collect())
     });
+    let conditions = conditions.collect();
+    let statuses = open
+        .into_iter()
+        .filter(|_| outcome.status == SweepStatus::Converged);
+    let statuses = statuses.map(|(g, open)| {
+        let closed = open.into_iter().map(|open| !open).collect();
+        (
+            g,
+            Statuses {
+                closed,
+                ..Statuses::default()
+            },
+        )
+    });
     Ok(FrozenContact {
-        conditions: conditions.collect(),
+        conditions,
         boundaries: solution.boundaries,
+        statuses: statuses.collect(),
         outcome,
     })
 }
@@ -123,7 +156,7 @@ pub(super) fn not_finite(sweep: usize) -> SweepStatus {
     ))
 }
 
-/// Finds the active set of these conditions, from the bilateral problem, or the one after `most` steps. Collective.
+/// Finds the active set of these conditions, from one that is `open` at first, or the one after `most` steps. Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely, or a signal has asked the run to stop.
@@ -131,15 +164,12 @@ pub(super) fn settle(
     context: &Context<'_>,
     fronts: &mut FrozenFronts,
     of_set: Conditions<'_>,
-    most: usize,
+    (mut open, most): (BTreeMap<usize, Vec<bool>>, usize),
     outcome: &mut SweepOutcome,
     observer: &mut dyn FnMut(&SweepRecord),
 ) -> Result<Settled, Failure> {
     let began = Instant::now();
     let bounds = of_set.bounds;
-    let mut open: BTreeMap<usize, Vec<bool>> = (bounds.iter())
-        .map(|(&g, bounds)| (g, vec![false; bounds.len()]))
-        .collect();
     let (mut exchange, mut descent) = (Exchange::default(), Descent::default());
     let (mut changed, mut is_released) = (None, false);
     let (mut last, mut wrong_by) = (None, 1.0_f64);

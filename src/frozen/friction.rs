@@ -68,7 +68,7 @@ fn begin(
 }
 
 /// Finds what every contact point does under `loads` on the boundaries of the clusters, within the `limits` of every
-/// contact group of this rank, from where all are closed and stick. Where Newton's method gets no further, it begins anew
+/// contact group of this rank, from the statuses of the load step `before`, else from where all are closed and stick. Where Newton's method gets no further, it begins anew
 /// where those are closed that press while everything sticks along tangents, open or closed: a convex problem, in which no
 /// body is without a hold because contacts open that are far from each other. Collective.
 ///
@@ -78,7 +78,7 @@ pub fn solve(
     context: &Context<'_>,
     fronts: &mut FrozenFronts,
     limits: &BTreeMap<usize, Limits>,
-    loads: &BTreeMap<usize, Vec<f64>>,
+    (loads, before): (&BTreeMap<usize, Vec<f64>>, &BTreeMap<usize, Statuses>),
     max_steps: Option<usize>,
     observer: &mut dyn FnMut(&SweepRecord),
 ) -> Result<FrozenContact, Failure> {
@@ -110,6 +110,11 @@ pub fn solve(
         law: 1.0,
     };
     let (mut start, mut statuses) = begin(&laws, |g| vec![false; bounds[&g].len()]);
+    for (g, own) in &mut statuses {
+        if let Some(known) = before.get(g) {
+            laws[g].take_over(known, own);
+        }
+    }
     let mut is_anew = false;
     loop {
         let mut operator = TreeOperator {
@@ -141,14 +146,11 @@ pub fn solve(
                 .map(|(&g, laws)| (g, laws.is_tangential.clone()))
                 .collect(),
         };
-        let settled = settle(
-            context,
-            fronts,
-            sticking,
-            settings.most,
-            &mut outcome,
-            observer,
-        )?;
+        let first = (bounds.iter())
+            .map(|(&g, bounds)| (g, vec![false; bounds.len()]))
+            .collect();
+        let first = (first, settings.most);
+        let settled = settle(context, fronts, sticking, first, &mut outcome, observer)?;
         (start, statuses) = begin(&laws, |g| settled.open[&g].clone());
     }
 }
@@ -207,9 +209,15 @@ fn conclude(
             .zip(limits.closed(closed));
         (g, both.collect())
     });
+    let conditions = conditions.collect();
+    let statuses = match outcome.status {
+        SweepStatus::Converged => found.statuses,
+        SweepStatus::NotConverged(_) => BTreeMap::new(),
+    };
     Ok(FrozenContact {
-        conditions: conditions.collect(),
+        conditions,
         boundaries: solution.boundaries,
+        statuses,
         outcome,
     })
 }

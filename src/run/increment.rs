@@ -7,6 +7,7 @@ use crate::certificate::energy::{BlockEnergy, EnergyBalance};
 use crate::certificate::scales::Scales;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::limits::limits_of_groups;
+use crate::contact::laws::Statuses;
 use crate::contact::pair::ContactPair;
 use crate::context::{Context, Moment};
 use crate::error::Failure;
@@ -54,6 +55,8 @@ pub struct Increments<'a> {
 pub struct Increment {
     /// The clusters in contact of this rank.
     pairs: BTreeMap<usize, ContactPair>,
+    /// The statuses of the contact groups of this rank, where the tree solves for them.
+    statuses: BTreeMap<usize, Statuses>,
     /// What the sweeps found; on the root.
     pub outcome: Option<SweepOutcome>,
     /// What follows from it.
@@ -183,6 +186,7 @@ impl Increments<'_> {
         let lap = comm.times();
         let (mut start, held_at) = (before.start(), before.slips.clone());
         let energies_before = std::mem::take(&mut before.energies);
+        let mut statuses = std::mem::take(&mut before.statuses);
         let loads = before.loads(&context, moment, analysis);
         let loading = Loading {
             context,
@@ -208,8 +212,10 @@ impl Increments<'_> {
             Some(fronts) => {
                 let (fronts, loads) = (&mut fronts.borrow_mut(), &problem.condensed);
                 let before = fronts.solves;
-                let contact = sweep_frozen(&context, settings, log, fronts, loads, &limits)
+                let of_limits = (&limits, &statuses);
+                let contact = sweep_frozen(&context, settings, log, fronts, loads, of_limits)
                     .map_err(|failure| context.of_pivot(failure))?;
+                statuses.clone_from(&contact.statuses);
                 self.count(fronts.solves - before);
                 let outcome = contact.outcome.clone();
                 found = Some(contact);
@@ -266,6 +272,7 @@ impl Increments<'_> {
         Ok(Increment {
             slips: solution.discrete.slips(&context, &held_at),
             pairs: problem.pairs,
+            statuses,
             outcome,
             solution,
             energies,
@@ -301,13 +308,15 @@ impl Increment {
     ) -> StepState {
         let outcome = self.outcome.as_ref();
         let from = (outcome, self.scales);
-        StepState::after(self.pairs.clone(), slips, energies, from, method)
+        let contact = (self.pairs.clone(), self.statuses.clone());
+        StepState::after(contact, slips, energies, from, method)
     }
 
     /// The state that it leaves.
     pub fn into_state(self, method: Method) -> StepState {
         let outcome = self.outcome.as_ref();
         let from = (outcome, self.scales);
-        StepState::after(self.pairs, self.slips.jumps, self.energies, from, method)
+        let contact = (self.pairs, self.statuses);
+        StepState::after(contact, self.slips.jumps, self.energies, from, method)
     }
 }

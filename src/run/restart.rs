@@ -17,6 +17,7 @@ use crate::certificate::energy::BlockEnergy;
 use crate::certificate::scales::Scales;
 use crate::comm::Comm;
 use crate::contact::friction::Status;
+use crate::contact::laws::Statuses;
 use crate::contact::pair::PairState;
 use crate::context::Context;
 use crate::error::Failure;
@@ -37,6 +38,8 @@ struct Kept {
     interface: Option<(Vec<f64>, Vec<Vec<Status>>)>,
     /// The clusters in contact.
     pairs: Vec<PairState>,
+    /// The statuses of every contact group, where the tree solves for them.
+    statuses: Vec<Option<Statuses>>,
     /// The tangential jumps of every contact group (m).
     slips: Vec<Vec<f64>>,
     /// What the balance of energy needs of every block, where there is friction.
@@ -137,10 +140,12 @@ impl Finished {
     pub fn state(&mut self, context: &Context<'_>) -> StepState {
         let comm = context.comm;
         let (mut pairs, mut slips, mut energies) = (Vec::new(), Vec::new(), Vec::new());
+        let mut statuses = Vec::new();
         let mut state = StepState::default();
         if let Some(kept) = self.kept.take() {
             state.interface = kept.interface;
             pairs = kept.pairs;
+            statuses = kept.statuses;
             slips = kept.slips;
             energies = kept.energies;
         }
@@ -156,6 +161,15 @@ impl Finished {
             |g| Reals(slips[g].clone()),
             |g, Reals(of_group)| {
                 state.slips.insert(g, of_group);
+            },
+        );
+        comm.scatter(
+            &context.plan.group_owners(),
+            |g| std::mem::take(&mut statuses[g]),
+            |g, of_group: Option<Statuses>| {
+                state
+                    .statuses
+                    .extend(of_group.map(|of_group| (g, of_group)));
             },
         );
         if context.catalog.has_friction() {
@@ -217,6 +231,12 @@ pub fn keep(
         |g| Reals(state.slips[&g].clone()),
         |_, Reals(of_group)| slips.push(of_group),
     );
+    let mut statuses = Vec::new();
+    context.comm.gather(
+        &context.plan.group_owners(),
+        |g| state.statuses.get(&g).cloned(),
+        |_, of_group| statuses.push(of_group),
+    );
     let mut energies = Vec::new();
     if context.catalog.has_friction() {
         context.comm.gather(
@@ -231,6 +251,7 @@ pub fn keep(
             steps: steps.to_vec(),
             interface: state.interface.clone(),
             pairs,
+            statuses,
             slips,
             energies,
             passage: passage.clone(),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::contact::laws::Statuses;
 use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
 use crate::context::Context;
@@ -48,7 +49,7 @@ pub fn sweep(
 }
 
 /// Finds which of many conditions are closed in a load step, one frozen active set after the other, and tells of
-/// every one. Collective.
+/// every one; the first has the statuses of the load step `before`. Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely.
@@ -58,7 +59,7 @@ pub fn sweep_frozen(
     log: &RunLog<'_>,
     fronts: &mut FrozenFronts,
     condensed: &BTreeMap<usize, CondensedLoad>,
-    limits: &BTreeMap<usize, Limits>,
+    (limits, before): (&BTreeMap<usize, Limits>, &BTreeMap<usize, Statuses>),
 ) -> Result<FrozenContact, Failure> {
     log.sweeps(true);
     let loads = condensed
@@ -74,7 +75,7 @@ pub fn sweep_frozen(
         context,
         fronts,
         limits,
-        &loads,
+        (&loads, before),
         settings.max_sweeps,
         &mut observer,
     )

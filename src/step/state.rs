@@ -8,6 +8,7 @@ use contact_dd_partition::destination::unfinished;
 use crate::certificate::energy::BlockEnergy;
 use crate::certificate::scales::Scales;
 use crate::contact::friction::Status;
+use crate::contact::laws::Statuses;
 use crate::contact::pair::{ContactPair, PairState};
 use crate::context::{Context, Loads, Moment};
 use crate::error::Failure;
@@ -24,6 +25,8 @@ pub struct StepState {
     pub interface: Option<(Vec<f64>, Vec<Vec<Status>>)>,
     /// The clusters in contact of this rank, by their place among those.
     pub pairs: BTreeMap<usize, PairState>,
+    /// The statuses of the contact groups of this rank, where the tree solves for them; none where they weren't found.
+    pub statuses: BTreeMap<usize, Statuses>,
     /// The tangential jumps at the tangential conditions of every contact group of this rank, since the bodies
     /// were unloaded (m).
     pub slips: BTreeMap<usize, Vec<f64>>,
@@ -38,7 +41,7 @@ impl StepState {
     /// place to start from; neither are others for picard, whose relaxation is that of the contacts that the
     /// bilateral solution leaves closed.
     pub fn after(
-        pairs: BTreeMap<usize, ContactPair>,
+        (pairs, statuses): (BTreeMap<usize, ContactPair>, BTreeMap<usize, Statuses>),
         slips: BTreeMap<usize, Vec<f64>>,
         energies: BTreeMap<usize, BlockEnergy>,
         (outcome, scales): (Option<&SweepOutcome>, Scales),
@@ -51,6 +54,7 @@ impl StepState {
         Self {
             interface: (outcome.filter(starts)).map(|o| (o.u.clone(), o.statuses.clone())),
             pairs: pairs.map(|(p, pair)| (p, pair.into_state())).collect(),
+            statuses,
             slips,
             energies,
             scales,
