@@ -197,15 +197,9 @@ impl<'a> ContactLaws<'a> {
                 }
                 false => ([own.sign(), 0.0], 0.0),
             };
-            match own {
-                Status::Parting if size > 0.0 && point.prescribed == 0.0 => PointStatus::Parts {
-                    direction,
-                    turning: 0.0,
-                },
-                _ if own.is_closed() && point.prescribed == 0.0 || direction == [0.0; 2] => {
-                    PointStatus::Sticks
-                }
-                _ => PointStatus::Slips { direction, turning },
+            match own.is_closed() && point.prescribed == 0.0 || direction == [0.0; 2] {
+                true => PointStatus::Sticks,
+                false => PointStatus::Slips { direction, turning },
             }
         };
         Statuses {

@@ -139,6 +139,8 @@ pub struct Found {
     pub at: OnGroups<Iterate>,
     /// The statuses whose equations these fulfil.
     pub statuses: OnGroups<Statuses>,
+    /// The limits whose statuses were wrong in the last step.
+    pub wrong: OnGroups<Vec<usize>>,
     /// What is missed of the laws, relative to the scales of forces; infinite where the method doesn't converge.
     pub missed: f64,
     /// Linear systems solved.
@@ -160,11 +162,14 @@ pub fn newton<O: ContactOperator>(
     let (mut merit, mut changed) = (f64::INFINITY, None);
     let (mut least, mut patience) = (f64::INFINITY, settings.patience);
     let (mut accuracy, mut missed) = (operator.accuracy(f64::INFINITY), f64::INFINITY);
-    let mut best: Option<Found> = None;
+    let (mut best, mut wrong): (Option<Found>, _) = (None, OnGroups::new());
     for steps in 1..=settings.most {
         let target = operator.step(&at, &statuses, accuracy)?;
         let (look, total) = look(operator, laws, &target, Some(&statuses), settings);
         operator.record(NewtonStep { total, changed })?;
+        wrong = (look.iter())
+            .map(|(&g, of_group)| (g, of_group.wrong.clone()))
+            .collect();
         if total.merit.is_nan() {
             break;
         }
@@ -182,6 +187,7 @@ pub fn newton<O: ContactOperator>(
             best = Some(Found {
                 at: target.clone(),
                 statuses: statuses.clone(),
+                wrong: OnGroups::new(),
                 missed: total.missed,
                 steps,
             });
@@ -217,6 +223,7 @@ pub fn newton<O: ContactOperator>(
     Ok(best.unwrap_or(Found {
         at,
         statuses,
+        wrong,
         missed: f64::INFINITY,
         steps: settings.most,
     }))

@@ -165,12 +165,6 @@ fn conclude(
     mut outcome: SweepOutcome,
 ) -> Result<FrozenContact, Failure> {
     let sweep = outcome.records.len() - 1;
-    let wrong = |g: usize| {
-        let (at, statuses) = (&found.at[&g], &found.statuses[&g]);
-        laws[&g]
-            .residual(at, Some((statuses, &vec![1.0; at.forces.len()])), 0.0)
-            .wrong
-    };
     let is_finite = solution.is_finite(context.comm);
     outcome.status = match found.missed.is_finite() {
         _ if !is_finite => not_finite(sweep),
@@ -183,7 +177,7 @@ fn conclude(
     end(&mut outcome);
     solution.cut();
     if outcome.status != SweepStatus::Converged {
-        outcome.name_unsettled(&names(context, limits, wrong));
+        outcome.name_unsettled(&names(context, limits, &found.wrong));
     }
     let conditions = limits.iter().map(|(&g, limits)| {
         let (laws, at, statuses) = (&laws[&g], &found.at[&g], &found.statuses[&g]);
@@ -226,7 +220,7 @@ fn conclude(
 fn names(
     context: &Context<'_>,
     limits: &BTreeMap<usize, Limits>,
-    wrong: impl Fn(usize) -> Vec<usize>,
+    wrong: &OnGroups<Vec<usize>>,
 ) -> Vec<String> {
     let Context {
         comm,
@@ -245,7 +239,7 @@ fn names(
         &plan.group_owners(),
         |g| {
             let points = points_of_limits(&groups[&g], &limits[&g]);
-            let wrong: BTreeSet<usize> = wrong(g).into_iter().map(|i| points[i]).collect();
+            let wrong: BTreeSet<usize> = wrong[&g].iter().map(|&i| points[i]).collect();
             wrong.into_iter().map(|point| name(g, point)).collect()
         },
         |_, of_group: Vec<String>| names.extend(of_group),

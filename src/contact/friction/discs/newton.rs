@@ -53,9 +53,9 @@ impl Discs<'_> {
             return (found, true, false);
         }
         let mut steps = at_once.steps;
-        if !problem.has_discs() {
-            let found = self.along_lemke_s_path(problem, &mut steps);
-            let found = found.unwrap_or(at_once);
+        if !problem.has_discs()
+            && let Some(found) = self.along_lemke_s_path(problem, &mut steps)
+        {
             return (Found { steps, ..found }, true, false);
         }
         match self.with_dashpots(&start, &state, &mut steps) {
