@@ -5,6 +5,7 @@ use std::convert::Infallible;
 use super::{Discs, Found, Rest};
 use crate::contact::active_set::{ContactProblem, FORCE_TOLERANCE};
 use crate::contact::friction::{ATTEMPTS, FrictionProblem, Status};
+use crate::contact::law::PointStatus;
 use crate::contact::laws::{Iterate, LawResidual, Statuses};
 use crate::contact::newton::{
     ContactOperator, NewtonSettings, NewtonStep, OnGroups, StepAccuracy, TotalResidual, newton,
@@ -79,6 +80,13 @@ impl Discs<'_> {
             let start = self.place(end.jumps, vec![0.0; self.contact.rows.len()]);
             let mut state = self.laws.begin(&end.status, &start);
             state.opened.fill(true);
+            for (point, own) in self.laws.points.iter().zip(&mut state.points) {
+                if let (Status::Parting, PointStatus::Slips { direction, turning }) =
+                    (end.status[point.first], *own)
+                {
+                    *own = PointStatus::Parts { direction, turning };
+                }
+            }
             let found = self.newton(&start, &state, STEPS);
             *steps += found.steps;
             if found.converged() {
