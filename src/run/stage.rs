@@ -66,8 +66,9 @@ struct Parts {
 struct Relief {
     /// What it merges.
     merging: Merging,
-    /// The state that it starts from.
+    /// The state that it starts from, with the owners of the plan of before.
     state: StepState,
+    plan: Plan,
     /// Which one didn't converge, and why, as the root knows it.
     why: String,
 }
@@ -253,7 +254,10 @@ impl Stages<'_> {
             linear_solves,
         };
         let (mut state, mut why) = match relieved {
-            Some(relieved) => (relieved.state, Some(relieved.why)),
+            Some(relieved) => (
+                relieved.state.handed_over(&context, &relieved.plan),
+                Some(relieved.why),
+            ),
             None if finished.count > first => (finished.state(&context), None),
             None => (finished.passage.state(&context, stage), None),
         };
@@ -283,6 +287,7 @@ impl Stages<'_> {
                 return Ok(Some(Relief {
                     merging: relief,
                     state,
+                    plan: parts.plan.clone(),
                     why: format!(
                         "{} didn't converge ({why}); {} took over",
                         merging.solver(),

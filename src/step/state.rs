@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use contact_dd_partition::destination::unfinished;
 
+use crate::bytes::Reals;
 use crate::certificate::energy::BlockEnergy;
 use crate::certificate::scales::Scales;
 use crate::contact::friction::Status;
@@ -12,6 +13,7 @@ use crate::contact::laws::Statuses;
 use crate::contact::pair::{ContactPair, PairState};
 use crate::context::{Context, Loads, Moment};
 use crate::error::Failure;
+use crate::plan::Plan;
 use crate::rigid::body_analysis::{RigidBodyAnalysis, analyse_bodies};
 use crate::rigid::closing_motion::without_closing_motions;
 use crate::rigid::infeasible_nodes;
@@ -76,6 +78,35 @@ impl StepState {
             loads.gaps[first..].copy_from_slice(slips);
         }
         without_closing_motions(context, loads, analysis)
+    }
+
+    /// The same, which the owners of groups and blocks of a plan `before` have, with those of the plan of now. Collective.
+    #[must_use]
+    pub fn handed_over(mut self, context: &Context<'_>, before: &Plan) -> Self {
+        let Context { comm, plan, .. } = *context;
+        let ways = |from: &[usize], to: &[usize]| -> Vec<(usize, usize)> {
+            from.iter().copied().zip(to.iter().copied()).collect()
+        };
+        let (mut slips, mut energies) = (BTreeMap::new(), BTreeMap::new());
+        comm.route(
+            ways(&before.group_owners(), &plan.group_owners()),
+            |g| self.slips.remove(&g).map(Reals),
+            |g, of_group| {
+                slips.extend(of_group.map(|Reals(of_group)| (g, of_group)));
+            },
+        );
+        comm.route(
+            ways(before.owners(), plan.owners()),
+            |b| self.energies.remove(&b),
+            |b, energy| {
+                energies.extend(energy.map(|energy| (b, energy)));
+            },
+        );
+        Self {
+            slips,
+            energies,
+            ..self
+        }
     }
 
     /// Where the sweeps of the next step begin; on the root.
