@@ -105,6 +105,8 @@ impl StepState {
         Self {
             slips,
             energies,
+            // Another solver begins where all is closed.
+            statuses: BTreeMap::new(),
             ..self
         }
     }
