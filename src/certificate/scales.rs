@@ -48,6 +48,10 @@ impl Scales {
             // So far it was driven then.
             most.driven = larger(most.driven, self.displacement);
         }
+        if most.scale < NOTHING * self.terms {
+            // Nothing acts at all; contacts may have carried nothing before, either.
+            most.contact_force = larger(most.contact_force, self.terms);
+        }
         for (own, earlier) in [
             (&mut most.scale, self.terms),
             (&mut most.external, self.external),

@@ -447,7 +447,7 @@ fn conditions_with_friction_that_share_a_jump_are_solved_directly() {
 /// the slips that these left.
 #[test]
 fn the_direct_solver_goes_on_from_the_slips_of_before_on_any_number_of_ranks() {
-    let mut drawn = draw_frictional(475_920, 12);
+    let mut drawn = draw_frictional(71_068, 8);
     drawn.ranks = 2;
     let trial = Trial::with(&drawn, built(), LIMIT, None, Interface::Iterative(8));
     assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);

@@ -79,14 +79,8 @@ fn a_block_slides_that_pulls_more_than_given_friction_and_cohesion_hold() {
     slides(&pulls(2e4 * (1.0 + 1e-12), "tresca = 1e4"), "block");
     let law = "friction = 0.5\ncohesion = 1e4";
     slides(&pulls(3.3e4 * (1.0 + 1e-12), law), "block");
-    // Rigid bodies would stand this, but corners that lift lose their cohesion: nothing proves that it slides.
-    let ended = pulls(3.3e4 * 0.99, law);
-    assert_eq!(ended.code(), 3, "{}{}", ended.stdout, ended.stderr);
-    assert!(
-        ended.stderr.contains("slides or parts on and on"),
-        "{}",
-        ended.stderr
-    );
+    // Rigid bodies would stand this, but corners that lift lose their cohesion.
+    slides(&pulls(3.3e4 * 0.99, law), "block");
 }
 
 #[test]
