@@ -158,8 +158,8 @@ def numbers_of(result: Result) -> Iterator[tuple[tuple[str, str, str], float]]:
 
 
 def energy_error(result: Result) -> float:
-    """Half the square of the estimated error in the energy norm, in the load step where it is largest: by so much energies
-    are off."""
+    """Half the square of the estimated error in the energy norm, in the load step where it is largest: the error of
+    energies."""
     steps = result.report["steps"] or [result.report]
     estimates = [step["error_estimate"] for step in steps if step["error_estimate"]]
     return max((0.5 * float(estimate["error"]) ** 2 for estimate in estimates), default=0.0)
