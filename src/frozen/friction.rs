@@ -125,6 +125,7 @@ pub fn solve(
             loads,
             bounds: &bounds,
             solution: FrozenSolution::default(),
+            is_answered: false,
             is_released: false,
             outcome: &mut outcome,
             began,

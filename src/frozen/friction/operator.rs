@@ -38,6 +38,8 @@ pub(super) struct TreeOperator<'a, 'o> {
     pub bounds: &'a BTreeMap<usize, Vec<f64>>,
     /// The last answer.
     pub solution: FrozenSolution,
+    /// Whether there was one.
+    pub is_answered: bool,
     /// Whether springs of earlier statuses were taken away.
     pub is_released: bool,
     pub outcome: &'a mut SweepOutcome,
@@ -158,7 +160,8 @@ impl ContactOperator for TreeOperator<'_, '_> {
             clusters: self.loads,
             prescribed: self.bounds,
         };
-        let start = (!self.solution.tops.is_empty()).then(|| FrozenSolution {
+        // The same on all ranks, of which some have no clusters.
+        let start = self.is_answered.then(|| FrozenSolution {
             iterations: 0,
             ..std::mem::take(&mut self.solution)
         });
@@ -178,7 +181,7 @@ impl ContactOperator for TreeOperator<'_, '_> {
             solution = problem.respond(self.fronts, &slip_forces, tolerance, Some(&solution))?;
             at = self.iterates(&solution, &slip_forces);
         }
-        self.solution = solution;
+        (self.solution, self.is_answered) = (solution, true);
         Ok(at)
     }
 
