@@ -453,3 +453,15 @@ fn the_direct_solver_goes_on_from_the_slips_of_before_on_any_number_of_ranks() {
     assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);
     assert_eq!(trial.report.unwrap()["contact_operator"], "dense");
 }
+
+/// Some ranks have no cluster, and take part in every iteration all the same.
+#[test]
+fn ranks_without_clusters_keep_nobody_waiting() {
+    for ranks in [2, 4] {
+        let mut drawn = draw_frictional(125_703, 12);
+        drawn.ranks = ranks;
+        let trial = Trial::with(&drawn, built(), LIMIT, None, Interface::Iterative(8));
+        assert_eq!(trial.verdict, Verdict::Right, "{ranks}: {}", trial.reason);
+        assert_eq!(trial.report.unwrap()["contact_operator"], "bddc");
+    }
+}
