@@ -9,9 +9,9 @@ mod classes;
 mod closed;
 pub mod cluster_schur;
 mod coarse;
+mod conjugate_gradients;
 mod constraints;
 mod depth;
-mod gradients;
 mod local;
 mod motions;
 mod placement;
@@ -25,9 +25,9 @@ use self::classes::Classes;
 use self::closed::{GroupBetween, Ties};
 use self::cluster_schur::ClusterSchur;
 use self::coarse::{Coarse, Part};
-use self::constraints::{Basis, Side};
+use self::constraints::{Basis, Mechanism, Side};
 use self::depth::Depth;
-use self::local::{Local, Moves, Shared};
+use self::local::{Local, Shared};
 use self::motions::SharedNodes;
 use self::placement::Placement;
 use crate::comm::Comm;
@@ -352,7 +352,7 @@ impl Bddc {
                     let ends = class.clusters.iter().map(|&c| (k, c));
                     results.extend(ends.zip(bases));
                 }
-                Err(Moves) => result = Err(moves(Moves)),
+                Err(Mechanism) => result = Err(moves(Mechanism)),
             }
         }
         comm.agree(result)?;
@@ -385,7 +385,7 @@ impl Bddc {
     }
 }
 
-fn moves(Moves: Moves) -> Failure {
+fn moves(Mechanism: Mechanism) -> Failure {
     Failure::ill_posed(
         "a part of the scene can move although every contact that presses is held; expected supports or contact that \
          hold it",

@@ -4,13 +4,15 @@
 
 pub mod check;
 pub mod energy;
+pub mod most;
 pub mod scales;
 pub mod shared;
 
 use contact_dd_partition::model::PlaneState;
 use serde::{Deserialize, Serialize};
 
-use self::check::{BlockCheck, External, Most};
+use self::check::{BlockCheck, External};
+use self::most::Most;
 use self::scales::Scales;
 use crate::vector::{larger, largest};
 

@@ -7,6 +7,9 @@ pub mod clock;
 mod launcher;
 #[cfg(debug_assertions)]
 mod on_purpose;
+mod phase;
+pub mod ranks;
+mod signals;
 mod start;
 mod ways;
 
@@ -21,8 +24,10 @@ use serde::de::DeserializeOwned;
 
 use clock::{Clock, Stamp, Times};
 pub use launcher::{is_first, is_launched};
-use start::current_phase;
-pub use start::{World, is_asked_to_stop, library, phase, start};
+use phase::current_phase;
+pub use phase::phase;
+pub use signals::is_asked_to_stop;
+pub use start::{World, library, start};
 
 use crate::error::Failure;
 
@@ -83,7 +88,7 @@ impl Comm {
     /// The failure that the ranks agreed on.
     pub fn agree<T>(&self, result: Result<T, Failure>) -> Result<T, Failure> {
         #[cfg(debug_assertions)]
-        let result = on_purpose::failure().map_or(result, Err);
+        let result = on_purpose::failure(current_phase()).map_or(result, Err);
         let mine = match &result {
             Ok(_) => self.size() as i32,
             Err(_) => self.rank() as i32,

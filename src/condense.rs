@@ -11,15 +11,14 @@ pub mod tree;
 use contact_dd_partition::problem::Catalog;
 
 use crate::condense::blocks::{CondensedBlock, CondensedBlocks};
-use crate::contact::jumps::{Jumps, NoUnknown};
 use crate::context::Context;
 use crate::context::Loads;
+use crate::context::hierarchy::jumps;
 use crate::error::Failure;
+use crate::fem::assembly::FixingDof;
 use crate::fem::assembly::assemble;
 use crate::fem::block::Block;
-use crate::fem::contact_group::ContactGroup;
 use crate::fem::dofs::{Dofs, TooManyUnknowns};
-use crate::rigid::analysis::FixingDof;
 use crate::schur::condensed::Condensed;
 use crate::schur::factor::FactorError;
 use crate::schur::local::LocalSchur;
@@ -92,24 +91,6 @@ impl Condensation<'_> {
         };
         Ok(group.replaced(&jumps(&self.context, g, group)?))
     }
-}
-
-/// The jumps of contact group g of this rank.
-///
-/// # Errors
-/// A contact point that nothing can be replaced for.
-pub fn jumps(context: &Context<'_>, g: usize, group: &ContactGroup) -> Result<Jumps, Failure> {
-    let node = &context.plan.tree.nodes[context.plan.groups[g].node];
-    group.jumps(&node.eliminated).map_err(|NoUnknown(j)| {
-        let number = group.conditions().nth(j).map_or(0, |condition| condition.point);
-        let point = &group.points[number];
-        let contact = &context.catalog.contacts[point.contact as usize].name;
-        Failure::input(format!(
-            "contact '{contact}': the point of nodes {} and {} can't be told from others that share \
-             its nodes; expected points whose rows are independent, or multiples of each other",
-            point.tag_a, point.tag_b
-        ))
-    })
 }
 
 /// The fixing dofs that lie in a block: node and component.

@@ -1,5 +1,7 @@
 //! What every phase of a run works on.
 
+pub mod hierarchy;
+
 use std::collections::BTreeMap;
 
 use contact_dd_partition::magnitude::short;

@@ -5,8 +5,10 @@
 pub mod assembly;
 pub mod balance;
 pub mod block;
+pub mod body_frame;
 pub mod contact_group;
 pub mod contact_node;
+pub mod contact_state;
 pub mod dofs;
 pub mod elasticity;
 pub mod estimate;
@@ -16,6 +18,7 @@ pub mod patch;
 pub mod polynomial;
 pub mod prescribed;
 pub mod recovery;
+pub mod resultants;
 mod sites;
 pub mod strain;
 pub mod stress;

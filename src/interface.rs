@@ -4,5 +4,6 @@ pub mod coupled;
 pub mod numbering;
 pub mod operator;
 pub mod problem;
+pub mod rigid_modes;
 pub mod s_con;
 pub mod solver;

@@ -3,16 +3,12 @@
 //! [`result`] holds what the ranks hand over, [`vtkhdf`] streams it into the result file in slabs of
 //! subdomains, [`report`] is the JSON of `--report` and of the file's attribute, [`terminal`] prints for
 //! people, [`event`] for programs and what went wrong, [`mod@bar`] draws the bar; [`lock`] keeps other runs from the
-//! same output. Only the root writes
-//! files and tells of the run; [`ranks`] and [`memory`] are what every rank measures of itself.
+//! same output. Only the root writes files and tells of the run.
 
 pub mod bar;
 pub mod event;
 pub mod lock;
-pub mod memory;
-pub mod ranks;
 pub mod report;
 pub mod result;
-pub mod resultants;
 pub mod terminal;
 pub mod vtkhdf;

@@ -4,17 +4,20 @@ mod assign;
 pub mod cluster;
 pub mod cost;
 
+pub mod group;
 pub mod links;
+pub mod memory;
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
-use contact_dd_partition::problem::tree::Tree;
-use contact_dd_partition::problem::{Catalog, choice};
+use contact_dd_partition::hierarchy::choice;
+use contact_dd_partition::hierarchy::tree::Tree;
+use contact_dd_partition::problem::Catalog;
 
 use self::assign::assign;
 use self::cluster::{ClusterPlan, Merging, cluster_nodes};
-use self::links::GroupPlan;
+use self::group::GroupPlan;
 
 /// The blocks, which are the subdomains, and the clusters in the order of the hierarchy; every sum runs in this
 /// order, whoever owns what.

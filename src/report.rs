@@ -4,19 +4,19 @@ pub mod log;
 pub mod totals;
 pub mod write;
 
+use contact_dd_partition::hierarchy::choice::InterfaceTimes;
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
-use contact_dd_partition::problem::choice::InterfaceTimes;
 
+use crate::comm::ranks::{PhaseSeconds, RankReport, RankSeconds};
 use crate::comm::{self, Comm};
 use crate::error::Failure;
-use crate::output::memory::peak_memory_bytes;
-use crate::output::ranks::{PhaseSeconds, RankReport, RankSeconds};
+use crate::fem::resultants::Resultants;
 use crate::output::report::{Build, ContactOperator, Report, ReportFile, Status};
-use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::ResultFile;
 use crate::plan::Plan;
 use crate::plan::cluster::Merging;
+use crate::plan::memory::peak_memory_bytes;
 use crate::report::totals::{StepTotals, Totals};
 use crate::settings::Settings;
 use crate::settings::command_line::InterfaceMethod;

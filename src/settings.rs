@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use contact_dd_partition::hierarchy::choice::InterfaceTimes;
 use contact_dd_partition::problem::Catalog;
-use contact_dd_partition::problem::choice::InterfaceTimes;
-use contact_dd_partition::solver::{Positive, SolverSettings};
+use contact_dd_partition::solver::{Method, Positive, SolverSettings};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
@@ -19,7 +19,6 @@ use self::command_line::{CommandLine, InterfaceMethod, LogFormat};
 use crate::error::Failure;
 use crate::plan::Plan;
 use crate::plan::cluster::Merging;
-use crate::sweep::{Method, SweepSettings};
 
 /// Relative residual of the interface problem at which sweeps end.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -203,6 +202,21 @@ impl Settings {
         list.push(said("result", "output", self.output.display().to_string()));
         list
     }
+}
+
+/// What a user sets of the sweeps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SweepSettings {
+    /// Method.
+    pub method: Method,
+    /// Residual, relative to the terms that it is a sum of, at which sweeps end.
+    pub tolerance: f64,
+    /// Most sweeps; `None` for the method's own limit.
+    pub max_sweeps: Option<usize>,
+    /// θ of `picard`; `None` to find one.
+    pub relaxation: Option<f64>,
+    /// Whether to look for another solution where there is friction.
+    pub second_start: bool,
 }
 
 /// What settled a setting.

@@ -24,6 +24,7 @@ use crate::error::Failure;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::{ConState, ConTotals, Expected, SCon};
+use crate::settings::SweepSettings;
 use crate::vector::largest;
 
 /// Residual that is round-off and nothing else.
@@ -31,21 +32,6 @@ const ROUND_OFF: f64 = 1e-15;
 
 /// Residual to which a method goes that took over: there may be nothing to refine with afterwards.
 const FALL_BACK_TOLERANCE: f64 = 1e-13;
-
-/// What a user sets.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SweepSettings {
-    /// Method.
-    pub method: Method,
-    /// Residual, relative to the terms that it is a sum of, at which sweeps end.
-    pub tolerance: f64,
-    /// Most sweeps; `None` for the method's own limit.
-    pub max_sweeps: Option<usize>,
-    /// θ of `picard`; `None` to find one.
-    pub relaxation: Option<f64>,
-    /// Whether to look for another solution where there is friction.
-    pub second_start: bool,
-}
 
 /// The sweeps on the root.
 pub struct Sweeps<'a, 'c> {

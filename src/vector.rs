@@ -13,6 +13,9 @@ pub fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     }
 }
 
+/// Part of the largest scale, of the load or of the load steps before, below which a scale is of their round-off alone.
+pub const NOTHING: f64 = 1e-12;
+
 /// ‖x‖∞; not a number where x has one.
 pub fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |most, &x| larger(most, x))

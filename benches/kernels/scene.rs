@@ -1,9 +1,10 @@
 //! The blocks of a built-in scene, as one rank would have them.
 
 use contact_dd_mpi::fem::assembly::assemble;
+use contact_dd_mpi::fem::assembly::load;
 use contact_dd_mpi::fem::block::Block;
 use contact_dd_mpi::fem::dofs::Dofs;
-use contact_dd_mpi::fem::load::{BlockLoads, load};
+use contact_dd_mpi::fem::load::BlockLoads;
 use contact_dd_mpi::fem::prescribed::Prescribed;
 use contact_dd_mpi::plan::Plan;
 use contact_dd_mpi::plan::cluster::Merging;

@@ -6,7 +6,6 @@ mod clumps;
 mod dissect;
 mod flow;
 mod graph;
-pub mod hierarchy;
 mod metis;
 pub mod summary;
 mod ties;

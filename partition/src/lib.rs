@@ -26,7 +26,7 @@
 //! > Γ = ∪ ∂Ω^i ∩ ∂Ω^j,   Γ ∩ Γ_c = ∅ but for the tips of cracks,
 //!
 //! by METIS on a graph whose vertices are what must not be divided. Subdomains in contact are the pairs ϑ,
-//! the others T. It also makes the [`hierarchy`](decompose::hierarchy) up which Schur complements are
+//! the others T. It also makes the [`hierarchy`] up which Schur complements are
 //! merged, judged by estimated [`flops`]. Only this part, behind the feature `metis`, needs METIS.
 //!
 //! **The problem file** ([`problem`]) is defined once, for its writer here and for its reader in
@@ -43,6 +43,7 @@ pub mod element;
 pub mod error;
 pub mod example;
 pub mod flops;
+pub mod hierarchy;
 #[cfg(feature = "metis")]
 pub mod info;
 #[cfg_attr(

@@ -3,16 +3,16 @@
 mod abaqus;
 pub mod bounding_box;
 mod curve;
+mod file;
 pub mod foreign;
 pub mod gmsh;
 mod measure;
 pub mod topology;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 
+pub use self::file::{files, read};
 use crate::element::Elements;
-use crate::error::InputError;
 
 /// A mesh as a mesher made it, without orphan nodes and with every cell positively oriented.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,28 +33,6 @@ pub struct Mesh {
     pub groups: BTreeMap<String, Group>,
     /// What a user should know of how the file was read.
     pub warnings: Vec<String>,
-}
-
-/// Reads a mesh: a deck of Abaqus or CalculiX where its name ends with `.inp`, else Gmsh's format.
-///
-/// # Errors
-/// What is wrong with the file and where.
-pub fn read(path: &Path) -> Result<Mesh, InputError> {
-    match path.extension() {
-        Some(ending) if ending.eq_ignore_ascii_case("inp") => abaqus::read(path),
-        _ => gmsh::read(path),
-    }
-}
-
-/// The files that a mesh is read from, as far as `output`, which is there, may be one of them: that of the mesh, and those
-/// that a deck includes.
-pub fn files(path: &Path, output: &Path) -> Vec<PathBuf> {
-    match path.extension() {
-        Some(ending) if output.exists() && ending.eq_ignore_ascii_case("inp") => {
-            abaqus::files(path)
-        }
-        _ => vec![path.to_path_buf()],
-    }
 }
 
 impl Mesh {

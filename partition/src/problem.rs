@@ -3,8 +3,6 @@
 //! The writer and the reader of `problem.h5` share these types; docs/problem-file.md says the
 //! same for somebody who writes one with h5py.
 
-pub mod choice;
-pub mod clusters;
 pub mod consistency;
 pub mod copies;
 pub mod digest;
@@ -14,7 +12,6 @@ pub mod read;
 pub mod schema;
 pub mod stage;
 mod strings;
-pub mod tree;
 pub mod trial;
 pub mod vtkhdf;
 pub mod write;

@@ -6,6 +6,7 @@ pub mod expression;
 mod fault;
 pub mod friction;
 pub mod initial;
+pub mod loading;
 pub mod material;
 pub mod number;
 pub mod place;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::disjoint_sets::DisjointSets;
-use contact_dd_partition::problem::tree::Tree;
+use contact_dd_partition::hierarchy::tree::Tree;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 

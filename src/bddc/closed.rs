@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::condense::jumps;
 use crate::contact::jumps::NoUnknown;
 use crate::context::Context;
+use crate::context::hierarchy::jumps;
 use crate::error::Failure;
 use crate::fem::contact_group::{ContactGroup, JumpRows};
 use crate::schur::condensed::InterfaceDof;

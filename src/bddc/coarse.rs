@@ -9,10 +9,9 @@ use faer::{Mat, Par};
 use serde::{Deserialize, Serialize};
 
 use crate::bddc::classes::Classes;
-use crate::bddc::gradients::Vectors;
-use crate::bddc::local::Local;
-use crate::condense::substitute::{Direction, carry};
+use crate::bddc::local::{Local, Vectors};
 use crate::context::Context;
+use crate::context::hierarchy::{Direction, carry};
 use crate::error::Failure;
 use crate::plan::Plan;
 use crate::schur::condensed::InterfaceDof;

@@ -15,11 +15,21 @@ use faer::linalg::triangular_solve::{
 use faer::{Accum, ColMut, ColRef, Mat, MatRef, Par};
 use serde::{Deserialize, Serialize};
 
-use crate::bddc::local::Moves;
 use crate::bddc::reflections::Reflections;
+use crate::schur::trapezoid::NotDefinite;
 
 /// Ratio of the energies above which what has it becomes coarse: about the condition number of what is left.
 const THRESHOLD: f64 = 10.0;
+
+/// A cluster can move although what it shares with others is held.
+#[derive(Clone, Copy, Debug)]
+pub struct Mechanism;
+
+impl From<NotDefinite> for Mechanism {
+    fn from(_: NotDefinite) -> Self {
+        Self
+    }
+}
 
 /// The basis of a class, coarse unknowns first, and the share that a cluster has of what is there.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -73,7 +83,7 @@ impl Basis {
     ///
     /// # Errors
     /// It can move although all else is held.
-    pub fn new(sides: &[Side], motions: impl FnOnce() -> Mat<f64>) -> Result<Vec<Self>, Moves> {
+    pub fn new(sides: &[Side], motions: impl FnOnce() -> Mat<f64>) -> Result<Vec<Self>, Mechanism> {
         let (mut whole, mut diagonals) = (Vec::new(), Vec::new());
         for side in sides {
             match side {
@@ -104,7 +114,7 @@ impl Basis {
         let n = weights.nrows();
         let mut sum = Mat::<f64>::zeros(n, n);
         whole.iter().for_each(|(s, _)| sum += *s);
-        let sum = sum.llt(Lower).map_err(|_| Moves)?;
+        let sum = sum.llt(Lower).map_err(|_| Mechanism)?;
         let of = |(s, _): &(&Mat<f64>, _)| {
             let mut w = sum.solve(*s);
             q.multiply_right(w.as_mut());
@@ -159,20 +169,20 @@ fn product(a: MatRef<'_, f64>, x: &[f64]) -> Vec<f64> {
 
 /// The weights of combinations of unknowns that have far more energy where all else is held than where it is free, a
 /// column each.
-fn adaptive(sides: &[(&Mat<f64>, &Mat<f64>)]) -> Result<Mat<f64>, Moves> {
+fn adaptive(sides: &[(&Mat<f64>, &Mat<f64>)]) -> Result<Mat<f64>, Mechanism> {
     let n = sides.first().map_or(0, |(s, _)| s.nrows());
     let (mut held, mut free) = (Mat::<f64>::zeros(n, n), Mat::<f64>::zeros(n, n));
     for (s, compliance) in sides {
-        held += s.llt(Lower).map_err(|_| Moves)?.inverse();
+        held += s.llt(Lower).map_err(|_| Mechanism)?.inverse();
         free += *compliance;
     }
     make_symmetric(&mut held);
-    let factor = held.llt(Lower).map_err(|_| Moves)?;
+    let factor = held.llt(Lower).map_err(|_| Mechanism)?;
     let l = factor.L();
     solve_lower_triangular_in_place(l, free.as_mut(), Par::Seq);
     solve_lower_triangular_in_place(l, free.as_mut().transpose_mut(), Par::Seq);
     make_symmetric(&mut free);
-    let eigen = free.self_adjoint_eigen(Lower).map_err(|_| Moves)?;
+    let eigen = free.self_adjoint_eigen(Lower).map_err(|_| Mechanism)?;
     let ratios = eigen.S().column_vector();
     // Ascending.
     let first = (0..n).take_while(|&i| ratios[i] <= THRESHOLD).count();

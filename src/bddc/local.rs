@@ -1,23 +1,19 @@
 //! A cluster: its unknowns [own | shared], own ones eliminated, and what the preconditioner inverts of it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use faer::linalg::triangular_inverse::invert_lower_triangular;
 use faer::{Mat, MatMut, Par, Side::Lower};
 
 use crate::bddc::cluster_schur::ClusterSchur;
-use crate::bddc::constraints::{Basis, Side};
+use crate::bddc::constraints::{Basis, Mechanism, Side};
 use crate::bddc::depth::Depth;
 use crate::bddc::placement::Placement;
 use crate::bddc::transform::transformed;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::symmetric::PackedSymmetric;
 use crate::schur::trapezoid::{NotDefinite, Trapezoid};
-
-/// A cluster can move although what it shares with others is held.
-#[derive(Clone, Copy, Debug)]
-pub struct Moves;
 
 /// Makes both triangles of a symmetric matrix count.
 fn fill_upper_triangle(s: &mut Mat<f64>) {
@@ -35,6 +31,9 @@ fn fill_upper_triangle(s: &mut Mat<f64>) {
     }
 }
 
+/// A vector on what clusters share, by cluster.
+pub type Vectors = BTreeMap<usize, Vec<f64>>;
+
 /// What a cluster shares with others, class after class.
 #[derive(Debug)]
 pub struct Shared {
@@ -48,12 +47,6 @@ pub struct Shared {
     round_off: f64,
 }
 
-impl From<NotDefinite> for Moves {
-    fn from(_: NotDefinite) -> Self {
-        Self
-    }
-}
-
 impl Shared {
     /// A cluster whose unknowns are found at their `placement`, with a `spring`, relative to the diagonal, on what is
     /// `sprung`, and its S on what is shared.
@@ -65,7 +58,7 @@ impl Shared {
         placement: Placement,
         (sprung, spring): (&BTreeSet<InterfaceDof>, f64),
         par: Par,
-    ) -> Result<(Self, Mat<f64>), Moves> {
+    ) -> Result<(Self, Mat<f64>), Mechanism> {
         let mut springs = Vec::new();
         if spring > 0.0 {
             let dofs = cluster.dofs.iter().zip(&cluster.diagonal);
@@ -93,7 +86,7 @@ impl Shared {
         is_chosen: impl Fn(usize) -> bool,
         is_looked_into: bool,
         par: Par,
-    ) -> Result<Vec<Option<Side>>, Moves> {
+    ) -> Result<Vec<Option<Side>>, Mechanism> {
         let n = s.nrows();
         // It may move as a whole, and of some classes it has not all unknowns.
         let held_by = |share: f64| {
@@ -105,7 +98,7 @@ impl Shared {
         };
         let mut inverse = Mat::zeros(0, 0);
         if is_looked_into {
-            let factor = HOLDS.into_iter().find_map(held_by).ok_or(Moves)?;
+            let factor = HOLDS.into_iter().find_map(held_by).ok_or(Mechanism)?;
             inverse.resize_with(n, n, |_, _| 0.0);
             invert_lower_triangular(inverse.as_mut(), factor.L(), par);
         }
@@ -216,7 +209,7 @@ impl Local {
         bases: Vec<Basis>,
         depth: Depth,
         par: Par,
-    ) -> Result<(Self, PackedSymmetric), Moves> {
+    ) -> Result<(Self, PackedSymmetric), Mechanism> {
         fill_upper_triangle(&mut s);
         let (mut others, mut coarse) = (Vec::new(), Vec::new());
         for (range, basis) in shared.placement.ranges.iter().zip(&bases) {
@@ -242,7 +235,7 @@ impl Local {
             hold(held.as_mut(), 0..n, share, 0.0);
             Others::new(held, count, depth, par)
         };
-        let (last, before) = depth.holds().split_last().ok_or(Moves)?;
+        let (last, before) = depth.holds().split_last().ok_or(Mechanism)?;
         let found = before
             .iter()
             .find_map(|&share| factor(permuted.clone(), share).ok());

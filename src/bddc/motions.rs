@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::bddc::classes::Class;
 use crate::context::Context;
+use crate::fem::body_frame::BodyFrame;
 use crate::fem::frame::{Frame, node_frames};
-use crate::rigid::motion::BodyFrame;
 use crate::schur::condensed::InterfaceDof;
 
 /// What of a motion counts as none beside the largest one.

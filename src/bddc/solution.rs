@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::bddc::Bddc;
 use crate::bddc::cluster_schur::ClusterSchur;
-use crate::bddc::gradients::{Gradients, Vectors};
+use crate::bddc::conjugate_gradients::ConjugateGradients;
+use crate::bddc::local::Vectors;
 use crate::bytes::Reals;
 use crate::comm::Comm;
 use crate::context::Context;
@@ -89,7 +90,7 @@ impl Bddc {
             own.insert(c, of_own);
             b.insert(c, of_shared);
         }
-        let gradients = Gradients {
+        let gradients = ConjugateGradients {
             context,
             owners: &self.owners,
             classes: &self.classes,

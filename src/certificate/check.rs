@@ -6,6 +6,7 @@ use std::ops::Range;
 use contact_dd_partition::element::geometry::{advance, cross, dot, padded};
 use serde::{Deserialize, Serialize};
 
+use super::most::Most;
 use super::shared::SharedCheck;
 use crate::contact::friction::TangentialCondition;
 use crate::fem::balance::Balance;
@@ -18,64 +19,6 @@ use crate::vector::{axpy, larger, largest};
 
 /// Normal force, relative to the largest in the group, without which a closed contact is about to open.
 const NO_FORCE: f64 = 1e-12;
-
-/// What is largest in a block, or in several.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Most {
-    /// Residual along directions that are free (N/m).
-    pub residual: f64,
-    /// The terms of such a residual (N/m).
-    pub scale: f64,
-    /// Penetration (m).
-    pub penetration: f64,
-    /// Tension in a contact (N/m).
-    pub tension: f64,
-    /// Contact force (N/m).
-    pub contact_force: f64,
-    /// Load, contact force or support reaction at a node (N/m).
-    pub external: f64,
-    /// Load at a node (N/m).
-    pub load: f64,
-    /// Product of contact force and gap (N).
-    pub complementarity: f64,
-    /// Tangential force beyond its bound (N/m).
-    pub beyond_bound: f64,
-    /// Way of a point that sticks from where it does (m).
-    pub astray: f64,
-    /// What friction would have dissipated more under its bound, against the slip (N).
-    pub not_opposed: f64,
-    /// Displacement (m).
-    pub displacement: f64,
-    /// Prescribed displacement, gap, slip before, or closing motion (m).
-    pub driven: f64,
-    /// Jump of the displacement across Γ (m).
-    pub jump: f64,
-    /// Force that the bodies' closing motions would cause if it weren't rigid (N/m).
-    pub rest: f64,
-}
-
-impl Most {
-    /// Of everything the larger of two.
-    pub fn include(&mut self, other: Self) {
-        *self = Self {
-            residual: larger(self.residual, other.residual),
-            scale: larger(self.scale, other.scale),
-            penetration: larger(self.penetration, other.penetration),
-            tension: larger(self.tension, other.tension),
-            contact_force: larger(self.contact_force, other.contact_force),
-            external: larger(self.external, other.external),
-            load: larger(self.load, other.load),
-            complementarity: larger(self.complementarity, other.complementarity),
-            beyond_bound: larger(self.beyond_bound, other.beyond_bound),
-            astray: larger(self.astray, other.astray),
-            not_opposed: larger(self.not_opposed, other.not_opposed),
-            displacement: larger(self.displacement, other.displacement),
-            driven: larger(self.driven, other.driven),
-            jump: larger(self.jump, other.jump),
-            rest: larger(self.rest, other.rest),
-        };
-    }
-}
 
 /// Sums of loads, contact forces and support reactions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

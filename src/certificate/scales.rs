@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::check::Most;
-use crate::interface::problem::NOTHING;
+use super::most::Most;
+use crate::vector::NOTHING;
 use crate::vector::larger;
 
 /// The largest scales of some load steps.

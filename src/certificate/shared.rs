@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::check::Most;
+use super::most::Most;
 use crate::schur::condensed::InterfaceDof;
 use crate::vector::larger;
 

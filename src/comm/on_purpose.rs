@@ -9,7 +9,6 @@ use std::{env, thread};
 use signal_hook::consts::{SIGKILL, SIGSTOP};
 use signal_hook::low_level::raise;
 
-use super::start::current_phase;
 use crate::error::Failure;
 
 static RANK: OnceLock<usize> = OnceLock::new();
@@ -35,9 +34,9 @@ pub fn end(phase: &str) {
     }
 }
 
-/// The failure that this rank is to have in the phase it is in.
-pub fn failure() -> Option<Failure> {
-    let wish = wish(current_phase())?;
+/// The failure that this rank is to have in `phase`.
+pub fn failure(phase: &str) -> Option<Failure> {
+    let wish = wish(phase)?;
     (wish == "failure").then(|| Failure::ill_posed("on purpose"))
 }
 

@@ -1,37 +1,20 @@
-//! Starting MPI where there are several ranks, signals that ask a run to stop, and what happens when a
-//! rank fails without a word to the others.
+//! Starting MPI where there are several ranks, and what happens when a rank fails without a word to the others.
 
 use std::cell::Cell;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
-use std::{io, panic, process};
+use std::{panic, process};
 
 use contact_dd_partition::message;
 use mpi::collective::SystemOperation;
 use mpi::environment::Universe;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
-use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
-use signal_hook::flag;
 
 #[cfg(debug_assertions)]
 use super::on_purpose;
+use super::phase::{current_phase, phase};
+use super::signals::listen;
 use super::{Clock, Comm, launcher};
 use crate::error::Failure;
-
-static PHASE: Mutex<&str> = Mutex::new("starting");
-
-/// Names what this rank is doing, for the messages of failures and panics.
-pub fn phase(name: &'static str) {
-    *PHASE.lock().unwrap_or_else(PoisonError::into_inner) = name;
-    #[cfg(debug_assertions)]
-    on_purpose::end(name);
-}
-
-/// What this rank is doing.
-pub(super) fn current_phase() -> &'static str {
-    *PHASE.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// All ranks, and MPI where there are several; it ends when this is dropped.
 pub struct World {
@@ -102,28 +85,6 @@ fn end_all_at_a_panic(comm: &Comm) {
             false => process::exit(1),
         }
     }));
-}
-
-static ASKED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
-
-/// Whether this rank was asked to stop: by SIGTERM, SIGINT, or SIGUSR1, which Slurm sends ahead of the time
-/// limit where it is asked to.
-pub fn is_asked_to_stop() -> bool {
-    let asked = ASKED.get();
-    asked.is_some_and(|asked| asked.load(Ordering::Relaxed))
-}
-
-/// From now on the signals are remembered; the same one again ends the process as ever.
-fn listen() -> io::Result<()> {
-    let asked = ASKED.get_or_init(Arc::default);
-    for signal in [SIGTERM, SIGINT, SIGUSR1] {
-        // SIGUSR1 of a batch system is followed by its SIGTERM, which mustn't count as the second.
-        let came = Arc::new(AtomicBool::new(false));
-        flag::register_conditional_default(signal, Arc::clone(&came))?;
-        flag::register(signal, came)?;
-        flag::register(signal, Arc::clone(asked))?;
-    }
-    Ok(())
 }
 
 /// The MPI library and its version, as it calls itself.

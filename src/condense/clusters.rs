@@ -7,15 +7,15 @@ use faer::Mat;
 
 use crate::condense::blocks::{CondensedBlocks, ContactCluster};
 use crate::contact::limits::Limits;
+use crate::interface::rigid_modes::{RigidBasis, RigidModes};
 use crate::plan::Plan;
-use crate::rigid::body_analysis::RigidBodyAnalysis;
-use crate::rigid::energy::{RigidBasis, RigidModes};
 use crate::schur::condensed::Condensed;
 
-/// Makes the clusters of this rank of what was `merged`; `limits` bound the normal jumps of those in contact.
+/// Makes the clusters of this rank of what was `merged`; of those in contact `modes` are what rigid motions of
+/// bodies that lie wholly in one make of its conditions, and `limits` bound the normal jumps.
 pub fn take_clusters(
     plan: &Plan,
-    analysis: &RigidBodyAnalysis,
+    modes: &BTreeMap<usize, RigidModes>,
     mut limits: BTreeMap<usize, Limits>,
     mut merged: BTreeMap<usize, Condensed>,
     condensed: &mut CondensedBlocks,
@@ -30,7 +30,7 @@ pub fn take_clusters(
         };
         let limits = limits.remove(&p).unwrap_or_default();
         of_cluster.fill_upper_triangle();
-        if let Some(modes) = analysis.cluster_modes.get(&p) {
+        if let Some(modes) = modes.get(&p) {
             make_stiffness_exact(&mut of_cluster, &limits.defining, modes);
         }
         let cluster = ContactCluster {

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::condense::jumps;
 use crate::contact::jumps::JumpOf;
 use crate::contact::limits::Limits;
+use crate::context::hierarchy::jumps;
 use crate::context::{Context, Loads};
 use crate::error::Failure;
 use crate::fem::contact_group::{ContactGroup, GroupLoads};

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::bytes::Reals;
 use crate::condense::blocks::CondensedBlocks;
 use crate::context::Context;
+use crate::context::hierarchy::{Direction, carry};
 use crate::schur::local::CondensedLoad;
 
 /// The factors of all ranks.
@@ -76,42 +76,4 @@ impl Factors<'_> {
             .flat_map(|c| self.context.plan.tree.subtree(c.node))
             .collect()
     }
-}
-
-/// Carries a vector of node v between its owner and that of its `parent`; where it has none, the owner keeps it.
-/// Collective.
-pub fn carry(
-    context: &Context<'_>,
-    v: usize,
-    parent: Option<usize>,
-    mut vector: Option<Vec<f64>>,
-    into: &mut BTreeMap<usize, Vec<f64>>,
-    direction: Direction,
-) {
-    let Context { comm, plan, .. } = *context;
-    let Some(parent) = parent else {
-        into.extend(vector.map(|vector| (v, vector)));
-        return;
-    };
-    let (here, above) = (plan.node_owners[v], plan.node_owners[parent]);
-    let way = match direction {
-        Direction::Up => (here, above),
-        Direction::Down => (above, here),
-    };
-    comm.route(
-        [way],
-        |_| Reals(vector.take().unwrap_or_default()),
-        |_, Reals(arrived)| {
-            into.insert(v, arrived);
-        },
-    );
-}
-
-/// Along the hierarchy.
-#[derive(Clone, Copy, Debug)]
-pub enum Direction {
-    /// From a node to the one that it is merged into.
-    Up,
-    /// Back.
-    Down,
 }

@@ -10,7 +10,7 @@ use crate::condense::limits::limits_of_clusters;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::numbering::check_agreement;
-use crate::rigid::body_analysis::RigidBodyAnalysis;
+use crate::interface::rigid_modes::RigidModes;
 use crate::schur::condensed::{Condensed, InterfaceDof};
 use crate::schur::merge::{FreeInterfaceDof, Merge, Spare};
 
@@ -21,7 +21,7 @@ use crate::schur::merge::{FreeInterfaceDof, Merge, Spare};
 /// A part that can move although its boundary is held, or supports that differ between subdomains.
 pub fn condense_clusters(
     condensation: &Condensation<'_>,
-    analysis: &RigidBodyAnalysis,
+    modes: &BTreeMap<usize, RigidModes>,
 ) -> Result<CondensedBlocks, Failure> {
     let Context {
         comm,
@@ -72,7 +72,7 @@ pub fn condense_clusters(
     let (context, loads) = (&condensation.context, condensation.loads);
     let limits =
         limits_of_clusters(context, loads).map_err(|failure| context.in_step(failure, 0))?;
-    take_clusters(plan, analysis, limits, waiting, &mut condensed);
+    take_clusters(plan, modes, limits, waiting, &mut condensed);
     Ok(condensed)
 }
 

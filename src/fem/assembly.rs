@@ -1,11 +1,26 @@
-//! Assembly: Tᵀ K T, K = Σ K_e, over the unknowns x of a block, u = T x + c.
+//! Assembly: Tᵀ K T, K = Σ K_e, and Tᵀ (f − K c) over the unknowns x of a block, u = T x + c.
 
 use contact_dd_partition::model::Material;
+use serde::{Deserialize, Serialize};
 
 use super::block::Block;
 use super::dofs::Dofs;
 use super::elasticity::{ElementMatrix, MAX_NODES};
+use super::load::BlockLoads;
+use super::prescribed::Prescribed;
 use crate::schur::pattern::{LowerPattern, SparseSymmetric};
+
+/// A spring on one node of a body that can move freely: u·direction = 0 there. It carries no force
+/// because the load has no component along the motion that it stops.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FixingDof {
+    /// Subdomain.
+    pub subdomain: u32,
+    /// Node of the subdomain.
+    pub node: u32,
+    /// Component that is held.
+    pub component: u32,
+}
 
 /// A spring on a component of a node, which holds what nothing else does and no load moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,5 +111,54 @@ fn scatter(block: &Block, dofs: &Dofs, materials: &[Material], stiffness: &mut S
             // The lower triangle speaks for both, so that round-off can't make them differ.
             reduced[(a.max(b), a.min(b))]
         });
+    }
+}
+
+/// Tᵀ (f − K c), with c what supports prescribe, and `springs` in K.
+pub fn load(
+    block: &Block,
+    loads: &BlockLoads,
+    dofs: &Dofs,
+    prescribed: &Prescribed,
+    materials: &[Material],
+    springs: &[Spring],
+) -> Vec<f64> {
+    let mut f = loads.nodal_forces(block);
+    if !prescribed.is_zero() {
+        subtract_held(block, prescribed, materials, &mut f);
+    }
+    for spring in springs {
+        let row = spring.node as usize * block.dim + spring.component;
+        f[row] -= spring.stiffness * prescribed.of_node(spring.node)[spring.component];
+    }
+    let mut load = vec![0.0; dofs.len()];
+    dofs.add_load(&f, &mut load);
+    load
+}
+
+/// f ← f − K c, element by element.
+fn subtract_held(block: &Block, prescribed: &Prescribed, materials: &[Material], f: &mut [f64]) {
+    let dim = block.dim;
+    let mut points = Vec::with_capacity(MAX_NODES);
+    let mut c: Vec<f64> = Vec::with_capacity(dim * MAX_NODES);
+    let mut k = ElementMatrix::default();
+    for cell in block.cells() {
+        c.clear();
+        for node in cell.nodes() {
+            c.extend(prescribed.of_node(node));
+        }
+        if c.iter().all(|&c| c == 0.0) {
+            continue;
+        }
+        points.clear();
+        points.extend(cell.nodes().map(|node| block.points()[node as usize]));
+        k.set(&cell.kind, &points, &materials[cell.material].stiffness);
+        for (a, node) in cell.nodes().enumerate() {
+            for component in 0..dim {
+                let row = k.row(dim * a + component).iter();
+                let held: f64 = row.zip(&c).map(|(k, c)| k * c).sum();
+                f[dim * node as usize + component] -= held;
+            }
+        }
     }
 }

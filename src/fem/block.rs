@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::element::ElementKind;
-use contact_dd_partition::problem::tree::Tree;
+use contact_dd_partition::hierarchy::tree::Tree;
 use contact_dd_partition::problem::{Subdomain, SubdomainNode};
 
 /// A subdomain as it was read.

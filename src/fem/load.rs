@@ -1,12 +1,8 @@
-//! What acts on a block in a load step, and the load that it makes over the block's unknowns.
+//! What acts on a block in a load step.
 
-use contact_dd_partition::model::{Material, Support};
+use contact_dd_partition::model::Support;
 
-use super::assembly::Spring;
 use super::block::Block;
-use super::dofs::Dofs;
-use super::elasticity::{ElementMatrix, MAX_NODES};
-use super::prescribed::Prescribed;
 
 /// What acts on a block in a load step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,54 +45,5 @@ impl BlockLoads {
             }
         }
         f
-    }
-}
-
-/// Tᵀ (f − K c), with c what supports prescribe, and `springs` in K.
-pub fn load(
-    block: &Block,
-    loads: &BlockLoads,
-    dofs: &Dofs,
-    prescribed: &Prescribed,
-    materials: &[Material],
-    springs: &[Spring],
-) -> Vec<f64> {
-    let mut f = loads.nodal_forces(block);
-    if !prescribed.is_zero() {
-        subtract_held(block, prescribed, materials, &mut f);
-    }
-    for spring in springs {
-        let row = spring.node as usize * block.dim + spring.component;
-        f[row] -= spring.stiffness * prescribed.of_node(spring.node)[spring.component];
-    }
-    let mut load = vec![0.0; dofs.len()];
-    dofs.add_load(&f, &mut load);
-    load
-}
-
-/// f ← f − K c, element by element.
-fn subtract_held(block: &Block, prescribed: &Prescribed, materials: &[Material], f: &mut [f64]) {
-    let dim = block.dim;
-    let mut points = Vec::with_capacity(MAX_NODES);
-    let mut c: Vec<f64> = Vec::with_capacity(dim * MAX_NODES);
-    let mut k = ElementMatrix::default();
-    for cell in block.cells() {
-        c.clear();
-        for node in cell.nodes() {
-            c.extend(prescribed.of_node(node));
-        }
-        if c.iter().all(|&c| c == 0.0) {
-            continue;
-        }
-        points.clear();
-        points.extend(cell.nodes().map(|node| block.points()[node as usize]));
-        k.set(&cell.kind, &points, &materials[cell.material].stiffness);
-        for (a, node) in cell.nodes().enumerate() {
-            for component in 0..dim {
-                let row = k.row(dim * a + component).iter();
-                let held: f64 = row.zip(&c).map(|(k, c)| k * c).sum();
-                f[dim * node as usize + component] -= held;
-            }
-        }
     }
 }

@@ -2,9 +2,9 @@
 //! tells of.
 
 use contact_dd_partition::element::ElementKind;
+use contact_dd_partition::element::definition::Domain;
 use contact_dd_partition::element::geometry::{cross, difference, dot, length};
 use contact_dd_partition::element::quadrature::TabulatedPoint;
-use contact_dd_partition::element::reference::Domain;
 use contact_dd_partition::model::{Material, PlaneState};
 
 use super::block::{Block, BlockCell};

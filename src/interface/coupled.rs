@@ -11,17 +11,17 @@
 //! H − Cᵀ A⁻¹ C in the normal jumps of all pairs and nothing else. Linearly dependent constraints of a pair,
 //! D τ ≤ d − D t, stay what they are.
 
-use faer::{Mat, MatRef};
+use faer::MatRef;
 
 use super::operator::{Interface, diagonal_of};
 use super::problem::InterfaceProblem;
+use super::rigid_modes::RigidBasis;
 use crate::contact::active_set::ContactProblem;
 use crate::contact::dependent::DependentConstraints;
 use crate::contact::friction::{FrictionProblem, Status};
 use crate::contact::limits::{Beside, TangentialLimit};
 use crate::contact::pair::{CondensedContact, PairResponse};
 use crate::interface::s_con::{ConState, Expected};
-use crate::rigid::energy::RigidBasis;
 use crate::schur::local::multiply_add;
 
 /// Most normal jumps of all pairs together for which their problem is solved at once: its matrix is
@@ -84,34 +84,6 @@ struct Condensed {
     c: Vec<f64>,
     /// Scale of its terms.
     c_scale: Vec<f64>,
-}
-
-/// H − Cᵀ A⁻¹ C for the laws of all pairs.
-pub fn condense_laws(interface: &Interface, motions: &RigidBasis) -> Mat<f64> {
-    let laws = &interface.laws;
-    let m = laws.iter().map(CondensedContact::len).sum();
-    let mut h = Mat::zeros(m, m);
-    let mut w = Mat::zeros(interface.len - interface.linear, m);
-    let mut first = 0;
-    for (law, interface_dofs) in laws.iter().zip(&interface.pair_interface_dofs) {
-        h.as_mut()
-            .submatrix_mut(first, first, law.len(), law.len())
-            .copy_from(&law.h);
-        for (column, &trace) in law.s_t_gamma.col_iter().zip(interface_dofs) {
-            for (i, s) in column.iter().enumerate() {
-                w[(trace as usize - interface.linear, first + i)] = *s;
-            }
-        }
-        first += law.len();
-    }
-    interface.solver.condense(w, h.as_mut());
-    for j in 0..m {
-        for i in j + 1..m {
-            h[(j, i)] = h[(i, j)];
-        }
-    }
-    motions.remove_energy(&mut h);
-    h
 }
 
 impl<'a> CoupledContact<'a> {

@@ -7,12 +7,11 @@ use std::cell::OnceCell;
 use faer::{Mat, MatRef, Par};
 use serde::{Deserialize, Serialize};
 
-use super::coupled::condense_laws;
 use super::numbering::Numbering;
+use super::rigid_modes::RigidBasis;
 use super::solver::DirectSolver;
 use crate::contact::pair::CondensedContact;
 use crate::error::Failure;
-use crate::rigid::energy::RigidBasis;
 use crate::schur::factor::BoundaryLastCholesky;
 use crate::schur::pattern::{LowerPattern, SparseSymmetric};
 
@@ -179,6 +178,34 @@ impl Interface {
             y[i as usize] += x;
         }
     }
+}
+
+/// H − Cᵀ A⁻¹ C for the laws of all pairs.
+fn condense_laws(interface: &Interface, motions: &RigidBasis) -> Mat<f64> {
+    let laws = &interface.laws;
+    let m = laws.iter().map(CondensedContact::len).sum();
+    let mut h = Mat::zeros(m, m);
+    let mut w = Mat::zeros(interface.len - interface.linear, m);
+    let mut first = 0;
+    for (law, interface_dofs) in laws.iter().zip(&interface.pair_interface_dofs) {
+        h.as_mut()
+            .submatrix_mut(first, first, law.len(), law.len())
+            .copy_from(&law.h);
+        for (column, &trace) in law.s_t_gamma.col_iter().zip(interface_dofs) {
+            for (i, s) in column.iter().enumerate() {
+                w[(trace as usize - interface.linear, first + i)] = *s;
+            }
+        }
+        first += law.len();
+    }
+    interface.solver.condense(w, h.as_mut());
+    for j in 0..m {
+        for i in j + 1..m {
+            h[(j, i)] = h[(i, j)];
+        }
+    }
+    motions.remove_energy(&mut h);
+    h
 }
 
 /// The diagonal of what all laws are condensed from, side by side.

@@ -4,10 +4,8 @@
 
 use super::numbering::Numbering;
 use super::operator::{Interface, diagonal_of};
-use crate::rigid::energy::{RigidBasis, RigidModes};
-
-/// Part of the largest scale, of the load or of the load steps before, below which a scale is of their round-off alone.
-pub const NOTHING: f64 = 1e-12;
+use super::rigid_modes::{RigidBasis, RigidModes};
+use crate::vector::NOTHING;
 
 /// Part of what forces are round-off of to which a residual of them is relative: with the tolerance of sweeps that is
 /// round-off again.

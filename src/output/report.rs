@@ -8,10 +8,10 @@ use contact_dd_partition::error::OutputError;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::ranks::{PhaseSeconds, RankReport};
-use super::resultants::{Friction, Resultants};
 use crate::certificate::Certificate;
 use crate::certificate::energy::EnergyBalance;
+use crate::comm::ranks::{PhaseSeconds, RankReport};
+use crate::fem::resultants::{Friction, Resultants};
 use crate::settings::command_line::InterfaceMethod;
 use crate::settings::{Origins, Settings};
 

@@ -10,6 +10,7 @@ pub(super) mod column;
 mod contact_table;
 mod grid;
 pub mod kept;
+mod layout;
 
 use std::fs::{self, OpenOptions};
 use std::io;
@@ -19,9 +20,6 @@ use std::path::Path;
 
 use contact_dd_partition::destination::Destination;
 use contact_dd_partition::error::OutputError;
-use contact_dd_partition::model::PlaneState;
-use contact_dd_partition::problem::{Catalog, ContactSummary};
-use contact_dd_partition::scene::units::Units;
 use hdf5::types::VarLenUnicode;
 use hdf5::{File, FileBuilder};
 
@@ -30,61 +28,10 @@ use self::checkpoint::Checkpoint;
 use self::contact_table::ContactTables;
 use self::grid::Grid;
 use self::kept::{Kept, forget};
-use super::result::{ContactRow, Of, PartitionSize, SubdomainResults};
+pub use self::layout::Layout;
+use super::result::SubdomainResults;
+use crate::fem::contact_state::ContactRow;
 use crate::sweep::SweepRecord;
-
-/// How much room everything takes.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Layout {
-    /// One entry a subdomain.
-    pub partitions: Vec<PartitionSize>,
-    /// One entry a contact.
-    pub contacts: Vec<ContactSummary>,
-    /// What every load step stands at on the axis of time; none where the problem has none.
-    pub times: Vec<f64>,
-    /// Whether there are stresses.
-    pub stress: bool,
-    /// Whether bodies or contacts come or go.
-    pub presence: bool,
-    /// The scene's title; may be empty.
-    pub title: String,
-    /// The units that its numbers are meant in.
-    pub units: Units,
-    /// Plane state; `None` in space.
-    pub plane: Option<PlaneState>,
-}
-
-impl Layout {
-    /// The layout for `catalog`; `connectivity` has, for every subdomain, the sum of the number of
-    /// nodes over its cells.
-    pub fn new(catalog: &Catalog, connectivity: &[usize], stress: bool) -> Self {
-        let sizes = catalog.subdomains.iter().zip(connectivity);
-        let partitions = sizes.map(|(subdomain, &connectivity)| PartitionSize {
-            points: subdomain.nodes,
-            cells: subdomain.cells,
-            connectivity,
-        });
-        Self {
-            partitions: partitions.collect(),
-            contacts: catalog.contacts.clone(),
-            times: catalog.steps.iter().map(|step| step.time).collect(),
-            stress,
-            presence: catalog.has_stages(),
-            title: catalog.title.clone(),
-            units: catalog.units,
-            plane: catalog.plane,
-        }
-    }
-}
-
-impl Layout {
-    /// The lists that the file doesn't have.
-    fn left_out(&self) -> Vec<Of> {
-        let kinds = [(Of::Stress, self.stress), (Of::Presence, self.presence)];
-        let left_out = kinds.into_iter().filter(|(_, is_there)| !is_there);
-        left_out.map(|(kind, _)| kind).collect()
-    }
-}
 
 /// A result file that is being written, under a temporary name in the folder of the final one.
 ///

@@ -1,6 +1,6 @@
 //! Who owns what: subtrees of the hierarchy are handed out by estimated cost.
 
-use contact_dd_partition::problem::tree::Tree;
+use contact_dd_partition::hierarchy::tree::Tree;
 
 /// Splits that are tried, for every rank.
 const SPLITS: usize = 8;

@@ -1,6 +1,6 @@
 //! Clusters: what the sweeps see as one block.
 
-use contact_dd_partition::problem::tree::Tree;
+use contact_dd_partition::hierarchy::tree::Tree;
 
 /// Most contact conditions in a cluster of several groups: its law is dense.
 const MAX_CONDITIONS: usize = 2_000;

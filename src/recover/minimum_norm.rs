@@ -10,7 +10,7 @@ use crate::recover::motions::{Field, Motions};
 use crate::recover::refine::replace_if_as_good;
 use crate::recover::{DiscreteSolution, GroupSolution, displacements};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
-use crate::rigid::closing_motion::with_closing_motions;
+use crate::rigid::body_analysis::with_closing_motions;
 use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::released_modes::{ConditionState, ReleasedModes};
 use crate::vector::largest as largest_entry;
@@ -26,7 +26,9 @@ const OPENED: f64 = 1e-13;
 pub fn remove_free_modes(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     let blocks = solution.blocks.iter_mut();
     let displacement = blocks.map(|(&b, s)| (b, &mut s.u)).collect();
-    fixed.free.project(fixed, Field::Shared, displacement);
+    fixed
+        .free
+        .project(&fixed.context, Field::Shared, displacement);
     solution.share(&fixed.context, &fixed.step.loads);
 }
 
@@ -102,7 +104,7 @@ fn move_nearer(
         frames: &analysis.frames,
     };
     let products = motions.products(
-        fixed,
+        &fixed.context,
         Field::Shared,
         &displacement.iter_mut().map(|(&b, u)| (b, u)).collect(),
     );
@@ -114,7 +116,7 @@ fn move_nearer(
     let before = largest_displacement(fixed, solution);
     let blocks = solution.blocks.iter_mut();
     let all = blocks.map(|(&b, s)| (b, &mut s.u)).collect();
-    motions.take_out(fixed, Field::Shared, &coefficients, all);
+    motions.take_out(&fixed.context, Field::Shared, &coefficients, all);
     solution.share(&fixed.context, &fixed.step.loads);
     let mut minimum_norm = MinimumNorm {
         has_released_modes: list.len() > fixed.free.list.len(),

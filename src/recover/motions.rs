@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::problem::Catalog;
 
+use crate::context::Context;
 use crate::fem::block::Block;
-use crate::recover::fixed_active_set::FixedActiveSet;
+use crate::fem::body_frame::BodyFrame;
 use crate::rigid::free_motion::FreeMotion;
-use crate::rigid::motion::BodyFrame;
 use crate::rigid::projection::{BodyProducts, MotionProducts};
 use crate::vector::axpy;
 
@@ -23,7 +23,7 @@ pub enum Field {
 /// Rigid motions of the bodies.
 #[derive(Clone, Copy)]
 pub struct Motions<'a> {
-    /// Them.
+    /// The rigid-body modes.
     pub list: &'a [FreeMotion],
     /// The frame of every body.
     pub frames: &'a [BodyFrame],
@@ -34,37 +34,37 @@ impl<'a> Motions<'a> {
     /// that take part. Collective.
     pub fn project(
         &self,
-        fixed: &FixedActiveSet<'_>,
+        context: &Context<'_>,
         kind: Field,
         fields: BTreeMap<usize, &mut Vec<f64>>,
     ) {
         if self.list.is_empty() {
             return;
         }
-        let products = self.products(fixed, kind, &fields);
-        let found = fixed.root.map(|_| products.coefficients());
+        let products = self.products(context, kind, &fields);
+        let found = (context.comm.is_root()).then(|| products.coefficients());
         let mut coefficients = found.unwrap_or_default();
-        fixed.context.comm.broadcast(&mut coefficients);
-        self.take_out(fixed, kind, &coefficients, fields);
+        context.comm.broadcast(&mut coefficients);
+        self.take_out(context, kind, &coefficients, fields);
     }
 
     /// Their products with each other and with a field, on the root. Collective.
     pub fn products(
         &self,
-        fixed: &FixedActiveSet<'_>,
+        context: &Context<'_>,
         kind: Field,
         fields: &BTreeMap<usize, &mut Vec<f64>>,
     ) -> MotionProducts {
-        let catalog = fixed.context.catalog;
+        let catalog = context.catalog;
         let dim = catalog.dim;
         let first_of = first_blocks(catalog);
         let zeros = || BodyProducts::zeros(BodyFrame::count(dim));
         let mut of_bodies: Vec<BodyProducts> = self.frames.iter().map(|_| zeros()).collect();
-        fixed.context.comm.gather(
-            fixed.context.plan.owners(),
+        context.comm.gather(
+            context.plan.owners(),
             |b| {
                 let mut products = zeros();
-                if let (Some(block), Some(field)) = (fixed.context.blocks.get(&b), fields.get(&b)) {
+                if let (Some(block), Some(field)) = (context.blocks.get(&b), fields.get(&b)) {
                     let is_first = first_in(block, b, &first_of);
                     let frame = &self.frames[block.subdomain.body];
                     for (node, x) in block.points().iter().enumerate() {
@@ -91,16 +91,16 @@ impl<'a> Motions<'a> {
     /// v ← v − Σ c z.
     pub fn take_out(
         &self,
-        fixed: &FixedActiveSet<'_>,
+        context: &Context<'_>,
         kind: Field,
         coefficients: &[f64],
         fields: BTreeMap<usize, &mut Vec<f64>>,
     ) {
-        let dim = fixed.context.catalog.dim;
-        let first_of = first_blocks(fixed.context.catalog);
+        let dim = context.catalog.dim;
+        let first_of = first_blocks(context.catalog);
         let shares = self.shares();
         for (b, field) in fields {
-            let Some(block) = fixed.context.blocks.get(&b) else {
+            let Some(block) = context.blocks.get(&b) else {
                 continue;
             };
             let body = block.subdomain.body;

@@ -6,7 +6,7 @@ use contact_dd_partition::contact_point::Probe;
 use contact_dd_partition::problem::SubdomainNode;
 
 use crate::context::Context;
-use crate::output::resultants::{ContactResultant, Probed};
+use crate::fem::resultants::{ContactResultant, Probed};
 use crate::vector::largest;
 
 /// Part of the largest displacement up to which nodes touch.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::output::resultants::{Reaction, Resultant};
+use crate::fem::resultants::{Reaction, Resultant};
 use crate::recover::BlockSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
 

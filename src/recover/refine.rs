@@ -3,13 +3,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::certificate::check::{BlockCheck, Most};
+use crate::certificate::check::BlockCheck;
+use crate::certificate::most::Most;
 use crate::certificate::shared::at_shared_nodes;
 use crate::certificate::{Certificate, certificate};
-use crate::condense::jumps;
 use crate::contact::friction::TangentialCondition;
 use crate::contact::jumps::JumpOf;
 use crate::context::Context;
+use crate::context::hierarchy::jumps;
 use crate::fem::contact_group::ContactGroup;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedConditions};
 use crate::recover::fixed_conditions::{change_forces, conditions};
@@ -265,7 +266,7 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     let mut residuals: BTreeMap<usize, Vec<f64>> =
         solution.blocks.iter().filter_map(residual).collect();
     let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
-    fixed.free.project(fixed, Field::Summed, fields);
+    fixed.free.project(&fixed.context, Field::Summed, fields);
     let on_unknowns = |(b, residual): (usize, Vec<f64>)| {
         let dofs = &fixed.condensed.blocks.get(&b)?.dofs;
         let mut load = vec![0.0; dofs.len()];

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::certificate::Certificate;
 use crate::fem::estimate::CellError;
+use crate::fem::resultants::Reaction;
 use crate::fem::strain::LargestStrain;
-use crate::output::resultants::Reaction;
 use crate::recover::conditioning::condition_number;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::minimum_norm::{
@@ -16,7 +16,7 @@ use crate::recover::refine::{exchange_what_is_wrong, refine};
 use crate::recover::stresses::{Stress, error_estimate, largest_strain, stresses};
 use crate::recover::{DiscreteSolution, displacements};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
-use crate::rigid::closing_motion::with_closing_motions;
+use crate::rigid::body_analysis::with_closing_motions;
 
 /// What is known once U is.
 #[derive(Debug)]

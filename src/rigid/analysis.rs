@@ -5,20 +5,19 @@ mod many;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::forces::{Forces, Friction, slips};
+use super::forces::{Forces, slips};
 use super::free_motion::FreeMotion;
 use super::kinematics::Kinematics;
 use super::many_bodies::MANY;
-use super::motion::BodyFrame;
 use super::null_space::null_space;
 use super::proof::Loaded;
+use super::scene::{BodyState, RigidRow, Scene};
 use crate::error::Failure;
+use crate::fem::assembly::FixingDof;
+use crate::fem::body_frame::BodyFrame;
 
 /// Load along a free motion, relative to all loads, that counts as none.
 const LOAD_TOLERANCE: f64 = 1e-10;
-/// Resultant of a body's load, relative to the sum of its absolute forces, that is round-off of these:
-/// they may be products of a stiffness themselves.
-const RESULTANT_ROUND_OFF: f64 = 1e-12;
 /// Load that contact can't balance, relative to all loads, that counts as none.
 const BALANCE_TOLERANCE: f64 = 1e-9;
 /// The same that may be more than round-off.
@@ -26,55 +25,6 @@ const UNDECIDED: f64 = 1e-12;
 /// Load that friction can't balance, relative to all loads, that is the round-off of their sum: a body slides
 /// from a given angle on.
 const SLIDING: f64 = 2e-14;
-
-/// A body as the analysis sees it.
-#[derive(Clone, Debug)]
-pub struct BodyState {
-    /// Frame of its rigid motions.
-    pub frame: BodyFrame,
-    /// Rows of its supports against its rigid motions, what they prescribe last (m).
-    pub supports: Vec<Vec<f64>>,
-    /// Resultant of its load against its rigid motions.
-    pub load: Vec<f64>,
-    /// Sum of its absolute nodal forces.
-    pub load_scale: f64,
-    /// Nodes at which it may be pinned: subdomain, node, position.
-    pub candidates: Vec<(u32, u32, [f64; 3])>,
-}
-
-impl BodyState {
-    /// Makes nothing of resultants that are round-off: they would drive a body that its load
-    /// doesn't move until something stops it.
-    pub(super) fn drop_round_off(&mut self) {
-        let round_off = RESULTANT_ROUND_OFF * self.load_scale;
-        for load in self.load.iter_mut().filter(|load| load.abs() <= round_off) {
-            *load = 0.0;
-        }
-    }
-}
-
-/// A contact condition against the rigid motions of the bodies it touches.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RigidRow {
-    /// Bodies, and the row against their motions.
-    pub bodies: Vec<(usize, Vec<f64>)>,
-    /// g (m); a tangential one has none.
-    pub gap: f64,
-    /// What bounds its force if that is tangential; a normal one presses.
-    pub friction: Option<Friction>,
-}
-
-/// A spring on one node of a body that can move freely: u·direction = 0 there. It carries no force
-/// because the load has no component along the motion that it stops.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FixingDof {
-    /// Subdomain.
-    pub subdomain: u32,
-    /// Node of the subdomain.
-    pub node: u32,
-    /// Component that is held.
-    pub component: u32,
-}
 
 /// The rigid motions of a scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -85,21 +35,6 @@ pub struct RigidMotions {
     pub fixing_dofs: Vec<FixingDof>,
     /// What a user should know.
     pub warnings: Vec<String>,
-}
-
-/// What the rigid motions of a scene follow from. On the root.
-#[derive(Clone, Debug, Default)]
-pub struct Scene {
-    /// Dimension of space.
-    pub dim: usize,
-    /// Bodies.
-    pub bodies: Vec<BodyState>,
-    /// Their names.
-    pub names: Vec<String>,
-    /// Conditions, group by group.
-    pub rows: Vec<RigidRow>,
-    /// Number of conditions of every group.
-    pub conditions: Vec<usize>,
 }
 
 impl Scene {

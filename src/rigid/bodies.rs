@@ -7,9 +7,9 @@ use contact_dd_partition::problem::Catalog;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use super::analysis::BodyState;
-use super::motion::BodyFrame;
+use super::scene::BodyState;
 use crate::context::{Context, Loads};
+use crate::fem::body_frame::BodyFrame;
 use crate::fem::load::BlockLoads;
 use crate::vector::axpy;
 

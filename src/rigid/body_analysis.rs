@@ -2,18 +2,20 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::element::geometry::{dot, length};
 use serde::{Deserialize, Serialize};
 
-use super::analysis::{RigidMotions, Scene};
+use super::analysis::RigidMotions;
 use super::bodies::{body_frames, body_states};
 use super::closing_motion::closing_motions;
 use super::cluster_modes::cluster_modes;
-use super::energy::RigidModes;
-use super::motion::BodyFrame;
 use super::rows::rigid_rows;
+use super::scene::Scene;
 use crate::comm::is_asked_to_stop;
 use crate::context::{Context, Loads};
 use crate::error::Failure;
+use crate::fem::body_frame::BodyFrame;
+use crate::interface::rigid_modes::RigidModes;
 
 /// Free rigid motions, and the frames that they are written in.
 #[derive(Clone, Debug, Default)]
@@ -102,4 +104,84 @@ struct Found {
     motions: RigidMotions,
     movable: bool,
     closing_motions: Vec<Vec<f64>>,
+}
+
+/// What is left of a length after a motion, relative to both, that is round-off: a body is stiff
+/// enough to make forces of it.
+const ROUND_OFF: f64 = 1e-14;
+
+/// What acts on the blocks once the bodies' closing motions is taken out of gaps and supports.
+pub fn without_closing_motions(
+    context: &Context<'_>,
+    mut loads: Loads,
+    analysis: &RigidBodyAnalysis,
+) -> Loads {
+    if analysis.longest_closing_motion() == 0.0 {
+        return loads;
+    }
+    let dim = context.catalog.dim;
+    for (b, loads) in &mut loads.blocks {
+        let block = &context.blocks[b];
+        for support in &mut loads.supports {
+            let at = &block.points()[support.node as usize];
+            let moved = moved(analysis, dim, block.subdomain.body, at);
+            reduce(&mut support.value, &support.direction, &moved);
+        }
+    }
+    for (g, loads) in &mut loads.groups {
+        let group = &context.groups[g];
+        let nodes = group.nodes.iter();
+        let moved: Vec<[f64; 3]> = nodes
+            .map(|node| moved(analysis, dim, node.body, &node.at))
+            .collect();
+        for (condition, gap) in group.conditions().zip(&mut loads.gaps) {
+            for (node, row) in group.row_of(&condition) {
+                reduce(gap, &row, &moved[node as usize]);
+            }
+        }
+        for ((node, held), moved) in group.nodes.iter().zip(&mut loads.held).zip(&moved) {
+            for ((direction, _), value) in node.supports.iter().zip(held) {
+                reduce(value, direction, moved);
+            }
+        }
+    }
+    loads
+}
+
+/// Takes the part of a motion along `row` out of a length.
+fn reduce(whole: &mut f64, row: &[f64; 3], moved: &[f64; 3]) {
+    let given = whole.abs() + length(*row) * length(*moved);
+    *whole -= dot(*row, *moved);
+    if whole.abs() <= ROUND_OFF * given {
+        *whole = 0.0;
+    }
+}
+
+/// The displacement of every block, node by node: that of its solution and the bodies' closing motions.
+pub fn with_closing_motions<'a>(
+    context: &Context<'_>,
+    solutions: impl Iterator<Item = (usize, &'a [f64])>,
+    analysis: &RigidBodyAnalysis,
+) -> BTreeMap<usize, Vec<f64>> {
+    let (dim, stays) = (
+        context.catalog.dim,
+        analysis.longest_closing_motion() == 0.0,
+    );
+    let of_block = |(b, u): (usize, &[f64])| {
+        let block = context.blocks.get(&b)?;
+        let mut u = u.to_vec();
+        if stays {
+            return Some((b, u));
+        }
+        for (x, u) in block.points().iter().zip(u.chunks_exact_mut(dim)) {
+            let moved = moved(analysis, dim, block.subdomain.body, x);
+            u.iter_mut().zip(moved).for_each(|(u, m)| *u += m);
+        }
+        Some((b, u))
+    };
+    solutions.filter_map(of_block).collect()
+}
+
+fn moved(analysis: &RigidBodyAnalysis, dim: usize, body: usize, x: &[f64; 3]) -> [f64; 3] {
+    analysis.frames[body].displacement(dim, x, &analysis.closing_motions[body])
 }

@@ -4,20 +4,15 @@
 //! which elasticity is the last digits. So the closing motion is found from geometry and load alone
 //! and taken out of the problem: what is left is small, and starts where contact holds.
 
-use std::collections::BTreeMap;
-
-use contact_dd_partition::element::geometry::{dot, length};
 use nalgebra::{DMatrix, DVector};
 
-use super::analysis::{BodyState, RigidRow};
-use super::body_analysis::RigidBodyAnalysis;
-use super::forces::{Forces, Friction};
+use super::forces::Forces;
 use super::kinematics::Kinematics;
 use super::many_bodies::{MANY, ManyBodies, SparseRow};
-use super::motion::BodyFrame;
 use super::null_space::{RANK_TOLERANCE, null_space};
+use super::scene::{BodyState, Friction, RigidRow};
 use crate::comm::is_asked_to_stop;
-use crate::context::{Context, Loads};
+use crate::fem::body_frame::BodyFrame;
 
 /// Drive that is left, relative to all, that counts as none.
 const BALANCED: f64 = 1e-9;
@@ -286,86 +281,6 @@ fn without_slip(
         .filter(|&j| !is_closed(j) && closing[j] > ALONG * back.norm())
         .fold(1.0, |part: f64, j| part.min(left[j] / closing[j]));
     back * part
-}
-
-/// What is left of a length after a motion, relative to both, that is round-off: a body is stiff
-/// enough to make forces of it.
-const ROUND_OFF: f64 = 1e-14;
-
-/// What acts on the blocks once the bodies' closing motions is taken out of gaps and supports.
-pub fn without_closing_motions(
-    context: &Context<'_>,
-    mut loads: Loads,
-    analysis: &RigidBodyAnalysis,
-) -> Loads {
-    if analysis.longest_closing_motion() == 0.0 {
-        return loads;
-    }
-    let dim = context.catalog.dim;
-    for (b, loads) in &mut loads.blocks {
-        let block = &context.blocks[b];
-        for support in &mut loads.supports {
-            let at = &block.points()[support.node as usize];
-            let moved = moved(analysis, dim, block.subdomain.body, at);
-            reduce(&mut support.value, &support.direction, &moved);
-        }
-    }
-    for (g, loads) in &mut loads.groups {
-        let group = &context.groups[g];
-        let nodes = group.nodes.iter();
-        let moved: Vec<[f64; 3]> = nodes
-            .map(|node| moved(analysis, dim, node.body, &node.at))
-            .collect();
-        for (condition, gap) in group.conditions().zip(&mut loads.gaps) {
-            for (node, row) in group.row_of(&condition) {
-                reduce(gap, &row, &moved[node as usize]);
-            }
-        }
-        for ((node, held), moved) in group.nodes.iter().zip(&mut loads.held).zip(&moved) {
-            for ((direction, _), value) in node.supports.iter().zip(held) {
-                reduce(value, direction, moved);
-            }
-        }
-    }
-    loads
-}
-
-/// Takes the part of a motion along `row` out of a length.
-fn reduce(whole: &mut f64, row: &[f64; 3], moved: &[f64; 3]) {
-    let given = whole.abs() + length(*row) * length(*moved);
-    *whole -= dot(*row, *moved);
-    if whole.abs() <= ROUND_OFF * given {
-        *whole = 0.0;
-    }
-}
-
-/// The displacement of every block, node by node: that of its solution and the bodies' closing motions.
-pub fn with_closing_motions<'a>(
-    context: &Context<'_>,
-    solutions: impl Iterator<Item = (usize, &'a [f64])>,
-    analysis: &RigidBodyAnalysis,
-) -> BTreeMap<usize, Vec<f64>> {
-    let (dim, stays) = (
-        context.catalog.dim,
-        analysis.longest_closing_motion() == 0.0,
-    );
-    let of_block = |(b, u): (usize, &[f64])| {
-        let block = context.blocks.get(&b)?;
-        let mut u = u.to_vec();
-        if stays {
-            return Some((b, u));
-        }
-        for (x, u) in block.points().iter().zip(u.chunks_exact_mut(dim)) {
-            let moved = moved(analysis, dim, block.subdomain.body, x);
-            u.iter_mut().zip(moved).for_each(|(u, m)| *u += m);
-        }
-        Some((b, u))
-    };
-    solutions.filter_map(of_block).collect()
-}
-
-fn moved(analysis: &RigidBodyAnalysis, dim: usize, body: usize, x: &[f64; 3]) -> [f64; 3] {
-    analysis.frames[body].displacement(dim, x, &analysis.closing_motions[body])
 }
 
 #[cfg(test)]

@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use faer::Mat;
 use nalgebra::DMatrix;
 
-use super::analysis::{FixingDof, RigidRow, Scene};
-use super::energy::RigidModes;
 use super::kinematics::Kinematics;
 use super::many_bodies::SparseRow;
 use super::null_space::null_space;
+use super::scene::{RigidRow, Scene};
 use crate::context::Context;
+use crate::fem::assembly::FixingDof;
+use crate::interface::rigid_modes::RigidModes;
 
 /// How far a motion moves a condition, relative to others, that is none.
 const ROUND_OFF: f64 = 1e-9;

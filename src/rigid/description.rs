@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use faer::Mat;
 
-use super::analysis::BodyState;
 use super::free_motion::FreeMotion;
 use super::kinematics::Kinematics;
-use super::motion::BodyFrame;
+use super::scene::BodyState;
+use crate::fem::body_frame::BodyFrame;
 
 /// Motions up to which each is described: more are any basis of what bodies can do together.
 const MOTIONS: usize = 3;
@@ -119,7 +119,7 @@ fn listed(mut names: Vec<String>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rigid::analysis::Scene;
+    use crate::rigid::scene::Scene;
     use crate::rigid::squares::{body, scene};
 
     /// `n` squares in a row, and one free motion of each, along x.

@@ -3,14 +3,12 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
-use serde::{Deserialize, Serialize};
 
-use super::analysis::RigidRow;
 use super::many_bodies::SparseRow;
 use super::nonnegative::{Nearest, nearest, residual, residual_in_span};
 use super::null_space::{RANK_TOLERANCE, null_space};
 use super::proof::Loaded;
-use crate::contact::friction::ForceBound;
+use super::scene::{Friction, RigidRow};
 
 /// Part of the fastest motion of a condition with which sides slip.
 const SLIPS: f64 = 0.1;
@@ -27,22 +25,6 @@ const WORTH_TURNING: f64 = 1.0 + 1e-10;
 const REFINEMENTS: usize = 40;
 /// Half of the directions in a tangential plane that stand for all.
 const DIRECTIONS: usize = 4;
-
-/// What bounds the force of a tangential condition, in space that of both tangents of a point.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Friction {
-    /// The condition along the normal of the same point.
-    pub normal: usize,
-    /// The bound.
-    pub bound: ForceBound,
-}
-
-impl Friction {
-    /// Whether it can give a force where the contact is as `closed` says, and without a normal force.
-    pub(super) fn holds_unpressed(&self, closed: bool) -> bool {
-        self.bound.at(0.0, closed) > 0.0
-    }
-}
 
 /// A force on conditions, which can be given up to so many times.
 #[derive(Clone, Debug, PartialEq)]

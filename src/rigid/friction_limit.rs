@@ -3,9 +3,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::analysis::{RigidRow, Scene};
 use super::kinematics::Kinematics;
 use super::released_modes::ConditionState;
+use super::scene::{RigidRow, Scene};
 
 /// Part of what friction can give from which it is at its limit.
 const AT_LIMIT: f64 = 1.0 - 1e-6;

@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::analysis::{BodyState, RigidRow};
 use super::free_motion::FreeMotion;
 use super::many_bodies::{MANY, SparseRow};
-use super::motion::BodyFrame;
 use super::null_space::null_space;
+use super::scene::{BodyState, RigidRow};
 use super::unheld_motions::unheld_motions;
+use crate::fem::body_frame::BodyFrame;
 
 /// The motions that supports leave to all bodies, side by side.
 pub(super) struct Kinematics {

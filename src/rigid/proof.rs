@@ -7,9 +7,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::analysis::RigidRow;
 use super::columns::Columns;
 use super::many_bodies::{SparseRow, jump};
+use super::scene::RigidRow;
 use crate::contact::friction::ForceBound;
 
 /// Sum of normal forces, relative to all loads, that no contact has: one that would need more has no equilibrium.
@@ -308,8 +308,8 @@ fn at_limits(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rigid::forces::Friction;
     use crate::rigid::nonnegative;
+    use crate::rigid::scene::Friction;
     use crate::rigid::squares::coulomb;
 
     fn noise(s: usize) -> f64 {

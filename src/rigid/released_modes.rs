@@ -3,13 +3,12 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::analysis::{RigidRow, Scene};
-use super::forces::Friction;
 use super::free_motion::FreeMotion;
 use super::kinematics::Kinematics;
 use super::many_bodies::MANY;
 use super::nonnegative;
 use super::projection::MotionProducts;
+use super::scene::{Friction, RigidRow, Scene};
 
 /// A condition in a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

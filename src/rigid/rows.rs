@@ -1,10 +1,9 @@
 //! What the analysis of rigid motions needs of contact conditions, from the ranks that have them.
 
-use super::analysis::RigidRow;
-use super::forces::Friction;
-use super::motion::BodyFrame;
+use super::scene::{Friction, RigidRow};
 use crate::contact::friction::TangentialCondition;
 use crate::context::Context;
+use crate::fem::body_frame::BodyFrame;
 use crate::fem::contact_group::{Condition, ContactGroup};
 
 /// The conditions against the rigid motions of the bodies, group by group, and how many each group has;

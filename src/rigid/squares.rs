@@ -1,9 +1,8 @@
 //! Squares and cubes for tests.
 
-use super::analysis::{BodyState, RigidRow, Scene};
-use super::forces::Friction;
-use super::motion::BodyFrame;
+use super::scene::{BodyState, Friction, RigidRow, Scene};
 use crate::contact::friction::ForceBound;
+use crate::fem::body_frame::BodyFrame;
 
 /// A body within these bounds, of the plane where its load has three components, in space where it has six.
 pub fn body(low: [f64; 3], high: [f64; 3], load: &[f64]) -> BodyState {

@@ -9,6 +9,7 @@ use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::stage::Stage;
 use faer::Par;
 
+use crate::comm::ranks::RankSeconds;
 use crate::comm::{Comm, phase};
 use crate::condense::Condensation;
 use crate::condense::interface::assemble_interface;
@@ -17,14 +18,13 @@ use crate::context::{Context, Moment};
 use crate::error::{Failure, FailureKind};
 use crate::fem::block::Block;
 use crate::fem::contact_group::ContactGroup;
+use crate::fem::resultants::Resultants;
 use crate::frozen::fronts::FrozenFronts;
-use crate::output::memory::afford;
-use crate::output::ranks::RankSeconds;
-use crate::output::resultants::Resultants;
 use crate::output::vtkhdf::beside::FileBeside;
 use crate::plan::Plan;
 use crate::plan::cluster::Merging;
 use crate::plan::cost::CostEstimate;
+use crate::plan::memory::afford;
 use crate::read::{check_copies, collect_groups, depend_on_each_other, read_blocks};
 use crate::recover::penetration::probe;
 use crate::report::Outputs;
@@ -212,10 +212,11 @@ impl Stages<'_> {
             loads: &StepState::default().loads(&context, Moment::end_of(first), &analyses[0]),
             fixing_dofs: &analyses[0].motions.fixing_dofs,
         };
-        let mut condensed = condense_clusters(&condensation, &analyses[0]).map_err(|failure| {
-            let failure = context.of_pivot(failure);
-            state::finished(failure, &context, settings, finished.count)
-        })?;
+        let mut condensed =
+            condense_clusters(&condensation, &analyses[0].cluster_modes).map_err(|failure| {
+                let failure = context.of_pivot(failure);
+                state::finished(failure, &context, settings, finished.count)
+            })?;
         let [assembling, factorizing] = condensed.seconds;
         let mut condensing = comm.times() - lap - assembling;
         // Waiting is nobody's time on the wall.

@@ -81,7 +81,9 @@ impl BoundaryLastCholesky {
         values
             .try_reserve_exact(supernodes.values())
             .map_err(|_| FactorError::Size)?;
-        Fronts::new(matrix, &supernodes, count).run(&mut values, rest, par)?;
+        Fronts::new(matrix, &supernodes, count)
+            .run(&mut values, rest, par)
+            .map_err(FactorError::Pivot)?;
         Ok(Self {
             supernodes,
             values,

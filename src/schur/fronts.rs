@@ -5,7 +5,6 @@ use std::ops::Range;
 use faer::{MatMut, Par};
 
 use super::children::{Children, NO_PARENT};
-use super::factor::FactorError;
 use super::front;
 use super::pattern::SparseSymmetric;
 use super::supernodes::Supernodes;
@@ -44,13 +43,13 @@ impl<'a> Fronts<'a> {
     /// triangle of `rest`, whose rows are the unknowns that stay.
     ///
     /// # Errors
-    /// A pivot isn't positive.
+    /// The column whose pivot isn't positive.
     pub fn run(
         mut self,
         values: &mut Vec<f64>,
         mut rest: MatMut<'_, f64>,
         par: Par,
-    ) -> Result<(), FactorError> {
+    ) -> Result<(), usize> {
         let mut panel = Vec::new();
         for s in 0..self.supernodes.len() {
             let columns = self.supernodes.columns(s);
@@ -69,7 +68,7 @@ impl<'a> Fronts<'a> {
                 self.free.push(taken);
             }
             front::factorize(&mut panel, rows, columns.len(), &mut update, par)
-                .map_err(|column| FactorError::Pivot(columns.start + column))?;
+                .map_err(|column| columns.start + column)?;
             for (j, column) in panel.chunks_exact(rows).enumerate() {
                 values.extend_from_slice(&column[j..]);
             }

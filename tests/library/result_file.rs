@@ -7,7 +7,8 @@ mod time_series;
 
 use std::path::Path;
 
-use contact_dd_mpi::output::result::{ContactRow, ContactState, PartitionSize, SubdomainResults};
+use contact_dd_mpi::fem::contact_state::{ContactRow, ContactState};
+use contact_dd_mpi::output::result::{PartitionSize, SubdomainResults};
 use contact_dd_mpi::output::vtkhdf::kept::Kept;
 use contact_dd_mpi::output::vtkhdf::{Layout, ResultFile};
 use contact_dd_mpi::sweep::SweepRecord;

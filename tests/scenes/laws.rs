@@ -9,9 +9,9 @@ use contact_dd_mpi::fem::dofs::Dofs;
 use contact_dd_mpi::fem::load::BlockLoads;
 use contact_dd_mpi::schur::local::LocalSchur;
 use contact_dd_mpi::sweep::Method;
+use contact_dd_partition::hierarchy::tree::Tree;
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
-use contact_dd_partition::problem::tree::Tree;
 use faer::{Mat, Par, Side};
 
 use crate::support::blocks::{Blocks, jittered, joined, moved};

@@ -1,13 +1,10 @@
 //! The graph that is dissected: its vertices are cells, or the subdomains that a scene prescribes; its edges
 //! are facets, and contact points that tie the cells on both sides to each other.
 
-use super::ties::{hinges, ties};
+use super::ties::{NODE, hinges, ties};
 use crate::lists::Lists;
 use crate::mesh::Mesh;
 use crate::model::Model;
-
-/// Weight of a node that a cut lets both sides share.
-pub(super) const NODE: u32 = 256;
 
 /// An edge as one of its ends sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::hierarchy::Work;
+use crate::hierarchy::work::Work;
 use crate::problem::Problem;
 
 /// Sizes and balance of a problem; its `Display` is what the partition tool prints.

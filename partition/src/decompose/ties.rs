@@ -1,8 +1,10 @@
 //! What ties cells to each other that share no facet: contact points, and nodes at which pieces hang together.
 
-use super::graph::NODE;
 use crate::lists::Lists;
 use crate::model::Model;
+
+/// Weight of a node that a cut lets both sides share.
+pub(super) const NODE: u32 = 256;
 
 /// Nodes that a contact point with friction adds to the front that merges its sides: one of each side. Without, sides
 /// are joined along the normal alone: one of the unknowns of a node takes the place of what they share.

@@ -1,6 +1,7 @@
 //! x(ξ) = Σ N_i(ξ) x_i, the map of a reference element to its place in space, and what follows from it.
 
-use super::reference::{Domain, ReferenceElement};
+use super::definition::Domain;
+use super::reference::ReferenceElement;
 
 /// a·b.
 pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

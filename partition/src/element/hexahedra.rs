@@ -1,8 +1,9 @@
 //! Hexahedra: N and ∂N/∂ξ on −1 ≤ ξ, η, ζ ≤ 1.
 
 use super::ElementKind::{self, Quad4, Quad8, Quad9};
+use super::definition::{CellRules, Definition, Domain};
 use super::lines::{lagrange, lagrange_slope};
-use super::reference::{CellRules, Definition, Domain, ReferenceElement};
+use super::reference::ReferenceElement;
 
 /// Corners, the middles of the edges, the middles of the faces, the center.
 const NODES: &[[f64; 3]; 27] = &[

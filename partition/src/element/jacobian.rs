@@ -1,9 +1,8 @@
 //! det ∂x/∂ξ > 0: whether the map of a cell is one to one, everywhere and not at some points.
 
-use nalgebra::DMatrix;
-
+use super::definition::Domain;
 use super::geometry::{difference, length};
-use super::reference::{Domain, ReferenceElement};
+use super::reference::ReferenceElement;
 
 /// Halvings in each direction after which a Jacobian that still may vanish counts as one that does.
 const HALVINGS: usize = 12;
@@ -60,44 +59,6 @@ impl ReferenceElement {
         let mut is_sound = || points.all(|point| self.determinant(&point.gradients, at) > floor);
         let is_collapsed = || (1..at.len()).any(|i| at[..i].contains(&at[i]));
         self.domain() == Domain::Cube && self.is_linear() && !is_collapsed() && is_sound()
-    }
-}
-
-/// Where the Jacobian is sampled: places that cut each direction of the unit square or cube into equal parts,
-/// as many as it has degrees there.
-#[derive(Debug)]
-pub(super) struct Lattice {
-    degree: usize,
-    /// Gradients of the shape functions at the places, the first direction fastest.
-    gradients: Vec<Vec<[f64; 3]>>,
-    /// Bernstein's coefficients on a line from the values at its places.
-    to_bernstein: DMatrix<f64>,
-}
-
-impl Lattice {
-    pub fn new(element: &ReferenceElement) -> Self {
-        let degree: usize = match (element.domain(), element.is_linear()) {
-            (Domain::Cube, true) => 2,
-            (Domain::Cube, false) => 5,
-            _ => 3,
-        };
-        let count = degree + 1;
-        let share = |i: usize| i as f64 / degree as f64;
-        let places = (0..count.pow(element.dim() as u32))
-            .map(|i| [i % count, i / count % count, i / (count * count)].map(share));
-        let binomial =
-            |k: usize| (0..k).fold(1.0_f64, |b, j| b * (degree - j) as f64 / (j + 1) as f64);
-        let bernstein = DMatrix::from_fn(count, count, |i, k| {
-            let x = share(i);
-            binomial(k) * x.powi(k as i32) * (1.0 - x).powi((degree - k) as i32)
-        });
-        Self {
-            degree,
-            gradients: places
-                .map(|place| element.gradients(element.domain().of_unit_cube(place)))
-                .collect(),
-            to_bernstein: bernstein.try_inverse().unwrap_or_default(),
-        }
     }
 }
 

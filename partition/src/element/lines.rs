@@ -1,7 +1,8 @@
 //! Points and lines, the facets of the plane: N and ∂N/∂ξ on −1 ≤ ξ ≤ 1.
 
 use super::ElementKind::Point1;
-use super::reference::{Definition, Domain, ReferenceElement};
+use super::definition::{Definition, Domain};
+use super::reference::ReferenceElement;
 
 /// A single node.
 pub static POINT1: ReferenceElement = ReferenceElement::new(Definition {

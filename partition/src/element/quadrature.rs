@@ -2,24 +2,13 @@
 
 use std::f64::consts::PI;
 
-use super::reference::{Domain, ReferenceElement};
+use super::definition::Domain;
+use super::reference::ReferenceElement;
+pub use super::tables::TabulatedPoint;
 
 /// Reference coordinates and weights of a rule, ∫ f dξ ≈ Σ w_q f(ξ_q). All weights are positive; their sum
 /// is the measure of the reference element.
 pub type Quadrature = Vec<([f64; 3], f64)>;
-
-/// Shape functions of a reference element at a point of a rule.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TabulatedPoint {
-    /// Reference coordinates.
-    pub xi: [f64; 3],
-    /// Weight of the point.
-    pub weight: f64,
-    /// N_i.
-    pub shape: Vec<f64>,
-    /// ∂N_i/∂ξ_j.
-    pub gradients: Vec<[f64; 3]>,
-}
 
 impl ReferenceElement {
     /// A rule that is exact for polynomials up to `degree`, on the square and the cube in

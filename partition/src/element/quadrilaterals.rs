@@ -1,8 +1,9 @@
 //! Quadrilaterals: N and ∂N/∂ξ on −1 ≤ ξ, η ≤ 1.
 
 use super::ElementKind::{self, Line2, Line3};
+use super::definition::{CellRules, Definition, Domain};
 use super::lines::{lagrange, lagrange_slope};
-use super::reference::{CellRules, Definition, Domain, ReferenceElement};
+use super::reference::ReferenceElement;
 
 /// Corners, the middles of the edges, the center.
 const NODES: &[[f64; 3]; 9] = &[

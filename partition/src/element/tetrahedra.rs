@@ -1,7 +1,8 @@
 //! Tetrahedra: N and ∂N/∂ξ on 0 ≤ ξ, η, ζ, ξ + η + ζ ≤ 1.
 
 use super::ElementKind::{Triangle3, Triangle6};
-use super::reference::{CellRules, Definition, Domain, ReferenceElement};
+use super::definition::{CellRules, Definition, Domain};
+use super::reference::ReferenceElement;
 
 /// Corners, then the middles of the edges.
 const NODES: &[[f64; 3]; 10] = &[

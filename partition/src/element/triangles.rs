@@ -1,7 +1,8 @@
 //! Triangles: N and ∂N/∂ξ on 0 ≤ ξ, η, ξ + η ≤ 1.
 
 use super::ElementKind::{Line2, Line3};
-use super::reference::{CellRules, Definition, Domain, ReferenceElement};
+use super::definition::{CellRules, Definition, Domain};
+use super::reference::ReferenceElement;
 
 /// Corners, then the middles of the edges.
 const NODES: &[[f64; 3]; 6] = &[

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::squares::{MOST_CELLS, SAME, group, root};
 use crate::element::ElementKind;
-use crate::element::reference::Domain;
+use crate::element::definition::Domain;
 use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;

@@ -7,14 +7,15 @@ use std::collections::{BTreeMap, HashMap};
 use nalgebra::Matrix3;
 
 use super::bodies::Bodies;
-use super::{Material, PlaneState, loads};
+use super::rules::rule_of_cells;
+use super::{Material, PlaneState};
 use crate::element::geometry::advance;
 use crate::element::quadrature::TabulatedPoint;
 use crate::error::InputError;
 use crate::magnitude;
 use crate::scene::Scene;
+use crate::scene::loading::Loading;
 use crate::scene::number::Number;
-use crate::scene::step::Loading;
 
 /// A stress in the order of results: XX YY ZZ XY YZ XZ (Pa).
 pub type Stress = [f64; 6];
@@ -126,7 +127,7 @@ impl InitialStress {
                 continue;
             }
             let rule = (rules.entry(kind))
-                .or_insert_with(|| loads::rule_of_cells(kind, plane, field.is_constant()));
+                .or_insert_with(|| rule_of_cells(kind, plane, field.is_constant()));
             let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
             for (&node, &x) in nodes.iter().zip(&at) {
                 let key = (node, bodies.cell_material[cell]);

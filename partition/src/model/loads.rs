@@ -4,25 +4,21 @@ use std::collections::BTreeMap;
 
 use super::bodies::Bodies;
 use super::initial_stress::InitialStress;
+use super::rules::{around, rule_of_cells};
 use super::surface::Surface;
 use super::{Material, groups};
-use crate::element::ElementKind;
 use crate::element::geometry::{advance, length};
-use crate::element::quadrature::TabulatedPoint;
 use crate::error::InputError;
 use crate::magnitude;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
+use crate::scene::loading::Loading;
 use crate::scene::material::PlaneState;
 use crate::scene::number::Vector;
-use crate::scene::step::Loading;
 
 /// Degree of exactness on lines and faces: a cubic pressure along a curved quadratic one times a shape
 /// function and n dS needs 9 and 11.
 const FACET_DEGREES: [usize; 2] = [9, 11];
-/// What the radius adds to a degree.
-const RADIUS: [usize; 2] = [1, 2];
-
 /// The nodal forces of a loading of `scene`, node by node, and the initial stress that makes some of them.
 pub(super) fn forces(
     scene: &Scene,
@@ -78,29 +74,6 @@ pub(super) fn forces(
         }
     }
     Ok((forces, initial))
-}
-
-/// The degree of a rule that is exact with the radius as a factor, where the scene is axisymmetric.
-fn around(plane: Option<PlaneState>, degree: usize, is_linear: bool) -> usize {
-    match plane {
-        Some(PlaneState::Axisymmetric) => degree + RADIUS[usize::from(!is_linear)],
-        _ => degree,
-    }
-}
-
-/// The rule by which a load is integrated over cells.
-pub(super) fn rule_of_cells(
-    kind: ElementKind,
-    plane: Option<PlaneState>,
-    is_constant: bool,
-) -> Vec<TabulatedPoint> {
-    let degree = kind.rules().map(|rules| match is_constant {
-        true => rules.constant_load,
-        false => rules.cubic_load,
-    });
-    degree.map_or_else(Vec::new, |degree| {
-        kind.tabulate(around(plane, degree, kind.is_linear()))
-    })
 }
 
 /// Adds ∫ N_i b dx over the cells of a body, b a `factor` of the force.

@@ -1,5 +1,6 @@
 //! The boundary of all bodies, and which of its facets face each other.
 
+mod facet;
 mod view;
 
 use std::collections::BTreeMap;
@@ -7,6 +8,7 @@ use std::collections::BTreeMap;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
+pub(super) use self::facet::{ROUND_OFF, STANDING_OFF, SkinFacet};
 use self::view::View;
 use super::bodies::Bodies;
 use super::surface::SurfaceFacet;
@@ -16,25 +18,8 @@ use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::{CellFacet, Topology};
 use crate::scene::material::PlaneState;
 
-/// Distance up to which facets touch but for round-off, relative to their size.
-pub(super) const ROUND_OFF: f64 = 1e-6;
-
-/// Distance up to which facets touch where straight ones stand off the curves that they stand for, relative to their
-/// size: those of a circle of fifteen sides stand off by half of it.
-pub(super) const STANDING_OFF: f64 = 0.05;
-
 /// Cosine of the angle between neighbours that are no corner: 45°.
 const SMOOTH: f64 = std::f64::consts::FRAC_1_SQRT_2;
-
-/// A facet of the boundary.
-pub(super) struct SkinFacet {
-    pub place: CellFacet,
-    pub shape: SurfaceFacet,
-    /// Body of its cell.
-    pub body: u32,
-    /// Piece of the mesh that its cell hangs together with.
-    piece: u32,
-}
 
 /// Two facets that face each other.
 #[derive(Clone, Copy, Debug)]

@@ -9,8 +9,8 @@ use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
+use crate::scene::loading::Loading;
 use crate::scene::material::PlaneState;
-use crate::scene::step::Loading;
 
 /// Relative difference up to which two prescribed values of one component agree.
 const AGREE: f64 = 1e-12;

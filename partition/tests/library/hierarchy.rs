@@ -6,8 +6,8 @@ use std::sync::LazyLock;
 
 use crate::problem_scenes::{cracked, shuffled, stacked};
 use contact_dd_partition::decompose::Decomposition;
-use contact_dd_partition::decompose::hierarchy::Work;
 use contact_dd_partition::flops::Front;
+use contact_dd_partition::hierarchy::work::Work;
 use contact_dd_partition::model::Model;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::{Catalog, Hierarchy, Problem};

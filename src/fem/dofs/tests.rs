@@ -1,7 +1,7 @@
 use contact_dd_partition::element::geometry::dot;
 use contact_dd_partition::element::{ElementKind, Elements};
+use contact_dd_partition::hierarchy::tree::Tree;
 use contact_dd_partition::model::Support;
-use contact_dd_partition::problem::tree::Tree;
 use contact_dd_partition::problem::{InitialStress, InterfaceNode, Subdomain};
 
 use super::super::block::Block;

@@ -2,7 +2,7 @@
 
 use contact_dd_partition::scene::units::Units;
 
-use crate::output::resultants::{ContactResultant, Reaction, Resultant, Resultants};
+use crate::fem::resultants::{ContactResultant, Reaction, Resultant, Resultants};
 
 /// Most lines that are printed of a table; the report has all.
 const LINES: usize = 12;
@@ -81,7 +81,7 @@ fn table<T>(head: String, all: &[T], line: impl Fn(&T) -> String) -> Vec<String>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::resultants::Friction;
+    use crate::fem::resultants::Friction;
 
     #[test]
     fn long_lists_are_cut() {

@@ -1,6 +1,6 @@
 //! The table of times over the ranks.
 
-use crate::output::ranks::{PhaseSeconds, RankReport};
+use crate::comm::ranks::{PhaseSeconds, RankReport};
 
 /// The time that each phase took over the ranks, and its share of the mean total.
 pub(super) fn lines(ranks: &[RankReport]) -> Vec<String> {

@@ -3,9 +3,9 @@
 use contact_dd_partition::problem::ContactSummary;
 use hdf5::{File, Group, Result};
 
-use super::super::result::ContactRow;
 use super::checkpoint::Column;
 use super::column::{self, Written};
+use crate::fem::contact_state::ContactRow;
 
 /// The table of every contact, and which of its rows have been written in a load step.
 #[derive(Debug)]

@@ -6,7 +6,8 @@ use contact_dd_partition::contact_point::LocalFrame;
 
 use crate::contact::friction::ForceBound;
 use crate::error::Failure;
-use crate::rigid::analysis::{BodyState, RigidMotions, RigidRow, Scene};
+use crate::rigid::analysis::RigidMotions;
+use crate::rigid::scene::{BodyState, RigidRow, Scene};
 use crate::rigid::squares::{self, body};
 
 const FRICTIONLESS: Option<ForceBound> = None;

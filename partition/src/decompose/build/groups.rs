@@ -1,6 +1,6 @@
 //! Groups: the subdomains that contact links.
 
-use super::Owners;
+use super::owners::Owners;
 use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::model::Model;

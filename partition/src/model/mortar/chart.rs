@@ -5,8 +5,8 @@ use super::field::Field;
 use super::foot::{ROUND_OFF, STEPS, middle, solve};
 use super::map::{Map, Xi};
 use crate::contact_point::LocalFrame;
+use crate::element::definition::Domain;
 use crate::element::geometry::{advance, cross, difference, dot, length};
-use crate::element::reference::Domain;
 
 /// Distance of a node on an edge from the chord, relative to the chord, from which on the edge is curved.
 const CURVED: f64 = 1e-9;

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::map::Xi;
 use crate::element::ElementKind;
-use crate::element::reference::Domain;
+use crate::element::definition::Domain;
 
 /// Distance from the end of a reference facet that is round-off.
 const ROUND_OFF: f64 = 1e-9;

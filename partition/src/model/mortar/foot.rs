@@ -3,8 +3,8 @@
 use super::super::clip::Point;
 use super::map::{Map, Xi};
 use crate::contact_point::LocalFrame;
+use crate::element::definition::Domain;
 use crate::element::geometry::{difference, dot};
-use crate::element::reference::Domain;
 
 /// Steps after which Newton's method has found nothing.
 pub(super) const STEPS: usize = 30;

@@ -1,8 +1,8 @@
 //! Which of two sides carries the multipliers.
 
 use super::super::sides::Sides;
+use super::carried::{Carried, carried};
 use super::probes::probes;
-use super::{Carried, carried};
 use crate::contact_point::{ContactPoint, Probe};
 use crate::magnitude::short;
 

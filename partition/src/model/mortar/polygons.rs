@@ -11,12 +11,12 @@ use nalgebra::DMatrix;
 use super::super::clip::{Point, area, clip, contains, middle, triangles};
 use super::super::surface::SurfaceFacet;
 use super::chart::{Chart, aside};
-use super::cover::{Cover, Opposite, Overlap, Pieces};
+use super::cover::{BEYOND, Cover, Opposite, Overlap, Pieces};
 use super::field::Field;
 use super::foot::{foot, middle as middle_of};
 use super::map::Xi;
+use crate::element::definition::Domain;
 use crate::element::geometry::{difference, dot, length};
-use crate::element::reference::Domain;
 
 /// Area of a polygon relative to that of the facet below which it is round-off of facets with a common edge.
 const SLIVER: f64 = 1e-12;
@@ -26,14 +26,8 @@ const SAG: f64 = 1e-3;
 const PARTS: f64 = 8.0;
 /// Distance of a node from where an affine map would have it, relative to the facet, that doesn't matter.
 const AFFINE: f64 = 1e-6;
-/// Degree beyond that of the shape functions' products to which flat facets are integrated whose maps aren't affine:
-/// then those whose nodes are moved by a fifth of their size have errors of 1e-12.
-const BEYOND: usize = 6;
 /// The same of facets that aren't flat, which nothing integrates exactly.
 const BEYOND_CURVED: usize = 2;
-/// The highest degree of all: of quadrilaterals of 9 nodes.
-pub(super) const MOST_DEGREE: usize = 8 + BEYOND;
-
 /// A facet of side b and what of it is seen from a facet of side a.
 struct Piece {
     facet: usize,

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use super::super::sides::SideNode;
 use super::super::surface::{Surface, SurfaceFacet};
-use super::Covered;
 use super::cover::{Cover, Overlap, Pieces, Sample};
+use super::covered::Covered;
 use super::weights::Weight;
 use crate::contact_point::{ContactPoint, LocalFrame};
 use crate::element::geometry::{advance, difference, dot, length};

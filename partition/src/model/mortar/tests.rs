@@ -2,8 +2,10 @@
 
 mod space;
 
+use std::collections::HashMap;
+
 use self::space::{Point, Range, Space};
-use super::*;
+use crate::contact_point::ContactPoint;
 use crate::element::ElementKind::{self, Quad4, Quad8, Quad9, Triangle3, Triangle6};
 use crate::element::geometry::{advance, cross, difference, length};
 use crate::mesh::Mesh;

@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use nalgebra::DMatrix;
 
 use super::super::sides::Sides;
-use super::Covered;
 use super::bases::{Bases, Kind, lift};
 use super::cover::Cover;
+use super::covered::Covered;
 use super::dual::dual_basis;
 
 /// Share of a line with less of which covered its shape functions can't be told apart reliably. No round number:

@@ -3,7 +3,7 @@
 use super::super::clip::{Point, area, clip, contains, middle};
 use super::super::mortar::{Map, foot, middle as middle_of};
 use super::super::surface::SurfaceFacet;
-use super::{ROUND_OFF, STANDING_OFF, SkinFacet};
+use super::facet::{ROUND_OFF, STANDING_OFF, SkinFacet};
 use crate::contact_point::LocalFrame;
 use crate::element::geometry::{advance, difference, dot};
 use crate::mesh::Mesh;

@@ -1,8 +1,9 @@
 //! What every reference element keeps, whoever defined it.
 
+use contact_dd_partition::element::definition::CellRules;
+use contact_dd_partition::element::definition::Domain;
 use contact_dd_partition::element::geometry::{advance, cross, difference, dot, length};
-use contact_dd_partition::element::reference::Domain;
-use contact_dd_partition::element::reference::{CellRules, ReferenceElement};
+use contact_dd_partition::element::reference::ReferenceElement;
 
 /// Dimension, corners and nodes of the cells that VTK numbers so, from `vtkCellType.h` and the
 /// classes of these cells.

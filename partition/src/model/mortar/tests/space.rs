@@ -7,7 +7,7 @@ use crate::contact_point::ContactPoint;
 use crate::element::ElementKind::{self, Quad9};
 use crate::element::geometry::{difference, length};
 use crate::mesh::Mesh;
-use crate::model::mortar::carried;
+use crate::model::mortar::carried::carried;
 use crate::model::sides::Sides;
 use crate::model::surface::{Surface, SurfaceFacet};
 

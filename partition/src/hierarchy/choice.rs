@@ -5,8 +5,9 @@
 
 use std::collections::BTreeMap;
 
-use super::Catalog;
-use super::tree::{ACTIVE_SETS, Tree};
+use super::cost::ACTIVE_SETS;
+use super::tree::Tree;
+use crate::problem::Catalog;
 
 /// Iterations that an active set takes in all, about.
 const ITERATIONS: f64 = 60.0;

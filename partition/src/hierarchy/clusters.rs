@@ -2,7 +2,7 @@
 //!
 //! They follow from sizes alone, never from ranks.
 
-use super::Catalog;
+use crate::problem::Catalog;
 
 /// Most dofs of a cluster where the user doesn't say how many there should be.
 const DOFS: usize = 24_000;

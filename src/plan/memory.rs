@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 
+use super::cost::CostEstimate;
 use crate::comm::Comm;
 use crate::error::Failure;
-use crate::plan::cost::CostEstimate;
 
 /// Peak resident memory of this process (bytes); 0 where the system doesn't tell.
 pub fn peak_memory_bytes() -> u64 {

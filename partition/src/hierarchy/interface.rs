@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use super::UnsharedNode;
 use crate::contact_point::ContactPoint;
 use crate::disjoint_sets::DisjointSets;
 use crate::element::geometry::{cross, length};
@@ -21,9 +20,21 @@ pub(super) struct Interface {
     pub of_points: Vec<Vec<u32>>,
 }
 
+/// A node of Γ that one subdomain has and contact points name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnsharedNode {
+    /// The node.
+    pub at: SubdomainNode,
+    /// Its number on Γ.
+    pub number: u32,
+    /// The normal of all points that name it, if they have one and no friction: where it has no supports, its
+    /// displacement along this normal alone is on Γ, and the rest belongs to the interior of the subdomain.
+    pub slides: Option<[f64; 3]>,
+}
+
 /// Sine of the angle between normals up to which they are one: what is left of it is less than what a row of B counts.
 const PARALLEL: f64 = 2e-15;
-/// Share of a point's largest weight that a node has at least whose displacement may be told by others.
+/// Least relative weight of a pivot node that other contact points share.
 const LEADING: f64 = 0.5;
 
 /// Contact points whose jumps take the place of displacements at once.

@@ -1,9 +1,9 @@
 //! What a tree costs.
 
+use super::choice::{InterfaceTimes, between};
+use super::tree::Tree;
 use crate::flops::Front;
 use crate::problem::Catalog;
-use crate::problem::choice::{InterfaceTimes, between};
-use crate::problem::tree::Tree;
 
 /// What the nodes of a problem's hierarchy cost.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use contact_dd_partition::scene::units::Units;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::result::ContactState;
+use super::contact_state::ContactState;
 
 /// Part of its cohesion that a point which slips can lack by round-off.
 const ROUND_OFF: f64 = 1e-6;

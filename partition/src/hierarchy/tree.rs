@@ -8,24 +8,11 @@
 //!
 //! The tree follows from the problem file, so that merges are the same on any number of ranks.
 
-mod interface;
-
 use std::collections::{BTreeMap, BTreeSet};
 
-use self::interface::Interface;
-use super::{Catalog, Hierarchy, SubdomainNode};
+use super::interface::{Interface, UnsharedNode};
 use crate::disjoint_sets::DisjointSets;
-use crate::flops::{Front, condensation};
-
-/// Active sets that it takes, about.
-pub const ACTIVE_SETS: f64 = 8.0;
-/// Flops that the dense contact problem takes, over the cube of its size: its active sets need some 30 factors.
-const AT_ONCE: f64 = 10.0;
-/// Contact conditions up to which they are solved for at once, whatever that takes: that is more robust where bodies
-/// are held by next to nothing.
-const FEW_CONDITIONS: usize = 600;
-/// The same with friction, where sets that come back find a way out at once alone.
-const FEW_WITH_FRICTION: usize = 3000;
+use crate::problem::{Catalog, Hierarchy};
 
 /// The tree.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,18 +27,6 @@ pub struct Tree {
     pub unshared: Vec<UnsharedNode>,
     /// The nodes between which an iterative interface solver works, ascending; none where the file doesn't say.
     pub clusters: Vec<usize>,
-}
-
-/// A node of Γ that one subdomain has and contact points name.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UnsharedNode {
-    /// The node.
-    pub at: SubdomainNode,
-    /// Its number on Γ.
-    pub number: u32,
-    /// The normal of all points that name it, if they have one and no friction: where it has no supports, its
-    /// displacement along this normal alone is on Γ, and the rest belongs to the interior of the subdomain.
-    pub slides: Option<[f64; 3]>,
 }
 
 /// A node of the tree.
@@ -264,78 +239,6 @@ impl Tree {
         let children = self.nodes[v].children.iter();
         let below: usize = children.map(|&child| self.nodes[child].conditions).sum();
         self.nodes[v].conditions - below
-    }
-
-    /// The unknowns that node v eliminates and keeps, of a subdomain `dim` at each of its nodes.
-    pub fn front(&self, v: usize, dim: usize) -> Front {
-        let node = &self.nodes[v];
-        let [eliminated, kept] = node.dofs;
-        let kept = kept + node.conditions;
-        let eliminated = match v < self.subdomains {
-            true => (dim * node.of_subdomain).saturating_sub(kept),
-            false => eliminated.saturating_sub(self.own_conditions(v)),
-        };
-        Front { eliminated, kept }
-    }
-
-    /// The same where every active set is frozen, so that no jump of what is under the node is kept.
-    pub fn frozen_front(&self, v: usize, dim: usize) -> Front {
-        let (front, node) = (self.front(v, dim), &self.nodes[v]);
-        Front {
-            eliminated: front.eliminated,
-            kept: front.kept - node.conditions + node.points.len(),
-        }
-    }
-
-    /// Estimated time of node v, in flops: its arithmetic, and what goes with it; over all active sets where these are
-    /// frozen.
-    pub fn time(&self, v: usize, dim: usize, is_frozen: bool) -> f64 {
-        let front = self.front_of(v, dim, is_frozen);
-        match v < self.subdomains {
-            true => front.time_to_condense(dim),
-            false if is_frozen && self.nodes[v].conditions > 0 => ACTIVE_SETS * front.time(),
-            false => front.time(),
-        }
-    }
-
-    /// The front of node v, which keeps all normal jumps under it unless active sets are frozen.
-    pub fn front_of(&self, v: usize, dim: usize, is_frozen: bool) -> Front {
-        let (front, node) = (self.front(v, dim), &self.nodes[v]);
-        match is_frozen {
-            true => Front {
-                eliminated: front.eliminated,
-                kept: front.kept - node.conditions + self.own_conditions(v),
-            },
-            false => front,
-        }
-    }
-
-    /// Whether it takes fewer flops to eliminate what is above contacts for one active set after the other than to
-    /// keep all normal jumps and solve for them at once.
-    pub fn freezing_pays(&self, catalog: &Catalog) -> bool {
-        let dim = catalog.dim;
-        let few = match catalog.has_friction() {
-            true => FEW_WITH_FRICTION,
-            false => FEW_CONDITIONS,
-        };
-        let inner = self.subdomains..self.nodes.len();
-        let above = inner.filter(|&v| self.nodes[v].conditions > 0);
-        let frozen = above.clone().map(|v| self.frozen_front(v, dim).flops());
-        let kept = above.map(|v| self.front(v, dim).flops());
-        let roots = self.nodes.iter().filter(|node| node.parent.is_none());
-        let cubed = roots.clone().map(|root| (root.conditions as f64).powi(3));
-        let at_once = AT_ONCE * cubed.sum::<f64>();
-        let conditions: usize = roots.map(|root| root.conditions).sum();
-        conditions > few && ACTIVE_SETS * frozen.sum::<f64>() < kept.sum::<f64>() + at_once
-    }
-
-    /// Estimated flops of condensing a subdomain, or of merging what lies under an inner node.
-    pub fn flops(&self, v: usize, dim: usize) -> f64 {
-        let front = self.front(v, dim);
-        match v < self.subdomains {
-            true => condensation(front.eliminated as f64, front.kept as f64, dim),
-            false => front.flops(),
-        }
     }
 
     /// For every node, the sum of `costs` over it and all that is under it.

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use crate::bddc::classes::Classes;
 use crate::bddc::coarse::Coarse;
-use crate::bddc::local::Local;
+use crate::bddc::local::{Local, Vectors};
 use crate::comm::ROOT;
 use crate::context::Context;
 use crate::schur::symmetric::PackedSymmetric;
@@ -22,12 +22,9 @@ const TRIAL: usize = 6;
 /// What the error has to come down to by then.
 const GOOD: f64 = 0.02;
 
-/// A vector on what clusters share, by cluster.
-pub type Vectors = BTreeMap<usize, Vec<f64>>;
-
 /// What conjugate gradients need.
 #[derive(Clone, Copy)]
-pub struct Gradients<'a> {
+pub struct ConjugateGradients<'a> {
     /// What the run works on.
     pub context: &'a Context<'a>,
     /// The owner of every cluster.
@@ -46,7 +43,7 @@ pub struct Gradients<'a> {
     pub is_judged: bool,
 }
 
-impl Gradients<'_> {
+impl ConjugateGradients<'_> {
     /// Solves S x = b, of which every cluster has a part, from a `start`, or from 0; returns x, the number of
     /// iterations and whether x is it. Collective.
     ///

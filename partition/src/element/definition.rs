@@ -1,0 +1,132 @@
+//! What defines a reference element: the domain that it fills, nodes, shape functions, facets and rules.
+
+use super::kind::ElementKind;
+
+/// What a reference element fills.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Domain {
+    /// The origin.
+    Point,
+    /// −1 ≤ ξ ≤ 1.
+    Line,
+    /// The triangle with the corners (0, 0), (1, 0), (0, 1).
+    Triangle,
+    /// −1 ≤ ξ, η ≤ 1.
+    Square,
+    /// The tetrahedron with the corners 0 and (1, 0, 0), (0, 1, 0), (0, 0, 1).
+    Tetrahedron,
+    /// −1 ≤ ξ, η, ζ ≤ 1.
+    Cube,
+}
+
+impl Domain {
+    /// Its dimension.
+    pub fn dim(self) -> usize {
+        match self {
+            Self::Point => 0,
+            Self::Line => 1,
+            Self::Triangle | Self::Square => 2,
+            Self::Tetrahedron | Self::Cube => 3,
+        }
+    }
+
+    /// Number of its corners.
+    pub fn corners(self) -> usize {
+        match self {
+            Self::Point => 1,
+            Self::Line => 2,
+            Self::Triangle => 3,
+            Self::Square | Self::Tetrahedron => 4,
+            Self::Cube => 8,
+        }
+    }
+
+    /// The corners whose linear shape functions aren't 0 at a point.
+    pub(super) fn corners_near(self, xi: [f64; 3]) -> Vec<usize> {
+        let linear = match self {
+            Self::Point => ElementKind::Point1,
+            Self::Line => ElementKind::Line2,
+            Self::Triangle => ElementKind::Triangle3,
+            Self::Square => ElementKind::Quad4,
+            Self::Tetrahedron => ElementKind::Tetrahedron4,
+            Self::Cube => ElementKind::Hexahedron8,
+        };
+        let shares = linear.shape(xi).into_iter().enumerate();
+        shares
+            .filter(|(_, share)| *share != 0.0)
+            .map(|(corner, _)| corner)
+            .collect()
+    }
+
+    /// Its measure.
+    pub fn measure(self) -> f64 {
+        match self {
+            Self::Point => 1.0,
+            Self::Line => 2.0,
+            Self::Triangle => 0.5,
+            Self::Square => 4.0,
+            Self::Tetrahedron => 1.0 / 6.0,
+            Self::Cube => 8.0,
+        }
+    }
+
+    /// The point that a point of the unit square or cube stands for; a triangle is the square with one of
+    /// its edges collapsed, (s, t) → (s, t(1 − s)), a tetrahedron the cube with two faces collapsed,
+    /// (s, t, r) → (s, t(1 − s), r(1 − s)(1 − t)).
+    pub(super) fn of_unit_cube(self, [s, t, r]: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::Triangle => [s, t * (1.0 - s), 0.0],
+            Self::Tetrahedron => [s, t * (1.0 - s), r * (1.0 - s) * (1.0 - t)],
+            Self::Cube => [2.0 * s - 1.0, 2.0 * t - 1.0, 2.0 * r - 1.0],
+            _ => [2.0 * s - 1.0, 2.0 * t - 1.0, 0.0],
+        }
+    }
+}
+
+/// What somebody who adds a kind writes down; the rest follows from it.
+#[derive(Debug)]
+pub struct Definition {
+    /// Its name in words.
+    pub name: &'static str,
+    /// What it fills.
+    pub domain: Domain,
+    /// Reference coordinates of its nodes, in the order of VTK: corners first, counter-clockwise,
+    /// the first one at the domain's first; nodes on edges; nodes in the middles of faces; of the cell.
+    pub node_coordinates: &'static [[f64; 3]],
+    /// N_i(ξ), one for each node.
+    pub shape: fn([f64; 3]) -> Vec<f64>,
+    /// ∂N_i/∂ξ_j, one for each node; 0 beyond its dimension.
+    pub gradients: fn([f64; 3]) -> Vec<[f64; 3]>,
+    /// Kind and local nodes of every facet. In the plane the cell lies to their left, and facet i begins
+    /// at corner i; in space they run counter-clockwise seen from outside.
+    pub facets: &'static [(ElementKind, &'static [usize])],
+    /// The order of its nodes that turns it inside out.
+    pub reversed: &'static [usize],
+    /// VTK's number of the cell type.
+    pub vtk: u8,
+    /// The rules by which it is integrated; facets have none.
+    pub rules: Option<CellRules>,
+}
+
+/// The rules by which a cell is integrated: degrees up to which they are exact, on the square and
+/// the cube in each direction.
+#[derive(Clone, Copy, Debug)]
+pub struct CellRules {
+    /// Of ∫ Bᵀ C B: exact for ∫ ∇N_i, and with it the patch test, on cells of any shape with curved
+    /// edges, and for the stiffness of cells with an affine map.
+    pub stiffness: usize,
+    /// Of the points where stresses are more accurate than elsewhere, or make patches that are
+    /// (Barlow, Int. J. Numer. Meth. Eng. 10, 1976; Zienkiewicz and Zhu 1992).
+    pub stress: usize,
+    /// Of ∫ N_i b for a constant load, in a cell of any shape.
+    pub constant_load: usize,
+    /// Of the same for a cubic load, in a cell with straight edges and nodes in their middle.
+    pub cubic_load: usize,
+}
+
+impl Definition {
+    /// Whether its nodes lie at its corners alone.
+    pub(super) fn is_linear(&self) -> bool {
+        self.node_coordinates.len() == self.domain.corners()
+    }
+}

@@ -1,0 +1,57 @@
+//! What is tabulated of a reference element: shape functions at points of rules, gradients where its Jacobian is sampled.
+
+use nalgebra::DMatrix;
+
+use super::definition::{Definition, Domain};
+
+/// Shape functions of a reference element at a point of a rule.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TabulatedPoint {
+    /// Reference coordinates.
+    pub xi: [f64; 3],
+    /// Weight of the point.
+    pub weight: f64,
+    /// N_i.
+    pub shape: Vec<f64>,
+    /// ∂N_i/∂ξ_j.
+    pub gradients: Vec<[f64; 3]>,
+}
+
+/// Where the Jacobian is sampled: places that cut each direction of the unit square or cube into equal parts,
+/// as many as it has degrees there.
+#[derive(Debug)]
+pub(super) struct Lattice {
+    pub degree: usize,
+    /// Gradients of the shape functions at the places, the first direction fastest.
+    pub gradients: Vec<Vec<[f64; 3]>>,
+    /// Bernstein's coefficients on a line from the values at its places.
+    pub to_bernstein: DMatrix<f64>,
+}
+
+impl Lattice {
+    /// The places for a cell with this definition.
+    pub fn new(element: &Definition) -> Self {
+        let degree: usize = match (element.domain, element.is_linear()) {
+            (Domain::Cube, true) => 2,
+            (Domain::Cube, false) => 5,
+            _ => 3,
+        };
+        let count = degree + 1;
+        let share = |i: usize| i as f64 / degree as f64;
+        let places = (0..count.pow(element.domain.dim() as u32))
+            .map(|i| [i % count, i / count % count, i / (count * count)].map(share));
+        let binomial =
+            |k: usize| (0..k).fold(1.0_f64, |b, j| b * (degree - j) as f64 / (j + 1) as f64);
+        let bernstein = DMatrix::from_fn(count, count, |i, k| {
+            let x = share(i);
+            binomial(k) * x.powi(k as i32) * (1.0 - x).powi((degree - k) as i32)
+        });
+        Self {
+            degree,
+            gradients: places
+                .map(|place| (element.gradients)(element.domain.of_unit_cube(place)))
+                .collect(),
+            to_bernstein: bernstein.try_inverse().unwrap_or_default(),
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! What a model consists of: materials, supports and contacts.
+
+use crate::contact_point::{ContactPoint, Probe};
+use crate::stiffness::Stiffness;
+
+/// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane; xx, yy, zz, xy around an axis; xx, yy, zz,
+/// yz, xz, xy in space).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name in the scene.
+    pub name: String,
+    /// C, symmetric positive definite, for the scene's plane state (Pa).
+    pub stiffness: Stiffness,
+    /// Row of σ_zz against (ε_xx, ε_yy, γ_xy) (Pa); `None` where the user didn't give it, around an axis and in space.
+    pub out_of_plane: Option<[f64; 3]>,
+    /// Poisson's ratio of an isotropic material.
+    pub poisson: Option<f64>,
+}
+
+/// One support row: u(node)·direction = value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Support {
+    /// Node.
+    pub node: u32,
+    /// Unit vector. The rows of one node are orthonormal.
+    pub direction: [f64; 3],
+    /// Prescribed displacement along it (m).
+    pub value: f64,
+    /// Index of the condition that prescribes it among [`Model::support_names`](super::Model::support_names): of several that
+    /// do, the first.
+    pub condition: u32,
+}
+
+/// A contact of the scene with its points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// Name in the scene.
+    pub name: String,
+    /// Its points, along the side whose nodes have them, over the nodes of the mesh.
+    pub points: Vec<ContactPoint<u32>>,
+    /// Where the side whose nodes have no conditions is looked at for penetration; none where nodes match.
+    pub probes: Vec<Probe<u32>>,
+}

@@ -1,0 +1,31 @@
+//! The quadrature rules by which loads are integrated.
+
+use crate::element::ElementKind;
+use crate::element::quadrature::TabulatedPoint;
+use crate::scene::material::PlaneState;
+
+/// What the radius adds to a degree.
+const RADIUS: [usize; 2] = [1, 2];
+
+/// The degree of a rule that is exact with the radius as a factor, where the scene is axisymmetric.
+pub(super) fn around(plane: Option<PlaneState>, degree: usize, is_linear: bool) -> usize {
+    match plane {
+        Some(PlaneState::Axisymmetric) => degree + RADIUS[usize::from(!is_linear)],
+        _ => degree,
+    }
+}
+
+/// The rule by which a load is integrated over cells.
+pub(super) fn rule_of_cells(
+    kind: ElementKind,
+    plane: Option<PlaneState>,
+    is_constant: bool,
+) -> Vec<TabulatedPoint> {
+    let degree = kind.rules().map(|rules| match is_constant {
+        true => rules.constant_load,
+        false => rules.cubic_load,
+    });
+    degree.map_or_else(Vec::new, |degree| {
+        kind.tabulate(around(plane, degree, kind.is_linear()))
+    })
+}

@@ -1,0 +1,99 @@
+//! What acts on a scene in a load step: what the step says, else what the scene does.
+
+use super::Scene;
+use super::condition::{Displacement, Names, Pressure, Traction};
+use super::number::{Number, Vector};
+use super::step::{LoadStep, Scale};
+
+/// All that loads the bodies at once: a scene's own loads, or those of one of its steps.
+#[derive(Clone, Debug)]
+pub struct Loading<'a> {
+    /// The step and its number.
+    step: Option<(usize, &'a LoadStep)>,
+    /// Force per volume of every body.
+    pub body_force: Vec<Option<&'a Vector>>,
+    /// Temperature of every body, where the step replaces it.
+    pub temperature: Vec<Option<&'a Number>>,
+    /// Tractions.
+    pub traction: &'a [Traction],
+    /// Pressures.
+    pub pressure: &'a [Pressure],
+    /// Displacements.
+    pub displacement: &'a [Displacement],
+    /// What they are multiplied by.
+    pub scale: Scale,
+}
+
+impl Scene {
+    /// The loadings, one a step; the scene's own where it has none.
+    pub fn loadings(&self) -> Vec<Loading<'_>> {
+        match self.step.is_empty() {
+            true => vec![self.loading(None)],
+            false => (self.step.iter().enumerate())
+                .map(|step| self.loading(Some(step)))
+                .collect(),
+        }
+    }
+
+    fn loading<'a>(&'a self, step: Option<(usize, &'a LoadStep)>) -> Loading<'a> {
+        let own = step.map(|(_, step)| step);
+        let body_force = self.bodies.iter().map(|(name, body)| {
+            let replaced = own.and_then(|step| step.body_force.get(name));
+            replaced.or(body.body_force.as_ref())
+        });
+        let temperature = self.bodies.keys();
+        let temperature = temperature.map(|name| own.and_then(|step| step.temperature.get(name)));
+        let traction = own.and_then(|step| step.traction.as_deref());
+        let pressure = own.and_then(|step| step.pressure.as_deref());
+        let displacement = own.and_then(|step| step.displacement.as_deref());
+        Loading {
+            step,
+            body_force: body_force.collect(),
+            temperature: temperature.collect(),
+            traction: traction.unwrap_or(&self.traction),
+            pressure: pressure.unwrap_or(&self.pressure),
+            displacement: displacement.unwrap_or(&self.displacement),
+            scale: own.map_or_else(Scale::default, |step| step.scale),
+        }
+    }
+}
+
+impl Loading<'_> {
+    /// What the force per volume of a body is called in messages.
+    pub fn body_force_label(&self, body: &str) -> String {
+        match self.step {
+            Some((k, step)) if step.body_force.contains_key(body) => {
+                format!("step[{}].body_force.{body}", k + 1)
+            }
+            _ => format!("bodies.{body}.body_force"),
+        }
+    }
+
+    /// What entry `index` of its tractions is called in messages.
+    pub fn traction_label(&self, index: usize, on: &Names) -> String {
+        self.label("traction", |step| step.traction.is_some(), index, on)
+    }
+
+    /// What entry `index` of its pressures is called in messages.
+    pub fn pressure_label(&self, index: usize, on: &Names) -> String {
+        self.label("pressure", |step| step.pressure.is_some(), index, on)
+    }
+
+    /// What entry `index` of its displacements is called in messages.
+    pub fn displacement_label(&self, index: usize, on: &Names) -> String {
+        self.label(
+            "displacement",
+            |step| step.displacement.is_some(),
+            index,
+            on,
+        )
+    }
+
+    fn label(&self, kind: &str, is_own: fn(&LoadStep) -> bool, index: usize, on: &Names) -> String {
+        let entry = format!("{kind}[{}] on {on}", index + 1);
+        match self.step {
+            Some((k, step)) if is_own(step) => format!("step[{}].{entry}", k + 1),
+            _ => entry,
+        }
+    }
+}

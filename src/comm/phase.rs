@@ -1,0 +1,20 @@
+//! What this rank is doing, for the messages of failures and panics.
+
+use std::sync::{Mutex, PoisonError};
+
+#[cfg(debug_assertions)]
+use super::on_purpose;
+
+static PHASE: Mutex<&str> = Mutex::new("starting");
+
+/// Names what this rank is doing, for the messages of failures and panics.
+pub fn phase(name: &'static str) {
+    *PHASE.lock().unwrap_or_else(PoisonError::into_inner) = name;
+    #[cfg(debug_assertions)]
+    on_purpose::end(name);
+}
+
+/// What this rank is doing.
+pub(super) fn current_phase() -> &'static str {
+    *PHASE.lock().unwrap_or_else(PoisonError::into_inner)
+}

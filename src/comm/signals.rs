@@ -1,0 +1,30 @@
+//! Signals that ask a run to stop.
+
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
+use signal_hook::flag;
+
+static ASKED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
+
+/// Whether this rank was asked to stop: by SIGTERM, SIGINT, or SIGUSR1, which Slurm sends ahead of the time
+/// limit where it is asked to.
+pub fn is_asked_to_stop() -> bool {
+    let asked = ASKED.get();
+    asked.is_some_and(|asked| asked.load(Ordering::Relaxed))
+}
+
+/// From now on the signals are remembered; the same one again ends the process as ever.
+pub(super) fn listen() -> io::Result<()> {
+    let asked = ASKED.get_or_init(Arc::default);
+    for signal in [SIGTERM, SIGINT, SIGUSR1] {
+        // SIGUSR1 of a batch system is followed by its SIGTERM, which mustn't count as the second.
+        let came = Arc::new(AtomicBool::new(false));
+        flag::register_conditional_default(signal, Arc::clone(&came))?;
+        flag::register(signal, came)?;
+        flag::register(signal, Arc::clone(asked))?;
+    }
+    Ok(())
+}

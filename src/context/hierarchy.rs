@@ -1,0 +1,65 @@
+//! Messages along the hierarchy, and the jumps of the contact groups at its nodes.
+
+use std::collections::BTreeMap;
+
+use crate::bytes::Reals;
+use crate::contact::jumps::{Jumps, NoUnknown};
+use crate::context::Context;
+use crate::error::Failure;
+use crate::fem::contact_group::ContactGroup;
+
+/// Carries a vector of node v between its owner and that of its `parent`; where it has none, the owner keeps it.
+/// Collective.
+pub fn carry(
+    context: &Context<'_>,
+    v: usize,
+    parent: Option<usize>,
+    mut vector: Option<Vec<f64>>,
+    into: &mut BTreeMap<usize, Vec<f64>>,
+    direction: Direction,
+) {
+    let Context { comm, plan, .. } = *context;
+    let Some(parent) = parent else {
+        into.extend(vector.map(|vector| (v, vector)));
+        return;
+    };
+    let (here, above) = (plan.node_owners[v], plan.node_owners[parent]);
+    let way = match direction {
+        Direction::Up => (here, above),
+        Direction::Down => (above, here),
+    };
+    comm.route(
+        [way],
+        |_| Reals(vector.take().unwrap_or_default()),
+        |_, Reals(arrived)| {
+            into.insert(v, arrived);
+        },
+    );
+}
+
+/// Along the hierarchy.
+#[derive(Clone, Copy, Debug)]
+pub enum Direction {
+    /// From a node to the one that it is merged into.
+    Up,
+    /// Back.
+    Down,
+}
+
+/// The jumps of contact group g of this rank.
+///
+/// # Errors
+/// A contact point that nothing can be replaced for.
+pub fn jumps(context: &Context<'_>, g: usize, group: &ContactGroup) -> Result<Jumps, Failure> {
+    let node = &context.plan.tree.nodes[context.plan.groups[g].node];
+    group.jumps(&node.eliminated).map_err(|NoUnknown(j)| {
+        let number = group.conditions().nth(j).map_or(0, |condition| condition.point);
+        let point = &group.points[number];
+        let contact = &context.catalog.contacts[point.contact as usize].name;
+        Failure::input(format!(
+            "contact '{contact}': the point of nodes {} and {} can't be told from others that share \
+             its nodes; expected points whose rows are independent, or multiples of each other",
+            point.tag_a, point.tag_b
+        ))
+    })
+}

@@ -1,0 +1,60 @@
+//! How much room everything takes in the result file.
+
+use contact_dd_partition::model::PlaneState;
+use contact_dd_partition::problem::{Catalog, ContactSummary};
+use contact_dd_partition::scene::units::Units;
+
+use super::super::result::{Of, PartitionSize};
+
+/// How much room everything takes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layout {
+    /// One entry a subdomain.
+    pub partitions: Vec<PartitionSize>,
+    /// One entry a contact.
+    pub contacts: Vec<ContactSummary>,
+    /// What every load step stands at on the axis of time; none where the problem has none.
+    pub times: Vec<f64>,
+    /// Whether there are stresses.
+    pub stress: bool,
+    /// Whether bodies or contacts come or go.
+    pub presence: bool,
+    /// The scene's title; may be empty.
+    pub title: String,
+    /// The units that its numbers are meant in.
+    pub units: Units,
+    /// Plane state; `None` in space.
+    pub plane: Option<PlaneState>,
+}
+
+impl Layout {
+    /// The layout for `catalog`; `connectivity` has, for every subdomain, the sum of the number of
+    /// nodes over its cells.
+    pub fn new(catalog: &Catalog, connectivity: &[usize], stress: bool) -> Self {
+        let sizes = catalog.subdomains.iter().zip(connectivity);
+        let partitions = sizes.map(|(subdomain, &connectivity)| PartitionSize {
+            points: subdomain.nodes,
+            cells: subdomain.cells,
+            connectivity,
+        });
+        Self {
+            partitions: partitions.collect(),
+            contacts: catalog.contacts.clone(),
+            times: catalog.steps.iter().map(|step| step.time).collect(),
+            stress,
+            presence: catalog.has_stages(),
+            title: catalog.title.clone(),
+            units: catalog.units,
+            plane: catalog.plane,
+        }
+    }
+}
+
+impl Layout {
+    /// The lists that the file doesn't have.
+    pub(super) fn left_out(&self) -> Vec<Of> {
+        let kinds = [(Of::Stress, self.stress), (Of::Presence, self.presence)];
+        let left_out = kinds.into_iter().filter(|(_, is_there)| !is_there);
+        left_out.map(|(kind, _)| kind).collect()
+    }
+}
