@@ -2,7 +2,6 @@
 
 pub mod log;
 pub mod totals;
-pub mod write;
 
 use contact_dd_partition::hierarchy::choice::InterfaceTimes;
 use contact_dd_partition::model::PlaneState;

@@ -3,34 +3,43 @@
 //! for each stage: read → assemble → condense → S_0 at the root → for each load step: F → sweeps → recover → write
 
 mod increment;
-mod passage;
+mod operators;
+mod outputs;
 mod restart;
 mod stage;
+mod step_totals;
 mod sweeping;
 
+use std::cell::Cell;
 use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
+use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::read::ProblemFile;
+use contact_dd_partition::problem::stage::Stage;
 use contact_dd_partition::problem::trial;
 use faer::Par;
 
-use self::restart::{Finished, finished_steps};
-use self::stage::{Progress, Stages};
+use self::increment::Increments;
+use self::operators::Operators;
+use self::outputs::{RunFiles, absent_rows};
+use self::restart::{Finished, finished_steps, keep};
+use self::stage::{Handover, Stages, reason_to_hand_over};
+use self::step_totals::step_totals;
+use crate::comm::ranks::RankSeconds;
 use crate::comm::{Comm, is_asked_to_stop, phase};
-use crate::context::Context;
+use crate::context::Moment;
 use crate::error::Failure;
 use crate::output::lock::OutputLock;
-use crate::output::report::ReportFile;
-use crate::output::vtkhdf::beside::FileBeside;
-use crate::output::vtkhdf::kept::Kept;
-use crate::output::vtkhdf::{Layout, ResultFile};
+use crate::plan::Plan;
+use crate::report::collect;
 use crate::report::log::RunLog;
 use crate::report::totals::Totals;
-use crate::report::{Outputs, collect};
 use crate::settings::Settings;
 use crate::settings::command_line::CommandLine;
+use crate::step::state::{self, StepState, analyse_steps, stop_if_asked};
+use crate::step::transfer::StageEnd;
 use crate::sweep::SweepStatus;
 
 /// How a run ended that didn't fail.
@@ -38,8 +47,24 @@ use crate::sweep::SweepStatus;
 pub enum Ending {
     /// The sweeps converged, or there was nothing to solve for.
     Converged,
-    /// They didn't; the results are written all the same.
+    /// The sweeps didn't converge; the results are written all the same.
     NotConverged,
+}
+
+/// The progress of a run: what its stages so far have come to.
+#[derive(Default)]
+struct Progress {
+    /// Where the time went.
+    seconds: RankSeconds,
+    /// The plan of the last stage.
+    plan: Option<Plan>,
+    files: RunFiles,
+    /// The smallest pivot of all factorizations relative to its diagonal entry.
+    smallest_pivot: f64,
+    /// Load steps that are done, those of an earlier run among them.
+    finished: Finished,
+    /// Linear problems that were solved for contact conditions since the last of them; on the root.
+    linear_solves: Cell<usize>,
 }
 
 /// Solves the problem that the command line names and writes the results. Collective.
@@ -97,42 +122,189 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     for (i, steps) in left.iter().enumerate() {
         stages.solve(steps.clone(), left.get(i + 1), &mut progress)?;
     }
-    let Progress {
-        mut seconds,
-        plan: Some(plan),
-        outputs,
-        smallest_pivot,
-        finished: Finished { steps, warning, .. },
-        ..
-    } = progress
-    else {
-        return Err(Failure::internal("no load step is left"));
-    };
-    seconds.add(|s| &mut s.total, comm.times() - start);
+    (progress.seconds).add(|s| &mut s.total, comm.times() - start);
+    progress.finish(comm, catalog, settings, &log)
+}
 
-    let ranks = collect(comm, &seconds, &plan);
-    let converged = steps
-        .iter()
-        .all(|step| step.outcome.status == SweepStatus::Converged);
-    let finished = match outputs {
-        Some(outputs) => {
-            let totals = Totals {
-                catalog,
-                plan: &plan,
-                steps,
-                smallest_pivot,
-                ranks,
-                warnings: settings.unused().into_iter().chain(warning).collect(),
-            };
-            log.finish(&totals, outputs).and_then(|()| log.heard())
+impl Stages<'_> {
+    /// Solves the load `steps` in which the same is there, those from `next` on being another stage. Where the solver that
+    /// was chosen doesn't converge, a more robust one goes on from there. Collective.
+    ///
+    /// # Errors
+    /// As a whole run.
+    fn solve(
+        &self,
+        steps: Range<usize>,
+        next: Option<&Range<usize>>,
+        progress: &mut Progress,
+    ) -> Result<(), Failure> {
+        let stage = (self.file.catalog()).stage(steps, &progress.finished.transfer.since);
+        let mut from = None;
+        while let Some(handover) = self.solve_from(from, &stage, next, progress)? {
+            from = Some(handover);
         }
-        _ => Ok(()),
-    };
-    comm.agree(finished)?;
-    Ok(match comm.decide(converged) {
-        true => Ending::Converged,
-        false => Ending::NotConverged,
-    })
+        Ok(())
+    }
+
+    /// Solves the load steps of a `stage` that are left, from where another solver handed over, if one did; returns where
+    /// a more robust one is to take over. Collective.
+    ///
+    /// # Errors
+    /// As a whole run.
+    fn solve_from(
+        &self,
+        handover: Option<Handover>,
+        stage: &Stage<'_>,
+        next: Option<&Range<usize>>,
+        progress: &mut Progress,
+    ) -> Result<Option<Handover>, Failure> {
+        let (comm, settings, log) = (self.comm, self.settings, self.log);
+        let whole = self.file.catalog();
+        let first = stage.steps.start;
+
+        // What this rank has of the stage.
+        let merging = match &handover {
+            Some(handover) => handover.merging,
+            None => comm.agree(settings.merging(&stage.catalog))?,
+        };
+        let lap = comm.times();
+        let is_first = progress.plan.is_none();
+        let parts = self.parts(stage, merging, is_first)?;
+        let context = self.context(stage, &parts);
+        let done = progress.finished.count;
+        stop_if_asked(&context, settings, done)?;
+
+        // Rigid-body modes that neither supports nor contact restrain, and the bodies' closing motions.
+        log.phase("looking for free rigid motions", None);
+        let before = progress.finished.transfer.closing_motions.clone();
+        let analyses = analyse_steps(&context, stage.steps.clone(), &before)?;
+        log.phase("creating the outputs", None);
+        if is_first {
+            let kept = progress.finished.file.take();
+            progress.files = RunFiles::create(&context, settings, kept)?;
+        }
+        let absent = comm.is_root().then(|| absent_rows(whole, stage));
+        let absent = absent.unwrap_or_default();
+        (progress.seconds).add(|s| &mut s.read, comm.times() - lap);
+
+        // S_i of the linear subdomains, (11), S_kl of the pairs, (12), and S_0, (15).
+        let loads = StepState::default().loads(&context, Moment::end_of(first), &analyses[0]);
+        let operators = Operators::new(context, log, &loads, &analyses[0], &mut progress.seconds)
+            .map_err(|failure| state::finished(failure, &context, settings, done))?;
+
+        // Load step by load step: each starts from the state that the one before it left.
+        let robust = self.more_robust(&stage.catalog, parts.plan.merging);
+        let increments = Increments {
+            context,
+            settings,
+            log,
+            factors: &operators.condensed,
+            interface: operators.interface.as_ref(),
+            frozen: operators.frozen.as_ref(),
+            is_relieved: robust.is_some(),
+            linear_solves: &progress.linear_solves,
+        };
+        let finished = &mut progress.finished;
+        let (mut state, mut took_over) = match handover {
+            Some(Handover {
+                state, plan, why, ..
+            }) => (state.handed_over(&context, &plan), Some(why)),
+            None if done > first => (finished.state(&context), None),
+            None => (finished.transfer.state(&context, stage), None),
+        };
+        state.scales = finished.scales();
+        for k in stage.steps.clone().skip(done.saturating_sub(first)) {
+            stop_if_asked(&context, settings, k)?;
+            log.step(context.catalog, k);
+            let (at_end, earlier) = (&analyses[k - first], &analyses[..k - first]);
+            let earlier = earlier.last().map_or(&before, |last| &last.closing_motions);
+            let start = robust.map(|robust| (robust, state.clone()));
+            let solved = increments.step(k, (earlier, at_end), state, &mut progress.seconds);
+            if let Some((robust, start)) = start {
+                let is_converged = solved.as_ref().is_ok_and(|s| increments.is_converged(s));
+                let outcome = solved.as_ref().map(|solved| solved.outcome.as_ref());
+                if let Some(why) = reason_to_hand_over(is_converged, outcome) {
+                    finished.count = k;
+                    progress.plan = Some(parts.plan.clone());
+                    return Ok(Some(Handover::new(&parts.plan, robust, start, &why)));
+                }
+            }
+            let mut solved = solved.map_err(|failure| {
+                state::finished(context.in_step(failure, k), &context, settings, k)
+            })?;
+            if let Some((outcome, why)) = solved.outcome.as_mut().zip(took_over.take()) {
+                outcome.take_over(why);
+            }
+
+            log.phase("writing", None);
+            let lap = comm.times();
+            let files = &mut progress.files;
+            let resultants = files.write(&context, &solved.solution, &solved.slips, &absent)?;
+            (progress.seconds).add(|s| &mut s.write, comm.times() - lap);
+            finished.steps.extend(solved.outcome.clone().map(|outcome| {
+                let sums = (resultants, solved.energy);
+                let found = (outcome, progress.linear_solves.take());
+                step_totals(found, &solved.solution, sums, at_end, context.catalog)
+            }));
+            if let Some(next) = next.filter(|next| next.start == k + 1) {
+                let end = StageEnd {
+                    displacement: &solved.solution.displacement,
+                    slips: &solved.slips.jumps,
+                    closing_motions: &at_end.closing_motions,
+                };
+                finished.transfer = (finished.transfer).after(&context, stage, end, whole, next);
+            }
+            state = solved.into_state(settings.method);
+            if k + 1 < context.catalog.steps.len() {
+                keep(&context, settings, &state, finished, files.result())?;
+            }
+        }
+        finished.count = stage.steps.end;
+        progress.smallest_pivot = progress.smallest_pivot.min(operators.smallest_pivot());
+        progress.plan = Some(parts.plan);
+        Ok(None)
+    }
+}
+
+impl Progress {
+    /// Finishes the files of a run whose load steps are all done. Collective.
+    ///
+    /// # Errors
+    /// A file that can't be written.
+    fn finish(
+        self,
+        comm: &Comm,
+        catalog: &Catalog,
+        settings: &Settings,
+        log: &RunLog<'_>,
+    ) -> Result<Ending, Failure> {
+        let Some(plan) = self.plan else {
+            return Err(Failure::internal("no load step is left"));
+        };
+        let ranks = collect(comm, &self.seconds, &plan);
+        let Finished { steps, warning, .. } = self.finished;
+        let mut outcomes = steps.iter().map(|step| &step.outcome);
+        let converged = outcomes.all(|outcome| outcome.status == SweepStatus::Converged);
+        let finished = match self.files.outputs {
+            Some(outputs) => {
+                let totals = Totals {
+                    catalog,
+                    plan: &plan,
+                    steps,
+                    smallest_pivot: self.smallest_pivot,
+                    ranks,
+                    warnings: settings.unused().into_iter().chain(warning).collect(),
+                };
+                log.finish(&totals, outputs).and_then(|()| log.heard())
+            }
+            _ => Ok(()),
+        };
+        comm.agree(finished)?;
+        Ok(match comm.decide(converged) {
+            true => Ending::Converged,
+            false => Ending::NotConverged,
+        })
+    }
 }
 
 /// Checks that the HDF5 library can read the problem file, on the root alone. Collective.
@@ -150,61 +322,4 @@ fn check_problem(comm: &Comm, path: &Path) -> Result<(), Failure> {
         )),
         None => Ok(()),
     }
-}
-
-/// Creates the output files, so that a folder that can't be written is found before the work, or opens those of a run
-/// that was stopped, with what it kept of `finished` load steps.
-/// Collective; the root has the files, and all ranks have the result file beside it where they may write to it at once.
-///
-/// # Errors
-/// A file can't be made, or doesn't hold what was written of finished load steps.
-fn create_outputs(
-    context: &Context<'_>,
-    settings: &Settings,
-    finished: Option<Kept>,
-) -> Result<(Option<Outputs>, Option<FileBeside>), Failure> {
-    let comm = context.comm;
-    let layout = layout(context, settings);
-    let create = move |layout: &Layout| -> Result<Outputs, Failure> {
-        let report = settings.report.as_deref().map(ReportFile::create);
-        Ok(Outputs {
-            result: match finished {
-                None => ResultFile::create(&settings.output, layout)?,
-                Some(kept) => {
-                    let whole = kept.check(&settings.output);
-                    whole.map_err(|error| Failure::input(format!("--restart: {error}")))?;
-                    ResultFile::resume(&settings.output, layout, kept)?
-                }
-            },
-            report: report.transpose()?,
-        })
-    };
-    let outputs = comm.agree(comm.is_root().then(|| create(&layout)).transpose())?;
-    // A single rank needs nobody beside it.
-    let result = outputs.as_ref().filter(|_| comm.size() > 1);
-    let mut places = result.and_then(|outputs| outputs.result.places());
-    comm.broadcast(&mut places);
-    let beside = places
-        .and_then(|places| FileBeside::open(&places, &settings.output, &layout, comm.hosts()));
-    let is_alone = comm.is_any(beside.is_none());
-    Ok((outputs, beside.filter(|_| !is_alone)))
-}
-
-/// How much room everything takes in the result file. Collective.
-fn layout(context: &Context<'_>, settings: &Settings) -> Layout {
-    let &Context {
-        comm,
-        catalog,
-        plan,
-        blocks,
-        ..
-    } = context;
-    let mut connectivity = vec![0; plan.blocks()];
-    comm.gather(
-        plan.owners(),
-        |s| (blocks.get(&s)).map_or(0, |block| block.subdomain.cells.connectivity().len()),
-        |s, length| connectivity[s] = length,
-    );
-    comm.broadcast(&mut connectivity);
-    Layout::new(catalog, &connectivity, !settings.no_stress)
 }

@@ -1,6 +1,7 @@
 //! A load step: everything in it that depends on loads, condensed onto Γ.
 
 pub mod state;
+pub mod transfer;
 pub mod way;
 
 use std::collections::BTreeMap;

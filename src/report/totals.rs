@@ -1,9 +1,6 @@
 //! Everything the report is made of, gathered on the root: load step by load step, then together.
 
-use contact_dd_partition::magnitude::short;
 use contact_dd_partition::problem::Catalog;
-
-use crate::recover::solution::Solution;
 use serde::{Deserialize, Serialize};
 
 use crate::certificate::Certificate;
@@ -12,16 +9,10 @@ use crate::certificate::scales::Scales;
 use crate::comm::ranks::RankReport;
 use crate::fem::estimate::CellError;
 use crate::fem::resultants::{Friction, Resultants};
-use crate::fem::strain::{LARGE, LargestStrain};
 use crate::output::report::{ErrorEstimate, FrictionOfStep, Status, StepReport};
 use crate::plan::Plan;
-use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::settings::command_line::InterfaceMethod;
 use crate::sweep::{SweepOutcome, SweepStatus};
-
-/// Part of the bodies with large strains from which on these are worth a warning: at an edge or a tip strains are as large as
-/// cells are small.
-const SEEN: f64 = 1e-3;
 
 /// A whole run.
 pub struct Totals<'a> {
@@ -67,51 +58,6 @@ pub struct StepTotals {
 }
 
 impl StepTotals {
-    /// What is kept of a `solution` that the sweeps' `outcome` led to.
-    pub fn new(
-        outcome: SweepOutcome,
-        solution: &Solution,
-        resultants: Resultants,
-        energy: EnergyBalance,
-        analysis: &RigidBodyAnalysis,
-        catalog: &Catalog,
-    ) -> Self {
-        let error = solution.estimate.map(|estimate| estimate.relative());
-        let converged = outcome.status == SweepStatus::Converged;
-        let slides = solution.friction_limit.iter().filter(|_| converged);
-        let slides: Vec<String> = slides.map(|what| at_limit(what)).collect();
-        let warnings = [
-            &analysis.motions.warnings[..],
-            &solution.minimum_norm.warnings,
-            &slides,
-            &outcome.notes,
-            &resultants.warnings(),
-            &resultants.warnings_of_mesh(catalog, error),
-            &Vec::from_iter(
-                solution
-                    .largest_strain
-                    .and_then(|s| large_strain(s, catalog)),
-            ),
-            &Vec::from_iter(energy.warning()),
-        ];
-        Self {
-            active: outcome.totals.active - solution.minimum_norm.opened,
-            certificate: solution.certificate,
-            condition: solution.condition,
-            resultants,
-            energy,
-            estimate: solution.estimate,
-            at_limit: !slides.is_empty(),
-            scales: match converged {
-                true => solution.certificate.scales,
-                false => Scales::default(),
-            },
-            warnings: warnings.concat(),
-            linear_solves: 0,
-            outcome,
-        }
-    }
-
     /// How it ended.
     pub fn status(&self) -> Status {
         match self.outcome.status {
@@ -266,32 +212,6 @@ impl Totals<'_> {
             })
             .collect()
     }
-}
-
-/// What a user should know of the largest strain, that of a block, where it isn't small.
-fn large_strain((block, largest): (usize, LargestStrain), catalog: &Catalog) -> Option<String> {
-    if largest.large <= SEEN * largest.whole {
-        return None;
-    }
-    let body = &catalog.bodies[catalog.subdomains[block].body].name;
-    let at = largest.at.map(short);
-    Some(format!(
-        "body '{body}': strains of up to {} at ({}) {}, where small ones are meant, above {} in {} % of the bodies; are the \
-         units of loads, displacements and stiffness the same?",
-        short(largest.size),
-        at[..catalog.dim].join(", "),
-        catalog.units.length(),
-        short(LARGE),
-        short(100.0 * largest.large / largest.whole)
-    ))
-}
-
-/// What a user should know of a motion at the limit of friction.
-fn at_limit(motion: &str) -> String {
-    format!(
-        "at the limit of friction: nothing but friction holds {motion}, with all the force that it can give, which is \
-         the same wherever that slides to; the position is one of many"
-    )
 }
 
 fn once_each(words: impl Iterator<Item = String>) -> Vec<String> {

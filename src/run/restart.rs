@@ -23,9 +23,9 @@ use crate::context::Context;
 use crate::error::Failure;
 use crate::output::vtkhdf::{ResultFile, kept as file};
 use crate::report::totals::StepTotals;
-use crate::run::passage::Passage;
 use crate::settings::Settings;
 use crate::step::state::StepState;
+use crate::step::transfer::StageTransfer;
 
 /// What a run keeps beside the results of its finished load steps.
 #[derive(Serialize, Deserialize)]
@@ -45,7 +45,7 @@ struct Kept {
     /// What the balance of energy needs of every block, where there is friction.
     energies: Vec<BlockEnergy>,
     /// What passed to the stage of the next load step.
-    passage: Passage,
+    transfer: StageTransfer,
 }
 
 /// Two runs that agree in this go the same way.
@@ -90,7 +90,7 @@ pub struct Finished {
     /// What is known of them; on the root.
     pub steps: Vec<StepTotals>,
     /// What passed to the stage of the next one.
-    pub passage: Passage,
+    pub transfer: StageTransfer,
     /// The state that the next one starts from; on the root.
     kept: Option<Kept>,
     /// What there is of the result file; on the root.
@@ -116,7 +116,7 @@ pub fn finished_steps(comm: &Comm, settings: &Settings) -> Result<Finished, Fail
         finished.file = Some(file);
         finished.count = kept.steps.len();
         finished.steps = std::mem::take(&mut kept.steps);
-        finished.passage = std::mem::take(&mut kept.passage);
+        finished.transfer = std::mem::take(&mut kept.transfer);
         finished.kept = Some(kept);
     } else {
         finished.warning = Some(format!(
@@ -125,7 +125,7 @@ pub fn finished_steps(comm: &Comm, settings: &Settings) -> Result<Finished, Fail
         ));
     }
     comm.broadcast(&mut finished.count);
-    comm.broadcast(&mut finished.passage);
+    comm.broadcast(&mut finished.transfer);
     Ok(finished)
 }
 
@@ -206,8 +206,8 @@ fn read(settings: &Settings) -> Result<Option<(file::Kept, Kept)>, Failure> {
     )))
 }
 
-/// Keeps the results of the load steps so far, the `state` after them and what passed to the stage of the next one, for a
-/// run that goes on. Collective; `steps` and `result` are the root's.
+/// Keeps the results of the `finished` load steps and the `state` after them for a run that goes on. Collective; `result`
+/// is the root's.
 ///
 /// # Errors
 /// The file can't be written.
@@ -215,8 +215,7 @@ pub fn keep(
     context: &Context<'_>,
     settings: &Settings,
     state: &StepState,
-    passage: &Passage,
-    steps: &[StepTotals],
+    finished: &Finished,
     result: Option<&mut ResultFile>,
 ) -> Result<(), Failure> {
     let mut pairs = Vec::new();
@@ -248,13 +247,13 @@ pub fn keep(
     let write = |result: &mut ResultFile| -> Result<(), Failure> {
         let kept = Kept {
             run: Identity::new(settings)?,
-            steps: steps.to_vec(),
+            steps: finished.steps.clone(),
             interface: state.interface.clone(),
             pairs,
             statuses,
             slips,
             energies,
-            passage: passage.clone(),
+            transfer: finished.transfer.clone(),
         };
         let mut bytes = Vec::new();
         ciborium::into_writer(&kept, &mut bytes)

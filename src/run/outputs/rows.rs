@@ -1,14 +1,12 @@
 //! The results on their way to the root and into the file.
 
-mod parcel;
-
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::dot;
 use contact_dd_partition::error::OutputError;
 use contact_dd_partition::problem::stage::Stage;
 use contact_dd_partition::problem::{Catalog, SubdomainNode};
 
-use self::parcel::Parcel;
+use super::parcel::Parcel;
 use crate::comm::ROOT;
 use crate::context::Context;
 use crate::error::Failure;
@@ -33,10 +31,8 @@ use crate::recover::{GroupSolution, Slips};
 /// The file can't be written.
 pub fn write_solution(
     context: &Context<'_>,
-    solution: &Solution,
-    slips: &Slips,
-    mut file: Option<&mut ResultFile>,
-    beside: Option<&mut FileBeside>,
+    (solution, slips): (&Solution, &Slips),
+    (mut file, beside): (Option<&mut ResultFile>, Option<&mut FileBeside>),
     contacts: &mut [ContactResultant],
     absent: &[ContactRow],
 ) -> Result<(), Failure> {

@@ -1,4 +1,5 @@
-//! What passes from one stage to the next: from the load steps before bodies or contacts come or go to those after that.
+//! The transfer of state from one stage to the next: from the load steps before bodies or contacts come or go to those
+//! after that.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,13 +11,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::bytes::Reals;
 use crate::context::Context;
-use crate::run::increment::Increment;
 use crate::step::state::StepState;
 
 /// What passes from one stage to the next, by the places of contact points in the catalog of the whole problem; nothing
 /// before the first.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Passage {
+pub struct StageTransfer {
     /// The jump ⟦u⟧ that every point had when it came (m).
     pub since: Vec<[f64; 3]>,
     /// The tangential jumps of those that were there and have friction (m).
@@ -25,15 +25,25 @@ pub struct Passage {
     pub closing_motions: Vec<Vec<f64>>,
 }
 
-impl Passage {
-    /// What passes from the last load step of a `stage`, which began with this and ended as `solved` with these closing
-    /// motions, to the load steps `next`; `whole` is the problem. Collective.
+/// How a stage ends.
+#[derive(Clone, Copy)]
+pub struct StageEnd<'a> {
+    /// The displacement of every block of this rank, node by node (m).
+    pub displacement: &'a BTreeMap<usize, Vec<f64>>,
+    /// The tangential jumps of every contact group of this rank (m).
+    pub slips: &'a BTreeMap<usize, Vec<f64>>,
+    /// The closing motions of bodies.
+    pub closing_motions: &'a [Vec<f64>],
+}
+
+impl StageTransfer {
+    /// What passes from the last load step of a `stage`, which began with this and ended as `end` says, to the load steps
+    /// `next`; `whole` is the problem. Collective.
     pub fn after(
         &self,
         context: &Context<'_>,
         stage: &Stage<'_>,
-        solved: &Increment,
-        closing_motions: &[Vec<f64>],
+        end: StageEnd<'_>,
         whole: &Catalog,
         next: &Range<usize>,
     ) -> Self {
@@ -52,7 +62,7 @@ impl Passage {
         comm.gather(
             plan.owners(),
             |b| {
-                let u = &solved.solution.displacement[&b];
+                let u = &end.displacement[&b];
                 let nodes = wanted.get(&(b as u32)).into_iter().flatten();
                 let of_node = |&node: &u32| padded(&u[node as usize * dim..][..dim]);
                 nodes.map(of_node).collect::<Vec<[f64; 3]>>()
@@ -61,13 +71,13 @@ impl Passage {
                 moved.insert(b as u32, u.into_iter());
             },
         );
-        let mut passage = Self {
+        let mut transfer = Self {
             since: match self.since.is_empty() {
                 true => vec![[0.0; 3]; whole.points.len()],
                 false => self.since.clone(),
             },
             slips: BTreeMap::new(),
-            closing_motions: closing_motions.to_vec(),
+            closing_motions: end.closing_motions.to_vec(),
         };
         for &j in coming.iter().filter(|_| comm.is_root()) {
             let mut jump = [0.0; 3];
@@ -75,11 +85,11 @@ impl Passage {
                 let u = moved.get_mut(&at.subdomain).and_then(Iterator::next);
                 jump = advance(jump, *weight, u.unwrap_or_default());
             }
-            passage.since[j] = jump;
+            transfer.since[j] = jump;
         }
         comm.gather(
             &plan.group_owners(),
-            |g| Reals(solved.slips.of(g).0.to_vec()),
+            |g| Reals(end.slips.get(&g).cloned().unwrap_or_default()),
             |g, Reals(slips)| {
                 let mut rest = &slips[..];
                 for &j in &plan.tree.nodes[plan.groups[g].node].points {
@@ -87,13 +97,13 @@ impl Passage {
                     let (own, others) = rest.split_at(whole.points[place].tangents(dim).len());
                     rest = others;
                     if !own.is_empty() {
-                        passage.slips.insert(place, own.to_vec());
+                        transfer.slips.insert(place, own.to_vec());
                     }
                 }
             },
         );
-        comm.broadcast(&mut passage);
-        passage
+        comm.broadcast(&mut transfer);
+        transfer
     }
 
     /// The state in which a `stage` begins: what comes sticks where it is put.

@@ -1,0 +1,93 @@
+//! The operators of a stage, made of matrices once for all of its load steps: factors, S_0 and the bilateral operator, or
+//! the fronts above all contact.
+
+use std::cell::RefCell;
+
+use crate::comm::clock::Times;
+use crate::comm::ranks::RankSeconds;
+use crate::condense::Condensation;
+use crate::condense::blocks::CondensedBlocks;
+use crate::condense::interface::assemble_interface;
+use crate::condense::tree::condense_clusters;
+use crate::context::{Context, Loads};
+use crate::error::Failure;
+use crate::frozen::fronts::FrozenFronts;
+use crate::interface::numbering::Numbering;
+use crate::interface::operator::Interface;
+use crate::report::log::RunLog;
+use crate::rigid::body_analysis::RigidBodyAnalysis;
+
+/// The operators of a stage, as this rank has them.
+pub struct Operators {
+    /// The factors of this rank.
+    pub condensed: CondensedBlocks,
+    /// Γ and the operators on it; on the root, where they are assembled.
+    pub interface: Option<(Numbering, Interface)>,
+    /// The fronts above all contact, where active sets are fixed one after the other.
+    pub frozen: Option<RefCell<FrozenFronts>>,
+}
+
+impl Operators {
+    /// S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy; then S_0, (15), and the
+    /// bilateral operator at the root. `loads` are those of the stage's first load step, whose rigid motions `analysis`
+    /// knows. Collective.
+    ///
+    /// # Errors
+    /// A part that can move although its boundary is held, or a signal that asked the run to stop.
+    pub fn new(
+        context: Context<'_>,
+        log: &RunLog<'_>,
+        loads: &Loads,
+        analysis: &RigidBodyAnalysis,
+        seconds: &mut RankSeconds,
+    ) -> Result<Self, Failure> {
+        let comm = context.comm;
+        log.phase("factorizing", Some(context.blocks.len()));
+        let lap = comm.times();
+        let condensation = Condensation {
+            context,
+            loads,
+            fixing_dofs: &analysis.motions.fixing_dofs,
+        };
+        let mut condensed = condense_clusters(&condensation, &analysis.cluster_modes)
+            .map_err(|failure| context.of_pivot(failure))?;
+        let [assembling, factorizing] = condensed.seconds;
+        let condensing = Times {
+            // Waiting is nobody's time on the wall.
+            elapsed: factorizing.elapsed,
+            ..comm.times() - lap - assembling
+        };
+        seconds.add(|s| &mut s.assemble, assembling);
+        seconds.add(|s| &mut s.factorize, condensing);
+
+        log.phase("assembling the interface problem", None);
+        let lap = comm.times();
+        let frozen = match context.plan.merging.is_frozen() {
+            true => Some(RefCell::new(FrozenFronts::new(
+                &condensation,
+                std::mem::take(&mut condensed.linear),
+            )?)),
+            false => None,
+        };
+        let interface = match frozen {
+            Some(_) => None,
+            None => assemble_interface(&context, &condensed)
+                .map_err(|failure| context.of_pivot(failure))?,
+        };
+        seconds.add(|s| &mut s.interface, comm.times() - lap);
+        Ok(Self {
+            condensed,
+            interface,
+            frozen,
+        })
+    }
+
+    /// The smallest pivot relative to its diagonal entry; on the root.
+    pub fn smallest_pivot(&self) -> f64 {
+        match (&self.interface, &self.frozen) {
+            (Some((_, interface)), _) => interface.smallest_pivot(),
+            (None, Some(fronts)) => fronts.borrow().smallest_pivot,
+            (None, None) => 1.0,
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! The output files of a run: created before the work, written load step by load step.
+
+mod parcel;
+mod rows;
+
+use contact_dd_partition::model::PlaneState;
+
+pub use self::rows::absent_rows;
+use self::rows::write_solution;
+use crate::context::Context;
+use crate::error::Failure;
+use crate::fem::contact_state::ContactRow;
+use crate::fem::resultants::Resultants;
+use crate::output::report::ReportFile;
+use crate::output::vtkhdf::beside::FileBeside;
+use crate::output::vtkhdf::kept::Kept;
+use crate::output::vtkhdf::{Layout, ResultFile};
+use crate::recover::Slips;
+use crate::recover::penetration::probe;
+use crate::recover::solution::Solution;
+use crate::report::Outputs;
+use crate::settings::Settings;
+
+/// The output files, as this rank has them.
+#[derive(Debug, Default)]
+pub struct RunFiles {
+    /// Result and report; on the root.
+    pub outputs: Option<Outputs>,
+    /// The result file beside the root's, where all ranks may write to it at once.
+    beside: Option<FileBeside>,
+}
+
+impl RunFiles {
+    /// Creates the output files, so that a folder that can't be written is found before the work, or opens those of a run
+    /// that was stopped, with what it kept of `finished` load steps. Collective.
+    ///
+    /// # Errors
+    /// A file can't be made, or doesn't hold what was written of finished load steps.
+    pub fn create(
+        context: &Context<'_>,
+        settings: &Settings,
+        finished: Option<Kept>,
+    ) -> Result<Self, Failure> {
+        let comm = context.comm;
+        let layout = layout(context, settings);
+        let create = move |layout: &Layout| -> Result<Outputs, Failure> {
+            let report = settings.report.as_deref().map(ReportFile::create);
+            Ok(Outputs {
+                result: match finished {
+                    None => ResultFile::create(&settings.output, layout)?,
+                    Some(kept) => {
+                        let whole = kept.check(&settings.output);
+                        whole.map_err(|error| Failure::input(format!("--restart: {error}")))?;
+                        ResultFile::resume(&settings.output, layout, kept)?
+                    }
+                },
+                report: report.transpose()?,
+            })
+        };
+        let outputs = comm.agree(comm.is_root().then(|| create(&layout)).transpose())?;
+        // A single rank needs nobody beside it.
+        let result = outputs.as_ref().filter(|_| comm.size() > 1);
+        let mut places = result.and_then(|outputs| outputs.result.places());
+        comm.broadcast(&mut places);
+        let beside = places
+            .and_then(|places| FileBeside::open(&places, &settings.output, &layout, comm.hosts()));
+        let is_alone = comm.is_any(beside.is_none());
+        Ok(Self {
+            outputs,
+            beside: beside.filter(|_| !is_alone),
+        })
+    }
+
+    /// The result file; on the root.
+    pub fn result(&mut self) -> Option<&mut ResultFile> {
+        self.outputs.as_mut().map(|outputs| &mut outputs.result)
+    }
+
+    /// Writes the solution of a load step, with rows of the contact points that are `absent`; returns what contacts and
+    /// supports carry, which the root knows. Collective.
+    ///
+    /// # Errors
+    /// The file can't be written.
+    pub fn write(
+        &mut self,
+        context: &Context<'_>,
+        solution: &Solution,
+        slips: &Slips,
+        absent: &[ContactRow],
+    ) -> Result<Resultants, Failure> {
+        let mut resultants = Resultants::new(context.catalog, solution.reactions.clone());
+        let contacts = &mut resultants.contacts;
+        let result = self.outputs.as_mut().map(|outputs| &mut outputs.result);
+        let files = (result, self.beside.as_mut());
+        write_solution(context, (solution, slips), files, contacts, absent)?;
+        probe(context, &solution.displacement, contacts);
+        if context.catalog.plane == Some(PlaneState::Axisymmetric) {
+            resultants.sum_around_axis();
+        }
+        Ok(resultants)
+    }
+}
+
+/// How much room everything takes in the result file. Collective.
+fn layout(context: &Context<'_>, settings: &Settings) -> Layout {
+    let &Context {
+        comm,
+        catalog,
+        plan,
+        blocks,
+        ..
+    } = context;
+    let mut connectivity = vec![0; plan.blocks()];
+    comm.gather(
+        plan.owners(),
+        |s| (blocks.get(&s)).map_or(0, |block| block.subdomain.cells.connectivity().len()),
+        |s, length| connectivity[s] = length,
+    );
+    comm.broadcast(&mut connectivity);
+    Layout::new(catalog, &connectivity, !settings.no_stress)
+}

@@ -1,0 +1,84 @@
+//! The totals of a load step: what is kept of its solution for the report.
+
+use contact_dd_partition::magnitude::short;
+use contact_dd_partition::problem::Catalog;
+
+use crate::certificate::energy::EnergyBalance;
+use crate::certificate::scales::Scales;
+use crate::fem::resultants::Resultants;
+use crate::fem::strain::{LARGE, LargestStrain};
+use crate::recover::solution::Solution;
+use crate::report::totals::StepTotals;
+use crate::rigid::body_analysis::RigidBodyAnalysis;
+use crate::sweep::{SweepOutcome, SweepStatus};
+
+/// Part of the bodies with large strains from which on these are worth a warning: at an edge or a tip strains are as large as
+/// cells are small.
+const SEEN: f64 = 1e-3;
+
+/// The totals of a load step whose `solution` the sweeps' `outcome` led to, by way of so many `linear_solves`.
+pub fn step_totals(
+    (outcome, linear_solves): (SweepOutcome, usize),
+    solution: &Solution,
+    (resultants, energy): (Resultants, EnergyBalance),
+    analysis: &RigidBodyAnalysis,
+    catalog: &Catalog,
+) -> StepTotals {
+    let error = solution.estimate.map(|estimate| estimate.relative());
+    let converged = outcome.status == SweepStatus::Converged;
+    let slides = solution.friction_limit.iter().filter(|_| converged);
+    let slides: Vec<String> = slides.map(|what| at_limit(what)).collect();
+    let strain = (solution.largest_strain).and_then(|s| large_strain(s, catalog));
+    let warnings = [
+        &analysis.motions.warnings[..],
+        &solution.minimum_norm.warnings,
+        &slides,
+        &outcome.notes,
+        &resultants.warnings(),
+        &resultants.warnings_of_mesh(catalog, error),
+        &Vec::from_iter(strain),
+        &Vec::from_iter(energy.warning()),
+    ];
+    StepTotals {
+        active: outcome.totals.active - solution.minimum_norm.opened,
+        certificate: solution.certificate,
+        condition: solution.condition,
+        resultants,
+        energy,
+        estimate: solution.estimate,
+        at_limit: !slides.is_empty(),
+        scales: match converged {
+            true => solution.certificate.scales,
+            false => Scales::default(),
+        },
+        warnings: warnings.concat(),
+        linear_solves,
+        outcome,
+    }
+}
+
+/// The warning of the largest strain, that of a block, where it isn't small.
+fn large_strain((block, largest): (usize, LargestStrain), catalog: &Catalog) -> Option<String> {
+    if largest.large <= SEEN * largest.whole {
+        return None;
+    }
+    let body = &catalog.bodies[catalog.subdomains[block].body].name;
+    let at = largest.at.map(short);
+    Some(format!(
+        "body '{body}': strains of up to {} at ({}) {}, where small ones are meant, above {} in {} % of the bodies; are the \
+         units of loads, displacements and stiffness the same?",
+        short(largest.size),
+        at[..catalog.dim].join(", "),
+        catalog.units.length(),
+        short(LARGE),
+        short(100.0 * largest.large / largest.whole)
+    ))
+}
+
+/// The warning of a motion at the limit of friction.
+fn at_limit(motion: &str) -> String {
+    format!(
+        "at the limit of friction: nothing but friction holds {motion}, with all the force that it can give, which is \
+         the same wherever that slides to; the position is one of many"
+    )
+}
