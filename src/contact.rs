@@ -15,3 +15,5 @@ pub mod limits;
 pub mod newton;
 pub mod open_factor;
 pub mod pair;
+pub mod status;
+pub mod tangent;

@@ -12,28 +12,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::limits::TangentialLimit;
-
-/// The bound of a tangential force: |λ_t| ≤ cohesion + coefficient·λ.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ForceBound {
-    /// Coefficient of friction.
-    pub coefficient: f64,
-    /// The bound without normal force (N/m).
-    pub cohesion: f64,
-    /// Whether the bound is 0 where the contact is open.
-    pub only_closed: bool,
-}
-
-impl ForceBound {
-    /// The bound under this normal force (N/m).
-    pub fn at(&self, normal: f64, is_closed: bool) -> f64 {
-        match self.only_closed && !is_closed {
-            true => 0.0,
-            false => self.cohesion + self.coefficient * normal.max(0.0),
-        }
-    }
-}
+use super::tangent::{ForceBound, TangentialLimit};
 
 /// The status of a contact point along its tangents.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -5,36 +5,13 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::dependent::DependentConstraints;
-use super::friction::{ForceBound, Status, TangentialCondition};
 use super::jumps::{JumpOf, defining_conditions};
+use super::status::Status;
+pub use super::tangent::{Beside, TangentialLimit};
+use super::tangent::{ForceBound, TangentialCondition};
 
 /// A slip, relative to the displacements that are prescribed, that is none.
 const ROUND_OFF: f64 = 1e-14;
-
-/// A limit that isn't one: a tangential jump, which sticks where the limit says as long as its force allows.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TangentialLimit {
-    /// Which of the limits.
-    pub limit: usize,
-    /// The limit on the normal jump of its point, where there is one that carries force.
-    pub normal: Option<usize>,
-    /// What bounds its force.
-    pub bound: ForceBound,
-    /// What its point has along the other tangent.
-    pub beside: Beside,
-}
-
-/// What a point has along the other one of its tangents.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub enum Beside {
-    /// No slip: the plane has but one tangent, or supports let nothing move along the other.
-    #[default]
-    Nothing,
-    /// This limit.
-    Limit(usize),
-    /// A slip in the load step that supports prescribe (m).
-    Prescribed(f64),
-}
 
 /// A tangential jump that supports prescribe on both sides: its force moves nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,34 +42,6 @@ impl PrescribedSlip {
             None => bound * (self.slip.abs() / self.slip.hypot(self.beside)),
         };
         size.copysign(self.slip)
-    }
-}
-
-impl TangentialLimit {
-    /// The tangential limits of its point, the second of which may not be one, and the slip that supports prescribe along
-    /// the second (m); `None` where it is the second itself.
-    pub fn of_point(&self) -> Option<([Option<usize>; 2], f64)> {
-        let (second, prescribed) = match self.beside {
-            Beside::Limit(other) if other < self.limit => return None,
-            Beside::Limit(other) => (Some(other), 0.0),
-            Beside::Prescribed(slip) => (None, slip),
-            Beside::Nothing => (None, 0.0),
-        };
-        Some(([Some(self.limit), second], prescribed))
-    }
-
-    /// The same where limits are numbered otherwise.
-    #[must_use]
-    pub fn renamed(&self, number: impl Fn(usize) -> usize) -> Self {
-        Self {
-            limit: number(self.limit),
-            normal: self.normal.map(&number),
-            bound: self.bound,
-            beside: match self.beside {
-                Beside::Limit(limit) => Beside::Limit(number(limit)),
-                known => known,
-            },
-        }
     }
 }
 

@@ -1,80 +1,35 @@
 //! Data flows one way: who imports whom, checked against what ARCHITECTURE.md says.
 
+mod imports;
+
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use self::imports::{Imports, Module};
+
+/// The crates: their folder of files, their name in paths.
+const CRATES: [(&str, &str); 2] = [
+    ("partition/src", "contact_dd_partition"),
+    ("src", "contact_dd_mpi"),
+];
+
+/// Most floors of rooms, each of which stands above all that it imports.
+const MOST_FLOORS: usize = 9;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A source file and its path below `src` of its crate.
-struct Source {
-    below: PathBuf,
-    /// Its text without comments.
-    code: String,
+fn imports_of((src, name): (&str, &str)) -> Imports {
+    let imports = Imports::new(&root().join(src), name);
+    assert!(imports.of.len() > 50, "{} files", imports.of.len());
+    imports
 }
 
-impl Source {
-    /// The module at the top of the crate that it belongs to.
-    fn module(&self) -> &str {
-        let first = self.below.iter().next().unwrap().to_str().unwrap();
-        first.trim_end_matches(".rs")
-    }
-
-    /// The modules of its crate that it names: `crate::name`, `crate::{name, …}`, and by as many
-    /// `super` as lead there.
-    fn imports(&self) -> Vec<&str> {
-        let up = "super::".repeat(self.below.iter().count());
-        let paths = ["crate::", &up].map(|path| self.code.split(path).skip(1));
-        let mut names = Vec::new();
-        for rest in paths.into_iter().flatten() {
-            match rest.strip_prefix('{') {
-                None => names.push(word(rest)),
-                Some(group) => {
-                    let mut depth = 0;
-                    let group = group.split(|c| {
-                        depth += i32::from(c == '{') - i32::from(c == '}');
-                        depth == 0 && c == ','
-                    });
-                    names.extend(group.map(|name| word(name.trim())));
-                }
-            }
-        }
-        names
-    }
-}
-
-/// The identifier that `text` begins with.
-fn word(text: &str) -> &str {
-    let end = text.find(|c: char| !c.is_alphanumeric() && c != '_');
-    &text[..end.unwrap_or(text.len())]
-}
-
-/// The files of a crate's library.
-fn sources(src: &str) -> Vec<Source> {
-    let top = root().join(src);
-    let (mut folders, mut found) = (vec![top.clone()], Vec::new());
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            if path.extension().is_none_or(|ending| ending != "rs") {
-                continue;
-            }
-            let text = fs::read_to_string(&path).unwrap();
-            let lines = text.lines();
-            let code = lines.map(|line| line.split("//").next().unwrap_or_default());
-            found.push(Source {
-                below: path.strip_prefix(&top).unwrap().to_path_buf(),
-                code: code.collect::<Vec<_>>().join("\n"),
-            });
-        }
-    }
-    assert!(found.len() > 50, "{} files", found.len());
-    found
+/// The module at the top of the crate that a module belongs to.
+fn room(module: &Module) -> &str {
+    &module[0]
 }
 
 /// The order of modules that ARCHITECTURE.md gives for a crate, on lines that begin with `src`.
@@ -95,25 +50,85 @@ fn order(src: &str) -> Vec<String> {
 
 #[test]
 fn a_module_imports_only_those_before_it() {
-    for src in ["partition/src", "src"] {
+    for of_crate in CRATES {
+        let src = of_crate.0;
         let order = order(src);
         let place = |module: &str| order.iter().position(|name| name == module);
-        for source in sources(src) {
-            if ["main", "lib"].contains(&source.module()) {
+        for (module, others) in imports_of(of_crate).of {
+            if ["main", "lib"].contains(&room(&module)) {
                 continue;
             }
-            let at = source.below.display();
-            let Some(own) = place(source.module()) else {
-                panic!("{src}/{at}: the order in ARCHITECTURE.md lacks its module");
+            let at = module.join("/");
+            let Some(own) = place(room(&module)) else {
+                panic!("{src}/{at}.rs: the order in ARCHITECTURE.md lacks its module");
             };
-            for import in source.imports() {
-                let Some(other) = place(import) else { continue };
+            for import in others {
+                let Some(other) = place(room(&import)) else {
+                    continue;
+                };
                 assert!(
                     other <= own,
-                    "{src}/{at} imports {import}, which comes after it"
+                    "{src}/{at}.rs imports {}, which comes after it",
+                    import.join("::")
                 );
             }
         }
+    }
+}
+
+#[test]
+fn no_files_import_each_other_in_a_circle() {
+    for of_crate in CRATES {
+        let imports = imports_of(of_crate).of;
+        let floors = Imports::floors(&imports);
+        let Some(above) = imports.keys().find(|module| !floors.contains_key(*module)) else {
+            continue;
+        };
+        // From one that stands on a circle, down to one that comes again.
+        let mut way = vec![above];
+        let circle = loop {
+            let below =
+                |other: &&Module| !floors.contains_key(*other) && imports.contains_key(*other);
+            let next = imports[way[way.len() - 1]].iter().find(below).unwrap();
+            if let Some(first) = way.iter().position(|module| *module == next) {
+                break way.split_off(first);
+            }
+            way.push(next);
+        };
+        let names: Vec<String> = circle.iter().map(|module| module.join("/")).collect();
+        panic!(
+            "{}: {} import each other in a circle",
+            of_crate.0,
+            names.join(" → ")
+        );
+    }
+}
+
+#[test]
+fn the_house_has_few_floors() {
+    for of_crate in CRATES {
+        let mut rooms: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for (module, others) in imports_of(of_crate).of {
+            let own = rooms.entry(room(&module).to_owned()).or_default();
+            let others = others
+                .iter()
+                .map(room)
+                .filter(|other| *other != room(&module));
+            own.extend(others.map(str::to_owned));
+        }
+        let floors = Imports::floors(&rooms);
+        assert_eq!(
+            floors.len(),
+            rooms.len(),
+            "{}: circles of rooms",
+            of_crate.0
+        );
+        let most = floors.values().max().unwrap();
+        assert!(
+            *most <= MOST_FLOORS,
+            "{}: {most} floors, {floors:?}",
+            of_crate.0
+        );
     }
 }
 
@@ -126,16 +141,19 @@ fn a_foreign_library_has_one_importer() {
         ("faer::sparse", &[]),
     ] {
         let mut importers = 0;
-        for src in ["partition/src", "src"] {
-            for source in sources(src) {
+        for of_crate in CRATES {
+            for (module, code) in imports_of(of_crate).code {
                 let uses = ["use ", " ", "(", "<", "&"]
                     .iter()
-                    .any(|before| source.code.contains(&format!("{before}{library}::")));
+                    .any(|before| code.contains(&format!("{before}{library}::")));
                 if uses {
                     importers += 1;
-                    let module = format!("{src}/{}", source.module());
-                    let at = source.below.display();
-                    assert!(homes.contains(&&module[..]), "{src}/{at} imports {library}");
+                    let own = format!("{}/{}", of_crate.0, room(&module));
+                    assert!(
+                        homes.contains(&&own[..]),
+                        "{}.rs imports {library}",
+                        module.join("/")
+                    );
                 }
             }
         }

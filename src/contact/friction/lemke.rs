@@ -15,8 +15,8 @@
 mod path;
 mod responses;
 
-use self::path::Path;
-use super::{FrictionProblem, Status};
+use self::path::{End, Path};
+use super::FrictionProblem;
 use crate::contact::open_factor::scale_of;
 
 /// Limits up to which the path is followed: its matrix is dense.
@@ -28,13 +28,6 @@ const EXCHANGES: usize = 200;
 const EXCHANGES_EACH: usize = 8;
 /// Exchanges in a row at one θ: round-off goes round in circles there.
 const STANDS_STILL: usize = 100;
-
-/// The end of the path.
-pub(super) struct End {
-    pub status: Vec<Status>,
-    /// The jumps there (m).
-    pub jumps: Vec<f64>,
-}
 
 impl FrictionProblem<'_> {
     /// The end of the path, and the exchanges that it took; `None` where it doesn't get there. Every `attempt` goes

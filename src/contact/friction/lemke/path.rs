@@ -3,10 +3,16 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
-use super::End;
 use super::responses::{Responses, Terms};
 use crate::contact::friction::{ATTEMPTS, FrictionProblem, Status, TangentialLimit};
 use crate::vector::{axpy, largest};
+
+/// The end of the path.
+pub(in crate::contact::friction) struct End {
+    pub status: Vec<Status>,
+    /// The jumps there (m).
+    pub jumps: Vec<f64>,
+}
 
 /// Force, relative to the largest, below which a bound that vanishes with it falls to 0, one attempt after the other:
 /// where it is steep the path ends at the solution, but has further to go.

@@ -1,0 +1,88 @@
+//! Tangential conditions: what they are of a contact point, and the bound of their force.
+
+use serde::{Deserialize, Serialize};
+
+/// The bound of a tangential force: |λ_t| ≤ cohesion + coefficient·λ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ForceBound {
+    /// Coefficient of friction.
+    pub coefficient: f64,
+    /// The bound without normal force (N/m).
+    pub cohesion: f64,
+    /// Whether the bound is 0 where the contact is open.
+    pub only_closed: bool,
+}
+
+impl ForceBound {
+    /// The bound under this normal force (N/m).
+    pub fn at(&self, normal: f64, is_closed: bool) -> f64 {
+        match self.only_closed && !is_closed {
+            true => 0.0,
+            false => self.cohesion + self.coefficient * normal.max(0.0),
+        }
+    }
+}
+
+/// A tangential condition, its number and that of its point's normal one, and what bounds its force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TangentialCondition {
+    /// Its number among the conditions.
+    pub number: usize,
+    /// That of the normal one.
+    pub normal: usize,
+    /// What bounds its force.
+    pub bound: ForceBound,
+}
+
+/// Friction condition: the tangential jump sticks at the bound of `limit` while |λ_t| is within that of its force.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TangentialLimit {
+    /// Which of the limits.
+    pub limit: usize,
+    /// The limit on the normal jump of its point, where there is one that carries force.
+    pub normal: Option<usize>,
+    /// What bounds its force.
+    pub bound: ForceBound,
+    /// What its point has along the other tangent.
+    pub beside: Beside,
+}
+
+/// What a point has along the other one of its tangents.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Beside {
+    /// No slip: the plane has but one tangent, or supports let nothing move along the other.
+    #[default]
+    Nothing,
+    /// This limit.
+    Limit(usize),
+    /// A slip in the load step that supports prescribe (m).
+    Prescribed(f64),
+}
+
+impl TangentialLimit {
+    /// The tangential limits of its point, the second of which may not be one, and the slip that supports prescribe along
+    /// the second (m); `None` where it is the second itself.
+    pub fn of_point(&self) -> Option<([Option<usize>; 2], f64)> {
+        let (second, prescribed) = match self.beside {
+            Beside::Limit(other) if other < self.limit => return None,
+            Beside::Limit(other) => (Some(other), 0.0),
+            Beside::Prescribed(slip) => (None, slip),
+            Beside::Nothing => (None, 0.0),
+        };
+        Some(([Some(self.limit), second], prescribed))
+    }
+
+    /// The same where limits are numbered otherwise.
+    #[must_use]
+    pub fn renamed(&self, number: impl Fn(usize) -> usize) -> Self {
+        Self {
+            limit: number(self.limit),
+            normal: self.normal.map(&number),
+            bound: self.bound,
+            beside: match self.beside {
+                Beside::Limit(limit) => Beside::Limit(number(limit)),
+                known => known,
+            },
+        }
+    }
+}
