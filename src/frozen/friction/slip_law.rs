@@ -155,7 +155,7 @@ impl SlipLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::law::ForceBound;
+    use crate::contact::tangent::ForceBound;
 
     const POINT: PointLaw = PointLaw {
         normal: Some(0),
