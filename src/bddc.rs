@@ -46,7 +46,7 @@ pub struct Bddc {
     dofs: Vec<Vec<InterfaceDof>>,
     /// The contact groups between clusters.
     between: Vec<Between>,
-    /// Those of this rank, by number.
+    /// The contact groups of this rank, by number.
     groups: BTreeMap<usize, GroupBetween>,
     ties: Ties,
     nodes: SharedNodes,

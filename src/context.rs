@@ -15,7 +15,7 @@ use crate::fem::contact_group::{ContactGroup, GroupLoads};
 use crate::fem::load::BlockLoads;
 use crate::plan::Plan;
 
-/// Who hears how far a phase has come.
+/// The receiver of progress reports.
 pub trait Listener {
     /// So much of the phase, or of a part of it such as a linear system, is done: 0, with which a part begins, to 1.
     fn done(&self, share: f64);
@@ -32,7 +32,7 @@ pub struct Context<'a> {
     pub comm: &'a Comm,
     /// The problem.
     pub catalog: &'a Catalog,
-    /// Who owns what.
+    /// The owners of blocks and fronts.
     pub plan: &'a Plan,
     /// The blocks of this rank, by their number.
     pub blocks: &'a BTreeMap<usize, Block>,
@@ -40,7 +40,7 @@ pub struct Context<'a> {
     pub groups: &'a BTreeMap<usize, ContactGroup>,
     /// Threads.
     pub par: Par,
-    /// Who hears how far a phase has come.
+    /// The receiver of progress reports.
     pub listener: &'a dyn Listener,
 }
 

@@ -27,7 +27,7 @@ pub enum FailureKind {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 #[error("{message}")]
 pub struct Failure {
-    /// What it ends with.
+    /// The kind of the failure, which decides the exit code.
     pub kind: FailureKind,
     /// Where, and what was expected.
     pub message: String,

@@ -54,7 +54,7 @@ pub enum Ending {
 /// The progress of a run: what its stages so far have come to.
 #[derive(Default)]
 struct Progress {
-    /// Where the time went.
+    /// The time that each phase took.
     seconds: RankSeconds,
     /// The plan of the last stage.
     plan: Option<Plan>,

@@ -219,7 +219,7 @@ pub struct SweepSettings {
     pub second_start: bool,
 }
 
-/// What settled a setting.
+/// The origin of a setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub enum Origin {
     /// The command line.

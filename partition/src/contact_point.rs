@@ -39,7 +39,7 @@ pub struct ContactPoint<N> {
     /// Tag of its node on side b; −1 for an obstacle and where there are several, as the nodes of side a have the
     /// conditions (mortar).
     pub tag_b: i64,
-    /// What bounds its force.
+    /// The law that bounds its force.
     pub law: Law,
 }
 

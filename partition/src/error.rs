@@ -87,7 +87,7 @@ fn escape(f: &mut std::fmt::Formatter<'_>, text: &str, kept: &str) -> std::fmt::
 pub struct OutputError {
     /// The file.
     pub path: PathBuf,
-    /// What the system said.
+    /// The message of the system.
     pub reason: String,
 }
 

@@ -29,7 +29,7 @@ impl Front {
         PER_ENTRY_OF_FRONT * ((self.eliminated + self.kept) as f64).powi(2) + self.flops()
     }
 
-    /// The same where it stands for a subdomain that is condensed.
+    /// Estimated time of a front that stands for a subdomain that is condensed.
     pub fn time_to_condense(&self, dim: usize) -> f64 {
         let (eliminated, kept) = (self.eliminated as f64, self.kept as f64);
         let beside = PER_UNKNOWN * eliminated + PER_ENTRY_OF_SUBDOMAIN * kept * kept;

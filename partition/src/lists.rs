@@ -83,7 +83,7 @@ impl<T: Copy> Lists<T> {
         &self.items[self.offsets[list]..self.offsets[list + 1]]
     }
 
-    /// The same to change its items.
+    /// The items of a list, to be changed.
     pub fn of_mut(&mut self, list: usize) -> &mut [T] {
         &mut self.items[self.offsets[list]..self.offsets[list + 1]]
     }

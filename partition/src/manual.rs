@@ -29,7 +29,7 @@ pub struct Manual {
     pub files: &'static [(&'static str, &'static str)],
     /// Environment variables and what they change.
     pub environment: &'static [(&'static str, &'static str)],
-    /// The other program.
+    /// The page of the other program.
     pub see_also: &'static str,
 }
 

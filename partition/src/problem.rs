@@ -115,7 +115,7 @@ impl Subdomain {
         loads.map_or(&self.initial_stress, |loads| &loads.initial_stress)
     }
 
-    /// The same in every load step, or the one that it has.
+    /// The initial stresses of every load step, or the one that it has.
     fn initial_stresses(&self) -> Vec<&InitialStress> {
         match self.steps.is_empty() {
             true => vec![&self.initial_stress],
@@ -213,7 +213,7 @@ pub struct LoadStep {
     pub name: String,
     /// What it stands at on the axis of time.
     pub time: f64,
-    /// What isn't there.
+    /// The bodies and contacts that are absent.
     pub absent: Absent,
 }
 

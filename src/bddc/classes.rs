@@ -34,7 +34,7 @@ pub struct Class {
 /// has only as many combinations of them as it has conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turned {
-    /// A column each.
+    /// The new unknowns, a column each.
     pub q: Mat<f64>,
     /// Where those of both, of the first and of the second cluster begin and end.
     pub ends: [usize; 4],
@@ -65,7 +65,7 @@ impl Class {
 /// All classes.
 #[derive(Clone, Debug, Default)]
 pub struct Classes {
-    /// Those that several clusters have, by these in ascending order.
+    /// The classes that several clusters have, by these in ascending order.
     pub list: Vec<Class>,
     /// For every cluster the numbers of these, ascending.
     pub of_clusters: Vec<Vec<usize>>,
@@ -101,7 +101,7 @@ impl Classes {
         self.list.iter().map(home).collect()
     }
 
-    /// Those of clusters that have these `dofs`, with closed contact conditions that tie some to others.
+    /// The classes of clusters that have these `dofs`, with closed contact conditions that tie some to others.
     pub fn new(dofs: &[Vec<InterfaceDof>], ties: &Ties) -> Self {
         let mut ends: Vec<(InterfaceDof, usize)> = Vec::new();
         for (c, list) in dofs.iter().enumerate() {

@@ -18,7 +18,7 @@ pub struct GroupBetween {
     rows: JumpRows,
     /// The normal jumps, t = b·x.
     terms: Vec<Vec<(InterfaceDof, f64)>>,
-    /// Which are open.
+    /// The open ones among the jumps.
     pub open: Vec<bool>,
     /// What the closed ones replace.
     replaced: Vec<Replaced>,
@@ -64,7 +64,7 @@ impl GroupBetween {
         Ok(())
     }
 
-    /// What its conditions tie.
+    /// The ties between unknowns that closed conditions make.
     pub fn ties(&self) -> Ties {
         Ties {
             direct: (self.replaced.iter())
@@ -117,7 +117,7 @@ pub struct Ties {
     /// Tied displacements and what is in their place, but for constants, group by group up the hierarchy: what a group
     /// ties one above may tie to others.
     direct: Vec<(InterfaceDof, Terms)>,
-    /// The same in terms of what nothing ties.
+    /// The tied unknowns in terms of those that nothing ties.
     resolved: BTreeMap<InterfaceDof, Terms>,
 }
 
@@ -125,7 +125,7 @@ pub struct Ties {
 type Terms = Vec<(InterfaceDof, f64)>;
 
 impl Ties {
-    /// Those of all groups, in their order.
+    /// The ties of all groups, in their order.
     pub fn join(all: Vec<Self>) -> Self {
         let mut joined = Self::default();
         for ties in all {

@@ -30,7 +30,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// That of cluster c, which leaves `s`.
+    /// The part of cluster c, which leaves `s`.
     pub fn of(c: usize, local: &Local, s: PackedSymmetric, classes: &Classes) -> Self {
         let first = |&k: &usize| classes.list[k].dofs[0];
         let counts = local.bases().iter().map(|basis| basis.coarse);
@@ -111,7 +111,7 @@ impl Front {
 pub struct Coarse {
     /// The nodes of the hierarchy above clusters, children before parents.
     nodes: Vec<usize>,
-    /// Those of this rank.
+    /// The fronts of this rank.
     fronts: BTreeMap<usize, Front>,
     /// What clusters and nodes leave, at the owner of the node above.
     parts: BTreeMap<usize, Part>,

@@ -15,14 +15,14 @@ use crate::vector::dot;
 
 /// Most iterations.
 const MAX_ITERATIONS: usize = 500;
-/// The same with a preconditioner of other matrices.
+/// Most iterations with a preconditioner of other matrices.
 const MAX_WITH_STALE: usize = 30;
 /// Iterations after which a preconditioner that can be made better is judged.
 const TRIAL: usize = 6;
 /// What the error has to come down to by then.
 const GOOD: f64 = 0.02;
 
-/// What conjugate gradients need.
+/// The conjugate gradient method: operator and preconditioner.
 #[derive(Clone, Copy)]
 pub struct ConjugateGradients<'a> {
     /// What the run works on.

@@ -69,7 +69,7 @@ pub enum Side {
 }
 
 impl Basis {
-    /// That of a class all of whose unknowns are coarse; its first cluster has all of what is there.
+    /// The basis of a class all of whose unknowns are coarse; its first cluster has all of what is there.
     pub fn coarse(count: usize, is_first: bool) -> Self {
         Self {
             coarse: count,
@@ -78,7 +78,8 @@ impl Basis {
         }
     }
 
-    /// That of a class, for each of the clusters that have these `sides` of it: its rigid `motions` are coarse, or what
+    /// The basis of a class, for each of the clusters that have these `sides` of it: its rigid `motions` are coarse,
+    /// or what
     /// the sides say where they are looked into.
     ///
     /// # Errors

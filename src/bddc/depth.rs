@@ -7,7 +7,7 @@ pub enum Depth {
     Diagonals,
     /// The rigid motions of classes.
     Motions,
-    /// What their energies say.
+    /// Coarse unknowns chosen by their energies.
     Energies,
     /// Rigid motions, and all is held by a little.
     Held,

@@ -128,7 +128,7 @@ const ROUND_OFF: f64 = 1e-14;
 /// Shares of the largest diagonal entry of which the least is added that round-off leaves definite, where unknowns may be
 /// free.
 const HOLDS: [f64; 3] = [1e-11, 1e-9, 1e-7];
-/// The same where it has to be far above that.
+/// Share of a spring that has to be far above round-off.
 const MORE_HOLD: f64 = 1e-9;
 
 /// Adds a share of the largest entry to those of the diagonal, and what is sure to be more than their round-off.
@@ -190,7 +190,7 @@ impl Others {
 /// unknowns of its classes.
 #[derive(Debug)]
 pub struct Local {
-    /// What it shares.
+    /// The unknowns that it shares.
     pub shared: Shared,
     /// The basis and the scaling of every class.
     bases: Vec<Basis>,
@@ -252,7 +252,7 @@ impl Local {
         Ok((local, PackedSymmetric::new(&coarse)))
     }
 
-    /// Where its classes are.
+    /// The ranges of its classes among the shared unknowns.
     pub fn ranges(&self) -> &[Range<usize>] {
         &self.shared.placement.ranges
     }

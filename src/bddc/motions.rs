@@ -23,7 +23,7 @@ pub struct SharedNodes {
 }
 
 impl SharedNodes {
-    /// Those of clusters with these `dofs`. Collective.
+    /// The shared nodes of clusters with these `dofs`. Collective.
     pub fn new(context: &Context<'_>, dofs: &[Vec<InterfaceDof>]) -> Self {
         let comm = context.comm;
         let sought: BTreeSet<u32> = dofs.iter().flatten().map(|dof| dof.node).collect();

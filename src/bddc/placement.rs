@@ -21,7 +21,7 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// That of cluster c.
+    /// The placement of the unknowns of cluster c.
     pub fn new(c: usize, cluster: &ClusterSchur, classes: &Classes, ties: &Ties) -> Self {
         let mut places: HashMap<InterfaceDof, Vec<(usize, f64)>> = HashMap::new();
         let mut own = classes.own[c].len();

@@ -20,7 +20,7 @@ pub struct Reflections {
 }
 
 impl Reflections {
-    /// That of independent columns.
+    /// The reflections of independent columns.
     pub fn new(columns: &Mat<f64>) -> Self {
         let qr = columns.qr();
         Self {

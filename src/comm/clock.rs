@@ -77,7 +77,7 @@ impl Clock {
         }
     }
 
-    /// Where this rank is.
+    /// The times of this rank so far.
     pub fn times(&self) -> Times {
         let since = thread_seconds() - self.resumed.get();
         Times {

@@ -76,7 +76,7 @@ impl RankSeconds {
     }
 }
 
-/// What one rank had to do.
+/// The report of a rank.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct RankReport {
     /// Its time in each phase.

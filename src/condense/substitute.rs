@@ -12,7 +12,7 @@ use crate::schur::local::CondensedLoad;
 pub struct Factors<'a> {
     /// What the run works on.
     pub context: Context<'a>,
-    /// What this rank has.
+    /// The factors of this rank.
     pub condensed: &'a CondensedBlocks,
 }
 

@@ -37,12 +37,12 @@ pub fn carry(
     );
 }
 
-/// Along the hierarchy.
+/// The direction of a message along the hierarchy.
 #[derive(Clone, Copy, Debug)]
 pub enum Direction {
     /// From a node to the one that it is merged into.
     Up,
-    /// Back.
+    /// From the node that it was merged into to a node.
     Down,
 }
 

@@ -14,7 +14,7 @@ pub struct Block {
     /// Its nodes on Γ, those that it shares with others and those of contact points: node and number on
     /// Γ, in ascending order of the second.
     pub interface: Vec<(u32, u32)>,
-    /// Those of them whose displacement along this normal alone is on Γ where they have no supports.
+    /// The nodes whose displacement along this normal alone is on Γ where they have no supports.
     pub slides: BTreeMap<u32, [f64; 3]>,
     /// Number of dofs of a node.
     pub dim: usize,

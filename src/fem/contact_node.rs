@@ -66,7 +66,7 @@ impl ContactNode {
         nodes.iter().map(of_node).collect()
     }
 
-    /// It as the check of contact points sees it.
+    /// The node as the check of contact points sees it.
     pub fn place(&self) -> Place {
         Place {
             tag: self.tag,

@@ -55,7 +55,7 @@ pub enum Compliance {
 }
 
 impl Compliance {
-    /// That of a material; zero where its stiffness is singular.
+    /// The compliance of a material; zero where its stiffness is singular.
     pub fn new(material: &Material) -> Self {
         let c = &material.stiffness;
         match c.size() {

@@ -123,7 +123,7 @@ impl PatchSum {
         }
     }
 
-    /// The same for N terms and C components.
+    /// Adds the equations of a point for N terms and C components.
     fn add_terms<const N: usize, const C: usize>(&mut self, at: [f64; 3], stress: &NodalStress) {
         let terms: [f64; N] = monomials(at, if C == 4 { 2 } else { 3 });
         let mut entry = 0;

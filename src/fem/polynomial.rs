@@ -28,7 +28,7 @@ pub struct Polynomial {
     pub(super) coefficients: [f64; 6 * TERMS],
 }
 
-/// Those of a polynomial that there are in its dimension.
+/// The coefficients of a polynomial that there are in its dimension.
 #[derive(Serialize, Deserialize)]
 struct Coefficients {
     dim: usize,
@@ -124,7 +124,7 @@ impl Polynomials {
         }
     }
 
-    /// That of a node.
+    /// The polynomial of a node.
     pub fn get(&self, node: usize) -> Polynomial {
         let mut polynomial = Polynomial::zero(self.dim);
         let coefficients = &mut polynomial.coefficients[..self.width];

@@ -40,7 +40,7 @@ impl Resultant {
     }
 }
 
-/// What a contact transfers.
+/// The resultant of a contact.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ContactResultant {
     /// Name of the contact.
@@ -61,7 +61,7 @@ pub struct ContactResultant {
     pub parting: usize,
     /// Largest penetration at the nodes of the side that has no conditions, where nodes don't match (m).
     pub penetration: f64,
-    /// What those nodes say beside that.
+    /// The penetration at those nodes.
     #[serde(skip)]
     pub probed: Option<Probed>,
     /// Whether the nodes of side b have the conditions.
@@ -69,7 +69,7 @@ pub struct ContactResultant {
     pub on_b: bool,
 }
 
-/// What the nodes of a side without conditions say of a contact.
+/// The penetration of a contact at the nodes of the side without conditions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Probed {
     /// Tag of the node that penetrates farthest.
@@ -185,7 +185,7 @@ pub struct Reaction {
     pub resultant: Resultant,
 }
 
-/// All of them.
+/// The resultants of all contacts and supports.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Resultants {
     /// Contacts, in the order of the scene.

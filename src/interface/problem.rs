@@ -11,7 +11,7 @@ use crate::vector::NOTHING;
 /// round-off again.
 const LEFT: f64 = 1e-3;
 
-/// What loads a cluster.
+/// The load of a cluster.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ClusterLoad {
     /// Its condensed load on its interface dofs, with every contact closed.

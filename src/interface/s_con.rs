@@ -33,7 +33,7 @@ pub struct ConState {
 pub struct ConTotals {
     /// Closed normal jumps and linearly dependent constraints.
     pub active: usize,
-    /// Those that opened or closed, against what was expected or the last evaluation.
+    /// Conditions that opened or closed, against the expected statuses or the last evaluation.
     pub changed: usize,
     /// Linear systems solved within pairs.
     pub steps: usize,
@@ -48,7 +48,7 @@ pub struct ConTotals {
 /// What the root asks of the pairs.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 enum Request {
-    /// Nothing any more.
+    /// The end of all requests.
     #[default]
     Stop,
     /// S_kl(U) of these pairs.

@@ -110,7 +110,7 @@ fn attempt(path: &Path) -> Result<Option<File>, Refusal> {
     Ok(Some(file))
 }
 
-/// Who holds a lock.
+/// The process that holds a lock.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Holder {
     process: u32,

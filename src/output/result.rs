@@ -49,7 +49,7 @@ impl Per {
 /// What a list tells of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Of {
-    /// The same in every load step.
+    /// The mesh, the same in every load step.
     Mesh,
     Solution,
     /// Left out where stresses are.

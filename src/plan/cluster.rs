@@ -16,7 +16,8 @@ pub enum Merging {
     Groups,
     /// What has no contact is merged once, the rest for every active set anew.
     Frozen,
-    /// The same, no further than to the clusters between which the iterative interface solver works.
+    /// Active sets are fixed, too, and fronts merged no further than to the clusters between which the iterative
+    /// interface solver works.
     Clusters,
 }
 
@@ -26,7 +27,7 @@ impl Merging {
         matches!(self, Self::Frozen | Self::Clusters)
     }
 
-    /// What solves with it.
+    /// The name of the solver in messages.
     pub fn solver(self) -> &'static str {
         match self {
             Self::Clusters => "the iterative interface solver",

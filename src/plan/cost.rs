@@ -15,7 +15,7 @@ use super::cluster::Merging;
 const AT_REST: f64 = 2.8e7;
 /// A block of n dofs, by nested dissection n log n, in bytes: its factor and its mesh.
 const PER_DOF: f64 = 50.0;
-/// That of other cells over that of triangles of three nodes: a constant, and for each node by cell.
+/// Time of other cells over that of triangles of three nodes: a constant, and for each node by cell.
 const PER_NODE_OF_CELL: [f64; 2] = [0.82, 0.4];
 /// The part of a block's factor that its boundary adds, by its size times √n (bytes).
 const PER_BOUNDARY: f64 = 165.0;
@@ -28,7 +28,7 @@ const PER_ENTRY_OF_CLUSTER: f64 = 8.0;
 /// An entry of the contact problem of all pairs, at the root (bytes).
 const PER_PAIR_OF_CONDITIONS: f64 = 33.0;
 
-/// What a rank needs.
+/// The estimated cost of a rank.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CostEstimate {
     /// Memory at its peak (bytes).

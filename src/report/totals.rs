@@ -18,7 +18,7 @@ use crate::sweep::{SweepOutcome, SweepStatus};
 pub struct Totals<'a> {
     /// The problem.
     pub catalog: &'a Catalog,
-    /// Who owned what.
+    /// The owners of blocks and fronts.
     pub plan: &'a Plan,
     /// Every load step, one where the problem has none.
     pub steps: Vec<StepTotals>,
@@ -33,7 +33,7 @@ pub struct Totals<'a> {
 /// A load step, or a run without any.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct StepTotals {
-    /// What the sweeps found.
+    /// The outcome of the sweeps.
     pub outcome: SweepOutcome,
     /// Linear problems solved for contact conditions, in tries that were given up, too.
     pub linear_solves: usize,
@@ -58,7 +58,7 @@ pub struct StepTotals {
 }
 
 impl StepTotals {
-    /// How it ended.
+    /// The status in which the step ended.
     pub fn status(&self) -> Status {
         match self.outcome.status {
             SweepStatus::Converged => Status::Converged,
@@ -66,7 +66,7 @@ impl StepTotals {
         }
     }
 
-    /// What friction does.
+    /// The work and state of friction.
     pub fn friction(&self) -> Option<FrictionOfStep> {
         let friction = self.resultants.friction();
         friction.map(|friction| FrictionOfStep {

@@ -20,7 +20,7 @@ use crate::fem::body_frame::BodyFrame;
 const LOAD_TOLERANCE: f64 = 1e-10;
 /// Load that contact can't balance, relative to all loads, that counts as none.
 const BALANCE_TOLERANCE: f64 = 1e-9;
-/// The same that may be more than round-off.
+/// Unbalanced load, relative to all loads, that may be more than round-off.
 const UNDECIDED: f64 = 1e-12;
 /// Load that friction can't balance, relative to all loads, that is the round-off of their sum: a body slides
 /// from a given angle on.

@@ -16,7 +16,8 @@ use crate::fem::body_frame::BodyFrame;
 
 /// Drive that is left, relative to all, that counts as none.
 const BALANCED: f64 = 1e-9;
-/// The same where springs that hold many bodies take a part of it: these move some thousand times their gaps.
+/// Drive that counts as none where springs that hold many bodies take a part of it: these move some thousand times
+/// their gaps.
 const SPRINGS: f64 = 1e-6;
 /// Motions from which on dense matrices would take gigabytes: where sparse ones don't find how bodies come to rest, they
 /// stay where they are, and the solver moves them.

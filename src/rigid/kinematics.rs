@@ -26,7 +26,7 @@ pub(super) struct Kinematics {
 }
 
 impl Kinematics {
-    /// Those of `bodies`.
+    /// The motions that supports leave to `bodies`.
     pub fn new(dim: usize, bodies: &[BodyState]) -> Self {
         let modes = BodyFrame::count(dim);
         let bases: Vec<DMatrix<f64>> = bodies
@@ -39,7 +39,7 @@ impl Kinematics {
         Self::of_bases(dim, bases, bodies.iter().map(|body| body.frame.center))
     }
 
-    /// Those of bodies about these `centers` that have these bases of motions.
+    /// The kinematics of bodies about these `centers` that have these bases of motions.
     fn of_bases(
         dim: usize,
         bases: Vec<DMatrix<f64>>,

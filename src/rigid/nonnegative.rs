@@ -111,7 +111,7 @@ pub fn residual_in_span(
     })
 }
 
-/// What [`residual_in_span`] finds.
+/// The residual that [`residual_in_span`] finds.
 pub struct InSpan {
     /// r.
     pub left: DVector<f64>,

@@ -60,7 +60,7 @@ pub struct MotionProducts {
 }
 
 impl MotionProducts {
-    /// Those of `n` motions without a body.
+    /// The products of `n` motions without a body.
     pub fn zeros(n: usize) -> Self {
         Self {
             gram: BTreeMap::new(),

@@ -25,7 +25,7 @@ const TURNS: usize = 5;
 const NO_FORCE: f64 = 1e-9;
 /// Slip, relative to the farthest jump, of a point that sticks.
 const STUCK: f64 = 1e-9;
-/// The same of one that slides, and how near it is to its limit.
+/// Slip, relative to the farthest jump, of a point that slides, and how near it is to its limit.
 const SLIDES: f64 = 1e-6;
 /// Singular value, relative to the largest one, that is none.
 const SINGULAR: f64 = 1e-12;
@@ -91,7 +91,7 @@ pub(super) fn proves(rows: &[RigidRow], jumps: &[f64], [work, terms, scale]: [f6
     surplus > ROUND_OFF * (terms + taken) && surplus > MOST_FORCE * scale * worst
 }
 
-/// The same of a `motion` of many bodies against which conditions are sparse.
+/// The proof by a `motion` of many bodies against which conditions are sparse.
 pub(super) fn proves_sparse(
     rows: &[RigidRow],
     sparse: &[SparseRow],

@@ -26,7 +26,7 @@ pub struct ConditionState {
 /// The released modes of a solution.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReleasedModes {
-    /// Them, first those that are free with every contact closed.
+    /// The released modes, first those that are free with every contact closed.
     pub motions: Vec<FreeMotion>,
     /// B of the conditions without force against them.
     rows: DMatrix<f64>,

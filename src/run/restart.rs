@@ -30,7 +30,7 @@ use crate::step::transfer::StageTransfer;
 /// What a run keeps beside the results of its finished load steps.
 #[derive(Serialize, Deserialize)]
 struct Kept {
-    /// What it is a run of.
+    /// The identity of the run.
     run: Identity,
     /// The finished load steps.
     steps: Vec<StepTotals>,
@@ -85,9 +85,9 @@ fn digest(path: &Path) -> std::io::Result<u64> {
 /// The finished load steps of a run that was stopped, and the state after them.
 #[derive(Default)]
 pub struct Finished {
-    /// How many there are.
+    /// Number of finished load steps.
     pub count: usize,
-    /// What is known of them; on the root.
+    /// The totals of the finished load steps; on the root.
     pub steps: Vec<StepTotals>,
     /// What passed to the stage of the next one.
     pub transfer: StageTransfer,

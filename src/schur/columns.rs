@@ -13,10 +13,10 @@ pub(super) const WIDTH: usize = 4;
 pub trait Number:
     Copy + Debug + Default + Neg<Output = Self> + Mul<Output = Self> + SubAssign + Sum + 'static
 {
-    /// The nearest one.
+    /// The nearest number of this precision.
     fn of(value: f64) -> Self;
 
-    /// It in double precision.
+    /// The number in double precision.
     fn value(self) -> f64;
 
     /// The products of x with the columns that `column` gives, each as long as x.

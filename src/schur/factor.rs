@@ -127,7 +127,7 @@ impl BoundaryLastCholesky {
         self.forward_before(self.interior, x);
     }
 
-    /// The same with the first `count` unknowns in the place of I.
+    /// Forward substitution with the first `count` unknowns in the place of I.
     fn forward_before(&self, count: usize, x: &mut [f64]) {
         let mut work = Vec::new();
         for panel in self.panels() {

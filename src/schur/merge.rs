@@ -79,7 +79,7 @@ struct Run {
 /// The normal jumps of a front's own contact points.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OwnJumps<'a> {
-    /// What they replace.
+    /// The displacements that jumps replace.
     pub replaced: &'a [Replaced],
     /// Which of them are open and eliminated like a displacement; the others are kept. None of them where it is
     /// empty.

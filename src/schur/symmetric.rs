@@ -16,7 +16,7 @@ pub struct PackedSymmetric {
 }
 
 impl PackedSymmetric {
-    /// That of a matrix whose lower triangle counts.
+    /// The packed form of a matrix whose lower triangle counts.
     pub fn new(s: &Mat<f64>) -> Self {
         let size = s.nrows();
         let mut values = Vec::with_capacity(packed_len(size, size));

@@ -80,7 +80,8 @@ impl StepState {
         without_closing_motions(context, loads, analysis)
     }
 
-    /// The same, which the owners of groups and blocks of a plan `before` have, with those of the plan of now. Collective.
+    /// The state that the owners of groups and blocks of a plan `before` have, with the owners of the plan of now.
+    /// Collective.
     #[must_use]
     pub fn handed_over(mut self, context: &Context<'_>, before: &Plan) -> Self {
         let Context { comm, plan, .. } = *context;

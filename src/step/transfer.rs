@@ -25,7 +25,7 @@ pub struct StageTransfer {
     pub closing_motions: Vec<Vec<f64>>,
 }
 
-/// How a stage ends.
+/// The end of a stage.
 #[derive(Clone, Copy)]
 pub struct StageEnd<'a> {
     /// The displacement of every block of this rank, node by node (m).

@@ -42,7 +42,7 @@ const PARALLEL: f64 = 50_000.0;
 /// later cuts see to it.
 const TIDIED: usize = 50_000;
 
-/// Where a dissection ends.
+/// The end of a dissection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Wanted {
     /// With sets of at most so many dofs, or single vertices.
@@ -120,7 +120,7 @@ pub(super) fn dissect(graph: Graph, wanted: Wanted) -> Branch {
     }
 }
 
-/// What is dissected.
+/// The set that is dissected.
 enum Set<'a> {
     /// Vertices of a graph.
     Vertices(Graph),

@@ -14,9 +14,9 @@ pub(super) enum Place {
 #[derive(Clone, Copy)]
 struct Arc {
     to: u32,
-    /// The same edge as its other end sees it.
+    /// The number of the edge as its other end sees it.
     reverse: u32,
-    /// What may flow yet.
+    /// The capacity that is left.
     capacity: u32,
 }
 

@@ -88,7 +88,7 @@ impl Domain {
 pub struct Definition {
     /// Its name in words.
     pub name: &'static str,
-    /// What it fills.
+    /// The domain that it fills.
     pub domain: Domain,
     /// Reference coordinates of its nodes, in the order of VTK: corners first, counter-clockwise,
     /// the first one at the domain's first; nodes on edges; nodes in the middles of faces; of the cell.

@@ -176,7 +176,7 @@ impl ReferenceElement {
         }
     }
 
-    /// The same of a face, borders included, by Newton's method from its middle.
+    /// The crossing of a line and a face, borders included, by Newton's method from its middle.
     fn crossing_of_face(&self, at: &[[f64; 3]], x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
         let mut xi = match self.domain() {
             Domain::Triangle => [1.0 / 3.0, 1.0 / 3.0, 0.0],

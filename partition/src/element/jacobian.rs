@@ -12,7 +12,7 @@ const HALVINGS: usize = 12;
 pub struct Fold {
     /// det ∂x/∂ξ there (m^dim).
     pub jacobian: f64,
-    /// Where it is (m).
+    /// The position of that point (m).
     pub position: [f64; 3],
     /// The local node nearest to it.
     pub node: usize,

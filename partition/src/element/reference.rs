@@ -42,7 +42,7 @@ impl ReferenceElement {
         self.definition.name
     }
 
-    /// What it fills.
+    /// The domain that it fills.
     pub fn domain(&self) -> Domain {
         self.definition.domain
     }
@@ -125,7 +125,7 @@ impl ReferenceElement {
         &self.tables().stiffness
     }
 
-    /// The same where the cell goes all around an axis.
+    /// The points of the stiffness where the cell goes all around an axis.
     pub fn points_around_axis(&self) -> &[TabulatedPoint] {
         &self.tables().around_axis
     }

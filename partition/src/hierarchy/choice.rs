@@ -53,7 +53,8 @@ pub struct InterfaceTimes {
 }
 
 impl InterfaceTimes {
-    /// Those of a scene in space without friction, whose clusters are known and whose contact is node by node: others
+    /// The times of a scene in space without friction, whose clusters are known and whose contact is node by node:
+    /// others
     /// are solved directly, mortar because its conditions tie many unknowns of two clusters to each other.
     pub fn new(catalog: &Catalog) -> Option<Self> {
         let is_node_by_node = (catalog.points.iter()).all(|point| point.entries.len() <= 2);

@@ -6,7 +6,7 @@ use crate::problem::Catalog;
 
 /// Most dofs of a cluster where the user doesn't say how many there should be.
 const DOFS: usize = 24_000;
-/// The same in space, where a cluster shares a larger part of its unknowns with others.
+/// Most dofs of a cluster in space, where it shares a larger part of its unknowns with others.
 const DOFS_IN_SPACE: usize = 5_000;
 
 impl Catalog {

@@ -11,7 +11,8 @@ const AT_ONCE: f64 = 10.0;
 /// Contact conditions up to which they are solved for at once, whatever that takes: that is more robust where bodies
 /// are held by next to nothing.
 const FEW_CONDITIONS: usize = 600;
-/// The same with friction, where sets that come back find a way out at once alone.
+/// Contact conditions with friction up to which they are solved for at once: active sets that come back find a way
+/// out there alone.
 const FEW_WITH_FRICTION: usize = 3000;
 
 impl Tree {
@@ -27,7 +28,7 @@ impl Tree {
         Front { eliminated, kept }
     }
 
-    /// The same where every active set is frozen, so that no jump of what is under the node is kept.
+    /// The front of node v where every active set is fixed, so that no jump of what is under the node is kept.
     pub fn frozen_front(&self, v: usize, dim: usize) -> Front {
         let (front, node) = (self.front(v, dim), &self.nodes[v]);
         Front {

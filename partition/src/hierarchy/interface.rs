@@ -12,11 +12,11 @@ use crate::problem::{Catalog, SubdomainNode};
 pub(super) struct Interface {
     /// The subdomains of each, ascending.
     pub subdomains: Lists<u32>,
-    /// Those of every subdomain.
+    /// The nodes of Γ of every subdomain.
     pub numbers: Lists<u32>,
-    /// Those that one subdomain has, and contact points name.
+    /// The nodes of Γ that one subdomain has, and contact points name.
     pub unshared: Vec<UnsharedNode>,
-    /// Those of every contact point, entry by entry.
+    /// The nodes of Γ of every contact point, entry by entry.
     pub of_points: Vec<Vec<u32>>,
 }
 
@@ -162,7 +162,7 @@ impl Interface {
     }
 }
 
-/// Those of `users` that are not among `points`, both ascending.
+/// The points among `users` that are not among `points`, both ascending.
 fn others(users: &[u32], points: &[u32]) -> Vec<u32> {
     let is_other = |j: &&u32| points.binary_search(j).is_err();
     users.iter().filter(is_other).copied().collect()

@@ -19,7 +19,7 @@ enum Converter {
     Other(&'static str),
 }
 
-/// What else is read.
+/// The other format that is read.
 const INP: &str = "a deck of Abaqus or CalculiX whose name ends with .inp";
 
 /// A format: name, endings of files, converter.

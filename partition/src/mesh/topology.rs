@@ -66,7 +66,7 @@ impl Entry {
 /// A line or a face where cells meet that differ in what lies within it.
 #[derive(Debug)]
 pub struct Tear {
-    /// Two of these cells.
+    /// Two cells at the facet.
     pub cells: [u32; 2],
     /// Its corners.
     pub corners: Vec<u32>,
@@ -106,7 +106,7 @@ impl Seam {
 /// The facets of cells, those of the same nodes beside each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Facets {
-    /// By their smallest node.
+    /// The facets by their smallest node.
     by_node: Lists<Entry>,
     /// The nodes of those facets that others have the corners of, but not all nodes.
     nodes: HashMap<CellFacet, Vec<u32>>,
@@ -246,7 +246,7 @@ impl Facets {
         })
     }
 
-    /// Those with this key.
+    /// The facets with this key.
     fn of(&self, [first, rest @ ..]: Key) -> &[Entry] {
         let list = match first as usize {
             node if node < self.by_node.len() => self.by_node.of(node),

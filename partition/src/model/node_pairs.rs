@@ -10,9 +10,9 @@ use crate::element::geometry::{advance, dot, length};
 
 /// Why two sides have no pairs of nodes.
 pub(super) enum Unpaired {
-    /// They face each other, but not node by node.
+    /// Sides that face each other, but not node by node.
     Unmatched(String),
-    /// They don't face each other.
+    /// Sides that don't face each other.
     Apart(String),
 }
 

@@ -25,13 +25,13 @@ pub(super) struct Sides<'a> {
     pub b: &'a Surface,
     /// The facets around each node of side a.
     pub around_a: HashMap<u32, Vec<usize>>,
-    /// The same of side b.
+    /// Side b: what stands above for side a.
     pub around_b: HashMap<u32, Vec<usize>>,
     /// Nodes of both sides, crack tips; they carry no condition.
     pub shared: HashSet<u32>,
     /// The nodes along side a but for the shared ones.
     pub nodes_a: Vec<SideNode>,
-    /// The same of side b.
+    /// Side b: what stands above for side a.
     pub nodes_b: Vec<SideNode>,
     /// How far backwards the sides may reach into each other (m).
     pub behind: f64,

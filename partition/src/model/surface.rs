@@ -213,7 +213,7 @@ impl SurfaceNode {
     }
 }
 
-/// Where two facets meet.
+/// The edge at which two facets meet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
     /// A node of both.

@@ -33,7 +33,7 @@ pub struct Place {
 /// The nodes that contact points name.
 #[derive(Debug)]
 pub struct Places {
-    /// Them.
+    /// The nodes by subdomain and number.
     pub nodes: BTreeMap<SubdomainNode, Place>,
     /// The largest extent of the subdomains that they lie in (m).
     pub extent: f64,
@@ -85,7 +85,7 @@ impl Places {
         self.fault_of_names(point)
     }
 
-    /// The same of the nodes that a point names.
+    /// The fault of a point in the nodes that it names.
     fn fault_of_names(&self, point: &Point) -> Option<(&'static str, String)> {
         for (dataset, tag, sign, side) in [
             ("node_a", point.tag_a, 1.0, "positive"),

@@ -27,7 +27,7 @@ pub struct OwnNodes {
     pub inner: Vec<i64>,
     /// Tags of those on Γ, with their numbers there.
     pub on_interface: Vec<(i64, u32)>,
-    /// Those on Γ.
+    /// The nodes on Γ.
     pub shared: Vec<SharedNode>,
 }
 
@@ -85,7 +85,7 @@ impl Subdomain {
 pub struct Disagreement {
     /// Copies before tags, by subdomain and number on Γ, or by tag.
     order: (bool, i64, u32),
-    /// What it is.
+    /// The message that says where copies disagree.
     pub message: String,
 }
 

@@ -25,9 +25,9 @@ const PIECE: usize = 1 << 18;
 /// Whether a file has a digest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Digest {
-    /// It has that of its bytes.
+    /// The digest of the file's bytes.
     Right,
-    /// It has none: another program wrote or edited it.
+    /// No digest: another program wrote or edited the file.
     Absent,
 }
 

@@ -67,11 +67,11 @@ pub struct Field {
     pub path: &'static str,
     /// Its extents, by letter: "R, d". With a question mark one is there if it isn't 0.
     pub shape: &'static str,
-    /// What it holds.
+    /// The kind of its values.
     pub kind: Kind,
     /// Whether it may be absent from a group that isn't empty.
     pub optional: bool,
-    /// What it means.
+    /// The meaning of its values.
     pub meaning: &'static str,
 }
 

@@ -92,7 +92,7 @@ impl Body {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "DisplacementKeys")]
 pub struct Displacement {
-    /// Where.
+    /// The groups on which the condition holds.
     pub on: Names,
     /// u_x, u_y, u_z (m).
     pub components: [Option<Number>; 3],
@@ -126,7 +126,7 @@ impl TryFrom<DisplacementKeys> for Displacement {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of on")]
 pub struct Bilateral {
-    /// Where.
+    /// The groups on which the condition holds.
     pub on: Names,
 }
 
@@ -134,7 +134,7 @@ pub struct Bilateral {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of on and value")]
 pub struct Traction {
-    /// Where.
+    /// The groups on which the condition holds.
     pub on: Names,
     /// τ (N/m²).
     pub value: Vector,
@@ -144,7 +144,7 @@ pub struct Traction {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of on and value")]
 pub struct Pressure {
-    /// Where.
+    /// The groups on which the condition holds.
     pub on: Names,
     /// Pressure, positive where it pushes into the body (N/m²).
     pub value: Number,

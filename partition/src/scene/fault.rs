@@ -111,7 +111,7 @@ impl Scene {
         }
     }
 
-    /// The same, and its key.
+    /// A value of the wrong dimension, and its key.
     fn wrong_dimension(&self, dim: usize) -> Option<Fault> {
         let mut found = Vec::new();
         let mut check = |path: Vec<Step>, fault: Option<String>| {

@@ -14,7 +14,7 @@ use crate::stiffness::Stiffness;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "MaterialKeys")]
 pub enum Elasticity {
-    /// The same in all directions.
+    /// An isotropic material.
     Isotropic {
         /// Young's modulus (Pa).
         young: f64,
@@ -44,7 +44,7 @@ pub enum PlaneState {
 }
 
 impl PlaneState {
-    /// All.
+    /// All plane states.
     pub const ALL: [Self; 3] = [Self::Strain, Self::Stress, Self::Axisymmetric];
 
     /// Its name in scenes and problem files.

@@ -9,7 +9,7 @@ use crate::magnitude;
 /// A finite number, or an expression of x, y and z.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Number {
-    /// The same everywhere.
+    /// A constant.
     Constant(f64),
     /// Depends on the place.
     Varying(Expression),

@@ -27,7 +27,7 @@ pub struct LoadStep {
     pub scale: Scale,
     /// Bodies and contacts that are there from this step on.
     pub add: Option<Names>,
-    /// Those that aren't any more.
+    /// Bodies and contacts that are removed in this step.
     pub remove: Option<Names>,
     /// Forces per volume in place of those of these bodies (N/m³).
     pub body_force: BTreeMap<String, Vector>,

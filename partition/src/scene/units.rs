@@ -16,12 +16,12 @@ impl Units {
     /// All of them.
     pub const ALL: [Self; 2] = [Self::Metre, Self::Millimetre];
 
-    /// That of lengths, its name in scenes and files.
+    /// The unit of lengths, its name in scenes and files.
     pub fn length(self) -> &'static str {
         self.pick("m", "mm")
     }
 
-    /// That of forces, in the plane per thickness.
+    /// The unit of forces, in the plane per thickness.
     pub fn force(self, dim: usize) -> &'static str {
         match dim {
             2 => self.pick("N/m", "N/mm"),
@@ -29,7 +29,7 @@ impl Units {
         }
     }
 
-    /// That of moments, in the plane per thickness.
+    /// The unit of moments, in the plane per thickness.
     pub fn moment(self, dim: usize) -> &'static str {
         match dim {
             2 => "N",
@@ -37,7 +37,7 @@ impl Units {
         }
     }
 
-    /// That of work, in the plane per thickness.
+    /// The unit of work, in the plane per thickness.
     pub fn work(self, dim: usize) -> &'static str {
         match dim {
             2 => self.pick("J/m", "mJ/mm"),
@@ -45,12 +45,12 @@ impl Units {
         }
     }
 
-    /// That of forces per volume.
+    /// The unit of forces per volume.
     pub fn body_force(self) -> &'static str {
         self.pick("N/m³", "N/mm³")
     }
 
-    /// That of stresses.
+    /// The unit of stresses.
     pub fn stress(self) -> &'static str {
         self.pick("Pa", "MPa")
     }

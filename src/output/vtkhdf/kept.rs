@@ -13,7 +13,7 @@ use twox_hash::XxHash3_64;
 
 use super::checkpoint::Checkpoint;
 
-/// What is kept.
+/// The finished load steps that are kept.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Kept {
     /// The finished load steps in the result file.

@@ -28,11 +28,11 @@ struct Touched<'a> {
 
 /// What is found of a load and the forces of many contacts.
 enum Balance {
-    /// They balance it.
+    /// Contact forces balance the load.
     Holds,
     /// A motion along which it does more work than they can take, and whether bodies slide in it.
     Fails(DVector<f64>, bool),
-    /// Neither is certain.
+    /// Neither balance nor its failure is certain.
     Undecided,
 }
 

@@ -51,7 +51,7 @@ impl Imports {
             .flat_map(|(module, of)| {
                 of.tests
                     .iter()
-                    .map(|test| [&module[..], &[test.clone()]].concat())
+                    .map(|test| [&module[..], std::slice::from_ref(test)].concat())
             })
             .collect();
         code.retain(|module, _| !of_tests.iter().any(|test| module.starts_with(test)));
@@ -144,7 +144,7 @@ fn walk(
         _ => return None,
     }
     while let Some(first) = rest.first() {
-        let below = [&at[..], &[first.clone()]].concat();
+        let below = [&at[..], std::slice::from_ref(first)].concat();
         if !code.contains_key(&below) {
             break;
         }

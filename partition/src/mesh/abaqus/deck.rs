@@ -15,7 +15,7 @@ use crate::name;
 pub(super) enum Face {
     /// The face of an element, by Abaqus' number.
     Of(u32, usize),
-    /// Those faces of an element that belong to no other.
+    /// The faces of an element that belong to no other.
     Free(u32),
 }
 

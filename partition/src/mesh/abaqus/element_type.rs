@@ -36,14 +36,14 @@ const WITHOUT_VOLUME: [&str; 17] = [
     "CONN", "DCOUP", "B2", "B3", "PIPE", "GAP", "ITS",
 ];
 
-/// What a type is.
+/// The meaning of an element type.
 pub(super) struct ElementType {
     pub(super) kind: ElementKind,
-    /// It has no volume, or in the plane no area, of its own.
+    /// Whether the element has no volume, or in the plane no area, of its own.
     pub(super) is_side: bool,
     /// The type of the same shape whose formulation is the one that all elements have here, if this is another.
     pub(super) plain: Option<&'static str>,
-    /// It has incompatible modes, which let it bend.
+    /// Whether the element has incompatible modes, which let it bend.
     pub(super) has_modes: bool,
 }
 

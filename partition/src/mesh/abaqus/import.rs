@@ -252,7 +252,7 @@ impl Grouping<'_> {
         nodes.collect()
     }
 
-    /// Those of `elements` that are facets of cells.
+    /// The `elements` that are facets of cells.
     fn listed(&mut self, elements: &[u32]) -> Vec<u32> {
         let mut found = Vec::new();
         for &element in elements {

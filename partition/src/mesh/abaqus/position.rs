@@ -14,7 +14,7 @@ pub(super) struct Position {
 }
 
 impl Position {
-    /// That of an `*INSTANCE`, whose angle is in degrees.
+    /// The position of an `*INSTANCE`, whose angle is in degrees.
     pub(super) fn read(source: &Source, block: &Block) -> Result<Self, InputError> {
         let mut rows = Vec::new();
         for data in &block.data {

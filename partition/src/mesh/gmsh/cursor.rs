@@ -186,7 +186,7 @@ impl<'a> Cursor<'a> {
         self.checked(what, count, values)
     }
 
-    /// The same of a C `int`.
+    /// The count of a C `int`.
     pub(super) fn int_count(&mut self, what: &str, values: usize) -> Result<usize, InputError> {
         let count = self.int(what)?;
         self.checked(what, count, values)

@@ -22,7 +22,7 @@ pub(super) struct Bases {
 }
 
 impl Bases {
-    /// Those of every kind of facets.
+    /// The bases of every kind of facets.
     pub fn new<'a>(facets: impl Iterator<Item = &'a SurfaceFacet>) -> BTreeMap<Kind, Self> {
         let mut bases = BTreeMap::new();
         for facet in facets {

@@ -61,7 +61,7 @@ pub(super) struct Cover {
     pub mass: DMatrix<f64>,
     /// ∫ g (m², in space m³).
     pub gap: f64,
-    /// How far it extends.
+    /// The extent of the cover on the facet.
     pub extent: Extent,
     /// The least gap, ends and corners of pieces included (m).
     pub least_gap: f64,

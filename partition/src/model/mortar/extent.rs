@@ -22,7 +22,7 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// That of nothing.
+    /// The extent of an empty cover.
     pub fn new() -> Self {
         Self {
             low: [f64::INFINITY; 2],

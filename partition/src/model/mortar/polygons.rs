@@ -26,7 +26,7 @@ const SAG: f64 = 1e-3;
 const PARTS: f64 = 8.0;
 /// Distance of a node from where an affine map would have it, relative to the facet, that doesn't matter.
 const AFFINE: f64 = 1e-6;
-/// The same of facets that aren't flat, which nothing integrates exactly.
+/// Degree beyond that of the shape functions' products of facets that aren't flat, which nothing integrates exactly.
 const BEYOND_CURVED: usize = 2;
 /// A facet of side b and what of it is seen from a facet of side a.
 struct Piece {

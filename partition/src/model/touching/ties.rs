@@ -10,7 +10,7 @@ use crate::scene::contact::Between;
 pub(super) struct Ties(BTreeMap<[u32; 2], usize>);
 
 impl Ties {
-    /// Those between all bodies. O(cells).
+    /// The ties between all bodies. O(cells).
     pub(super) fn new(bodies: &Bodies, topology: &Topology) -> Self {
         let mut ties = BTreeMap::new();
         for (cell, &body) in bodies.cell_body.iter().enumerate() {
