@@ -108,6 +108,9 @@ impl ContactProblem<'_> {
     /// Solves the problem from the conditions that are `open` at first, and leaves there which
     /// ones are open in the solution.
     pub fn solve(&self, open: &mut [bool]) -> ContactSolution {
+        if let Some(at_rest) = self.at_rest(open) {
+            return at_rest;
+        }
         let mut set = open.to_vec();
         let mut solution = self.flip(&mut set);
         if !solution.converged {
@@ -126,6 +129,18 @@ impl ContactProblem<'_> {
         }
         open.copy_from_slice(&set);
         solution
+    }
+
+    /// t = 0 where nothing drives and nothing overlaps: round-off of a linear system, which is singular where contact
+    /// alone holds bodies, would drive them as far as their gaps let them.
+    fn at_rest(&self, open: &mut [bool]) -> Option<ContactSolution> {
+        let rests = self.c.iter().all(|&c| c == 0.0) && self.bounds.iter().all(|&g| g >= 0.0);
+        rests.then(|| {
+            for (open, &g) in open.iter_mut().zip(self.bounds) {
+                *open = g > 0.0;
+            }
+            ContactSolution::bilateral(self.c.len(), self.bounds.len())
+        })
     }
 
     /// The open conditions and the normal jumps of the interior-point method, and what it cost.

@@ -120,7 +120,8 @@ impl ContactResultant {
 
     /// The warnings of a mesh on which a contact can't be right, in `dim` dimensions; `error` is the estimate of its error.
     fn of_mesh(&self, dim: usize, units: Units, error: Option<f64>) -> Vec<String> {
-        let Some(probed) = self.probed.filter(|_| self.closed > 0) else {
+        // Where nothing presses, no mesh is too coarse.
+        let Some(probed) = self.probed.filter(|_| self.largest_pressure > 0.0) else {
             return Vec::new();
         };
         let mut warnings = Vec::new();

@@ -113,6 +113,11 @@ fn move_nearer(
         .map(|released| released.coefficients(&products));
     let mut coefficients = found.unwrap_or_default();
     fixed.context.comm.broadcast(&mut coefficients);
+    let unneeded = (released.as_ref()).map_or(&[][..], |released| &released.unneeded);
+    let (comm, plan) = (fixed.context.comm, fixed.context.plan);
+    if list.len() > fixed.free.list.len() {
+        drop_forces(fixed, unneeded, solution);
+    }
     let before = largest_displacement(fixed, solution);
     let blocks = solution.blocks.iter_mut();
     let all = blocks.map(|(&b, s)| (b, &mut s.u)).collect();
@@ -123,7 +128,6 @@ fn move_nearer(
         ..MinimumNorm::default()
     };
     let largest = before.max(largest_displacement(fixed, solution));
-    let (comm, plan) = (fixed.context.comm, fixed.context.plan);
     comm.gather(
         &plan.group_owners(),
         |g| {
@@ -137,6 +141,35 @@ fn move_nearer(
     solution.share(&fixed.context, &fixed.step.loads);
     minimum_norm.warnings = released.map_or_else(Vec::new, |released| released.warnings);
     minimum_norm
+}
+
+/// Takes the forces away from conditions, by their number among those of all groups, which the root knows. Collective.
+fn drop_forces(fixed: &FixedActiveSet<'_>, numbers: &[usize], solution: &mut DiscreteSolution) {
+    let (comm, plan) = (fixed.context.comm, fixed.context.plan);
+    let mut firsts = Vec::new();
+    let mut next = 0;
+    comm.gather(
+        &plan.group_owners(),
+        |g| solution.groups[&g].forces.len(),
+        |_, conditions| {
+            firsts.push(next);
+            next += conditions;
+        },
+    );
+    firsts.push(next);
+    comm.scatter(
+        &plan.group_owners(),
+        |g| -> Vec<usize> {
+            let of_group = firsts[g]..firsts[g + 1];
+            let own = numbers.iter().filter(|j| of_group.contains(j));
+            own.map(|j| j - of_group.start).collect()
+        },
+        |g, of_group| {
+            if let Some(solution) = solution.groups.get_mut(&g) {
+                (of_group.into_iter()).for_each(|j| solution.forces[j] = 0.0);
+            }
+        },
+    );
 }
 
 /// The largest displacement on all ranks (m). Collective.

@@ -5,10 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use super::free_motion::FreeMotion;
 use super::kinematics::Kinematics;
-use super::many_bodies::MANY;
+use super::many_bodies::{MANY, SparseRow};
 use super::nonnegative;
 use super::projection::MotionProducts;
 use super::scene::{Friction, RigidRow, Scene};
+use crate::vector::largest;
+
+/// How many times what is missing to the equilibrium of a body a contact force may be that is no more than that.
+const IN_DOUBT: f64 = 4.0;
 
 /// A condition in a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,6 +36,8 @@ pub struct ReleasedModes {
     rows: DMatrix<f64>,
     /// g − B u of these conditions (m).
     gaps: Vec<f64>,
+    /// The conditions whose forces are round-off of the equilibrium of rigid bodies.
+    pub unneeded: Vec<usize>,
     /// What a user should know.
     pub warnings: Vec<String>,
 }
@@ -48,6 +54,10 @@ impl Scene {
         if kinematics.len == 0 {
             return ReleasedModes::default();
         }
+        let unneeded = self.unneeded_forces(&kinematics, conditions);
+        let mut needed = conditions.to_vec();
+        unneeded.iter().for_each(|&j| needed[j].carrying = false);
+        let conditions = &needed;
         let (held, mut redundant): (Vec<usize>, Vec<usize>) =
             (0..conditions.len()).partition(|&j| self.holds(j, conditions));
         redundant.retain(|&j| self.rows[j].friction.is_none());
@@ -81,9 +91,55 @@ impl Scene {
             gaps: (redundant.iter())
                 .map(|&j| conditions[j].gap.max(0.0))
                 .collect(),
+            unneeded,
             warnings: (released.iter())
                 .map(|what| format!("no contact force holds {what}"))
                 .collect(),
+        }
+    }
+
+    /// The conditions that press with no more than what is missing to the equilibrium of some rigid body, Rᵀ f − (B R)ᵀ λ,
+    /// and without which no more is missing to that of any: the round-off of bodies that are pushed elsewhere, or were
+    /// before.
+    fn unneeded_forces(
+        &self,
+        kinematics: &Kinematics,
+        conditions: &[ConditionState],
+    ) -> Vec<usize> {
+        let mut missing = kinematics.load(&self.bodies);
+        let mut rows = Vec::new();
+        for (j, condition) in conditions.iter().enumerate() {
+            if condition.force != 0.0 {
+                let row = kinematics.sparse_row(&self.rows[j]);
+                (row.iter()).for_each(|&(i, b)| missing[i] -= b * condition.force);
+                rows.push((j, row));
+            }
+        }
+        let bodies = 0..kinematics.bodies();
+        let of_bodies = |missing: &DVector<f64>| -> Vec<f64> {
+            let size = |b| -> f64 { kinematics.unknowns(b).map(|i| missing[i].powi(2)).sum() };
+            bodies.clone().map(|b| size(b).sqrt()).collect()
+        };
+        let before = of_bodies(&missing);
+        let in_doubt = IN_DOUBT * largest(&before);
+        let is_in_doubt = |&(j, ref row): &(usize, SparseRow)| {
+            let size = row.iter().map(|(_, b)| b * b).sum::<f64>().sqrt();
+            self.rows[j].friction.is_none() && size * conditions[j].force <= in_doubt
+        };
+        rows.retain(|condition| is_in_doubt(condition));
+        loop {
+            let mut without = missing.clone();
+            for (j, row) in &rows {
+                (row.iter()).for_each(|&(i, b)| without[i] += b * conditions[*j].force);
+            }
+            let pressed: Vec<bool> = (of_bodies(&without).iter().zip(&before))
+                .map(|(without, before)| *without > 2.0 * before)
+                .collect();
+            let conditions = rows.len();
+            rows.retain(|(j, _)| !self.rows[*j].bodies.iter().any(|&(b, _)| pressed[b]));
+            if rows.len() == conditions {
+                return rows.into_iter().map(|(j, _)| j).collect();
+            }
         }
     }
 
@@ -125,6 +181,10 @@ impl ReleasedModes {
         let mut e = rows.insert_row(n, 0.0);
         for (e, missing) in e.row_mut(n).iter_mut().zip(&missing) {
             *e = missing / most;
+        }
+        // Gaps are wide beside what is missing: only the directions of columns count.
+        for mut column in e.column_iter_mut() {
+            column.try_normalize_mut(0.0);
         }
         let mut f = DVector::zeros(n + 1);
         f[n] = 1.0;
@@ -196,6 +256,38 @@ mod tests {
         let c =
             released(&[[-1.0, 0.0], [0.0, -1.0]], &[0.0, 1.0]).coefficients(&products([3.0, 4.0]));
         close(&c, [0.0, 1.0]);
+    }
+
+    #[test]
+    fn wide_gaps_elsewhere_hide_no_narrow_one() {
+        let rows = [[-1.0, 0.0], [0.0, 1.0]];
+        let c = released(&rows, &[2.0, 1e15]).coefficients(&products([3.0, -1.0]));
+        close(&c, [2.0, -1.0]);
+    }
+
+    #[test]
+    fn forces_that_balance_nothing_hold_nothing() {
+        let corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0]];
+        let left = |force: f64, weight: f64| {
+            let mut body = square([0.0; 3]);
+            body.load[1] = -weight;
+            let rows = corners.map(|x| body.row(0, x, [0.0, -1.0, 0.0])).to_vec();
+            let pressed = ConditionState {
+                carrying: true,
+                closed: true,
+                gap: 0.0,
+                force,
+            };
+            let scene = scene(2, vec![body], rows);
+            let found = scene.released_modes(&[], &[pressed; 2]);
+            (found.motions.len(), found.unneeded)
+        };
+        // It slides on its weight, however small that is.
+        assert_eq!(left(0.5, 1.0), (1, vec![]));
+        assert_eq!(left(0.5e-9, 1e-9), (1, vec![]));
+        assert_eq!(left(1e-9, 0.0), (3, vec![0, 1]));
+        // A millionth of what it weighs is missing.
+        assert_eq!(left(0.5 * (1.0 - 1e-6), 1.0), (1, vec![]));
     }
 
     /// A square on a floor below its corners: what is left to it where their normal and tangential conditions carry

@@ -27,7 +27,7 @@ scale = 0
 #[track_caller]
 fn solved(text: &str, model: &Model) -> Vec<Solution> {
     let mut all = Vec::new();
-    for count in [5, 8] {
+    for count in [5, 8, 13] {
         let case = Case::of(model, count);
         let ended = case.run(&[]);
         assert_eq!(ended.code(), 0, "{}{}\n{text}", ended.stdout, ended.stderr);
@@ -89,12 +89,55 @@ fn a_step_without_load_is_solved_after_others() {
     scenes.push((free, two_blocks().mesh));
     for (text, mesh) in scenes {
         let text = format!("{text}{STEPS}");
-        let steps = solved(&text, &model(&text, mesh));
-        // Nothing presses that nothing loads, and the second time is as the first one.
+        let model = model(&text, mesh);
+        let steps = solved(&text, &model);
         let most = [0, 1, 3].map(|k| steps[k].largest_force());
+        if text.contains("friction") {
+            // What is locked in stays in balance, and the law holds it.
+            for k in [1, 3] {
+                check_locked_in(&steps[k], most[0], &text);
+            }
+            continue;
+        }
+        // Nothing presses that nothing loads, nothing is displaced, and the second time is as the first one.
+        assert!(most[1].max(most[2]) <= 1e-9 * most[0], "{most:?}\n{text}");
+        let far = [0, 1, 3].map(|k| steps[k].largest_displacement());
+        assert!(far[1].max(far[2]) <= 1e-9 * far[0], "{far:?}\n{text}");
+    }
+}
+
+/// That the forces of a step without load are held by the law of friction, and balance: what contacts and supports exert
+/// sums up to nothing, as nothing else acts; `most` is the largest force of a step with load (N).
+#[track_caller]
+fn check_locked_in(step: &Solution, most: f64, text: &str) {
+    step.check_certificate();
+    let law = text.split("friction = ").nth(1).unwrap();
+    let coefficient: f64 = (law.split_whitespace().next().unwrap().parse()).unwrap();
+    for point in step.points() {
+        let along = point
+            .tangential_force
+            .iter()
+            .map(|f| f * f)
+            .sum::<f64>()
+            .sqrt();
         assert!(
-            most[1].max(most[2]) <= 1e-9 * most[0] || text.contains("friction"),
-            "{most:?}\n{text}"
+            point.force >= 0.0 && point.gap >= -1e-12,
+            "{point:?}\n{text}"
+        );
+        assert!(
+            along <= coefficient * point.force + 1e-9 * most,
+            "{point:?}\n{text}"
+        );
+        assert!(point.force * point.gap <= 1e-12 * most, "{point:?}\n{text}");
+    }
+    // A body that nothing but one contact touches is in balance by that alone.
+    for contact in step.report["contacts"].as_array().unwrap() {
+        let force = contact["force"].as_array().unwrap();
+        let size = |part: &serde_json::Value| part.as_f64().unwrap().abs();
+        let is_alone = !text.contains("granite") && !text.contains("on = 'upper left'");
+        assert!(
+            !is_alone || force.iter().all(|part| size(part) <= 1e-9 * most),
+            "{contact}\n{text}"
         );
     }
 }
