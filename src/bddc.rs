@@ -5,6 +5,7 @@
 //! combinations of unknowns, the coarse ones, are the same in all clusters, the others are solved for in
 //! every cluster by itself. Contact conditions between clusters are tied where they are closed.
 
+mod between;
 mod classes;
 mod closed;
 pub mod cluster_schur;
@@ -21,7 +22,8 @@ mod transform;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use self::classes::Classes;
+use self::between::{Between, between};
+use self::classes::{Class, Classes};
 use self::closed::{GroupBetween, Ties};
 use self::cluster_schur::ClusterSchur;
 use self::coarse::{Coarse, Part};
@@ -59,17 +61,6 @@ pub struct Bddc {
     coarse: Coarse,
     /// Number of coarse unknowns; on the root.
     pub coarse_dofs: usize,
-}
-
-/// A contact group between clusters.
-#[derive(Debug)]
-struct Between {
-    number: usize,
-    owner: usize,
-    /// Its unknowns, ascending.
-    dofs: Vec<InterfaceDof>,
-    /// The clusters that have some of them, or what may be tied to some, ascending.
-    clusters: Vec<usize>,
 }
 
 impl Bddc {
@@ -112,26 +103,7 @@ impl Bddc {
             |_, of_group| of_groups.push(of_group),
         );
         comm.broadcast(&mut of_groups);
-        let has_some = |c: usize, sought: &[InterfaceDof]| {
-            (sought.iter()).any(|dof| dofs[c].binary_search(dof).is_ok())
-        };
-        let mut between: Vec<Between> = Vec::new();
-        for ((number, owner), sought) in numbers.into_iter().zip(group_owners).zip(of_groups) {
-            let mut clusters: BTreeSet<usize> =
-                (0..dofs.len()).filter(|&c| has_some(c, &sought)).collect();
-            // What a group below ties may be tied to unknowns of this one.
-            for below in &between {
-                if (below.dofs.iter()).any(|dof| sought.binary_search(dof).is_ok()) {
-                    clusters.extend(&below.clusters);
-                }
-            }
-            between.push(Between {
-                number,
-                owner,
-                dofs: sought,
-                clusters: clusters.into_iter().collect(),
-            });
-        }
+        let between = between(&dofs, numbers.into_iter().zip(group_owners).zip(of_groups));
         Ok(Self {
             stale: vec![true; dofs.len()],
             nodes: SharedNodes::new(context, &dofs),
@@ -148,6 +120,48 @@ impl Bddc {
         })
     }
 
+    /// Freezes which conditions of the groups between clusters are `open`. Collective.
+    ///
+    /// # Errors
+    /// A closed jump that replaces nothing.
+    fn freeze_groups(
+        &mut self,
+        context: &Context<'_>,
+        open: &BTreeMap<usize, Vec<bool>>,
+    ) -> Result<(), Failure> {
+        let plan = context.plan;
+        let mut frozen = Ok(());
+        for (&g, of_group) in &mut self.groups {
+            let eliminated = &plan.tree.nodes[plan.groups[g].node].eliminated;
+            let result = of_group.freeze(&context.groups[&g], &open[&g], eliminated);
+            frozen = frozen.and(result.map_err(|NoUnknown(t)| {
+                Failure::internal(format!(
+                    "contact group {g}: closed jump {t} replaces nothing"
+                ))
+            }));
+        }
+        context.comm.agree(frozen)
+    }
+
+    /// The classes whose basis is made anew: those that aren't as `before`, and, where they are to be `renewed`, those of
+    /// clusters that have `changed`.
+    fn made(&self, before: &Classes, changed: &[bool], renewed: bool) -> Vec<bool> {
+        let made = |class: &Class| {
+            let has_changed = || class.clusters.iter().any(|&c| changed[c]);
+            let is_new = before.place_of(class).is_none();
+            !class.is_coarse() && (is_new || renewed && has_changed())
+        };
+        self.classes.list.iter().map(made).collect()
+    }
+
+    /// Replaces what clusters share.
+    fn refresh(&mut self, shared: BTreeMap<usize, Shared>) {
+        for (c, shared) in shared {
+            let local = self.locals.entry(c);
+            local.and_modify(|local| local.shared = shared);
+        }
+    }
+
     /// Freezes which conditions are `open`, for `clusters` some of which were `touched` by that, with a `spring`,
     /// relative to the diagonal, on all unknowns of conditions between them. The preconditioner is made anew where clusters
     /// share other unknowns than before, and wherever S has changed if it is to be `renewed`. Collective.
@@ -160,38 +174,13 @@ impl Bddc {
         clusters: &BTreeMap<usize, ClusterSchur>,
         touched: &[bool],
         open: &BTreeMap<usize, Vec<bool>>,
-        spring: f64,
-        renewed: bool,
+        (spring, renewed): (f64, bool),
     ) -> Result<(), Failure> {
         let Context {
             comm, plan, par, ..
         } = *context;
-        let mut frozen = Ok(());
-        for (&g, of_group) in &mut self.groups {
-            let eliminated = &plan.tree.nodes[plan.groups[g].node].eliminated;
-            let result = of_group.freeze(&context.groups[&g], &open[&g], eliminated);
-            frozen = frozen.and(result.map_err(|NoUnknown(t)| {
-                Failure::internal(format!(
-                    "contact group {g}: closed jump {t} replaces nothing"
-                ))
-            }));
-        }
-        comm.agree(frozen)?;
-        let ties = self.ties(comm);
-        let classes = Classes::new(&self.dofs, &ties);
-        let shares_the_same = |c: usize| {
-            let mut dofs = self.dofs[c].iter();
-            classes.are_as_in(&self.classes, c) && dofs.all(|dof| ties.is_as_in(&self.ties, dof))
-        };
-        let is_touched = |c: usize| self.stale[c] || touched[plan.tops[c]];
-        let is_changed = |c: usize| !shares_the_same(c) || renewed && is_touched(c);
-        let changed: Vec<bool> = (0..self.dofs.len()).map(is_changed).collect();
-        self.stale = (0..changed.len())
-            .map(|c| !changed[c] && is_touched(c))
-            .collect();
-        let before = std::mem::replace(&mut self.classes, classes);
-        self.ties = ties;
-
+        self.freeze_groups(context, open)?;
+        let (before, changed) = self.classify(context, touched, renewed);
         let unknowns = self.between.iter().flat_map(|group| &group.dofs);
         let sprung: BTreeSet<InterfaceDof> = unknowns.copied().collect();
         let placement =
@@ -200,13 +189,7 @@ impl Bddc {
             let cluster = &clusters[&plan.tops[c]];
             Shared::new(cluster, placement(c), (&sprung, spring), par)
         };
-        let made: Vec<bool> = (self.classes.list.iter())
-            .map(|class| {
-                let has_changed = || class.clusters.iter().any(|&c| changed[c]);
-                let is_new = before.place_of(class).is_none();
-                !class.is_coarse() && (is_new || renewed && has_changed())
-            })
-            .collect();
+        let made = self.made(&before, &changed, renewed);
         let own = self.owners.iter().enumerate();
         let own = own.filter(|(_, owner)| **owner == comm.rank());
         let sides = own.map(|(c, _)| {
@@ -238,16 +221,10 @@ impl Bddc {
             parts.insert(c, Part::of(c, &local, s, &self.classes));
             locals.insert(c, local);
         }
-        let is_new = |c: &usize| locals.contains_key(c);
-        let others = self.locals.keys().copied().filter(|c| !is_new(c));
+        let others = (self.locals.keys().copied()).filter(|c| !locals.contains_key(c));
         let touched = others.filter(|&c| touched[plan.tops[c]] && self.locals[&c].own() > 0);
         let refreshed = touched.map(|c| Ok((c, shared(c).map_err(moves)?.0)));
-        let refreshed: BTreeMap<usize, Shared> = comm.agree(refreshed.collect())?;
-        for (c, shared) in refreshed {
-            self.locals
-                .entry(c)
-                .and_modify(|local| local.shared = shared);
-        }
+        self.refresh(comm.agree(refreshed.collect())?);
         self.locals.extend(locals);
         if !changed.contains(&true) {
             return Ok(());
@@ -260,6 +237,31 @@ impl Bddc {
         (self.coarse).factorize(context, &self.classes, parts, &remade, holds)?;
         self.coarse_dofs = comm.collect(&self.coarse.len()).into_iter().sum();
         Ok(())
+    }
+
+    /// Finds the classes anew; returns those before, and the clusters that share other unknowns than before, or, where they
+    /// are to be `renewed`, were `touched`. Collective.
+    fn classify(
+        &mut self,
+        context: &Context<'_>,
+        touched: &[bool],
+        renewed: bool,
+    ) -> (Classes, Vec<bool>) {
+        let Context { comm, plan, .. } = *context;
+        let ties = self.ties(comm);
+        let classes = Classes::new(&self.dofs, &ties);
+        let shares_the_same = |c: usize| {
+            let mut dofs = self.dofs[c].iter();
+            classes.are_as_in(&self.classes, c) && dofs.all(|dof| ties.is_as_in(&self.ties, dof))
+        };
+        let is_touched = |c: usize| self.stale[c] || touched[plan.tops[c]];
+        let is_changed = |c: usize| !shares_the_same(c) || renewed && is_touched(c);
+        let changed: Vec<bool> = (0..self.dofs.len()).map(is_changed).collect();
+        self.stale = (0..changed.len())
+            .map(|c| !changed[c] && is_touched(c))
+            .collect();
+        self.ties = ties;
+        (std::mem::replace(&mut self.classes, classes), changed)
     }
 
     /// What is to become of a preconditioner that is too bad, or can't be made: classes are looked into, and where that

@@ -2,15 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::path::Path;
 
 use contact_dd_partition::error::InputError;
 use contact_dd_partition::mesh::bounding_box::BoundingBox;
 use contact_dd_partition::problem::consistency::Places;
 use contact_dd_partition::problem::copies::{Disagreement, NodeCopies, OwnNodes};
 use contact_dd_partition::problem::read::ProblemFile;
-use contact_dd_partition::problem::{Catalog, Subdomain};
+use contact_dd_partition::problem::{Catalog, Subdomain, trial};
 
-use crate::comm::Comm;
+use crate::comm::{Comm, is_asked_to_stop};
 use crate::contact::limits::Limits;
 use crate::error::Failure;
 use crate::fem::block::Block;
@@ -20,6 +21,23 @@ use crate::plan::Plan;
 
 /// Most subdomains that are read at once: what HDF5 hands over is there twice for a while.
 const AT_ONCE: usize = 64;
+
+/// Checks that the HDF5 library can read the problem file, on the root alone. Collective.
+///
+/// # Errors
+/// It isn't there or is damaged, or a signal asked the run to stop.
+pub fn check_problem(comm: &Comm, path: &Path) -> Result<(), Failure> {
+    let check = || trial::check(path, is_asked_to_stop).err();
+    let mut damage = comm.is_root().then(check).flatten().map(Failure::from);
+    comm.broadcast(&mut damage);
+    match damage {
+        Some(damage) => Err(damage),
+        None if comm.is_any_asked_to_stop() => Err(Failure::interrupted(
+            "interrupted while reading, before a result was written",
+        )),
+        None => Ok(()),
+    }
+}
 
 /// Reads the blocks of `plan` that `rank` owns, by their number.
 ///

@@ -87,45 +87,7 @@ pub fn collect(comm: &Comm, seconds: &RankSeconds, plan: &Plan) -> Vec<RankRepor
 pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
     let Totals { catalog, plan, .. } = totals;
     let seconds: Vec<PhaseSeconds> = totals.ranks.iter().map(|r| r.seconds).collect();
-    let mut warnings = catalog.warnings.clone();
-    warnings.extend(unknown_stress(catalog));
-    warnings.extend(totals.warnings.iter().cloned());
-    warnings.extend(totals.step_warnings());
-    warnings.extend(solved_directly(totals, settings));
-    warnings.extend(more_robust(totals, settings));
-    let certificate = totals.certificate();
-    let condition = totals.condition();
-    if certificate.equilibrium > 1e-14 || certificate.penetration > 1e-14 {
-        warnings.push(format!(
-            "the certificate falls short of 1e-14: equilibrium {:.1e}, penetration {:.1e}",
-            certificate.equilibrium, certificate.penetration
-        ));
-    }
-    if certificate.equilibrium_of_load > 1e-6 {
-        let why = match totals.status() {
-            Status::Converged => "the scene is badly conditioned",
-            Status::NotConverged => "the sweeps haven't converged",
-        };
-        warnings.push(format!(
-            "the forces on the nodes are balanced to {:.1e} of the largest load only: {why}, and stresses and contact \
-             forces are no better than that",
-            certificate.equilibrium_of_load
-        ));
-    }
-    if let Some(condition) = condition.filter(|&c| c > BAD_CONDITION) {
-        warnings.push(format!(
-            "the condition number is about {condition:.0e}: round-off alone makes an error of about \
-             {:.0e} in the softest part's displacement",
-            condition * f64::EPSILON
-        ));
-    }
-    if totals.smallest_pivot < SUSPICIOUS_PIVOT {
-        warnings.push(format!(
-            "the smallest pivot is {:.1e} of its diagonal entry: the scene is so badly conditioned \
-             that it may be a mechanism, and its displacement may be meaningless",
-            totals.smallest_pivot
-        ));
-    }
+    let (certificate, condition) = (totals.certificate(), totals.condition());
     let last = totals.last();
     let sum = |of: fn(&StepTotals) -> usize| totals.steps.iter().map(of).sum();
     Report {
@@ -163,7 +125,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         friction: totals.friction(),
         steps: totals.step_reports(),
         skipped: skipped(comm, totals),
-        warnings,
+        warnings: warnings(totals, settings),
         settings: settings.clone(),
         settings_from: settings.from.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
@@ -171,7 +133,51 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
     }
 }
 
-/// What contact conditions were solved with, of the stage that came last.
+/// The warnings of a run.
+fn warnings(totals: &Totals<'_>, settings: &Settings) -> Vec<String> {
+    let mut warnings = totals.catalog.warnings.clone();
+    warnings.extend(unknown_stress(totals.catalog));
+    warnings.extend(totals.warnings.iter().cloned());
+    warnings.extend(totals.step_warnings());
+    warnings.extend(solved_directly(totals, settings));
+    warnings.extend(more_robust(totals, settings));
+    let certificate = totals.certificate();
+    let condition = totals.condition();
+    if certificate.equilibrium > 1e-14 || certificate.penetration > 1e-14 {
+        warnings.push(format!(
+            "the certificate falls short of 1e-14: equilibrium {:.1e}, penetration {:.1e}",
+            certificate.equilibrium, certificate.penetration
+        ));
+    }
+    if certificate.equilibrium_of_load > 1e-6 {
+        let why = match totals.status() {
+            Status::Converged => "the scene is badly conditioned",
+            Status::NotConverged => "the sweeps haven't converged",
+        };
+        warnings.push(format!(
+            "the forces on the nodes are balanced to {:.1e} of the largest load only: {why}, and stresses and contact \
+             forces are no better than that",
+            certificate.equilibrium_of_load
+        ));
+    }
+    if let Some(condition) = condition.filter(|&c| c > BAD_CONDITION) {
+        warnings.push(format!(
+            "the condition number is about {condition:.0e}: round-off alone makes an error of about \
+             {:.0e} in the softest part's displacement",
+            condition * f64::EPSILON
+        ));
+    }
+    if totals.smallest_pivot < SUSPICIOUS_PIVOT {
+        warnings.push(format!(
+            "the smallest pivot is {:.1e} of its diagonal entry: the scene is so badly conditioned \
+             that it may be a mechanism, and its displacement may be meaningless",
+            totals.smallest_pivot
+        ));
+    }
+    warnings
+}
+
+/// The operator with which contact conditions were solved, of the stage that came last.
 fn contact_operator(plan: &Plan) -> ContactOperator {
     match plan.merging {
         Merging::All | Merging::Linear | Merging::Groups => ContactOperator::Dense,

@@ -12,30 +12,32 @@ mod sweeping;
 
 use std::cell::Cell;
 use std::ops::Range;
-use std::path::Path;
 use std::time::Instant;
 
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::stage::Stage;
-use contact_dd_partition::problem::trial;
 use faer::Par;
 
-use self::increment::Increments;
+use self::increment::{Increment, Increments};
 use self::operators::Operators;
 use self::outputs::{RunFiles, absent_rows};
 use self::restart::{Finished, finished_steps, keep};
 use self::stage::{Handover, Stages, reason_to_hand_over};
 use self::step_totals::step_totals;
 use crate::comm::ranks::RankSeconds;
-use crate::comm::{Comm, is_asked_to_stop, phase};
-use crate::context::Moment;
+use crate::comm::{Comm, phase};
+use crate::context::{Context, Moment};
 use crate::error::Failure;
+use crate::fem::contact_state::ContactRow;
 use crate::output::lock::OutputLock;
 use crate::plan::Plan;
+use crate::plan::cluster::Merging;
+use crate::read::check_problem;
 use crate::report::collect;
 use crate::report::log::RunLog;
 use crate::report::totals::Totals;
+use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::settings::Settings;
 use crate::settings::command_line::CommandLine;
 use crate::step::state::{self, StepState, analyse_steps, stop_if_asked};
@@ -194,18 +196,8 @@ impl Stages<'_> {
 
         // Load step by load step: each starts from the state that the one before it left.
         let robust = self.more_robust(&stage.catalog, parts.plan.merging);
-        let increments = Increments {
-            context,
-            settings,
-            log,
-            factors: &operators.condensed,
-            interface: operators.interface.as_ref(),
-            frozen: operators.frozen.as_ref(),
-            is_relieved: robust.is_some(),
-            linear_solves: &progress.linear_solves,
-        };
         let finished = &mut progress.finished;
-        let (mut state, mut took_over) = match handover {
+        let (mut state, took_over) = match handover {
             Some(Handover {
                 state, plan, why, ..
             }) => (state.handed_over(&context, &plan), Some(why)),
@@ -213,20 +205,68 @@ impl Stages<'_> {
             None => (finished.transfer.state(&context, stage), None),
         };
         state.scales = finished.scales();
+        let steps = StageSteps {
+            stage,
+            next,
+            whole,
+            context,
+            analyses: &analyses,
+            before: &before,
+            operators: &operators,
+            absent: &absent,
+            robust,
+        };
+        let handover = self.solve_steps(&steps, (state, took_over), progress)?;
+        progress.smallest_pivot = progress.smallest_pivot.min(operators.smallest_pivot());
+        progress.plan = Some(parts.plan);
+        Ok(handover)
+    }
+
+    /// Solves the load steps of a stage that are left, from a state; the first says why another solver took over, if one
+    /// did. Returns where a more robust one is to take over. Collective.
+    ///
+    /// # Errors
+    /// As a whole run.
+    fn solve_steps(
+        &self,
+        steps: &StageSteps<'_>,
+        (mut state, mut took_over): (StepState, Option<String>),
+        progress: &mut Progress,
+    ) -> Result<Option<Handover>, Failure> {
+        let (settings, log) = (self.settings, self.log);
+        let &StageSteps {
+            stage,
+            context,
+            analyses,
+            operators,
+            robust,
+            ..
+        } = steps;
+        let first = stage.steps.start;
+        let done = progress.finished.count;
         for k in stage.steps.clone().skip(done.saturating_sub(first)) {
             stop_if_asked(&context, settings, k)?;
             log.step(context.catalog, k);
+            let increments = Increments {
+                context,
+                settings,
+                log,
+                factors: &operators.condensed,
+                interface: operators.interface.as_ref(),
+                frozen: operators.frozen.as_ref(),
+                is_relieved: robust.is_some(),
+                linear_solves: &progress.linear_solves,
+            };
             let (at_end, earlier) = (&analyses[k - first], &analyses[..k - first]);
-            let earlier = earlier.last().map_or(&before, |last| &last.closing_motions);
+            let earlier = (earlier.last()).map_or(steps.before, |last| &last.closing_motions);
             let start = robust.map(|robust| (robust, state.clone()));
             let solved = increments.step(k, (earlier, at_end), state, &mut progress.seconds);
             if let Some((robust, start)) = start {
                 let is_converged = solved.as_ref().is_ok_and(|s| increments.is_converged(s));
                 let outcome = solved.as_ref().map(|solved| solved.outcome.as_ref());
                 if let Some(why) = reason_to_hand_over(is_converged, outcome) {
-                    finished.count = k;
-                    progress.plan = Some(parts.plan.clone());
-                    return Ok(Some(Handover::new(&parts.plan, robust, start, &why)));
+                    progress.finished.count = k;
+                    return Ok(Some(Handover::new(context.plan, robust, start, &why)));
                 }
             }
             let mut solved = solved.map_err(|failure| {
@@ -235,38 +275,74 @@ impl Stages<'_> {
             if let Some((outcome, why)) = solved.outcome.as_mut().zip(took_over.take()) {
                 outcome.take_over(why);
             }
-
             log.phase("writing", None);
-            let lap = comm.times();
-            let files = &mut progress.files;
-            let resultants = files.write(&context, &solved.solution, &solved.slips, &absent)?;
-            (progress.seconds).add(|s| &mut s.write, comm.times() - lap);
-            finished.steps.extend(solved.outcome.clone().map(|outcome| {
-                let sums = (resultants, solved.energy);
-                let found = (outcome, progress.linear_solves.take());
-                step_totals(found, &solved.solution, sums, at_end, context.catalog)
-            }));
-            if let Some(next) = next.filter(|next| next.start == k + 1) {
-                let end = StageEnd {
-                    displacement: &solved.solution.displacement,
-                    slips: &solved.slips.jumps,
-                    closing_motions: &at_end.closing_motions,
-                };
-                finished.transfer = (finished.transfer).after(&context, stage, end, whole, next);
-            }
+            progress.finish_step(steps, k, &solved)?;
             state = solved.into_state(settings.method);
             if k + 1 < context.catalog.steps.len() {
-                keep(&context, settings, &state, finished, files.result())?;
+                let result = progress.files.result();
+                keep(&context, settings, &state, &progress.finished, result)?;
             }
         }
-        finished.count = stage.steps.end;
-        progress.smallest_pivot = progress.smallest_pivot.min(operators.smallest_pivot());
-        progress.plan = Some(parts.plan);
+        progress.finished.count = stage.steps.end;
         Ok(None)
     }
 }
 
+/// What the load steps of a stage share.
+struct StageSteps<'a> {
+    stage: &'a Stage<'a>,
+    /// The load steps of the next stage.
+    next: Option<&'a Range<usize>>,
+    /// The whole problem.
+    whole: &'a Catalog,
+    context: Context<'a>,
+    /// The rigid motions at the end of every load step.
+    analyses: &'a [RigidBodyAnalysis],
+    /// The closing motions before the first one.
+    before: &'a [Vec<f64>],
+    operators: &'a Operators,
+    /// The rows of contact points that are absent; on the root.
+    absent: &'a [ContactRow],
+    /// The merging that takes over where the steps don't converge.
+    robust: Option<Merging>,
+}
+
 impl Progress {
+    /// Writes the solution of load step k and keeps its totals, and after the last one of a stage what passes to the next.
+    /// Collective.
+    ///
+    /// # Errors
+    /// The file can't be written.
+    fn finish_step(
+        &mut self,
+        steps: &StageSteps<'_>,
+        k: usize,
+        solved: &Increment,
+    ) -> Result<(), Failure> {
+        let context = &steps.context;
+        let analysis = &steps.analyses[k - steps.stage.steps.start];
+        let (solution, slips) = (&solved.solution, &solved.slips);
+        let lap = context.comm.times();
+        let resultants = (self.files).write(context, solution, slips, steps.absent)?;
+        (self.seconds).add(|s| &mut s.write, context.comm.times() - lap);
+        let totals = solved.outcome.clone().map(|outcome| {
+            let found = (outcome, self.linear_solves.take());
+            let sums = (resultants, solved.energy);
+            step_totals(found, solution, sums, analysis, context.catalog)
+        });
+        self.finished.steps.extend(totals);
+        if let Some(next) = steps.next.filter(|next| next.start == k + 1) {
+            let end = StageEnd {
+                displacement: &solution.displacement,
+                slips: &slips.jumps,
+                closing_motions: &analysis.closing_motions,
+            };
+            let transfer = &self.finished.transfer;
+            self.finished.transfer = transfer.after(context, steps.stage, end, steps.whole, next);
+        }
+        Ok(())
+    }
+
     /// Finishes the files of a run whose load steps are all done. Collective.
     ///
     /// # Errors
@@ -304,22 +380,5 @@ impl Progress {
             true => Ending::Converged,
             false => Ending::NotConverged,
         })
-    }
-}
-
-/// Checks that the HDF5 library can read the problem file, on the root alone. Collective.
-///
-/// # Errors
-/// It isn't there or is damaged, or a signal asked the run to stop.
-fn check_problem(comm: &Comm, path: &Path) -> Result<(), Failure> {
-    let check = || trial::check(path, is_asked_to_stop).err();
-    let mut damage = comm.is_root().then(check).flatten().map(Failure::from);
-    comm.broadcast(&mut damage);
-    match damage {
-        Some(damage) => Err(damage),
-        None if comm.is_any_asked_to_stop() => Err(Failure::interrupted(
-            "interrupted while reading, before a result was written",
-        )),
-        None => Ok(()),
     }
 }

@@ -3,6 +3,7 @@
 mod abaqus;
 pub mod bounding_box;
 mod curve;
+pub mod facets;
 mod file;
 pub mod foreign;
 pub mod gmsh;

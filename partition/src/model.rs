@@ -9,6 +9,7 @@ mod clip;
 mod contact;
 mod diagnostics;
 mod groups;
+mod held_nodes;
 mod initial_stress;
 mod loads;
 mod mortar;
@@ -96,23 +97,11 @@ impl Model {
         let loads = steps::Loads::new(scene, &bodies, &topology, &materials)?;
         let declared = touching::contacts(scene, &mut bodies, &topology, &mut warnings)?;
         let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads, scene);
-        let mut contacts = Vec::new();
-        let mut found = Vec::new();
-        let mut tables = Vec::new();
-        for touching::Declared {
-            contact,
-            table,
-            words,
-        } in &declared
-        {
-            let made = sides.contact(contacts.len() as u32, contact, &mut warnings)?;
-            // Where all nodes are held no bodies touch each other that could part.
-            if words.is_none() || !made.points.is_empty() {
-                contacts.push(made);
-                tables.push(&table[..]);
-                found.extend(words.clone());
-            }
-        }
+        let MadeContacts {
+            contacts,
+            tables,
+            found,
+        } = MadeContacts::new(&sides, &declared, &mut warnings)?;
         presence::check(scene, &bodies, &contacts)?;
         let absent_contacts = presence::contacts(scene, &tables);
         let diagnostics = diagnostics::Diagnostics {
@@ -157,6 +146,40 @@ impl Model {
             // Words of a mesh or a deck may hold anything, and each warning is a line of the problem file.
             warnings: (warnings.iter().map(|text| name::in_a_line(text))).collect(),
         })
+    }
+}
+
+/// The contacts that were declared or found and have points.
+#[derive(Default)]
+struct MadeContacts<'a> {
+    contacts: Vec<Contact>,
+    /// The table of each in the scene.
+    tables: Vec<&'a str>,
+    /// What was found, in words.
+    found: Vec<String>,
+}
+
+impl<'a> MadeContacts<'a> {
+    /// Makes them between their `sides`.
+    ///
+    /// # Errors
+    /// Sides that don't match, or that supports press into each other.
+    fn new(
+        sides: &contact::Contacts,
+        declared: &'a [touching::Declared],
+        warnings: &mut Vec<String>,
+    ) -> Result<Self, InputError> {
+        let mut all = Self::default();
+        for of in declared {
+            let made = sides.contact(all.contacts.len() as u32, &of.contact, warnings)?;
+            // Where all nodes are held no bodies touch each other that could part.
+            if of.words.is_none() || !made.points.is_empty() {
+                all.contacts.push(made);
+                all.tables.push(&of.table[..]);
+                all.found.extend(of.words.clone());
+            }
+        }
+        Ok(all)
     }
 }
 

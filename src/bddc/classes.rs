@@ -170,16 +170,7 @@ fn turned(class: &Class, dofs: &[Vec<InterfaceDof>], ties: &Ties) -> Option<Turn
         let rows = dofs[c].iter().map(row);
         rows.filter(|row| !row.is_empty()).collect::<Vec<_>>()
     });
-    let mut linked = DisjointSets::new(n);
-    for row in rows.iter().flatten() {
-        for pair in row.windows(2) {
-            linked.unite(pair[0].0 as u32, pair[1].0 as u32);
-        }
-    }
-    let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for i in 0..n {
-        members.entry(linked.find(i as u32)).or_default().push(i);
-    }
+    let (linked, members) = linked(n, rows.iter().flatten());
     let mut columns: [Vec<Vec<f64>>; 3] = [const { Vec::new() }; 3];
     for (set, members) in members {
         let k = members.len();
@@ -216,6 +207,22 @@ fn turned(class: &Class, dofs: &[Vec<InterfaceDof>], ties: &Ties) -> Option<Turn
         q: Mat::from_fn(n, n, |i, j| columns[j][i]),
         ends: [0, both, both + first, both + first + second],
     })
+}
+
+/// The sets of n unknowns that rows link, and the members of each.
+fn linked<'a>(
+    n: usize,
+    rows: impl Iterator<Item = &'a Vec<(usize, f64)>>,
+) -> (DisjointSets, BTreeMap<u32, Vec<usize>>) {
+    let mut linked = DisjointSets::new(n);
+    for pair in rows.flat_map(|row| row.windows(2)) {
+        linked.unite(pair[0].0 as u32, pair[1].0 as u32);
+    }
+    let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for i in 0..n {
+        members.entry(linked.find(i as u32)).or_default().push(i);
+    }
+    (linked, members)
 }
 
 /// An orthonormal basis of what is orthogonal to the columns of a matrix.

@@ -90,19 +90,7 @@ impl Bddc {
             own.insert(c, of_own);
             b.insert(c, of_shared);
         }
-        let gradients = ConjugateGradients {
-            context,
-            owners: &self.owners,
-            classes: &self.classes,
-            locals: &self.locals,
-            matrices: &(plan.tops.iter().map(|v| clusters.get(v).map(|of| &of.s)))
-                .collect::<Vec<_>>(),
-            coarse: &self.coarse,
-            is_stale: self.is_stale(),
-            is_judged: self.is_judged(),
-        };
-        let start = accuracy.start.map(|known| self.start(comm, known, plan));
-        let (x, iterations, is_solved) = gradients.solve(b, start, accuracy.tolerance);
+        let (x, iterations, is_solved) = self.iterate(context, clusters, b, accuracy);
         let mut solved = Vectors::new();
         for (&c, local) in &self.locals {
             let mut all = local.recover(&own[&c], &x[&c]);
@@ -125,6 +113,30 @@ impl Bddc {
             iterations,
             is_solved,
         }
+    }
+
+    /// What clusters share for their parts of a load, the number of iterations and whether they sufficed. Collective.
+    fn iterate(
+        &self,
+        context: &Context<'_>,
+        clusters: &BTreeMap<usize, ClusterSchur>,
+        b: Vectors,
+        accuracy: Accuracy,
+    ) -> (Vectors, usize, bool) {
+        let Context { comm, plan, .. } = *context;
+        let matrices = plan.tops.iter().map(|v| clusters.get(v).map(|of| &of.s));
+        let gradients = ConjugateGradients {
+            context,
+            owners: &self.owners,
+            classes: &self.classes,
+            locals: &self.locals,
+            matrices: &matrices.collect::<Vec<_>>(),
+            coarse: &self.coarse,
+            is_stale: self.is_stale(),
+            is_judged: self.is_judged(),
+        };
+        let start = accuracy.start.map(|known| self.start(comm, known, plan));
+        gradients.solve(b, start, accuracy.tolerance)
     }
 
     /// What clusters share where their unknowns, by node, are `known`. Collective.

@@ -27,14 +27,7 @@ pub fn transformed(
     {
         return permuted(s, &places);
     }
-    let mut many = 0;
-    let of_many: Vec<Option<usize>> = (terms.iter())
-        .map(|terms| {
-            let is_one = terms.len() > FEW_TERMS;
-            many += usize::from(is_one);
-            is_one.then(|| many - 1)
-        })
-        .collect();
+    let (of_many, many) = numbers_of_many(terms);
     // With T of those of many terms, T_D, and the rest, T_F: S_DF T_F + ½ S_DD T_D is what T_Dᵀ multiplies, from both
     // sides.
     let mut s_many = Mat::<f64>::zeros(many, many);
@@ -76,21 +69,46 @@ pub fn transformed(
         }
     }
     if many > 0 {
-        let mut t = Mat::<f64>::zeros(many, n);
-        for (terms, d) in terms.iter().zip(&of_many) {
-            if let Some(d) = *d {
-                terms.iter().for_each(|&(a, c)| t[(d, a)] += c);
-            }
-        }
-        product += s_many * &t;
-        let half = t.transpose() * product;
-        for b in 0..n {
-            for a in b..n {
-                new[(a, b)] += half[(a, b)] + half[(b, a)];
-            }
-        }
+        add_many(&mut new, terms, &of_many, s_many, product);
     }
     new
+}
+
+/// The numbers of the rows with many terms among those, and how many there are.
+fn numbers_of_many(terms: &[Vec<(usize, f64)>]) -> (Vec<Option<usize>>, usize) {
+    let mut many = 0;
+    let number = |terms: &Vec<(usize, f64)>| {
+        let is_one = terms.len() > FEW_TERMS;
+        many += usize::from(is_one);
+        is_one.then(|| many - 1)
+    };
+    let numbers = terms.iter().map(number).collect();
+    (numbers, many)
+}
+
+/// Adds T_Dᵀ (S_DF T_F + ½ S_DD T_D) and its transpose, where `product` is S_DF T_F and `s_many` ½ S_DD; T_D has the rows
+/// of `terms` that have a number in `of_many`.
+fn add_many(
+    new: &mut Mat<f64>,
+    terms: &[Vec<(usize, f64)>],
+    of_many: &[Option<usize>],
+    s_many: Mat<f64>,
+    mut product: Mat<f64>,
+) {
+    let n = new.ncols();
+    let mut t = Mat::<f64>::zeros(s_many.nrows(), n);
+    for (terms, d) in terms.iter().zip(of_many) {
+        if let Some(d) = *d {
+            terms.iter().for_each(|&(a, c)| t[(d, a)] += c);
+        }
+    }
+    product += s_many * &t;
+    let half = t.transpose() * product;
+    for b in 0..n {
+        for a in b..n {
+            new[(a, b)] += half[(a, b)] + half[(b, a)];
+        }
+    }
 }
 
 /// Whether every number below n is one of the `places`, once.

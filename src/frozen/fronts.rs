@@ -225,9 +225,9 @@ impl FrozenFronts {
         let renewed = renewed || !is_known;
         // What was made before, with another preconditioner, can't move, nor can what springs hold.
         let is_sound = self.spring > 0.0 || !touched.contains(&true) && !bddc.is_stale();
-        let mut frozen = bddc.freeze(context, &self.tops, &touched, open, self.spring, renewed);
+        let mut frozen = bddc.freeze(context, &self.tops, &touched, open, (self.spring, renewed));
         while frozen.is_err() && (bddc.is_judged() || is_sound) && bddc.look_deeper() {
-            frozen = bddc.freeze(context, &self.tops, &touched, open, self.spring, true);
+            frozen = bddc.freeze(context, &self.tops, &touched, open, (self.spring, true));
         }
         frozen?;
         let pivot = bddc.coarse_pivot();

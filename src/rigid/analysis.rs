@@ -129,13 +129,7 @@ impl Scene {
         let fixing_dofs = kinematics.fixing_dofs(bodies, &free);
         let mut motions = kinematics.fix(bodies, names, list.collect(), fixing_dofs);
         if !is_nothing(&unbalanced) && found.proof.is_some() {
-            let share = unbalanced.norm() / scale;
-            let motion = kinematics.motion(&unbalanced.normalize());
-            motions.warnings.push(format!(
-                "contact can't hold {} against {share:.0e} of all loads; this counts as round-off, \
-                 and nothing as moving",
-                kinematics.described(bodies, names, &[motion]).concat()
-            ));
+            (motions.warnings).push(kinematics.nearly_held(bodies, names, &unbalanced, scale));
         }
         Ok(motions)
     }
@@ -197,6 +191,23 @@ impl Kinematics {
             names[worst],
             along.unwrap_or_else(|| format!("slides ({how})")),
         ))
+    }
+
+    /// The warning of an unbalanced load that counts as round-off of all loads.
+    fn nearly_held(
+        &self,
+        bodies: &[BodyState],
+        names: &[String],
+        unbalanced: &DVector<f64>,
+        scale: f64,
+    ) -> String {
+        let share = unbalanced.norm() / scale;
+        let motion = self.motion(&unbalanced.normalize());
+        format!(
+            "contact can't hold {} against {share:.0e} of all loads; this counts as round-off, \
+             and nothing as moving",
+            self.described(bodies, names, &[motion]).concat()
+        )
     }
 
     /// The body that moves farthest in `motion`, and how.

@@ -46,26 +46,7 @@ pub(super) fn closing_motions(
         before if has_friction && !before.is_empty() => before.to_vec(),
         _ => vec![vec![0.0; BodyFrame::count(dim)]; bodies.len()],
     };
-    let of_supports: Vec<Vec<f64>> = (bodies.iter().zip(&start))
-        .map(|(body, start)| prescribed(dim, body, start))
-        .collect();
-    let round_off = ALONG
-        * of_supports
-            .iter()
-            .flatten()
-            .fold(0.0, |m: f64, z| m.max(z.abs()));
-    let part = (rows.iter().zip(gaps_left(rows, &start)))
-        .map(|(row, gap)| (gap, jump(row, &of_supports)))
-        .filter(|&(_, jump)| jump > round_off)
-        .fold(1.0, |part: f64, (gap, jump)| part.min(gap / jump));
-    let mut motions = start.clone();
-    for (z, change) in motions
-        .iter_mut()
-        .flatten()
-        .zip(of_supports.iter().flatten())
-    {
-        *z += change * part;
-    }
+    let mut motions = along_supports(dim, bodies, rows, &start);
     let kinematics = Kinematics::new(dim, bodies);
     if kinematics.len == 0 || rows.is_empty() {
         return motions;
@@ -103,6 +84,36 @@ pub(super) fn closing_motions(
             touching,
         );
         move_along(&mut motions, &kinematics, &back);
+    }
+    motions
+}
+
+/// The motions from a `start` along what supports prescribe, as far as no gap closes.
+fn along_supports(
+    dim: usize,
+    bodies: &[BodyState],
+    rows: &[RigidRow],
+    start: &[Vec<f64>],
+) -> Vec<Vec<f64>> {
+    let of_supports: Vec<Vec<f64>> = (bodies.iter().zip(start))
+        .map(|(body, start)| prescribed(dim, body, start))
+        .collect();
+    let round_off = ALONG
+        * of_supports
+            .iter()
+            .flatten()
+            .fold(0.0, |m: f64, z| m.max(z.abs()));
+    let part = (rows.iter().zip(gaps_left(rows, start)))
+        .map(|(row, gap)| (gap, jump(row, &of_supports)))
+        .filter(|&(_, jump)| jump > round_off)
+        .fold(1.0, |part: f64, (gap, jump)| part.min(gap / jump));
+    let mut motions = start.to_vec();
+    for (z, change) in motions
+        .iter_mut()
+        .flatten()
+        .zip(of_supports.iter().flatten())
+    {
+        *z += change * part;
     }
     motions
 }

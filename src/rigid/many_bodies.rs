@@ -154,12 +154,11 @@ impl ManyBodies {
             0.0 => 1.0,
             length => length,
         };
-        let mut motion = vec![0.0; n];
         if force == 0.0 {
             return Some(Rest {
-                left: motion.clone(),
+                motion: vec![0.0; n],
+                left: vec![0.0; n],
                 forces: vec![0.0; self.len()],
-                motion,
             });
         }
         let mut f = vec![0.0; n];
@@ -186,18 +185,9 @@ impl ManyBodies {
             if size
                 .iter()
                 .zip(ENOUGH)
-                .all(|(&size, enough)| size <= enough)
+                .all(|(size, enough)| *size <= enough)
             {
-                let of_forces = self.actions(&point.lambda);
-                let missing = |at: usize| force * (f[at] - of_forces[at]);
-                for (motion, &from) in motion.iter_mut().zip(&self.place) {
-                    *motion = length * point.y[from];
-                }
-                return Some(Rest {
-                    motion,
-                    left: self.place.iter().map(|&at| missing(at)).collect(),
-                    forces: point.lambda.iter().map(|lambda| force * lambda).collect(),
-                });
+                return Some(self.at_rest(&point, &f, force, length));
             }
             let matrix = self.products(|j| point.lambda[j] / point.left[j], spring);
             let matrix = factorized(&matrix)?;
@@ -215,6 +205,17 @@ impl ManyBodies {
             point.go(&change, TO_THE_BOUNDARY * point.longest(&change));
         }
         None
+    }
+
+    /// How bodies rest at a point, where the load f is in units of `force` and gaps are in units of `length`.
+    fn at_rest(&self, point: &Point, f: &[f64], force: f64, length: f64) -> Rest {
+        let of_forces = self.actions(&point.lambda);
+        let missing = |&at: &usize| force * (f[at] - of_forces[at]);
+        Rest {
+            motion: self.place.iter().map(|&at| length * point.y[at]).collect(),
+            left: self.place.iter().map(missing).collect(),
+            forces: point.lambda.iter().map(|lambda| force * lambda).collect(),
+        }
     }
 
     /// Bᵀ diag(`weight`) B, and a `spring` on its diagonal.

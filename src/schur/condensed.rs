@@ -41,6 +41,13 @@ impl Condensed {
         self.s.as_ref().submatrix(m, m, n, n)
     }
 
+    /// The places of its unknowns in a front: of jumps from `first_jump` on, of those on Γ as `place` says.
+    pub fn places(&self, first_jump: usize, place: impl Fn(&InterfaceDof) -> usize) -> Vec<u32> {
+        let jumps = (0..self.jumps).map(|j| (first_jump + j) as u32);
+        let dofs = self.interface_dofs.iter().map(|dof| place(dof) as u32);
+        jumps.chain(dofs).collect()
+    }
+
     /// Makes both triangles of S count.
     pub fn fill_upper_triangle(&mut self) {
         for j in 0..self.s.ncols() {

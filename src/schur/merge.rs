@@ -8,7 +8,7 @@
 //!
 //! are dense: the multifrontal method of Duff and Reid, with the blocks as its leaves.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{
@@ -138,36 +138,29 @@ impl Merge {
         let (mut gone, mut interface_dofs) = union_of_interface_dofs(children, eliminated);
         let numbers = 0..own.replaced.len();
         let (open, closed): (Vec<usize>, Vec<usize>) = numbers.partition(|&j| own.is_open(j));
-        let mut pivots: BTreeMap<InterfaceDof, usize> =
-            own.replaced.iter().map(|r| (r.dof, 0)).collect();
-        gone.retain(|dof| !pivots.contains_key(dof));
-        interface_dofs.retain(|dof| !pivots.contains_key(dof));
+        let replaced: BTreeSet<InterfaceDof> = own.replaced.iter().map(|r| r.dof).collect();
+        gone.retain(|dof| !replaced.contains(dof));
+        interface_dofs.retain(|dof| !replaced.contains(dof));
         let e = gone.len() + open.len();
         let of_children: usize = children.iter().map(|c| c.jumps).sum();
         let jumps = of_children + closed.len();
         let places_of_own =
             (open.iter().zip(gone.len()..)).chain(closed.iter().zip(e + of_children..));
-        for (&j, place) in places_of_own {
-            pivots.insert(own.replaced[j].dof, place);
-        }
+        let pivots = places_of_own.map(|(&j, place)| (own.replaced[j].dof, place));
+        let pivots: BTreeMap<InterfaceDof, usize> = pivots.collect();
         let k = jumps + interface_dofs.len();
         let mut columns = Mat::<f64>::zeros(e + k, e);
         let mut s = spare.zeros(k);
         let mut diagonal = vec![0.0; e + k];
-        let mut places = Vec::with_capacity(children.len());
-        let mut smallest_pivot = f64::INFINITY;
-        let mut first_jump = e;
+        let (mut places, mut first_jump) = (Vec::with_capacity(children.len()), e);
         let place = |dof: &InterfaceDof| place_of(dof, &gone, &pivots, &interface_dofs, e + jumps);
         for child in children {
-            let of_child = (0..child.jumps).map(|j| (first_jump + j) as u32);
-            let dofs = child.interface_dofs.iter().map(|dof| place(dof) as u32);
-            let place: Vec<u32> = of_child.chain(dofs).collect();
+            let place = child.places(first_jump, place);
             first_jump += child.jumps;
             for (&to, d) in place.iter().zip(&child.diagonal) {
                 diagonal[to as usize] += d;
             }
             add(&child.s, &place, e, &mut columns, &mut s);
-            smallest_pivot = smallest_pivot.min(child.smallest_pivot);
             places.push(place);
         }
         let substitution = Substitution::new(own.replaced, place);
@@ -185,21 +178,21 @@ impl Merge {
             places,
             substitution,
         };
-        partial_cholesky(merge.columns.as_mut(), s.as_mut(), par).map_err(|j| {
-            FreeInterfaceDof(match gone.get(j) {
-                Some(dof) => *dof,
-                None => own.replaced[open[j - gone.len()]].dof,
-            })
-        })?;
-        for (j, d) in diagonal[..e].iter().enumerate() {
-            smallest_pivot = smallest_pivot.min(merge.columns[(j, j)].powi(2) / d);
-        }
+        let dof_of = |j: usize| match gone.get(j) {
+            Some(dof) => *dof,
+            None => own.replaced[open[j - gone.len()]].dof,
+        };
+        partial_cholesky(merge.columns.as_mut(), s.as_mut(), par)
+            .map_err(|j| FreeInterfaceDof(dof_of(j)))?;
+        let pivots = diagonal[..e].iter().enumerate();
+        let pivots = pivots.map(|(j, d)| merge.columns[(j, j)].powi(2) / d);
+        let below = children.iter().map(|child| child.smallest_pivot);
         let condensed = Condensed {
             jumps,
             interface_dofs,
             s,
             diagonal: diagonal[e..].to_vec(),
-            smallest_pivot,
+            smallest_pivot: below.chain(pivots).fold(f64::INFINITY, f64::min),
         };
         Ok((merge, condensed))
     }

@@ -44,15 +44,7 @@ impl Problem {
             plane: model.plane,
             materials: model.materials.clone(),
             bodies: bodies.names.iter().cloned().map(Body::new).collect(),
-            contacts: model
-                .contacts
-                .iter()
-                .map(|contact| ContactSummary {
-                    name: contact.name.clone(),
-                    conditions: contact.points.len(),
-                    has_friction: contact.points.iter().any(|point| point.law.has_friction()),
-                })
-                .collect(),
+            contacts: model.contacts.iter().map(summary).collect(),
             steps: (model.steps.iter())
                 .map(|step| LoadStep {
                     name: step.name.clone(),
@@ -91,6 +83,14 @@ impl Problem {
         problem.describe_points();
         problem.catalog.choose_clusters(None);
         Ok(problem)
+    }
+}
+
+fn summary(contact: &model::Contact) -> ContactSummary {
+    ContactSummary {
+        name: contact.name.clone(),
+        conditions: contact.points.len(),
+        has_friction: contact.points.iter().any(|point| point.law.has_friction()),
     }
 }
 
@@ -147,6 +147,13 @@ fn cut(
         subdomain.cells.push(kind, &local);
         subdomain.cell_material.push(model.cell_material[cell]);
     }
+    give_loads(model, owners, &mut subdomains);
+    give_initial_stress(model, decomposition, owners, &mut subdomains);
+    Ok(subdomains)
+}
+
+/// Gives every subdomain its supports, and the forces at its nodes that no lower one has.
+fn give_loads(model: &Model, owners: &Owners, subdomains: &mut [Subdomain]) {
     for (i, support) in model.supports.iter().enumerate() {
         for &(owner, node) in owners.of.of(support.node as usize) {
             let subdomain = &mut subdomains[owner as usize];
@@ -166,8 +173,6 @@ fn cut(
             }
         }
     }
-    give_initial_stress(model, decomposition, owners, &mut subdomains);
-    Ok(subdomains)
 }
 
 /// Gives every subdomain its part of the initial stresses.

@@ -254,15 +254,7 @@ impl<'a> Clumps<'a> {
         }
         graph.edges.push(of_left.into_iter());
         graph.edges.push(std::iter::empty());
-        for side in [Place::Left, Place::Right] {
-            let whole = || (0..places.len()).filter(|&clump| places[clump] == side);
-            let dofs: f64 = whole().map(|clump| f64::from(self.graph.dofs[clump])).sum();
-            graph.dofs.push(dofs as f32);
-            graph
-                .outside
-                .push(whole().map(|clump| self.graph.outside[clump]).sum());
-            was_left.push(side == Place::Left);
-        }
+        self.add_sides(&places, &mut graph, &mut was_left);
         let mut place_of = vec![Place::Between; count as usize];
         place_of.extend([Place::Left, Place::Right]);
         let mut candidates = Vec::from(cheapest_cuts(&graph, &place_of));
@@ -272,6 +264,19 @@ impl<'a> Clumps<'a> {
             places,
             first,
             graph,
+        }
+    }
+
+    /// Adds what lies beyond the clumps near a cut to their graph, a vertex for each side.
+    fn add_sides(&self, places: &[Place], graph: &mut Graph, was_left: &mut Vec<bool>) {
+        for side in [Place::Left, Place::Right] {
+            let whole = || (0..places.len()).filter(|&clump| places[clump] == side);
+            let dofs: f64 = whole().map(|clump| f64::from(self.graph.dofs[clump])).sum();
+            graph.dofs.push(dofs as f32);
+            graph
+                .outside
+                .push(whole().map(|clump| self.graph.outside[clump]).sum());
+            was_left.push(side == Place::Left);
         }
     }
 }

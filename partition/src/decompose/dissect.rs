@@ -192,18 +192,7 @@ fn branch(set: Set, wanted: Wanted, level: usize, for_metis: usize) -> Branch {
         .iter()
         .chain(&of_b.outside)
         .any(|&weight| weight > 0);
-    let wanted = match wanted {
-        Wanted::Sets(count) => {
-            let (in_a, in_b) = (of_a.sizes_of_pieces(), of_b.sizes_of_pieces());
-            let shares = allotted(&[&in_a[..], &in_b].concat(), count);
-            let share = shares[..in_a.len()].iter().sum::<usize>();
-            let least = in_a.len().max(count.saturating_sub(of_b.len()));
-            let most = of_a.len().min(count - in_b.len());
-            let of_a = share.clamp(least, most);
-            [Wanted::Sets(of_a), Wanted::Sets(count - of_a)]
-        }
-        dofs => [dofs; 2],
-    };
+    let wanted = wanted_of_halves(wanted, of_a, of_b);
     let sides = match is_large {
         false => vec![
             branch(a, wanted[0], level + 1, rest),
@@ -219,6 +208,22 @@ fn branch(set: Set, wanted: Wanted, level: usize, for_metis: usize) -> Branch {
         }),
     };
     Branch::Inner(sides, is_joined)
+}
+
+/// What is wanted of the halves of a graph of which so much is wanted.
+fn wanted_of_halves(wanted: Wanted, of_a: &Graph, of_b: &Graph) -> [Wanted; 2] {
+    match wanted {
+        Wanted::Sets(count) => {
+            let (in_a, in_b) = (of_a.sizes_of_pieces(), of_b.sizes_of_pieces());
+            let shares = allotted(&[&in_a[..], &in_b].concat(), count);
+            let share = shares[..in_a.len()].iter().sum::<usize>();
+            let least = in_a.len().max(count.saturating_sub(of_b.len()));
+            let most = of_a.len().min(count - in_b.len());
+            let of_a = share.clamp(least, most);
+            [Wanted::Sets(of_a), Wanted::Sets(count - of_a)]
+        }
+        dofs => [dofs; 2],
+    }
 }
 
 /// The pieces of a set that isn't cut any more.

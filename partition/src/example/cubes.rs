@@ -101,11 +101,11 @@ struct Placed {
     elements: Vec<Vec<Place>>,
 }
 
-/// Meshes the cubes with cells of `kind` cut into eight `refine` times.
+/// Checks that a mesh of the cubes can be made.
 ///
 /// # Errors
 /// A refinement too large to be made, cells of the plane.
-pub(super) fn mesh(cubes: &[Cube], refine: u32, kind: ElementKind) -> Result<Mesh, InputError> {
+fn check(cubes: &[Cube], refine: u32, kind: ElementKind) -> Result<(), InputError> {
     if kind.dim() != 3 {
         return Err(InputError::new(format!(
             "a {} doesn't fill the space of this scene; expected tetrahedra or hexahedra",
@@ -124,6 +124,15 @@ pub(super) fn mesh(cubes: &[Cube], refine: u32, kind: ElementKind) -> Result<Mes
             "refined {refine} times the mesh has more than {MOST_CELLS} cells; expected a smaller number"
         )));
     }
+    Ok(())
+}
+
+/// Meshes the cubes with cells of `kind` cut into eight `refine` times.
+///
+/// # Errors
+/// A refinement too large to be made, cells of the plane.
+pub(super) fn mesh(cubes: &[Cube], refine: u32, kind: ElementKind) -> Result<Mesh, InputError> {
+    check(cubes, refine, kind)?;
     let mut points = Vec::new();
     let placed: Vec<Placed> = (cubes.iter())
         .map(|cube| place(cube, refine, kind, &mut points))

@@ -136,6 +136,12 @@ impl Interface {
                 }
             }
         }
+        systems.extend(self.stuck(&users, &is_waiting));
+        systems
+    }
+
+    /// The systems of the points that are waiting for each other.
+    fn stuck(&self, users: &Lists<u32>, is_waiting: &[bool]) -> Vec<System> {
         let mut sets = DisjointSets::new(self.of_points.len());
         for users in users.iter() {
             let mut stuck = users.iter().copied().filter(|&j| is_waiting[j as usize]);
@@ -147,7 +153,7 @@ impl Interface {
         for j in (0..self.of_points.len() as u32).filter(|&j| is_waiting[j as usize]) {
             stuck.entry(sets.find(j)).or_default().push(j);
         }
-        systems.extend(stuck.into_values().map(|points| {
+        let system = |points: Vec<u32>| {
             let numbers = points.iter().flat_map(|&j| &self.of_points[j as usize]);
             let users = numbers.flat_map(|&number| users.of(number as usize));
             let mut users: Vec<u32> = users.copied().collect();
@@ -157,8 +163,8 @@ impl Interface {
                 above: others(&users, &points),
                 points,
             }
-        }));
-        systems
+        };
+        stuck.into_values().map(system).collect()
     }
 }
 

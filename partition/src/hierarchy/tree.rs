@@ -183,6 +183,12 @@ impl Tree {
             let node: &mut TreeNode = &mut self.nodes[subdomain];
             node.kept = kept;
         }
+        self.sum_up(catalog, &ends);
+        self.count_dofs(catalog, interface);
+    }
+
+    /// Finds what inner nodes keep, where nodes of Γ have these `ends`, and how many conditions are under every node.
+    fn sum_up(&mut self, catalog: &Catalog, ends: &[usize]) {
         for v in 0..self.nodes.len() {
             let mut kept: Vec<u32> = Vec::new();
             let points = self.nodes[v].points.iter();
@@ -203,6 +209,10 @@ impl Tree {
                 node.kept = kept;
             }
         }
+    }
+
+    /// Counts the unknowns at the nodes of Γ that every node eliminates and keeps.
+    fn count_dofs(&mut self, catalog: &Catalog, interface: &Interface) {
         let slides = interface.unshared.iter().filter(|own| own.slides.is_some());
         let slides: BTreeSet<u32> = slides.map(|own| own.number).collect();
         let dofs_at = |numbers: &[u32]| -> usize {

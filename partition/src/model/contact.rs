@@ -2,15 +2,15 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::held_nodes::{HeldNodes, ROUNDING};
 use super::mortar::{self, Mortar};
 use super::node_pairs::Unpaired;
 use super::sides::{Sides, side_nodes};
 use super::steps::Loads;
-use super::supports::PARALLEL;
 use super::surface::{CORNER, Surface, SurfaceFacet, Turn};
 use super::{Contact, groups, node_pairs, obstacle};
-use crate::contact_point::{ContactPoint, Law};
-use crate::element::geometry::{advance, dot, length};
+use crate::contact_point::{ContactPoint, Law, Probe};
+use crate::element::geometry::dot;
 use crate::error::InputError;
 use crate::magnitude::short;
 use crate::mesh::Mesh;
@@ -18,11 +18,10 @@ use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 use crate::scene::condition::Names;
 use crate::scene::contact::{self, Pairing, Partner};
+use crate::scene::friction::Friction;
 use crate::scene::material::PlaneState;
+use crate::scene::number::Number;
 use crate::scene::units::Units;
-
-/// Gaps are exact to this fraction of the scene's coordinates.
-const ROUNDING: f64 = 1e-12;
 
 /// Measured gaps in space are none up to this fraction: round-off of coordinates would hold bodies apart, or press them
 /// together, and where several contacts meet no displacement has all of them.
@@ -41,17 +40,22 @@ const KINKED: f64 = 1e-4;
 /// Coefficients of friction beyond this are rather angles in degrees, or meant as infinite, which costs digits.
 const STEEP: f64 = 10.0;
 
-/// A direction in which a node is held, and how far in each load step (m).
-struct Held {
-    direction: [f64; 3],
-    values: Vec<f64>,
+/// The points of a contact before its laws.
+#[derive(Default)]
+struct Paired {
+    points: Vec<ContactPoint<u32>>,
+    /// Where the side without points is looked at for penetration.
+    probes: Vec<Probe<u32>>,
+    /// How far straight facets stand off the curve that they stand for (m).
+    off: f64,
+    warnings: Vec<String>,
 }
 
 /// What contacts are made from.
 pub(super) struct Contacts<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
-    supports: HashMap<u32, Vec<Held>>,
+    held: HeldNodes,
     /// The largest coordinate (m).
     size: f64,
     plane: Option<PlaneState>,
@@ -60,18 +64,11 @@ pub(super) struct Contacts<'a> {
 
 impl<'a> Contacts<'a> {
     pub fn new(mesh: &'a Mesh, topology: &'a Topology, loads: &Loads, scene: &Scene) -> Self {
-        let mut by_node: HashMap<u32, Vec<Held>> = HashMap::new();
-        for (i, support) in loads.supports.iter().enumerate() {
-            by_node.entry(support.node).or_default().push(Held {
-                direction: support.direction,
-                values: loads.values(i),
-            });
-        }
         let coordinates = mesh.points.iter().flatten();
         Self {
             mesh,
             topology,
-            supports: by_node,
+            held: HeldNodes::new(loads),
             size: coordinates.map(|c| c.abs()).fold(0.0, f64::max),
             plane: scene.plane,
             units: scene.units,
@@ -86,128 +83,49 @@ impl<'a> Contacts<'a> {
         warnings: &mut Vec<String>,
     ) -> Result<Contact, InputError> {
         let what = format!("contact '{}'", keys.name);
-        let unit = self.units.length();
         let (facets, side_a) = self.side(&keys.side_a, &what)?;
-        let mut off = 0.0;
-        let mut probes = Vec::new();
-        let mut points = match &keys.partner {
+        let mut paired = match &keys.partner {
             Partner::Obstacle(obstacle) => {
                 let nodes = side_nodes(self.mesh, &side_a, &what, &HashSet::new())?;
-                obstacle::points(self.mesh, obstacle, &side_a, nodes)
-                    .map_err(InputError::about(&what))?
+                let points = obstacle::points(self.mesh, obstacle, &side_a, nodes);
+                Paired {
+                    points: points.map_err(InputError::about(&what))?,
+                    ..Paired::default()
+                }
             }
             Partner::Side(names) => {
-                let (facets_b, side_b) = self.side(names, &what)?;
-                let on_a: HashSet<u32> = facets.into_iter().collect();
-                if let Some(&both) = facets_b.iter().find(|facet| on_a.contains(facet)) {
-                    return Err(InputError::new(format!(
-                        "{what}: the facet of nodes {} is on both sides",
-                        self.mesh.tags_of(self.mesh.facets.nodes_of(both as usize))
-                    )));
-                }
-                let paired = self.pairs(&side_a, &side_b, keys.pairing, &what)?;
-                warnings.extend(self.corner(&side_a, &paired.points, &what));
-                off = side_a.stands_off().max(side_b.stands_off());
-                warnings.extend(straight_edges(&what, "b", &side_b));
-                warnings.extend(paired.warning);
-                probes = paired.probes;
-                let slack = 2.0 * side_a.kinks().max(side_b.kinks());
-                for probe in &mut probes {
-                    probe.contact = number;
-                    // Straight facets of one curve overlap where nothing presses.
-                    if probe.gap < 0.0 {
-                        probe.gap = (probe.gap + slack).min(0.0);
-                    }
-                }
-                paired.points
+                let on_a = facets.into_iter().collect();
+                self.sides(number, (&on_a, &side_a), names, keys.pairing, &what)?
             }
         };
+        warnings.append(&mut paired.warnings);
         warnings.extend(straight_edges(&what, "a", &side_a));
         let none = if self.mesh.dim == 3 {
             NO_GAP * self.size
         } else {
             0.0
         };
-        for point in points.iter_mut().filter(|point| point.gap.abs() < none) {
+        for point in paired.points.iter_mut().filter(|p| p.gap.abs() < none) {
             point.gap = 0.0;
         }
         if let Some(gap) = &keys.gap {
-            off = 0.0;
-            let mut furthest = (0.0, 0.0, 0.0);
-            for point in &mut points {
-                let given = (gap.at(point.position))
-                    .map_err(|reason| InputError::new(format!("{what}.gap: {reason}")))?;
-                let measured = std::mem::replace(&mut point.gap, given);
-                furthest = match (given - measured).abs() {
-                    away if away > furthest.0 => (away, given, measured),
-                    _ => furthest,
-                };
-            }
-            for probe in &mut probes {
-                let place =
-                    (probe.entries.first()).map(|&(node, _)| self.mesh.points[node as usize]);
-                probe.gap = (gap.at(place.unwrap_or_default()))
-                    .map_err(|reason| InputError::new(format!("{what}.gap: {reason}")))?;
-            }
-            let (away, given, measured) = furthest;
-            if away > side_a.extent() {
-                warnings.push(format!(
-                    "{what}.gap: it is {} {unit} where the mesh has {} {unit}, which is off by more than the side \
-                     measures; are place and units right?",
-                    short(given),
-                    short(measured)
-                ));
-            }
+            warnings.extend(self.give_gap(gap, &mut paired, &side_a, &what)?);
         }
+        let Paired {
+            mut points,
+            probes,
+            off,
+            ..
+        } = paired;
         if let Some(friction) = &keys.friction {
-            for point in &mut points {
-                point.law = (friction.at(point.position)).map_err(|reason| {
-                    InputError::new(format!("{what}.{reason} (node {})", point.tag()))
-                })?;
-            }
-            warnings.extend(steep_friction(&points, &what));
+            warnings.extend(give_friction(friction, &mut points, &what)?);
         }
-        let slack = ROUNDING * self.size;
-        let deepest = points.iter().map(|p| p.gap).fold(0.0, f64::min);
-        let seen = slack.max(SEEN * side_a.extent());
-        if deepest < -seen && !keys.interference {
-            let count = points.iter().filter(|p| p.gap < -seen).count();
-            let facets = match off > FELT * -deepest {
-                true => format!(
-                    "; straight facets stand off a curve by up to {} {unit} of that: expected quadratic cells",
-                    short(off)
-                ),
-                false => String::new(),
-            };
-            warnings.push(format!(
-                "{what}: {count} of {} gaps are negative, an interference fit of up to {} {unit}{facets}",
-                points.len(),
-                short(-deepest)
-            ));
+        if !keys.interference {
+            warnings.extend(self.interference(&points, &side_a, off, &what));
         }
         let count = points.len();
-        let mut kept = Vec::with_capacity(count);
-        for point in points {
-            match self.prescribed_jump(&point) {
-                None => kept.push(ContactPoint {
-                    contact: number,
-                    place: kept.len() as u32,
-                    ..point
-                }),
-                Some(jumps) => {
-                    let closest = jumps.into_iter().fold(f64::NEG_INFINITY, f64::max);
-                    if closest <= point.gap + slack {
-                        continue;
-                    }
-                    return Err(InputError::new(format!(
-                        "{what}: at node {} displacements are prescribed on both sides that close \
-                         the gap of {} {unit} by {closest} {unit}; expected no penetration",
-                        point.tag(),
-                        point.gap
-                    )));
-                }
-            }
-        }
+        let slack = ROUNDING * self.size;
+        let kept = (self.held).without_prescribed((number, &what), points, slack, self.units)?;
         if kept.is_empty() {
             warnings.push(format!(
                 "{what}: all its nodes are prescribed; it has no condition"
@@ -224,6 +142,117 @@ impl<'a> Contacts<'a> {
             points: kept,
             probes,
         })
+    }
+
+    /// The points of contact `number` between side a, whose facets are `on_a`, and the side of these `names`.
+    ///
+    /// # Errors
+    /// A facet that is on both sides, or sides that don't match.
+    fn sides(
+        &self,
+        number: u32,
+        (on_a, side_a): (&HashSet<u32>, &Surface),
+        names: &Names,
+        pairing: Option<Pairing>,
+        what: &str,
+    ) -> Result<Paired, InputError> {
+        let (facets_b, side_b) = self.side(names, what)?;
+        if let Some(&both) = facets_b.iter().find(|facet| on_a.contains(facet)) {
+            return Err(InputError::new(format!(
+                "{what}: the facet of nodes {} is on both sides",
+                self.mesh.tags_of(self.mesh.facets.nodes_of(both as usize))
+            )));
+        }
+        let paired = self.pairs(side_a, &side_b, pairing, what)?;
+        let corner = self.corner(side_a, &paired.points, what);
+        let straight = straight_edges(what, "b", &side_b);
+        let mut probes = paired.probes;
+        let slack = 2.0 * side_a.kinks().max(side_b.kinks());
+        for probe in &mut probes {
+            probe.contact = number;
+            // Straight facets of one curve overlap where nothing presses.
+            if probe.gap < 0.0 {
+                probe.gap = (probe.gap + slack).min(0.0);
+            }
+        }
+        Ok(Paired {
+            points: paired.points,
+            probes,
+            off: side_a.stands_off().max(side_b.stands_off()),
+            warnings: (corner.into_iter().chain(straight))
+                .chain(paired.warning)
+                .collect(),
+        })
+    }
+
+    /// Replaces the gaps of the mesh by a given one; the warning of one that is far from them.
+    ///
+    /// # Errors
+    /// A gap that isn't a number at a point.
+    fn give_gap(
+        &self,
+        gap: &Number,
+        paired: &mut Paired,
+        side_a: &Surface,
+        what: &str,
+    ) -> Result<Option<String>, InputError> {
+        let unit = self.units.length();
+        let at = |x: [f64; 3]| {
+            gap.at(x)
+                .map_err(|reason| InputError::new(format!("{what}.gap: {reason}")))
+        };
+        paired.off = 0.0;
+        let mut furthest = (0.0, 0.0, 0.0);
+        for point in &mut paired.points {
+            let given = at(point.position)?;
+            let measured = std::mem::replace(&mut point.gap, given);
+            furthest = match (given - measured).abs() {
+                away if away > furthest.0 => (away, given, measured),
+                _ => furthest,
+            };
+        }
+        for probe in &mut paired.probes {
+            let place = (probe.entries.first()).map(|&(node, _)| self.mesh.points[node as usize]);
+            probe.gap = at(place.unwrap_or_default())?;
+        }
+        let (away, given, measured) = furthest;
+        Ok((away > side_a.extent()).then(|| {
+            format!(
+                "{what}.gap: it is {} {unit} where the mesh has {} {unit}, which is off by more than the side \
+                 measures; are place and units right?",
+                short(given),
+                short(measured)
+            )
+        }))
+    }
+
+    /// The warning of an interference fit, where straight facets stand `off` a curve (m).
+    fn interference(
+        &self,
+        points: &[ContactPoint<u32>],
+        side_a: &Surface,
+        off: f64,
+        what: &str,
+    ) -> Option<String> {
+        let unit = self.units.length();
+        let deepest = points.iter().map(|p| p.gap).fold(0.0, f64::min);
+        let seen = (ROUNDING * self.size).max(SEEN * side_a.extent());
+        if deepest >= -seen {
+            return None;
+        }
+        let count = points.iter().filter(|p| p.gap < -seen).count();
+        let facets = match off > FELT * -deepest {
+            true => format!(
+                "; straight facets stand off a curve by up to {} {unit} of that: expected quadratic cells",
+                short(off)
+            ),
+            false => String::new(),
+        };
+        Some(format!(
+            "{what}: {count} of {} gaps are negative, an interference fit of up to {} {unit}{facets}",
+            points.len(),
+            short(-deepest)
+        ))
     }
 
     /// The warning of a point in a corner of side a, whose normal is that of neither facet.
@@ -297,27 +326,6 @@ impl<'a> Contacts<'a> {
             (Err(Unpaired::Unmatched(reason) | Unpaired::Apart(reason)), _) => Err(refused(reason)),
         }
     }
-
-    /// The normal jump in every load step of a point all of whose nodes are prescribed along the normal. `None`
-    /// if one is free.
-    fn prescribed_jump(&self, point: &ContactPoint<u32>) -> Option<Vec<f64>> {
-        let mut jumps = Vec::new();
-        for (node, row) in point.row() {
-            let mut free = row;
-            for held in self.supports.get(&node)? {
-                let along = dot(row, held.direction);
-                free = advance(free, -along, held.direction);
-                jumps.resize(held.values.len(), 0.0);
-                for (jump, value) in jumps.iter_mut().zip(&held.values) {
-                    *jump += along * value;
-                }
-            }
-            if length(free) > PARALLEL {
-                return None;
-            }
-        }
-        Some(jumps)
-    }
 }
 
 /// The warning of quadratic facets that are straight and stand for a curve: nodes in their middles are farther from it
@@ -333,6 +341,22 @@ fn straight_edges(what: &str, letter: &str, side: &Surface) -> Option<String> {
             short(off / side.facet_size())
         )
     })
+}
+
+/// Gives points their law of friction; the warning of a coefficient that is more likely an angle.
+///
+/// # Errors
+/// A value that isn't what it should be at a point.
+fn give_friction(
+    friction: &Friction,
+    points: &mut [ContactPoint<u32>],
+    what: &str,
+) -> Result<Option<String>, InputError> {
+    for point in &mut *points {
+        point.law = (friction.at(point.position))
+            .map_err(|reason| InputError::new(format!("{what}.{reason} (node {})", point.tag())))?;
+    }
+    Ok(steep_friction(points, what))
 }
 
 /// The warning of a coefficient of friction that is more likely an angle.

@@ -7,6 +7,7 @@ use super::sides::{SideNode, Sides, apart};
 use super::surface::{CORNER, SurfaceFacet};
 use crate::contact_point::ContactPoint;
 use crate::element::geometry::{advance, dot, length};
+use crate::mesh::Mesh;
 
 /// Why two sides have no pairs of nodes.
 pub(super) enum Unpaired {
@@ -40,19 +41,7 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> 
                     unmatched.push((a.node, "b", &sides.b.facets[facet]));
                     continue;
                 }
-                let faced = faced(a, &nodes, sides);
-                let normal = pressed_along(a, &faced);
-                for (b, area) in opposite(a, nodes, &faced) {
-                    let to_b = advance(mesh.points[b as usize], -1.0, a.position);
-                    let entries = vec![(a.node, 1.0), (b, -1.0)];
-                    let tag_a = mesh.node_tags[a.node as usize];
-                    points.push(ContactPoint {
-                        gap: dot(to_b, normal),
-                        area,
-                        tag_b: mesh.node_tags[b as usize],
-                        ..ContactPoint::new(entries, normal, a.position, tag_a)
-                    });
-                }
+                points.extend(points_of_node(a, nodes, sides));
             }
             Hit::Facet(facet) => unmatched.push((a.node, "b", &sides.b.facets[facet])),
             Hit::Nothing { back_facing } => any_back_facing |= back_facing,
@@ -65,18 +54,8 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> 
             unmatched.push((b.node, "a", &sides.a.facets[facet]));
         }
     }
-    if let Some((node, side, facet)) = unmatched.first() {
-        let shown: Vec<u32> = unmatched.iter().take(5).map(|u| u.0).collect();
-        return Err(Unpaired::Unmatched(format!(
-            "the sides don't match at {} nodes (tags {}{}): the normal of node {} meets side \
-             {side} between nodes {}; expected each corner opposite a corner and each node on an \
-             edge opposite another",
-            unmatched.len(),
-            mesh.tags_of(&shown),
-            if unmatched.len() > 5 { ", …" } else { "" },
-            mesh.node_tags[*node as usize],
-            mesh.tags_of(&facet.nodes)
-        )));
+    if let Some(mismatch) = mismatch(mesh, &unmatched) {
+        return Err(Unpaired::Unmatched(mismatch));
     }
     if points.is_empty() {
         return Err(Unpaired::Apart(apart(any_back_facing)));
@@ -89,6 +68,41 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> 
         )));
     }
     Ok(points)
+}
+
+/// Why sides don't match where nodes lie opposite the inside of facets of the other side, each with that side's letter.
+fn mismatch(mesh: &Mesh, unmatched: &[(u32, &str, &SurfaceFacet)]) -> Option<String> {
+    let (node, side, facet) = unmatched.first()?;
+    let shown: Vec<u32> = unmatched.iter().take(5).map(|u| u.0).collect();
+    Some(format!(
+        "the sides don't match at {} nodes (tags {}{}): the normal of node {} meets side \
+         {side} between nodes {}; expected each corner opposite a corner and each node on an \
+         edge opposite another",
+        unmatched.len(),
+        mesh.tags_of(&shown),
+        if unmatched.len() > 5 { ", …" } else { "" },
+        mesh.node_tags[*node as usize],
+        mesh.tags_of(&facet.nodes)
+    ))
+}
+
+/// The contact points of a node of side a and its partners, more than one where several lie in one place.
+fn points_of_node(a: &SideNode, nodes: Vec<u32>, sides: &Sides) -> Vec<ContactPoint<u32>> {
+    let mesh = sides.mesh;
+    let faced = faced(a, &nodes, sides);
+    let normal = pressed_along(a, &faced);
+    let point = |(b, area): (u32, f64)| {
+        let to_b = advance(mesh.points[b as usize], -1.0, a.position);
+        let entries = vec![(a.node, 1.0), (b, -1.0)];
+        let tag_a = mesh.node_tags[a.node as usize];
+        ContactPoint {
+            gap: dot(to_b, normal),
+            area,
+            tag_b: mesh.node_tags[b as usize],
+            ..ContactPoint::new(entries, normal, a.position, tag_a)
+        }
+    };
+    opposite(a, nodes, &faced).into_iter().map(point).collect()
 }
 
 /// A facet of side a whose nodes have partners that aren't those of a facet of side b: in space the same nodes

@@ -1,197 +1,22 @@
 //! A piece of the boundary: its facets with their outward normals.
 
+mod facet;
+
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::blend::Blending;
-use crate::element::ElementKind;
-use crate::element::geometry::{advance, cross, difference, dot, length};
+pub(super) use self::facet::SurfaceFacet;
+use crate::element::geometry::{advance, dot, length};
 use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::Topology;
 use crate::scene::material::PlaneState;
 
-/// Degree of exactness with which curved facets are measured.
-const CURVED_DEGREE: usize = 9;
-
 /// Angle between two facets from which on they are no curve but a corner (rad).
 pub(super) const CORNER: f64 = std::f64::consts::FRAC_PI_4;
 
 /// Part of the height of a kink that a facet on a curve has by itself unless it is straight.
 const STRAIGHT: f64 = 0.5;
-
-/// A facet of the boundary.
-#[derive(Clone, Debug)]
-pub(super) struct SurfaceFacet {
-    pub kind: ElementKind,
-    /// Nodes in the order in which the cell lies to their left.
-    pub nodes: Vec<u32>,
-    /// Coordinates of the nodes (m).
-    pub at: Vec<[f64; 3]>,
-    /// Unit outward normal in its middle, which is the normal of its chord.
-    pub normal: [f64; 3],
-    /// Length or area.
-    pub measure: f64,
-    /// Plane state; `None` in space.
-    pub plane: Option<PlaneState>,
-}
-
-impl SurfaceFacet {
-    /// A facet of `nodes` at `at`.
-    pub fn new(
-        kind: ElementKind,
-        nodes: Vec<u32>,
-        at: Vec<[f64; 3]>,
-        plane: Option<PlaneState>,
-    ) -> Self {
-        let area = integrate(kind, |xi| kind.area_vector(&at, xi));
-        let chord = length(area);
-        let measure = match kind.is_linear() {
-            true => chord,
-            false => integrate(kind, |xi| [length(kind.area_vector(&at, xi)), 0.0, 0.0])[0],
-        };
-        Self {
-            kind,
-            nodes,
-            normal: area.map(|c| c / chord),
-            measure,
-            at,
-            plane,
-        }
-    }
-
-    /// dS at ξ: length, area, or area all around the axis (m, m²).
-    pub fn density(&self, xi: [f64; 3]) -> f64 {
-        let x = self.kind.position(&self.at, xi);
-        PlaneState::thickness(self.plane, x) * length(self.kind.area_vector(&self.at, xi))
-    }
-
-    /// ∫ dS (m, m²).
-    pub fn area(&self) -> f64 {
-        match self.plane {
-            Some(PlaneState::Axisymmetric) => {
-                integrate(self.kind, |xi| [self.density(xi), 0.0, 0.0])[0]
-            }
-            _ => self.measure,
-        }
-    }
-
-    /// The corner of a line of three nodes that lies on the axis of an axisymmetric scene.
-    pub fn corner_on_axis(&self) -> Option<usize> {
-        let is_ring = self.plane == Some(PlaneState::Axisymmetric);
-        let corner = || (self.at.iter().take(self.kind.corners())).position(|x| x[0] == 0.0);
-        (is_ring && !self.kind.is_linear()).then(corner).flatten()
-    }
-
-    /// Its functions with positive integrals.
-    pub fn blending(&self) -> Blending {
-        Blending::new(self.kind, self.corner_on_axis())
-    }
-
-    /// The mean of its nodes (m).
-    pub fn middle(&self) -> [f64; 3] {
-        let part = 1.0 / self.at.len() as f64;
-        (self.at.iter()).fold([0.0; 3], |sum, &at| advance(sum, part, at))
-    }
-
-    /// Its diameter, by the order of magnitude (m).
-    pub fn size(&self) -> f64 {
-        match self.kind.dim() {
-            0 => 0.0,
-            1 => self.measure,
-            _ => self.measure.sqrt(),
-        }
-    }
-
-    /// Unit outward normal at one of its nodes: that of the facet itself, be it curved.
-    pub fn normal_at(&self, node: u32) -> [f64; 3] {
-        let place = self.nodes.iter().position(|&own| own == node);
-        let Some(place) = place.filter(|_| !self.kind.is_linear()) else {
-            return self.normal;
-        };
-        let area = (self.kind).area_vector(&self.at, self.kind.node_coordinates()[place]);
-        let size = length(area);
-        area.map(|c| c / size)
-    }
-
-    /// Its nodes from its start to its end.
-    fn along(&self) -> impl Iterator<Item = u32> {
-        self.kind.along().iter().map(|&i| self.nodes[i])
-    }
-
-    /// ∫ of the shape function of a node over it, of quadratic faces the function that is [`positive`]; 0 of one that
-    /// isn't its own.
-    pub fn tributary_area(&self, node: u32) -> f64 {
-        let Some(place) = self.nodes.iter().position(|&own| own == node) else {
-            return 0.0;
-        };
-        let blending = self.blending();
-        let blended = (!blending.is_none()).then(|| blending.positive());
-        let area = integrate(self.kind, |xi| {
-            let shape = self.kind.shape(xi);
-            let weight = match &blended {
-                None => shape[place],
-                Some(basis) => basis.row(place).iter().zip(shape).map(|(b, n)| b * n).sum(),
-            };
-            [weight * self.density(xi), 0.0, 0.0]
-        });
-        area[0]
-    }
-
-    /// How far nodes on its edges are from the middle of their chords, at most (m).
-    fn sag(&self) -> f64 {
-        let edges: Vec<&[usize]> = match self.kind.dim() {
-            1 => vec![&[0, 1, 2][..self.nodes.len().min(3)]],
-            _ => self.kind.facets().iter().map(|(_, edge)| *edge).collect(),
-        };
-        let of_edge = |edge: &[usize]| match *edge {
-            [start, end, middle] => {
-                let chord = advance(self.at[start], 1.0, self.at[end]).map(|c| 0.5 * c);
-                length(difference(self.at[middle], chord))
-            }
-            _ => 0.0,
-        };
-        edges.into_iter().map(of_edge).fold(0.0, f64::max)
-    }
-
-    /// The way from its node `node` to its middle, across `normal`; `None` if it isn't its node.
-    fn aside(&self, node: u32, normal: [f64; 3]) -> Option<[f64; 3]> {
-        let from = self.nodes.iter().position(|&n| n == node)?;
-        let way = advance(self.middle(), -1.0, self.at[from]);
-        Some(advance(way, -dot(way, normal), normal))
-    }
-
-    /// The edges of a face at its corner `node`, across `normal`.
-    fn wedge(&self, node: u32, normal: [f64; 3]) -> Option<[[f64; 3]; 2]> {
-        let corner = self.nodes.iter().position(|&n| n == node)?;
-        if self.kind.dim() < 2 || corner >= self.kind.corners() {
-            return None;
-        }
-        let edges = self.kind.edges_at(corner);
-        let edge = |&(end, _): &(usize, Option<usize>)| {
-            let way = advance(self.at[end], -1.0, self.at[corner]);
-            advance(way, -dot(way, normal), normal)
-        };
-        Some([edge(edges.first()?), edge(edges.get(1)?)])
-    }
-
-    /// Whether this facet at node `a` and `other` at node `b`, which lies on the `normal` of `a`,
-    /// lie opposite each other and not beside each other.
-    pub fn is_opposite(&self, a: u32, other: &Self, b: u32, normal: [f64; 3]) -> bool {
-        match (self.aside(a, normal), other.aside(b, normal)) {
-            (Some(own), Some(others)) => {
-                let same_way = match (self.wedge(a, normal), other.wedge(b, normal)) {
-                    (Some(wedge), Some(opposite)) => {
-                        is_between(opposite, others, own) || is_between(wedge, own, others)
-                    }
-                    _ => dot(own, others) > 1e-6 * length(own) * length(others),
-                };
-                same_way && dot(self.normal, other.normal) < 0.0
-            }
-            _ => false,
-        }
-    }
-}
 
 /// What the facets around a node say of the surface there.
 #[derive(Clone, Copy, Debug, Default)]
@@ -458,19 +283,6 @@ impl Surface {
     pub fn extent(&self) -> f64 {
         BoundingBox::around(self.facets.iter().flat_map(|facet| &facet.at)).extent()
     }
-}
-
-/// Whether a direction lies in the wedge between two edges that holds `inside`, all of them in one plane.
-fn is_between([first, second]: [[f64; 3]; 2], inside: [f64; 3], direction: [f64; 3]) -> bool {
-    let beside = |edge| dot(cross(edge, inside), cross(edge, direction)) >= 0.0;
-    beside(first) && beside(second)
-}
-
-fn integrate(kind: ElementKind, integrand: impl Fn([f64; 3]) -> [f64; 3]) -> [f64; 3] {
-    // The length of a curved facet isn't a polynomial.
-    let rule = kind.quadrature(if kind.is_linear() { 2 } else { CURVED_DEGREE });
-    let points = rule.into_iter();
-    points.fold([0.0; 3], |sum, (xi, w)| advance(sum, w, integrand(xi)))
 }
 
 fn compare(a: [f64; 3], b: [f64; 3]) -> std::cmp::Ordering {

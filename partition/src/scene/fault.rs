@@ -117,31 +117,7 @@ impl Scene {
         let mut check = |path: Vec<Step>, fault: Option<String>| {
             found.extend(fault.map(|message| (path, message)));
         };
-        for (name, material) in &self.materials {
-            let Elasticity::Anisotropic {
-                stiffness,
-                out_of_plane,
-            } = material
-            else {
-                continue;
-            };
-            let (rows, place, others) = match self.plane {
-                Some(PlaneState::Axisymmetric) => (
-                    4,
-                    "around an axis",
-                    Some("around an axis it is row 3 of 'stiffness'"),
-                ),
-                Some(_) => (3, "in 2 dimensions", None),
-                None => (6, "in 3 dimensions", Some("a scene in space has none")),
-            };
-            let fault = (stiffness.size() != rows).then(|| {
-                let or_in_space = if rows < 6 { OR_IN_SPACE } else { "" };
-                format!("expected {rows} rows of {rows} numbers {place}{or_in_space}")
-            });
-            check(at(["materials", name, "stiffness"]), fault);
-            let fault = out_of_plane.and(others).map(String::from);
-            check(at(["materials", name, "out_of_plane"]), fault);
-        }
+        self.wrong_materials(&mut check);
         for (name, body) in &self.bodies {
             let fault = body.body_force.as_ref().and_then(|force| force.fault(dim));
             check(at(["bodies", name, "body_force"]), fault);
@@ -177,6 +153,41 @@ impl Scene {
             let pressure = step.pressure.as_deref().unwrap_or_default();
             wrong_loads(dim, &within, displacement, traction, pressure, &mut check);
         }
+        self.wrong_contacts(dim, &mut check);
+        found.into_iter().next()
+    }
+
+    /// Stiffnesses of the wrong size.
+    fn wrong_materials(&self, check: &mut impl FnMut(Vec<Step>, Option<String>)) {
+        for (name, material) in &self.materials {
+            let Elasticity::Anisotropic {
+                stiffness,
+                out_of_plane,
+            } = material
+            else {
+                continue;
+            };
+            let (rows, place, others) = match self.plane {
+                Some(PlaneState::Axisymmetric) => (
+                    4,
+                    "around an axis",
+                    Some("around an axis it is row 3 of 'stiffness'"),
+                ),
+                Some(_) => (3, "in 2 dimensions", None),
+                None => (6, "in 3 dimensions", Some("a scene in space has none")),
+            };
+            let fault = (stiffness.size() != rows).then(|| {
+                let or_in_space = if rows < 6 { OR_IN_SPACE } else { "" };
+                format!("expected {rows} rows of {rows} numbers {place}{or_in_space}")
+            });
+            check(at(["materials", name, "stiffness"]), fault);
+            let fault = out_of_plane.and(others).map(String::from);
+            check(at(["materials", name, "out_of_plane"]), fault);
+        }
+    }
+
+    /// Obstacles and laws of contacts of the wrong dimension.
+    fn wrong_contacts(&self, dim: usize, check: &mut impl FnMut(Vec<Step>, Option<String>)) {
         for (index, contact) in self.contact.iter().enumerate() {
             if let Some(Contact {
                 partner: Partner::Obstacle(obstacle),
@@ -192,7 +203,6 @@ impl Scene {
                 check(entry("contact", index, key), Some(fault));
             }
         }
-        found.into_iter().next()
     }
 
     /// A step with a wrong name, a time before that of the step before, or a body that isn't there.

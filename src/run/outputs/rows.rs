@@ -64,16 +64,8 @@ pub fn write_solution(
         }
     }
     if let Some(beside) = beside {
-        let own = parcels.iter().filter(|parcel| parcel.owner == comm.rank());
-        let write_own = || {
-            for parcel in own {
-                slab.restart(parcel.subdomains.start);
-                parcel.append_to(&mut slab, context, solution);
-                beside.write(&slab)?;
-            }
-            beside.finish_step(comm.hosts())
-        };
-        let digests = comm.agree(write_own().map_err(Failure::from))?;
+        let written = write_own(beside, &parcels, context, solution, &mut slab);
+        let digests = comm.agree(written.map_err(Failure::from))?;
         let digests = comm.collect(&digests);
         write(&mut |file| {
             file.take_as_written(&digests);
@@ -99,6 +91,28 @@ pub fn write_solution(
     write(&mut |file| file.write_contacts(absent));
     write(&mut ResultFile::finish_step);
     comm.agree(failed.map_err(Failure::from))
+}
+
+/// Writes the parcels of this rank beside those of others; returns the digests of what it wrote.
+///
+/// # Errors
+/// The file can't be written.
+fn write_own(
+    beside: &mut FileBeside,
+    parcels: &[Parcel],
+    context: &Context<'_>,
+    solution: &Solution,
+    slab: &mut SubdomainResults,
+) -> Result<Vec<u64>, OutputError> {
+    let own = parcels
+        .iter()
+        .filter(|parcel| parcel.owner == context.comm.rank());
+    for parcel in own {
+        slab.restart(parcel.subdomains.start);
+        parcel.append_to(slab, context, solution);
+        beside.write(slab)?;
+    }
+    beside.finish_step(context.comm.hosts())
 }
 
 /// The rows of the contact points of a problem that aren't there in a `stage`: without forces, and without a gap.

@@ -9,6 +9,7 @@ use crate::magnitude::short;
 use crate::mesh::topology::CellFacet;
 use crate::model::groups;
 use crate::scene::condition::Names;
+use crate::scene::loading::Loading;
 
 /// Strain that hardly anybody means: by then small strains are no approximation.
 const LARGE: f64 = 0.1;
@@ -103,88 +104,103 @@ impl Diagnostics<'_> {
 
     /// Body forces, initial stresses and heat.
     fn of_bodies(&self) -> Vec<Estimate> {
-        let (mesh, extent) = (&self.bodies.mesh, self.extent());
-        let (force, stress) = (self.scene.units.body_force(), self.scene.units.stress());
         let mut first_cells = vec![None; self.scene.bodies.len()];
         for (cell, &body) in self.bodies.cell_body.iter().enumerate() {
             first_cells[body as usize].get_or_insert(cell);
         }
+        let loadings = self.scene.loadings().into_iter();
+        loadings
+            .flat_map(|loading| {
+                let bodies = first_cells.iter().enumerate();
+                let there = bodies.filter_map(|(index, first)| Some((index, (*first)?)));
+                let estimates = there.flat_map(|of| self.of_body(&loading, of));
+                estimates.collect::<Vec<Estimate>>()
+            })
+            .collect()
+    }
+
+    /// The same of the body with this index, whose `first` cell has this number, in a loading.
+    fn of_body(&self, loading: &Loading, (index, first): (usize, usize)) -> Vec<Estimate> {
+        let units = self.scene.units;
+        let Some((name, body)) = self.scene.bodies.iter().nth(index) else {
+            return Vec::new();
+        };
+        let material = &self.materials[self.bodies.cell_material[first] as usize];
+        let stiffness = material.stiffness.largest();
+        let against = |what: String, strain: f64| Estimate {
+            strain,
+            words: format!(
+                "body '{name}': {what} of a stiffness of {} {} make strains of about {}, where small ones \
+                 are meant; are their units the same?",
+                short(stiffness),
+                units.stress(),
+                short(strain)
+            ),
+        };
         let mut estimates = Vec::new();
-        for loading in self.scene.loadings() {
-            for (index, (name, body)) in self.scene.bodies.iter().enumerate() {
-                let Some(first) = first_cells[index] else {
-                    continue;
-                };
-                let material = &self.materials[self.bodies.cell_material[first] as usize];
-                let stiffness = material.stiffness.largest();
-                let largest =
-                    |is_constant: bool, size: &dyn Fn([f64; 3]) -> Result<f64, String>| {
-                        // What is the same everywhere needn't be asked for twice.
-                        let last = if is_constant {
-                            first + 1
-                        } else {
-                            mesh.cells.len()
-                        };
-                        let own = (first..last)
-                            .filter(|&cell| self.bodies.cell_body[cell] as usize == index);
-                        let nodes = own.flat_map(|cell| mesh.cells.nodes_of(cell));
-                        nodes
-                            .filter_map(|&node| size(mesh.points[node as usize]).ok())
-                            .fold(0.0, |most: f64, size| most.max(size.abs()))
-                    };
-                let against = |what: String, strain: f64| Estimate {
-                    strain,
-                    words: format!(
-                        "body '{name}': {what} of a stiffness of {} {stress} make strains of about {}, where small ones \
-                         are meant; are their units the same?",
-                        short(stiffness),
-                        short(strain)
-                    ),
-                };
-                if let Some(given) = loading.body_force[index] {
-                    let scale = loading.scale.body_force;
-                    let most = largest(given.is_constant(), &|x| Ok(scale * length(given.at(x)?)));
-                    let what = format!(
-                        "body forces of up to {} {force} on bodies that measure {} {}",
-                        short(most),
-                        short(extent),
-                        self.scene.units.length()
-                    );
-                    estimates.push(against(what, most * extent / stiffness));
-                }
-                if let Some(given) = &body.initial_stress {
-                    let scale = loading.scale.initial_stress;
-                    let most = largest(given.is_constant(), &|x| {
-                        Ok(scale
-                            * given
-                                .at(x)?
-                                .iter()
-                                .fold(0.0, |most: f64, s| most.max(s.abs())))
-                    });
-                    let what = format!(
-                        "initial stresses of up to {} {stress} in a material",
-                        short(most)
-                    );
-                    estimates.push(against(what, most / stiffness));
-                }
-                if let Some(thermal) = &body.thermal {
-                    let temperature = loading.temperature[index].unwrap_or(&thermal.temperature);
-                    let scale = loading.scale.thermal * thermal.expansion.0;
-                    let strain = largest(temperature.is_constant(), &|x| {
-                        Ok(scale * temperature.at(x)?)
-                    });
-                    estimates.push(Estimate {
-                        strain,
-                        words: format!(
-                            "body '{name}': heat makes strains of about {}, where small ones are meant; is the expansion \
-                             that of one degree?",
-                            short(strain)
-                        ),
-                    });
-                }
-            }
+        if let Some(given) = loading.body_force[index] {
+            let (scale, extent) = (loading.scale.body_force, self.extent());
+            let size = |x| Ok(scale * length(given.at(x)?));
+            let most = self.largest((index, first), given.is_constant(), size);
+            let what = format!(
+                "body forces of up to {} {} on bodies that measure {} {}",
+                short(most),
+                units.body_force(),
+                short(extent),
+                units.length()
+            );
+            estimates.push(against(what, most * extent / stiffness));
+        }
+        if let Some(given) = &body.initial_stress {
+            let scale = loading.scale.initial_stress;
+            let size = |x| {
+                let stress = given.at(x)?;
+                Ok(scale * stress.iter().fold(0.0, |most: f64, s| most.max(s.abs())))
+            };
+            let most = self.largest((index, first), given.is_constant(), size);
+            let what = format!(
+                "initial stresses of up to {} {} in a material",
+                short(most),
+                units.stress()
+            );
+            estimates.push(against(what, most / stiffness));
+        }
+        if let Some(thermal) = &body.thermal {
+            let temperature = loading.temperature[index].unwrap_or(&thermal.temperature);
+            let scale = loading.scale.thermal * thermal.expansion.0;
+            let size = |x| Ok(scale * temperature.at(x)?);
+            let strain = self.largest((index, first), temperature.is_constant(), size);
+            estimates.push(Estimate {
+                strain,
+                words: format!(
+                    "body '{name}': heat makes strains of about {}, where small ones are meant; is the expansion \
+                     that of one degree?",
+                    short(strain)
+                ),
+            });
         }
         estimates
+    }
+
+    /// The largest `size` at the nodes of a body, by its index and first cell.
+    fn largest(
+        &self,
+        (index, first): (usize, usize),
+        is_constant: bool,
+        size: impl Fn([f64; 3]) -> Result<f64, String>,
+    ) -> f64 {
+        let mesh = &self.bodies.mesh;
+        // What is the same everywhere needn't be asked for twice.
+        let last = if is_constant {
+            first + 1
+        } else {
+            mesh.cells.len()
+        };
+        let own = (first..last).filter(|&cell| self.bodies.cell_body[cell] as usize == index);
+        let nodes = own.flat_map(|cell| mesh.cells.nodes_of(cell));
+        nodes
+            .filter_map(|&node| size(mesh.points[node as usize]).ok())
+            .fold(0.0, |most: f64, size| most.max(size.abs()))
     }
 
     /// What a load makes whose size at a place of a side is `size`; values that aren't finite have been refused.

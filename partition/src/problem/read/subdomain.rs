@@ -9,7 +9,7 @@ use crate::element::geometry::{dot, padded};
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::magnitude::SMALLEST_AREA;
-use crate::mesh::topology::Facets;
+use crate::mesh::facets::Facets;
 use crate::model::{PlaneState, Support};
 use crate::problem::{InitialStress, InterfaceNode, StepLoads, Subdomain, UNIT_TOLERANCE};
 

@@ -1,0 +1,93 @@
+//! Nodes that supports hold, and contact points whose jump they prescribe.
+
+use std::collections::HashMap;
+
+use super::steps::Loads;
+use super::supports::PARALLEL;
+use crate::contact_point::ContactPoint;
+use crate::element::geometry::{advance, dot, length};
+use crate::error::InputError;
+use crate::scene::units::Units;
+
+/// Gaps are exact to this fraction of the scene's coordinates.
+pub(super) const ROUNDING: f64 = 1e-12;
+
+/// A direction in which a node is held, and how far in each load step (m).
+struct Held {
+    direction: [f64; 3],
+    values: Vec<f64>,
+}
+
+/// The nodes that supports hold, each with its directions.
+pub(super) struct HeldNodes(HashMap<u32, Vec<Held>>);
+
+impl HeldNodes {
+    /// The nodes that the supports of `loads` hold.
+    pub fn new(loads: &Loads) -> Self {
+        let mut by_node: HashMap<u32, Vec<Held>> = HashMap::new();
+        for (i, support) in loads.supports.iter().enumerate() {
+            by_node.entry(support.node).or_default().push(Held {
+                direction: support.direction,
+                values: loads.values(i),
+            });
+        }
+        Self(by_node)
+    }
+
+    /// The points of contact `number` whose jump supports leave open; a gap is
+    /// exact to `slack` (m).
+    ///
+    /// # Errors
+    /// A point whose gap supports close.
+    pub fn without_prescribed(
+        &self,
+        (number, what): (u32, &str),
+        points: Vec<ContactPoint<u32>>,
+        slack: f64,
+        units: Units,
+    ) -> Result<Vec<ContactPoint<u32>>, InputError> {
+        let unit = units.length();
+        let mut kept = Vec::with_capacity(points.len());
+        for point in points {
+            let Some(jumps) = self.prescribed_jump(&point) else {
+                kept.push(ContactPoint {
+                    contact: number,
+                    place: kept.len() as u32,
+                    ..point
+                });
+                continue;
+            };
+            let closest = jumps.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            if closest > point.gap + slack {
+                return Err(InputError::new(format!(
+                    "{what}: at node {} displacements are prescribed on both sides that close \
+                     the gap of {} {unit} by {closest} {unit}; expected no penetration",
+                    point.tag(),
+                    point.gap
+                )));
+            }
+        }
+        Ok(kept)
+    }
+
+    /// The normal jump in every load step of a point all of whose nodes are prescribed along the normal. `None`
+    /// if one is free.
+    fn prescribed_jump(&self, point: &ContactPoint<u32>) -> Option<Vec<f64>> {
+        let mut jumps = Vec::new();
+        for (node, row) in point.row() {
+            let mut free = row;
+            for held in self.0.get(&node)? {
+                let along = dot(row, held.direction);
+                free = advance(free, -along, held.direction);
+                jumps.resize(held.values.len(), 0.0);
+                for (jump, value) in jumps.iter_mut().zip(&held.values) {
+                    *jump += along * value;
+                }
+            }
+            if length(free) > PARALLEL {
+                return None;
+            }
+        }
+        Some(jumps)
+    }
+}
