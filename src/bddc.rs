@@ -12,11 +12,11 @@ pub mod cluster_schur;
 mod coarse;
 mod conjugate_gradients;
 mod constraints;
-mod depth;
+mod householder;
 mod local;
 mod motions;
 mod placement;
-mod reflections;
+mod preconditioner_level;
 pub mod solution;
 mod transform;
 
@@ -28,10 +28,10 @@ use self::closed::{GroupBetween, Ties};
 use self::cluster_schur::ClusterSchur;
 use self::coarse::{Coarse, Part};
 use self::constraints::{Basis, Mechanism, Side};
-use self::depth::Depth;
 use self::local::{Local, Shared};
 use self::motions::SharedNodes;
 use self::placement::Placement;
+use self::preconditioner_level::PreconditionerLevel;
 use crate::comm::Comm;
 use crate::contact::jumps::NoUnknown;
 use crate::context::Context;
@@ -53,7 +53,7 @@ pub struct Bddc {
     ties: Ties,
     nodes: SharedNodes,
     classes: Classes,
-    depth: Depth,
+    level: PreconditionerLevel,
     /// The clusters of this rank, in the bases of their classes.
     locals: BTreeMap<usize, Local>,
     /// The clusters whose S isn't any more what their part of the preconditioner was made of, on all ranks.
@@ -73,20 +73,20 @@ impl Bddc {
         clusters: &BTreeMap<usize, ClusterSchur>,
     ) -> Result<Self, Failure> {
         let Context { comm, plan, .. } = *context;
-        let owners = plan.owners_of(&plan.tops);
+        let owners = plan.owners_of(&plan.merge_roots);
         let mut dofs: Vec<Vec<InterfaceDof>> = Vec::new();
         comm.gather(
             &owners,
             |c| {
                 clusters
-                    .get(&plan.tops[c])
+                    .get(&plan.merge_roots[c])
                     .map(|cluster| cluster.dofs.clone())
             },
             |_, of_cluster| dofs.extend(of_cluster),
         );
         comm.broadcast(&mut dofs);
         let numbers: Vec<usize> = (0..plan.groups.len())
-            .filter(|&g| plan.is_above_tops(plan.groups[g].node))
+            .filter(|&g| plan.is_above_merge_roots(plan.groups[g].node))
             .collect();
         let own = numbers
             .iter()
@@ -107,7 +107,7 @@ impl Bddc {
         Ok(Self {
             stale: vec![true; dofs.len()],
             nodes: SharedNodes::new(context, &dofs),
-            depth: Depth::first(context.catalog.dim),
+            level: PreconditionerLevel::first(context.catalog.dim),
             between,
             owners,
             dofs,
@@ -183,10 +183,16 @@ impl Bddc {
         let (before, changed) = self.classify(context, touched, renewed);
         let unknowns = self.between.iter().flat_map(|group| &group.dofs);
         let sprung: BTreeSet<InterfaceDof> = unknowns.copied().collect();
-        let placement =
-            |c: usize| Placement::new(c, &clusters[&plan.tops[c]], &self.classes, &self.ties);
+        let placement = |c: usize| {
+            Placement::new(
+                c,
+                &clusters[&plan.merge_roots[c]],
+                &self.classes,
+                &self.ties,
+            )
+        };
         let shared = |c: usize| {
-            let cluster = &clusters[&plan.tops[c]];
+            let cluster = &clusters[&plan.merge_roots[c]];
             Shared::new(cluster, placement(c), (&sprung, spring), par)
         };
         let made = self.made(&before, &changed, renewed);
@@ -198,13 +204,18 @@ impl Bddc {
             if !(0..classes.len()).any(is_made) {
                 return Ok((c, Vec::new()));
             }
-            let sides = match self.depth {
-                Depth::Diagonals => {
-                    let diagonal = &clusters[&plan.tops[c]].diagonal;
+            let sides = match self.level {
+                PreconditionerLevel::Diagonals => {
+                    let diagonal = &clusters[&plan.merge_roots[c]].diagonal;
                     Ok(placement(c).sides(diagonal, is_made))
                 }
                 _ => shared(c).and_then(|(shared, s)| {
-                    shared.sides(&s, is_made, self.depth == Depth::Energies, par)
+                    shared.sides(
+                        &s,
+                        is_made,
+                        self.level == PreconditionerLevel::Energies,
+                        par,
+                    )
                 }),
             };
             Ok((c, sides.map_err(moves)?))
@@ -212,7 +223,7 @@ impl Bddc {
         let sides: BTreeMap<usize, Vec<Option<Side>>> = comm.agree(sides.collect())?;
         let bases = self.bases(context, &before, &changed, &made, sides)?;
         let locals = bases.into_iter().map(|(c, bases)| {
-            let local = shared(c).and_then(|shared| Local::new(shared, bases, self.depth, par));
+            let local = shared(c).and_then(|shared| Local::new(shared, bases, self.level, par));
             Ok((c, local.map_err(moves)?))
         });
         let made_anew: BTreeMap<usize, (Local, PackedSymmetric)> = comm.agree(locals.collect())?;
@@ -222,7 +233,7 @@ impl Bddc {
             locals.insert(c, local);
         }
         let others = (self.locals.keys().copied()).filter(|c| !locals.contains_key(c));
-        let touched = others.filter(|&c| touched[plan.tops[c]] && self.locals[&c].own() > 0);
+        let touched = others.filter(|&c| touched[plan.merge_roots[c]] && self.locals[&c].own() > 0);
         let refreshed = touched.map(|c| Ok((c, shared(c).map_err(moves)?.0)));
         self.refresh(comm.agree(refreshed.collect())?);
         self.locals.extend(locals);
@@ -233,7 +244,7 @@ impl Bddc {
         let is_remade =
             |c: usize| changed[c] || self.classes.of_clusters[c].iter().any(|&k| made[k]);
         let remade: Vec<bool> = (0..changed.len()).map(is_remade).collect();
-        let holds = self.depth.holds();
+        let holds = self.level.holds();
         (self.coarse).factorize(context, &self.classes, parts, &remade, holds)?;
         self.coarse_dofs = comm.collect(&self.coarse.len()).into_iter().sum();
         Ok(())
@@ -254,7 +265,7 @@ impl Bddc {
             let mut dofs = self.dofs[c].iter();
             classes.are_as_in(&self.classes, c) && dofs.all(|dof| ties.is_as_in(&self.ties, dof))
         };
-        let is_touched = |c: usize| self.stale[c] || touched[plan.tops[c]];
+        let is_touched = |c: usize| self.stale[c] || touched[plan.merge_roots[c]];
         let is_changed = |c: usize| !shares_the_same(c) || renewed && is_touched(c);
         let changed: Vec<bool> = (0..self.dofs.len()).map(is_changed).collect();
         self.stale = (0..changed.len())
@@ -267,17 +278,20 @@ impl Bddc {
     /// What is to become of a preconditioner that is too bad, or can't be made: classes are looked into, and where that
     /// was in vain it is to be held, and as good as it is. Returns whether there was anything left to do.
     pub fn look_deeper(&mut self) -> bool {
-        let Some(deeper) = self.depth.next() else {
+        let Some(deeper) = self.level.next() else {
             return false;
         };
-        self.depth = deeper;
+        self.level = deeper;
         self.classes = Classes::default();
         true
     }
 
     /// Whether the preconditioner can be made better if it is too bad.
     pub fn is_judged(&self) -> bool {
-        matches!(self.depth, Depth::Diagonals | Depth::Motions)
+        matches!(
+            self.level,
+            PreconditionerLevel::Diagonals | PreconditionerLevel::Motions
+        )
     }
 
     /// The smallest pivot of the coarse problem, of this rank, relative to its diagonal entry.

@@ -4,6 +4,7 @@
 //! rank waits for one that is gone.
 
 pub mod clock;
+mod collectives;
 mod launcher;
 #[cfg(debug_assertions)]
 mod on_purpose;
@@ -11,7 +12,6 @@ mod phase;
 pub mod ranks;
 mod signals;
 mod start;
-mod ways;
 
 use std::cell::Cell;
 

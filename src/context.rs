@@ -46,14 +46,14 @@ pub struct Context<'a> {
 
 /// A place on the way through the load steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
+pub struct LoadPoint {
     /// The load step.
     pub step: usize,
     /// How much of the way is gone from the loads of the step before, none before the first, to those of the step.
     pub part: f64,
 }
 
-impl Moment {
+impl LoadPoint {
     /// The end of a load step.
     pub fn end_of(step: usize) -> Self {
         Self { step, part: 1.0 }
@@ -71,7 +71,7 @@ pub struct Loads {
 
 impl Context<'_> {
     /// What acts at a moment.
-    pub fn loads(&self, moment: Moment) -> Loads {
+    pub fn loads(&self, moment: LoadPoint) -> Loads {
         let mut loads = self.loads_of_step(moment.step);
         if moment.part < 1.0 {
             let before = (moment.step.checked_sub(1)).map(|step| self.loads_of_step(step));

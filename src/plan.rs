@@ -37,7 +37,7 @@ pub struct Plan {
     pub merging: Merging,
     /// The nodes of the hierarchy above which nothing is merged where active sets are frozen, ascending: its roots, or
     /// the clusters between which the iterative interface solver works.
-    pub tops: Vec<usize>,
+    pub merge_roots: Vec<usize>,
 }
 
 impl Plan {
@@ -53,7 +53,7 @@ impl Plan {
             groups: in_contact
                 .map(|v| GroupPlan::new(catalog, &tree, v))
                 .collect(),
-            tops: match merging {
+            merge_roots: match merging {
                 Merging::Clusters => tree.clusters.clone(),
                 _ => tree.roots().collect(),
             },
@@ -94,8 +94,8 @@ impl Plan {
     /// The owner of every node of the hierarchy.
     fn hand_out(&self, catalog: &Catalog, ranks: usize) -> Vec<usize> {
         let top = match self.merging {
-            Merging::Frozen | Merging::Clusters => self.tops.clone(),
-            _ => cluster_nodes(&self.tree, self.merging, &self.tops),
+            Merging::Frozen | Merging::Clusters => self.merge_roots.clone(),
+            _ => cluster_nodes(&self.tree, self.merging, &self.merge_roots),
         };
         let mut costs = vec![0.0; self.tree.nodes.len()];
         for &v in &top {
@@ -104,8 +104,8 @@ impl Plan {
             }
         }
         if self.merging == Merging::Clusters {
-            for &v in &self.tops {
-                costs[v] += choice::between(self.tree.nodes[v].dofs[1] as f64);
+            for &v in &self.merge_roots {
+                costs[v] += choice::iteration_flops(self.tree.nodes[v].dofs[1] as f64);
             }
         }
         assign(&self.tree, &top, &costs, ranks)
@@ -115,7 +115,7 @@ impl Plan {
     pub fn form_clusters(&mut self, merging: Merging) {
         self.merging = merging;
         self.clusters.clear();
-        for node in cluster_nodes(&self.tree, merging, &self.tops) {
+        for node in cluster_nodes(&self.tree, merging, &self.merge_roots) {
             let under = self.tree.subtree(node).into_iter();
             self.clusters.push(ClusterPlan {
                 node,
@@ -144,18 +144,18 @@ impl Plan {
     }
 
     /// Whether frozen active sets are merged no further than to node v of the hierarchy.
-    pub fn is_top(&self, v: usize) -> bool {
-        self.tops.binary_search(&v).is_ok()
+    pub fn is_merge_root(&self, v: usize) -> bool {
+        self.merge_roots.binary_search(&v).is_ok()
     }
 
     /// The node of the hierarchy that node v is merged into.
     pub fn merged_into(&self, v: usize) -> Option<usize> {
-        self.tree.nodes[v].parent.filter(|_| !self.is_top(v))
+        self.tree.nodes[v].parent.filter(|_| !self.is_merge_root(v))
     }
 
     /// Whether frozen active sets are merged up to the roots of the hierarchy, so that nothing is left between clusters.
     pub fn has_one_cluster(&self) -> bool {
-        (self.tops.iter()).all(|&v| self.tree.nodes[v].parent.is_none())
+        (self.merge_roots.iter()).all(|&v| self.tree.nodes[v].parent.is_none())
     }
 
     /// The nodes of the hierarchy that are `sought`, the deepest first: what ranks share is near the roots, and none
@@ -181,10 +181,10 @@ impl Plan {
     }
 
     /// Whether node v of the hierarchy is above the last ones that frozen active sets are merged to.
-    pub fn is_above_tops(&self, v: usize) -> bool {
+    pub fn is_above_merge_roots(&self, v: usize) -> bool {
         let mut above = Some(v);
         while let Some(v) = above {
-            if self.is_top(v) {
+            if self.is_merge_root(v) {
                 return false;
             }
             above = self.tree.nodes[v].parent;

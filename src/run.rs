@@ -27,7 +27,7 @@ use self::stage::{Handover, Stages, reason_to_hand_over};
 use self::step_totals::step_totals;
 use crate::comm::ranks::RankSeconds;
 use crate::comm::{Comm, phase};
-use crate::context::{Context, Moment};
+use crate::context::{Context, LoadPoint};
 use crate::error::Failure;
 use crate::fem::contact_state::ContactRow;
 use crate::output::lock::OutputLock;
@@ -190,7 +190,7 @@ impl Stages<'_> {
         (progress.seconds).add(|s| &mut s.read, comm.times() - lap);
 
         // S_i of the linear subdomains, (11), S_kl of the pairs, (12), and S_0, (15).
-        let loads = StepState::default().loads(&context, Moment::end_of(first), &analyses[0]);
+        let loads = StepState::default().loads(&context, LoadPoint::end_of(first), &analyses[0]);
         let operators = Operators::new(context, log, &loads, &analyses[0], &mut progress.seconds)
             .map_err(|failure| state::finished(failure, &context, settings, done))?;
 

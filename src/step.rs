@@ -1,8 +1,8 @@
 //! A load step: everything in it that depends on loads, condensed onto Γ.
 
+pub mod halving;
 pub mod state;
 pub mod transfer;
-pub mod way;
 
 use std::collections::BTreeMap;
 

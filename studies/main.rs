@@ -8,12 +8,12 @@
     reason = "a study that can't go on has failed"
 )]
 
+extern crate contact_dd_trials as support;
+
 mod accuracy;
 mod iterations;
 mod record;
 mod stability;
-#[path = "../tests/support/mod.rs"]
-mod support;
 mod validation;
 
 use std::process::ExitCode;

@@ -94,7 +94,7 @@ fn name(value: impl ValueEnum) -> String {
 
 pub fn run(arguments: &Arguments) -> ExitCode {
     let binary = arguments.binary.clone();
-    let binary = binary.unwrap_or_else(|| crate::support::solver::built().to_owned());
+    let binary = binary.unwrap_or_else(|| support::solver::built().to_owned());
     if arguments.examples {
         return examples::record(&binary, &arguments.file);
     }

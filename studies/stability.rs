@@ -67,7 +67,7 @@ struct Kinds {
 
 pub fn run(arguments: &Arguments) -> ExitCode {
     let binary = arguments.binary.clone();
-    let binary = binary.unwrap_or_else(|| crate::support::solver::built().to_owned());
+    let binary = binary.unwrap_or_else(|| support::solver::built().to_owned());
     let runs = random::Runs {
         binary,
         cells: arguments.cells,

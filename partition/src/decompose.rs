@@ -1,8 +1,8 @@
 //! The cut into subdomains: recursive bisection of the mesh, contact surfaces like everything else.
 
+mod aggregates;
 mod bisect;
 mod build;
-mod clumps;
 mod dissect;
 mod flow;
 mod graph;

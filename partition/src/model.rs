@@ -3,6 +3,7 @@
 //! Loads are consistent nodal forces, supports are rows `u·d = v`, contact is `B u ≤ g`; nothing
 //! behind this point knows how they came about.
 
+mod activation;
 mod blend;
 mod bodies;
 mod clip;
@@ -16,7 +17,6 @@ mod mortar;
 mod node_pairs;
 mod obstacle;
 mod parts;
-mod presence;
 mod ray_search;
 mod rules;
 mod sides;
@@ -102,8 +102,8 @@ impl Model {
             tables,
             found,
         } = MadeContacts::new(&sides, &declared, &mut warnings)?;
-        presence::check(scene, &bodies, &contacts)?;
-        let absent_contacts = presence::contacts(scene, &tables);
+        activation::check(scene, &bodies, &contacts)?;
+        let absent_contacts = activation::contacts(scene, &tables);
         let diagnostics = diagnostics::Diagnostics {
             scene,
             bodies: &bodies,
@@ -114,7 +114,7 @@ impl Model {
             declared: &declared,
         };
         let all: Vec<&str> = declared.iter().map(|of| &of.table[..]).collect();
-        diagnostics.check_repeated_contacts(&presence::contacts(scene, &all))?;
+        diagnostics.check_repeated_contacts(&activation::contacts(scene, &all))?;
         warnings.extend(diagnostics.warnings()?);
         let prescribed_subdomains = (scene.subdomains.as_ref())
             .map(|names| bodies::prescribed_subdomains(&bodies.mesh, names))

@@ -1,5 +1,6 @@
 //! What a user writes: `scene.toml`.
 
+mod activation;
 pub mod condition;
 pub mod contact;
 pub mod expression;
@@ -10,7 +11,6 @@ pub mod loading;
 pub mod material;
 pub mod number;
 pub mod place;
-mod presence;
 pub mod step;
 pub mod suggest;
 mod syntax;

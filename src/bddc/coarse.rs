@@ -123,7 +123,7 @@ impl Coarse {
     /// Above the clusters of a `plan`; nothing is factorized yet.
     pub fn new(plan: &Plan) -> Self {
         Self {
-            nodes: plan.deepest_first(|v| plan.is_above_tops(v)),
+            nodes: plan.deepest_first(|v| plan.is_above_merge_roots(v)),
             fronts: BTreeMap::new(),
             parts: BTreeMap::new(),
             share: None,
@@ -144,14 +144,19 @@ impl Coarse {
         holds: &[f64],
     ) -> Result<(), Failure> {
         let Context { comm, plan, .. } = *context;
-        for (c, &top) in plan.tops.iter().enumerate().filter(|(c, _)| remade[*c]) {
+        for (c, &top) in plan
+            .merge_roots
+            .iter()
+            .enumerate()
+            .filter(|(c, _)| remade[*c])
+        {
             self.pass_up(context, top, parts.remove(&c));
         }
         let mut factorized = Ok(());
         for &share in holds {
             let is_other = self.share != Some(share);
             let mut touched = vec![false; plan.tree.nodes.len()];
-            for (&top, is_remade) in plan.tops.iter().zip(remade) {
+            for (&top, is_remade) in plan.merge_roots.iter().zip(remade) {
                 touched[top] = is_other || *is_remade;
             }
             plan.mark_above(&mut touched);
@@ -175,7 +180,7 @@ impl Coarse {
         let Context {
             comm, plan, par, ..
         } = *context;
-        let homes = classes.homes(&plan.tree, &plan.tops);
+        let homes = classes.homes(&plan.tree, &plan.merge_roots);
         let homes: BTreeMap<InterfaceDof, usize> = (classes.list.iter().zip(homes))
             .map(|(class, home)| (class.dofs[0], home))
             .collect();
@@ -185,7 +190,11 @@ impl Coarse {
                 continue;
             }
             let child = |&child: &usize| {
-                let share = if plan.is_top(child) { share } else { 0.0 };
+                let share = if plan.is_merge_root(child) {
+                    share
+                } else {
+                    0.0
+                };
                 Some((self.parts.get(&child)?, share))
             };
             let children: Option<Vec<(&Part, f64)>> =
@@ -245,7 +254,7 @@ impl Coarse {
         let plan = context.plan;
         let parent = |v: usize| plan.tree.nodes[v].parent;
         let mut arrived = BTreeMap::new();
-        for (c, &top) in plan.tops.iter().enumerate() {
+        for (c, &top) in plan.merge_roots.iter().enumerate() {
             let load = loads.remove(&c);
             carry(context, top, parent(top), load, &mut arrived, Direction::Up);
         }
@@ -289,7 +298,7 @@ impl Coarse {
                 );
             }
         }
-        let of_clusters = plan.tops.iter().enumerate();
+        let of_clusters = plan.merge_roots.iter().enumerate();
         of_clusters
             .filter_map(|(c, top)| Some((c, solved.remove(top)?)))
             .collect()

@@ -15,7 +15,7 @@ use faer::linalg::triangular_solve::{
 use faer::{Accum, ColMut, ColRef, Mat, MatRef, Par};
 use serde::{Deserialize, Serialize};
 
-use crate::bddc::reflections::Reflections;
+use crate::bddc::householder::Householder;
 use crate::schur::trapezoid::NotDefinite;
 
 /// Ratio of the energies above which what has it becomes coarse: about the condition number of what is left.
@@ -37,7 +37,7 @@ pub struct Basis {
     /// Number of coarse unknowns.
     pub coarse: usize,
     /// The basis; nothing where it is the unknowns of the class.
-    pub q: Option<Reflections>,
+    pub q: Option<Householder>,
     share: Share,
 }
 
@@ -98,7 +98,7 @@ impl Basis {
             true => adaptive(&whole)?,
             false => motions(),
         };
-        let q = Reflections::new(&weights);
+        let q = Householder::new(&weights);
         let basis = |share| Self {
             coarse: weights.ncols(),
             q: Some(q.clone()),

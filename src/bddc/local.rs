@@ -8,8 +8,8 @@ use faer::{Mat, MatMut, Par, Side::Lower};
 
 use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::constraints::{Basis, Mechanism, Side};
-use crate::bddc::depth::Depth;
 use crate::bddc::placement::Placement;
+use crate::bddc::preconditioner_level::PreconditionerLevel;
 use crate::bddc::transform::transformed;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::symmetric::PackedSymmetric;
@@ -145,15 +145,15 @@ enum Others {
 }
 
 impl Others {
-    /// As precise as this `depth` asks for, and what they leave to the coarse unknowns.
+    /// As precise as this `level` asks for, and what they leave to the coarse unknowns.
     fn new(
         s: Mat<f64>,
         count: usize,
-        depth: Depth,
+        level: PreconditionerLevel,
         par: Par,
     ) -> Result<(Self, Mat<f64>), NotDefinite> {
-        Ok(match depth {
-            Depth::Diagonals => {
+        Ok(match level {
+            PreconditionerLevel::Diagonals => {
                 let (others, coarse) = Trapezoid::new(s, count, par)?;
                 (Self::Single(others), coarse)
             }
@@ -200,14 +200,14 @@ pub struct Local {
 }
 
 impl Local {
-    /// A cluster with the bases of its classes, as `depth` says, and what it leaves to its coarse unknowns.
+    /// A cluster with the bases of its classes, as `level` says, and what it leaves to its coarse unknowns.
     ///
     /// # Errors
     /// It can move although its coarse unknowns are held.
     pub fn new(
         (shared, mut s): (Shared, Mat<f64>),
         bases: Vec<Basis>,
-        depth: Depth,
+        level: PreconditionerLevel,
         par: Par,
     ) -> Result<(Self, PackedSymmetric), Mechanism> {
         fill_upper_triangle(&mut s);
@@ -233,9 +233,9 @@ impl Local {
         }
         let factor = |mut held: Mat<f64>, share: f64| {
             hold(held.as_mut(), 0..n, share, 0.0);
-            Others::new(held, count, depth, par)
+            Others::new(held, count, level, par)
         };
-        let (last, before) = depth.holds().split_last().ok_or(Mechanism)?;
+        let (last, before) = level.holds().split_last().ok_or(Mechanism)?;
         let found = before
             .iter()
             .find_map(|&share| factor(permuted.clone(), share).ok());

@@ -69,7 +69,7 @@ impl Bddc {
             false => Vec::new(),
         };
         let load_of = |c: usize| {
-            let mut load = loads.clusters[&plan.tops[c]].clone();
+            let mut load = loads.clusters[&plan.merge_roots[c]].clone();
             let own = forces.iter().filter(|(cluster, ..)| *cluster == c);
             own.for_each(|&(_, place, force)| load[place] += force);
             load
@@ -82,7 +82,7 @@ impl Bddc {
         let (mut own, mut b) = (Vectors::new(), Vectors::new());
         for (&c, local) in &self.locals {
             let mut load = load_of(c);
-            let held = local.forces(&clusters[&plan.tops[c]].s, &constants_of(c));
+            let held = local.forces(&clusters[&plan.merge_roots[c]].s, &constants_of(c));
             load.iter_mut()
                 .zip(held)
                 .for_each(|(load, held)| *load -= held);
@@ -101,12 +101,12 @@ impl Bddc {
         }
         let unbalanced = solved.iter().map(|(&c, x)| {
             let mut r = load_of(c);
-            let s_x = self.locals[&c].forces(&clusters[&plan.tops[c]].s, x);
+            let s_x = self.locals[&c].forces(&clusters[&plan.merge_roots[c]].s, x);
             r.iter_mut().zip(s_x).for_each(|(r, s_x)| *r -= s_x);
             (c, r)
         });
         let groups = self.answers(comm, &solved, &unbalanced.collect());
-        let by_node = solved.into_iter().map(|(c, x)| (plan.tops[c], x));
+        let by_node = solved.into_iter().map(|(c, x)| (plan.merge_roots[c], x));
         BddcSolution {
             clusters: by_node.collect(),
             groups,
@@ -124,7 +124,10 @@ impl Bddc {
         accuracy: Accuracy,
     ) -> (Vectors, usize, bool) {
         let Context { comm, plan, .. } = *context;
-        let matrices = plan.tops.iter().map(|v| clusters.get(v).map(|of| &of.s));
+        let matrices = plan
+            .merge_roots
+            .iter()
+            .map(|v| clusters.get(v).map(|of| &of.s));
         let gradients = ConjugateGradients {
             context,
             owners: &self.owners,
@@ -151,7 +154,7 @@ impl Bddc {
             ends.iter().map(|&(k, c)| (self.owners[c], home(k))),
             |i| {
                 let (k, c) = ends[i];
-                let of_cluster = &known[&plan.tops[c]];
+                let of_cluster = &known[&plan.merge_roots[c]];
                 let dofs = classes[k].dofs.iter();
                 let at = dofs.map(|dof| self.dofs[c].binary_search(dof).ok());
                 at.map(|at| at.map(|at| of_cluster[at])).collect::<Vec<_>>()

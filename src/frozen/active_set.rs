@@ -184,7 +184,7 @@ pub(super) fn settle(
         let accurate = |fronts: &mut FrozenFronts, tolerance, start: Option<&FrozenSolution>| {
             let accuracy = Accuracy {
                 tolerance,
-                start: start.map(|start| &start.tops),
+                start: start.map(|start| &start.merge_roots),
             };
             let mut solution = fronts.solve(context, &open, loads, accuracy)?;
             solution.iterations += start.map_or(0, |start| start.iterations);

@@ -39,7 +39,7 @@ pub struct FrozenFronts {
     /// S of clusters and fronts, at the owner of the node that they are merged into.
     merged: BTreeMap<usize, Condensed>,
     /// S of those that nothing here is above.
-    pub(super) tops: BTreeMap<usize, ClusterSchur>,
+    pub(super) merge_roots: BTreeMap<usize, ClusterSchur>,
     replaced: BTreeMap<usize, Vec<Replaced>>,
     spring: f64,
     spare: Spare,
@@ -63,7 +63,7 @@ impl FrozenFronts {
         let context = &condensation.context;
         let plan = context.plan;
         let mut is_between = vec![false; plan.tree.nodes.len()];
-        for v in plan.tops.iter().flat_map(|&v| plan.tree.subtree(v)) {
+        for v in plan.merge_roots.iter().flat_map(|&v| plan.tree.subtree(v)) {
             is_between[v] = true;
         }
         for cluster in &plan.clusters {
@@ -82,7 +82,7 @@ impl FrozenFronts {
             nodes,
             fronts: BTreeMap::new(),
             merged: BTreeMap::new(),
-            tops: BTreeMap::new(),
+            merge_roots: BTreeMap::new(),
             replaced,
             spring: 0.0,
             spare: Spare::default(),
@@ -105,7 +105,8 @@ impl FrozenFronts {
     fn pass_up(&mut self, context: &Context<'_>, v: usize, mut condensed: Option<Condensed>) {
         let Context { comm, plan, .. } = *context;
         let Some(parent) = plan.merged_into(v) else {
-            self.tops.extend(condensed.map(|top| (v, top.into())));
+            self.merge_roots
+                .extend(condensed.map(|top| (v, top.into())));
             return;
         };
         let way = (plan.node_owners[v], plan.node_owners[parent]);
@@ -220,14 +221,26 @@ impl FrozenFronts {
         }
         let mut bddc = match self.bddc.take() {
             Some(bddc) => bddc,
-            None => Bddc::new(context, &self.tops)?,
+            None => Bddc::new(context, &self.merge_roots)?,
         };
         let renewed = renewed || !is_known;
         // What was made before, with another preconditioner, can't move, nor can what springs hold.
         let is_sound = self.spring > 0.0 || !touched.contains(&true) && !bddc.is_stale();
-        let mut frozen = bddc.freeze(context, &self.tops, &touched, open, (self.spring, renewed));
+        let mut frozen = bddc.freeze(
+            context,
+            &self.merge_roots,
+            &touched,
+            open,
+            (self.spring, renewed),
+        );
         while frozen.is_err() && (bddc.is_judged() || is_sound) && bddc.look_deeper() {
-            frozen = bddc.freeze(context, &self.tops, &touched, open, (self.spring, true));
+            frozen = bddc.freeze(
+                context,
+                &self.merge_roots,
+                &touched,
+                open,
+                (self.spring, true),
+            );
         }
         frozen?;
         let pivot = bddc.coarse_pivot();

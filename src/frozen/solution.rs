@@ -21,7 +21,7 @@ pub struct FrozenSolution {
     /// The unknowns on the boundary of every cluster.
     pub boundaries: BTreeMap<usize, Vec<f64>>,
     /// The unknowns of the nodes between which an iterative solver works.
-    pub tops: BTreeMap<usize, Vec<f64>>,
+    pub merge_roots: BTreeMap<usize, Vec<f64>>,
     /// Its iterations.
     pub iterations: usize,
     /// Whether the preconditioner was too bad, and can be made better.
@@ -68,7 +68,7 @@ impl FrozenFronts {
             }
             self.make_better(context, open)?;
             let from_there = Accuracy {
-                start: Some(&solution.tops),
+                start: Some(&solution.merge_roots),
                 ..accuracy
             };
             let mut nearer = self.solve_as_it_is(context, loads, from_there);
@@ -130,18 +130,18 @@ impl FrozenFronts {
         let mut below: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         match &self.bddc {
             // Roots keep nothing.
-            None => below.extend(plan.tops.iter().map(|&v| (v, Vec::new()))),
+            None => below.extend(plan.merge_roots.iter().map(|&v| (v, Vec::new()))),
             Some(bddc) => {
                 let between = bddc.solve(
                     context,
-                    &self.tops,
+                    &self.merge_roots,
                     ClusterLoads {
                         clusters: &arrived,
                         ..loads
                     },
                     accuracy,
                 );
-                solution.tops = between.clusters.clone();
+                solution.merge_roots = between.clusters.clone();
                 below = between.clusters;
                 solution.iterations = between.iterations;
                 let is_rough = bddc.is_stale() || bddc.is_judged();

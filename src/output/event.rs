@@ -1,17 +1,45 @@
-//! What `--log json` prints, one JSON object in each line; errors and warnings in whichever format the log has.
+//! The events of a run, of which the log is made: one JSON object in each line for programs, lines of text for people;
+//! errors and warnings in whichever format the log has.
 
 use std::env;
 use std::io::{self, Write, stderr};
 
 use anstream::ColorChoice;
 use contact_dd_partition::message;
+use contact_dd_partition::problem::Catalog;
 use serde::Serialize;
 
 use super::report::Report;
-use super::terminal::Summary;
 use crate::settings::command_line::LogFormat;
 use crate::settings::{Origins, Settings};
 use crate::sweep::SweepRecord;
+
+/// What is to be solved, and on what.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary<'a> {
+    /// Version of the program.
+    pub version: &'static str,
+    /// The problem file.
+    pub problem: String,
+    /// Title of the scene.
+    pub title: &'a str,
+    /// Number of degrees of freedom.
+    pub dofs: usize,
+    /// Number of those on Γ.
+    pub interface_dofs: usize,
+    /// Number of subdomains.
+    pub subdomains: usize,
+    /// Number of pairs, or groups, in contact.
+    pub contact_pairs: usize,
+    /// Number of contact conditions.
+    pub contact_conditions: usize,
+    /// Number of those with friction.
+    pub conditions_with_friction: usize,
+    /// Number of ranks.
+    pub ranks: usize,
+    /// Number of threads of each rank.
+    pub threads: usize,
+}
 
 /// One line of the log; `event` names its kind. Numbers that aren't finite are `null`.
 #[derive(Clone, Debug, Serialize)]
@@ -46,6 +74,9 @@ pub enum Event<'a> {
         name: &'a str,
         /// What it stands at on the axis of time.
         time: f64,
+        /// The bodies and contacts that are absent in it.
+        #[serde(skip)]
+        absent: Vec<String>,
         /// How long it and those to come take, about (s); none before the first one is solved.
         #[serde(skip_serializing_if = "Option::is_none")]
         seconds_left: Option<f64>,
@@ -95,6 +126,9 @@ pub enum Event<'a> {
         reason: &'a str,
         /// The report.
         report: &'a Report,
+        /// The problem, whose units its numbers have.
+        #[serde(skip)]
+        catalog: &'a Catalog,
     },
     /// The run has failed; on stderr.
     Error {

@@ -1,25 +1,21 @@
 //! What the root rank prints: plain lines of fixed columns, the same on a terminal and in a log.
 //!
-//! Every function gives whole lines, without the end of the last; whether to print them at all, and whether to
-//! show colours, is the caller's business.
+//! Whether to print them at all, and whether to show colours, is the caller's business.
 
 mod resultants;
 mod timing;
 
 use std::fmt::Display;
-use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
 use contact_dd_partition::message::{ERROR, WARNING};
 use contact_dd_partition::model::PlaneState;
-use contact_dd_partition::problem::{Catalog, LoadStep};
 use contact_dd_partition::scene::units::Units;
-use serde::Serialize;
 
 use super::bar::in_words;
-use super::report::{FrictionOfStep, Report, Status, StepReport};
+use super::event::{Event, Summary};
+use super::report::{FrictionOfStep, Status, StepReport};
 use crate::certificate::Certificate;
-use crate::plan::cost::CostEstimate;
 use crate::sweep::SweepRecord;
 
 /// Bodies and contacts up to which all that aren't there are named.
@@ -32,59 +28,59 @@ const CONVERGED: Style = AnsiColor::Green.on_default();
 /// The head of the table of sweeps.
 pub const SWEEP_HEADER: &str = "\nsweep    residual    active   changed     seconds";
 
-/// What is to be solved, and on what.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Summary<'a> {
-    /// Version of the program.
-    pub version: &'static str,
-    /// The problem file.
-    pub problem: String,
-    /// Title of the scene.
-    pub title: &'a str,
-    /// Number of degrees of freedom.
-    pub dofs: usize,
-    /// Number of those on Γ.
-    pub interface_dofs: usize,
-    /// Number of subdomains.
-    pub subdomains: usize,
-    /// Number of pairs, or groups, in contact.
-    pub contact_pairs: usize,
-    /// Number of contact conditions.
-    pub contact_conditions: usize,
-    /// Number of those with friction.
-    pub conditions_with_friction: usize,
-    /// Number of ranks.
-    pub ranks: usize,
-    /// Number of threads of each rank.
-    pub threads: usize,
+/// The lines of an event, without the end of the last; nothing of those that people aren't told, or told otherwise.
+pub fn text(event: &Event<'_>) -> Option<String> {
+    Some(match event {
+        Event::Problem(of) => summary(of),
+        Event::Settings { settings, .. } => {
+            let words = settings.in_words();
+            let entries = words
+                .iter()
+                .map(|(name, value)| format!("\n{}", entry(name, value)));
+            entries.collect()
+        }
+        Event::Step { .. } => step(event)?,
+        Event::Sweep(record) => sweep(record),
+        Event::Check { .. } => costs(event)? + "\n\nthe problem file is valid",
+        Event::Finished { .. } => closing(event)?,
+        Event::Phase { .. }
+        | Event::Progress { .. }
+        | Event::Warning { .. }
+        | Event::Error { .. } => return None,
+    })
 }
 
-/// What solving would cost `all` ranks together and one of them at `most`, against the memory that is
-/// `available` on the hosts together (bytes), and the coarse problem of an iterative interface solver.
-pub fn costs(
-    all: CostEstimate,
-    most: CostEstimate,
-    available: f64,
-    coarse_dofs: Option<usize>,
-) -> String {
+/// The cost of solving, for all ranks together and the largest of them.
+fn costs(event: &Event<'_>) -> Option<String> {
+    let &Event::Check {
+        memory_bytes,
+        largest_rank_memory_bytes,
+        available_bytes,
+        flops,
+        busiest_rank_flops,
+        coarse_dofs,
+    } = event
+    else {
+        return None;
+    };
     let giga = |number: f64| number / 1e9;
     let coarse = coarse_dofs.map_or_else(String::new, |dofs| {
         format!("\n  coarse       {dofs} dofs between clusters")
     });
-    format!(
+    Some(format!(
         "\nsolving it would take about\n  \
          memory       {:.2} GB, {:.2} GB on the largest rank; {:.1} GB are available\n  \
          arithmetic   {:.3} Gflop, {:.3} Gflop on the busiest rank{coarse}",
-        giga(all.bytes),
-        giga(most.bytes),
-        giga(available),
-        giga(all.flops),
-        giga(most.flops)
-    )
+        giga(memory_bytes),
+        giga(largest_rank_memory_bytes),
+        giga(available_bytes),
+        giga(flops),
+        giga(busiest_rank_flops)
+    ))
 }
 
 /// The problem.
-pub fn summary(of: &Summary) -> String {
+fn summary(of: &Summary) -> String {
     let mut lines = vec![format!("contact-dd-mpi {}\n", of.version)];
     if !of.title.is_empty() {
         lines.push(of.title.to_owned());
@@ -115,23 +111,19 @@ pub fn summary(of: &Summary) -> String {
     lines.join("\n")
 }
 
-/// The settings as they were resolved, by name.
-pub fn settings(settings: &[(&str, String)]) -> String {
-    let entries = settings
-        .iter()
-        .map(|(name, value)| format!("\n{}", entry(name, value)));
-    entries.collect()
-}
-
-/// Which load step comes, number k of `count`, what isn't there in it, and how long the rest takes where that is long.
-pub fn step(
-    step: &LoadStep,
-    k: usize,
-    count: usize,
-    absent: &[String],
-    seconds_left: Option<f64>,
-) -> String {
-    let LoadStep { name, time, .. } = step;
+/// The load step that begins, what is absent in it, and how long the rest takes where that is long.
+fn step(event: &Event<'_>) -> Option<String> {
+    let Event::Step {
+        step,
+        steps,
+        name,
+        time,
+        absent,
+        seconds_left,
+    } = event
+    else {
+        return None;
+    };
     let first: Vec<String> = absent
         .iter()
         .take(NAMED)
@@ -143,17 +135,16 @@ pub fn step(
         Some(more) => format!(", without {} and {more} more", first.join(", ")),
     };
     let left = match seconds_left {
-        Some(seconds) if seconds > LONG => format!("; {}", in_words(seconds)),
+        Some(seconds) if *seconds > LONG => format!("; {}", in_words(*seconds)),
         _ => String::new(),
     };
-    format!(
-        "\nstep {} of {count}: '{name}' at {time}{without}{left}",
-        k + 1
-    )
+    Some(format!(
+        "\nstep {step} of {steps}: '{name}' at {time}{without}{left}"
+    ))
 }
 
 /// One line of the table of sweeps.
-pub fn sweep(line: &SweepRecord) -> String {
+fn sweep(line: &SweepRecord) -> String {
     let changed = line.changed.map_or("-".into(), |count| count.to_string());
     format!(
         "{:>5}  {:>10.3e}  {:>8}  {:>8}  {:>10.4}",
@@ -161,9 +152,19 @@ pub fn sweep(line: &SweepRecord) -> String {
     )
 }
 
-/// All that follows the sweeps: why they ended (`reason`, in words), the certificate, the timing table, what
-/// was skipped, warnings, and where the results are; with the units of the problem's `catalog`.
-pub fn closing(reason: &str, report: &Report, catalog: &Catalog, result: &Path) -> String {
+/// All that follows the sweeps: why they ended, the certificate, the timing table, what was skipped, warnings, and where
+/// the results are.
+fn closing(event: &Event<'_>) -> Option<String> {
+    let Event::Finished {
+        reason,
+        report,
+        catalog,
+        result,
+        ..
+    } = event
+    else {
+        return None;
+    };
     let units = catalog.units;
     // Around an axis forces are those of the whole ring.
     let dim = match catalog.plane {
@@ -213,8 +214,8 @@ pub fn closing(reason: &str, report: &Report, catalog: &Catalog, result: &Path) 
     );
     let warnings = report.warnings.iter();
     lines.extend(warnings.map(|what| format!("{WARNING}warning:{WARNING:#} {what}")));
-    lines.push(format!("results: {}", result.display()));
-    lines.join("\n")
+    lines.push(format!("results: {result}"));
+    Some(lines.join("\n"))
 }
 
 /// A line a load step; nothing where there is none.

@@ -58,15 +58,15 @@ impl ClusterPlan {
 
 /// The nodes of `tree` that are clusters. Its roots are left to the interface problem, unless contact points
 /// belong to them; what is under a node with contact points is one cluster with it.
-pub(super) fn cluster_nodes(tree: &Tree, merging: Merging, tops: &[usize]) -> Vec<usize> {
-    let is_above_tops = above(tree, tops);
+pub(super) fn cluster_nodes(tree: &Tree, merging: Merging, merge_roots: &[usize]) -> Vec<usize> {
+    let is_above_merge_roots = above(tree, merge_roots);
     tree.highest(|v| {
         let node = &tree.nodes[v];
         let below_root = |most| node.parent.is_some() && node.conditions <= most;
         match merging {
             Merging::All | Merging::Groups => !node.points.is_empty() || below_root(MAX_CONDITIONS),
             Merging::Linear => !node.points.is_empty() || below_root(0),
-            Merging::Frozen | Merging::Clusters => node.conditions == 0 && !is_above_tops[v],
+            Merging::Frozen | Merging::Clusters => node.conditions == 0 && !is_above_merge_roots[v],
         }
     })
 }

@@ -68,7 +68,7 @@ impl Plan {
         let mut largest = vec![0.0f64; ranks];
         let all = self.node_owners.iter().enumerate();
         for (v, &owner) in
-            all.filter(|&(v, _)| self.merging != Merging::Clusters || !self.is_above_tops(v))
+            all.filter(|&(v, _)| self.merging != Merging::Clusters || !self.is_above_merge_roots(v))
         {
             let front = self.tree.front_of(v, catalog.dim, self.merging.is_frozen());
             let estimate = &mut estimates[owner];
@@ -94,7 +94,7 @@ impl Plan {
             }
         }
         if self.merging == Merging::Clusters {
-            for &v in &self.tops {
+            for &v in &self.merge_roots {
                 let kept = self.tree.nodes[v].dofs[1] as f64;
                 estimates[self.node_owners[v]].bytes += PER_ENTRY_OF_CLUSTER * kept * kept;
             }

@@ -13,8 +13,8 @@ use crate::comm::{self, Comm};
 use crate::context::Listener;
 use crate::error::Failure;
 use crate::output::bar::Bar;
-use crate::output::event::{self, Event};
-use crate::output::terminal::{self, Summary};
+use crate::output::event::{self, Event, Summary};
+use crate::output::terminal;
 use crate::plan::Plan;
 use crate::plan::cost::CostEstimate;
 use crate::report::totals::Totals;
@@ -63,7 +63,7 @@ impl Listener for RunLog<'_> {
         self.bar.done(share);
         if self.heard.get().elapsed() > PULSE {
             self.heard.set(Instant::now());
-            self.log(&Event::Progress {
+            self.tell(&Event::Progress {
                 phase: self.bar.phase(),
                 done: share,
                 seconds: self.began.elapsed().as_secs_f64(),
@@ -90,17 +90,22 @@ impl<'a> RunLog<'a> {
     }
 
     /// Prints lines, where text is what is printed.
-    fn say(&self, text: impl FnOnce() -> String) {
+    fn say(&self, text: &str) {
         if self.voice == Some(LogFormat::Text) {
-            let text = text() + "\n";
-            (self.bar).aside(|| self.remember(message::say(&text)));
+            (self.bar).aside(|| self.remember(message::say(&format!("{text}\n"))));
         }
     }
 
-    /// Prints an event, where that is what is printed.
-    fn log(&self, event: &Event<'_>) {
-        if self.voice == Some(LogFormat::Json) {
-            self.remember(message::heard(event.write(stdout())));
+    /// Prints an event in the format of the log.
+    fn tell(&self, event: &Event<'_>) {
+        match self.voice {
+            None => {}
+            Some(LogFormat::Json) => self.remember(message::heard(event.write(stdout()))),
+            Some(LogFormat::Text) => {
+                if let Some(text) = terminal::text(event) {
+                    self.say(&text);
+                }
+            }
         }
     }
 
@@ -125,7 +130,7 @@ impl<'a> RunLog<'a> {
     pub fn phase(&self, phase: &'static str, steps: Option<usize>) {
         comm::phase(phase);
         self.bar.begin(phase);
-        self.log(&Event::Phase {
+        self.tell(&Event::Phase {
             phase,
             steps,
             seconds: self.began.elapsed().as_secs_f64(),
@@ -147,11 +152,9 @@ impl<'a> RunLog<'a> {
             ranks: self.comm.size(),
             threads: usize::from(self.settings.threads),
         };
-        self.say(|| terminal::summary(&summary));
-        self.log(&Event::Problem(&summary));
+        self.tell(&Event::Problem(&summary));
         if !self.settings.check {
-            self.say(|| terminal::settings(&self.settings.in_words()));
-            self.log(&Event::Settings {
+            self.tell(&Event::Settings {
                 settings: self.settings,
                 settings_from: &self.settings.from,
             });
@@ -180,9 +183,7 @@ impl<'a> RunLog<'a> {
         };
         let (available, coarse_dofs) = (*available, *coarse_dofs);
         let (all, most) = (CostEstimate::sum(costs), CostEstimate::largest(costs));
-        self.say(|| terminal::costs(all, most, available, coarse_dofs));
-        self.say(|| "\nthe problem file is valid".into());
-        self.log(&Event::Check {
+        self.tell(&Event::Check {
             memory_bytes: all.bytes,
             largest_rank_memory_bytes: most.bytes,
             available_bytes: available,
@@ -203,12 +204,12 @@ impl<'a> RunLog<'a> {
         // The steps to come take as long as those of this run.
         let of_one = began.elapsed().as_secs_f64() / (k - first) as f64;
         let seconds_left = (k > first).then_some(of_one * (all - k) as f64);
-        self.say(|| terminal::step(step, k, all, &catalog.absent_in(k), seconds_left));
-        self.log(&Event::Step {
+        self.tell(&Event::Step {
             step: k + 1,
             steps: all,
             name: &step.name,
             time: step.time,
+            absent: catalog.absent_in(k),
             seconds_left,
         });
     }
@@ -216,14 +217,13 @@ impl<'a> RunLog<'a> {
     /// The head of the table of sweeps, if there are going to be any.
     pub fn sweeps(&self, in_contact: bool) {
         if in_contact {
-            self.say(|| terminal::SWEEP_HEADER.into());
+            self.say(terminal::SWEEP_HEADER);
         }
     }
 
     /// One sweep.
     pub fn sweep(&self, record: &SweepRecord) {
-        self.say(|| terminal::sweep(record));
-        self.log(&Event::Sweep(record));
+        self.tell(&Event::Sweep(record));
     }
 
     /// Finishes the result file, writes the report and says how the run ended. On the root.
@@ -234,28 +234,30 @@ impl<'a> RunLog<'a> {
         let report = report(totals, self.settings, self.comm);
         outputs.finish(totals, &report)?;
         self.bar.finish();
-        let reason = reason(totals);
-        self.say(|| terminal::closing(&reason, &report, totals.catalog, &self.settings.output));
         for warning in &report.warnings {
             match self.voice {
-                Some(LogFormat::Text) => {}
-                Some(LogFormat::Json) => self.log(&Event::Warning { message: warning }),
                 None => event::warning(self.settings.log, warning),
+                // People read them at the end of all.
+                Some(_) => self.tell(&Event::Warning { message: warning }),
             }
         }
-        let mut exit_code = 0;
         let failures = failures(totals);
+        let exit_code = if failures.is_empty() {
+            0
+        } else {
+            NOT_CONVERGED
+        };
+        self.tell(&Event::Finished {
+            exit_code,
+            result: self.settings.output.display().to_string(),
+            reason: &reason(totals),
+            report: &report,
+            catalog: totals.catalog,
+        });
         if !failures.is_empty() {
-            exit_code = NOT_CONVERGED;
             let why = format!("not converged: {}", failures.join("; "));
             event::error(self.settings.log, exit_code, &why);
         }
-        self.log(&Event::Finished {
-            exit_code,
-            result: self.settings.output.display().to_string(),
-            reason: &reason,
-            report: &report,
-        });
         Ok(())
     }
 }

@@ -10,7 +10,7 @@ use crate::condense::blocks::CondensedBlocks;
 use crate::condense::limits::limits_of_groups;
 use crate::contact::laws::Statuses;
 use crate::contact::pair::ContactPair;
-use crate::context::{Context, Moment};
+use crate::context::{Context, LoadPoint};
 use crate::error::Failure;
 use crate::frozen::fronts::FrozenFronts;
 use crate::interface::numbering::Numbering;
@@ -26,8 +26,8 @@ use crate::rigid::scene::Scene;
 use crate::run::sweeping::{sweep, sweep_frozen};
 use crate::settings::Settings;
 use crate::step::Loading;
+use crate::step::halving::StepHalving;
 use crate::step::state::{StepState, analyse};
-use crate::step::way::Way;
 use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
 
 /// What all increments share: what was made of matrices.
@@ -84,7 +84,7 @@ impl Increments<'_> {
         before: StepState,
         seconds: &mut RankSeconds,
     ) -> Result<Increment, Failure> {
-        let end = Moment::end_of(k);
+        let end = LoadPoint::end_of(k);
         if !self.context.catalog.has_friction() || self.is_relieved {
             return self.solve(end, at_end, before, seconds);
         }
@@ -117,11 +117,11 @@ impl Increments<'_> {
         mut state: StepState,
         seconds: &mut RankSeconds,
     ) -> Result<Option<Increment>, Failure> {
-        let mut way = Way::default();
+        let mut way = StepHalving::default();
         let mut work = BTreeMap::new();
         let mut energy = EnergyBalance::default();
         loop {
-            let moment = Moment {
+            let moment = LoadPoint {
                 step: k,
                 part: way.next(),
             };
@@ -165,7 +165,7 @@ impl Increments<'_> {
     /// Supports that make two sides penetrate, a part that moves freely, or a signal that stopped the sweeps.
     fn solve(
         &self,
-        moment: Moment,
+        moment: LoadPoint,
         analysis: &RigidBodyAnalysis,
         mut before: StepState,
         seconds: &mut RankSeconds,

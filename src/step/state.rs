@@ -11,7 +11,7 @@ use crate::certificate::scales::Scales;
 use crate::contact::friction::Status;
 use crate::contact::laws::Statuses;
 use crate::contact::pair::{ContactPair, PairState};
-use crate::context::{Context, Loads, Moment};
+use crate::context::{Context, LoadPoint, Loads};
 use crate::error::Failure;
 use crate::plan::Plan;
 use crate::rigid::body_analysis::without_closing_motions;
@@ -68,7 +68,7 @@ impl StepState {
     pub fn loads(
         &self,
         context: &Context<'_>,
-        moment: Moment,
+        moment: LoadPoint,
         analysis: &RigidBodyAnalysis,
     ) -> Loads {
         let mut loads = context.loads(moment);
@@ -134,7 +134,7 @@ pub fn analyse_steps(
     let mut analyses: Vec<RigidBodyAnalysis> = Vec::new();
     for k in steps {
         let before = analyses.last().map_or(before, |last| &last.closing_motions);
-        let analysis = analyse(context, Moment::end_of(k), before)
+        let analysis = analyse(context, LoadPoint::end_of(k), before)
             .map_err(|failure| context.in_step(failure, k))?;
         analyses.push(analysis);
     }
@@ -148,7 +148,7 @@ pub fn analyse_steps(
 /// What is prescribed then leaves no place for a node, or the load drives a motion that nothing holds.
 pub fn analyse(
     context: &Context<'_>,
-    moment: Moment,
+    moment: LoadPoint,
     before: &[Vec<f64>],
 ) -> Result<RigidBodyAnalysis, Failure> {
     let loads = context.loads(moment);

@@ -6,10 +6,10 @@
     reason = "a test that can't go on has failed"
 )]
 
+extern crate contact_dd_trials as support;
+
 mod command_line;
 mod records;
 mod report;
 mod scripts;
-#[path = "../support/mod.rs"]
-mod support;
 mod test_script;

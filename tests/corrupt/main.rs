@@ -8,13 +8,12 @@
     reason = "a test that can't go on has failed"
 )]
 
+extern crate contact_dd_trials as support;
+
 mod bytes;
 mod change;
 mod everything;
 mod walk;
-
-#[path = "../support/mod.rs"]
-mod support;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -9,6 +9,8 @@
     reason = "a test that can't go on has failed"
 )]
 
+extern crate contact_dd_trials as support;
+
 mod bad_input;
 mod endings;
 mod outputs;
@@ -17,8 +19,6 @@ mod starting;
 mod steps;
 mod stopping;
 mod sudden_ends;
-#[path = "../support/mod.rs"]
-mod support;
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -6,6 +6,8 @@
     reason = "a test that can't go on has failed"
 )]
 
+extern crate contact_dd_trials as support;
+
 mod axisymmetric;
 mod conditioning;
 mod convergence;
@@ -29,8 +31,6 @@ mod stability;
 mod stages;
 mod steps;
 mod strains;
-#[path = "../support/mod.rs"]
-mod support;
 mod touching;
 mod unloaded;
 mod validation;

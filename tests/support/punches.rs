@@ -4,10 +4,10 @@ use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 
-use crate::support::blocks::{Blocks, joined};
-use crate::support::random::Random;
-use crate::support::scenes::model;
-use crate::support::solids::{between, moved, solid};
+use crate::blocks::{Blocks, joined};
+use crate::random::Random;
+use crate::scenes::model;
+use crate::solids::{between, moved, solid};
 
 /// The height of a block, and its width.
 pub const BLOCK: f64 = 10.0;

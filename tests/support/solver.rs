@@ -3,6 +3,7 @@
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
 use std::time::Duration;
 
 use contact_dd_partition::decompose::Decomposition;
@@ -113,7 +114,15 @@ pub fn solve(model: &Model, count: usize) -> Solution {
 
 /// The program under test as Cargo built it.
 pub fn built() -> &'static Path {
-    Path::new(env!("CARGO_BIN_EXE_contact-dd-mpi"))
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    BUILT.get_or_init(|| {
+        // Cargo puts the programs of tests and studies into a folder below that of the programs that they try.
+        let own = env::current_exe().unwrap();
+        let folder = own.parent().and_then(Path::parent).unwrap();
+        let built = folder.join("contact-dd-mpi");
+        assert!(built.is_file(), "{} is missing", built.display());
+        built
+    })
 }
 
 /// The command that starts the program on `ranks` ranks; without the launcher for 0.

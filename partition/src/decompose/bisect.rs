@@ -8,11 +8,11 @@ use crate::flops::{Front, condensation};
 /// Graphs of up to so many vertices are cut in all ways, and the best is taken.
 const EXHAUSTIVE: usize = 8;
 
-/// Graphs of more vertices are cut by clumps of them first.
+/// Graphs of more vertices are cut by aggregates of them first.
 pub(super) const LARGE: usize = 8000;
 
-/// Vertices of a clump.
-const CLUMP: usize = 8;
+/// Vertices of an aggregate.
+const AGGREGATE: usize = 8;
 
 /// The golden ratio's fraction.
 const GOLDEN: f64 = 0.618_033_988_749_895;
@@ -39,7 +39,7 @@ pub(super) struct Effort {
     pub directions: usize,
     /// Vertices by which a direction is judged, at most.
     pub sample: usize,
-    /// Layers of clumps on each side of a cut among which it is made shorter.
+    /// Layers of aggregates on each side of a cut among which it is made shorter.
     pub layers: u32,
 }
 
@@ -52,15 +52,15 @@ struct Cut {
 /// Cuts a connected graph of two vertices at least so that the front that merges both sides, and what is
 /// under it, cost little. Returns whether each vertex is on the left.
 ///
-/// A large graph is cut by clumps of its vertices first, and the cut is made shorter among those around it.
+/// A large graph is cut by aggregates of its vertices first, and the cut is made shorter among those around it.
 pub(super) fn bisect(graph: &Graph, aim: Aim) -> Vec<bool> {
     let count = graph.len();
     let in_halves = || (0..count).map(|i| i < count.div_ceil(2)).collect();
     let candidates: Vec<Vec<bool>> = if count > LARGE {
-        let (clump, clumps) = graph.clumps(CLUMP, |_| true);
-        let coarse = graph.contracted(&clump, clumps);
+        let (aggregate, aggregates) = graph.aggregates(AGGREGATE, |_| true);
+        let coarse = graph.contracted(&aggregate, aggregates);
         let left = bisect(&coarse, aim);
-        refined(graph, &coarse, &clump, left, aim)
+        refined(graph, &coarse, &aggregate, left, aim)
     } else if count > EXHAUSTIVE {
         let mut candidates = geometric(graph, aim);
         candidates.extend(
@@ -86,18 +86,26 @@ pub(super) fn best(graph: &Graph, candidates: Vec<Vec<bool>>, aim: Aim) -> Optio
     best.map(|cut| cut.left)
 }
 
-/// A cut between clumps, and the cheapest ones near it.
+/// A cut between aggregates, and the cheapest ones near it.
 fn refined(
     graph: &Graph,
     coarse: &Graph,
-    clump: &[u32],
+    aggregate: &[u32],
     left: Vec<bool>,
     aim: Aim,
 ) -> Vec<Vec<bool>> {
     let band = band(coarse, &left, aim);
-    let places: Vec<Place> = clump.iter().map(|&clump| band[clump as usize]).collect();
+    let places: Vec<Place> = aggregate
+        .iter()
+        .map(|&aggregate| band[aggregate as usize])
+        .collect();
     let mut cuts: Vec<Vec<bool>> = cheapest_cuts(graph, &places).into();
-    cuts.push(clump.iter().map(|&clump| left[clump as usize]).collect());
+    cuts.push(
+        aggregate
+            .iter()
+            .map(|&aggregate| left[aggregate as usize])
+            .collect(),
+    );
     cuts
 }
 

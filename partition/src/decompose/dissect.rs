@@ -1,17 +1,17 @@
 //! Recursive bisection: the tree of the cuts.
 
+use super::aggregates::{Aggregates, Cells};
 use super::bisect::{Aim, Effort, LARGE, bisect};
-use super::clumps::{Cells, Clumps};
 use super::graph::Graph;
 use crate::problem::Hierarchy;
 
-/// Vertices, or clumps of them, of all graphs that METIS is asked to cut; it takes some microseconds for each.
+/// Vertices, or aggregates of them, of all graphs that METIS is asked to cut; it takes some microseconds for each.
 const METIS_VERTICES: usize = 300_000;
 
-/// Graphs of more vertices are dissected by clumps of them.
-const CLUMPED: usize = 40_000;
+/// Graphs of more vertices are dissected by aggregates of them.
+const AGGREGATEED: usize = 40_000;
 
-/// How hard cuts are sought, and those of small sets of clumps, of which there are many.
+/// How hard cuts are sought, and those of small sets of aggregates, of which there are many.
 const CAREFUL: Effort = Effort {
     directions: 4,
     sample: 1024,
@@ -112,9 +112,14 @@ impl Branch {
 /// as many as vertices.
 pub(super) fn dissect(graph: Graph, wanted: Wanted) -> Branch {
     match wanted {
-        Wanted::Dofs(most) if most > 0.0 && graph.len() > CLUMPED => {
+        Wanted::Dofs(most) if most > 0.0 && graph.len() > AGGREGATEED => {
             let cells = Cells::new(graph);
-            branch(Set::Clumps(cells.clumps()), wanted, 0, METIS_VERTICES)
+            branch(
+                Set::Aggregates(cells.aggregates()),
+                wanted,
+                0,
+                METIS_VERTICES,
+            )
         }
         _ => branch(Set::Vertices(graph), wanted, 0, METIS_VERTICES),
     }
@@ -124,15 +129,15 @@ pub(super) fn dissect(graph: Graph, wanted: Wanted) -> Branch {
 enum Set<'a> {
     /// Vertices of a graph.
     Vertices(Graph),
-    /// Clumps of them, where there are many.
-    Clumps(Clumps<'a>),
+    /// Aggregates of them, where there are many.
+    Aggregates(Aggregates<'a>),
 }
 
 impl Set<'_> {
     fn graph(&self) -> &Graph {
         match self {
             Self::Vertices(graph) => graph,
-            Self::Clumps(clumps) => &clumps.graph,
+            Self::Aggregates(aggregates) => &aggregates.graph,
         }
     }
 
@@ -140,7 +145,7 @@ impl Set<'_> {
     fn halves(self, left: &[bool], aim: Aim) -> [Self; 2] {
         match self {
             Self::Vertices(graph) => graph.halves(left).map(Self::Vertices),
-            Self::Clumps(clumps) => clumps.halves(left, aim).map(Self::Clumps),
+            Self::Aggregates(aggregates) => aggregates.halves(left, aim).map(Self::Aggregates),
         }
     }
 
@@ -148,7 +153,7 @@ impl Set<'_> {
     fn ids(&self, vertex: usize) -> &[u32] {
         match self {
             Self::Vertices(graph) => &graph.ids[vertex..=vertex],
-            Self::Clumps(clumps) => clumps.cells.of(vertex),
+            Self::Aggregates(aggregates) => aggregates.cells.of(vertex),
         }
     }
 }
@@ -178,7 +183,7 @@ fn branch(set: Set, wanted: Wanted, level: usize, for_metis: usize) -> Branch {
         price,
         with_metis,
         effort: match &set {
-            Set::Clumps(_) if level >= PARALLEL_LEVELS => QUICK,
+            Set::Aggregates(_) if level >= PARALLEL_LEVELS => QUICK,
             _ => CAREFUL,
         },
     };

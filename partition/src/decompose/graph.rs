@@ -223,9 +223,9 @@ impl Graph {
         (dofs, centre.map(|c| c / dofs))
     }
 
-    /// Clumps of about `size` vertices each that hang together by edges that `joins`: that of every vertex, and their
+    /// Aggregates of about `size` vertices each that hang together by edges that `joins`: that of every vertex, and their
     /// number.
-    pub fn clumps(&self, size: usize, joins: impl Fn(Edge) -> bool) -> (Vec<u32>, usize) {
+    pub fn aggregates(&self, size: usize, joins: impl Fn(Edge) -> bool) -> (Vec<u32>, usize) {
         let mut of = vec![u32::MAX; self.len()];
         let mut count = 0;
         let mut members = Vec::with_capacity(size);

@@ -19,7 +19,7 @@ const PER_CUBE: f64 = 0.3;
 const PER_COARSE_PAIR: f64 = 12.0;
 
 /// Estimated flops that a cluster with so many unknowns on its boundary takes where iterations run between clusters.
-pub fn between(size: f64) -> f64 {
+pub fn iteration_flops(size: f64) -> f64 {
     PER_CUBE * size.powi(3) + ITERATIONS * PER_ENTRY * size * size
 }
 
@@ -70,7 +70,7 @@ impl InterfaceTimes {
             let size = tree.nodes[c].dofs[1] as f64;
             let below = tree.subtree(c).into_iter();
             let below: f64 = below.map(|v| time(v, true)).sum();
-            below + between(size)
+            below + iteration_flops(size)
         };
         let coarse = (coarse_dofs(&tree, catalog.dim) as f64).powi(2);
         let coarse = ACTIVE_SETS * PER_COARSE_PAIR * coarse;

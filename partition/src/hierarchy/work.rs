@@ -1,6 +1,6 @@
 //! What a tree costs.
 
-use super::choice::{InterfaceTimes, between};
+use super::choice::{InterfaceTimes, iteration_flops};
 use super::tree::Tree;
 use crate::flops::Front;
 use crate::problem::Catalog;
@@ -75,7 +75,7 @@ fn times_to_clusters(tree: &Tree, dim: usize) -> Vec<f64> {
         for v in tree.subtree(cluster) {
             times[v] = tree.time(v, dim, true);
         }
-        times[cluster] += between(tree.nodes[cluster].dofs[1] as f64);
+        times[cluster] += iteration_flops(tree.nodes[cluster].dofs[1] as f64);
     }
     times
 }

@@ -2,7 +2,7 @@
 
 use super::bodies::Bodies;
 use super::initial_stress::InitialStress;
-use super::{Material, Support, loads, presence, supports};
+use super::{Material, Support, activation, loads, supports};
 use crate::error::InputError;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
@@ -51,7 +51,7 @@ impl Loads {
         let loadings = scene.loadings();
         let mut all = Vec::with_capacity(loadings.len());
         let mut names = Vec::new();
-        let absent = presence::bodies(scene);
+        let absent = activation::bodies(scene);
         for (k, loading) in loadings.iter().enumerate() {
             let supports = supports::supports(scene, loading, &bodies.mesh, topology)?;
             if k == 0 {
@@ -61,7 +61,7 @@ impl Loads {
             let (forces, initial) = loads::forces(scene, loading, bodies, topology, materials)?;
             all.push((supports, forces, initial));
             if let (Some(absent), Some(loads)) = (absent.get(k), all.last_mut()) {
-                presence::unload(bodies, absent, loads);
+                activation::unload(bodies, absent, loads);
             }
         }
         for (k, (supports, ..)) in all.iter().enumerate().skip(1) {

@@ -63,7 +63,7 @@ impl SlipProblem<'_> {
         };
         let accuracy = Accuracy {
             tolerance,
-            start: start.map(|start| &start.tops),
+            start: start.map(|start| &start.merge_roots),
         };
         let mut solution = fronts.solve(self.context, self.open, loads, accuracy)?;
         solution.iterations += start.map_or(0, |start| start.iterations);

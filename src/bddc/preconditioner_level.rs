@@ -2,7 +2,7 @@
 
 /// What is made coarse, and whether the preconditioner is held where round-off keeps it from being definite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Depth {
+pub enum PreconditionerLevel {
     /// The rigid motions of classes, of which clusters have shares as their diagonals say, in single precision.
     Diagonals,
     /// The rigid motions of classes.
@@ -13,7 +13,7 @@ pub enum Depth {
     Held,
 }
 
-impl Depth {
+impl PreconditionerLevel {
     /// Where one begins. In the plane clusters share so little that all of it can be looked at.
     pub fn first(dim: usize) -> Self {
         match dim {

@@ -12,14 +12,14 @@ use crate::vector::{axpy, dot};
 
 /// An orthogonal matrix Q whose first columns span those of another.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Reflections {
+pub struct Householder {
     #[serde(with = "crate::bytes::matrix")]
     basis: Mat<f64>,
     #[serde(with = "crate::bytes::matrix")]
     factor: Mat<f64>,
 }
 
-impl Reflections {
+impl Householder {
     /// The reflections of independent columns.
     pub fn new(columns: &Mat<f64>) -> Self {
         let qr = columns.qr();
@@ -80,7 +80,7 @@ mod tests {
     fn the_first_columns_span_the_given_ones_and_all_are_orthonormal() {
         let given = Mat::from_fn(9, 3, |i, j| ((3 * i + 7 * j) as f64).sin());
         let mut q = Mat::<f64>::identity(9, 9);
-        let reflections = Reflections::new(&given);
+        let reflections = Householder::new(&given);
         reflections.multiply_right(q.as_mut());
         assert!((q.transpose() * &q - Mat::<f64>::identity(9, 9)).norm_max() < 1e-14);
         assert!((q.subcols(3, 6).transpose() * given).norm_max() < 1e-14);

@@ -1,4 +1,4 @@
-//! Values on their ways between ranks: to the root, from it, from any to any.
+//! Collective messages: to the root, from it, from any to any.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;

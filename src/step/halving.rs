@@ -5,14 +5,14 @@ const SMALLEST: f64 = 1.0 / 8.0;
 
 /// How far a load step has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Way {
+pub struct StepHalving {
     done: f64,
     part: f64,
     /// Increments that were accepted.
     pub increments: usize,
 }
 
-impl Default for Way {
+impl Default for StepHalving {
     fn default() -> Self {
         Self {
             done: 0.0,
@@ -22,7 +22,7 @@ impl Default for Way {
     }
 }
 
-impl Way {
+impl StepHalving {
     /// How much of the load acts at the end of the next increment.
     pub fn next(&self) -> f64 {
         f64::min(1.0, self.done + self.part)
@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn a_way_in_halves_ends_where_the_load_step_does() {
-        let mut way = Way::default();
+        let mut way = StepHalving::default();
         assert!(!way.accept());
         assert!(way.halve());
         assert_eq!(way.next(), 0.75);

@@ -1,4 +1,4 @@
-//! Clumps of cells, which are dissected in their place: cuts run between clumps, and are made shorter among the
+//! Aggregates of cells, which are dissected in their place: cuts run between aggregates, and are made shorter among the
 //! cells near them, so that most cells aren't looked at again at every cut.
 
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -8,8 +8,8 @@ use super::flow::{Place, cheapest_cuts};
 use super::graph::{Edge, Graph};
 use crate::lists::Lists;
 
-/// Cells of a clump.
-const CLUMP: usize = 8;
+/// Cells of an aggregate.
+const AGGREGATE: usize = 8;
 
 /// No vertex yet.
 const NONE: u32 = u32::MAX;
@@ -17,24 +17,24 @@ const NONE: u32 = u32::MAX;
 /// All cells of a mesh.
 pub(super) struct Cells {
     graph: Graph,
-    /// For every cell the number of its clump in the set that it is in now.
-    clump: Vec<AtomicU32>,
+    /// For every cell the number of its aggregate in the set that it is in now.
+    aggregate: Vec<AtomicU32>,
 }
 
-/// A set of clumps, each of which hangs together across facets.
-pub(super) struct Clumps<'a> {
+/// A set of aggregates, each of which hangs together across facets.
+pub(super) struct Aggregates<'a> {
     all: &'a Cells,
-    /// Its vertices are the clumps.
+    /// Its vertices are the aggregates.
     pub graph: Graph,
-    /// The cells of every clump.
+    /// The cells of every aggregate.
     pub cells: Lists<u32>,
 }
 
-/// The clumps near a cut, and on which side of it their cells are.
+/// The aggregates near a cut, and on which side of it their cells are.
 struct Near {
-    /// Where every clump is; those between the sides have cells on both.
+    /// Where every aggregate is; those between the sides have cells on both.
     places: Vec<Place>,
-    /// The number of the first cell of every clump between the sides.
+    /// The number of the first cell of every aggregate between the sides.
     first: Vec<u32>,
     /// The cells between the sides, and a vertex for each side.
     graph: Graph,
@@ -43,67 +43,67 @@ struct Near {
 
 impl Cells {
     pub fn new(graph: Graph) -> Self {
-        let clump = graph.ids.iter().map(|_| AtomicU32::new(NONE)).collect();
-        Self { graph, clump }
+        let aggregate = graph.ids.iter().map(|_| AtomicU32::new(NONE)).collect();
+        Self { graph, aggregate }
     }
 
-    /// All of them in clumps.
-    pub fn clumps(&self) -> Clumps<'_> {
-        let (of, count) = self.graph.clumps(CLUMP, Edge::is_facet);
+    /// All of them in aggregates.
+    pub fn aggregates(&self) -> Aggregates<'_> {
+        let (of, count) = self.graph.aggregates(AGGREGATE, Edge::is_facet);
         let cells = Lists::new(count, of.iter().copied().zip(0..));
-        Clumps::new(self, self.graph.contracted(&of, count), cells)
+        Aggregates::new(self, self.graph.contracted(&of, count), cells)
     }
 }
 
-impl<'a> Clumps<'a> {
+impl<'a> Aggregates<'a> {
     fn new(all: &'a Cells, graph: Graph, cells: Lists<u32>) -> Self {
         for (number, cells) in (0..).zip(cells.iter()) {
             for &cell in cells {
-                all.clump[cell as usize].store(number, Ordering::Relaxed);
+                all.aggregate[cell as usize].store(number, Ordering::Relaxed);
             }
         }
         Self { all, graph, cells }
     }
 
-    /// The clump of a cell and its place there; `None` where the cell isn't in this set: then its number is that of
-    /// a clump in another one, which may be changing now.
+    /// The aggregate of a cell and its place there; `None` where the cell isn't in this set: then its number is that of
+    /// an aggregate in another one, which may be changing now.
     fn find(&self, cell: u32) -> Option<(usize, usize)> {
-        let clump = self.all.clump[cell as usize].load(Ordering::Relaxed) as usize;
-        if clump >= self.graph.len() {
+        let aggregate = self.all.aggregate[cell as usize].load(Ordering::Relaxed) as usize;
+        if aggregate >= self.graph.len() {
             return None;
         }
-        let place = self.cells.of(clump).iter().position(|&c| c == cell)?;
-        Some((clump, place))
+        let place = self.cells.of(aggregate).iter().position(|&c| c == cell)?;
+        Some((aggregate, place))
     }
 
-    /// The sides of a cut between clumps, once it is as short as it gets near there.
+    /// The sides of a cut between aggregates, once it is as short as it gets near there.
     pub fn halves(self, left: &[bool], aim: Aim) -> [Self; 2] {
         let near = self.near(left, aim);
-        let mut vertex_of_clump = vec![NONE; self.graph.len()];
+        let mut vertex_of_aggregate = vec![NONE; self.graph.len()];
         let mut vertex_of_cell = vec![NONE; near.left.len()];
         let mut cells = [0, 1].map(|_| Lists::with_capacity(left.len(), self.cells.items()));
-        let mut clumps = [Vec::new(), Vec::new()];
+        let mut aggregates = [Vec::new(), Vec::new()];
         let mut part = Vec::new();
         let mut stack = Vec::new();
-        for (clump, members) in self.cells.iter().enumerate() {
-            let whole = match near.places[clump] {
+        for (aggregate, members) in self.cells.iter().enumerate() {
+            let whole = match near.places[aggregate] {
                 Place::Left => Some(0),
                 Place::Right => Some(1),
                 Place::Between => None,
             };
             if let Some(side) = whole {
-                vertex_of_clump[clump] = clumps[side].len() as u32;
-                clumps[side].push(clump);
+                vertex_of_aggregate[aggregate] = aggregates[side].len() as u32;
+                aggregates[side].push(aggregate);
                 cells[side].push(members.iter().copied());
                 continue;
             }
-            let first = near.first[clump] as usize;
+            let first = near.first[aggregate] as usize;
             for start in first..first + members.len() {
                 if vertex_of_cell[start] != NONE {
                     continue;
                 }
                 let side = usize::from(!near.left[start]);
-                let vertex = clumps[side].len() as u32;
+                let vertex = aggregates[side].len() as u32;
                 vertex_of_cell[start] = vertex;
                 stack.push(start);
                 while let Some(cell) = stack.pop() {
@@ -120,36 +120,38 @@ impl<'a> Clumps<'a> {
                         }
                     }
                 }
-                clumps[side].push(clump);
+                aggregates[side].push(aggregate);
                 cells[side].push(part.drain(..));
             }
         }
         let graphs = [0, 1].map(|side| {
-            let vertex_at = |(clump, place): (usize, usize)| match near.places[clump] {
+            let vertex_at = |(aggregate, place): (usize, usize)| match near.places[aggregate] {
                 Place::Between => {
-                    let cell = near.first[clump] as usize + place;
+                    let cell = near.first[aggregate] as usize + place;
                     (near.left[cell] == (side == 0)).then(|| vertex_of_cell[cell])
                 }
-                place => ((place == Place::Left) == (side == 0)).then(|| vertex_of_clump[clump]),
+                place => {
+                    ((place == Place::Left) == (side == 0)).then(|| vertex_of_aggregate[aggregate])
+                }
             };
-            self.half(&near.places, &clumps[side], &cells[side], vertex_at)
+            self.half(&near.places, &aggregates[side], &cells[side], vertex_at)
         });
         let all = self.all;
         let mut cells = cells.into_iter();
         graphs.map(|graph| Self::new(all, graph, cells.next().unwrap_or_default()))
     }
 
-    /// The graph of one side, made of `clumps` or of those of their cells that are there; `vertex_at` tells the vertex
+    /// The graph of one side, made of `aggregates` or of those of their cells that are there; `vertex_at` tells the vertex
     /// that a cell is in, if it is on this side.
     fn half(
         &self,
         places: &[Place],
-        clumps: &[usize],
+        aggregates: &[usize],
         cells: &Lists<u32>,
         vertex_at: impl Fn((usize, usize)) -> Option<u32>,
     ) -> Graph {
         let fine = &self.all.graph;
-        let count = clumps.len();
+        let count = aggregates.len();
         let mut half = Graph {
             dim: fine.dim,
             ids: (0..count as u32).collect(),
@@ -158,15 +160,15 @@ impl<'a> Clumps<'a> {
             outside: Vec::with_capacity(count),
             edges: Lists::with_capacity(count, 6 * count),
         };
-        let is_between = |clump: usize| places[clump] == Place::Between;
+        let is_between = |aggregate: usize| places[aggregate] == Place::Between;
         let mut list: Vec<Edge> = Vec::new();
-        for (vertex, &clump) in clumps.iter().enumerate() {
+        for (vertex, &aggregate) in aggregates.iter().enumerate() {
             let members = cells.of(vertex);
-            let is_cut = is_between(clump);
-            let edges = self.graph.edges(clump);
+            let is_cut = is_between(aggregate);
+            let edges = self.graph.edges(aggregate);
             let mut outside = 0;
             if !is_cut {
-                outside = self.graph.outside[clump];
+                outside = self.graph.outside[aggregate];
                 for edge in edges.iter().filter(|edge| !is_between(edge.to as usize)) {
                     match vertex_at((edge.to as usize, 0)) {
                         Some(to) => list.push(edge.towards(to)),
@@ -177,7 +179,7 @@ impl<'a> Clumps<'a> {
             if is_cut || edges.iter().any(|edge| is_between(edge.to as usize)) {
                 for edge in members.iter().flat_map(|&cell| fine.edges(cell as usize)) {
                     let at = self.find(edge.to);
-                    if !is_cut && !at.is_some_and(|(clump, _)| is_between(clump)) {
+                    if !is_cut && !at.is_some_and(|(aggregate, _)| is_between(aggregate)) {
                         continue;
                     }
                     match at.and_then(&vertex_at) {
@@ -191,8 +193,8 @@ impl<'a> Clumps<'a> {
                 }
                 list.sort_unstable();
             }
-            let (dofs, centre) = match members.len() == self.cells.of(clump).len() {
-                true => (self.graph.dofs[clump], self.graph.centres[clump]),
+            let (dofs, centre) = match members.len() == self.cells.of(aggregate).len() {
+                true => (self.graph.dofs[aggregate], self.graph.centres[aggregate]),
                 false => fine.middle(members),
             };
             half.dofs.push(dofs);
@@ -203,16 +205,16 @@ impl<'a> Clumps<'a> {
         half
     }
 
-    /// The clumps near a cut, and where the cheapest cut runs through them.
+    /// The aggregates near a cut, and where the cheapest cut runs through them.
     fn near(&self, left: &[bool], aim: Aim) -> Near {
         let places = band(&self.graph, left, aim);
         let fine = &self.all.graph;
         let mut first = vec![NONE; places.len()];
         let mut count = 0;
-        for (clump, first) in first.iter_mut().enumerate() {
-            if places[clump] == Place::Between {
+        for (aggregate, first) in first.iter_mut().enumerate() {
+            if places[aggregate] == Place::Between {
                 *first = count;
-                count += self.cells.of(clump).len() as u32;
+                count += self.cells.of(aggregate).len() as u32;
             }
         }
         let mut graph = Graph {
@@ -226,31 +228,31 @@ impl<'a> Clumps<'a> {
         let mut was_left = Vec::with_capacity(count as usize + 2);
         let mut of_left = Vec::new();
         let mut list = Vec::new();
-        let between = (0..places.len()).filter(|&clump| places[clump] == Place::Between);
-        for (clump, &cell) in between.flat_map(|clump| {
-            let members = self.cells.of(clump).iter();
-            members.map(move |cell| (clump, cell))
+        let between = (0..places.len()).filter(|&aggregate| places[aggregate] == Place::Between);
+        for (aggregate, &cell) in between.flat_map(|aggregate| {
+            let members = self.cells.of(aggregate).iter();
+            members.map(move |cell| (aggregate, cell))
         }) {
             let mut outside = 0;
             for edge in fine.edges(cell as usize) {
-                let Some((clump, place)) = self.find(edge.to) else {
+                let Some((aggregate, place)) = self.find(edge.to) else {
                     outside += edge.weight();
                     continue;
                 };
-                list.push(edge.towards(match places[clump] {
+                list.push(edge.towards(match places[aggregate] {
                     Place::Left => {
                         of_left.push(edge.towards(graph.dofs.len() as u32));
                         count
                     }
                     Place::Right => count + 1,
-                    Place::Between => first[clump] + place as u32,
+                    Place::Between => first[aggregate] + place as u32,
                 }));
             }
             list.sort_unstable();
             graph.edges.push(list.drain(..));
             graph.dofs.push(fine.dofs[cell as usize]);
             graph.outside.push(outside);
-            was_left.push(left[clump]);
+            was_left.push(left[aggregate]);
         }
         graph.edges.push(of_left.into_iter());
         graph.edges.push(std::iter::empty());
@@ -267,15 +269,17 @@ impl<'a> Clumps<'a> {
         }
     }
 
-    /// Adds what lies beyond the clumps near a cut to their graph, a vertex for each side.
+    /// Adds what lies beyond the aggregates near a cut to their graph, a vertex for each side.
     fn add_sides(&self, places: &[Place], graph: &mut Graph, was_left: &mut Vec<bool>) {
         for side in [Place::Left, Place::Right] {
-            let whole = || (0..places.len()).filter(|&clump| places[clump] == side);
-            let dofs: f64 = whole().map(|clump| f64::from(self.graph.dofs[clump])).sum();
+            let whole = || (0..places.len()).filter(|&aggregate| places[aggregate] == side);
+            let dofs: f64 = whole()
+                .map(|aggregate| f64::from(self.graph.dofs[aggregate]))
+                .sum();
             graph.dofs.push(dofs as f32);
             graph
                 .outside
-                .push(whole().map(|clump| self.graph.outside[clump]).sum());
+                .push(whole().map(|aggregate| self.graph.outside[aggregate]).sum());
             was_left.push(side == Place::Left);
         }
     }
@@ -335,7 +339,7 @@ mod tests {
     }
 
     /// Cuts a set and its halves several times, and tells `check` of each of them, and of its cells' own graph.
-    fn cut(set: Clumps, times: usize, check: &mut impl FnMut(&Clumps, Graph)) {
+    fn cut(set: Aggregates, times: usize, check: &mut impl FnMut(&Aggregates, Graph)) {
         let in_set = |cell| set.find(cell).is_some();
         let left: Vec<bool> = set.all.graph.ids.iter().map(|&cell| in_set(cell)).collect();
         let [own, _] = set.all.graph.clone().halves(&left);
@@ -355,28 +359,29 @@ mod tests {
     }
 
     #[test]
-    fn clumps_know_what_lies_between_their_cells_after_every_cut() {
+    fn aggregates_know_what_lies_between_their_cells_after_every_cut() {
         let cells = Cells::new(squares(40, 60));
         let mut cut_apart = 0;
-        cut(cells.clumps(), 4, &mut |set, own| {
+        cut(cells.aggregates(), 4, &mut |set, own| {
             let number = |&cell: &u32| set.find(cell).unwrap().0 as u32;
-            let clump: Vec<u32> = own.ids.iter().map(number).collect();
-            let expected = own.contracted(&clump, set.graph.len());
+            let aggregate: Vec<u32> = own.ids.iter().map(number).collect();
+            let expected = own.contracted(&aggregate, set.graph.len());
             assert_eq!(set.graph.edges, expected.edges);
             assert_eq!(set.graph.outside, expected.outside);
             assert_eq!(set.graph.dofs, expected.dofs);
             for (centre, expected) in set.graph.centres.iter().zip(expected.centres) {
                 (0..3).for_each(|k| assert!((centre[k] - expected[k]).abs() < 1e-4));
             }
-            let facet =
-                |a: usize, edge: &Edge| edge.is_facet() && clump[a] == clump[edge.to as usize];
+            let facet = |a: usize, edge: &Edge| {
+                edge.is_facet() && aggregate[a] == aggregate[edge.to as usize]
+            };
             assert_eq!(
                 own.parts(facet).1,
                 set.graph.len(),
-                "a clump is in several pieces"
+                "an aggregate is in several pieces"
             );
             cut_apart += usize::from(set.cells.iter().any(|cells| cells.len() < 4));
         });
-        assert!(cut_apart > 10, "no cut runs through clumps");
+        assert!(cut_apart > 10, "no cut runs through aggregates");
     }
 }

@@ -1,8 +1,13 @@
-//! What the tests of the whole program share.
+//! Trials of the whole program: random scenes, exact solutions, independent solves and the judges that compare, which
+//! tests and studies share.
 
 #![allow(
-    dead_code,
-    reason = "every test binary takes what it needs and leaves the rest"
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::new_without_default,
+    clippy::panic,
+    reason = "a trial that can't go on has failed"
 )]
 
 pub mod assembled;
