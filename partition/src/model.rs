@@ -9,6 +9,7 @@ mod bodies;
 mod clip;
 mod contact;
 mod diagnostics;
+mod facet_tree;
 mod groups;
 mod held_nodes;
 mod initial_stress;

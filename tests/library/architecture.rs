@@ -1,11 +1,13 @@
 //! Data flows one way: who imports whom, checked against what ARCHITECTURE.md says.
 
+mod functions;
 mod imports;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
+use self::functions::functions;
 use self::imports::{Imports, Module};
 
 /// The crates: their folder of files, their name in paths.
@@ -16,6 +18,10 @@ const CRATES: [(&str, &str); 2] = [
 
 /// Most floors of rooms, each of which stands above all that it imports.
 const MOST_FLOORS: usize = 9;
+
+/// Lines of a function, and its arguments, from which on it has many; the most functions that do.
+const MANY_LINES: (usize, usize) = (60, 10);
+const MANY_ARGUMENTS: (usize, usize) = (6, 5);
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -130,6 +136,27 @@ fn the_house_has_few_floors() {
             of_crate.0
         );
     }
+}
+
+#[test]
+fn few_functions_are_long_or_have_many_arguments() {
+    let (mut long, mut wide) = (Vec::new(), Vec::new());
+    for of_crate in CRATES {
+        for (module, code) in imports_of(of_crate).code {
+            let at = format!("{}/{}", of_crate.0, module.join("/"));
+            for function in functions(&code) {
+                let name = format!("{at}: {}", function.name);
+                if function.lines > MANY_LINES.0 {
+                    long.push(format!("{name} has {} lines", function.lines));
+                }
+                if function.arguments > MANY_ARGUMENTS.0 {
+                    wide.push(format!("{name} has {} arguments", function.arguments));
+                }
+            }
+        }
+    }
+    assert!(long.len() <= MANY_LINES.1, "{long:#?}");
+    assert!(wide.len() <= MANY_ARGUMENTS.1, "{wide:#?}");
 }
 
 #[test]

@@ -1,8 +1,6 @@
 //! What a straight line meets of a surface.
 
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree, SelectionFunction};
-
+use super::facet_tree::FacetTree;
 use super::surface::Surface;
 use crate::element::geometry::{advance, difference, dot, length};
 
@@ -16,7 +14,7 @@ pub(super) const FACING: f64 = 0.1;
 /// A surface that lines are sent at.
 pub(super) struct Target<'a> {
     surface: &'a Surface,
-    tree: RTree<Leaf>,
+    tree: FacetTree,
 }
 
 /// What a line meets first.
@@ -33,69 +31,19 @@ pub(super) enum Hit {
     },
 }
 
-/// The box around a facet.
-type Leaf = GeomWithData<Rectangle<[f64; 3]>, usize>;
-
-/// The boxes in which a search looks further.
-struct Boxes<F>(F);
-
-impl<F: Fn([f64; 3], [f64; 3]) -> bool> SelectionFunction<Leaf> for Boxes<F> {
-    fn should_unpack_parent(&self, envelope: &AABB<[f64; 3]>) -> bool {
-        self.0(envelope.lower(), envelope.upper())
-    }
-
-    fn should_unpack_leaf(&self, leaf: &Leaf) -> bool {
-        self.0(leaf.geom().lower(), leaf.geom().upper())
-    }
-}
-
-/// Whether the line through `start` along `direction`, both ways, goes through a box: the ranges in
-/// which it lies between the opposite faces have something in common.
-fn meets(start: [f64; 3], direction: [f64; 3], low: [f64; 3], high: [f64; 3]) -> bool {
-    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
-    for axis in 0..3 {
-        let (start, slope) = (start[axis], direction[axis]);
-        if slope == 0.0 {
-            if start < low[axis] || start > high[axis] {
-                return false;
-            }
-            continue;
-        }
-        let (a, b) = ((low[axis] - start) / slope, (high[axis] - start) / slope);
-        from = from.max(a.min(b));
-        to = to.min(a.max(b));
-    }
-    from <= to
-}
-
 impl<'a> Target<'a> {
     /// Makes a surface ready to be searched: O(n log n) for n facets.
     pub fn new(surface: &'a Surface) -> Self {
-        let leaf = |(facet, f): (usize, &super::surface::SurfaceFacet)| {
-            let margin = ASIDE * f.size();
-            let bound = |pick: fn(f64, f64) -> f64, margin: f64| {
-                let first = f.at[0];
-                (f.kind.hull(&f.at).iter())
-                    .fold(first, |bound, p| {
-                        [0, 1, 2].map(|axis| pick(bound[axis], p[axis]))
-                    })
-                    .map(|c| c + margin)
-            };
-            let (low, high) = (bound(f64::min, -margin), bound(f64::max, margin));
-            Leaf::new(Rectangle::from_corners(low, high), facet)
-        };
-        let leaves = surface.facets.iter().enumerate().map(leaf).collect();
         Self {
             surface,
-            tree: RTree::bulk_load(leaves),
+            tree: FacetTree::new(surface.facets.iter(), |facet| ASIDE * facet.size()),
         }
     }
 
     /// The facets in boxes, given by their least and largest coordinates, for which `may_hold` says
     /// so; it must do so of every box that holds one of them.
     pub fn facets(&self, may_hold: impl Fn([f64; 3], [f64; 3]) -> bool) -> Vec<usize> {
-        let found = self.tree.locate_with_selection_function(Boxes(may_hold));
-        found.map(|leaf| leaf.data).collect()
+        self.tree.within(may_hold).collect()
     }
 
     /// What the line from `start` along the unit vector `direction` meets first, either way but
@@ -108,12 +56,11 @@ impl<'a> Target<'a> {
         behind: f64,
         passes: impl Fn(u32) -> bool,
     ) -> Hit {
-        let boxes = Boxes(|low, high| meets(start, direction, low, high));
         let mut nodes: Vec<(u32, f64, f64)> = Vec::new();
         let mut crossed: Option<(usize, f64)> = None;
         let mut back_facing = false;
-        for leaf in self.tree.locate_with_selection_function(boxes) {
-            let facet = &self.surface.facets[leaf.data];
+        for number in self.tree.along(start, direction) {
+            let facet = &self.surface.facets[number];
             let slack = ASIDE * facet.size();
             let faces = dot(facet.normal, direction) <= -FACING;
             let mut at_node = false;
@@ -143,7 +90,7 @@ impl<'a> Target<'a> {
             }
             back_facing |= !faces;
             if faces && crossed.is_none_or(|(_, other)| ahead.abs() < other.abs()) {
-                crossed = Some((leaf.data, ahead));
+                crossed = Some((number, ahead));
             }
         }
         let nearest = nodes

@@ -5,16 +5,13 @@ mod view;
 
 use std::collections::BTreeMap;
 
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
-
 pub(super) use self::facet::{ROUND_OFF, STANDING_OFF, SkinFacet};
 use self::view::View;
 use super::bodies::Bodies;
+use super::facet_tree::FacetTree;
 use super::surface::SurfaceFacet;
 use crate::element::geometry::dot;
 use crate::mesh::Mesh;
-use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::{CellFacet, Topology};
 use crate::scene::material::PlaneState;
 
@@ -70,20 +67,13 @@ impl<'a> Skin<'a> {
     /// All pairs of facets that face each other with nothing between them, ascending, up to the distance `reach` of
     /// the larger one's size (m), either way. O(n log n) for n facets, as long as the reach isn't beyond their size.
     pub fn facing(&self, reach: impl Fn(f64) -> f64) -> Vec<Facing> {
-        let leaf = |(index, facet): (usize, &SkinFacet)| {
-            let all = BoundingBox::around(&facet.shape.kind.hull(&facet.shape.at));
-            GeomWithData::new(Rectangle::from_corners(all.low, all.high), index)
-        };
-        let tree = RTree::bulk_load(self.facets.iter().enumerate().map(leaf).collect());
+        let shapes = self.facets.iter().map(|facet| &facet.shape);
+        let tree = FacetTree::new(shapes, |_| 0.0);
         let mut pairs: BTreeMap<[usize; 2], Facing> = BTreeMap::new();
         for (index, facet) in self.facets.iter().enumerate() {
-            let own = BoundingBox::around(&facet.shape.kind.hull(&facet.shape.at));
-            let margin = reach(facet.shape.size());
-            let near =
-                AABB::from_corners(own.low.map(|c| c - margin), own.high.map(|c| c + margin));
-            let others = tree.locate_in_envelope_intersecting(near);
+            let others = tree.near(&facet.shape, reach(facet.shape.size()));
             let opposite: Vec<(usize, &SkinFacet)> = others
-                .map(|leaf| (leaf.data, &self.facets[leaf.data]))
+                .map(|other| (other, &self.facets[other]))
                 .filter(|(_, other)| dot(facet.shape.normal, other.shape.normal) < -SMOOTH)
                 .collect();
             if opposite.is_empty() {
