@@ -11,7 +11,6 @@ use contact_dd_partition::scene::Scene;
 use crate::support::blocks::{Blocks, jittered};
 use crate::support::close::close;
 use crate::support::scenes::model;
-use crate::support::solution::Solution;
 use crate::support::solver::{Case, problem, solve};
 use crate::support::sorts::{SORTS, sort};
 
@@ -26,15 +25,6 @@ bodies.ring.material = 'rock'
 
 fn rectangle(name: &str, x: [f64; 2], y: [f64; 2], n: [usize; 2]) -> Mesh {
     Blocks::new().rectangle(name, x, y, n).mesh
-}
-
-/// Fails unless cells and nodes have this stress.
-#[track_caller]
-fn is_stressed(solution: &Solution, stress: [f64; 6], slack: f64) {
-    let cells = solution.cells.iter().map(|(_, stress)| stress);
-    for found in cells.chain(solution.nodal_stress.values()) {
-        (found.iter().zip(stress)).for_each(|(found, exact)| close(*found, exact, slack));
-    }
 }
 
 /// u_r = a r, u_y = b y under tractions that are the same on each face.
@@ -68,7 +58,7 @@ value = [0.0, {axial}]\n",
             for count in [1, 4] {
                 let solution = solve(&model, count);
                 let stress = [radial, axial, radial, 0.0, 0.0, 0.0];
-                is_stressed(&solution, stress, 1e-10 * axial.abs());
+                solution.check_stress(stress, 1e-10 * axial.abs());
                 for (tag, x) in model.mesh.node_tags.iter().zip(&model.mesh.points) {
                     let u = solution.displacement[tag];
                     close(u[0], a * x[0], 1e-10 * a);

@@ -36,15 +36,6 @@ fn is_displaced(
     }
 }
 
-/// Fails unless cells and nodes have this stress, to within `slack`.
-#[track_caller]
-fn is_stressed(solution: &Solution, slack: f64, stress: [f64; 6]) {
-    let cells = solution.cells.iter().map(|(_, stress)| stress);
-    for found in cells.chain(solution.nodal_stress.values()) {
-        (found.iter().zip(stress)).for_each(|(found, exact)| close(*found, exact, slack));
-    }
-}
-
 fn square() -> Mesh {
     Blocks::new()
         .rectangle("block", [0.0, 1.0], [0.0, 1.0], [5, 4])
@@ -70,10 +61,9 @@ fn heat_without_support_makes_no_stress() {
             let model = model(&text, mesh);
             for count in [1, 4] {
                 let solution = solve(&model, count);
-                is_stressed(
-                    &solution,
-                    1e-10 * thermal_stress,
+                solution.check_stress(
                     [0.0, 0.0, out_of_plane, 0.0, 0.0, 0.0],
+                    1e-10 * thermal_stress,
                 );
                 is_displaced(&model, &solution, 1e-10 * strain, |x| {
                     x.map(|x| factor * strain * x)
@@ -100,7 +90,7 @@ fn heat_without_support_makes_no_stress_in_space() {
         let text = format!("{BODY}[[bilateral]]\non = ['block x0', 'block y0', 'block z0']\n");
         let model = model(&text, mesh);
         let solution = solve(&model, 3);
-        is_stressed(&solution, 1e-10 * YOUNG * strain, [0.0; 6]);
+        solution.check_stress([0.0; 6], 1e-10 * YOUNG * strain);
         is_displaced(&model, &solution, 1e-10 * strain, |x| x.map(|x| strain * x));
     }
 }
@@ -119,7 +109,7 @@ fn heat_that_grows_linearly_bends_quadratic_cells_without_stress() {
         is_displaced(&model, &solution, 1e-10 * g, |[x, y, _]| {
             [0.5 * g * (x * x - y * y), g * x * y, 0.0]
         });
-        is_stressed(&solution, 1e-9 * YOUNG * g, [0.0; 6]);
+        solution.check_stress([0.0; 6], 1e-9 * YOUNG * g);
     }
 }
 
@@ -134,7 +124,7 @@ fn a_clamped_bar_is_pressed_by_the_heat_alone() {
         let strain = EXPANSION * HEAT;
         let mut stress = [0.0; 6];
         stress[0] = -YOUNG * strain;
-        is_stressed(&solution, 1e-10 * YOUNG * strain, stress);
+        solution.check_stress(stress, 1e-10 * YOUNG * strain);
         is_displaced(&model, &solution, 1e-10 * strain, |[_, y, _]| {
             [0.0, (1.0 + POISSON) * strain * y, 0.0]
         });
@@ -244,7 +234,7 @@ scale = {pressure = 0}
     let steps = solve_steps(&model, 3);
     let scale = a.abs() * outer;
     is_displaced(&model, &steps[0], 1e-12 * scale, |_| [0.0; 3]);
-    is_stressed(&steps[0], 1e-9 * p, [-p, -p, -p, 0.0, 0.0, 0.0]);
+    steps[0].check_stress([-p, -p, -p, 0.0, 0.0, 0.0], 1e-9 * p);
     is_displaced(&model, &steps[1], 2e-4 * scale, |[r, ..]| {
         [a * r + b / r, 0.0, 0.0]
     });

@@ -59,15 +59,6 @@ fn is_near(found: &[f64], expected: &[f64], slack: f64) {
     (found.iter().zip(expected)).for_each(|(a, b)| close(*a, *b, slack));
 }
 
-/// Fails unless cells and nodes have this stress.
-#[track_caller]
-fn is_stressed(solution: &Solution, stress: [f64; 6], slack: f64) {
-    let cells = solution.cells.iter().map(|(_, stress)| stress);
-    for found in cells.chain(solution.nodal_stress.values()) {
-        is_near(found, &stress, slack);
-    }
-}
-
 /// The tractions of a stress on the faces of a turned cube.
 fn tractions(stress: [f64; 6]) -> String {
     let faces = (0..3).flat_map(|axis| [(axis, 0), (axis, 1)]);
@@ -89,7 +80,7 @@ fn a_uniform_stress_passes_through_a_free_body_of_any_cells_in_any_position() {
         let model = model(&format!("{BODY}{}", tractions(STRESS)), moved(mesh, turned));
         for count in [1, 4] {
             let solution = solve(&model, count);
-            is_stressed(&solution, STRESS, 1e-10 * 3e6);
+            solution.check_stress(STRESS, 1e-10 * 3e6);
             // What is fixed is the mean over the nodes, without rotation in the mean: u − ε x is rigid.
             let (mut moved, mut turned) = ([0.0; 3], [0.0; 3]);
             let mut at = Vec::new();
@@ -154,7 +145,7 @@ fn uniform_compression_goes_through_contacts_of_any_cells_in_any_position() {
             let model = model(&text, moved(two_blocks(kind, upper), turned));
             for count in [2, 6] {
                 let solution = solve(&model, count);
-                is_stressed(&solution, [-1e6, -1e6, -1e6, 0.0, 0.0, 0.0], 1e-10 * 1e6);
+                solution.check_stress([-1e6, -1e6, -1e6, 0.0, 0.0, 0.0], 1e-10 * 1e6);
                 for (tag, x) in model.mesh.node_tags.iter().zip(&model.mesh.points) {
                     is_near(
                         &solution.displacement[tag],

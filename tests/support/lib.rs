@@ -33,4 +33,5 @@ pub mod statics;
 pub mod stress;
 pub mod twofold;
 pub mod uneven;
+pub mod uniform;
 pub mod validation;

@@ -10,7 +10,6 @@ use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 
 use crate::support::blocks::joined;
-use crate::support::close::close;
 use crate::support::scenes::model;
 use crate::support::solids::{SOLIDS, between, moved, solid, turned};
 use crate::support::solution::Solution;
@@ -57,13 +56,9 @@ fn is_uniform(solution: &Solution) {
     let n = turned([0.0, 0.0, 1.0]);
     let pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
     let expected = pairs.map(|(i, j)| -PRESSURE * n[i] * n[j]);
-    for (_, stress) in &solution.cells {
-        (0..6).for_each(|k| close(stress[k], expected[k], 1e-10 * PRESSURE));
-    }
-    for point in solution.points() {
-        assert!(point.closed && point.tags[1] == -1, "{point:?}");
-        close(point.pressure, PRESSURE, 1e-10 * PRESSURE);
-    }
+    solution.check_cells(expected, 1e-10 * PRESSURE);
+    solution.check_pressure(PRESSURE, 1e-10 * PRESSURE);
+    assert!(solution.points().all(|point| point.tags[1] == -1));
 }
 
 #[test]

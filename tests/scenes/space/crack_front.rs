@@ -3,7 +3,6 @@
 use contact_dd_partition::element::ElementKind::{self, *};
 use contact_dd_partition::mesh::{Group, Mesh};
 
-use super::is_stressed;
 use crate::support::blocks::{glued, joined};
 use crate::support::comparison::compare;
 use crate::support::monolithic::Monolithic;
@@ -59,7 +58,7 @@ fn a_closed_crack_carries_as_if_there_was_none() {
         for count in [1, 4] {
             let solution = solve(&model, count);
             assert!(solution.closed() > 0, "{kind:?}");
-            is_stressed(&solution, [0.0, 0.0, -1e6, 0.0, 0.0, 0.0], 1e-9 * 1e6);
+            solution.check_stress([0.0, 0.0, -1e6, 0.0, 0.0, 0.0], 1e-9 * 1e6);
         }
     }
 }
