@@ -115,7 +115,7 @@ impl Comm {
         self.is_any(is_asked_to_stop())
     }
 
-    /// Whether any rank says so. Collective.
+    /// Whether it is so on any rank. Collective.
     pub fn is_any(&self, mine: bool) -> bool {
         self.all_reduce(i32::from(mine), SystemOperation::max()) != 0
     }

@@ -24,10 +24,10 @@ use crate::schur::factor::FactorError;
 use crate::schur::local::LocalSchur;
 use crate::schur::substitution::Replaced;
 
-/// What is needed to condense any block.
+/// The data of the condensation of any block.
 #[derive(Clone, Copy)]
 pub struct Condensation<'a> {
-    /// What the run works on.
+    /// The context of the run.
     pub context: Context<'a>,
     /// What acts on the blocks of this rank in the first load step.
     pub loads: &'a Loads,

@@ -60,7 +60,7 @@ impl LoadPoint {
     }
 }
 
-/// What acts in a load step on what this rank has.
+/// The loads on the blocks and contact groups of this rank.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loads {
     /// On its blocks, by their number.
@@ -70,7 +70,7 @@ pub struct Loads {
 }
 
 impl Context<'_> {
-    /// What acts at a moment.
+    /// The loads at a point of the load path.
     pub fn loads(&self, moment: LoadPoint) -> Loads {
         let mut loads = self.loads_of_step(moment.step);
         if moment.part < 1.0 {
@@ -91,7 +91,7 @@ impl Context<'_> {
         loads
     }
 
-    /// What acts at the end of load step k.
+    /// The loads at the end of load step k.
     fn loads_of_step(&self, k: usize) -> Loads {
         let (blocks, groups) = (self.blocks.iter(), self.groups.iter());
         Loads {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use contact_dd_partition::error::{InputError, OutputError};
 use serde::{Deserialize, Serialize};
 
-/// What a failed run ends with; the same on all ranks.
+/// The failure in which a run ends; the same on all ranks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum FailureKind {

@@ -29,7 +29,7 @@ pub struct Plan {
     pub groups: Vec<GroupPlan>,
     /// The owner of every node of the hierarchy.
     pub node_owners: Vec<usize>,
-    /// What the interface problem is assembled from.
+    /// The clusters, of which the interface problem is assembled.
     pub clusters: Vec<ClusterPlan>,
     /// The clusters in contact.
     pub contact: Vec<usize>,

@@ -262,7 +262,7 @@ fn unknown_stress(catalog: &Catalog) -> Vec<String> {
         .collect()
 }
 
-/// What the scene didn't need.
+/// The parts of a run that the scene didn't need.
 fn skipped(comm: &Comm, totals: &Totals<'_>) -> Vec<String> {
     let mut skipped = Vec::new();
     if !comm.has_mpi() {

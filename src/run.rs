@@ -288,7 +288,7 @@ impl Stages<'_> {
     }
 }
 
-/// What the load steps of a stage share.
+/// The data that the load steps of a stage share.
 struct StageSteps<'a> {
     stage: &'a Stage<'a>,
     /// The load steps of the next stage.

@@ -129,7 +129,7 @@ impl Settings {
         }
     }
 
-    /// What the sweeps need to know.
+    /// The settings of the sweeps.
     pub fn sweeps(&self) -> SweepSettings {
         SweepSettings {
             method: self.method,
@@ -140,7 +140,7 @@ impl Settings {
         }
     }
 
-    /// What was asked for in this run and isn't used, in words.
+    /// The warning of a setting of this run that isn't used.
     pub fn unused(&self) -> Option<String> {
         let is_asked_for = self.from.of("relaxation") == Origin::CommandLine;
         (is_asked_for && self.method != Method::Picard).then(|| {
@@ -204,7 +204,7 @@ impl Settings {
     }
 }
 
-/// What a user sets of the sweeps.
+/// The settings of the sweeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepSettings {
     /// Method.
@@ -249,7 +249,7 @@ impl fmt::Display for Origin {
 pub struct Origins(BTreeMap<&'static str, Origin>);
 
 impl Origins {
-    /// What the command line says of a setting, else what the problem file does.
+    /// The value of a setting by the command line, else by the problem file.
     fn choose<T: Clone>(
         &mut self,
         name: &'static str,

@@ -30,7 +30,7 @@ use crate::vector::largest;
 /// The problem of a load step, as this rank holds it.
 #[derive(Debug)]
 pub struct StepProblem<'a> {
-    /// What acts on its blocks and contact groups.
+    /// The loads on its blocks and contact groups.
     pub loads: Loads,
     /// What supports prescribe in them.
     pub prescribed: BTreeMap<usize, Prescribed>,
@@ -44,10 +44,10 @@ pub struct StepProblem<'a> {
     pub earlier: Scales,
 }
 
-/// What a load step's problem is made of beside its loads.
+/// The parts of a load step's problem beside its loads.
 #[derive(Clone, Copy)]
 pub struct Loading<'a> {
-    /// What the run works on.
+    /// The context of the run.
     pub context: Context<'a>,
     /// The factors of this rank.
     pub factors: &'a CondensedBlocks,

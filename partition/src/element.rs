@@ -40,7 +40,7 @@ impl ElementKind {
         Self::Hexahedron27,
     ];
 
-    /// What it is: nodes, shape functions, facets, rules.
+    /// The reference element: nodes, shape functions, facets, rules.
     pub fn reference(self) -> &'static ReferenceElement {
         match self {
             Self::Point1 => &lines::POINT1,

@@ -36,7 +36,7 @@ pub struct Example {
     shape: Shape,
 }
 
-/// What a mesh is made from.
+/// The parameters of a mesh.
 #[derive(Clone, Copy, Debug)]
 enum Shape {
     /// Mapped squares, to be filled with cells of any kind and size.

@@ -18,7 +18,7 @@ pub const BAD_USAGE: u8 = 2;
 /// Exit code of output that can't be written.
 const UNWRITABLE: u8 = 5;
 
-/// What stands in a program's manual beside its options, which the parser knows.
+/// The parts of a program's manual beside its options, which the parser knows.
 #[derive(Clone, Copy, Debug)]
 pub struct Manual {
     /// Commands, each with what it does.
@@ -51,7 +51,7 @@ pub enum Document {
 pub enum Answer {
     /// Text for stdout, with the codes of colours.
     Text(String),
-    /// What is wrong with the command line.
+    /// The fault of a command line.
     Refusal(String),
 }
 

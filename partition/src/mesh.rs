@@ -32,7 +32,7 @@ pub struct Mesh {
     pub facets: Elements,
     /// Physical groups by name.
     pub groups: BTreeMap<String, Group>,
-    /// What a user should know of how the file was read.
+    /// Warnings from the reader of the file.
     pub warnings: Vec<String>,
 }
 

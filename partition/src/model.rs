@@ -44,7 +44,7 @@ use crate::solver::SolverSettings;
 pub struct Model {
     /// Title of the scene.
     pub title: String,
-    /// How the scene wants to be solved.
+    /// Settings of the solver.
     pub solver: SolverSettings,
     /// The units that messages and pictures name.
     pub units: Units,
@@ -79,7 +79,7 @@ pub struct Model {
     pub found: Vec<String>,
     /// The partition that the scene asks for, a subdomain for every cell.
     pub prescribed_subdomains: Option<Vec<u32>>,
-    /// What a user should know and that isn't an error.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
@@ -156,7 +156,7 @@ struct MadeContacts<'a> {
     contacts: Vec<Contact>,
     /// The table of each in the scene.
     tables: Vec<&'a str>,
-    /// What was found, in words.
+    /// The contacts that were found, in words.
     found: Vec<String>,
 }
 

@@ -71,7 +71,7 @@ pub struct Subdomain {
     pub steps: Vec<StepLoads>,
 }
 
-/// What a load step does to a subdomain.
+/// The loads of a subdomain in a load step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepLoads {
     /// Prescribed displacement of every support (m).
@@ -149,7 +149,7 @@ pub struct SubdomainNode {
     pub node: u32,
 }
 
-/// What the catalog says of a node of a contact point.
+/// A node of a contact point in the catalog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PointNode {
     /// Its number on Γ, if several subdomains have it.
@@ -182,7 +182,7 @@ impl PointNode {
     }
 }
 
-/// What the catalog says of one subdomain.
+/// A subdomain in the catalog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SubdomainSummary {
     /// Index of its body.
@@ -211,7 +211,7 @@ pub struct ContactSummary {
 pub struct LoadStep {
     /// Name.
     pub name: String,
-    /// What it stands at on the axis of time.
+    /// Its time on the load path.
     pub time: f64,
     /// The bodies and contacts that are absent.
     pub absent: Absent,
@@ -249,7 +249,7 @@ pub struct Hierarchy {
     pub clusters: Vec<u32>,
 }
 
-/// What every rank knows of the whole problem.
+/// The catalog of the whole problem, which every rank has.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Catalog {
     /// Title of the scene.
@@ -282,11 +282,11 @@ pub struct Catalog {
     pub points: Vec<ContactPoint<SubdomainNode>>,
     /// Where solutions are looked at for penetration.
     pub probes: Vec<Probe<SubdomainNode>>,
-    /// What is known of the nodes of every contact point.
+    /// The nodes of every contact point.
     pub point_nodes: Vec<Vec<PointNode>>,
     /// The tree along which Schur complements are merged.
     pub hierarchy: Hierarchy,
-    /// How the problem wants to be solved.
+    /// Settings of the solver.
     pub solver: SolverSettings,
     /// Warnings of the partition tool, to be repeated in the report.
     pub warnings: Vec<String>,

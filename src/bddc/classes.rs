@@ -12,7 +12,7 @@ use crate::schur::condensed::InterfaceDof;
 
 /// Most unknowns of a class all of which are coarse ones.
 const SMALL: usize = 4;
-/// What is none beside a unit vector.
+/// Length that is none beside a unit vector.
 const ROUND_OFF: f64 = 1e-12;
 
 /// Unknowns that the same clusters have.

@@ -20,7 +20,7 @@ pub struct GroupBetween {
     terms: Vec<Vec<(InterfaceDof, f64)>>,
     /// The open ones among the jumps.
     pub open: Vec<bool>,
-    /// What the closed ones replace.
+    /// The unknowns that closed jumps replace.
     replaced: Vec<Replaced>,
 }
 
@@ -144,7 +144,7 @@ impl Ties {
         joined
     }
 
-    /// What is in the place of an unknown that is tied.
+    /// The terms in the place of an unknown that is tied.
     pub fn tied(&self, dof: &InterfaceDof) -> Option<&Terms> {
         self.resolved.get(dof)
     }

@@ -18,7 +18,7 @@ use crate::schur::condensed::InterfaceDof;
 use crate::schur::symmetric::PackedSymmetric;
 use crate::schur::trapezoid::{NotDefinite, Trapezoid};
 
-/// What a cluster or a node leaves to coarse unknowns.
+/// The Schur complement that a cluster or a node leaves to coarse unknowns.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Part {
     /// Its classes, each by its first unknown, and how many coarse unknowns each has.

@@ -19,13 +19,13 @@ const MAX_ITERATIONS: usize = 500;
 const MAX_WITH_STALE: usize = 30;
 /// Iterations after which a preconditioner that can be made better is judged.
 const TRIAL: usize = 6;
-/// What the error has to come down to by then.
+/// Relative error that is to be reached by then.
 const GOOD: f64 = 0.02;
 
 /// The conjugate gradient method: operator and preconditioner.
 #[derive(Clone, Copy)]
 pub struct ConjugateGradients<'a> {
-    /// What the run works on.
+    /// The context of the run.
     pub context: &'a Context<'a>,
     /// The owner of every cluster.
     pub owners: &'a [usize],

@@ -52,7 +52,7 @@ enum Share {
     Part(#[serde(with = "crate::bytes::matrix")] Mat<f64>),
 }
 
-/// What a class is to a cluster.
+/// The stiffness of a class as a cluster has it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Side {
     /// The stiffness of each unknown.

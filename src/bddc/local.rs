@@ -34,7 +34,7 @@ fn fill_upper_triangle(s: &mut Mat<f64>) {
 /// A vector on what clusters share, by cluster.
 pub type Vectors = BTreeMap<usize, Vec<f64>>;
 
-/// What a cluster shares with others, class after class.
+/// The unknowns that a cluster shares with others, class after class.
 #[derive(Debug)]
 pub struct Shared {
     placement: Placement,
@@ -43,7 +43,7 @@ pub struct Shared {
     pub smallest_pivot: f64,
     /// The spring on each unknown of the cluster; none where nothing has one.
     springs: Vec<f64>,
-    /// What is sure to be more than the round-off of S.
+    /// A bound on the round-off of S.
     round_off: f64,
 }
 

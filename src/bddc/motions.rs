@@ -11,7 +11,7 @@ use crate::fem::body_frame::BodyFrame;
 use crate::fem::frame::{Frame, node_frames};
 use crate::schur::condensed::InterfaceDof;
 
-/// What of a motion counts as none beside the largest one.
+/// Part of a motion that counts as none beside the largest one.
 const DEPENDENT: f64 = 1e-3;
 
 /// Where the nodes are that clusters share, and along which axes their unknowns move them, on all ranks.

@@ -12,7 +12,7 @@ use crate::context::Context;
 use crate::plan::Plan;
 use crate::schur::condensed::InterfaceDof;
 
-/// What acts where the active set is frozen, on this rank.
+/// The loads on this rank under a fixed active set.
 #[derive(Clone, Copy, Debug)]
 pub struct ClusterLoads<'a> {
     /// Loads on the boundaries of clusters, by node.
@@ -40,7 +40,7 @@ impl Accuracy<'_> {
     };
 }
 
-/// What a load does, on this rank.
+/// The answer to a load, on this rank.
 #[derive(Debug, Default)]
 pub struct BddcSolution {
     /// The unknowns of every cluster, by its node.
@@ -142,7 +142,7 @@ impl Bddc {
         gradients.solve(b, start, accuracy.tolerance)
     }
 
-    /// What clusters share where their unknowns, by node, are `known`. Collective.
+    /// The shared unknowns of clusters whose unknowns, by node, are `known`. Collective.
     fn start(&self, comm: &Comm, known: &BTreeMap<usize, Vec<f64>>, plan: &Plan) -> Vectors {
         let classes = &self.classes.list;
         let ends: Vec<(usize, usize)> = (classes.iter().enumerate())

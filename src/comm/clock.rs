@@ -139,7 +139,7 @@ impl Clock {
     }
 }
 
-/// What this thread has used of a core (s).
+/// The processor time of this thread (s).
 fn thread_seconds() -> f64 {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64

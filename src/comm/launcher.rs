@@ -4,13 +4,13 @@ use std::env;
 
 use crate::error::Failure;
 
-/// Where the launchers of MPIs tell of how many ranks a process is one.
+/// The variables in which launchers of MPIs give the number of ranks.
 const SIZES: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE"];
 
 /// What srun counts: its tasks, or the daemons of an `mpirun` that starts them by srun.
 const SRUN_SIZE: &str = "SLURM_STEP_NUM_TASKS";
 
-/// Where launchers tell which rank a process is. Some tell no size, PMIx only to who asks.
+/// The variables in which launchers give the rank of a process. Some give no size, PMIx only on request.
 const RANKS: [&str; 8] = [
     "OMPI_COMM_WORLD_RANK",
     "PMI_RANK",
@@ -82,7 +82,7 @@ pub(super) fn check(size: usize) -> Result<(), Failure> {
     }
 }
 
-/// How many ranks the launcher started, and the variable in which it says so.
+/// The number of ranks that the launcher started, and the variable that holds it.
 fn launched(number: impl Fn(&str) -> Option<usize>) -> Option<(&'static str, usize)> {
     (SIZES.into_iter().chain([SRUN_SIZE])).find_map(|name| Some((name, number(name)?)))
 }

@@ -40,7 +40,7 @@ pub fn failure(phase: &str) -> Option<Failure> {
     (wish == "failure").then(|| Failure::ill_posed("on purpose"))
 }
 
-/// What is to become of this rank in `phase`.
+/// The end that this rank is to take in `phase`.
 fn wish(phase: &str) -> Option<String> {
     let wish = env::var("CONTACT_DD_END").ok()?;
     let mut words = wish.splitn(3, ' ');

@@ -14,7 +14,7 @@ pub fn phase(name: &'static str) {
     on_purpose::end(name);
 }
 
-/// What this rank is doing.
+/// The phase of this rank.
 pub(super) fn current_phase() -> &'static str {
     *PHASE.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -10,7 +10,7 @@ use crate::schur::local::CondensedLoad;
 /// The factors of all ranks.
 #[derive(Clone, Copy)]
 pub struct Factors<'a> {
-    /// What the run works on.
+    /// The context of the run.
     pub context: Context<'a>,
     /// The factors of this rank.
     pub condensed: &'a CondensedBlocks,

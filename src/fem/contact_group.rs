@@ -26,7 +26,7 @@ pub struct ContactGroup {
     pub dim: usize,
 }
 
-/// What a contact group asks of the jump at one of its points along one direction: a row of B.
+/// The condition on the jump at a point along one direction: a row of B.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
     /// Number of the point.
@@ -41,18 +41,18 @@ pub struct Condition {
 #[derive(Clone, Debug)]
 pub struct JumpRows(Vec<JumpRow>);
 
-/// What acts on a contact group in a load step.
+/// The loads on a contact group in a load step: gaps and prescribed displacements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GroupLoads {
     /// For every condition the jump that it allows (m): the gap g, or the tangential jump at which the sides stick,
     /// that of the load step before.
     pub gaps: Vec<f64>,
-    /// What the supports of every node prescribe (m).
+    /// The displacements that the supports of every node prescribe (m).
     pub held: Vec<Vec<f64>>,
 }
 
 impl GroupLoads {
-    /// What acts on `group` in load step k.
+    /// The loads on `group` in load step k.
     pub fn new(group: &ContactGroup, k: usize) -> Self {
         let held = |node: &ContactNode| node.supports.iter().map(|(_, values)| values[k]).collect();
         let gap = |condition: Condition| match condition.is_tangential {
@@ -162,7 +162,7 @@ impl ContactGroup {
         self.points[condition.point].row_along(condition.direction)
     }
 
-    /// What the tangential conditions ask for, each with the normal condition of its point.
+    /// The tangential conditions, each with the normal condition of its point.
     pub fn friction(&self) -> Vec<TangentialCondition> {
         let of_condition = |(number, condition): (usize, Condition)| {
             let point = &self.points[condition.point];

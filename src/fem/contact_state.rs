@@ -23,7 +23,7 @@ pub struct ContactState {
 }
 
 impl ContactState {
-    /// What `status` says of it in the result file: 0 open, 1 closed (with friction: sticking), 2 slipping.
+    /// The number of its status in the result file: 0 open, 1 closed (with friction: sticking), 2 slipping.
     pub fn status(&self) -> u8 {
         match (self.closed, self.slipping) {
             (false, _) => 0,

@@ -4,7 +4,7 @@ use contact_dd_partition::model::Support;
 
 use super::block::Block;
 
-/// What acts on a block in a load step.
+/// The loads on a block in a load step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BlockLoads {
     /// Prescribed displacements, in ascending order of the block's nodes.
@@ -14,7 +14,7 @@ pub struct BlockLoads {
 }
 
 impl BlockLoads {
-    /// What acts on a block in load step `step`.
+    /// The loads on a block in load step `step`.
     pub fn new(block: &Block, step: usize) -> Self {
         Self {
             supports: block.subdomain.supports_in(step).collect(),

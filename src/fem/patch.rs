@@ -34,7 +34,7 @@ pub struct PatchSum {
     load: [f64; 6 * TERMS],
 }
 
-/// What of a patch sum isn't zero for want of dimensions.
+/// The entries of a patch sum that there are in its dimension.
 #[derive(Serialize, Deserialize)]
 struct Sums {
     dim: usize,

@@ -23,7 +23,7 @@ pub struct BlockStress {
     pub cells: Vec<[f64; 6]>,
     /// The largest strain of a cell.
     pub largest_strain: LargestStrain,
-    /// What is recovered in each material, ascending.
+    /// The recovered stresses of each material, ascending.
     pub recoveries: Vec<Recovery>,
 }
 

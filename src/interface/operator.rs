@@ -21,7 +21,7 @@ const SHARE: f64 = 0.05;
 /// Pivot relative to its diagonal entry below which an operator is singular.
 const SINGULAR_PIVOT: f64 = 1e-13;
 
-/// What a cluster contributes to the interface problem.
+/// The contribution of a cluster to the interface problem.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Contribution {
     /// Its Schur complement on its interface dofs, with every contact closed.

@@ -20,7 +20,7 @@ pub struct SCon<'a> {
     pairs: &'a mut BTreeMap<usize, ContactPair>,
 }
 
-/// What the root knows of all pairs after an evaluation.
+/// The answers of all pairs after an evaluation, on the root.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConState {
     interface_dofs: Vec<Option<Vec<f64>>>,
@@ -45,7 +45,7 @@ pub struct ConTotals {
     pub unmoved_pairs: usize,
 }
 
-/// What the root asks of the pairs.
+/// A request of the root to the pairs.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 enum Request {
     /// The end of all requests.

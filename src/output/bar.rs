@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// How long a log hears nothing of a run.
+/// Time after which a log gets a sign of life.
 const SILENCE: Duration = Duration::from_secs(10);
 
 /// How often a bar moves by itself.
@@ -41,7 +41,7 @@ impl Part {
         }
     }
 
-    /// How long the rest of it takes if it goes on like this (s); `None` where too little is done to tell.
+    /// Time that the rest of it takes at this pace (s); `None` where too little is done to tell.
     fn seconds_left(self, elapsed: Duration) -> Option<f64> {
         let left = elapsed.as_secs_f64() * (1.0 - self.share) / self.share;
         (self.share > 0.02 && elapsed > 10 * TICK).then_some(left)
@@ -111,12 +111,12 @@ impl Bar {
         self.tell(|| format!("{}, {:.0} %{}", self.phase.get(), 100.0 * share, left()));
     }
 
-    /// What the run is doing.
+    /// The phase of the run.
     pub fn phase(&self) -> &'static str {
         self.phase.get()
     }
 
-    /// How long the rest of the part takes if it goes on like this (s), where that can be told.
+    /// Time that the rest of the part takes at this pace (s), where that can be told.
     pub fn seconds_left(&self) -> Option<f64> {
         let part = self.part.get();
         part.seconds_left(part.began.elapsed())

@@ -14,7 +14,7 @@ use crate::settings::command_line::LogFormat;
 use crate::settings::{Origins, Settings};
 use crate::sweep::SweepRecord;
 
-/// What is to be solved, and on what.
+/// The problem, and the ranks and threads that solve it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary<'a> {
     /// Version of the program.
@@ -45,7 +45,7 @@ pub struct Summary<'a> {
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event<'a> {
-    /// What is to be solved, and on what.
+    /// The problem, and the ranks and threads that solve it.
     Problem(&'a Summary<'a>),
     /// How it is to be solved.
     Settings {
@@ -72,7 +72,7 @@ pub enum Event<'a> {
         steps: usize,
         /// Its name.
         name: &'a str,
-        /// What it stands at on the axis of time.
+        /// Its time on the load path.
         time: f64,
         /// The bodies and contacts that are absent in it.
         #[serde(skip)]
@@ -95,7 +95,7 @@ pub enum Event<'a> {
     },
     /// A sweep is done.
     Sweep(&'a SweepRecord),
-    /// What the user should know.
+    /// A warning.
     Warning {
         /// In words.
         message: &'a str,
@@ -118,7 +118,7 @@ pub enum Event<'a> {
     },
     /// The run has ended and its results are written.
     Finished {
-        /// What the program ends with.
+        /// The exit code of the program.
         exit_code: u8,
         /// The result file.
         result: String,
@@ -132,7 +132,7 @@ pub enum Event<'a> {
     },
     /// The run has failed; on stderr.
     Error {
-        /// What the program ends with.
+        /// The exit code of the program.
         exit_code: u8,
         /// Where, and what was expected.
         message: &'a str,

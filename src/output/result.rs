@@ -24,7 +24,7 @@ impl PartitionSize {
     }
 }
 
-/// What a list has a row for.
+/// The entity that a list has a row for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Per {
     Node,
@@ -46,7 +46,7 @@ impl Per {
     }
 }
 
-/// What a list tells of.
+/// The group of lists that a list belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Of {
     /// The mesh, the same in every load step.

@@ -20,7 +20,7 @@ use crate::sweep::SweepRecord;
 
 /// Bodies and contacts up to which all that aren't there are named.
 const NAMED: usize = 6;
-/// What is left of a run that takes longer is told (s).
+/// Time that is left of a run from which on it is told (s).
 const LONG: f64 = 10.0;
 /// How the reason is shown for which sweeps ended well.
 const CONVERGED: Style = AnsiColor::Green.on_default();

@@ -48,7 +48,7 @@ pub struct ResultFile {
     step: usize,
     /// The digests of load steps that are written since the last one was kept.
     digests: Vec<Vec<u64>>,
-    /// What is kept beside those before.
+    /// The load steps kept so far.
     kept: Option<Kept>,
     // Closed before `destination` removes or renames it: fields are dropped in this order.
     file: File,

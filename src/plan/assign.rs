@@ -5,7 +5,7 @@ use contact_dd_partition::hierarchy::tree::Tree;
 /// Splits that are tried, for every rank.
 const SPLITS: usize = 8;
 
-/// What a further split must gain.
+/// Least gain of a further split.
 const GAIN: f64 = 0.97;
 
 /// A way to hand out the tree.

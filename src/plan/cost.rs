@@ -11,7 +11,7 @@ use contact_dd_partition::problem::Catalog;
 use super::Plan;
 use super::cluster::Merging;
 
-/// What a program needs that does nothing yet (bytes).
+/// Memory of a program that does nothing yet (bytes).
 const AT_REST: f64 = 2.8e7;
 /// A block of n dofs, by nested dissection n log n, in bytes: its factor and its mesh.
 const PER_DOF: f64 = 50.0;
@@ -38,7 +38,7 @@ pub struct CostEstimate {
 }
 
 impl CostEstimate {
-    /// What all of some ranks need together.
+    /// The cost of some ranks together.
     pub fn sum(ranks: &[Self]) -> Self {
         Self {
             bytes: ranks.iter().map(|rank| rank.bytes).sum(),

@@ -78,7 +78,7 @@ fn kibibytes(list: &str, name: &str) -> Option<u64> {
 /// Share of the estimate that is needed for certain.
 const CERTAIN: f64 = 0.7;
 
-/// What a host has, and what its ranks need.
+/// The memory of a host, and the need of its ranks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Host {
     available: f64,

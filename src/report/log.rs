@@ -26,13 +26,13 @@ use crate::sweep::SweepRecord;
 /// Exit code of sweeps that don't converge.
 const NOT_CONVERGED: u8 = 3;
 
-/// How often programs hear how far a phase has come.
+/// Time between progress events for programs.
 const PULSE: Duration = Duration::from_secs(1);
 
 /// What validating found in load steps in which the same is there.
 #[derive(Debug)]
 pub struct Checked {
-    /// What a user should know of their rigid motions.
+    /// Warnings of their rigid motions.
     pub warnings: Vec<String>,
     /// What solving them would cost every rank.
     pub costs: Vec<CostEstimate>,
@@ -115,7 +115,7 @@ impl<'a> RunLog<'a> {
         }
     }
 
-    /// Whether all that was said could be written; a closed pipe is nobody's error.
+    /// Whether all events could be written; a closed pipe is no error.
     ///
     /// # Errors
     /// The first that couldn't.
@@ -137,7 +137,7 @@ impl<'a> RunLog<'a> {
         });
     }
 
-    /// What is to be solved, and how.
+    /// Tells the problem and the settings.
     pub fn problem(&self, catalog: &Catalog, plan: &Plan) {
         let summary = Summary {
             version: env!("CARGO_PKG_VERSION"),

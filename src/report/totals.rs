@@ -26,7 +26,7 @@ pub struct Totals<'a> {
     pub smallest_pivot: f64,
     /// Every rank's times.
     pub ranks: Vec<RankReport>,
-    /// What the ranks noticed on the way.
+    /// Warnings from the ranks.
     pub warnings: Vec<String>,
 }
 
@@ -53,7 +53,7 @@ pub struct StepTotals {
     pub at_limit: bool,
     /// The scales of its solution, if it converged.
     pub scales: Scales,
-    /// What a user should know of it.
+    /// Warnings of the load step.
     pub warnings: Vec<String>,
 }
 

@@ -33,7 +33,7 @@ pub struct RigidMotions {
     pub free: Vec<FreeMotion>,
     /// As many pins as there are free motions, and those of bodies that aren't there.
     pub fixing_dofs: Vec<FixingDof>,
-    /// What a user should know.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
@@ -228,7 +228,7 @@ impl Kinematics {
         (worst, bodies[worst].frame.describe(self.dim, &z))
     }
 
-    /// What becomes of the free `motions`, which are pinned by `fixing_dofs`, and says so.
+    /// The free `motions`, pinned by `fixing_dofs`, with a warning of each.
     fn fix(
         &self,
         bodies: &[BodyState],

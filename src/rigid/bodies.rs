@@ -91,7 +91,7 @@ fn held_by_symmetry(catalog: &Catalog) -> Vec<Vec<f64>> {
     }
 }
 
-/// What a subdomain adds to its body.
+/// The contribution of a subdomain to its body.
 #[derive(Serialize, Deserialize)]
 struct BodyPart {
     supports: Vec<Vec<f64>>,

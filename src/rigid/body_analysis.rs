@@ -31,7 +31,7 @@ pub struct RigidBodyAnalysis {
     pub cluster_modes: BTreeMap<usize, RigidModes>,
     /// Whether supports leave any rigid motion to any body.
     pub movable: bool,
-    /// What all this follows from, on the root.
+    /// The scene of bodies and conditions, on the root.
     pub scene: Option<Scene>,
 }
 
@@ -98,7 +98,7 @@ pub fn analyse_bodies(
     })
 }
 
-/// What the root tells all ranks of the motions that it found.
+/// The motions that the root found, for all ranks.
 #[derive(Default, Serialize, Deserialize)]
 struct Found {
     motions: RigidMotions,

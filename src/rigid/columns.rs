@@ -78,7 +78,7 @@ impl Columns {
         x
     }
 
-    /// What the columns leave of `b`.
+    /// The residual of `b` after the columns.
     pub fn residual(&self, b: &DVector<f64>) -> DVector<f64> {
         let mut left = b.clone();
         for _ in 0..2 {

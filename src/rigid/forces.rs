@@ -12,7 +12,7 @@ use super::scene::{Friction, RigidRow};
 
 /// Part of the fastest motion of a condition with which sides slip.
 const SLIPS: f64 = 0.1;
-/// What is left of a load, relative to it, that is round-off.
+/// Rest of a load, relative to it, that is round-off.
 const NOTHING: f64 = 1e-15;
 /// Part of what is left that more forces leave if they aren't worth it.
 const WORTH_IT: f64 = 0.9;

@@ -272,7 +272,7 @@ fn factorized(matrix: &SparseSymmetric) -> Option<BoundaryLastCholesky> {
 #[derive(Clone, Debug)]
 struct Point {
     y: Vec<f64>,
-    /// What is left of every gap.
+    /// The slack of every gap.
     left: Vec<f64>,
     lambda: Vec<f64>,
 }

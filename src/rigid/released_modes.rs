@@ -21,7 +21,7 @@ pub struct ConditionState {
     pub carrying: bool,
     /// Whether it is closed; a tangential one: sticks.
     pub closed: bool,
-    /// What it has left (m).
+    /// The gap that it has left (m).
     pub gap: f64,
     /// Its force (N/m).
     pub force: f64,
@@ -38,7 +38,7 @@ pub struct ReleasedModes {
     gaps: Vec<f64>,
     /// The conditions whose forces are round-off of the equilibrium of rigid bodies.
     pub unneeded: Vec<usize>,
-    /// What a user should know.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 

@@ -46,7 +46,7 @@ pub struct RigidRow {
     pub friction: Option<Friction>,
 }
 
-/// What the rigid motions of a scene follow from. On the root.
+/// The bodies and conditions from which rigid motions follow. On the root.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// Dimension of space.

@@ -93,9 +93,9 @@ pub struct Finished {
     pub transfer: StageTransfer,
     /// The state that the next one starts from; on the root.
     kept: Option<Kept>,
-    /// What there is of the result file; on the root.
+    /// The unfinished result file; on the root.
     pub file: Option<file::Kept>,
-    /// What a user should know; on the root.
+    /// The warning of a missing file; on the root.
     pub warning: Option<String>,
 }
 

@@ -23,7 +23,7 @@ use crate::settings::Settings;
 use crate::step::state::{StepState, analyse_steps};
 use crate::sweep::{SweepOutcome, SweepStatus};
 
-/// What all stages of a run share.
+/// The data that all stages of a run share.
 #[derive(Clone, Copy)]
 pub struct Stages<'a> {
     /// All ranks.
@@ -50,7 +50,7 @@ pub struct Parts {
 
 /// A handover: where a more robust solver takes over in a stage.
 pub struct Handover {
-    /// What the more robust one merges.
+    /// The merging of the more robust solver.
     pub merging: Merging,
     /// The state that it starts from, with the owners of the plan before.
     pub state: StepState,

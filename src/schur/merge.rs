@@ -22,7 +22,7 @@ use super::local::CondensedLoad;
 use super::substitution::{Front, Replaced, Substitution};
 use crate::schur::condensed::InterfaceDof;
 
-/// What a merge leaves behind for solving.
+/// The factor that a merge leaves for solving.
 #[derive(Debug)]
 pub struct Merge {
     eliminated: usize,

@@ -17,7 +17,7 @@ const AGGREGATE: usize = 8;
 /// The golden ratio's fraction.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
-/// What is asked of a cut.
+/// The aim of a cut.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aim {
     /// The part of the dofs that should be on the left.

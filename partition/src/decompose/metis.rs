@@ -13,7 +13,7 @@ static GENERATOR: Mutex<()> = Mutex::new(());
 /// Largest sum of weights that METIS is given; its integers have 32 bits.
 const LARGEST_SUM: f64 = (1 << 30) as f64;
 
-/// What a dof weighs, where the sum allows.
+/// The weight of a dof, where the sum allows.
 const WEIGHT_OF_DOF: f64 = 16.0;
 
 /// How much heavier than it should be a side may be, in thousandths.

@@ -2,7 +2,7 @@
 
 use super::kind::ElementKind;
 
-/// What a reference element fills.
+/// The domain of a reference element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Domain {
     /// The origin.
@@ -83,7 +83,7 @@ impl Domain {
     }
 }
 
-/// What somebody who adds a kind writes down; the rest follows from it.
+/// The definition of a kind, from which all else of it follows.
 #[derive(Debug)]
 pub struct Definition {
     /// Its name in words.

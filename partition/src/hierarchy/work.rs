@@ -5,7 +5,7 @@ use super::tree::Tree;
 use crate::flops::Front;
 use crate::problem::Catalog;
 
-/// What the nodes of a problem's hierarchy cost.
+/// The cost of the nodes of a problem's hierarchy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Work {
     /// The front of every inner node.

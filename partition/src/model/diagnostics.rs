@@ -19,7 +19,7 @@ use crate::scene::contact::Partner;
 /// Which sides of two contacts have a facet in common: the first's a with the second's a and b, then its b.
 type Common = [[bool; 2]; 2];
 
-/// What a model is made of, all of it right by itself.
+/// The parts of a model, each of them right by itself.
 pub(super) struct Diagnostics<'a> {
     pub scene: &'a Scene,
     pub bodies: &'a Bodies,
@@ -27,7 +27,7 @@ pub(super) struct Diagnostics<'a> {
     pub materials: &'a [Material],
     pub loads: &'a Loads,
     pub contacts: &'a [Contact],
-    /// What the contacts are made from.
+    /// The declarations of the contacts.
     pub declared: &'a [Declared],
 }
 

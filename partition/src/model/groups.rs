@@ -7,7 +7,7 @@ use crate::mesh::{Group, Mesh};
 use crate::scene::condition::Names;
 use crate::scene::suggest::hint;
 
-/// What a group has to consist of.
+/// The members that a group has to have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Members {
     Cells,

@@ -17,7 +17,7 @@ pub(super) struct Target<'a> {
     tree: FacetTree,
 }
 
-/// What a line meets first.
+/// The first hit of a line.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Hit {
     /// Nodes, more than one where several lie in one place.

@@ -4,7 +4,7 @@ use crate::element::ElementKind;
 use crate::element::quadrature::TabulatedPoint;
 use crate::scene::material::PlaneState;
 
-/// What the radius adds to a degree.
+/// The degree that the radius adds.
 const RADIUS: [usize; 2] = [1, 2];
 
 /// The degree of a rule that is exact with the radius as a factor, where the scene is axisymmetric.

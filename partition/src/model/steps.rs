@@ -12,7 +12,7 @@ use crate::scene::Scene;
 pub struct ModelStep {
     /// Name.
     pub name: String,
-    /// What it stands at on the axis of time.
+    /// Its time on the load path.
     pub time: f64,
     /// Prescribed displacement of every support (m).
     pub supports: Vec<f64>,

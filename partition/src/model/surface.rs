@@ -18,7 +18,7 @@ pub(super) const CORNER: f64 = std::f64::consts::FRAC_PI_4;
 /// Part of the height of a kink that a facet on a curve has by itself unless it is straight.
 const STRAIGHT: f64 = 0.5;
 
-/// What the facets around a node say of the surface there.
+/// The surface at a node, by the facets around it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SurfaceNode {
     /// Σ measure·normal at it of the facets around it.

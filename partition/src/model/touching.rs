@@ -37,7 +37,7 @@ pub(super) struct Declared {
     pub contact: Contact,
     /// The name in the scene of what asks for it.
     pub table: String,
-    /// What it consists of, in words.
+    /// Its facets and bodies, in words.
     pub words: Option<String>,
 }
 
@@ -326,7 +326,7 @@ impl Sides<'_> {
         Ok(all)
     }
 
-    /// What a contact consists of.
+    /// The two sides of a contact.
     fn words(&self, patch: &Patch, bodies: [&str; 2], name: &str) -> String {
         let unit = self.scene.units.length();
         let square = if self.skin.mesh.dim == 3 { "²" } else { "" };

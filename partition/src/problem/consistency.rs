@@ -56,7 +56,7 @@ impl Places {
         })
     }
 
-    /// What is wrong with a point, and in which dataset.
+    /// The fault of a point, and its dataset.
     fn fault(&self, point: &Point) -> Option<(&'static str, String)> {
         let extent = self.extent;
         let around =

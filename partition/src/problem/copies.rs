@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Subdomain;
 
-/// What a subdomain says of one of its nodes on Γ.
+/// A node on Γ as one of its subdomains has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SharedNode {
     /// Its number on Γ.
@@ -208,7 +208,7 @@ mod tests {
         }
     }
 
-    /// What is found in so many parts.
+    /// The number of parts of the comparison.
     fn found(subdomains: &[OwnNodes], parts: usize) -> Option<String> {
         let mut copies = vec![NodeCopies::default(); parts];
         for (s, nodes) in subdomains.iter().enumerate() {

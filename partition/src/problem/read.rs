@@ -100,7 +100,7 @@ impl ProblemFile {
         error.in_file(&self.path)
     }
 
-    /// What every rank knows of the whole problem.
+    /// The catalog of the whole problem, which every rank has.
     pub fn catalog(&self) -> &Catalog {
         &self.catalog
     }

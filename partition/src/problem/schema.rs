@@ -42,7 +42,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// What its values are, in a word.
+    /// The word for its values.
     pub fn word(self) -> &'static str {
         match self {
             Self::Integers
@@ -348,7 +348,7 @@ pub fn attributes_of(group: &str) -> impl Iterator<Item = &'static Attribute> {
     (ATTRIBUTES.iter()).filter(move |attribute| attribute.group == group)
 }
 
-/// What a letter counts, in a word or two.
+/// The noun that a letter counts.
 pub fn noun(letter: char) -> &'static str {
     let known = LETTERS.iter().find(|&&(known, _)| known == letter);
     let noun = known.map_or("", |&(_, noun)| noun);

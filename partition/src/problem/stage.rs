@@ -8,7 +8,7 @@ use super::{Absent, Catalog, SubdomainNode};
 use crate::contact_point::ContactPoint;
 use crate::element::geometry::dot;
 
-/// What of a problem is there in consecutive load steps.
+/// The part of a problem that is there in consecutive load steps.
 #[derive(Debug)]
 pub struct Stage<'a> {
     /// The load steps; one where the problem has none.

@@ -122,7 +122,7 @@ fn wait(mut child: Child, is_asked_to_stop: fn() -> bool) -> io::Result<Option<E
     }
 }
 
-/// What a process that tries a file may take.
+/// The limits of a process that tries a file.
 struct Limits {
     memory: u64,
     /// Computing time of a step (seconds).

@@ -8,7 +8,7 @@ use super::friction::{self, Friction};
 use super::number::{Constant, Number};
 use crate::name;
 
-/// What a table `[[contact]]` says.
+/// A table `[[contact]]`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "Keys")]
 pub enum Declaration {
@@ -75,7 +75,7 @@ impl Contact {
     }
 }
 
-/// What the side a of a contact may touch.
+/// The partner of side a of a contact.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Partner {
     /// Side b.

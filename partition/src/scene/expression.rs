@@ -137,7 +137,7 @@ impl Expression {
     }
 }
 
-/// What is wrong at a byte of an expression.
+/// A fault at a byte of an expression.
 fn located(text: &str, at: usize, reason: &str) -> String {
     let shown: String = text.chars().take(60).collect();
     let place = text[..at].chars().count() + 1;

@@ -94,7 +94,7 @@ impl Friction {
     }
 }
 
-/// What is expected of all its numbers.
+/// The range of all its numbers.
 const LEAST: &str = "0 or more";
 
 /// Reads a number of at least 0, of which an expression is checked where it is evaluated.

@@ -20,7 +20,7 @@ pub struct Loading<'a> {
     pub pressure: &'a [Pressure],
     /// Displacements.
     pub displacement: &'a [Displacement],
-    /// What they are multiplied by.
+    /// The factors of all loads.
     pub scale: Scale,
 }
 
@@ -59,7 +59,7 @@ impl Scene {
 }
 
 impl Loading<'_> {
-    /// What the force per volume of a body is called in messages.
+    /// The name of the force per volume of a body in messages.
     pub fn body_force_label(&self, body: &str) -> String {
         match self.step {
             Some((k, step)) if step.body_force.contains_key(body) => {

@@ -20,10 +20,10 @@ use super::place;
 pub struct LoadStep {
     /// Its name; its number without.
     pub name: Option<String>,
-    /// What it stands at on the axis of time; its number without.
+    /// Its time on the load path; its number without.
     #[serde(deserialize_with = "time")]
     pub time: Option<f64>,
-    /// What its loads are multiplied by.
+    /// The factors of its loads.
     pub scale: Scale,
     /// Bodies and contacts that are there from this step on.
     pub add: Option<Names>,

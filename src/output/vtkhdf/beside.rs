@@ -23,7 +23,7 @@ const COHERENT: [u32; 5] = [
     0x2003_0528,
 ];
 
-/// Where the datasets are, as the root tells the others.
+/// The places of the datasets in the file.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Places {
     /// The file, while it isn't complete.

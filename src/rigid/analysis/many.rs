@@ -26,7 +26,7 @@ struct Touched<'a> {
     load: DVector<f64>,
 }
 
-/// What is found of a load and the forces of many contacts.
+/// The balance of a load and the forces of many contacts.
 enum Balance {
     /// Contact forces balance the load.
     Holds,

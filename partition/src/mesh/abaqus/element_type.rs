@@ -47,7 +47,7 @@ pub(super) struct ElementType {
     pub(super) has_modes: bool,
 }
 
-/// What the type `name` is; `None` where it isn't supported.
+/// The meaning of the type `name`; `None` where it isn't supported.
 pub(super) fn find(name: &str) -> Option<ElementType> {
     let name = name.to_uppercase();
     let types = TYPES.iter().chain(&LINES).enumerate();

@@ -25,7 +25,7 @@ impl Of {
     }
 }
 
-/// What an item of data means.
+/// The meaning of an item of data.
 enum Meaning<'a> {
     Tag(Option<&'a str>, i64),
     Set(&'a Set<u32>),

@@ -7,7 +7,7 @@ use super::element_type;
 use crate::element::ElementKind;
 use crate::error::InputError;
 
-/// What an MSH file holds.
+/// The content of an MSH file.
 #[derive(Default)]
 pub(super) struct Content {
     /// Names of physical groups, by dimension and number.

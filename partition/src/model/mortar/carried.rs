@@ -12,7 +12,7 @@ use super::weights::weights;
 use super::{polygons, segments};
 use crate::contact_point::ContactPoint;
 
-/// What the nodes of side a make of a contact.
+/// The contact points that the nodes of side a carry.
 pub(super) struct Carried {
     /// A contact point for every node that carries a multiplier, along the side.
     pub points: Vec<ContactPoint<u32>>,

@@ -9,7 +9,7 @@ use super::cover::Cover;
 pub(super) struct Covered<'a> {
     pub facet: &'a SurfaceFacet,
     pub cover: Cover,
-    /// What is known of the part that is covered; `None` where it extends over the whole.
+    /// The part that is covered; `None` where it extends over the whole.
     pub part: Option<Part>,
 }
 

@@ -27,7 +27,7 @@ pub(in crate::model) struct Mortar {
     pub points: Vec<ContactPoint<u32>>,
     /// Where the other side is looked at for penetration.
     pub probes: Vec<Probe<u32>>,
-    /// What a user should know.
+    /// A warning.
     pub warning: Option<String>,
 }
 

@@ -70,7 +70,7 @@ impl<'a> View<'a> {
         all
     }
 
-    /// What there is to see of another facet.
+    /// The visible part of another facet.
     fn seen(&self, index: usize, other: &SkinFacet) -> Option<Seen> {
         let (own, shape) = (&self.facet.shape, &other.shape);
         let mut shadow = self.flat(shape);

@@ -9,7 +9,7 @@ use crate::name;
 use crate::problem::{FORMAT, VERSION};
 use crate::scene::units::Units;
 
-/// What the attributes of the file say.
+/// The attributes of the file.
 pub(super) struct Header {
     pub title: String,
     pub dim: usize,

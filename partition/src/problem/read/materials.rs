@@ -43,7 +43,7 @@ pub(super) fn read(
         .collect()
 }
 
-/// What gives σ_zz, if it is known.
+/// The row that gives σ_zz, if it is known.
 fn out_of_plane(planes: &Slice<f64>, m: usize) -> Result<Option<[f64; 3]>, InputError> {
     match *planes.of(m..m + 1) {
         [x, y, z] if x.is_nan() && y.is_nan() && z.is_nan() => Ok(None),

@@ -302,7 +302,7 @@ impl ProblemFile {
     }
 }
 
-/// What is wrong with a cell, and at which of its nodes.
+/// The fault of a cell, and its node.
 fn fault_of_cell(kind: ElementKind, nodes: &[u32], points: &[[f64; 3]]) -> Option<(usize, String)> {
     if let Some(twice) = (1..nodes.len()).find(|&i| nodes[..i].contains(&nodes[i])) {
         return Some((twice, "has the node twice".into()));
