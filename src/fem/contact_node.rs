@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::model::{Material, Support};
-use contact_dd_partition::problem::consistency::Place;
+use contact_dd_partition::problem::consistency::NodePlace;
 use serde::{Deserialize, Serialize};
 
 use super::block::Block;
@@ -67,8 +67,8 @@ impl ContactNode {
     }
 
     /// The node as the check of contact points sees it.
-    pub fn place(&self) -> Place {
-        Place {
+    pub fn place(&self) -> NodePlace {
+        NodePlace {
             tag: self.tag,
             body: self.body,
             at: self.at,

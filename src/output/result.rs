@@ -59,7 +59,7 @@ pub(super) enum Of {
 }
 
 /// A list as the file has it.
-pub(super) struct Field {
+pub(super) struct ListField {
     /// What messages call its rows.
     pub(super) what: &'static str,
     /// Where it stands below `/VTKHDF`.
@@ -68,7 +68,7 @@ pub(super) struct Field {
     pub(super) of: Of,
 }
 
-/// Defines the lists of [`SubdomainResults`], each with its [`Field`].
+/// Defines the lists of [`SubdomainResults`], each with its [`ListField`].
 macro_rules! lists {
     ($($(#[$doc:meta])* $list:ident: $row:ty, $what:literal, $place:literal, $per:ident, $of:ident;)*) => {
         /// The solution on consecutive subdomains: each list holds what belongs to the first one, then
@@ -101,9 +101,9 @@ macro_rules! lists {
             }
 
             /// All lists, always in the same order.
-            pub(super) fn lists(&self) -> Vec<(Field, &dyn List)> {
+            pub(super) fn lists(&self) -> Vec<(ListField, &dyn List)> {
                 vec![$((
-                    Field { what: $what, place: $place, per: Per::$per, of: Of::$of },
+                    ListField { what: $what, place: $place, per: Per::$per, of: Of::$of },
                     &self.$list,
                 ),)*]
             }

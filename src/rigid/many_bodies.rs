@@ -166,7 +166,7 @@ impl ManyBodies {
             f[to] = load / force;
         }
         let g: Vec<f64> = gaps.iter().map(|gap| gap / length).collect();
-        let mut point = Point {
+        let mut point = Iterate {
             y: vec![0.0; n],
             left: g.iter().map(|g| g.max(1.0)).collect(),
             lambda: vec![1.0; g.len()],
@@ -208,7 +208,7 @@ impl ManyBodies {
     }
 
     /// How bodies rest at a point, where the load f is in units of `force` and gaps are in units of `length`.
-    fn at_rest(&self, point: &Point, f: &[f64], force: f64, length: f64) -> Rest {
+    fn at_rest(&self, point: &Iterate, f: &[f64], force: f64, length: f64) -> Rest {
         let of_forces = self.actions(&point.lambda);
         let missing = |&at: &usize| force * (f[at] - of_forces[at]);
         Rest {
@@ -270,7 +270,7 @@ fn factorized(matrix: &SparseSymmetric) -> Option<BoundaryLastCholesky> {
 
 /// An interior point, or a change of one.
 #[derive(Clone, Debug)]
-struct Point {
+struct Iterate {
     y: Vec<f64>,
     /// The slack of every gap.
     left: Vec<f64>,
@@ -283,7 +283,7 @@ struct Residual {
     gaps: Vec<f64>,
 }
 
-impl Point {
+impl Iterate {
     fn residual(&self, bodies: &ManyBodies, spring: f64, f: &[f64], g: &[f64]) -> Residual {
         let forces = bodies.actions(&self.lambda);
         let terms = f.iter().zip(&self.y).zip(&forces);

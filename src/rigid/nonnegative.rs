@@ -36,7 +36,7 @@ pub fn nearest(a: &DMatrix<f64>, b: &DVector<f64>, largest: &[f64]) -> Nearest {
     let longest = norms.iter().copied().fold(0.0, f64::max);
     // A column that is round-off would have a direction all the same.
     let is_column: Vec<bool> = norms.iter().map(|&norm| norm > 1e-12 * longest).collect();
-    let mut point = Point {
+    let mut point = Iterate {
         passive: Columns::default(),
         at_largest: vec![false; n],
         lambda: vec![0.0; n],
@@ -124,7 +124,7 @@ pub struct InSpan {
 
 /// A λ within its bounds whose entries between these, those of the passive columns, come nearest to b.
 #[derive(Clone)]
-struct Point {
+struct Iterate {
     passive: Columns,
     at_largest: Vec<bool>,
     lambda: Vec<f64>,
@@ -133,7 +133,7 @@ struct Point {
     r: DVector<f64>,
 }
 
-impl Point {
+impl Iterate {
     /// Into which direction λ of a column can move; `None` where that is settled.
     fn inward(&self, j: usize) -> Option<f64> {
         match self.lambda[j] {

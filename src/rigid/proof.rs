@@ -33,14 +33,14 @@ const SINGULAR: f64 = 1e-12;
 const MOST_CHANGE: f64 = 0.5;
 
 /// A contact point, by its conditions.
-struct Point {
+struct FrictionPoint {
     normal: usize,
     tangents: Vec<usize>,
     bound: ForceBound,
 }
 
 /// The points of which conditions are `rows`.
-fn points(rows: &[RigidRow]) -> Vec<Point> {
+fn points(rows: &[RigidRow]) -> Vec<FrictionPoint> {
     let mut place = vec![None; rows.len()];
     let mut points = Vec::new();
     for (normal, _) in rows
@@ -49,7 +49,7 @@ fn points(rows: &[RigidRow]) -> Vec<Point> {
         .filter(|(_, r)| r.friction.is_none())
     {
         place[normal] = Some(points.len());
-        points.push(Point {
+        points.push(FrictionPoint {
             normal,
             tangents: Vec::new(),
             bound: ForceBound::default(),
@@ -66,7 +66,7 @@ fn points(rows: &[RigidRow]) -> Vec<Point> {
     points
 }
 
-impl Point {
+impl FrictionPoint {
     /// |z_t|.
     fn slip(&self, jumps: &[f64]) -> f64 {
         let squares = self.tangents.iter().map(|&i| jumps[i] * jumps[i]);
@@ -133,7 +133,7 @@ impl Loaded<'_> {
         let points = points(self.rows);
         let along = along.try_normalize(0.0)?;
         let found = self.near_limits(&points, &along);
-        let is_circular = |point: &Point| point.tangents.len() == 2;
+        let is_circular = |point: &FrictionPoint| point.tangents.len() == 2;
         if forces.is_empty() || !points.iter().any(is_circular) {
             return found;
         }
@@ -156,7 +156,7 @@ impl Loaded<'_> {
     }
 
     /// The motion at the limits that `along` is near to, if it is proof.
-    fn near_limits(&self, points: &[Point], along: &DVector<f64>) -> Option<DVector<f64>> {
+    fn near_limits(&self, points: &[FrictionPoint], along: &DVector<f64>) -> Option<DVector<f64>> {
         let sizes: Vec<f64> = self.b.row_iter().map(|row| row.norm()).collect();
         AT_LIMIT.into_iter().find_map(|near| {
             let mut z = along.clone();
@@ -174,7 +174,7 @@ impl Loaded<'_> {
     pub fn along_sides(&self, z: &DVector<f64>) -> DVector<f64> {
         let jumps = self.b * z;
         let far = jumps.amax();
-        let is_at_limit = |p: &Point| {
+        let is_at_limit = |p: &FrictionPoint| {
             let slip = p.slip(jumps.as_slice());
             p.opens(jumps.as_slice()) >= -SLIDES * far && slip > SLIDES * far
         };
@@ -198,7 +198,7 @@ impl Loaded<'_> {
     /// > f = ν z + Σ λ_n ∇(z_n + μ |z_t|),  z_n + μ |z_t| = 0
     fn turned(
         &self,
-        points: &[Point],
+        points: &[FrictionPoint],
         forces: &[f64],
         z: &DVector<f64>,
         has_work: bool,
@@ -258,7 +258,7 @@ impl Loaded<'_> {
 /// The motion of length 1 nearest to z that keeps those points at their limits, in the direction in which z slips
 /// there, which z has that `near` to it; nothing where that is another one.
 fn at_limits(
-    points: &[Point],
+    points: &[FrictionPoint],
     b: &DMatrix<f64>,
     sizes: &[f64],
     near: f64,

@@ -29,7 +29,7 @@ use crate::step::transfer::StageTransfer;
 
 /// What a run keeps beside the results of its finished load steps.
 #[derive(Serialize, Deserialize)]
-struct Kept {
+struct KeptState {
     /// The identity of the run.
     run: Identity,
     /// The finished load steps.
@@ -92,7 +92,7 @@ pub struct Finished {
     /// What passed to the stage of the next one.
     pub transfer: StageTransfer,
     /// The state that the next one starts from; on the root.
-    kept: Option<Kept>,
+    kept: Option<KeptState>,
     /// The unfinished result file; on the root.
     pub file: Option<file::Kept>,
     /// The warning of a missing file; on the root.
@@ -185,13 +185,13 @@ impl Finished {
     }
 }
 
-fn read(settings: &Settings) -> Result<Option<(file::Kept, Kept)>, Failure> {
+fn read(settings: &Settings) -> Result<Option<(file::Kept, KeptState)>, Failure> {
     let unread = |error: InputError| Failure::input(format!("--restart: {error}"));
     let Some(mut file) = file::Kept::read(&settings.output).map_err(unread)? else {
         return Ok(None);
     };
     let state = std::mem::take(&mut file.state);
-    let kept: Kept = ciborium::from_reader(&state[..])
+    let kept: KeptState = ciborium::from_reader(&state[..])
         .map_err(|error| unread(file::unread(&file::state_of(&settings.output), &error)))?;
     let run = Identity::new(settings)?;
     let why = match &kept.run {
@@ -245,7 +245,7 @@ pub fn keep(
         );
     }
     let write = |result: &mut ResultFile| -> Result<(), Failure> {
-        let kept = Kept {
+        let kept = KeptState {
             run: Identity::new(settings)?,
             steps: finished.steps.clone(),
             interface: state.interface.clone(),

@@ -4,7 +4,7 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::bisect::{Aim, band, best};
-use super::flow::{Place, cheapest_cuts};
+use super::flow::{Region, cheapest_cuts};
 use super::graph::{Edge, Graph};
 use crate::lists::Lists;
 
@@ -33,7 +33,7 @@ pub(super) struct Aggregates<'a> {
 /// The aggregates near a cut, and on which side of it their cells are.
 struct Near {
     /// Where every aggregate is; those between the sides have cells on both.
-    places: Vec<Place>,
+    places: Vec<Region>,
     /// The number of the first cell of every aggregate between the sides.
     first: Vec<u32>,
     /// The cells between the sides, and a vertex for each side.
@@ -87,9 +87,9 @@ impl<'a> Aggregates<'a> {
         let mut stack = Vec::new();
         for (aggregate, members) in self.cells.iter().enumerate() {
             let whole = match near.places[aggregate] {
-                Place::Left => Some(0),
-                Place::Right => Some(1),
-                Place::Between => None,
+                Region::Left => Some(0),
+                Region::Right => Some(1),
+                Region::Between => None,
             };
             if let Some(side) = whole {
                 vertex_of_aggregate[aggregate] = aggregates[side].len() as u32;
@@ -126,12 +126,12 @@ impl<'a> Aggregates<'a> {
         }
         let graphs = [0, 1].map(|side| {
             let vertex_at = |(aggregate, place): (usize, usize)| match near.places[aggregate] {
-                Place::Between => {
+                Region::Between => {
                     let cell = near.first[aggregate] as usize + place;
                     (near.left[cell] == (side == 0)).then(|| vertex_of_cell[cell])
                 }
                 place => {
-                    ((place == Place::Left) == (side == 0)).then(|| vertex_of_aggregate[aggregate])
+                    ((place == Region::Left) == (side == 0)).then(|| vertex_of_aggregate[aggregate])
                 }
             };
             self.half(&near.places, &aggregates[side], &cells[side], vertex_at)
@@ -145,7 +145,7 @@ impl<'a> Aggregates<'a> {
     /// that a cell is in, if it is on this side.
     fn half(
         &self,
-        places: &[Place],
+        places: &[Region],
         aggregates: &[usize],
         cells: &Lists<u32>,
         vertex_at: impl Fn((usize, usize)) -> Option<u32>,
@@ -160,7 +160,7 @@ impl<'a> Aggregates<'a> {
             outside: Vec::with_capacity(count),
             edges: Lists::with_capacity(count, 6 * count),
         };
-        let is_between = |aggregate: usize| places[aggregate] == Place::Between;
+        let is_between = |aggregate: usize| places[aggregate] == Region::Between;
         let mut list: Vec<Edge> = Vec::new();
         for (vertex, &aggregate) in aggregates.iter().enumerate() {
             let members = cells.of(vertex);
@@ -212,7 +212,7 @@ impl<'a> Aggregates<'a> {
         let mut first = vec![NONE; places.len()];
         let mut count = 0;
         for (aggregate, first) in first.iter_mut().enumerate() {
-            if places[aggregate] == Place::Between {
+            if places[aggregate] == Region::Between {
                 *first = count;
                 count += self.cells.of(aggregate).len() as u32;
             }
@@ -228,7 +228,7 @@ impl<'a> Aggregates<'a> {
         let mut was_left = Vec::with_capacity(count as usize + 2);
         let mut of_left = Vec::new();
         let mut list = Vec::new();
-        let between = (0..places.len()).filter(|&aggregate| places[aggregate] == Place::Between);
+        let between = (0..places.len()).filter(|&aggregate| places[aggregate] == Region::Between);
         for (aggregate, &cell) in between.flat_map(|aggregate| {
             let members = self.cells.of(aggregate).iter();
             members.map(move |cell| (aggregate, cell))
@@ -240,12 +240,12 @@ impl<'a> Aggregates<'a> {
                     continue;
                 };
                 list.push(edge.towards(match places[aggregate] {
-                    Place::Left => {
+                    Region::Left => {
                         of_left.push(edge.towards(graph.dofs.len() as u32));
                         count
                     }
-                    Place::Right => count + 1,
-                    Place::Between => first[aggregate] + place as u32,
+                    Region::Right => count + 1,
+                    Region::Between => first[aggregate] + place as u32,
                 }));
             }
             list.sort_unstable();
@@ -257,8 +257,8 @@ impl<'a> Aggregates<'a> {
         graph.edges.push(of_left.into_iter());
         graph.edges.push(std::iter::empty());
         self.add_sides(&places, &mut graph, &mut was_left);
-        let mut place_of = vec![Place::Between; count as usize];
-        place_of.extend([Place::Left, Place::Right]);
+        let mut place_of = vec![Region::Between; count as usize];
+        place_of.extend([Region::Left, Region::Right]);
         let mut candidates = Vec::from(cheapest_cuts(&graph, &place_of));
         candidates.push(was_left.clone());
         Near {
@@ -270,8 +270,8 @@ impl<'a> Aggregates<'a> {
     }
 
     /// Adds what lies beyond the aggregates near a cut to their graph, a vertex for each side.
-    fn add_sides(&self, places: &[Place], graph: &mut Graph, was_left: &mut Vec<bool>) {
-        for side in [Place::Left, Place::Right] {
+    fn add_sides(&self, places: &[Region], graph: &mut Graph, was_left: &mut Vec<bool>) {
+        for side in [Region::Left, Region::Right] {
             let whole = || (0..places.len()).filter(|&aggregate| places[aggregate] == side);
             let dofs: f64 = whole()
                 .map(|aggregate| f64::from(self.graph.dofs[aggregate]))
@@ -280,7 +280,7 @@ impl<'a> Aggregates<'a> {
             graph
                 .outside
                 .push(whole().map(|aggregate| self.graph.outside[aggregate]).sum());
-            was_left.push(side == Place::Left);
+            was_left.push(side == Region::Left);
         }
     }
 }

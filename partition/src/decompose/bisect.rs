@@ -1,6 +1,6 @@
 //! One cut of a graph in two.
 
-use super::flow::{Place, cheapest_cuts};
+use super::flow::{Region, cheapest_cuts};
 use super::graph::Graph;
 use super::metis;
 use crate::flops::{Front, condensation};
@@ -95,7 +95,7 @@ fn refined(
     aim: Aim,
 ) -> Vec<Vec<bool>> {
     let band = band(coarse, &left, aim);
-    let places: Vec<Place> = aggregate
+    let places: Vec<Region> = aggregate
         .iter()
         .map(|&aggregate| band[aggregate as usize])
         .collect();
@@ -110,7 +110,7 @@ fn refined(
 }
 
 /// What lies between the sides: some layers of vertices next to a cut, so few that neither side loses more than may be.
-pub(super) fn band(graph: &Graph, left: &[bool], aim: Aim) -> Vec<Place> {
+pub(super) fn band(graph: &Graph, left: &[bool], aim: Aim) -> Vec<Region> {
     let most = aim.slack * graph.size();
     let mut distance = vec![u32::MAX; graph.len()];
     let is_at_cut = |vertex: usize| {
@@ -140,9 +140,9 @@ pub(super) fn band(graph: &Graph, left: &[bool], aim: Aim) -> Vec<Place> {
         }
     }
     let place = |(&distance, &left): (&u32, &bool)| match (distance, left) {
-        (u32::MAX, true) => Place::Left,
-        (u32::MAX, false) => Place::Right,
-        _ => Place::Between,
+        (u32::MAX, true) => Region::Left,
+        (u32::MAX, false) => Region::Right,
+        _ => Region::Between,
     };
     distance.iter().zip(left).map(place).collect()
 }
@@ -277,11 +277,11 @@ impl Slab {
     /// The cheapest cuts within it.
     fn cuts(&self, graph: &Graph) -> [Vec<bool>; 2] {
         let place = |&centre: &[f32; 3]| match along(self.direction, centre) {
-            place if place < self.bounds[0] => Place::Left,
-            place if place > self.bounds[2] => Place::Right,
-            _ => Place::Between,
+            place if place < self.bounds[0] => Region::Left,
+            place if place > self.bounds[2] => Region::Right,
+            _ => Region::Between,
         };
-        let places: Vec<Place> = graph.centres.iter().map(place).collect();
+        let places: Vec<Region> = graph.centres.iter().map(place).collect();
         cheapest_cuts(graph, &places)
     }
 }

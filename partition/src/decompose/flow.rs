@@ -4,7 +4,7 @@ use super::graph::Graph;
 
 /// Where a vertex has to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum Region {
     Left,
     Between,
     Right,
@@ -35,15 +35,15 @@ const FAR: u32 = u32::MAX;
 
 /// The cheapest cuts of the edges between what is `Left` and what is `Right`: whether each vertex is on the
 /// left, for the cut that lies next to the left side, and for the one next to the right side.
-pub(super) fn cheapest_cuts(graph: &Graph, places: &[Place]) -> [Vec<bool>; 2] {
+pub(super) fn cheapest_cuts(graph: &Graph, places: &[Region]) -> [Vec<bool>; 2] {
     let between: Vec<u32> = (0..graph.len() as u32)
-        .filter(|&vertex| places[vertex as usize] == Place::Between)
+        .filter(|&vertex| places[vertex as usize] == Region::Between)
         .collect();
     let mut network = Network::new(graph, places, &between);
     while network.augment() {}
     let from_left = network.reached(|network, vertex| network.supply[vertex] > 0, false);
     let from_right = network.reached(|network, vertex| network.demand[vertex] > 0, true);
-    let fixed: Vec<bool> = places.iter().map(|&place| place == Place::Left).collect();
+    let fixed: Vec<bool> = places.iter().map(|&place| place == Region::Left).collect();
     let mut cuts = [fixed.clone(), fixed];
     for (at, &vertex) in between.iter().enumerate() {
         cuts[0][vertex as usize] = from_left[at];
@@ -53,7 +53,7 @@ pub(super) fn cheapest_cuts(graph: &Graph, places: &[Place]) -> [Vec<bool>; 2] {
 }
 
 impl Network {
-    fn new(graph: &Graph, places: &[Place], between: &[u32]) -> Self {
+    fn new(graph: &Graph, places: &[Region], between: &[u32]) -> Self {
         let mut number = vec![FAR; graph.len()];
         for (at, &vertex) in (0..).zip(between) {
             number[vertex as usize] = at;
@@ -71,9 +71,9 @@ impl Network {
             next.push(network.arcs.len() as u32);
             for edge in graph.edges(vertex as usize) {
                 match places[edge.to as usize] {
-                    Place::Left => network.supply[at] += edge.weight(),
-                    Place::Right => network.demand[at] += edge.weight(),
-                    Place::Between => {
+                    Region::Left => network.supply[at] += edge.weight(),
+                    Region::Right => network.demand[at] += edge.weight(),
+                    Region::Between => {
                         let to = number[edge.to as usize];
                         let own = network.arcs.len() as u32;
                         let mut reverse = 0;

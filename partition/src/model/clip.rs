@@ -1,19 +1,19 @@
 //! Polygons in a plane, and what two of them have in common.
 
 /// A point of the plane.
-pub(super) type Point = [f64; 2];
+pub(super) type PlanePoint = [f64; 2];
 
 /// a × b.
-fn cross(a: Point, b: Point) -> f64 {
+fn cross(a: PlanePoint, b: PlanePoint) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-fn difference(a: Point, b: Point) -> Point {
+fn difference(a: PlanePoint, b: PlanePoint) -> PlanePoint {
     [a[0] - b[0], a[1] - b[1]]
 }
 
 /// The area of a polygon, positive where its corners run counter-clockwise.
-pub(super) fn area(polygon: &[Point]) -> f64 {
+pub(super) fn area(polygon: &[PlanePoint]) -> f64 {
     let Some(&first) = polygon.first() else {
         return 0.0;
     };
@@ -25,7 +25,7 @@ pub(super) fn area(polygon: &[Point]) -> f64 {
 }
 
 /// The mean of a polygon's corners.
-pub(super) fn middle(polygon: &[Point]) -> Point {
+pub(super) fn middle(polygon: &[PlanePoint]) -> PlanePoint {
     let part = 1.0 / polygon.len() as f64;
     (polygon.iter()).fold([0.0; 2], |sum, p| {
         [sum[0] + part * p[0], sum[1] + part * p[1]]
@@ -34,25 +34,25 @@ pub(super) fn middle(polygon: &[Point]) -> Point {
 
 /// Triangles around the middle of a polygon, which stands second: rules for triangles collapse there, and so don't
 /// depend on where the polygon begins.
-pub(super) fn triangles(polygon: &[Point]) -> impl Iterator<Item = [Point; 3]> {
+pub(super) fn triangles(polygon: &[PlanePoint]) -> impl Iterator<Item = [PlanePoint; 3]> {
     let middle = middle(polygon);
     let next = polygon.iter().cycle().skip(1);
     polygon.iter().zip(next).map(move |(&p, &q)| [q, middle, p])
 }
 
 /// Whether a point lies in a convex polygon whose corners run counter-clockwise.
-pub(super) fn contains(polygon: &[Point], x: Point) -> bool {
+pub(super) fn contains(polygon: &[PlanePoint], x: PlanePoint) -> bool {
     let next = polygon.iter().cycle().skip(1);
     (polygon.iter().zip(next)).all(|(&p, &q)| cross(difference(q, p), difference(x, p)) >= 0.0)
 }
 
 /// The part of a polygon that lies in a convex one whose corners run counter-clockwise (Sutherland and Hodgman,
 /// Commun. ACM 17, 1974).
-pub(super) fn clip(polygon: &[Point], convex: &[Point]) -> Vec<Point> {
+pub(super) fn clip(polygon: &[PlanePoint], convex: &[PlanePoint]) -> Vec<PlanePoint> {
     let mut inside = polygon.to_vec();
     for (i, &start) in convex.iter().enumerate() {
         let way = difference(convex[(i + 1) % convex.len()], start);
-        let side = |p: Point| cross(way, difference(p, start));
+        let side = |p: PlanePoint| cross(way, difference(p, start));
         let all = std::mem::take(&mut inside);
         let Some(mut before) = all.last().copied() else {
             break;
@@ -81,7 +81,7 @@ pub(super) fn clip(polygon: &[Point], convex: &[Point]) -> Vec<Point> {
 mod tests {
     use super::*;
 
-    const SQUARE: [Point; 4] = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+    const SQUARE: [PlanePoint; 4] = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
 
     #[test]
     fn what_two_polygons_share_is_cut_out() {

@@ -30,13 +30,13 @@ pub struct InitialStress {
 }
 
 /// σ_i of one body in a load step.
-struct Field<'a> {
+struct StressField<'a> {
     initial: Option<(&'a crate::scene::initial::InitialStress, f64)>,
     /// σ_i at 1 K above, and the temperature with its factor.
     thermal: Option<(Stress, &'a Number, f64)>,
 }
 
-impl Field<'_> {
+impl StressField<'_> {
     fn at(&self, x: [f64; 3]) -> Result<Stress, String> {
         let mut sum = [0.0; 6];
         let mut add = |factor: f64, stress: Stress| {
@@ -102,7 +102,7 @@ impl InitialStress {
                     loading.temperature[number as usize].unwrap_or(&thermal.temperature);
                 Ok((of_degree, temperature, loading.scale.thermal))
             });
-            let field = Field {
+            let field = StressField {
                 initial: initial.map(|initial| (initial, loading.scale.initial_stress)),
                 thermal: thermal.transpose().map_err(InputError::about(&what))?,
             };
@@ -117,7 +117,7 @@ impl InitialStress {
         plane: Option<PlaneState>,
         bodies: &Bodies,
         body: u32,
-        field: &Field,
+        field: &StressField,
         forces: &mut [[f64; 3]],
     ) -> Result<(), String> {
         let mesh = &bodies.mesh;

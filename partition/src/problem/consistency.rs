@@ -21,7 +21,7 @@ type Point = ContactPoint<SubdomainNode>;
 
 /// A node as its subdomain describes it.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct NodePlace {
     /// The mesh file's tag.
     pub tag: i64,
     /// Its body.
@@ -34,7 +34,7 @@ pub struct Place {
 #[derive(Debug)]
 pub struct Places {
     /// The nodes by subdomain and number.
-    pub nodes: BTreeMap<SubdomainNode, Place>,
+    pub nodes: BTreeMap<SubdomainNode, NodePlace>,
     /// The largest extent of the subdomains that they lie in (m).
     pub extent: f64,
     /// Dimension of space.

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 use self::contents::Contents;
 use self::header::Header;
-use super::consistency::{Place, Places};
+use super::consistency::{NodePlace, Places};
 use super::copies::NodeCopies;
 use super::{Catalog, Problem, Subdomain, SubdomainNode};
 use crate::error::InputError;
@@ -143,7 +143,7 @@ impl ProblemFile {
         let named = named.flat_map(|point| point.entries.iter().map(|&(node, _)| node));
         let place = |node: SubdomainNode| {
             let subdomain = &subdomains[node.subdomain as usize];
-            let place = Place {
+            let place = NodePlace {
                 tag: subdomain.node_tags[node.node as usize],
                 body: subdomain.body,
                 at: subdomain.points[node.node as usize],

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::result::SubdomainResults;
 use super::Layout;
-use super::grid::Placement;
+use super::grid::GridPlacement;
 
 /// File systems on which ranks of several hosts see at once what each other writes, by Linux' numbers for them:
 /// Lustre, GPFS, BeeGFS, CephFS, OrangeFS.
@@ -39,7 +39,7 @@ pub struct Places {
 /// The result file as a rank sees it that writes what is its own.
 #[derive(Debug)]
 pub struct FileBeside {
-    placement: Placement,
+    placement: GridPlacement,
     datasets: Vec<u64>,
     step: usize,
     /// Of what was written of each dataset in this load step.
@@ -60,7 +60,7 @@ impl FileBeside {
             Some(COHERENT.contains(&(status.f_type as u32)))
         };
         (is_same && (hosts == 1 || is_coherent()?)).then(|| Self {
-            placement: Placement::new(layout),
+            placement: GridPlacement::new(layout),
             digests: vec![0; places.datasets.len()],
             datasets: places.datasets.clone(),
             step: places.finished,

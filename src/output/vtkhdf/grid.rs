@@ -6,7 +6,7 @@ use std::ops::Range;
 use contact_dd_partition::problem::vtkhdf;
 use hdf5::{Dataset, File, Group, Result};
 
-use super::super::result::{Field, Of, PartitionSize, SubdomainResults};
+use super::super::result::{ListField, Of, PartitionSize, SubdomainResults};
 use super::checkpoint::{Column, digest};
 use super::column::List;
 use super::{Layout, column};
@@ -18,7 +18,7 @@ const SLAB_POINTS: usize = 1 << 14;
 
 /// Where subdomains stand in the datasets of the grid.
 #[derive(Debug)]
-pub(super) struct Placement {
+pub(super) struct GridPlacement {
     left_out: Vec<Of>,
     total: PartitionSize,
     sizes: Vec<PartitionSize>,
@@ -27,7 +27,7 @@ pub(super) struct Placement {
     is_kept: bool,
 }
 
-impl Placement {
+impl GridPlacement {
     pub(super) fn new(layout: &Layout) -> Self {
         let sizes = layout.partitions.clone();
         let mut starts = Vec::with_capacity(sizes.len());
@@ -104,7 +104,7 @@ pub(super) struct Grid {
     /// A dataset for each list that there is, and for the number of its subdomain for each cell; to find one by its
     /// name costs as much as to write a small subdomain.
     datasets: Vec<Dataset>,
-    placement: Placement,
+    placement: GridPlacement,
     written: Vec<bool>,
     /// Of what was written of each dataset in this load step.
     digests: Vec<u64>,
@@ -130,14 +130,14 @@ impl Grid {
             counts(|size| size.connectivity),
         )?;
 
-        let placement = Placement::new(layout);
+        let placement = GridPlacement::new(layout);
         let total = &placement.total;
         column::group(&group, "PointData")?;
         let subdomains = column::group(&group, "CellData")?;
         let subdomains = column::empty::<i32>(&subdomains, "Subdomain", 0, total.cells)?;
         let steps = layout.times.len().max(1);
         let none = SubdomainResults::default();
-        let create = |(field, list): (Field, &dyn List)| {
+        let create = |(field, list): (ListField, &dyn List)| {
             let rows = field.per.rows(total, sizes.len());
             let rows = if field.of == Of::Mesh {
                 rows
@@ -214,7 +214,7 @@ impl Grid {
 
     /// All datasets as they lie in a file of some load `steps`.
     pub(super) fn columns(&self, steps: usize) -> Result<Vec<Column>> {
-        let Placement {
+        let GridPlacement {
             left_out,
             total,
             sizes,
@@ -246,7 +246,7 @@ impl Grid {
 fn written<'a>(
     results: &'a SubdomainResults,
     left_out: &[Of],
-) -> impl Iterator<Item = (Field, &'a dyn List)> {
+) -> impl Iterator<Item = (ListField, &'a dyn List)> {
     let lists = results.lists().into_iter();
     lists.filter(|(field, _)| !left_out.contains(&field.of))
 }

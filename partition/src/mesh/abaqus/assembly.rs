@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::blocks::{Block, Place, Source};
+use super::blocks::{Block, LinePlace, Source};
 use super::deck::{Deck, Face, Offsets, check_name};
 use super::notes::Notes;
 use super::position::{Point, Position};
@@ -52,7 +52,7 @@ struct Open<'a> {
     kind: Kind,
     /// The part's name in capitals, or the instance's.
     name: String,
-    place: Place,
+    place: LinePlace,
     scope: Scope<'a>,
 }
 

@@ -29,14 +29,14 @@ const WITH_INPUT: [&str; 4] = ["NODE", "ELEMENT", "NSET", "ELSET"];
 
 /// A line of a file.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct LinePlace {
     file: usize,
     line: usize,
 }
 
 /// A line of data.
 pub(super) struct Data {
-    pub(super) place: Place,
+    pub(super) place: LinePlace,
     text: Range<usize>,
 }
 
@@ -46,7 +46,7 @@ pub(super) struct Block {
     pub(super) keyword: String,
     /// Names in capitals, and values.
     parameters: Vec<(String, String)>,
-    pub(super) place: Place,
+    pub(super) place: LinePlace,
     pub(super) data: Vec<Data>,
 }
 
@@ -85,7 +85,7 @@ impl Source {
             let (line, _) = lines(&source.files[0].1)[0];
             let message =
                 "expected a keyword, such as *NODE: this isn't a deck of Abaqus or CalculiX";
-            return Err(source.error(Place { file: 0, line }, message));
+            return Err(source.error(LinePlace { file: 0, line }, message));
         }
         Ok(source)
     }
@@ -96,7 +96,7 @@ impl Source {
     }
 
     /// An error at a line.
-    pub(super) fn error(&self, at: Place, message: impl std::fmt::Display) -> InputError {
+    pub(super) fn error(&self, at: LinePlace, message: impl std::fmt::Display) -> InputError {
         InputError::new(format!("line {}: {message}", at.line)).in_file(&self.files[at.file].0)
     }
 
@@ -108,7 +108,7 @@ impl Source {
     }
 
     /// A number of an element or node.
-    pub(super) fn tag(&self, at: Place, item: &str, what: &str) -> Result<i64, InputError> {
+    pub(super) fn tag(&self, at: LinePlace, item: &str, what: &str) -> Result<i64, InputError> {
         let number = item.parse().ok();
         number
             .filter(|tag| (1..=LARGEST_TAG).contains(tag))
@@ -122,7 +122,7 @@ impl Source {
     }
 
     /// A real number, with `e` or Fortran's `d` or nothing before the exponent, as in `5.-1`; nothing at all is 0.
-    pub(super) fn real(&self, at: Place, item: &str, what: &str) -> Result<f64, InputError> {
+    pub(super) fn real(&self, at: LinePlace, item: &str, what: &str) -> Result<f64, InputError> {
         let item = if item.is_empty() { "0" } else { item };
         let shown = || name::shown(item);
         let value = real(item).ok_or_else(|| {
@@ -148,7 +148,7 @@ impl Source {
     }
 
     /// The line of a place in words, with the file where it isn't the deck itself.
-    pub(super) fn place(&self, at: Place) -> String {
+    pub(super) fn place(&self, at: LinePlace) -> String {
         match at.file {
             0 => format!("line {}", at.line),
             file => format!("{}, line {}", self.files[file].0.display(), at.line),
@@ -161,7 +161,7 @@ impl Source {
         let mut next = 0;
         while let Some((line, range)) = lines.get(next).cloned() {
             next += 1;
-            let place = Place { file, line };
+            let place = LinePlace { file, line };
             let text = &self.files[file].1[range.clone()];
             let Some(head) = text.strip_prefix('*') else {
                 match self.blocks.last_mut() {
@@ -210,7 +210,7 @@ impl Source {
     }
 
     /// The number of a file that a line includes.
-    fn included(&mut self, at: Place, input: &str) -> Result<usize, InputError> {
+    fn included(&mut self, at: LinePlace, input: &str) -> Result<usize, InputError> {
         // As Abaqus does, relative to the deck that includes all others.
         let folder = self.files[0].0.parent().unwrap_or(Path::new(""));
         let path = folder.join(input);
@@ -287,7 +287,7 @@ fn lines(text: &str) -> Vec<(usize, Range<usize>)> {
 }
 
 /// A keyword with its parameters and no data yet; `head` is what stands behind the asterisk.
-fn block(head: &str, place: Place) -> Block {
+fn block(head: &str, place: LinePlace) -> Block {
     let mut quoted = false;
     let mut words = head.split(|c| {
         quoted ^= c == '"';

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use super::blocks::{Block, Place, Source};
+use super::blocks::{Block, LinePlace, Source};
 use super::element_type::{self, ElementType};
 use super::notes::Notes;
 use super::sets::Sets;
@@ -56,7 +56,7 @@ pub(super) struct Offsets {
 
 /// An element on its way into the deck.
 struct Listed {
-    place: Place,
+    place: LinePlace,
     tag: i64,
     nodes: Vec<u32>,
 }
@@ -307,7 +307,7 @@ impl Deck {
 ///
 /// # Errors
 /// What it mustn't hold, with the line.
-pub(super) fn check_name(source: &Source, at: Place, name: &str) -> Result<(), InputError> {
+pub(super) fn check_name(source: &Source, at: LinePlace, name: &str) -> Result<(), InputError> {
     name::check_text(name)
         .map_err(|reason| source.error(at, format!("'{}' {reason}", name::shown(name))))
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::blocks::{Block, Data, Place, Source};
+use super::blocks::{Block, Data, LinePlace, Source};
 use super::deck::{Deck, Face, Offsets, check_name};
 use super::element_type;
 use super::sets::{Members, Set};
@@ -128,7 +128,7 @@ impl Deck {
     fn numbered(
         &self,
         source: &Source,
-        at: Place,
+        at: LinePlace,
         of: Of,
         instance: Option<&str>,
     ) -> Result<(&HashMap<i64, u32>, i64), InputError> {
@@ -178,7 +178,7 @@ impl Deck {
     fn members(
         &mut self,
         source: &Source,
-        at: Place,
+        at: LinePlace,
         of: Of,
         instance: Option<&str>,
         item: &str,
@@ -284,7 +284,7 @@ impl Deck {
     fn face(
         &self,
         source: &Source,
-        at: Place,
+        at: LinePlace,
         element: u32,
         item: &str,
     ) -> Result<Face, InputError> {

@@ -6,7 +6,7 @@ use super::super::sides::{Sides, apart};
 use super::super::surface::SurfaceFacet;
 use super::cover::{Cover, Opposite};
 use super::covered::{Covered, Part};
-use super::field::Field;
+use super::field::NormalField;
 use super::rows::Row;
 use super::weights::weights;
 use super::{polygons, segments};
@@ -37,7 +37,7 @@ pub(super) fn carried(sides: &Sides) -> Result<Carried, String> {
         // Only a shared node may be without one, where the side turns back at a crack tip.
         let at_node = |node: &u32| normals.get(node).copied().unwrap_or(facet.normal);
         let normals = facet.nodes.iter().map(at_node).collect();
-        let field = Field::new(facet, normals);
+        let field = NormalField::new(facet, normals);
         let (cover, back_facing) = cover_of(&opposite, &field);
         any_back_facing |= back_facing;
         if !cover.is_empty() {
@@ -76,7 +76,7 @@ fn in_order<'a>(sides: &Sides<'a>) -> Vec<&'a SurfaceFacet> {
 }
 
 /// What of side b covers a facet of side a, and whether some of it faces the same way.
-fn cover_of(opposite: &Opposite, field: &Field) -> (Cover, bool) {
+fn cover_of(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
     match field.facet().kind.dim() {
         1 => segments::cover(opposite, field),
         _ => polygons::cover(opposite, field),

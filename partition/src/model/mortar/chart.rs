@@ -1,7 +1,7 @@
 //! Flat coordinates on a facet of space, in which what covers it is cut into polygons.
 
-use super::super::clip::{Point, area};
-use super::field::Field;
+use super::super::clip::{PlanePoint, area};
+use super::field::NormalField;
 use super::foot::{ROUND_OFF, STEPS, middle, solve};
 use super::map::{Map, Xi};
 use crate::contact_point::LocalFrame;
@@ -27,14 +27,14 @@ pub(super) struct Chart {
     /// Whether the coordinates are those of the reference facet.
     pub is_curved: bool,
     /// The corners of the facet, counter-clockwise.
-    pub outline: Vec<Point>,
+    pub outline: Vec<PlanePoint>,
     /// The area within.
     pub area: f64,
 }
 
 impl Chart {
     /// The chart of a facet with averaged normals.
-    pub fn new(field: &Field) -> Self {
+    pub fn new(field: &NormalField) -> Self {
         let facet = field.facet();
         let (kind, at) = (facet.kind, &facet.at);
         let mut chart = Self {
@@ -48,7 +48,7 @@ impl Chart {
             outline: Vec::new(),
             area: 0.0,
         };
-        let flat: Vec<Point> = at.iter().map(|&x| chart.flat(x)).collect();
+        let flat: Vec<PlanePoint> = at.iter().map(|&x| chart.flat(x)).collect();
         chart.is_curved = kind.facets().iter().any(|(_, edge)| {
             let [p, q] = [flat[edge[0]], flat[edge[1]]];
             let chord = (q[0] - p[0]).hypot(q[1] - p[1]);
@@ -80,7 +80,7 @@ impl Chart {
     }
 
     /// Reference coordinates of a point of the chart; the search for them starts at `near`.
-    pub fn xi(&self, p: Point, near: Xi) -> Xi {
+    pub fn xi(&self, p: PlanePoint, near: Xi) -> Xi {
         match self.is_curved {
             true => p,
             false => self.inverse(p, near),
@@ -99,7 +99,7 @@ impl Chart {
 
     /// The point of the chart from which the averaged normals lead to `y`. Beyond the edges of the facet the
     /// normals are those at the edge.
-    pub fn place(&self, y: [f64; 3]) -> Point {
+    pub fn place(&self, y: [f64; 3]) -> PlanePoint {
         let normal = self.frame.normal;
         let mut xi = middle(self.domain);
         let mut flat = self.flat(y);
@@ -121,13 +121,13 @@ impl Chart {
     }
 
     /// Coordinates in the plane across the normal.
-    fn flat(&self, x: [f64; 3]) -> Point {
+    fn flat(&self, x: [f64; 3]) -> PlanePoint {
         let way = difference(x, self.origin);
         self.frame.tangents.map(|t| dot(t, way))
     }
 
     /// ξ of a point of the plane, by Newton's method from `near`. Beyond its edges the facet goes on straight.
-    fn inverse(&self, p: Point, near: Xi) -> Xi {
+    fn inverse(&self, p: PlanePoint, near: Xi) -> Xi {
         let tangents = self.frame.tangents;
         let mut xi = near;
         for _ in 0..STEPS {
@@ -148,7 +148,7 @@ impl Chart {
 }
 
 /// The distance of x from the line through p and q.
-pub(super) fn aside(p: Point, q: Point, x: Point) -> f64 {
+pub(super) fn aside(p: PlanePoint, q: PlanePoint, x: PlanePoint) -> f64 {
     let (way, to) = ([q[0] - p[0], q[1] - p[1]], [x[0] - p[0], x[1] - p[1]]);
     (way[0] * to[1] - way[1] * to[0]).abs() / way[0].hypot(way[1])
 }

@@ -6,7 +6,7 @@ use crate::element::geometry::{advance, difference, dot, length};
 
 /// A facet of side a with the averaged normals at its nodes, interpolated as its positions are:
 /// n(ξ) = Σ N_i(ξ) n_i. The line through x(ξ) along n(ξ) is its projection onto side b.
-pub(super) struct Field<'a> {
+pub(super) struct NormalField<'a> {
     facet: &'a SurfaceFacet,
     normals: Vec<[f64; 3]>,
 }
@@ -24,7 +24,7 @@ pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-impl<'a> Field<'a> {
+impl<'a> NormalField<'a> {
     /// A facet with a normal for each of its nodes.
     pub fn new(facet: &'a SurfaceFacet, normals: Vec<[f64; 3]>) -> Self {
         Self { facet, normals }

@@ -1,6 +1,6 @@
 //! Where a line meets a facet of space.
 
-use super::super::clip::Point;
+use super::super::clip::PlanePoint;
 use super::map::{Map, Xi};
 use crate::contact_point::LocalFrame;
 use crate::element::definition::Domain;
@@ -22,7 +22,7 @@ pub(in crate::model) fn middle(domain: Domain) -> Xi {
 }
 
 /// The solution of two equations.
-pub(super) fn solve(j: [[f64; 2]; 2], r: Point) -> Point {
+pub(super) fn solve(j: [[f64; 2]; 2], r: PlanePoint) -> PlanePoint {
     let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
     [
         (r[0] * j[1][1] - r[1] * j[0][1]) / det,

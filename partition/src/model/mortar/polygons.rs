@@ -8,11 +8,11 @@ use std::collections::HashMap;
 
 use nalgebra::DMatrix;
 
-use super::super::clip::{Point, area, clip, contains, middle, triangles};
+use super::super::clip::{PlanePoint, area, clip, contains, middle, triangles};
 use super::super::surface::SurfaceFacet;
 use super::chart::{Chart, aside};
 use super::cover::{BEYOND, Cover, Opposite, Overlap, Pieces};
-use super::field::Field;
+use super::field::NormalField;
 use super::foot::{foot, middle as middle_of};
 use super::map::Xi;
 use crate::element::definition::Domain;
@@ -31,13 +31,13 @@ const BEYOND_CURVED: usize = 2;
 /// A facet of side b and what of it is seen from a facet of side a.
 struct Piece {
     facet: usize,
-    polygon: Vec<Point>,
+    polygon: Vec<PlanePoint>,
     /// Distance in the middle (m).
     distance: f64,
 }
 
 /// What covers a facet of side a, and whether some of it faces the same way.
-pub(super) fn cover(opposite: &Opposite, field: &Field) -> (Cover, bool) {
+pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
     let chart = Chart::new(field);
     let mut shadows = Shadows::new(&chart);
     let mut pieces = Vec::new();
@@ -84,7 +84,7 @@ fn center(facet: &SurfaceFacet) -> Xi {
 }
 
 /// The facets of side b that may lie on a normal of `field`: in a cone around the one in the middle.
-fn candidates(opposite: &Opposite, field: &Field, chart: &Chart) -> Vec<usize> {
+fn candidates(opposite: &Opposite, field: &NormalField, chart: &Chart) -> Vec<usize> {
     let facet = field.facet();
     let axis = chart.normal();
     let [start, _] = chart.line(center(facet));
@@ -113,7 +113,7 @@ fn candidates(opposite: &Opposite, field: &Field, chart: &Chart) -> Vec<usize> {
 struct Shadows<'a> {
     chart: &'a Chart,
     /// Corners that were seen already.
-    corners: HashMap<u32, Point>,
+    corners: HashMap<u32, PlanePoint>,
 }
 
 impl<'a> Shadows<'a> {
@@ -125,10 +125,10 @@ impl<'a> Shadows<'a> {
     }
 
     /// The corners of a facet in their order, curved edges in parts.
-    fn of(&mut self, facet: &SurfaceFacet) -> Vec<Point> {
+    fn of(&mut self, facet: &SurfaceFacet) -> Vec<PlanePoint> {
         let chart = self.chart;
         let corners = facet.nodes.iter().zip(&facet.at).take(facet.kind.corners());
-        let corners: Vec<Point> = corners
+        let corners: Vec<PlanePoint> = corners
             .map(|(&node, &x)| *self.corners.entry(node).or_insert_with(|| chart.place(x)))
             .collect();
         // Lines are straight in a plane.
@@ -175,7 +175,7 @@ fn integrate(
     };
     // Where the last point was the next one is near.
     let (mut xi, mut eta) = (center(facet), center(other));
-    let mut across = |p: Point| {
+    let mut across = |p: PlanePoint| {
         xi = chart.xi(p, xi);
         let gap;
         (eta, gap) = foot(&opposite.maps[piece.facet], chart.line(xi), eta)?;

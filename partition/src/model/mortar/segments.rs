@@ -4,7 +4,7 @@
 use super::super::surface::SurfaceFacet;
 use super::cover::{Cover, Opposite, Pieces, Sample};
 use super::extent::Extent;
-use super::field::{Field, ahead, beside, cross};
+use super::field::{NormalField, ahead, beside, cross};
 use super::root::{ENDS, root};
 use crate::element::geometry::difference;
 
@@ -16,7 +16,7 @@ const DEGREE: usize = 9;
 ///
 /// The facet is cut wherever an end of a facet of side b is projected onto it; what the middle
 /// of a piece meets first is opposite all of it.
-pub(super) fn cover(opposite: &Opposite, field: &Field) -> (Cover, bool) {
+pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
     let candidates = candidates(opposite, field);
     let mut cuts = ENDS.to_vec();
     for &facet in &candidates {
@@ -44,7 +44,7 @@ pub(super) fn cover(opposite: &Opposite, field: &Field) -> (Cover, bool) {
 }
 
 /// The facets of side b that may lie on a line of `field`: between its first and its last.
-fn candidates(opposite: &Opposite, field: &Field) -> Vec<usize> {
+fn candidates(opposite: &Opposite, field: &NormalField) -> Vec<usize> {
     let lines = ENDS.map(|end| {
         (
             field.position([end, 0.0, 0.0]),
@@ -70,7 +70,7 @@ fn candidates(opposite: &Opposite, field: &Field) -> Vec<usize> {
 /// is none, whether it meets one that faces the same way.
 fn nearest(
     opposite: &Opposite,
-    field: &Field,
+    field: &NormalField,
     xi: f64,
     candidates: &[usize],
 ) -> Result<usize, bool> {
@@ -104,7 +104,7 @@ struct Samples {
 
 impl Samples {
     /// Adds those of the segment between `ends`, which the facet `found` of side b covers.
-    fn add(&mut self, opposite: &Opposite, field: &Field, ends: [f64; 2], found: usize) {
+    fn add(&mut self, opposite: &Opposite, field: &NormalField, ends: [f64; 2], found: usize) {
         let (a, b) = (field.facet(), &opposite.surface.facets[found]);
         let [from, to] = ends;
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
@@ -128,7 +128,7 @@ impl Samples {
         }
     }
 
-    fn cover(self, field: &Field) -> Cover {
+    fn cover(self, field: &NormalField) -> Cover {
         let mut cover = Cover::new(field.facet().nodes.len());
         for sample in &self.list {
             cover.add(sample.weight, &sample.shape, sample.gap);
@@ -141,7 +141,7 @@ impl Samples {
 }
 
 /// Where the line at ξ meets a facet that is opposite: η, and the gap (m).
-fn project(field: &Field, facet: &SurfaceFacet, xi: f64) -> (f64, f64) {
+fn project(field: &NormalField, facet: &SurfaceFacet, xi: f64) -> (f64, f64) {
     let (x, normal) = (field.position([xi, 0.0, 0.0]), field.normal([xi, 0.0, 0.0]));
     let side = |eta: f64| beside(facet, x, normal, eta);
     let eta = root(side).unwrap_or_else(|| {

@@ -1,6 +1,6 @@
 //! What a facet of the boundary sees along its normal.
 
-use super::super::clip::{Point, area, clip, contains, middle};
+use super::super::clip::{PlanePoint, area, clip, contains, middle};
 use super::super::mortar::{Map, foot, middle as middle_of};
 use super::super::surface::SurfaceFacet;
 use super::facet::{ROUND_OFF, STANDING_OFF, SkinFacet};
@@ -24,7 +24,7 @@ pub(super) struct Seen {
     pub gap: f64,
     /// Length or area of that.
     pub measure: f64,
-    outline: Vec<Point>,
+    outline: Vec<PlanePoint>,
     /// Whether it is the far side of the body itself.
     is_far_side: bool,
 }
@@ -37,7 +37,7 @@ pub(super) struct View<'a> {
     frame: LocalFrame,
     /// Width of a strip; 0 of a face (m).
     width: f64,
-    outline: Vec<Point>,
+    outline: Vec<PlanePoint>,
 }
 
 impl<'a> View<'a> {
@@ -119,9 +119,9 @@ impl<'a> View<'a> {
     }
 
     /// The corners of a facet in the plane, counter-clockwise where it looks the same way.
-    fn flat(&self, shape: &SurfaceFacet) -> Vec<Point> {
+    fn flat(&self, shape: &SurfaceFacet) -> Vec<PlanePoint> {
         let corners = shape.at.iter().take(shape.kind.corners());
-        let mut flat: Vec<Point> = corners
+        let mut flat: Vec<PlanePoint> = corners
             .map(|&x| {
                 let way = difference(x, self.facet.shape.at[0]);
                 self.frame.tangents.map(|t| dot(t, way))
@@ -135,7 +135,7 @@ impl<'a> View<'a> {
     }
 
     /// The point of space at one of the plane (m).
-    fn place(&self, [s, t]: Point) -> [f64; 3] {
+    fn place(&self, [s, t]: PlanePoint) -> [f64; 3] {
         let [along, across] = self.frame.tangents;
         let x = advance(self.facet.shape.at[0], s, along);
         match self.width > 0.0 {
