@@ -5,6 +5,7 @@
 //! combinations of unknowns, the coarse ones, are the same in all clusters, the others are solved for in
 //! every cluster by itself. Contact conditions between clusters are tied where they are closed.
 
+mod bases;
 mod between;
 mod classes;
 mod closed;
@@ -27,7 +28,7 @@ use self::classes::{Class, Classes};
 use self::closed::{GroupBetween, Ties};
 use self::cluster_schur::ClusterSchur;
 use self::coarse::{Coarse, Part};
-use self::constraints::{Basis, Mechanism, Side};
+use self::constraints::{Mechanism, Side};
 use self::local::{Local, Shared};
 use self::motions::SharedNodes;
 use self::placement::Placement;
@@ -330,74 +331,6 @@ impl Bddc {
 
     fn group_owners(&self) -> Vec<usize> {
         self.between.iter().map(|group| group.owner).collect()
-    }
-
-    /// The bases of the classes of every cluster of this rank whose part of the preconditioner is to be made: those that
-    /// they had `before`, but of the classes that are to be `made` of what they are to the clusters. Each is made where
-    /// the first cluster of the class is. Collective.
-    fn bases(
-        &self,
-        context: &Context<'_>,
-        before: &Classes,
-        changed: &[bool],
-        made: &[bool],
-        mut sides: BTreeMap<usize, Vec<Option<Side>>>,
-    ) -> Result<BTreeMap<usize, Vec<Basis>>, Failure> {
-        let comm = context.comm;
-        let ends: Vec<(usize, usize)> = (0..self.classes.list.len())
-            .filter(|&k| made[k])
-            .flat_map(|k| self.classes.list[k].clusters.iter().map(move |&c| (k, c)))
-            .collect();
-        let home = |k: usize| self.owners[self.classes.list[k].clusters[0]];
-        let mut arrived: BTreeMap<usize, Vec<Side>> = BTreeMap::new();
-        comm.route(
-            ends.iter().map(|&(k, c)| (self.owners[c], home(k))),
-            |i| {
-                let (k, c) = ends[i];
-                let at = self.classes.of_clusters[c].binary_search(&k).ok()?;
-                sides.get_mut(&c)?[at].take()
-            },
-            |i, side| arrived.entry(ends[i].0).or_default().extend(side),
-        );
-        let mut result = Ok(());
-        let mut results = BTreeMap::new();
-        for (k, sides) in arrived {
-            let class = &self.classes.list[k];
-            match Basis::new(&sides, || self.nodes.motions_of(class)) {
-                Ok(bases) => {
-                    let ends = class.clusters.iter().map(|&c| (k, c));
-                    results.extend(ends.zip(bases));
-                }
-                Err(Mechanism) => result = Err(moves(Mechanism)),
-            }
-        }
-        comm.agree(result)?;
-        let mut of_ends = BTreeMap::new();
-        comm.route(
-            ends.iter().map(|&(k, c)| (home(k), self.owners[c])),
-            |i| results.remove(&ends[i]),
-            |i, basis| of_ends.extend(basis.map(|basis| (ends[i], basis))),
-        );
-        let mut bases = BTreeMap::new();
-        for (c, owner) in self.owners.iter().enumerate() {
-            let classes = &self.classes.of_clusters[c];
-            let is_new = changed[c] || classes.iter().any(|&k| made[k]);
-            if *owner != comm.rank() || !is_new {
-                continue;
-            }
-            let of_classes = classes.iter().map(|&k| {
-                let class = &self.classes.list[k];
-                let kept = || {
-                    let at = before.of_clusters.get(c)?;
-                    let at = at.binary_search(&before.place_of(class)?).ok()?;
-                    Some(self.locals.get(&c)?.bases()[at].clone())
-                };
-                let made = of_ends.remove(&(k, c)).or_else(kept);
-                made.unwrap_or_else(|| Basis::coarse(class.size(), class.clusters[0] == c))
-            });
-            bases.insert(c, of_classes.collect());
-        }
-        Ok(bases)
     }
 }
 
