@@ -13,6 +13,7 @@ pub mod dofs;
 pub mod elasticity;
 pub mod estimate;
 pub mod frame;
+pub mod gradients;
 mod jump_row;
 pub mod load;
 pub mod patch;

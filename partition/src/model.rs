@@ -94,7 +94,7 @@ impl Model {
         let mut bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
         let topology = Topology::new(&bodies.mesh);
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
-        let materials = bodies::materials(scene, plane);
+        let materials = bodies.with_modes(bodies::materials(scene, plane));
         let loads = steps::Loads::new(scene, &bodies, &topology, &materials)?;
         let declared = touching::contacts(scene, &mut bodies, &topology, &mut warnings)?;
         let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads, scene);

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::block::Block;
 use super::dofs::Dofs;
-use super::elasticity::{ElementMatrix, MAX_NODES};
+use super::elasticity::ElementMatrix;
+use super::gradients::MAX_NODES;
 use super::load::BlockLoads;
 use super::prescribed::Prescribed;
 use crate::schur::pattern::{LowerPattern, SparseSymmetric};
@@ -82,7 +83,7 @@ fn scatter(block: &Block, dofs: &Dofs, materials: &[Material], stiffness: &mut S
         nodes.extend(cell.nodes());
         points.clear();
         points.extend(nodes.iter().map(|&n| block.points()[n as usize]));
-        k.set(&cell.kind, &points, &materials[cell.material].stiffness);
+        k.set(&cell.kind, &points, &materials[cell.material]);
         direct.clear();
         direct.extend(nodes.iter().filter_map(|&node| dofs.direct(node)));
         if direct.len() == nodes.len() {
@@ -152,7 +153,7 @@ fn subtract_held(block: &Block, prescribed: &Prescribed, materials: &[Material],
         }
         points.clear();
         points.extend(cell.nodes().map(|node| block.points()[node as usize]));
-        k.set(&cell.kind, &points, &materials[cell.material].stiffness);
+        k.set(&cell.kind, &points, &materials[cell.material]);
         for (a, node) in cell.nodes().enumerate() {
             for component in 0..dim {
                 let row = k.row(dim * a + component).iter();

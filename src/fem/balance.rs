@@ -3,7 +3,8 @@
 use contact_dd_partition::model::Material;
 
 use super::block::Block;
-use super::elasticity::{ElementMatrix, MAX_NODES};
+use super::elasticity::ElementMatrix;
+use super::gradients::MAX_NODES;
 use super::load::BlockLoads;
 
 /// f − K u − Bᵀλ of a block and the scale of its terms, node by node (N/m).
@@ -50,7 +51,7 @@ impl Balance {
                 points.push(block.points()[node]);
                 u_e.extend_from_slice(&u[dim * node..dim * (node + 1)]);
             }
-            k.set(&cell.kind, &points, &materials[cell.material].stiffness);
+            k.set(&cell.kind, &points, &materials[cell.material]);
             for (a, node) in cell.nodes().enumerate() {
                 for component in 0..dim {
                     let (mut sum, mut absolute) = (0.0, 0.0);

@@ -3,132 +3,30 @@
 //! ε = B u holds in Voigt's order ε_xx, ε_yy, γ_xy in the plane and ε_xx, ε_yy, ε_zz, γ_yz, γ_xz, γ_xy in space, with
 //! γ = 2 ε, from the gradients of the shape functions; σ = C ε. Around the axis x = 0 it is ε_xx, ε_yy, ε_zz, γ_xy with
 //! the strain of the hoop ε_zz = u_x/x, and dx is 2πx dx dy. The number of components tells which.
+//!
+//! Incompatible modes, where an element has some, are eliminated in it: no force acts on them, so that their amplitudes α
+//! follow from the displacements of the nodes,
+//!
+//! > K_αα α = −K_αu u, K_e = K_uu − K_uα K_αα⁻¹ K_αu.
 
 use std::array::from_fn;
-use std::f64::consts::PI;
 
-use contact_dd_partition::element::geometry::cross;
 use contact_dd_partition::element::quadrature::TabulatedPoint;
 use contact_dd_partition::element::reference::ReferenceElement;
 use contact_dd_partition::model::{Material, PlaneState};
-use contact_dd_partition::stiffness::Stiffness;
-use nalgebra::Matrix3;
+use nalgebra::{DMatrix, DVector, Matrix3};
 
-/// Most nodes that an element has.
-pub const MAX_NODES: usize = 27;
-/// Components of a strain around an axis.
-const RING: usize = 4;
-/// Most nodes that one of the plane has.
-const MAX_PLANE_NODES: usize = 9;
-/// Most dofs that an element has.
-pub const MAX_DOFS: usize = 3 * MAX_NODES;
+use super::gradients::{
+    MAX_DOFS, MAX_NODES, MAX_PLANE_NODES, PointGradients, RING, Voigt, has_modes, shear,
+    stiffness_points,
+};
 
-/// A strain or stress in Voigt's order; in the plane the first three components count, around an axis four.
-pub type Voigt = [f64; 6];
+/// Nodes of a hexahedron, and its modes.
+const SOLID: usize = 11;
 
-/// The place of γ_ab in Voigt's order of so many components.
-const fn shear(components: usize, a: usize, b: usize) -> usize {
-    match components {
-        6 => 6 - a - b,
-        _ => components - 1,
-    }
-}
-
-/// The points at which a cell's stiffness is integrated where a strain has so many components.
-pub fn stiffness_points(element: &ReferenceElement, components: usize) -> &[TabulatedPoint] {
-    match components {
-        RING => element.points_around_axis(),
-        _ => element.stiffness_points(),
-    }
-}
-
-/// Gradients of the shape functions at a point of an element with up to N nodes in D dimensions, where a strain has V
-/// components, and the weight of that point.
-struct PointGradients<const D: usize, const V: usize, const N: usize> {
-    /// ∂N_i/∂x_d (1/m).
-    gradients: [[f64; D]; N],
-    /// N_i/x around an axis (1/m).
-    hoop: [f64; N],
-    /// Quadrature weight times Jacobian (m², m³).
-    weight: f64,
-}
-
-impl<const D: usize, const V: usize, const N: usize> PointGradients<D, V, N> {
-    /// The gradients at one point of the element with the nodes at `points`.
-    #[inline(always)]
-    fn new(reference: &TabulatedPoint, points: &[[f64; 3]]) -> Self {
-        // J = ∂x/∂ξ
-        let mut j = [[0.0; D]; D];
-        for (x, g) in points.iter().zip(&reference.gradients) {
-            for (row, x) in j.iter_mut().zip(x) {
-                for (entry, g) in row.iter_mut().zip(g) {
-                    *entry += x * g;
-                }
-            }
-        }
-        let (cofactors, det) = cofactors(&j);
-        let mut gradients = [[0.0; D]; N];
-        for (gradient, g) in gradients.iter_mut().zip(&reference.gradients) {
-            for (component, row) in gradient.iter_mut().zip(&cofactors) {
-                let terms = row.iter().zip(g).map(|(c, g)| c * g);
-                *component = terms.reduce(|sum, term| sum + term).unwrap_or_default() / det;
-            }
-        }
-        let mut point = Self {
-            gradients,
-            hoop: [0.0; N],
-            weight: det * reference.weight,
-        };
-        if V == RING {
-            let parts = reference.shape.iter().zip(points);
-            let radius: f64 = parts.map(|(n, x)| n * x[0]).sum();
-            for (hoop, n) in point.hoop.iter_mut().zip(&reference.shape) {
-                *hoop = n / radius;
-            }
-            point.weight *= 2.0 * PI * radius;
-        }
-        point
-    }
-
-    /// ε at the point for nodal displacements `u`.
-    fn strain(&self, u: &[f64]) -> Voigt {
-        let mut strain = [0.0; 6];
-        for (g, u) in self.gradients.iter().zip(u.chunks_exact(D)) {
-            for a in 0..D {
-                strain[a] += g[a] * u[a];
-                for b in a + 1..D {
-                    strain[shear(V, a, b)] += g[b] * u[a] + g[a] * u[b];
-                }
-            }
-        }
-        if V == RING {
-            let u_x = u.iter().step_by(D);
-            strain[2] = self.hoop.iter().zip(u_x).map(|(h, u)| h * u).sum();
-        }
-        strain
-    }
-}
-
-/// det J and det J · J⁻ᵀ.
-#[inline(always)]
-fn cofactors<const D: usize>(j: &[[f64; D]; D]) -> ([[f64; D]; D], f64) {
-    let mut cofactors = [[0.0; D]; D];
-    if D == 2 {
-        cofactors[0] = from_fn(|k| if k == 0 { j[1][1] } else { -j[1][0] });
-        cofactors[1] = from_fn(|k| if k == 0 { -j[0][1] } else { j[0][0] });
-        return (cofactors, j[0][0] * j[1][1] - j[0][1] * j[1][0]);
-    }
-    let row = |i: usize| [j[i][0], j[i][1], j[i][2]];
-    for (i, cofactors) in cofactors.iter_mut().enumerate() {
-        let normal = cross(row((i + 1) % 3), row((i + 2) % 3));
-        *cofactors = from_fn(|k| normal[k]);
-    }
-    let det = (0..D).map(|k| j[0][k] * cofactors[0][k]).sum();
-    (cofactors, det)
-}
-
-/// ε, of so many components, at a point of the element with the nodes at `points` for their displacements `u`, and the
-/// weight of the point, that of quadrature times the Jacobian (m², m³).
+/// ε, of so many components, at a point of the element with the nodes at `points` for their displacements `u`, behind which
+/// the amplitudes of its incompatible modes may stand, and the weight of the point, that of quadrature times the Jacobian
+/// (m², m³).
 pub fn strain(
     reference: &TabulatedPoint,
     points: &[[f64; 3]],
@@ -137,7 +35,10 @@ pub fn strain(
 ) -> (Voigt, f64) {
     match components {
         3 => {
-            let point = PointGradients::<2, 3, MAX_PLANE_NODES>::new(reference, points);
+            let mut point = PointGradients::<2, 3, MAX_PLANE_NODES>::new(reference, points);
+            if u.len() > 2 * points.len() {
+                point = point.with_modes(reference, points);
+            }
             (point.strain(u), point.weight)
         }
         RING => {
@@ -145,7 +46,10 @@ pub fn strain(
             (point.strain(u), point.weight)
         }
         _ => {
-            let point = PointGradients::<3, 6, MAX_NODES>::new(reference, points);
+            let mut point = PointGradients::<3, 6, MAX_NODES>::new(reference, points);
+            if u.len() > 3 * points.len() {
+                point = point.with_modes(reference, points);
+            }
             (point.strain(u), point.weight)
         }
     }
@@ -215,8 +119,12 @@ impl ElementMatrix {
     }
 
     /// Becomes K_e = ∫ Bᵀ C B over an element, in the plane of unit thickness (Pa; around an axis and in space N/m), dofs
-    /// node by node.
-    pub fn set(&mut self, element: &ReferenceElement, points: &[[f64; 3]], c: &Stiffness) {
+    /// node by node; incompatible modes, where it has some, are eliminated.
+    pub fn set(&mut self, element: &ReferenceElement, points: &[[f64; 3]], material: &Material) {
+        if has_modes(element, material) {
+            return self.set_bending(element, points, material);
+        }
+        let c = &material.stiffness;
         if element.dim() == 3 {
             let c = &c.rows::<6>();
             return match element.nodes() {
@@ -304,6 +212,103 @@ impl ElementMatrix {
                 }
             }
         }
+    }
+}
+
+/// How a cell's modes follow from the displacements of its nodes, −K_αα⁻¹ K_αu, and K_αu.
+struct Eliminated {
+    coupling: DMatrix<f64>,
+    amplitudes: DMatrix<f64>,
+}
+
+impl ElementMatrix {
+    /// Becomes the stiffness of an element with modes, without these.
+    pub(super) fn set_bending(
+        &mut self,
+        element: &ReferenceElement,
+        points: &[[f64; 3]],
+        material: &Material,
+    ) {
+        self.set_with_modes(element, points, material);
+        let order = element.dim() * element.nodes();
+        let mut condensed = DMatrix::from_fn(order, order, |i, j| self.row(i.max(j))[i.min(j)]);
+        // Without them where they can't be told apart.
+        if let Some(modes) = self.eliminated(order) {
+            condensed += modes.coupling.transpose() * modes.amplitudes;
+        }
+        self.order = order;
+        for i in 0..order {
+            for j in 0..=i {
+                self.values[i * order + j] = condensed[(i, j)];
+                self.values[j * order + i] = condensed[(i, j)];
+            }
+        }
+    }
+
+    /// Becomes the stiffness of an element and its modes, the lower triangle.
+    fn set_with_modes(
+        &mut self,
+        element: &ReferenceElement,
+        points: &[[f64; 3]],
+        material: &Material,
+    ) {
+        match element.dim() {
+            3 => {
+                let c = &material.stiffness.rows::<6>();
+                self.integrate_with_modes::<3, 6, SOLID>(element, points, c);
+            }
+            _ => {
+                let c = &material.stiffness.rows::<3>();
+                self.integrate_with_modes::<2, 3, MAX_PLANE_NODES>(element, points, c);
+            }
+        }
+    }
+
+    fn integrate_with_modes<const D: usize, const V: usize, const N: usize>(
+        &mut self,
+        element: &ReferenceElement,
+        points: &[[f64; 3]],
+        c: &[[f64; V]; V],
+    ) {
+        let places = element.nodes() + D;
+        self.order = D * places;
+        self.values[..self.order * self.order].fill(0.0);
+        for reference in stiffness_points(element, V) {
+            let point = PointGradients::<D, V, N>::new(reference, points);
+            self.add_lower(places, &point.with_modes(reference, points), c);
+        }
+    }
+
+    /// How the modes behind so many dofs follow from these.
+    fn eliminated(&self, order: usize) -> Option<Eliminated> {
+        let own = self.order - order;
+        let stiffness = DMatrix::from_fn(own, own, |i, j| {
+            self.row(order + i.max(j))[order + i.min(j)]
+        });
+        let coupling = DMatrix::from_fn(own, order, |i, j| self.row(order + i)[j]);
+        let amplitudes = -stiffness.cholesky()?.solve(&coupling);
+        Some(Eliminated {
+            coupling,
+            amplitudes,
+        })
+    }
+}
+
+/// α of an element that has modes, whose nodes at `points` are displaced by `u`.
+pub fn amplitudes(
+    element: &ReferenceElement,
+    points: &[[f64; 3]],
+    material: &Material,
+    u: &[f64],
+) -> Vec<f64> {
+    let mut k = ElementMatrix::default();
+    k.set_with_modes(element, points, material);
+    match k.eliminated(u.len()) {
+        Some(modes) => {
+            let amplitudes = modes.amplitudes * DVector::from_column_slice(u);
+            amplitudes.iter().copied().collect()
+        }
+        None => vec![0.0; k.order - u.len()],
     }
 }
 

@@ -8,7 +8,8 @@ use contact_dd_partition::model::Material;
 use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3, Vector4, Vector6};
 use serde::{Deserialize, Serialize};
 
-use super::elasticity::{Voigt, stiffness_points, strain, voigt_stress};
+use super::elasticity::{strain, voigt_stress};
+use super::gradients::{Voigt, stiffness_points};
 use super::polynomial::NodalStress;
 use crate::vector::axpy;
 

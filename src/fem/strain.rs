@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::elasticity::{Voigt, principal_stresses};
+use super::elasticity::principal_stresses;
+use super::gradients::Voigt;
 
 /// Strain from which on small strains are no approximation: what is of second order is a twentieth of it.
 pub const LARGE: f64 = 0.05;

@@ -8,8 +8,9 @@ use contact_dd_partition::element::quadrature::TabulatedPoint;
 use contact_dd_partition::model::{Material, PlaneState};
 
 use super::block::{Block, BlockCell};
-use super::elasticity::{MAX_DOFS, MAX_NODES, Voigt, stiffness_points, strain, stress};
+use super::elasticity::{amplitudes, strain, stress};
 use super::estimate::{CellError, Compliance};
+use super::gradients::{MAX_DOFS, MAX_NODES, Voigt, has_modes, stiffness_points};
 use super::patch::PatchSum;
 use super::polynomial::NodalStress;
 use super::recovery::Recovery;
@@ -58,7 +59,7 @@ impl BlockStress {
         let mut largest_strain = LargestStrain::default();
         let mut local = LocalCell::empty();
         for cell in block.cells() {
-            local.take(block, &cell, u);
+            local.take(block, &cell, u, &materials[cell.material]);
             let material = &materials[cell.material];
             let (mean, strain, measure) = local.mean(material, plane);
             cells.push(mean);
@@ -73,7 +74,7 @@ impl BlockStress {
             for (corner, &node) in corners.iter().enumerate() {
                 around[node].add_cell(local.turn(corner), !cell.kind.is_linear());
             }
-            for point in cell.kind.stress_points() {
+            for point in stress_points(&cell, material) {
                 let at = local.place(point);
                 let sigma = match is_uniform(cell.kind, material) {
                     true => mean,
@@ -121,7 +122,7 @@ impl BlockStress {
                 continue;
             };
             let (at_nodes, compliance) = (&at_nodes[place], &compliances[place]);
-            local.take(block, &cell, u);
+            local.take(block, &cell, u, &materials[cell.material]);
             recovered.clear();
             recovered.extend(cell.nodes().map(|node| at_nodes[node as usize]));
             if is_uniform(cell.kind, &materials[cell.material]) {
@@ -134,7 +135,7 @@ impl BlockStress {
         }
         for ((cell, error), initial) in block.cells().zip(&mut errors).zip(initial) {
             if let Ok(place) = present.binary_search(&cell.material) {
-                local.take(block, &cell, u);
+                local.take(block, &cell, u, &materials[cell.material]);
                 let measure = cell.kind.measure(&local.points);
                 error.initial = compliances[place].initial(measure, initial);
             }
@@ -171,11 +172,21 @@ fn is_uniform(kind: ElementKind, material: &Material) -> bool {
     !is_ring && kind.is_linear() && matches!(kind.domain(), Domain::Triangle | Domain::Tetrahedron)
 }
 
+/// The points of a cell whose stresses are smoothed: those at which it is better than elsewhere, or where it bends by
+/// modes all of them.
+fn stress_points<'a>(cell: &'a BlockCell<'_>, material: &Material) -> &'a [TabulatedPoint] {
+    match has_modes(&cell.kind, material) {
+        true => stiffness_points(&cell.kind, material.stiffness.size()),
+        false => cell.kind.stress_points(),
+    }
+}
+
 /// A cell with its nodes, their coordinates and displacements.
 struct LocalCell {
     kind: ElementKind,
     nodes: Vec<usize>,
     points: Vec<[f64; 3]>,
+    /// Displacements, then the amplitudes of incompatible modes.
     u: Vec<f64>,
 }
 
@@ -190,7 +201,7 @@ impl LocalCell {
         }
     }
 
-    fn take(&mut self, block: &Block, cell: &BlockCell<'_>, u: &[f64]) {
+    fn take(&mut self, block: &Block, cell: &BlockCell<'_>, u: &[f64], material: &Material) {
         self.kind = cell.kind;
         self.nodes.clear();
         self.points.clear();
@@ -199,6 +210,10 @@ impl LocalCell {
             self.nodes.push(node);
             self.points.push(block.points()[node]);
             (self.u).extend_from_slice(&u[block.dim * node..block.dim * (node + 1)]);
+        }
+        if has_modes(&self.kind, material) {
+            let amplitudes = amplitudes(&self.kind, &self.points, material, &self.u);
+            self.u.extend(amplitudes);
         }
     }
 

@@ -9,6 +9,7 @@
 extern crate contact_dd_trials as support;
 
 mod axisymmetric;
+mod bending;
 mod conditioning;
 mod convergence;
 mod elements;

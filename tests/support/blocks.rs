@@ -257,7 +257,7 @@ pub fn shuffled(mesh: &Mesh, seed: u64) -> (Mesh, BTreeMap<i64, i64>) {
         cells,
         facets,
         groups,
-        warnings: Vec::new(),
+        ..Mesh::default()
     };
     (shuffled, old_tags)
 }

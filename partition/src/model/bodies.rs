@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Material, PlaneState, groups};
-use crate::element::Elements;
+use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::{Group, Mesh};
@@ -19,11 +19,17 @@ const LOCKING: f64 = 0.49;
 /// Distance from the axis, relative to the bodies' extent, that is round-off.
 const AXIS: f64 = 1e-10;
 
+/// What becomes of incompatible modes around an axis.
+const WITHOUT_MODES: &str = "elements with incompatible modes are solved without them where plane = \"axisymmetric\", too \
+                             stiff in bending; quadratic ones, such as CAX8, aren't";
+
 /// The mesh of the bodies alone, and body and material of its cells.
 pub(super) struct Bodies {
     pub mesh: Mesh,
     pub cell_body: Vec<u32>,
     pub cell_material: Vec<u32>,
+    /// The materials of which cells with incompatible modes have one of their own, behind all others.
+    pub with_modes: Vec<u32>,
 }
 
 impl Bodies {
@@ -67,11 +73,54 @@ impl Bodies {
         warn_of_locking(scene, &mesh, &cell_material, warnings);
         let cell_material = cell_body.iter();
         let cell_material = cell_material.map(|&body| material_of_body[body as usize]);
-        Ok(Self {
+        let mut bodies = Self {
             cell_material: cell_material.collect(),
             mesh,
             cell_body,
-        })
+            with_modes: Vec::new(),
+        };
+        if scene.plane == Some(PlaneState::Axisymmetric) && bodies.mesh.has_modes.contains(&true) {
+            warnings.push(WITHOUT_MODES.into());
+        } else {
+            bodies.name_cells_with_modes(own.start);
+        }
+        Ok(bodies)
+    }
+}
+
+impl Bodies {
+    /// Gives cells with incompatible modes materials of their own, numbered from `first` on.
+    fn name_cells_with_modes(&mut self, first: u32) {
+        let has_modes = self.mesh.cells.iter().zip(&self.mesh.has_modes);
+        let has_modes = has_modes.map(|((kind, _), &has)| {
+            has && matches!(kind, ElementKind::Quad4 | ElementKind::Hexahedron8)
+        });
+        for (material, _) in self
+            .cell_material
+            .iter_mut()
+            .zip(has_modes)
+            .filter(|(_, has)| *has)
+        {
+            let known = self.with_modes.iter().position(|own| own == material);
+            let place = known.unwrap_or_else(|| {
+                self.with_modes.push(*material);
+                self.with_modes.len() - 1
+            });
+            *material = first + place as u32;
+        }
+    }
+
+    /// All materials: these, and theirs with incompatible modes.
+    pub fn with_modes(&self, mut materials: Vec<Material>) -> Vec<Material> {
+        for &material in &self.with_modes {
+            let plain = materials[material as usize].clone();
+            materials.push(Material {
+                name: format!("{} with incompatible modes", plain.name),
+                has_incompatible_modes: true,
+                ..plain
+            });
+        }
+        materials
     }
 }
 
@@ -174,6 +223,7 @@ fn material(name: &str, elasticity: &Elasticity, plane: Option<PlaneState>) -> M
             Some(PlaneState::Axisymmetric) | None => None,
         },
         poisson,
+        has_incompatible_modes: false,
     }
 }
 
@@ -281,6 +331,7 @@ fn restrict(mesh: Mesh, kept: &[bool], used: &BTreeSet<&str>) -> Result<Mesh, St
         node_tags: chosen(&mesh.node_tags, &held),
         cells: pick(&mesh.cells, kept),
         cell_tags: chosen(&mesh.cell_tags, kept),
+        has_modes: chosen(&mesh.has_modes, kept),
         facets: pick(&mesh.facets, &facet_held),
         groups,
         warnings: mesh.warnings,

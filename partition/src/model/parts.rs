@@ -15,6 +15,8 @@ pub struct Material {
     pub out_of_plane: Option<[f64; 3]>,
     /// Poisson's ratio of an isotropic material.
     pub poisson: Option<f64>,
+    /// Whether its 4-node quadrilaterals and 8-node hexahedra have incompatible modes, with which they bend.
+    pub has_incompatible_modes: bool,
 }
 
 /// One support row: u(node)·direction = value.

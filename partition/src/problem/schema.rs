@@ -192,6 +192,9 @@ pub const FIELDS: &[Field] = &[
     optional("/materials/out_of_plane", "M, v", NumbersOrNan,
         "in plane strain and stress: maps the same strains to σ_zz; rows of NaN where it isn't known"),
     optional("/materials/poisson", "M", NumbersOrNan, "Poisson's ratio; NaN where it isn't known"),
+    optional("/materials/incompatible_modes", "M", Codes("formulation", 2),
+        "1 where the 4-node quadrilaterals and 8-node hexahedra of the material have incompatible modes, 0 where they don't; \
+         without it none have"),
     field("/bodies/name", "B", Names,
         "a body is what hangs together through shared nodes, its subdomains through Γ"),
     field("/subdomains/body", "N", Indices("body", 'B'), "body of each subdomain"),

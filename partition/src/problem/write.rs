@@ -99,6 +99,12 @@ impl Problem {
         }
         let ratios = materials.iter().map(|m| m.poisson.unwrap_or(f64::NAN));
         datasets.put("/materials/poisson", ratios)?;
+        if materials.iter().any(|m| m.has_incompatible_modes) {
+            let modes = materials
+                .iter()
+                .map(|m| i64::from(m.has_incompatible_modes));
+            datasets.put("/materials/incompatible_modes", modes)?;
+        }
 
         let names = catalog.bodies.iter().map(|b| b.name.as_str());
         datasets.strings("/bodies/name", names)?;

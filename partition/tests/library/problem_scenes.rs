@@ -140,6 +140,7 @@ fn material(name: &str, out_of_plane: Option<[f64; 3]>, poisson: Option<f64>) ->
         stiffness: [[2.0, 0.5, 0.0], [0.5, 2.0, 0.1], [0.0, 0.1, 1.0]].into(),
         out_of_plane,
         poisson,
+        has_incompatible_modes: false,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Elements against what is known of linear displacements and uniform stresses.
 
 use contact_dd_partition::element::ElementKind;
+use contact_dd_partition::element::geometry::cross;
 
 use super::*;
 
@@ -19,6 +20,7 @@ fn material(dim: usize) -> Material {
         stiffness: if dim == 2 { C.into() } else { solid.into() },
         out_of_plane: Some([0.3, 0.4, 0.5]),
         poisson: None,
+        has_incompatible_modes: false,
     }
 }
 
@@ -50,7 +52,7 @@ fn points(kind: ElementKind) -> Vec<[f64; 3]> {
 
 fn stiffness(kind: ElementKind) -> ElementMatrix {
     let mut k = ElementMatrix::default();
-    k.set(&kind, &points(kind), &material(kind.dim()).stiffness);
+    k.set(&kind, &points(kind), &material(kind.dim()));
     k
 }
 

@@ -275,7 +275,7 @@ impl Deck {
             let nodes: Vec<u32> = nodes.iter().map(|&node| node + first_node).collect();
             self.elements.push(kind, &nodes);
             let tag = part.element_tags[element] + offsets.elements;
-            self.push_tag(tag, part.is_side[element]);
+            self.push_tag(tag, part.is_side[element], part.has_modes[element]);
         }
         let name = |set: &str| format!("{instance}.{set}");
         for set in part.node_sets.iter() {

@@ -29,6 +29,8 @@ pub(super) struct Deck {
     pub(super) element_tags: Vec<i64>,
     /// Elements that can be sides only.
     pub(super) is_side: Vec<bool>,
+    /// Elements with incompatible modes.
+    pub(super) has_modes: Vec<bool>,
     pub(super) element_of: HashMap<i64, u32>,
     /// The tags of elements that are left out, as they are neither cells nor sides.
     left_out: HashSet<i64>,
@@ -146,18 +148,11 @@ impl Deck {
             (true, _) => self
                 .taken_as
                 .insert(format!("{} as sides", name.to_uppercase())),
-            (_, Some(plain)) => self
+            (_, Some(plain)) if !found.has_modes => self
                 .taken_as
                 .insert(format!("{} as {plain}", name.to_uppercase())),
             _ => false,
         };
-        if found.has_modes {
-            self.notes.add(
-                "elements with incompatible modes are solved without them, too stiff in bending (quadratic ones, such as \
-                 C3D20, or several across the thickness are not)",
-                name.to_uppercase(),
-            );
-        }
         let mut members = Vec::new();
         for element in self.listed(source, block, &found, name)? {
             members.push(self.add_element(source, &found, &element)?);
@@ -289,15 +284,17 @@ impl Deck {
             return Ok(other);
         }
         self.elements.push(found.kind, nodes);
-        Ok(self.push_tag(*tag, found.is_side))
+        Ok(self.push_tag(*tag, found.is_side, found.has_modes))
     }
 
-    /// Gives the element that was appended last its tag.
-    pub(super) fn push_tag(&mut self, tag: i64, is_side: bool) -> u32 {
+    /// Gives the element that was appended last its tag, and says whether it is a side, and whether it has incompatible
+    /// modes.
+    pub(super) fn push_tag(&mut self, tag: i64, is_side: bool, has_modes: bool) -> u32 {
         let element = self.element_tags.len() as u32;
         self.element_of.insert(tag, element);
         self.element_tags.push(tag);
         self.is_side.push(is_side);
+        self.has_modes.push(has_modes);
         self.highest.elements = self.highest.elements.max(tag);
         element
     }

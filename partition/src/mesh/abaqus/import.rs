@@ -99,6 +99,10 @@ fn add_cells(deck: &Deck, node: &[Option<u32>], mesh: &mut Mesh) -> Vec<Option<u
         let nodes: Vec<u32> = nodes.filter_map(|&n| node[n as usize]).collect();
         mesh.cells.push(deck.elements.kind(element), &nodes);
         mesh.cell_tags.push(deck.element_tags[element]);
+        mesh.has_modes.push(deck.has_modes[element]);
+    }
+    if !mesh.has_modes.contains(&true) {
+        mesh.has_modes.clear();
     }
     index
 }

@@ -22,6 +22,7 @@ pub(super) fn read(
     };
     let planes = optional("/materials/out_of_plane")?;
     let ratios = optional("/materials/poisson")?;
+    let modes = contents.integers("/materials/incompatible_modes", rows.clone())?;
     names
         .into_iter()
         .enumerate()
@@ -38,6 +39,7 @@ pub(super) fn read(
                 stiffness,
                 out_of_plane: out_of_plane.transpose()?.flatten(),
                 poisson: poisson.transpose()?.flatten(),
+                has_incompatible_modes: modes.all().get(m) == Some(&1),
             })
         })
         .collect()

@@ -126,7 +126,6 @@ fn the_same_mesh_comes_of_a_deck_that_others_would_read() {
             ),
             "elements that are no faces of cells are left out: 51",
         ),
-        (CUBES.replace("C3D8,", "C3D8I,"), "without them, too stiff in bending … C3D20 … C3D8I"),
     ] {
         let mesh = quiet(&deck, warning);
         assert!(mesh == plain, "{deck}\n{:?}\n{:?}", mesh.groups, plain.groups);
@@ -169,4 +168,18 @@ fn an_instance_may_have_its_mesh_in_itself() {
     }
     assert_eq!(expected.points[0], [1.0, 0.0, 2.0]);
     assert_eq!(expected.node_tags.len(), 24);
+}
+
+#[test]
+fn cells_with_incompatible_modes_are_named_to_the_solver() {
+    let deck = CUBES.replacen("C3D8,", "C3D8I,", 1);
+    let mesh = read(&deck).unwrap();
+    assert!(mesh.has_modes.contains(&true));
+    assert!(
+        !mesh
+            .warnings
+            .iter()
+            .any(|warning| warning.contains("C3D8I"))
+    );
+    assert!(read(CUBES).unwrap().has_modes.is_empty());
 }
